@@ -9,7 +9,7 @@ use divan::counter::ItemsCount;
 use psd::physics::integrator::input::FrameInput;
 use psd::physics::integrator::solver::FrameSolver;
 use psd::physics::integrator::tangents::Tangents;
-use psd::physics::specimen::{Bilinear, Elastic, RestoringForce};
+use psd::physics::specimen::{Bilinear, BilinearCurve, Elastic, RestoringForce};
 use psd::physics::structure::{
     FrameMatrices, SymmetricBand, drifts, floor_forces, storey_stiffness,
 };
@@ -117,7 +117,11 @@ fn bilinear(bencher: Bencher, storeys: usize) {
         storeys,
         TANGENT,
         SECANTS,
-        Bilinear::new(STIFFNESS, 2e4, 0.05),
+        Bilinear::new(BilinearCurve {
+            stiffness: STIFFNESS,
+            yield_force: 2e4,
+            post_yield_ratio: 0.05,
+        }),
     );
 }
 

@@ -1,12 +1,14 @@
-//! Cost of a step: example 1 at 1 µs for 100,000 steps, bare, recorded, and step by step as with a rig. Items are steps.
+//! Cost of a step: example 1 at 1 µs for 100,000 steps, bare, recorded, and step by step as with a rig; and a study of 10,000 impacts
+//! with 3000 steps each. Items are steps.
 
 use std::hint::black_box;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use psd::physics::contact::state::ContactLaw;
-use psd::physics::impact::{Columns, ImpactInput, ImpactSolver, simulate};
-use psd::physics::specimen::{Elastic, RestoringForce};
+use psd::physics::impact::batch::{self, Impact};
+use psd::physics::impact::{Columns, ImpactInput, ImpactSolver, Until, simulate};
+use psd::physics::specimen::{Elastic, RestoringForce, SpecimenModel};
 use psd::plan::Integrator;
 
 const STEPS: u64 = 100_000;
@@ -71,4 +73,24 @@ fn interactive(bencher: Bencher) {
         }
         *solver.state()
     });
+}
+
+/// Scattered impact speeds, in lanes.
+#[divan::bench]
+fn study(bencher: Bencher) {
+    const RUNS: u32 = 10_000;
+    const STEPS: u64 = 3000;
+    let impacts: Vec<Impact> = (0..RUNS)
+        .map(|run| Impact {
+            input: ImpactInput {
+                striker_velocity: 1.0 + 1e-5 * f64::from(run),
+                time_step: 1e-4,
+                ..example_1()
+            },
+            specimen: SpecimenModel::Elastic(SPECIMEN),
+        })
+        .collect();
+    bencher
+        .counter(ItemsCount::new(u64::from(RUNS) * STEPS))
+        .bench_local(|| batch::run(&impacts, Some(Until::Duration), STEPS));
 }

@@ -40,7 +40,7 @@ rig real {
   link        = serial(port: "/dev/none", dialect: native)
   settle      = within(0.002 mm, 50 kN/s, timeout: 5 s)
   safe_state  = hold
-  gate        = probe(0.1 mm, stiffness: 250 kN/m .. 350 kN/m, zero: 2 N)
+  pretest_check        = probe(0.1 mm, stiffness: 250 kN/m .. 350 kN/m, zero: 2 N)
   rate        = 200 Hz
   samples     = 1
   calibration = "none"

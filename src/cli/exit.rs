@@ -62,13 +62,12 @@ impl From<Exit> for ExitCode {
 /// Part of the message of a device that does not answer.
 const SILENT: &str = "no usable answer";
 /// Possible causes of a silent device.
-const LOOK_FOR: &str = "the baud rate, the dialect, crossed wires, or a device that still starts; `psd rig simulate` in its place shows\n       \
-    whether the plan is right";
+const LOOK_FOR: &str = "the baud rate, the `dialect`, crossed wires, or a device that is still starting; with `psd rig simulate` in its stead\n       you can check the plan";
 
 impl Failure {
     pub const fn exit(&self) -> Exit {
         match self {
-            Self::CommandLine { .. } | Self::NotAPlan { .. } | Self::Unrehearsed(_) => Exit::Wrong,
+            Self::CommandLine { .. } | Self::NotAPlan { .. } | Self::NoCheckRun(_) => Exit::Wrong,
             Self::Rig(fault) | Self::NotOpened { fault, .. } => match fault {
                 RigFault::LimitBreached { .. }
                 | RigFault::NotSettled { .. }

@@ -37,17 +37,19 @@ pub fn main(arguments: impl Iterator<Item = OsString>) -> Exit {
     let settings = settings::Settings::from_environment(arguments.color);
     let outcome = match &arguments.command {
         args::Command::Run(arguments) => commands::run::run(arguments, settings),
-        args::Command::Resume(arguments) => commands::resume::resume(arguments, settings),
-        args::Command::Issue(arguments) => commands::issue::issue(arguments, settings),
-        args::Command::Report(arguments) => commands::report::report(arguments, settings),
-        args::Command::Verify(arguments) => commands::verify::verify(arguments, settings),
-        args::Command::Sign(arguments) => commands::sign::sign(arguments, settings),
-        args::Command::Keygen(arguments) => commands::sign::keygen(arguments, settings),
+        args::Command::Resume(arguments) => commands::run::resume::resume(arguments, settings),
+        args::Command::Issue(arguments) => commands::evidence::issue::issue(arguments, settings),
+        args::Command::Report(arguments) => commands::evidence::report::report(arguments, settings),
+        args::Command::Verify(arguments) => commands::evidence::verify::verify(arguments, settings),
+        args::Command::Sign(arguments) => commands::evidence::sign::sign(arguments, settings),
+        args::Command::Keygen(arguments) => commands::evidence::sign::keygen(arguments, settings),
         args::Command::Compare(arguments) => commands::compare::compare(arguments),
         args::Command::Test(arguments) => commands::test::test(arguments, settings),
         args::Command::Check(arguments) => commands::check::check(arguments, settings),
         args::Command::Fmt(arguments) => commands::fmt::fmt(arguments, settings),
-        args::Command::Explain { code } => commands::explain::explain(code.as_deref(), settings),
+        args::Command::Explain { code, full } => {
+            commands::explain::explain(code.as_deref(), *full, settings)
+        }
         args::Command::Limits => commands::limits::limits(),
         args::Command::Rig { command } => commands::rig::rig(command, settings),
     };

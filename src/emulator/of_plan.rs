@@ -27,13 +27,13 @@ const PULLED_OFF: f64 = -1e-3;
 /// The reason why the rig has no emulator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoStandIn {
-    #[error("the rig of this plan is a virtual one: it needs no stand-in")]
+    #[error("the rig of this plan is a virtual rig: it needs no emulator")]
     Virtual,
-    #[error("the specimen has no `behaviour`, so that there is nothing to bend")]
+    #[error("the specimen has no `behaviour`: there is nothing to load")]
     NoBehaviour,
-    #[error("the script names axis {named}, and the rig has {axes}")]
+    #[error("the script names axis {named}, but the rig has {axes}")]
     NoSuchAxis { named: usize, axes: usize },
-    #[error("the script names a device of axis {axis} alone, and that has none of this role")]
+    #[error("the script names a separate device of axis {axis}, but there is none with this role")]
     NoOwnDevice { axis: usize },
 }
 
@@ -134,9 +134,9 @@ fn bench(plan: &Plan, link: &RealLink, seed: u64, starts: &[f64]) -> Result<Benc
             .calibration
             .newtons_per_count
             .unwrap_or_else(|| capacity(link) / COUNTS),
-        zero_count: plan.rig.calibration.zero_count,
+        zero_offset: plan.rig.calibration.zero_offset,
         seed,
-        limits: places_at_rig(link, plan.rig.sign, plan.limits.displacement, starts[0]),
+        limits: places_at_rig(link, plan.rig.polarity, plan.limits.displacement, starts[0]),
         top_speed: plan.limits.speed.high,
     };
     if let Some(frame) = &specimen.frame {
@@ -150,7 +150,7 @@ fn bench(plan: &Plan, link: &RealLink, seed: u64, starts: &[f64]) -> Result<Benc
             (
                 own.newtons_per_count
                     .unwrap_or_else(|| capacity(link) / COUNTS),
-                own.zero_count,
+                own.zero_offset,
             )
         };
         let converters = (0..rams.len()).map(converter).collect();
@@ -162,7 +162,7 @@ fn bench(plan: &Plan, link: &RealLink, seed: u64, starts: &[f64]) -> Result<Benc
 
 /// Returns the actuator of a frame's floor.
 fn ram(plan: &Plan, link: &RealLink, axis: usize, start: f64) -> RamSettings {
-    let (sign, readings) = (plan.rig.sign_of(axis), link.readings_of(axis));
+    let (sign, readings) = (plan.rig.polarity_of(axis), link.readings_of(axis));
     let limits = places_at_rig(
         link,
         sign,
@@ -242,7 +242,7 @@ fn firmware(
         Dialect::Native => {
             let of_axis = |axis| {
                 at_rig(
-                    plan.rig.sign_of(axis),
+                    plan.rig.polarity_of(axis),
                     plan.rig.limits_of(axis, &plan.limits).force,
                 )
             };
@@ -282,7 +282,7 @@ mod tests {
     use super::*;
     use crate::language::check::{LoadError, Loader, Options, check};
     use crate::plan::{
-        Calibration, Datum, DeviceLink, Gate, Link, PortPlan, ReadingRules, SafeState,
+        Calibration, Datum, DeviceLink, Link, PortPlan, PretestCheck, ReadingRules, SafeState,
     };
     use crate::rig::transport::{Clock as _, Port as _};
     use std::time::Duration;
@@ -337,7 +337,7 @@ move to_half {
             load_cell: load_cell.map(device),
             safe_state: SafeState::Hold,
             datum: Datum::Machine,
-            gate: Gate {
+            pretest_check: PretestCheck {
                 zero: 1.0,
                 probe: 1e-4,
                 stiffness: Interval::ALL,
@@ -384,7 +384,7 @@ move to_half {
         let mut plan = plan(Dialect::Grbl, Some(Dialect::Hx711));
         plan.rig.calibration = Calibration {
             newtons_per_count: Some(0.01),
-            zero_count: 500.0,
+            zero_offset: 500.0,
             ..Calibration::default()
         };
         let shared = stand(&plan);
@@ -400,7 +400,7 @@ move to_half {
     #[test]
     fn a_rig_that_counts_the_other_way_has_its_limits_turned() {
         let mut plan = plan(Dialect::Native, None);
-        plan.rig.sign = -1.0;
+        plan.rig.polarity = -1.0;
         let hello = heard(&stand(&plan), 0, &sealed("HELLO 1"));
         assert!(
             hello.contains(" -25.000000 1.000000 -12000.000 2000.000 10.000000 0 "),

@@ -158,7 +158,9 @@ impl Script {
 }
 
 fn fault(line: &str) -> Result<Fault, String> {
-    let (when, what) = line.split_once(':').ok_or("no `:` between when and what")?;
+    let (when, what) = line
+        .split_once(':')
+        .ok_or("`:` is missing between the time and the fault")?;
     let mut words = Words(what.split_whitespace().collect());
     let probability = words.probability()?;
     let when = self::when(when, probability)?;
@@ -177,16 +179,18 @@ fn fault(line: &str) -> Result<Fault, String> {
     let what = self::what(&mut words)?;
     words.end()?;
     if ram > 0 && !matches!(what, What::Bench(_)) {
-        return Err("only what befalls a ram, its specimen or its sensors has an axis".to_owned());
+        return Err(
+            "only a fault of an actuator, its specimen or its sensors can have an axis".to_owned(),
+        );
     }
     match (&when, &what) {
         (When::EachReading(_), What::Bench(BenchFault::Spike(_) | BenchFault::Number(_)))
         | (When::EachReply(_), What::Replies(..)) => {}
         (When::EachReading(_), _) => {
-            return Err("each reading can have a spike or a bad number only".to_owned());
+            return Err("`each reading` allows only a spike or a bad number".to_owned());
         }
         (When::EachReply(_), _) => {
-            return Err("each reply can have only what befalls a reply".to_owned());
+            return Err("`each reply` allows only faults of a reply".to_owned());
         }
         _ => {}
     }
@@ -229,7 +233,7 @@ fn when(text: &str, probability: Option<f64>) -> Result<When, String> {
             "reply" | "replies" => When::AfterReplies(count),
             other => {
                 return Err(format!(
-                    "`{other}` is not counted: moves, readings and replies are"
+                    "`{other}` cannot be counted: write moves, readings or replies"
                 ));
             }
         }
@@ -239,13 +243,13 @@ fn when(text: &str, probability: Option<f64>) -> Result<When, String> {
         When::EachReading(probability.unwrap_or(1.0))
     } else {
         return Err(format!(
-            "`{}` is no time: write `at`, `after`, `each reply` or `each reading`",
+            "`{}` is not a time: write `at`, `after`, `each reply` or `each reading`",
             text.trim()
         ));
     };
     words.end()?;
     if probability.is_some() && !matches!(when, When::EachReply(_) | When::EachReading(_)) {
-        return Err("a probability goes with `each reply` and `each reading`".to_owned());
+        return Err("a probability requires `each reply` or `each reading`".to_owned());
     }
     Ok(when)
 }
@@ -264,7 +268,7 @@ fn what(words: &mut Words<'_>) -> Result<What, String> {
             match at {
                 "at" => Ok(What::Replies(ReplyFault::SplitAt(bytes), replies)),
                 "every" if bytes > 0 => Ok(What::Replies(ReplyFault::SplitEvery(bytes), replies)),
-                _ => Err("split at some bytes, or every so many".to_owned()),
+                _ => Err("write `at 5 bytes` or `every 5 bytes`".to_owned()),
             }
         }
         "cut" => {
@@ -304,7 +308,7 @@ fn what(words: &mut Words<'_>) -> Result<What, String> {
                 let word = words.next()?;
                 Some(
                     u8::from_str_radix(word, 16)
-                        .map_err(|_| format!("`{word}` is no byte in hexadecimal"))?,
+                        .map_err(|_| format!("`{word}` is not a hexadecimal byte"))?,
                 )
             } else {
                 None
@@ -313,7 +317,11 @@ fn what(words: &mut Words<'_>) -> Result<What, String> {
                 "before" => Place::Before,
                 "inside" => Place::Inside,
                 "after" => Place::After,
-                other => return Err(format!("`{other}` is no place: before, inside or after")),
+                other => {
+                    return Err(format!(
+                        "`{other}` is invalid: write before, inside or after"
+                    ));
+                }
             };
             let replies = if words.ended() {
                 Some(1)
@@ -353,7 +361,7 @@ fn bench_fault(verb: &str, words: &mut Words<'_>) -> Result<BenchFault, String> 
             "force" => Ok(BenchFault::FreezeForce),
             "displacement" => Ok(BenchFault::FreezeDisplacement),
             other => Err(format!(
-                "`{other}` does not freeze: firmware, force and displacement do"
+                "`{other}` cannot freeze: write firmware, force or displacement"
             )),
         },
         "scale" => {
@@ -364,7 +372,7 @@ fn bench_fault(verb: &str, words: &mut Words<'_>) -> Result<BenchFault, String> 
                 "force" => Ok(BenchFault::ScaleForce(factor)),
                 "displacement" => Ok(BenchFault::ScaleDisplacement(factor)),
                 other => Err(format!(
-                    "`{other}` has no scale: force and displacement have"
+                    "`{other}` cannot be scaled: write force or displacement"
                 )),
             }
         }
@@ -379,7 +387,7 @@ fn bench_fault(verb: &str, words: &mut Words<'_>) -> Result<BenchFault, String> 
                 "force" => Ok(BenchFault::Drift(words.amount("N/s")?)),
                 "displacement" => Ok(BenchFault::DriftDisplacement(words.amount("mm/s")? * 1e-3)),
                 other => Err(format!(
-                    "`{other}` does not drift: force and displacement do"
+                    "`{other}` cannot drift: write force or displacement"
                 )),
             }
         }
@@ -399,7 +407,7 @@ fn bench_fault(verb: &str, words: &mut Words<'_>) -> Result<BenchFault, String> 
                 left: words.amount("%")? / 100.0,
             })
         }
-        other => Err(format!("`{other}` is no fault that is known")),
+        other => Err(format!("unknown fault `{other}`")),
     }
 }
 
@@ -426,7 +434,7 @@ impl<'a> Words<'a> {
         if found == word {
             Ok(())
         } else {
-            Err(format!("`{found}` stands where `{word}` is expected"))
+            Err(format!("found `{found}`, expected `{word}`"))
         }
     }
 
@@ -437,12 +445,12 @@ impl<'a> Words<'a> {
     fn end(&self) -> Result<(), String> {
         self.0
             .front()
-            .map_or(Ok(()), |word| Err(format!("`{word}` is one word too many")))
+            .map_or(Ok(()), |word| Err(format!("unexpected `{word}`")))
     }
 
     fn count(&mut self) -> Result<u64, String> {
         let word = self.next()?;
-        word.parse().map_err(|_| format!("`{word}` is no count"))
+        word.parse().map_err(|_| format!("`{word}` is not a count"))
     }
 
     /// The index of an axis, from its number (from 1).
@@ -451,20 +459,20 @@ impl<'a> Words<'a> {
         word.parse::<usize>()
             .ok()
             .and_then(|axis| axis.checked_sub(1))
-            .ok_or_else(|| format!("`{word}` is no axis: the first is 1"))
+            .ok_or_else(|| format!("`{word}` is not an axis: the first is 1"))
     }
 
     fn size(&mut self) -> Result<usize, String> {
         let word = self.next()?;
-        word.parse().map_err(|_| format!("`{word}` is no count"))
+        word.parse().map_err(|_| format!("`{word}` is not a count"))
     }
 
     fn bytes(&mut self) -> Result<usize, String> {
         let count = self.size()?;
         match self.next()? {
             "byte" | "bytes" if count <= 16 << 20 => Ok(count),
-            "byte" | "bytes" => Err(format!("{count} bytes are too many: 16 MiB is the most")),
-            other => Err(format!("`{other}` stands where `bytes` is expected")),
+            "byte" | "bytes" => Err(format!("{count} bytes are too many (limit 16 MiB)")),
+            other => Err(format!("found `{other}`, expected `bytes`")),
         }
     }
 
@@ -473,7 +481,7 @@ impl<'a> Words<'a> {
         word.parse()
             .ok()
             .filter(|value: &f64| value.is_finite())
-            .ok_or_else(|| format!("`{word}` is no number"))
+            .ok_or_else(|| format!("`{word}` is not a number"))
     }
 
     /// A number with its required unit.
@@ -489,9 +497,7 @@ impl<'a> Words<'a> {
             "reply" => Ok(Some(1)),
             "replies" if self.take(&["for", "ever"]) => Ok(None),
             "replies" => self.count().map(Some),
-            other => Err(format!(
-                "`{other}` stands where `reply` or `replies` is expected"
-            )),
+            other => Err(format!("found `{other}`, expected `reply` or `replies`")),
         }
     }
 
@@ -508,7 +514,7 @@ impl<'a> Words<'a> {
         if sound {
             Ok(Some(probability))
         } else {
-            Err(format!("{probability} is no probability"))
+            Err(format!("{probability} is not a probability"))
         }
     }
 }

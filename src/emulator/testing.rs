@@ -14,7 +14,7 @@ pub fn bench() -> Bench {
         noise: 0.0,
         resolution: 1e-6,
         newtons_per_count: -0.01,
-        zero_count: 1000.0,
+        zero_offset: 1000.0,
         seed: 1,
         limits: Interval {
             low: -0.001,

@@ -7,7 +7,7 @@ use super::finding::Finding;
 use super::folder::Folder;
 use super::issues;
 use super::keys::KnownKey;
-use super::names::MANIFEST;
+use super::names::{MANIFEST, present_name};
 use super::rebuilt::{Rebuilt, Report};
 use super::sidecar;
 use super::signature;
@@ -33,12 +33,12 @@ pub fn examine(folder: &Folder, rebuilt: &Rebuilt, keys: &[KnownKey]) -> Vec<Fin
     } else if ended {
         Finding::wrong(
             "results",
-            "the run came to its end, and its results are gone: `psd report` makes them again",
+            "the run is complete, but its results are missing: `psd report` creates them again",
         )
     } else if let Some(fault) = foreign(folder).first() {
         Finding::wrong("manifest", fault)
     } else {
-        Finding::sound("manifest", "no results yet: there is none")
+        Finding::sound("manifest", "there are no results yet")
     });
     findings.extend(
         sidecars
@@ -65,12 +65,13 @@ fn sidecars<'a>(folder: &'a Folder, report: Option<&Report>) -> BTreeSet<&'a str
 /// The parts of the results, each with its paths.
 const PARTS: &[(&str, &str)] = &[
     ("figures", "figures/"),
-    ("certificate", "certificate."),
+    ("report", "report."),
     ("plan", "plan/"),
     ("results", ""),
 ];
 
 fn part_of(path: &str) -> &'static str {
+    let path = present_name(path);
     PARTS
         .iter()
         .find(|(_, prefix)| path.starts_with(prefix))
@@ -90,7 +91,7 @@ fn results(
         *counts.entry(part_of(path)).or_default() += 1;
         let fault = match folder.files.get(path) {
             Some(held) if held.digest == *digest => continue,
-            Some(_) => format!("`{path}` is not what the record gives"),
+            Some(_) => format!("`{path}` differs from the run log"),
             None => format!("`{path}` is missing"),
         };
         faults.entry(part_of(path)).or_default().push(fault);
@@ -110,7 +111,7 @@ fn results(
         faults
             .entry(part_of(name))
             .or_default()
-            .push(format!("`{name}` is none of the run's files"));
+            .push(format!("`{name}` is not a file of the run"));
     }
     for (part, _) in PARTS.iter().rev() {
         if let Some(faults) = faults.get(part) {
@@ -123,7 +124,7 @@ fn results(
             let cut_off = if report.ended {
                 ""
             } else {
-                "; the record has no end"
+                "; the run log has no end"
             };
             findings.push(Finding::wrong(
                 part,
@@ -137,7 +138,7 @@ fn results(
             };
             findings.push(Finding::sound(
                 part,
-                format!("{files} came out of the record again, byte for byte"),
+                format!("{files} recomputed from the run log, byte for byte"),
             ));
         }
     }
@@ -150,23 +151,23 @@ fn foreign(folder: &Folder) -> Vec<String> {
         .iter()
         .map(|(name, reason)| format!("`{name}` {reason}"));
     let reserve = (folder.reserve_is_ours() == Some(false))
-        .then(|| "the reserve holds what psd does not lay there".to_owned());
+        .then(|| "the reserve file has other content than psd writes".to_owned());
     odd.chain(reserve).collect()
 }
 
 /// Compares every file of the folder with its manifest, and the manifest with the one from the replay.
 fn manifest(folder: &Folder, report: Option<&Report>, sidecars: &BTreeSet<&str>) -> Finding {
     let Some(bytes) = folder.bytes(MANIFEST) else {
-        return Finding::wrong("manifest", "there are results and no manifest");
+        return Finding::wrong("manifest", "there are results, but no manifest");
     };
     let mut faults = foreign(folder);
     let Some(lines) = lines(bytes) else {
-        return Finding::wrong("manifest", "it is no list of digests");
+        return Finding::wrong("manifest", "it is not a list of digests");
     };
     for (name, digest) in &lines {
         match folder.files.get(*name) {
             Some(held) if held.digest == *digest => {}
-            Some(_) => faults.push(format!("`{name}` is not the one of the manifest")),
+            Some(_) => faults.push(format!("`{name}` differs from the manifest")),
             None => faults.push(format!("`{name}` is missing")),
         }
     }
@@ -186,17 +187,17 @@ fn manifest(folder: &Folder, report: Option<&Report>, sidecars: &BTreeSet<&str>)
             .chain(beside)
             .collect();
         if manifest_with(&[], &all).bytes != bytes {
-            faults.push("it is not the one that the record gives".to_owned());
+            faults.push("it differs from the run log".to_owned());
         }
     }
     if faults.is_empty() {
         Finding::sound("manifest", {
             let other = if sidecars.is_empty() {
-                "there is no other"
+                "there is no other file"
             } else {
-                "there is no other but sidecars"
+                "there are no other files except sidecars"
             };
-            format!("all {} files are those it lists, and {other}", lines.len())
+            format!("all {} files match it, and {other}", lines.len())
         })
     } else {
         Finding::wrong("manifest", some_of(&faults))

@@ -29,7 +29,7 @@ pub fn check_consistency(read: &ReadRecord) -> Result<(), String> {
                 plan_of(&played).map_err(|fault| format!("before it was amended: {fault}"))?;
             begins(&first, &played, &plan)?;
             if read.played.header.run_id != played.header.run_id {
-                return Err("an amendment makes it another run".to_owned());
+                return Err("an amendment makes it a different run".to_owned());
             }
         }
     }
@@ -42,12 +42,12 @@ fn begins(recovered: &Recovered, played: &LoggedRun, plan: &Plan) -> Result<(), 
     let id = recorded_id(header, plan);
     if header.run_id != id {
         return Err(format!(
-            "its run id is not {id}, which its plan and its circumstances give"
+            "its run id is not {id}, which follows from its plan and its circumstances"
         ));
     }
     let own = header.build == BUILD;
     if own && recovered.format() == OLDEST_FORMAT {
-        return Err("the program that it names writes no records of version 1".to_owned());
+        return Err("the program that it names writes no run logs of version 1".to_owned());
     }
     Ok(())
 }
@@ -55,7 +55,7 @@ fn begins(recovered: &Recovered, played: &LoggedRun, plan: &Plan) -> Result<(), 
 /// Observations on a consistent run log.
 pub fn remarks(recovered: &Recovered, header: &Header) -> String {
     let version = if header.equipment.is_none() {
-        ", of version 1: it does not say what was measured with"
+        ", of version 1: it does not state the measuring equipment"
     } else {
         ""
     };

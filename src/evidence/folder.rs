@@ -16,7 +16,7 @@ use crate::files::recorded_run::JOURNAL;
 use crate::record::journal::{MOST_BYTES, is_part_of_a_reserve};
 use crate::text::digest::{hex, sha256};
 
-use super::names::{ISSUE, MANIFEST, OLDER_ISSUE, PAPER, is_sidecar, is_signature};
+use super::names::{ISSUE, MANIFEST, OLDER_ISSUE, is_paper, is_sidecar, is_signature};
 
 /// The largest file of a run folder that is read \[bytes\]: the run log is the largest.
 const LISTED_BYTES: u64 = MOST_BYTES;
@@ -57,14 +57,14 @@ impl Folder {
     /// Reads the whole folder.
     pub fn read(run: &Path) -> Result<Self, Failure> {
         let mut folder = Self::default();
-        folder.walk(run, is_read, ("", 0))?;
+        folder.walk(run, is_read, "", 0)?;
         Ok(folder)
     }
 
     /// The same with names and digests only.
     pub fn digests(run: &Path) -> Result<Self, Failure> {
         let mut folder = Self::default();
-        folder.walk(run, |_| false, ("", 0))?;
+        folder.walk(run, |_| false, "", 0)?;
         Ok(folder)
     }
 
@@ -109,7 +109,8 @@ impl Folder {
         &mut self,
         folder: &Path,
         is_read: fn(&str) -> bool,
-        (prefix, depth): (&str, usize),
+        prefix: &str,
+        depth: usize,
     ) -> Result<(), Failure> {
         let failed = |error: std::io::Error| Failure::file(folder, plain(&error));
         for entry in std::fs::read_dir(folder).map_err(failed)? {
@@ -118,7 +119,7 @@ impl Folder {
             let Ok(own) = entry.file_name().into_string() else {
                 self.odd.push((
                     path.display().to_string(),
-                    "has a name that is no text".to_owned(),
+                    "has a name that is not text".to_owned(),
                 ));
                 continue;
             };
@@ -126,7 +127,7 @@ impl Folder {
             let kind = entry.file_type().map_err(failed)?;
             if kind.is_dir() && depth < DEEPEST {
                 let before = self.files.len() + self.odd.len();
-                self.walk(&path, is_read, (&format!("{name}/"), depth + 1))?;
+                self.walk(&path, is_read, &format!("{name}/"), depth + 1)?;
                 if self.files.len() + self.odd.len() == before {
                     self.odd.push((name, "is an empty folder".to_owned()));
                 }
@@ -149,10 +150,10 @@ fn held(path: &PathBuf, name: &str, is_read: bool) -> Result<Held, String> {
         return Err("is a link".to_owned());
     }
     if !metadata.is_file() {
-        return Err("is no file".to_owned());
+        return Err("is not a file".to_owned());
     }
     if metadata.len() > LISTED_BYTES {
-        return Err("is larger than any run's".to_owned());
+        return Err("is larger than any file of a run".to_owned());
     }
     // An entry that has become a link or a pipe is not followed and not waited for.
     let flags = (OFlags::NOFOLLOW | OFlags::NONBLOCK).bits();
@@ -187,7 +188,7 @@ fn is_read(name: &str) -> bool {
     let own = matches!(name, JOURNAL | MANIFEST | ISSUE | OLDER_ISSUE)
         || is_signature(name)
         || is_reserve(name);
-    own || name == PAPER || is_sidecar(name)
+    own || is_paper(name) || is_sidecar(name)
 }
 
 fn is_kept(name: &str) -> bool {

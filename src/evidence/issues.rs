@@ -2,6 +2,7 @@
 //! Out: the file, its report id, and plan and provenance with the stated data. It changes only particulars of the `plan` block: the run
 //! log in the issued folder is unchanged, and every number comes from it.
 
+use crate::schema::plan_block;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
@@ -22,7 +23,7 @@ const SCHEMA: &str = "psd.issue/1";
 const OLDER_SCHEMA: &str = "psd.amendment/1";
 
 /// The day of the test stays as recorded.
-const FIXED: &[&str] = &["date"];
+const FIXED: &[&str] = &[plan_block::DATE.name];
 
 /// The file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -108,7 +109,7 @@ impl IssueFile {
         let file: Self =
             serde_json::from_slice(bytes).map_err(|error| format!("cannot be read: {error}"))?;
         if file.schema != SCHEMA || file.issues.is_empty() || file.json().as_bytes() != bytes {
-            return Err("is none that this version of psd writes".to_owned());
+            return Err("was not written by this version of psd".to_owned());
         }
         Ok(file)
     }
@@ -139,7 +140,7 @@ impl IssueFile {
             || file.issues.is_empty()
             || older_json(&file.issues).as_bytes() != bytes
         {
-            return Err("is none that a version of psd wrote".to_owned());
+            return Err("was not written by a version of psd".to_owned());
         }
         Ok(file)
     }
@@ -204,14 +205,12 @@ pub fn may_be_stated(field: &str) -> Result<&'static str, String> {
         texts.map(|known| known.name)
     };
     if FIXED.contains(&field) {
-        return Err(format!(
-            "`{field}` is when something was, and stays as it is on record"
-        ));
+        return Err(format!("`{field}` is a logged date, and cannot be changed"));
     }
     texts().find(|name| *name == field).ok_or_else(|| {
         let near = nearest(field, texts().filter(|name| !FIXED.contains(name)));
         let near = near.map_or_else(String::new, |name| format!("; did you mean `{name}`?"));
-        format!("`{field}` is no particular that can be amended{near}")
+        format!("`{field}` is not a particular that can be amended{near}")
     })
 }
 
@@ -231,11 +230,11 @@ pub fn apply(plan: &mut Plan, provenance: &mut Provenance, file: &IssueFile) -> 
     for (before, one) in file.issues.iter().enumerate() {
         if one.replaces != file.id(&own, before) {
             return Err(format!(
-                "an issue takes the place of report {}, which is none of this run",
+                "an issue replaces report {}, which does not belong to this run",
                 one_line(&one.replaces)
             ));
         }
-        let issued = stated(plan, "issued");
+        let issued = stated(plan, plan_block::ISSUED.name);
         if let (OneKind::Issue, Some(day)) = (one.kind, &issued) {
             return Err(format!(
                 "report {} states that it was issued on {}",
@@ -251,9 +250,9 @@ pub fn apply(plan: &mut Plan, provenance: &mut Provenance, file: &IssueFile) -> 
             if text.len() > TEXT_BYTES {
                 return Err(format!("`{field}` is longer than {TEXT_BYTES} bytes"));
             }
-            if field == "receipt_date" && !text.is_empty() && day(text).is_none() {
+            if field == plan_block::RECEIPT_DATE.name && !text.is_empty() && day(text).is_none() {
                 return Err(format!(
-                    "`{}` is no day; write it as 2026-05-31",
+                    "`{}` is not a date; write it as 2026-05-31",
                     one_line(text)
                 ));
             }
@@ -264,11 +263,11 @@ pub fn apply(plan: &mut Plan, provenance: &mut Provenance, file: &IssueFile) -> 
             // For a real rig the run log states the operator, whoever the plan names; and the run log is not rewritten.
             let recorded = provenance
                 .operator()
-                .filter(|_| field == "operator" && !restated);
+                .filter(|_| field == plan_block::OPERATOR.name && !restated);
             changes.push(change(plan, recorded, field, text));
         }
-        if one.kind == OneKind::Issue && stated(plan, "authorised_by").is_none() {
-            return Err("nobody authorises the report: `--authorised-by NAME`".to_owned());
+        if one.kind == OneKind::Issue && stated(plan, plan_block::AUTHORISED_BY.name).is_none() {
+            return Err("the report has no issuer: `--authorised-by NAME`".to_owned());
         }
         all.push(Issue {
             kind: if one.kind == OneKind::Issue {
@@ -297,15 +296,15 @@ fn in_order(one: &One, [issued, tested]: [Option<&str>; 2], before: usize) -> Re
         return if older {
             Ok(())
         } else {
-            Err(format!("issue {} has no day", before + 1))
+            Err(format!("issue {} has no date", before + 1))
         };
     };
     let as_stated = one
         .particulars
         .iter()
-        .any(|(field, text)| field == "issued" && text == date);
+        .any(|(field, text)| field == plan_block::ISSUED.name && text == date);
     if day(date).is_none() || !as_stated {
-        return Err(format!("`{}` is not the day of issue", one_line(date)));
+        return Err(format!("`{}` is not the date of issue", one_line(date)));
     }
     let late = |day: &str, slack: i64| days_after(date, day).is_some_and(|days| days > slack);
     if let Some(issued) = issued.filter(|issued| late(issued, 0)) {

@@ -42,7 +42,7 @@ pub fn public(path: &Path) -> Result<KnownKey, Failure> {
         .nth(1)
         .and_then(|key| PublicKey::from_base64(key).ok());
     let key = key.ok_or_else(|| {
-        Failure::file(path, "is no public key").help("name the file that ends with `.pub`")
+        Failure::file(path, "is not a public key").help("name the file that ends with `.pub`")
     })?;
     Ok(KnownKey {
         name: path
@@ -61,7 +61,7 @@ pub fn secret(
     can_ask: bool,
 ) -> Result<(SecretKey, Protection), Failure> {
     let failed = |error: minisign::PError| {
-        Failure::file(path, format!("is no secret key that can be used: {error}"))
+        Failure::file(path, format!("is not a usable secret key: {error}"))
     };
     let text = text_of(path)?;
     let kept = SecretKeyBox::from_string(&text).map_err(failed)?;
@@ -139,7 +139,7 @@ pub fn refuse_inside(key: &Path, run: &Path) -> Result<(), Failure> {
     if place(key)?.starts_with(place(run)?) {
         return Err(
             Failure::file(key, "a secret key must not lie in the run folder")
-                .help("keep it where only you can read it"),
+                .help("keep it in a folder that only you can read"),
         );
     }
     Ok(())
@@ -153,9 +153,9 @@ pub fn password(file: Option<&Path>, prompt: &str, can_ask: bool) -> Result<Stri
             .map_err(|error| Failure::file("/dev/tty", plain(&error)))?,
         None => {
             return Err(Failure::command_line(
-                "the key has a password, and nobody can be asked for it",
+                "the key has a password, and no operator can be asked",
             )
-            .help("put it into a file and name that with `--password-file`"));
+            .help("write it into a file, and name the file with `--password-file`"));
         }
     };
     if password.is_empty() || password.len() > PASSWORD_BYTES {
@@ -192,7 +192,7 @@ fn text_of(path: &Path) -> Result<String, Failure> {
         .and_then(|file| file.take(KEY_BYTES + 1).read_to_string(&mut text))
         .map_err(failed)?;
     if text.len() as u64 > KEY_BYTES {
-        return Err(Failure::file(path, "is no key and no password"));
+        return Err(Failure::file(path, "is not a key or a password"));
     }
     Ok(text)
 }

@@ -27,7 +27,36 @@ pub fn is_signature(name: &str) -> bool {
 }
 
 /// The PDF report. A second copy with a seal at its end can be in the same folder.
-pub const PAPER: &str = "certificate.pdf";
+pub const PAPER: &str = "report.pdf";
+
+/// Files of the results in folders of version 0.1: old and present names.
+const OLDER: [(&str, &str); 5] = [
+    ("certificate.html", "report.html"),
+    ("certificate.pdf", PAPER),
+    ("tables/drift.csv", "tables/zero_drift.csv"),
+    ("tables/drift.parquet", "tables/zero_drift.parquet"),
+    ("rehearsal.json", "check_run.json"),
+];
+
+/// The name of a file of the results in a folder of version 0.1, if it was another.
+pub fn older_name(present: &str) -> Option<&'static str> {
+    let row = OLDER.iter().find(|(_, name)| *name == present)?;
+    Some(row.0)
+}
+
+/// The present name of a file of the results.
+pub fn present_name(name: &str) -> &str {
+    OLDER
+        .iter()
+        .find(|(older, _)| *older == name)
+        .map_or(name, |(_, present)| present)
+}
+
+/// Whether a file is the PDF report, under its present name or its older one.
+pub fn is_paper(name: &str) -> bool {
+    present_name(name) == PAPER
+}
+
 /// Kinds of sidecars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SidecarKind {
@@ -35,7 +64,7 @@ pub enum SidecarKind {
     Token,
     /// `FILE.ots`
     Proof,
-    /// `certificate….pdf`
+    /// `report….pdf`, formerly `certificate….pdf`
     SealedPaper,
 }
 
@@ -54,11 +83,12 @@ pub fn sidecar(name: &str) -> Option<(SidecarKind, &str)> {
     let of = kinds
         .into_iter()
         .find_map(|(ending, kind)| Some((kind, name.strip_suffix(ending)?)));
-    let sealed = || {
+    let sealed = |paper: &'static str| {
         let own = name
-            .strip_prefix("certificate")
-            .and_then(|rest| rest.strip_suffix(".pdf"));
-        own.is_some_and(|own| !own.is_empty() && !own.contains('/'))
+            .strip_prefix(paper.strip_suffix(".pdf")?)?
+            .strip_suffix(".pdf")?;
+        (!own.is_empty() && !own.contains('/')).then_some((SidecarKind::SealedPaper, paper))
     };
-    of.or_else(|| sealed().then_some((SidecarKind::SealedPaper, PAPER)))
+    of.or_else(|| sealed(PAPER))
+        .or_else(|| sealed(older_name(PAPER)?))
 }

@@ -7,6 +7,7 @@ use super::consistency;
 use super::finding::Finding;
 use super::folder::Folder;
 use super::issues::{IssueFile, apply};
+use super::names::older_name;
 use crate::files::provenance::BUILD;
 use crate::files::recorded_run;
 use crate::files::recorded_run::{JOURNAL, ReadRecord};
@@ -141,9 +142,21 @@ impl Rebuilt {
         };
         drop(bytes);
         match IssueFile::of(folder) {
-            Ok(issues) => Self::played(read, issues.as_ref(), predict),
+            Ok(issues) => Self::played(read, issues.as_ref(), predict).named_as_in(folder),
             Err(fault) => nothing("issue", fault),
         }
+    }
+
+    /// Files of a folder of version 0.1 keep the names that it gave them.
+    fn named_as_in(mut self, folder: &Folder) -> Self {
+        let files = self.report.iter_mut().flat_map(|report| &mut report.files);
+        for (path, _) in files.filter(|(path, _)| !folder.files.contains_key(path)) {
+            if let Some(older) = older_name(path).filter(|older| folder.files.contains_key(*older))
+            {
+                older.clone_into(path);
+            }
+        }
+        self
     }
 
     fn played(read: ReadRecord, issues: Option<&IssueFile>, predict: Predict<'_>) -> Self {
@@ -157,7 +170,7 @@ impl Rebuilt {
         let (targets, steps) = (count(EntryKind::Intent), count(EntryKind::Step));
         let torn = read.recovered.torn.as_ref();
         let torn = torn.map_or(String::new(), |torn| {
-            format!(", {} bytes torn at its end", torn.end - torn.start)
+            format!(", {} bytes incomplete at its end", torn.end - torn.start)
         });
         let (records, head) = (read.recovered.lines.len(), read.recovered.head());
         let remarks = consistency::remarks(&read.recovered, &read.played.header);
@@ -165,7 +178,7 @@ impl Rebuilt {
             Ok(()) => Finding::sound(
                 "record",
                 format!(
-                    "run {}, {records} records{torn}{remarks}, head {head}",
+                    "run {}, {records} entries{torn}{remarks}, head {head}",
                     read.provenance.run_id
                 ),
             ),
@@ -189,7 +202,7 @@ impl Rebuilt {
         } else {
             ""
         };
-        let again = || format!("all {targets} came out again bit for bit");
+        let again = || format!("all {targets} recomputed, bit-identical");
         findings.push(match (&played.mismatch, &played.record.outcome) {
             (Some(mismatch), _) => Finding::wrong("targets", mismatch.to_string()),
             (None, Outcome::Completed) if ended => {
@@ -197,11 +210,11 @@ impl Rebuilt {
             }
             (None, Outcome::Completed) => Finding::wrong(
                 "targets",
-                "the run came to its end, and the record has none".to_owned(),
+                "the run was completed, but the run log has no end".to_owned(),
             ),
             (None, _) if ended => Finding::wrong(
                 "targets",
-                "the record has an end that the run does not come to".to_owned(),
+                "the run log has an end that the run does not reach".to_owned(),
             ),
             (
                 None,

@@ -23,24 +23,24 @@ pub fn examine(folder: &Folder, name: &str) -> Option<Finding> {
     let (kind, of) = sidecar(name)?;
     let bytes = folder.bytes(name).unwrap_or_default();
     let told = match kind {
-        SidecarKind::Token if !is_der(bytes) => Err("is no time-stamp token".to_owned()),
+        SidecarKind::Token if !is_der(bytes) => Err("is not a time-stamp token".to_owned()),
         SidecarKind::Proof if !bytes.starts_with(OPEN_TIMESTAMPS) => {
-            Err("is no proof of OpenTimestamps".to_owned())
+            Err("is not a proof of OpenTimestamps".to_owned())
         }
         SidecarKind::Token | SidecarKind::Proof if !names(folder, bytes, of) => {
-            Err(format!("does not name `{of}` as it is here"))
+            Err(format!("does not name the present `{of}`"))
         }
         SidecarKind::Token => Ok(format!(
-            "is a time-stamp token that names `{of}`; by whom and when, `openssl ts -verify` proves"
+            "is a time-stamp token that names `{of}`; `openssl ts -verify` verifies its issuer and time"
         )),
         SidecarKind::Proof => Ok(format!(
-            "is a proof that names `{of}`; since when, `ots verify` proves"
+            "is a proof that names `{of}`; `ots verify` verifies its date"
         )),
         SidecarKind::SealedPaper => {
             let own = folder
                 .bytes(of)
                 .filter(|own| bytes.len() > own.len() && bytes.starts_with(own));
-            own.map(|_| format!("is `{of}` with more after its end; by whom and when, a reader of sealed PDFs proves"))
+            own.map(|_| format!("is `{of}` with data appended; a reader of sealed PDFs verifies its signatory and time"))
                 .ok_or_else(|| format!("does not begin with `{of}`, byte for byte"))
         }
     };

@@ -159,7 +159,7 @@ pub fn examine(folder: &Folder, report: Option<&Report>, keys: &[KnownKey]) -> V
         findings.push(Finding::wrong(
             "signature",
             format!(
-                "none by key {} of `{}`",
+                "no signature by key {} of `{}`",
                 keys::number(key.key.keynum()),
                 key.name
             ),
@@ -181,10 +181,7 @@ pub fn examine(folder: &Folder, report: Option<&Report>, keys: &[KnownKey]) -> V
         });
     }
     if findings.is_empty() {
-        findings.push(Finding::sound(
-            "signature",
-            "unsigned: nobody vouches for this folder",
-        ));
+        findings.push(Finding::sound("signature", "unsigned"));
     }
     findings
 }
@@ -210,26 +207,28 @@ fn one(
             .as_ref()
             .is_none_or(|statement| statement.key.is_none())
     {
-        return Err("its comment is none that psd writes".to_owned());
+        return Err("its comment was not written by psd".to_owned());
     }
     let number = keys::number(signature.keynum());
     let known = keys
         .iter()
         .find(|known| known.key.keynum() == signature.keynum());
     if known.is_none() && !keys.is_empty() {
-        return Err(format!("by key {number}, which is none of those named"));
+        return Err(format!(
+            "by key {number}, which is not one of the named keys"
+        ));
     }
     let named = statement.as_ref().and_then(|said| said.key.as_ref());
     let named = named
-        .map(|key| PublicKey::from_base64(key).map_err(|_| "names no key".to_owned()))
+        .map(|key| PublicKey::from_base64(key).map_err(|_| "its key cannot be read".to_owned()))
         .transpose()?;
     let manifest = folder
         .bytes(MANIFEST)
-        .ok_or("there is no manifest that it could be of")?;
+        .ok_or("there is no manifest for it")?;
     let key = known.map(|known| &known.key).or(named.as_ref());
     if let Some(key) = key {
         minisign::verify(key, &signature, Cursor::new(manifest), true, false, false)
-            .map_err(|_| format!("it is not of this manifest, or not by key {number}"))?;
+            .map_err(|_| format!("it does not match this manifest, or not key {number}"))?;
     }
     if let Some(statement) = &statement {
         says_so(statement, name, report)?;
@@ -251,7 +250,7 @@ fn one(
     let told = match (known, key) {
         (Some(known), _) => format!("good{who}, key {number} of `{}`", known.name),
         (None, Some(_)) => {
-            format!("good{who}, by key {number}; whose key that is, only `--key` proves")
+            format!("good{who}, by key {number}; only `--key` verifies the owner of the key")
         }
         (None, None) => format!("not checked{who}, key {number}: name the key with `--key`"),
     };
@@ -262,10 +261,13 @@ fn one(
 fn says_so(statement: &Statement, name: &str, report: Option<&Report>) -> Result<(), String> {
     let Some(report) = report else { return Ok(()) };
     if (&statement.run, &statement.report) != (&report.run_id, &report.id) {
-        return Err(format!("it is of report {}", one_line(&statement.report)));
+        return Err(format!(
+            "it belongs to report {}",
+            one_line(&statement.report)
+        ));
     }
     if file_name(statement.role.as_deref(), &report.roles) != name {
-        return Err("it is in another's place".to_owned());
+        return Err("its file has the name of another role".to_owned());
     }
     Ok(())
 }
@@ -289,7 +291,7 @@ fn strict(bytes: &[u8]) -> Result<SignatureBox, String> {
         let read = SignatureBox::from_string(text).ok()?;
         (read.is_prehashed() && read.to_string() == text).then_some(read)
     };
-    shape().ok_or_else(|| "it is none as psd or minisign writes them".to_owned())
+    shape().ok_or_else(|| "it does not have the format of psd or minisign".to_owned())
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ pub enum Failure {
         reason: String,
         at: Option<Position>,
     },
-    #[error("the results could not be made: {0}")]
+    #[error("the results could not be created: {0}")]
     Output(#[from] crate::report::OutputError),
     #[error("standard output: {0}")]
     Stdout(std::io::Error),
@@ -42,13 +42,13 @@ pub enum Failure {
         fault: crate::rig::RigFault,
         place: String,
     },
-    #[error("no rehearsal: {0}")]
-    Unrehearsed(#[from] crate::run::rehearsal::Unrehearsed),
-    #[error("the run cannot go on: {0}")]
+    #[error("no check run: {0}")]
+    NoCheckRun(#[from] crate::run::check_run::NoCheckRun),
+    #[error("the run cannot continue: {0}")]
     Refused(#[from] crate::run::replay::ResumeRefusal),
     #[error("not resumed, and nothing moved: {reason}")]
     NotReleased { reason: String },
-    #[error("signals cannot be caught, so that a run could not be stopped: {0}")]
+    #[error("signals cannot be caught, so a run could not be stopped: {0}")]
     Signals(std::io::Error),
 }
 
@@ -104,7 +104,7 @@ pub const LEAST_FREE_BYTES: u64 = 200_000_000;
 
 /// The disk has less free space than a run needs.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{}: its disk has {} of free space, and a run begins with at least {}; nothing has moved", folder.display(), amount(*free), amount(LEAST_FREE_BYTES))]
+#[error("{}: its disk has {} of free space (a run requires at least {}); nothing has moved", folder.display(), amount(*free), amount(LEAST_FREE_BYTES))]
 pub struct DiskSpaceFault {
     pub folder: PathBuf,
     /// Free space \[bytes\].

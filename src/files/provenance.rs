@@ -1,12 +1,13 @@
 //! The provenance of a run. In: the checked plan. Out: [`Provenance`], a function of the plan and the version of this
 //! program only: the same plan has the same id everywhere.
 
+use crate::schema::plan_block::DATE;
 use sha2::{Digest as _, Sha256};
 
 use super::circumstances::Circumstances;
 use crate::plan::Plan;
 use crate::report::{Build, Provenance, RealRun};
-use crate::run::rehearsal;
+use crate::run::check_run;
 use crate::run::replay::Header;
 use crate::text::digest::{hex, sha256};
 
@@ -114,7 +115,7 @@ pub fn date_of_real_run(plan: &Plan, began: Option<&str>) -> Option<String> {
 pub fn stated_date(plan: &Plan) -> Option<String> {
     plan.particulars
         .iter()
-        .find(|(field, _)| *field == "date")
+        .find(|(field, _)| *field == DATE.name)
         .map(|(_, date)| date.clone())
 }
 
@@ -123,7 +124,7 @@ pub fn told_of_another_day(plan: &Plan, began: Option<&str>) -> String {
     match (stated_date(plan), began.and_then(|began| began.get(..10))) {
         (Some(stated), Some(today)) if !same_day(Some(&stated), Some(today)) => {
             format!(
-                "  the date {stated} is not the day of this test: its certificate says {today}, as its record does\n"
+                "  the date {stated} differs from the day of this test: its report and its run log state {today}\n"
             )
         }
         _ => String::new(),
@@ -174,8 +175,8 @@ fn run_id(plan: &Plan, version: &str, date: Option<&str>) -> String {
         part(date);
     }
     // A low-level check run has an id different from that of its run.
-    if rehearsal::rehearsed_plan(plan).is_some() {
-        digest.update(rehearsal::REHEARSAL);
+    if check_run::performed_part(plan).is_some() {
+        digest.update(check_run::RUN_ID_MARK);
     }
     hex(&digest.finalize())[..16].to_owned()
 }

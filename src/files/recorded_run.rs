@@ -9,7 +9,7 @@ use crate::plan::Plan;
 use crate::record::equipment::{Device, Equipment};
 use crate::record::journal::{Line, OLDEST_FORMAT, Recovered, recover};
 use crate::report::{Build, Provenance, RealRun};
-use crate::run::rehearsal;
+use crate::run::check_run;
 use crate::run::replay;
 use crate::run::replay::{Header, LoggedRun};
 use crate::text::digest::sha256;
@@ -36,12 +36,12 @@ pub fn read(run: &Path) -> Result<ReadRecord, Failure> {
 pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<ReadRecord, Failure> {
     let damaged = |reason: String| Failure::file(path, reason);
     let recovered =
-        recover(bytes).map_err(|damage| damaged(format!("the record is damaged: {damage}")))?;
+        recover(bytes).map_err(|damage| damaged(format!("the run log is damaged: {damage}")))?;
     let played = LoggedRun::of(&recovered).map_err(|fault| damaged(fault.to_string()))?;
     for (file, text) in played.header.files.iter().zip(&played.texts) {
         if sha256(text.as_bytes()) != file.sha256 {
             return Err(damaged(format!(
-                "the text of `{}` is not the one of its digest",
+                "the text of `{}` does not match its digest",
                 file.name
             )));
         }
@@ -50,7 +50,7 @@ pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<ReadRecord, Failure> {
     replay::well_formed(&recovered, &plan).map_err(|fault| damaged(fault.to_string()))?;
     if played.header.equipment.is_none() && recovered.format() > OLDEST_FORMAT {
         return Err(damaged(
-            "its header does not say what was measured with".to_owned(),
+            "its header does not state the measuring equipment".to_owned(),
         ));
     }
     fits(&played, &plan).map_err(damaged)?;
@@ -76,7 +76,7 @@ pub fn plan_of(played: &LoggedRun) -> Result<Plan, String> {
         texts: &played.texts,
     };
     let (Some(first), Some(text)) = (header.files.first(), played.texts.first()) else {
-        return Err("the record holds no plan".to_owned());
+        return Err("the run log has no plan".to_owned());
     };
     let (rig, settings, date) = (
         header.rig.clone(),
@@ -94,10 +94,10 @@ pub fn plan_of(played: &LoggedRun) -> Result<Plan, String> {
     let plan = checked.plan.ok_or_else(|| {
         let fault = checked.diagnostics.iter().find(|found| found.is_error());
         let fault = fault.map_or_else(String::new, |fault| format!(": {}", fault.message));
-        format!("this version of psd finds the recorded plan faulty{fault}")
+        format!("this version of psd finds errors in the recorded plan{fault}")
     })?;
-    if header.rehearsal {
-        rehearsal::measured_part(&plan).map_err(|fault| fault.to_string())
+    if header.check_run {
+        check_run::measured_part(&plan).map_err(|fault| fault.to_string())
     } else {
         Ok(plan)
     }
@@ -111,10 +111,7 @@ fn fits(played: &LoggedRun, plan: &Plan) -> Result<(), String> {
     if *told == Equipment::of(plan, Device::of(&rig.identity, rig.noise)) {
         return Ok(());
     }
-    Err(
-        "what its header says of rig, calibration or limits is not what its plan and its rig say"
-            .to_owned(),
-    )
+    Err("rig, calibration or limits of its header differ from its plan and its rig".to_owned())
 }
 
 /// The provenance from the run log; the plan's own date applies if the command line gave none.

@@ -8,12 +8,12 @@ use crate::report::{FigureCurve, FigureData};
 use crate::units::{Dimension, unit};
 
 pub(super) fn compare(
-    blessed: &Truth,
+    accepted: &Truth,
     now: &Truth,
     tolerances: &Tolerances,
     found: &mut Vec<Finding>,
 ) {
-    let (was, is) = match (blessed.figures(), now.figures()) {
+    let (was, is) = match (accepted.figures(), now.figures()) {
         (Some(was), Some(is)) => (was.figures, is.figures),
         (None, None) => return,
         (None, Some(_)) => {

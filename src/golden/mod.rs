@@ -2,31 +2,27 @@
 //! uses no file, no terminal and no picture.
 
 pub mod comparison;
-pub mod console;
 mod figures;
 mod finding;
-pub mod json;
-mod junit;
 mod number;
 pub mod older;
+pub mod print;
 mod summary;
 mod table;
-mod tap;
 mod tested;
 mod thinning;
 mod tolerance;
-mod words;
 
 use std::collections::BTreeMap;
 
 pub use finding::{Change, Count, Finding, Moved, Part, Place};
-pub use junit::junit;
+pub use print::junit::junit;
+pub use print::tap::tap;
+pub use print::words::Words;
 pub use table::{Cells, Table, dimension as column_dimension};
-pub use tap::tap;
 pub use tested::{Accepted, Outcome, Report, Tested};
 pub use thinning::thinned;
 pub use tolerance::{FLOOR, Rule, Tolerances};
-pub use words::Words;
 
 /// The text of the diagnostics of a plan that is intended to fail its check.
 pub const DIAGNOSTICS: &str = "diagnostics.txt";
@@ -106,16 +102,16 @@ fn table_name(path: &str) -> Option<&str> {
 
 /// All differences, the most important first.
 #[must_use]
-pub fn compare(blessed: &Truth, now: &Truth, tolerances: &Tolerances) -> Vec<Finding> {
+pub fn compare(accepted: &Truth, now: &Truth, tolerances: &Tolerances) -> Vec<Finding> {
     let mut found = Vec::new();
-    match (blessed.text(DIAGNOSTICS), now.text(DIAGNOSTICS)) {
+    match (accepted.text(DIAGNOSTICS), now.text(DIAGNOSTICS)) {
         (Some(was), Some(is)) if was != is => {
             found.push(Finding::text(Part::Diagnostics, DIAGNOSTICS, was, is));
         }
         (Some(_), None) => {
             found.push(Finding::new(
                 Part::Diagnostics,
-                "the plan checks, and is blessed as one that does not",
+                "the plan checks, but is accepted as a plan that does not",
                 Change::Gone,
             ));
         }
@@ -126,17 +122,17 @@ pub fn compare(blessed: &Truth, now: &Truth, tolerances: &Tolerances) -> Vec<Fin
         )),
         _ => {}
     }
-    if blessed.is_of_faults() || now.is_of_faults() {
+    if accepted.is_of_faults() || now.is_of_faults() {
         return found;
     }
     summary::compare(
-        blessed.text(SUMMARY),
+        accepted.text(SUMMARY),
         now.text(SUMMARY),
         tolerances,
         &mut found,
     );
-    table::compare_all(blessed, now, tolerances, &mut found);
-    figures::compare(blessed, now, tolerances, &mut found);
+    table::compare_all(accepted, now, tolerances, &mut found);
+    figures::compare(accepted, now, tolerances, &mut found);
     found.sort_by_key(|finding| finding.part);
     found
 }

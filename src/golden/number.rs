@@ -13,7 +13,7 @@ pub(super) fn single(
     scale: f64,
 ) -> Option<Change> {
     let near = match (was, is) {
-        (Some(was), Some(is)) => rule.is_near(was, is, scale),
+        (Some(was), Some(is)) => rule.at_scale(scale).is_near(was, is),
         (None, None) => true,
         _ => false,
     };

@@ -1,26 +1,63 @@
 //! Summaries of older versions. In: the text of a `summary.json`. Out: the same with the present names.
 
+use crate::schema::procedures::impact_series;
+use crate::schema::{self, Kind, Place, RENAMED};
 use serde_json::{Map, Value};
 
-/// Results of runs without unloading: old and present names.
-const RENAMED: [(&str, &str); 2] = [
-    ("residual_displacement", "final_displacement"),
-    ("residual_drift", "final_drift"),
+/// Results of runs without unloading: old and present names. A plan has them under either name, by the kind of its procedure.
+const AT_THE_LAST_STEP: [(&str, &str); 2] = [
+    (
+        impact_series::RESIDUAL_DISPLACEMENT.name,
+        impact_series::FINAL_DISPLACEMENT.name,
+    ),
+    (
+        impact_series::RESIDUAL_DRIFT.name,
+        impact_series::FINAL_DRIFT.name,
+    ),
 ];
 
-/// Reads a summary. Its results at the last step of a run are called final, whichever version wrote them.
+/// Keys of the summary itself.
+const KEYS: [(&str, &str); 1] = [("drift", "zero_drift")];
+
+/// Reads a summary. Its results have their present names, whichever version wrote them.
 ///
 /// # Errors
 /// If the text is not JSON.
 pub fn summary(text: &str) -> Result<Value, serde_json::Error> {
     let mut summary: Value = serde_json::from_str(text)?;
+    for (was, is) in KEYS {
+        if let Some(keys) = summary.as_object_mut()
+            && let Some(value) = keys.remove(was)
+        {
+            keys.insert(is.to_owned(), value);
+        }
+    }
+    if summary["standing"] == "rehearsal" {
+        summary["standing"] = "simulation".into();
+    }
     let procedures = summary.get_mut("procedures").and_then(Value::as_object_mut);
     for procedure in procedures.into_iter().flat_map(Map::values_mut) {
-        if matches!(procedure["kind"].as_str(), Some("impact" | "shake")) {
-            rename(procedure);
+        for (was, is) in changed(procedure["kind"].as_str().unwrap_or_default()) {
+            rename(procedure, was, is);
         }
     }
     Ok(summary)
+}
+
+/// Old and present names of the results of a procedure.
+fn changed(kind: &str) -> Vec<(&'static str, &'static str)> {
+    let words: Vec<&str> = kind.split(' ').collect();
+    let Some(kind) = schema::block_of_words(&words).map(|block| block.kind) else {
+        return Vec::new();
+    };
+    let last = AT_THE_LAST_STEP
+        .into_iter()
+        .filter(|_| matches!(kind, Kind::Impact | Kind::Shake));
+    let results = RENAMED
+        .iter()
+        .filter(|row| matches!(row.place, Place::Result(kinds) if kinds.contains(&kind)))
+        .map(|row| (row.old, row.new));
+    last.chain(results).collect()
 }
 
 /// Versions before the verdict `completed` wrote `pass` if there were no requirements.
@@ -32,24 +69,24 @@ pub(super) fn completed(mut was: Value) -> Value {
     was
 }
 
-fn rename(procedure: &mut Value) {
-    for (was, is) in RENAMED {
-        if let Some(results) = procedure.get_mut("results").and_then(Value::as_object_mut)
-            && let Some(result) = results.remove(was)
-        {
-            results.insert(is.to_owned(), result);
-        }
-        let budgets = procedure
-            .get_mut("uncertainty_budgets")
-            .and_then(Value::as_array_mut);
-        for name in budgets
-            .into_iter()
-            .flatten()
-            .filter_map(|budget| budget.get_mut("result"))
-            .filter(|name| *name == was)
-        {
-            *name = Value::from(is);
-        }
+/// Renames one result, and its uncertainty budget. A result that is the uncertainty of another now is dropped: the other has it.
+fn rename(procedure: &mut Value, was: &str, is: &str) {
+    if let Some(results) = procedure.get_mut("results").and_then(Value::as_object_mut)
+        && let Some(result) = results.remove(was)
+        && !is.contains('.')
+    {
+        results.insert(is.to_owned(), result);
+    }
+    let budgets = procedure
+        .get_mut("uncertainty_budgets")
+        .and_then(Value::as_array_mut);
+    for name in budgets
+        .into_iter()
+        .flatten()
+        .filter_map(|budget| budget.get_mut("result"))
+        .filter(|name| *name == was)
+    {
+        *name = Value::from(is);
     }
 }
 
@@ -58,6 +95,25 @@ mod tests {
     use serde_json::json;
 
     use super::*;
+
+    #[test]
+    fn a_result_of_an_older_version_is_read_under_its_present_name() {
+        for row in RENAMED {
+            let Place::Result(kinds) = row.place else {
+                continue;
+            };
+            for kind in kinds {
+                let of = |result: &str| json!({ "procedures": { "one": { "kind": schema::block(*kind).words(), "results": { result: 2 } } } });
+                let read = summary(&of(row.old).to_string()).unwrap();
+                let present = if row.new.contains('.') {
+                    json!({})
+                } else {
+                    json!({ row.new: 2 })
+                };
+                assert_eq!(read["procedures"]["one"]["results"], present, "{}", row.old);
+            }
+        }
+    }
 
     #[test]
     fn what_was_called_residual_at_the_last_step_is_read_as_final() {

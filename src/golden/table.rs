@@ -4,6 +4,7 @@ use super::finding::{Change, Count, Finding, Part, Place};
 use super::tolerance::Tolerances;
 use super::{Truth, number};
 use crate::procedures;
+use crate::schema::columns;
 use crate::schema::{self, Kind};
 use crate::units::Dimension;
 
@@ -80,12 +81,12 @@ impl Table {
         let step = self
             .columns
             .iter()
-            .find(|(name, _)| name == "step")
+            .find(|(name, _)| name == columns::STEP.name)
             .and_then(|(_, cells)| cells.get(row)?.parse().ok());
         Place {
             row,
             step,
-            time: cell("time_s").or_else(|| cell("wall_time_s")),
+            time: cell(columns::TIME.name).or_else(|| cell(columns::WALL_TIME.name)),
         }
     }
 }
@@ -111,7 +112,7 @@ fn cells(line: &str) -> Vec<String> {
 
 /// Compares all tables of both results.
 pub(super) fn compare_all(
-    blessed: &Truth,
+    accepted: &Truth,
     now: &Truth,
     tolerances: &Tolerances,
     found: &mut Vec<Finding>,
@@ -122,7 +123,7 @@ pub(super) fn compare_all(
             .map(|(name, table)| (name.to_owned(), table))
             .collect::<Vec<_>>()
     };
-    let (was, is) = (of(blessed), of(now));
+    let (was, is) = (of(accepted), of(now));
     for (name, table) in &was {
         match is.iter().find(|(other, _)| other == name) {
             Some((_, new)) => compare(name, table, new, tolerances, found),

@@ -62,11 +62,11 @@ impl Outcome {
         match self {
             Self::Same { .. } => "same",
             Self::Differs(_) => "differs",
-            Self::NotAccepted { .. } => "not blessed",
+            Self::NotAccepted { .. } => "not accepted",
             Self::Failed(_) => "failed",
             Self::NotRun => "not run",
-            Self::Accepted(Accepted::New) => "blessed new",
-            Self::Accepted(Accepted::Changed(_)) => "blessed changed",
+            Self::Accepted(Accepted::New) => "accepted new",
+            Self::Accepted(Accepted::Changed(_)) => "accepted changed",
             Self::Accepted(Accepted::Unchanged) => "unchanged",
             Self::Accepted(Accepted::Refused(_)) => "refused",
         }
@@ -86,18 +86,18 @@ impl Outcome {
     pub fn complaint(&self) -> Option<String> {
         match self {
             Self::Differs(found) if found.len() == 1 => {
-                Some("1 difference from the blessed results".to_owned())
+                Some("1 difference from the accepted results".to_owned())
             }
             Self::Differs(found) => Some(format!(
-                "{} differences from the blessed results",
+                "{} differences from the accepted results",
                 found.len()
             )),
             Self::NotAccepted { folder } => Some(format!(
-                "no blessed results in {folder}; look at a run, then `--bless`"
+                "no accepted results in {folder}; review a run, then use `--accept`"
             )),
             Self::Failed(reason) => Some(reason.clone()),
             Self::NotRun => Some("not run: the test ended at the first failure".to_owned()),
-            Self::Accepted(Accepted::Refused(reason)) => Some(format!("not blessed: {reason}")),
+            Self::Accepted(Accepted::Refused(reason)) => Some(format!("not accepted: {reason}")),
             Self::Same { .. } | Self::Accepted(_) => None,
         }
     }

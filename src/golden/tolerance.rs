@@ -24,10 +24,12 @@ impl Rule {
         self.absolute.max(self.relative * scale)
     }
 
-    /// Whether two numbers are within the tolerance. NaN matches only NaN.
+    /// The rule for numbers of this scale, SI.
     #[must_use]
-    pub fn is_near(self, was: f64, is: f64, scale: f64) -> bool {
-        was == is || (was.is_nan() && is.is_nan()) || (was - is).abs() <= self.bound(scale)
+    pub fn at_scale(self, scale: f64) -> ScaledRule {
+        ScaledRule {
+            bound: self.bound(scale),
+        }
     }
 
     fn or(self, other: Self) -> Self {
@@ -35,6 +37,21 @@ impl Rule {
             relative: self.relative.max(other.relative),
             absolute: self.absolute.max(other.absolute),
         }
+    }
+}
+
+/// A rule for numbers of one scale.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScaledRule {
+    /// The largest allowed difference, SI.
+    bound: f64,
+}
+
+impl ScaledRule {
+    /// Whether two numbers are within the tolerance. NaN matches only NaN.
+    #[must_use]
+    pub fn is_near(self, was: f64, is: f64) -> bool {
+        was == is || (was.is_nan() && is.is_nan()) || (was - is).abs() <= self.bound
     }
 }
 
@@ -148,10 +165,10 @@ impl Tolerances {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{NearColumn, NearResult};
+    use crate::plan::{ColumnTolerance, ResultTolerance};
 
     fn tolerances(tolerance: f64) -> Tolerances {
-        let force = |procedure, tolerance| NearColumn {
+        let force = |procedure, tolerance| ColumnTolerance {
             procedure,
             name: "restoring_force_n",
             dimension: Dimension::FORCE,
@@ -159,7 +176,7 @@ mod tests {
         };
         let golden = Golden {
             tolerance,
-            results: vec![NearResult {
+            results: vec![ResultTolerance {
                 procedure: ProcedureId(1),
                 name: "max_force",
                 dimension: Dimension::FORCE,
@@ -182,11 +199,20 @@ mod tests {
             relative: 1e-3,
             absolute: 0.5,
         };
-        assert!(rule.is_near(1000.0, 1001.0, 1001.0) && !rule.is_near(1000.0, 1001.1, 1001.1));
-        assert!(rule.is_near(0.0, -0.5, 0.5) && !rule.is_near(0.0, 0.51, 0.51));
-        assert!(rule.is_near(f64::NAN, f64::NAN, 0.0) && !rule.is_near(f64::NAN, 0.0, 1.0));
+        assert!(
+            rule.at_scale(1001.0).is_near(1000.0, 1001.0)
+                && !rule.at_scale(1001.1).is_near(1000.0, 1001.1)
+        );
+        assert!(rule.at_scale(0.5).is_near(0.0, -0.5) && !rule.at_scale(0.51).is_near(0.0, 0.51));
+        assert!(
+            rule.at_scale(0.0).is_near(f64::NAN, f64::NAN)
+                && !rule.at_scale(1.0).is_near(f64::NAN, 0.0)
+        );
         let exact = tolerances(0.0).general();
-        assert!(exact.is_near(1.0, 1.0, 1.0) && !exact.is_near(1.0, 1.0 + f64::EPSILON, 1.0));
+        assert!(
+            exact.at_scale(1.0).is_near(1.0, 1.0)
+                && !exact.at_scale(1.0).is_near(1.0, 1.0 + f64::EPSILON)
+        );
     }
 
     #[test]

@@ -16,13 +16,14 @@
 //! | [`structure`] | matrices, beams, portals, frames, modes, damping, energies, unloading |
 //! | [`integrator`] | the tangent form, explicit Newmark, α-operator splitting, their stability limits |
 //! | [`contact`] | rigid, limit force, restitution, Hertz |
-//! | [`impact`] | a striker on one degree of freedom or on a floor: steps, peaks, summary |
+//! | [`impact`] | a striker on one degree of freedom or on a floor: steps, peaks, summary; many impacts at once |
 //! | [`specimen`] | restoring-force (hysteretic) models |
 //! | [`relaxation`] | Maxwell branches, logarithmic relaxation, their fits |
 //! | [`identification`] | fits of stiffness, yield point and damping; loops of cycles |
 //! | [`tracking`] | trajectories of an actuator, monitors of its tracking error |
 //! | [`reintegration`] | a recorded test integrated again with one input perturbed |
 //! | [`statistics`] | least squares, Student's t |
+//! | [`study`] | many runs with scattered inputs: samples, probabilities, sensitivities, fragilities, with intervals |
 //! | [`self_test`] | cases with derived answers |
 //!
 //! # Equation of motion
@@ -84,6 +85,7 @@ pub mod self_test;
 pub mod specimen;
 pub mod statistics;
 pub mod structure;
+pub mod study;
 pub mod tracking;
 
 pub use integrator::newmark::critical_time_step;

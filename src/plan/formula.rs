@@ -84,7 +84,7 @@ pub enum FormulaError {
     NoUncertainty(&'static str),
     #[error("the value is not a finite number")]
     NotFinite,
-    #[error("a list stands where one number is wanted")]
+    #[error("a list, but one number is required")]
     NotANumber,
     #[error("the list has no entry {0}")]
     NoSuchEntry(usize),

@@ -2,15 +2,19 @@
 //! it, `run` and `report` read it. It contains text only where a report prints it.
 
 pub mod contribution;
+pub(crate) mod declaration;
 pub mod formula;
 pub mod procedure;
 pub mod report;
 pub mod results;
-mod rig;
+pub(crate) mod rig;
 pub mod source;
 pub mod specimen;
 
-use crate::physics::contact::contact_time_step::Approach;
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+
+use crate::physics::contact::contact_time_step::{Approach, Flight};
 use crate::plan::formula::{Formula, ResultReference};
 use crate::units::Dimension;
 use source::Source;
@@ -39,8 +43,10 @@ pub use procedure::move_to::Move;
 pub use procedure::stepping::{MOST_RECORDED_STEPS, MOST_STEPS, Stepping, step_count, steps_in};
 pub use procedure::structure::Structure;
 pub use procedure::unload::{FrameUnload, Unload};
+pub use report::annex::Annex;
 pub use report::figure::{Figure, FigureKind, MOST_TOGETHER};
-pub use report::golden::{Golden, NearColumn, NearResult, Tolerance};
+pub use report::golden::{ColumnTolerance, Golden, ResultTolerance, Tolerance};
+pub use report::picture::{MOST_PHOTOS, PICTURE_BYTES, Picture, PictureKind};
 pub use report::undeclared::Dependence;
 pub use rig::axis::{AxisCalibration, AxisPlan};
 pub(crate) use rig::axis_names::{named_axis, of_axis, who};
@@ -48,8 +54,8 @@ pub use rig::declared_noise::DeclaredNoise;
 pub use rig::devices::Behind;
 pub use rig::limits::{Interval, Limits};
 pub use rig::{
-    Calibration, Datum, DeviceLink, Dialect, DriftCheck, Gate, Link, ModbusMap, ModbusNumber,
-    PortPlan, ReadingErrors, ReadingRules, RealLink, RigPlan, SafeState, Settle, VIRTUAL_SPEED,
+    Calibration, Datum, DeviceLink, Dialect, DriftCheck, Link, ModbusMap, ModbusNumber, PortPlan,
+    PretestCheck, ReadingErrors, ReadingRules, RealLink, RigPlan, SafeState, Settle, VIRTUAL_SPEED,
     VirtualLink, ZeroAfter,
 };
 pub use specimen::frame::{Ground, MOST_STOREYS, Shake, ShakeDamping, rayleigh};
@@ -74,7 +80,7 @@ pub struct Plan {
     pub report: Report,
     pub golden: Golden,
     /// For the part that a low-level check run measures: the plan that it belongs to.
-    pub rehearses: Option<Box<Plan>>,
+    pub check_run_of: Option<Box<Plan>>,
     /// As in run logs of older versions: an `unload` moves to the estimated position of zero load, move after move.
     pub unloads_at_once: bool,
     /// The plan first, then every file that it uses, by the name under which it is used.
@@ -106,7 +112,25 @@ impl Plan {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlanFile {
     pub name: String,
+    /// The text of the file; base64 of the bytes of a PNG or JPEG picture.
     pub text: String,
+}
+
+impl PlanFile {
+    /// Whether the text is base64 of a picture.
+    #[must_use]
+    pub fn is_binary(&self) -> bool {
+        PictureKind::of(&self.name).is_some_and(PictureKind::is_binary)
+    }
+
+    /// The bytes of the file. A text that is not base64 stays as it is.
+    #[must_use]
+    pub fn bytes(&self) -> Vec<u8> {
+        let decoded = self.is_binary().then(|| STANDARD.decode(&self.text).ok());
+        decoded
+            .flatten()
+            .unwrap_or_else(|| self.text.clone().into_bytes())
+    }
 }
 
 /// A `param` with its value in this run.
@@ -199,7 +223,13 @@ impl Striker {
     /// State of the striker at contact, with a contact of stiffness `hertz` \[N/m^1.5\] where that is finite.
     #[must_use]
     pub fn approach(&self, hertz: Option<f64>) -> Approach {
-        Approach::after_gap(self.mass, self.velocity, self.gap, self.gravity, hertz)
+        let flight = Flight {
+            striker_mass: self.mass,
+            velocity: self.velocity,
+            gap: self.gap,
+            gravity: self.gravity,
+        };
+        Approach::after(flight, hertz)
     }
 }
 
@@ -369,6 +399,14 @@ pub struct Report {
     pub figures: Vec<Figure>,
     pub formats: Vec<Format>,
     pub sign: Vec<String>,
+    /// The annexes after the first two pages.
+    pub annexes: Vec<Annex>,
+    /// Results of the second page beside those that a requirement reads; None: the headline results of the procedures.
+    pub results: Option<Vec<ResultReference>>,
+    /// The logo of the laboratory.
+    pub logo: Option<Picture>,
+    /// Photographs of the specimen.
+    pub photos: Vec<Picture>,
 }
 
 /// A kind of file of results.

@@ -2,20 +2,14 @@
 //! histories and results. Only this file lists the procedures: one function per stage, each with one exhaustive match.
 
 pub mod base_excitation;
+pub(crate) mod common;
 pub mod cycle;
 pub mod damping_sweep;
 pub(crate) mod facts;
-pub(crate) mod fit_uncertainty;
 pub mod impact;
 pub mod impact_series;
 pub mod inspect;
-pub(crate) mod limit_lines;
-pub(crate) mod loop_sampling;
 pub mod move_to;
-pub(crate) mod perturbed_inputs;
-pub(crate) mod reached;
-pub(crate) mod read_field;
-pub(crate) mod results;
 pub mod stepping;
 pub mod stiffness_ramp;
 pub mod unload;
@@ -33,7 +27,7 @@ use crate::record::{
 use crate::report::Run;
 use crate::report::document::Block;
 use crate::report::figures::chart::{Chart, SharedCurve};
-use crate::report::tables::Table;
+use crate::report::tables::{Table, each_once, numeric, written};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
@@ -229,7 +223,7 @@ pub(crate) fn attribute(
     let procedure = inputs.procedure();
     match history {
         History::Ramp(ramp) => stiffness_ramp::fits::with_fits(ramp, &mut |fits| {
-            fit_uncertainty::attribute(fits, plan, procedure, declared, results);
+            common::fit_uncertainty::attribute(fits, plan, procedure, declared, results);
         }),
         History::Sweep(found) => {
             if let ProcedureKind::DampingSweep(sweep) = kind {
@@ -239,7 +233,7 @@ pub(crate) fn attribute(
             }
         }
         History::Cycle(cycle) => cycle::uncertainty::with_fits(cycle, &mut |fits| {
-            fit_uncertainty::attribute(fits, plan, procedure, declared, results);
+            common::fit_uncertainty::attribute(fits, plan, procedure, declared, results);
         }),
         History::Impact(_)
         | History::Shake(_)
@@ -248,7 +242,7 @@ pub(crate) fn attribute(
         | History::FrameUnload(_)
         | History::Inspect => return,
     }
-    fit_uncertainty::combine(results);
+    common::fit_uncertainty::combine(results);
 }
 
 /// Run: an upper bound of a procedure's steps, if the plan alone gives one.
@@ -351,13 +345,17 @@ pub(crate) fn tables(procedure: &ProcedureRecord) -> Vec<Table<'_>> {
         History::Ramp(history) => stiffness_ramp::tables::tables(name, history),
         History::Sweep(history) => {
             let steps = &history.steps;
-            vec![Table::of(name, steps, damping_sweep::tables::steps)]
+            vec![Table::of(name, steps, |steps| {
+                written(damping_sweep::tables::STEPS, steps)
+            })]
         }
         History::Impact(history) => vec![impact::tables::table(name, history)],
         History::Shake(history) => vec![base_excitation::tables::table(name, history)],
         History::Cycle(history) => cycle::tables::tables(name, history),
         History::Escalate(history) => impact_series::tables::tables(name, history),
-        History::Move(steps) => vec![Table::of(name, steps, stiffness_ramp::tables::steps)],
+        History::Move(steps) => vec![Table::of(name, steps, |steps| {
+            written(stiffness_ramp::tables::STEPS, steps)
+        })],
         History::FrameUnload(steps) => {
             vec![Table::of(name, steps, base_excitation::tables::unloading)]
         }
@@ -365,24 +363,17 @@ pub(crate) fn tables(procedure: &ProcedureRecord) -> Vec<Table<'_>> {
     }
 }
 
-/// Check and accepted results: the numeric columns of the tables of a block; none without tables.
-pub fn columns(kind: Kind) -> impl Iterator<Item = &'static Column> {
-    let tables: &[&[Column]] = match kind {
-        Kind::StiffnessRamp | Kind::Move => &[stiffness_ramp::tables::COLUMNS],
-        Kind::Unload => &[
-            stiffness_ramp::tables::COLUMNS,
-            impact::tables::STOREY_COLUMNS,
-        ],
-        Kind::DampingSweep => &[damping_sweep::tables::COLUMNS],
-        Kind::Impact => &[impact::tables::COLUMNS, impact::tables::STOREY_COLUMNS],
-        Kind::Cycle => &[cycle::tables::COLUMNS],
-        Kind::Shake => &[base_excitation::tables::COLUMNS],
-        Kind::Escalate => &[
-            impact_series::tables::COLUMNS,
-            impact::tables::COLUMNS,
-            impact::tables::STOREY_COLUMNS,
-            impact_series::tables::STOREY_COLUMNS,
-        ],
+/// Check and accepted results: the numeric columns of the tables of a block, each once; none without tables.
+pub fn columns(kind: Kind) -> impl Iterator<Item = Column> {
+    let all = match kind {
+        Kind::StiffnessRamp => stiffness_ramp::tables::columns(),
+        Kind::Move => numeric(stiffness_ramp::tables::STEPS),
+        Kind::Unload => unload::tables::columns(),
+        Kind::DampingSweep => numeric(damping_sweep::tables::STEPS),
+        Kind::Impact => impact::tables::columns(),
+        Kind::Cycle => cycle::tables::columns(),
+        Kind::Shake => numeric(&base_excitation::tables::shake()),
+        Kind::Escalate => impact_series::tables::columns(),
         Kind::Inspect
         | Kind::Plan
         | Kind::Specimen
@@ -392,9 +383,9 @@ pub fn columns(kind: Kind) -> impl Iterator<Item = &'static Column> {
         | Kind::Ground
         | Kind::Report
         | Kind::Golden
-        | Kind::Later => &[],
+        | Kind::Later => Vec::new(),
     };
-    tables.iter().copied().flatten()
+    each_once(all).into_iter()
 }
 
 /// Report: the blocks below the results of a procedure.
@@ -445,7 +436,7 @@ pub(crate) fn self_tested(kind: &ProcedureKind) -> Vec<Vec<Part>> {
 pub(crate) fn readings(history: &History, give: &mut dyn FnMut(&[f64], &[f64])) {
     match history {
         History::Ramp(RampHistory { steps, .. }) | History::Move(steps) => {
-            reached::of_axis(
+            common::reached::of_axis(
                 steps,
                 |step| (step.displacement, step.restoring_force),
                 give,
@@ -453,16 +444,16 @@ pub(crate) fn readings(history: &History, give: &mut dyn FnMut(&[f64], &[f64])) 
         }
         History::Sweep(sweep) => {
             let read = |step: &SweepStep| (step.displacement, step.restoring_force);
-            reached::of_axis(&sweep.steps, read, give);
+            common::reached::of_axis(&sweep.steps, read, give);
         }
         History::Cycle(cycle) => {
             let read = |step: &CycleStep| (step.displacement, step.restoring_force);
-            reached::of_axis(&cycle.steps, read, give);
+            common::reached::of_axis(&cycle.steps, read, give);
         }
-        History::Impact(history) => reached::of_impact(history, give),
+        History::Impact(history) => common::reached::of_impact(history, give),
         History::Escalate(series) => {
             for impact in &series.blows {
-                reached::of_impact(&impact.history, give);
+                common::reached::of_impact(&impact.history, give);
             }
         }
         History::Shake(shake) => {

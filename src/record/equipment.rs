@@ -221,7 +221,7 @@ impl Equipment {
         };
         let (was, is): (Vec<_>, Vec<_>) = (traced(self), traced(now));
         limits
-            .chain((was != is).then(|| "another calibration certificate is named".to_owned()))
+            .chain((was != is).then(|| "a different calibration certificate is named".to_owned()))
             .collect()
     }
 }
@@ -265,7 +265,7 @@ fn channels(rig: &RigPlan, axis: usize) -> [Channel; 2] {
         Some(Dialect::Modbus(map)) => (GivenIn::Counts, map.length_unit),
         _ => (GivenIn::Units, 1.0),
     };
-    let (sign, calibration) = (rig.sign_of(axis), rig.calibration_of(axis));
+    let (sign, calibration) = (rig.polarity_of(axis), rig.calibration_of(axis));
     let (force_given, force, zero) = match link
         .map(|link| link.weighed_by(axis))
         .map(|(cell, channel)| (&cell.dialect, channel))
@@ -279,7 +279,7 @@ fn channels(rig: &RigPlan, axis: usize) -> [Channel; 2] {
         Some((dialect, _)) if dialect.counts() => (
             GivenIn::Counts,
             calibration.newtons_per_count.unwrap_or(1.0),
-            calibration.zero_count,
+            calibration.zero_offset,
         ),
         _ => (GivenIn::Units, 1.0, 0.0),
     };
@@ -386,7 +386,7 @@ mod tests {
         let plan = elastic_plan(300.0, Vec::new());
         let was = equipment(&plan);
         let mut turned = plan.clone();
-        turned.rig.sign = -1.0;
+        turned.rig.polarity = -1.0;
         assert_eq!(
             was.measures_otherwise(&equipment(&turned)),
             Some("calibration")
@@ -416,7 +416,7 @@ mod tests {
         };
         assert_eq!(
             was.changes(&equipment(&traced)),
-            ["another calibration certificate is named"]
+            ["a different calibration certificate is named"]
         );
     }
 }

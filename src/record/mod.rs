@@ -2,22 +2,16 @@
 //! it; verdict, tables, figures and reports are functions of it. It does not know how it is
 //! printed.
 
-mod base_excitation;
-mod cycle;
 pub mod equipment;
 pub mod failpoint;
-mod floors;
 mod held;
+mod history;
 mod identity;
-mod impact;
-mod impact_series;
 pub mod journal;
-mod ramp;
 pub mod remote;
-mod sweep;
-mod unload;
 mod zero_drift;
 
+use crate::schema::procedures::stiffness_ramp;
 use serde::{Deserialize, Serialize};
 
 pub use crate::physics::contact::state::StepState;
@@ -32,16 +26,16 @@ use crate::plan::formula::{Estimate, ResultReference, ResultValue, Results};
 use crate::schema::block_of_words;
 use crate::uncertainty::{Contribution, Source, combined_entries};
 use crate::units::Dimension;
-pub use base_excitation::{ShakeHistory, ShakeStep};
-pub use cycle::{CycleHistory, CycleStep, WholeCycle};
-pub use floors::{FloorStep, Floors, FloorsAt, StruckFrame};
 pub use held::Held;
+pub use history::base_excitation::{ShakeHistory, ShakeStep};
+pub use history::cycle::{CycleHistory, CycleStep, WholeCycle};
+pub use history::floors::{FloorStep, Floors, FloorsAt, StruckFrame};
+pub use history::impact::{ImpactHistory, ImpactStep};
+pub use history::impact_series::{Blow, EscalateHistory};
+pub use history::ramp::{RampHistory, RampStep};
+pub use history::sweep::{BroughtTogether, SweepHistory, SweepStep};
+pub use history::unload::{Rest, UnloadStep};
 pub use identity::Identity;
-pub use impact::{ImpactHistory, ImpactStep};
-pub use impact_series::{Blow, EscalateHistory};
-pub use ramp::{RampHistory, RampStep};
-pub use sweep::{BroughtTogether, SweepHistory, SweepStep};
-pub use unload::{Rest, UnloadStep};
 pub use zero_drift::{AxisDrift, Beyond, Drift, Zero};
 
 /// The measurements and events of a run, all numbers in SI. Every output is a function of it, its plan and its assessment.
@@ -173,6 +167,24 @@ pub enum History {
     Inspect,
 }
 
+/// Results of a ramp that are fitted to the relaxation of all its moves and dwells together.
+const OF_SUPERPOSITION: [&str; 6] = [
+    stiffness_ramp::TIME_CONSTANT.name,
+    stiffness_ramp::REMAINING_RELAXATION.name,
+    stiffness_ramp::REQUIRED_PAUSE.name,
+    stiffness_ramp::RELAXATION_SHARE.name,
+    stiffness_ramp::REFERENCE_TIME.name,
+    stiffness_ramp::RELAXATION_RATE.name,
+];
+
+/// Results of a ramp that are fitted to its relaxation with all of its degrees of freedom.
+const OF_RELAXATION: [&str; 4] = [
+    stiffness_ramp::TIME_CONSTANT.name,
+    stiffness_ramp::BRANCH_STIFFNESS.name,
+    stiffness_ramp::REMAINING_RELAXATION.name,
+    stiffness_ramp::REQUIRED_PAUSE.name,
+];
+
 impl History {
     /// The time step and the critical time step \[s\], if the step was longer than the critical one; for several impacts, those of the
     /// first.
@@ -204,13 +216,12 @@ impl History {
         match self {
             Self::Ramp(RampHistory {
                 reached: Some(fit), ..
-            }) if SuperpositionFit::RESULTS.contains(&result) => Some(fit.best().degrees),
+            }) if OF_SUPERPOSITION.contains(&result) => Some(fit.best().degrees),
             Self::Ramp(ramp) => match (result, ramp.relaxation.as_deref()) {
-                ("relaxed_stiffness", Some(fit)) => Some(fit.degrees_of_stiffness()),
-                (
-                    "time_constant" | "branch_stiffness" | "remaining_relaxation" | "needed_pause",
-                    Some(fit),
-                ) => Some(fit.degrees),
+                (_, Some(fit)) if result == stiffness_ramp::RELAXED_STIFFNESS.name => {
+                    Some(fit.degrees_of_stiffness())
+                }
+                (_, Some(fit)) if OF_RELAXATION.contains(&result) => Some(fit.degrees),
                 _ => {
                     let line = ramp.fit.map(|fit| fit.degrees);
                     let bilinear = || ramp.bilinear.as_ref().map(|fit| fit.degrees);
@@ -305,7 +316,7 @@ impl NamedResult {
         };
         lacks.then(|| {
             format!(
-                "no uncertainty of `{}` is known, and a guard band needs one",
+                "no uncertainty of `{}` is known, but a guard band requires one",
                 self.name
             )
         })

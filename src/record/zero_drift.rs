@@ -95,7 +95,7 @@ impl Drift {
                     return;
                 };
                 let reason = format!(
-                    "{what} by {}, {} is allowed",
+                    "{what} by {} (limit {})",
                     readable(change, dimension),
                     stated(allowed, dimension)
                 );
@@ -140,7 +140,7 @@ impl Drift {
         (grown.is_nan() || grown > allowed).then(|| Beyond {
             of_force: true,
             reason: format!(
-                "the force grew by {} in a hold where a specimen can only relax, {} is allowed",
+                "the force increased by {} in a dwell in which a specimen can only relax (limit {})",
                 readable(grown, Dimension::FORCE),
                 stated(allowed, Dimension::FORCE)
             ),
@@ -195,7 +195,7 @@ mod tests {
         let shifted = drift(zero(1.0, 0.0), Some(zero(-1.1, 0.0)), None);
         assert_eq!(
             reason(&shifted),
-            "the zero of the force drifted by −2.100 N, 2 N is allowed"
+            "the zero of the force drifted by −2.100 N (limit 2 N)"
         );
         let moved = drift(zero(0.0, 0.0), Some(zero(0.0, 2e-5)), None)
             .beyond()

@@ -186,6 +186,6 @@ fn a_client_of_another_size_and_one_whose_messages_are_too_short_are_sent_away()
     );
     assert!(
         ended([2, 0, 0, 0, 0, 0, 0, 0, 2, 0, 3], 12.0)
-            .contains("3 words cannot hold an answer of 4")
+            .contains("3 words are too short for an answer of 4")
     );
 }

@@ -154,12 +154,12 @@ fn talk(
             action::GET_TIME => vec![specimen.time()],
             action::GET_INITIAL_STIFFNESS | action::GET_TANGENT_STIFFNESS => stiffness.to_vec(),
             action::SHUT_DOWN | action::DIE => return Ok(Ended::Closed),
-            other => return Err(Ended::Misspoken(format!("no action is called {other}"))),
+            other => return Err(Ended::Misspoken(format!("unknown action {other}"))),
         };
         if values.len() > layout.words {
             let needed = values.len();
             return Err(Ended::Misspoken(format!(
-                "messages of {} words cannot hold an answer of {needed}",
+                "messages of {} words are too short for an answer of {needed}",
                 layout.words
             )));
         }

@@ -36,12 +36,12 @@ pub fn parse(bytes: &[u8; HEADER], axes: usize) -> Result<Layout, String> {
     if !(SHORTEST..=LONGEST).contains(&words) {
         let swapped = words.swap_bytes();
         let order = if (SHORTEST..=LONGEST).contains(&swapped) {
-            ": it is in the other byte order"
+            ": it has the other byte order"
         } else {
             ""
         };
         return Err(format!(
-            "a message of {words} words{order}; {SHORTEST} to {LONGEST} are served"
+            "a message of {words} words{order}; the limits are {SHORTEST} to {LONGEST}"
         ));
     }
     let sizes: [i32; 10] = std::array::from_fn(number);
@@ -63,20 +63,20 @@ pub fn parse(bytes: &[u8; HEADER], axes: usize) -> Result<Layout, String> {
     let [control, measured] = [&sizes[..5], &sizes[5..]];
     if control[0] == 0 {
         return Err(
-            "the client sends no displacement, and psd moves by displacement only".to_owned(),
+            "the client sends no displacement, but psd moves by displacement only".to_owned(),
         );
     }
     if control[3] != 0 {
-        return Err("the client sends a force, and psd moves by displacement only".to_owned());
+        return Err("the client sends a force, but psd moves by displacement only".to_owned());
     }
     let needed = (1 + control.iter().sum::<i32>()).max(measured.iter().sum());
     if words < needed {
         return Err(format!(
-            "messages of {words} words cannot hold the {needed} that the client announces"
+            "messages of {words} words are too short for the {needed} that the client announces"
         ));
     }
     let measured = std::array::from_fn(|at| measured[at] > 0);
-    let words = usize::try_from(words).map_err(|_| "no such number of words".to_owned())?;
+    let words = usize::try_from(words).map_err(|_| "invalid number of words".to_owned())?;
     Ok(Layout { measured, words })
 }
 
@@ -134,7 +134,7 @@ mod tests {
             ([2, 2, 2, 0, 1, 0, 0, 0, 2, 0, 256], "2 degrees of freedom"),
             ([0, 0, 0, 1, 1, 0, 0, 0, 1, 0, 256], "no displacement"),
             ([1, 0, 0, 1, 1, 0, 0, 0, 1, 0, 256], "sends a force"),
-            ([1, 1, 1, 0, 1, 0, 0, 0, 1, 0, 4], "cannot hold the 5"),
+            ([1, 1, 1, 0, 1, 0, 0, 0, 1, 0, 4], "too short for the 5"),
             ([1, 0, 0, 0, 0, 1, 1, 1, 1, -1, 256], "-1 degrees"),
             ([1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1], "1 words"),
             ([1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 16_385], "16385 words"),

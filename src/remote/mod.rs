@@ -78,8 +78,8 @@ impl std::fmt::Display for Ended {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Closed => f.write_str("closed by the client"),
-            Self::HungUp => f.write_str("the client went away without closing"),
-            Self::Stopped => f.write_str("stopped by a person"),
+            Self::HungUp => f.write_str("the client left without closing"),
+            Self::Stopped => f.write_str("stopped by the operator"),
             Self::Misspoken(reason) => write!(f, "the client cannot be served: {reason}"),
             Self::Lost(reason) => write!(f, "the connection was lost: {reason}"),
             Self::Limit(fault) | Self::Rig(fault) => write!(f, "{fault}"),
@@ -105,7 +105,7 @@ impl From<Broken> for Ended {
             Broken::HungUp => Self::HungUp,
             Broken::Stopped => Self::Stopped,
             Broken::Silent => {
-                Self::Misspoken("it is silent, and has not said what it must say next".to_owned())
+                Self::Misspoken("the client is silent, and its next message is missing".to_owned())
             }
             Broken::Lost(error) => Self::Lost(error.to_string()),
             Broken::Rig(fault) => fault.into(),
@@ -170,7 +170,7 @@ pub fn serve(
         specimen.close();
         closing.store(true, Ordering::Release);
         door.join()
-            .unwrap_or_else(|_| Err(io::Error::other("who keeps the door fell over")))
+            .unwrap_or_else(|_| Err(io::Error::other("the listener failed")))
     })
 }
 

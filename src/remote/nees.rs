@@ -230,7 +230,7 @@ impl State<'_> {
                     return Err(Refusal::new(
                         Why::Order,
                         transaction,
-                        "not the transaction that was proposed last",
+                        "not the last proposed transaction",
                     ));
                 };
                 if proposed.moves {

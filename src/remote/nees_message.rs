@@ -129,7 +129,7 @@ pub fn wishes<'a>(
             return Err("a control point moves by displacement only");
         }
         if wishes.iter().any(|(other, _)| *other == place) {
-            return Err("a control point stands twice in it");
+            return Err("a control point is listed twice");
         }
         wishes.push((place, wish));
     }
@@ -167,7 +167,7 @@ pub fn parse(line: &str) -> Result<Request<'_>, Refusal<'_>> {
             Err(Refusal::new(
                 Why::Message,
                 transaction,
-                "no such message, or too few or too many words",
+                "unknown message, or wrong number of words",
             ))
         }
     }
@@ -191,10 +191,10 @@ fn points<'a>(wanted: &[&'a str]) -> Result<Vec<Point<'a>>, String> {
             [first, second, value, ref rest @ ..] => {
                 let point = points
                     .last_mut()
-                    .ok_or("no control point before what is wanted of it")?;
+                    .ok_or("the control point must come before its values")?;
                 let value = value
                     .parse()
-                    .map_err(|_| format!("`{}` is no number", clipped(value)))?;
+                    .map_err(|_| format!("`{}` is not a number", clipped(value)))?;
                 let is_axis = |word: &str| matches!(word, "x" | "y" | "z");
                 let (axis, kind) = if is_axis(second) {
                     (second, first)
@@ -204,7 +204,7 @@ fn points<'a>(wanted: &[&'a str]) -> Result<Vec<Point<'a>>, String> {
                 point.wishes.push(StopRequest { axis, kind, value });
                 left = rest;
             }
-            _ => return Err("axis, kind and value come in threes".to_owned()),
+            _ => return Err("axis, kind and value must come in threes".to_owned()),
         }
     }
 }

@@ -366,7 +366,7 @@ fn a_nees_session_refuses_a_proposal_beyond_a_limit_and_goes_on() {
         "OK\t0\tt1\n",
         "OK\t0\tt1\tMDL-00-01\tx\tdisplacement\t1.0000000000E-03\tx\tforce\t3.0000000000E+02\n",
         "NOT OK\t1\tt2\ttarget displacement 21 mm is outside its limit -20 mm .. 20 mm\n",
-        "NOT OK\t3\tt2\tnot the transaction that was proposed last\n",
+        "NOT OK\t3\tt2\tnot the last proposed transaction\n",
         "OK\t0\tt3[1 0 0]\r\n",
         "OK\t0\tt3[1 0 0]\r\n",
         "OK\t0\tdummy\tMDL-00-01:LBCB1\ty\tdisplacement\t-2.0000000000E-03\ty\tforce\t-6.0000000000E+02\r\n",
@@ -374,7 +374,7 @@ fn a_nees_session_refuses_a_proposal_beyond_a_limit_and_goes_on() {
         "OK\t0\tt4\n",
         "OK\t0\tt5\n",
         "OK\t0\tt5\n",
-        "NOT OK\t3\tt5\tnot the transaction that was proposed last\n",
+        "NOT OK\t3\tt5\tnot the last proposed transaction\n",
         "OK\t0\tsession closed\n",
     ];
     assert_eq!(answers, by_hand);

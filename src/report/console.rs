@@ -8,7 +8,6 @@ use super::status::{ReportStatus, deviations};
 use super::{number, summary};
 use crate::plan::DecisionRule;
 use crate::record::Outcome;
-use crate::run::rehearsal;
 use crate::text::sanitize::one_line;
 use crate::verdict::{ConditionOutcome, Verdict};
 
@@ -32,11 +31,7 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
             &run.assessment.verdict.name().to_uppercase()
         ),
         one_line(&run.plan.title),
-        status_text(
-            &ReportStatus::of(run),
-            rehearsal::rehearsed_plan(run.plan).is_some(),
-            &one_line(&run.plan.rig.name)
-        )
+        status_text(&ReportStatus::of(run), &one_line(&run.plan.rig.name))
     );
     if run.assessment.requirements.is_empty() {
         text.push_str("  no requirement\n");
@@ -149,13 +144,11 @@ fn decision_rule(run: &Run<'_>) -> String {
 }
 
 /// The status of the report, if it is not issuable as a test report.
-fn status_text(status: &ReportStatus, rehearsed: bool, rig: &str) -> String {
+fn status_text(status: &ReportStatus, rig: &str) -> String {
     match status {
         ReportStatus::Certifiable => String::new(),
-        ReportStatus::Rehearsal if rehearsed => {
-            "  (REHEARSAL: not the test of the plan)".to_owned()
-        }
-        ReportStatus::Rehearsal => format!("  (rig `{rig}`, simulated: a rehearsal)"),
+        ReportStatus::CheckRun => "  (CHECK RUN: not the test of the plan)".to_owned(),
+        ReportStatus::Simulation => format!("  (rig `{rig}`: a simulation)"),
         ReportStatus::Incomplete => "  (INCOMPLETE)".to_owned(),
         ReportStatus::NotCertifiable { missing } => format!(
             "  (NOT CERTIFIABLE: lacks {})",

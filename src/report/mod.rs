@@ -6,7 +6,7 @@
 //! | the order of the report's sections | `SECTIONS` in `sections/mod.rs`, one file per section beside it |
 //! | a sentence of the report | `wording/english.rs` |
 //! | the description of a specimen model | `wording/specimen.rs` |
-//! | the layout of the report | `document/style.css`, `document/certificate.typ` |
+//! | the layout of the report | `document/style.css`, `document/report.typ` |
 //! | a figure, a column, the text of one procedure | `procedures/NAME/{figures,tables,report}.rs` |
 //! | the appearance of every figure | `figures/draw/`, `figures/chart.rs` |
 //! | a number in `summary.json` | `summary/mod.rs` (format), `summary/fill.rs` (values) |
@@ -38,7 +38,7 @@ pub use output::{
 pub use run::{Build, ClockJump, Provenance, RealRun, Run};
 pub use status::{Change, Issue, IssueKind, Issues, ReportStatus, report_status};
 pub use summary::{
-    PredictedLimit, PredictedProcedure, PredictedRequirement, PredictedZeros, Prediction,
-    REHEARSAL_FILE,
+    CHECK_RUN_FILE, PredictedLimit, PredictedProcedure, PredictedRequirement, PredictedZeros,
+    Prediction,
 };
 pub use tables::put_driven;

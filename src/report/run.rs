@@ -64,7 +64,7 @@ pub struct Provenance {
     pub real: Option<RealRun>,
     /// Equipment from the first line of the run log; None if the run log does not state it or does not exist.
     pub equipment: Option<Equipment>,
-    /// Prediction of the whole run, only for a completed rehearsal.
+    /// Prediction of the whole run, only for a completed check run.
     pub prediction: Option<Prediction>,
     /// Only for a report that was issued or amended after the test.
     pub issues: Option<Issues>,

@@ -36,8 +36,8 @@ pub fn connect(
     let (actuator, mut lines) = attach_all(link.actuators(), plan, stop_request)?;
     let (load_cell, more) = attach_all(link.load_cells(), plan, stop_request)?;
     lines.extend(more);
-    let actuator =
-        actuator.ok_or_else(|| RigFault::Device(format!("nothing moves the rig {}", plan.name)))?;
+    let actuator = actuator
+        .ok_or_else(|| RigFault::Device(format!("the rig {} has no actuator", plan.name)))?;
     // Armed before the first request: the rig holds whatever fault occurs in the communication.
     let armed = safety::arm(lines).watched(link.watchdog);
     let rig = RealRig::open(

@@ -5,7 +5,6 @@
 mod connect;
 pub mod controllers;
 mod guard;
-mod holds;
 mod motion;
 pub mod real;
 pub mod safety;
@@ -108,7 +107,7 @@ impl std::fmt::Display for LineStatistics {
         let counted = [
             (self.resent, "frame", "sent again"),
             (self.ignored, "reply", "ignored"),
-            (self.reread, "reading", "taken again"),
+            (self.reread, "reading", "repeated"),
         ];
         let said = counted.into_iter().filter(|(count, ..)| *count > 0).map(
             |(count, what, became)| match (count, what) {
@@ -126,7 +125,7 @@ impl std::fmt::Display for LineStatistics {
 #[serde(rename_all = "snake_case")]
 pub enum RigFault {
     /// A target or reading is outside a limit: the run is aborted.
-    #[error("{}", breach(*.quantity, *.axis, *.value, *.low, *.high))]
+    #[error("{}", breach(*.quantity, *.value, *.axis, *.low, *.high))]
     LimitBreached {
         quantity: LimitedQuantity,
         value: f64,
@@ -144,7 +143,7 @@ pub enum RigFault {
         axis: Option<usize>,
     },
     /// The rig reports that it has arrived, at a different position \[m\].
-    #[error("following error{}: it stopped {:.6} mm from its target, the band is {:.6} mm", of_axis(*.axis), .error * 1e3, .band * 1e3)]
+    #[error("following error{}: stopped {:.6} mm from its target (settling band {:.6} mm)", of_axis(*.axis), .error * 1e3, .band * 1e3)]
     Following {
         error: f64,
         band: f64,
@@ -153,7 +152,7 @@ pub enum RigFault {
         axis: Option<usize>,
     },
     /// The operator requests a hold now, not at the end of the step.
-    #[error("held on request in the middle of a step")]
+    #[error("held on request during a step")]
     Interrupted,
     #[error("{0}")]
     Device(String),
@@ -162,8 +161,8 @@ pub enum RigFault {
 /// Six digits, because a value just beyond its limit must not appear equal to the limit.
 fn breach(
     quantity: LimitedQuantity,
-    axis: Option<usize>,
     value: f64,
+    axis: Option<usize>,
     low: f64,
     high: f64,
 ) -> String {
@@ -302,7 +301,7 @@ pub trait Rig {
     ) -> Result<(), RigFault> {
         self.hold();
         Err(RigFault::Device(
-            "this rig follows no path without stopping".to_owned(),
+            "this rig follows no path without a stop".to_owned(),
         ))
     }
 
@@ -333,7 +332,7 @@ pub trait Rig {
     ) -> Result<(), RigFault> {
         self.hold();
         Err(RigFault::Device(
-            "this rig follows no path without stopping".to_owned(),
+            "this rig follows no path without a stop".to_owned(),
         ))
     }
 

@@ -2,9 +2,17 @@
 //! Out: start and end of the uniform motion with the same mean instant and the same variance about it. For slow relaxation
 //! the two are equal.
 
-/// Start and end of a uniform motion with this mean instant \[s\] and this variance about it \[s²\]. It begins no earlier than `start`
-/// \[s\]; if it would, only the mean is kept.
-pub(super) fn even(start: f64, mean: f64, variance: f64) -> [f64; 2] {
+/// The instants of a motion, weighted by the distance.
+pub(super) struct Instants {
+    /// \[s\]
+    pub mean: f64,
+    /// About the mean \[s²\].
+    pub variance: f64,
+}
+
+/// Start and end of a uniform motion with these instants. It begins no earlier than `start` \[s\]; if it would, only the mean is kept.
+pub(super) fn even(start: f64, instants: &Instants) -> [f64; 2] {
+    let Instants { mean, variance } = *instants;
     let from = (mean - (3.0 * variance.max(0.0)).sqrt()).max(start);
     [from, 2.0 * mean - from]
 }
@@ -22,7 +30,15 @@ pub(super) fn from_positions(places: &[(f64, f64)]) -> Option<[f64; 2]> {
         twice += moved * (early * early + early * late + late * late) / 3.0;
     }
     let mean = once / way;
-    (way != 0.0).then(|| even(start, start + mean, twice / way - mean * mean))
+    (way != 0.0).then(|| {
+        even(
+            start,
+            &Instants {
+                mean: start + mean,
+                variance: twice / way - mean * mean,
+            },
+        )
+    })
 }
 
 #[cfg(test)]
@@ -55,7 +71,13 @@ mod tests {
             .map(|t| (t, t.min(way) - behind(t)))
             .collect();
         let found = from_positions(&places).unwrap();
-        let wanted = even(0.0, 0.5 * way + lag, way * way / 12.0 + lag * lag);
+        let wanted = even(
+            0.0,
+            &Instants {
+                mean: 0.5 * way + lag,
+                variance: way * way / 12.0 + lag * lag,
+            },
+        );
         assert!(
             found
                 .iter()
@@ -68,7 +90,25 @@ mod tests {
     /// A motion shorter than its lag is uniform from its start, with the same mean.
     #[test]
     fn no_motion_begins_before_it_does() {
-        assert_eq!(even(2.0, 2.5, 1.0), [2.0, 3.0]);
-        assert_eq!(even(2.0, 2.5, 0.0), [2.5, 2.5]);
+        assert_eq!(
+            even(
+                2.0,
+                &Instants {
+                    mean: 2.5,
+                    variance: 1.0
+                }
+            ),
+            [2.0, 3.0]
+        );
+        assert_eq!(
+            even(
+                2.0,
+                &Instants {
+                    mean: 2.5,
+                    variance: 0.0
+                }
+            ),
+            [2.5, 2.5]
+        );
     }
 }

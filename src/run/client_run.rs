@@ -59,7 +59,7 @@ pub fn drive(
         return ended(session.finish(), stop.outcome());
     }
     // By hand there may be no specimen yet, and no position to return to.
-    let check = plan.rig.drift.filter(|_| driver == Driver::Client);
+    let check = plan.rig.zero_drift.filter(|_| driver == Driver::Client);
     let home = session.guard.commanded().to_vec();
     let mut drift = match check
         .map(|check| zero_drift::before(check, &mut session))
@@ -110,13 +110,13 @@ fn once_more(drift: &mut Drift, home: &[f64], session: &mut Session<'_>) -> Resu
 
 /// The motion of a real rig after the pre-test check.
 fn afterwards(plan: &Plan) -> &'static str {
-    match plan.rig.drift {
+    match plan.rig.zero_drift {
         Some(DriftCheck {
             after: ZeroAfter::Start,
             ..
         }) => {
-            "as its client says, within the plan's limits, and after the last client back to where it began"
+            "MOVES as its client requests, within the plan's limits, and after the last client back to its start position"
         }
-        _ => "as its client says, within the plan's limits",
+        _ => "MOVES as its client requests, within the plan's limits",
     }
 }

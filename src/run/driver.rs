@@ -57,7 +57,7 @@ pub fn run_with(
     let home = session.guard.commanded().to_vec();
     match plan
         .rig
-        .drift
+        .zero_drift
         .map(|check| zero_drift::before(check, &mut session))
         .transpose()
     {
@@ -127,11 +127,11 @@ pub fn run_with(
 
 /// The motion of a real rig after the pre-test check.
 fn afterwards(plan: &Plan) -> &'static str {
-    match plan.rig.drift {
+    match plan.rig.zero_drift {
         Some(DriftCheck {
             after: ZeroAfter::Start,
             ..
-        }) => "as the plan says, and at its end back to where it began",
-        _ => "as the plan says",
+        }) => "MOVES as the plan specifies, and at its end back to its start position",
+        _ => "MOVES as the plan specifies",
     }
 }

@@ -3,6 +3,7 @@
 
 use crate::plan::formula::{Estimate, Formula, ProcedureId, Results};
 use crate::run::stop::Stop;
+use crate::schema::procedures::SPEED;
 use crate::uncertainty::known;
 use crate::units::Dimension;
 use crate::units::display::readable;
@@ -104,12 +105,7 @@ impl<'record> Inputs<'record> {
     ) -> Result<f64, Stop> {
         match self.number(field, formula, dimension)? {
             value if value >= 0.0 => Ok(value),
-            value => Err(Stop::BadInput {
-                field,
-                value,
-                dimension,
-                wanted: "at least 0".into(),
-            }),
+            value => Err(Stop::bad_input(field, value, dimension, "at least 0")),
         }
     }
 
@@ -125,12 +121,7 @@ impl<'record> Inputs<'record> {
         if value >= 0.0 {
             return Ok(value);
         }
-        let bad = |wanted: &'static str| Stop::BadInput {
-            field,
-            value,
-            dimension,
-            wanted: wanted.into(),
-        };
+        let bad = |wanted: &'static str| Stop::bad_input(field, value, dimension, wanted);
         let parts = formula
             .contributions(self.results, None)
             .map_err(|error| Stop::NoInput { field, error })?;
@@ -141,7 +132,7 @@ impl<'record> Inputs<'record> {
         };
         if -value > known.expanded() {
             return Err(bad(
-                "at least 0, and is below 0 by more than its expanded uncertainty",
+                "at least 0 (it is below 0 by more than its expanded uncertainty)",
             ));
         }
         self.lift = -value;
@@ -153,7 +144,7 @@ impl<'record> Inputs<'record> {
             readable(known.expanded(), dimension),
         );
         let text = format!(
-            "`{field}` was measured as {value}, U = {expanded}, which is not significantly below 0: it is taken as 0"
+            "`{field}` was measured as {value}, U = {expanded}. It is not significantly below 0, and is set to 0"
         );
         self.observations.push(text);
         Ok(0.0)
@@ -171,19 +162,19 @@ impl<'record> Inputs<'record> {
         if estimate.value > 0.0 {
             Ok(estimate)
         } else {
-            Err(Stop::BadInput {
+            Err(Stop::bad_input(
                 field,
-                value: estimate.value,
+                estimate.value,
                 dimension,
-                wanted: "greater than 0".into(),
-            })
+                "greater than 0",
+            ))
         }
     }
 
     /// Actuator speed above 0, if one is requested.
     pub(crate) fn speed(&mut self, formula: Option<&Formula>) -> Result<Option<f64>, Stop> {
         formula
-            .map(|formula| self.positive("speed", formula, Dimension::VELOCITY))
+            .map(|formula| self.positive(SPEED.name, formula, Dimension::VELOCITY))
             .transpose()
     }
 

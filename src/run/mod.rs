@@ -2,12 +2,12 @@
 //! procedure and ends the run. Every target and reading passes the guard. It knows no equation and
 //! no printed form.
 
+pub mod check_run;
 pub mod client_run;
 mod driver;
 pub(crate) mod inputs;
 mod motion;
 pub(crate) mod pretest_check;
-pub mod rehearsal;
 pub mod remote_control;
 pub mod replay;
 pub(crate) mod session;

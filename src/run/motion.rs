@@ -73,7 +73,7 @@ impl Motion {
             duration,
         } = self.expected;
         let speed = speed.map(|speed| format!("up to {}", readable(speed, Dimension::VELOCITY)));
-        let stands = self.stands.as_ref().map(|stands| row("stands", stands));
+        let stands = self.stands.as_ref().map(|stands| row("position", stands));
         let first = std::iter::once(row("rig", &self.who())).chain(stands);
         let rest = [
             row("motion", &self.does),

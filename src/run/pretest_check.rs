@@ -5,9 +5,9 @@
 use super::motion::Motion;
 use super::session::Session;
 use super::start;
-use super::start::{remedy, within};
+use super::start::remedy;
 use super::stop::Stop;
-use crate::plan::{Gate, Plan, RealLink};
+use crate::plan::{Plan, PretestCheck, RealLink};
 use crate::record::EventKind;
 use crate::rig::safety::failpoint;
 use crate::rig::safety::failpoint::Guarding;
@@ -27,25 +27,25 @@ pub(crate) fn pass(
     session: &mut Session<'_>,
 ) -> Result<(), Stop> {
     let axes = session.guard.commanded().len();
-    let gates: Vec<Gate> = (0..axes).map(|axis| link.gate_of(axis)).collect();
-    let mut ways: Vec<String> = gates
+    let checks: Vec<PretestCheck> = (0..axes).map(|axis| link.pretest_check_of(axis)).collect();
+    let mut ways: Vec<String> = checks
         .iter()
-        .map(|gate| stated(gate.probe, Dimension::LENGTH))
+        .map(|pretest_check| stated(pretest_check.probe, Dimension::LENGTH))
         .collect();
     ways.dedup();
     let ways = ways.join(", ");
     let by = if axes == 1 {
         format!("by {ways}")
     } else {
-        format!("each of its {axes} axes in turn, by {ways}")
+        format!("each of its {axes} axes in turn, {ways}")
     };
     // No motion enable is requested for a rig at a different position.
     start::check(plan, link, session, session.guard.found())?;
     let note = format!(
-        "release rig {}: it will move {by} to prove itself, then {afterwards}",
+        "release rig {}: it MOVES {by} and back (pre-test check), then {afterwards}",
         plan.rig.name
     );
-    let does = format!("it moves {by} to check itself, then {afterwards}");
+    let does = format!("it MOVES {by} and back (pre-test check), then {afterwards}");
     let stands = Some(start::describe(session));
     session.release(
         &note,
@@ -62,22 +62,24 @@ pub(crate) fn pass(
         start::check(plan, link, session, (&reading.displacement, &reading.force))?;
     }
     start::log_datum(link, session);
-    for (axis, (gate, force)) in gates.iter().zip(&at_rest.force).enumerate() {
-        if failpoint::on(Guarding::PretestZero) && !within(force.abs(), 0.0, gate.zero) {
+    for (axis, (pretest_check, force)) in checks.iter().zip(&at_rest.force).enumerate() {
+        if failpoint::on(Guarding::PretestZero)
+            && !(0.0..=pretest_check.zero).contains(&force.abs())
+        {
             return refuse(format!(
-                "{}{} at rest, {} is allowed: {}",
+                "{}{} at rest (limit {}): {}",
                 named_axis(axis, axes).map_or_else(String::new, |axis| format!("axis {axis}: ")),
                 readable(*force, Dimension::FORCE),
-                stated(gate.zero, Dimension::FORCE),
-                remedy(at_rest.displacement[axis], *force, gate)
+                stated(pretest_check.zero, Dimension::FORCE),
+                remedy(at_rest.displacement[axis], *force, pretest_check)
             ));
         }
     }
     let mut before = at_rest.clone();
-    for (axis, gate) in gates.iter().enumerate() {
+    for (axis, pretest_check) in checks.iter().enumerate() {
         session.stop_if_requested()?;
         // Each axis is compared with the reading at rest before its move, after the previous axis has returned.
-        let (column, back) = probe(axis, gate, &before, session)?;
+        let (column, back) = probe(axis, pretest_check, &before, session)?;
         before = back;
         let force = readable(at_rest.force[axis], Dimension::FORCE);
         let drift = readable(
@@ -85,13 +87,13 @@ pub(crate) fn pass(
             Dimension::FORCE,
         );
         let found = readable(column[axis], Dimension::STIFFNESS);
-        let probe = stated(gate.probe, Dimension::LENGTH);
+        let probe = stated(pretest_check.probe, Dimension::LENGTH);
         let text =
             format!("{force} at rest, drift {drift}/s, stiffness {found} in a move of {probe}");
         let text = match named_axis(axis, axes) {
-            None => format!("gate passed: {text}"),
+            None => format!("pre-test check passed: {text}"),
             Some(axis) => format!(
-                "gate passed by axis {axis}: {text}; {}",
+                "pre-test check passed by axis {axis}: {text}; {}",
                 others(&column, axis)
             ),
         };
@@ -104,24 +106,24 @@ pub(crate) fn pass(
 /// divided by the travel. Also gives the reading after the return.
 fn probe(
     axis: usize,
-    gate: &Gate,
+    pretest_check: &PretestCheck,
     before: &Reading,
     session: &mut Session<'_>,
 ) -> Result<(Vec<f64>, Reading), Stop> {
     let home = session.guard.commanded().to_vec();
     let mut out = home.clone();
-    out[axis] += gate.probe;
+    out[axis] += pretest_check.probe;
     session.go_to_all(&out, None)?;
     let there = session.guard.read()?;
     session.go_to_all(&home, None)?;
     let back = session.guard.read()?;
 
-    let probe = stated(gate.probe, Dimension::LENGTH);
+    let probe = stated(pretest_check.probe, Dimension::LENGTH);
     let of = of_axis(named_axis(axis, home.len()));
     let moved = there.displacement[axis] - before.displacement[axis];
     if moved == 0.0 {
         return refuse(format!(
-            "the displacement{of} did not change in a move of {probe}: the transducer is dead, or too coarse"
+            "the displacement{of} did not change in a move of {probe}: the transducer is dead, or its resolution is too coarse"
         ));
     }
     let column: Vec<f64> = there
@@ -131,18 +133,20 @@ fn probe(
         .map(|(force, rest)| (force - rest) / moved)
         .collect();
     let stiffness = column[axis];
-    if failpoint::on(Guarding::PretestPolarity) && (stiffness < 0.0 || moved * gate.probe < 0.0) {
+    if failpoint::on(Guarding::PretestPolarity)
+        && (stiffness < 0.0 || moved * pretest_check.probe < 0.0)
+    {
         return refuse(format!(
-            "displacement and force{of} have opposite signs: turn one of them, or the rig's `sign`"
+            "displacement and force{of} have opposite polarity: reverse one of them, or change the rig's `polarity`"
         ));
     }
-    let (low, high) = (gate.stiffness.low, gate.stiffness.high);
+    let (low, high) = (pretest_check.stiffness.low, pretest_check.stiffness.high);
     let bound = |value| stated(value, Dimension::STIFFNESS);
     let found = readable(stiffness, Dimension::STIFFNESS);
-    if failpoint::on(Guarding::PretestStiffness) && !within(stiffness, low, high) {
+    if failpoint::on(Guarding::PretestStiffness) && !pretest_check.stiffness.contains(stiffness) {
         let (low, high) = (bound(low), bound(high));
         return refuse(format!(
-            "the move{of} of {probe} shows {found}, outside {low} .. {high}: look for a wrong unit or scale"
+            "the stiffness{of} in a move of {probe} is {found}, outside {low} .. {high}: check unit and scale"
         ));
     }
     Ok((column, back))
@@ -163,7 +167,7 @@ fn others(column: &[f64], axis: usize) -> String {
 }
 
 fn refuse<T>(reason: String) -> Result<T, Stop> {
-    Err(Stop::Gate { reason })
+    Err(Stop::PretestCheck { reason })
 }
 
 #[cfg(test)]
@@ -173,7 +177,7 @@ mod tests {
 
     #[test]
     fn a_bent_specimen_is_told_from_a_cell_without_its_zero() {
-        let gate = Gate {
+        let pretest_check = PretestCheck {
             probe: 1e-4,
             stiffness: Interval {
                 low: 250e3,
@@ -182,11 +186,11 @@ mod tests {
             zero: 20.0,
         };
         assert!(
-            remedy(7.86e-3, 2353.0, &gate).contains("stands at 7.860 mm"),
+            remedy(7.86e-3, 2353.0, &pretest_check).contains("is at 7.860 mm"),
             "{}",
-            remedy(7.86e-3, 2353.0, &gate)
+            remedy(7.86e-3, 2353.0, &pretest_check)
         );
-        assert!(remedy(-7.86e-3, -1500.0, &gate).contains("psd rig jog"));
+        assert!(remedy(-7.86e-3, -1500.0, &pretest_check).contains("psd rig jog"));
         for (displacement, force) in [
             (0.0, 2353.0),
             (1e-5, 3.0),
@@ -194,7 +198,7 @@ mod tests {
             (7.86e-3, -2353.0),
         ] {
             assert!(
-                remedy(displacement, force, &gate).starts_with("zero the cell"),
+                remedy(displacement, force, &pretest_check).starts_with("zero the load cell"),
                 "{displacement} m, {force} N"
             );
         }

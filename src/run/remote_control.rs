@@ -366,11 +366,11 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
     /// The outcome of an interrupted run log is a fault.
     pub(super) fn outcome(&self) -> Outcome {
         let cut_off = |place: &str| Outcome::Faulted {
-            reason: format!("the record ends {place}"),
+            reason: format!("the run log ends {place}"),
         };
         match &self.worst {
-            _ if self.inside => cut_off("in the middle of a session"),
-            _ if !self.closed => cut_off("while a client was waited for"),
+            _ if self.inside => cut_off("during a session"),
+            _ if !self.closed => cut_off("before the next client"),
             None | Some((Disconnect::Closed, _)) => Outcome::Completed,
             Some((Disconnect::Stopped, reason)) => Outcome::Aborted {
                 reason: reason.clone(),

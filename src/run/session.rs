@@ -18,6 +18,17 @@ const BREATH: f64 = 0.01;
 /// The reason if the operator ends a run while nothing moves.
 pub(super) const STOPPED_ON_REQUEST: &str = "stopped on request";
 
+/// A step of a procedure with one axis that integrates nothing.
+pub(crate) struct StepReading {
+    pub step: u64,
+    /// Rig time \[s\].
+    pub time: f64,
+    /// \[m\]
+    pub displacement: f64,
+    /// \[N\]
+    pub force: f64,
+}
+
 pub(crate) struct Session<'run> {
     pub(crate) guard: Guard<'run>,
     pub(super) observer: &'run mut dyn Observer,
@@ -66,7 +77,7 @@ impl<'run> Session<'run> {
                 }
             };
             Err(RigFault::Device(format!(
-                "these procedures move {}, and the rig has {axes}",
+                "these procedures move {}, but the rig has {axes}",
                 degrees(wanted)
             )))
         };
@@ -172,10 +183,10 @@ impl<'run> Session<'run> {
         for (text, again) in std::mem::take(&mut self.remarks) {
             match again {
                 0 => {}
-                1 => self.event(EventKind::Remark, format!("after one more blow: {text}")),
+                1 => self.event(EventKind::Remark, format!("after 1 more impact: {text}")),
                 _ => self.event(
                     EventKind::Remark,
-                    format!("after {again} more blows: {text}"),
+                    format!("after {again} more impacts: {text}"),
                 ),
             }
         }
@@ -321,13 +332,13 @@ impl<'run> Session<'run> {
     }
 
     /// [`Self::step_done`] of a procedure that integrates nothing: rig time is its time.
-    pub(crate) fn measured(
-        &mut self,
-        step: u64,
-        time: f64,
-        displacement: f64,
-        force: f64,
-    ) -> Result<(), Stop> {
+    pub(crate) fn measured(&mut self, reading: &StepReading) -> Result<(), Stop> {
+        let StepReading {
+            step,
+            time,
+            displacement,
+            force,
+        } = *reading;
         self.at_rest(step, time, &[displacement], &[force])
     }
 

@@ -70,7 +70,7 @@ impl Session<'_> {
             format!(" at {}", plain(speed, Dimension::VELOCITY, 4))
         });
         let question = format!(
-            "unload? The rig holds at {at}; with a yes it moves to {home}{speed}, where the run began"
+            "unload? The rig is HELD at {at}. If confirmed, it MOVES to {home}{speed}, its start position"
         );
         loop {
             match self.observer.may_unload(&question, &motion) {
@@ -132,7 +132,7 @@ impl Session<'_> {
             speed,
             duration: speed.map(|speed| way / speed),
         };
-        let does = "it goes back to where the run began".to_owned();
+        let does = "it MOVES back to its start position".to_owned();
         Motion {
             expected,
             ..Motion::of(plan, self.identity(), does)

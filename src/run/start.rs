@@ -4,7 +4,7 @@
 use super::replay::Bands;
 use super::session::Session;
 use super::stop::Stop;
-use crate::plan::{Datum, Gate, Plan, RealLink};
+use crate::plan::{Datum, Plan, PretestCheck, RealLink};
 use crate::record::EventKind;
 use crate::rig::safety::failpoint;
 use crate::rig::safety::failpoint::Guarding;
@@ -26,7 +26,7 @@ pub fn band(plan: &Plan, link: &RealLink, axis: usize) -> f64 {
     if settled > 0.0 {
         settled
     } else {
-        link.gate_of(axis).probe
+        link.pretest_check_of(axis).probe
     }
 }
 
@@ -41,23 +41,23 @@ pub(super) fn check(
         return Ok(());
     }
     for (axis, (place, force)) in places.iter().zip(forces).enumerate() {
-        let (band, gate) = (band(plan, link, axis), link.gate_of(axis));
-        if within(place.abs(), 0.0, band) {
+        let (band, pretest_check) = (band(plan, link, axis), link.pretest_check_of(axis));
+        if (0.0..=band).contains(&place.abs()) {
             continue;
         }
         let who = named_axis(axis, places.len())
             .map_or_else(|| "it".to_owned(), |axis| format!("axis {axis}"));
         let at = readable(*place, Dimension::LENGTH);
         let remedy = match link.datum {
-            Datum::Machine if within(force.abs(), 0.0, gate.zero) => {
-                "bring it there with `psd rig jog`; or, where the specimen carries no load here, say `datum = here`".to_owned()
+            Datum::Machine if (0.0..=pretest_check.zero).contains(&force.abs()) => {
+                "move it there with `psd rig jog`; or, if the specimen carries no load here, write `datum = here`".to_owned()
             }
-            Datum::Machine => remedy(*place, *force, &gate),
-            Datum::Here | Datum::At(_) => "it does not rest: something moves it".to_owned(),
+            Datum::Machine => remedy(*place, *force, &pretest_check),
+            Datum::Here | Datum::At(_) => "it is not at rest".to_owned(),
         };
-        return Err(Stop::Gate {
+        return Err(Stop::PretestCheck {
             reason: format!(
-                "{who} stands at {at}, and the plan begins at 0, within {}: {remedy}",
+                "{who} is at {at}, but the plan starts at 0, within {}: {remedy}",
                 stated(band, Dimension::LENGTH)
             ),
         });
@@ -78,7 +78,7 @@ pub(super) fn describe(session: &Session<'_>) -> String {
         .map(|place| plain(*place, Dimension::LENGTH, 6))
         .collect();
     format!(
-        "{stands}; the plan's zero is {} of the rig's own",
+        "{stands}; the plan's zero is at {} in the rig's own coordinate",
         own.join(", ")
     )
 }
@@ -99,7 +99,7 @@ pub(super) fn log_datum(link: &RealLink, session: &mut Session<'_>) {
     session.event(
         EventKind::Note,
         format!(
-            "the plan's zero is where the rig stands: {} of its own",
+            "the plan's zero is the present position of the rig: {} in its own coordinate",
             places.join(", ")
         ),
     );
@@ -107,21 +107,19 @@ pub(super) fn log_datum(link: &RealLink, session: &mut Session<'_>) {
 
 /// The advice for a force at rest. If the specimen would carry about this force at the position of the rig, an earlier run left the rig
 /// there.
-pub(super) fn remedy(displacement: f64, force: f64, gate: &Gate) -> String {
+pub(super) fn remedy(displacement: f64, force: f64, pretest_check: &PretestCheck) -> String {
     let carried = force / displacement;
-    let bent = within(carried, 0.5 * gate.stiffness.low, 2.0 * gate.stiffness.high)
-        && displacement.abs() > gate.probe;
+    // NaN is in no range.
+    let bent = (0.5 * pretest_check.stiffness.low..=2.0 * pretest_check.stiffness.high)
+        .contains(&carried)
+        && displacement.abs() > pretest_check.probe;
     if bent {
         let place = readable(displacement, Dimension::LENGTH);
         format!(
-            "it stands at {place}, as a run without `unload` at its end leaves it: go back with `psd rig jog`, or start a stand-in anew"
+            "it is at {place}, as after a run without a final `unload`: move it back with `psd rig jog`, or restart the rig \
+             emulator"
         )
     } else {
-        "zero the cell, or take the load off".to_owned()
+        "zero the load cell, or remove the load".to_owned()
     }
-}
-
-/// NaN is outside every interval.
-pub(super) fn within(value: f64, low: f64, high: f64) -> bool {
-    low <= value && value <= high
 }

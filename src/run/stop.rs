@@ -1,5 +1,6 @@
 //! The reasons for an early end of a run, and the outcome of each.
 
+use crate::schema::procedures::SPECIMEN;
 use std::borrow::Cow;
 
 use crate::plan::formula::FormulaError;
@@ -23,7 +24,7 @@ pub(crate) enum Stop {
         reason: String,
     },
     /// A real rig did not pass the pre-test check before the first step.
-    Gate {
+    PretestCheck {
         reason: String,
     },
     /// An input of a procedure has no value, because it reads a result that does not exist.
@@ -41,14 +42,24 @@ pub(crate) enum Stop {
 }
 
 impl Stop {
-    /// A procedure on a frame names a specimen that is not a frame.
-    pub(crate) const fn no_frame() -> Self {
+    /// An input that is known only now, SI, and what it must be instead.
+    pub(crate) fn bad_input(
+        field: &'static str,
+        value: f64,
+        dimension: Dimension,
+        wanted: impl Into<Cow<'static, str>>,
+    ) -> Self {
         Self::BadInput {
-            field: "specimen",
-            value: 0.0,
-            dimension: Dimension::NUMBER,
-            wanted: Cow::Borrowed("a frame of storeys"),
+            field,
+            value,
+            dimension,
+            wanted: wanted.into(),
         }
+    }
+
+    /// A procedure on a frame names a specimen that is not a frame.
+    pub(crate) fn no_frame() -> Self {
+        Self::bad_input(SPECIMEN.name, 0.0, Dimension::NUMBER, "a frame of storeys")
     }
 
     /// Limits and the operator abort a run; an input that cannot be used blocks it; a rig that fails is a fault.
@@ -64,9 +75,8 @@ impl Stop {
             | Self::Person { .. } => Outcome::Aborted { reason },
             Self::NotReleased { .. } => Outcome::NotReleased { reason },
             Self::NoInput { .. } | Self::BadInput { .. } => Outcome::Blocked { reason },
-            Self::Rig(RigFault::Device(_) | RigFault::Following { .. }) | Self::Gate { .. } => {
-                Outcome::Faulted { reason }
-            }
+            Self::Rig(RigFault::Device(_) | RigFault::Following { .. })
+            | Self::PretestCheck { .. } => Outcome::Faulted { reason },
         }
     }
 
@@ -79,7 +89,7 @@ impl Stop {
                     | RigFault::Following { .. }
                     | RigFault::NotSettled { .. }
                     | RigFault::Interrupted
-            ) | Self::Gate { .. }
+            ) | Self::PretestCheck { .. }
                 | Self::NotReleased { .. }
         )
     }
@@ -99,7 +109,7 @@ impl Stop {
             | Self::Person { .. }
             | Self::NotReleased { .. } => EventKind::Hold,
             Self::Rig(RigFault::Device(_) | RigFault::Following { .. })
-            | Self::Gate { .. }
+            | Self::PretestCheck { .. }
             | Self::NoInput { .. }
             | Self::BadInput { .. } => EventKind::Fault,
         }
@@ -112,11 +122,12 @@ impl std::fmt::Display for Stop {
             Self::Rig(fault) => write!(f, "{fault}"),
             Self::AtRest(fault) => write!(
                 f,
-                "{fault}; nothing has moved: look for a wrong unit, scale or word order, for load on the specimen, or for a zero \
-                 that lies elsewhere (`datum`)"
+                "{fault}; nothing has moved: check unit, scale, register order, load on the specimen, and the zero (`datum`)"
             ),
             Self::Person { reason } | Self::NotReleased { reason } => f.write_str(reason),
-            Self::Gate { reason } => write!(f, "the rig did not pass the gate: {reason}"),
+            Self::PretestCheck { reason } => {
+                write!(f, "the rig did not pass the pre-test check: {reason}")
+            }
             Self::NoInput { field, error } => write!(f, "`{field}` has no value: {error}"),
             Self::BadInput {
                 field,
@@ -126,7 +137,7 @@ impl std::fmt::Display for Stop {
             } => {
                 write!(
                     f,
-                    "`{field}` came out as {}, but must be {wanted}",
+                    "`{field}` = {} is invalid: it must be {wanted}",
                     stated(*value, *dimension)
                 )
             }

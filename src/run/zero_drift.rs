@@ -15,7 +15,8 @@ use crate::units::display::readable;
 pub(crate) const READINGS: u32 = 10;
 
 /// The instruction to the operator before the zero of a free cell is read.
-const TAKE_OFF: &str = "take the specimen off the load cell: its zero is read, and nothing moves";
+const TAKE_OFF: &str =
+    "remove the specimen from the load cell: its zero is read, and nothing moves";
 
 /// With the specimen unloaded: reads the zeros, and has the following dwells evaluated.
 pub(crate) fn before(check: DriftCheck, session: &mut Session<'_>) -> Result<Drift, Stop> {
@@ -61,7 +62,7 @@ pub(crate) fn after(
         .filter_map(|axis| axis.after.as_ref().zip(axis.change()));
     let said = said.map(|(zero, (by, _))| {
         format!(
-            "{}, {} from that before",
+            "{}, {} from the zero before",
             describe(zero),
             readable(by, Dimension::FORCE)
         )

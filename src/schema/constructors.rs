@@ -16,6 +16,7 @@ impl Field {
             real_rig_only: false,
             of_frames: false,
             angle: false,
+            advanced: false,
         }
     }
 
@@ -124,6 +125,12 @@ impl Field {
         Self::new(name, FieldType::Condition, doc)
     }
 
+    /// The same field with another description, of a block that shares it.
+    pub(super) const fn described(mut self, doc: &'static str) -> Self {
+        self.doc = doc;
+        self
+    }
+
     /// The field is required; the example is a valid line.
     pub(super) const fn required(mut self, example: &'static str) -> Self {
         self.need = Need::Required;
@@ -150,6 +157,12 @@ impl Field {
 
     pub(super) const fn of_frames(mut self) -> Self {
         self.of_frames = true;
+        self
+    }
+
+    /// Few plans set it.
+    pub(super) const fn advanced(mut self) -> Self {
+        self.advanced = true;
         self
     }
 

@@ -27,52 +27,37 @@ const fn function(
 }
 
 pub const FUNCTIONS: &[FunctionKind] = &[
-    function(
-        "abs",
-        Function::Abs,
-        false,
-        "the size of a number, without its sign",
-    ),
+    function("abs", Function::Abs, false, "absolute value"),
     function(
         "min",
         Function::Min,
         true,
-        "the smallest of several values or of a list",
+        "smallest of several values or of a list",
     ),
     function(
         "max",
         Function::Max,
         true,
-        "the largest of several values or of a list",
+        "largest of several values or of a list",
     ),
     function(
         "sum",
         Function::Sum,
         true,
-        "the sum of several values or of a list",
+        "sum of several values or of a list",
     ),
     function(
         "mean",
         Function::Mean,
         true,
-        "the mean of several values or of a list",
+        "mean of several values or of a list",
     ),
     function(
         "sqrt",
         Function::Sqrt,
         false,
-        "the square root; its unit is the root of the unit",
+        "square root; the unit is the root of the unit",
     ),
-    function(
-        "sin",
-        Function::Sin,
-        false,
-        "the sine of an angle in radians",
-    ),
-    function(
-        "cos",
-        Function::Cos,
-        false,
-        "the cosine of an angle in radians",
-    ),
+    function("sin", Function::Sin, false, "sine of an angle in radians"),
+    function("cos", Function::Cos, false, "cosine of an angle in radians"),
 ];

@@ -8,12 +8,17 @@ mod constructors;
 mod functions;
 mod later;
 mod reference;
+mod renamed;
 mod types;
 
-pub(crate) use blocks::{curves, ground, procedures, specimen, striker};
+pub(crate) use blocks::{
+    curves, devices, frames, golden, ground, limits, methods, plan_block, procedures, report, rig,
+    specimen, striker,
+};
 pub use columns::Column;
 pub use functions::{FUNCTIONS, FunctionKind};
-pub use reference::reference;
+pub use reference::{codes, reference};
+pub use renamed::{Place, RENAMED, Renamed, renamed_at, renamed_result};
 pub use types::{
     BlockKind, Field, FieldType, Kind, Naming, Need, Range, ResultKind, RigKind, Variant,
 };

@@ -78,6 +78,8 @@ pub struct Field {
     pub of_frames: bool,
     /// Whether its number is an angle, which is written with its unit.
     pub angle: bool,
+    /// Whether few plans set it: the reference lists it apart.
+    pub advanced: bool,
 }
 
 /// The type of the value of a field.
@@ -113,6 +115,8 @@ pub enum FieldType {
     Figures,
     /// A result of a procedure: `hit.stop_time`.
     ResultName,
+    /// A list of results of procedures.
+    ResultNames,
     /// A column of a table: `hit.displacement_m`, or `displacement_m` of every table.
     ColumnName,
     /// A tolerance: in the unit of the number, or in `%` of its absolute value.
@@ -264,9 +268,9 @@ impl Field {
             Need::Default { number, unit: "" } => Some(number.to_string()),
             Need::Default { number, unit } => Some(format!("{number} {unit}")),
             Need::Said(words) => Some(words.to_owned()),
-            Need::RequiredOn(rig, "") => Some(format!("**required** on a {} rig", rig.name())),
+            Need::RequiredOn(rig, "") => Some(format!("required on a {} rig", rig.name())),
             Need::RequiredOn(rig, words) => {
-                Some(format!("{words}; **required** on a {} rig", rig.name()))
+                Some(format!("{words}; required on a {} rig", rig.name()))
             }
             Need::Required | Need::Optional => None,
         }

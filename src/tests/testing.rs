@@ -2,9 +2,9 @@
 
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
 use crate::plan::{
-    Behaviour, Calibration, Contact, DecisionRule, Frame, Impact, ImpactTarget, Integrator, Limits,
-    Link, Mode, Plan, PointTarget, Procedure, ProcedureKind, RampFit, Report, RigPlan, Settle,
-    ShakeDamping, Specimen, Stepping, StiffnessRamp, Storey, StoreyTarget, Striker, Until,
+    Annex, Behaviour, Calibration, Contact, DecisionRule, Frame, Impact, ImpactTarget, Integrator,
+    Limits, Link, Mode, Plan, PointTarget, Procedure, ProcedureKind, RampFit, Report, RigPlan,
+    Settle, ShakeDamping, Specimen, Stepping, StiffnessRamp, Storey, StoreyTarget, Striker, Until,
     VirtualLink,
 };
 use crate::record::{NamedResult, Record};
@@ -30,9 +30,9 @@ pub(crate) fn empty_plan() -> Plan {
                 dwell: 0.0,
                 timeout: 60.0,
             },
-            sign: 1.0,
+            polarity: 1.0,
             calibration: Calibration::default(),
-            drift: None,
+            zero_drift: None,
         },
         limits: Limits::NONE,
         procedures: Vec::new(),
@@ -43,9 +43,13 @@ pub(crate) fn empty_plan() -> Plan {
             figures: Vec::new(),
             formats: Vec::new(),
             sign: Vec::new(),
+            annexes: Annex::DEFAULT.to_vec(),
+            results: None,
+            logo: None,
+            photos: Vec::new(),
         },
         golden: crate::plan::Golden::default(),
-        rehearses: None,
+        check_run_of: None,
         unloads_at_once: false,
         files: Vec::new(),
         settings: Vec::new(),
@@ -79,7 +83,7 @@ pub(crate) fn struck_frame() -> Plan {
             Behaviour::Bilinear {
                 stiffness,
                 yield_force,
-                hardening: 0.05,
+                post_yield_ratio: 0.05,
             },
         )
     };
@@ -247,7 +251,7 @@ pub(crate) fn header() -> Header {
         settings: Vec::new(),
         rig: None,
         equipment: None,
-        rehearsal: false,
+        check_run: false,
         served: None,
         date: None,
         operator: None,

@@ -27,7 +27,8 @@ pub const FINER: [u8; 2] = [2, 4];
 const CONVERGES: f64 = 0.75;
 /// If a run reaches this many times the displacement of the recorded one, it grows without bound.
 const FARTHER: f64 = 10.0;
-const GROWS: &str = "errors of its readings, taken along the recorded way, grow without bound";
+const GROWS: &str =
+    "errors of its readings, re-integrated along the recorded path, grow without bound";
 
 /// A procedure as a pure function of its readings and inputs.
 pub trait Evaluate: Sync {

@@ -81,12 +81,12 @@ fn near(margin: Option<Known>) -> String {
     let few = margin.filter(|known| known.degrees < f64::from(FEW));
     let why = few.map(|known| {
         format!(
-            " = {:.2} u, of {:.1} degrees of freedom",
+            " = {:.2} u, with {:.1} degrees of freedom",
             known.coverage(),
             known.degrees
         )
     });
-    "the limit is nearer than the guard band w = U".to_owned() + &why.unwrap_or_default()
+    "the limit is within the guard band w = U".to_owned() + &why.unwrap_or_default()
 }
 
 /// The uncertainty of a formula, with its degrees of freedom.

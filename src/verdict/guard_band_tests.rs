@@ -139,7 +139,7 @@ fn a_guard_band_needs_an_uncertainty_that_is_known() {
         );
         assert_eq!(
             found.reason.unwrap(),
-            "no uncertainty of `max_displacement` is known, and a guard band needs one"
+            "no uncertainty of `max_displacement` is known, but a guard band requires one"
         );
     }
     let simple = condition(
@@ -224,7 +224,7 @@ fn a_partial_budget_of_a_real_rig_gives_no_guard_band() {
     assert_eq!(
         partial.requirements[0].conditions[0].reason.as_deref(),
         Some(
-            "the budget of `max_displacement` is partial: the plan does not declare the calibration of the displacement"
+            "the budget of `max_displacement` is partial (not declared in the plan: the calibration of the displacement)"
         )
     );
     plan.rig.calibration.displacement_uncertainty = 0.01;

@@ -144,7 +144,7 @@ fn assess_requirement(
 ) -> RequirementOutcome {
     let assess = |condition: &Condition| {
         let outcome = assess_condition(condition, rule, results);
-        unless_undecided(condition, rule, outcome, (record, results))
+        unless_undecided(condition, rule, outcome, record, results)
     };
     let conditions: Vec<_> = requirement.conditions.iter().map(assess).collect();
     let verdict = conditions
@@ -164,12 +164,13 @@ pub(crate) fn assess_on_blow(
     condition: &Condition,
     rule: DecisionRule,
     results: &dyn Results,
-    (own, blow): (ProcedureId, &ImpactHistory),
+    own: ProcedureId,
+    blow: &ImpactHistory,
 ) -> ConditionOutcome {
     let outcome = assess_condition(condition, rule, results);
     let steps = (blow.time_step, blow.critical_time_step);
-    let longer = (steps.0 > steps.1).then(|| longer_than_critical("the blow", steps.0, steps.1));
-    match longer.or_else(|| unfinished_peaks::undecided_by(condition, rule, results, (own, blow))) {
+    let longer = (steps.0 > steps.1).then(|| longer_than_critical("the impact", steps.0, steps.1));
+    match longer.or_else(|| unfinished_peaks::undecided_by(condition, rule, results, own, blow)) {
         Some(why) => ConditionOutcome {
             verdict: Verdict::Inconclusive,
             reason: Some(why),

@@ -49,7 +49,7 @@ impl Results for Declared<'_> {
             let name = reference.name;
             uncertain.then(|| {
                 format!(
-                    "the budget of `{name}` is partial: the plan does not declare {}",
+                    "the budget of `{name}` is partial (not declared in the plan: {})",
                     self.undeclared.join(" and ")
                 )
             })

@@ -9,6 +9,8 @@ use crate::plan::{Condition, DecisionRule};
 use crate::record::{Beyond, ProcedureRecord, Record};
 use crate::rig::safety::failpoint;
 use crate::rig::safety::failpoint::Guarding;
+use crate::schema::ResultKind;
+use crate::schema::procedures::{damping_sweep, impact, impact_series, stiffness_ramp};
 use crate::units::Dimension;
 use crate::units::display::stated;
 
@@ -20,7 +22,8 @@ pub(super) fn unless_undecided(
     condition: &Condition,
     rule: DecisionRule,
     outcome: ConditionOutcome,
-    (record, results): (&Record, &dyn Results),
+    record: &Record,
+    results: &dyn Results,
 ) -> ConditionOutcome {
     let mut references = Vec::new();
     condition.collect_references(&mut references);
@@ -61,18 +64,17 @@ pub(super) fn unless_undecided(
 /// A procedure that is not complete: its peaks may not have been reached.
 fn cut_short(read: &[Read<'_>]) -> Option<String> {
     let (procedure, _) = read.iter().find(|(procedure, _)| !procedure.complete)?;
-    Some(format!("{} did not run to its end", procedure.name))
+    Some(format!("{} was not completed", procedure.name))
 }
 
 /// Results that do not depend on the energy balance or on the length of the time steps.
-const BESIDE_THE_BALANCE: [&str; 7] = [
-    "energy_error",
-    "energy_errors",
-    "time_step",
-    "critical_time_step",
-    "steps",
-    "periods",
-    "levels",
+const BESIDE_THE_BALANCE: [&str; 6] = [
+    impact::ENERGY_ERROR.name,
+    impact_series::ENERGY_ERRORS.name,
+    impact::TIME_STEP.name,
+    impact::CRITICAL_TIME_STEP.name,
+    impact::STEPS.name,
+    impact::PERIODS.name,
 ];
 
 /// An energy balance error of more than half of the input: the computed motion is not that of the specimen.
@@ -81,7 +83,7 @@ fn unbalanced(read: &[Read<'_>]) -> Option<String> {
         |(procedure, result): &&Read<'_>| !BESIDE_THE_BALANCE.contains(result) && off(procedure);
     let (procedure, _) = read.iter().find(told)?;
     Some(format!(
-        "the energy balance of {} is off by more than half of what was put in",
+        "the energy balance of {} is in error by more than half of the input energy",
         procedure.name
     ))
 }
@@ -104,20 +106,20 @@ pub(super) fn longer_than_critical(name: &str, step: f64, critical: f64) -> Stri
         stated(step, Dimension::TIME),
         stated(critical, Dimension::TIME),
     );
-    format!("the time step of {name}, {step}, is above the critical one, {critical} (W701)")
+    format!("the time step of {name}, {step}, exceeds the critical step {critical} (W701)")
 }
 
 /// Whether the energy balance error of a procedure, or of one of its impacts, exceeds its bound.
 fn off(procedure: &ProcedureRecord) -> bool {
-    let found = |name| {
+    let found = |kind: ResultKind| {
         procedure
             .results
             .iter()
-            .find(|result| result.name == name)
+            .find(|result| result.name == kind.name)
             .map(|result| &result.value)
     };
     let beyond = |error: &f64| error.is_nan() || error.abs() > WORTHLESS;
-    match found("energy_error").or_else(|| found("energy_errors")) {
+    match found(impact::ENERGY_ERROR).or_else(|| found(impact_series::ENERGY_ERRORS)) {
         Some(ResultValue::Number { value, .. }) => value.as_ref().is_none_or(beyond),
         Some(ResultValue::List(errors)) => errors.iter().any(beyond),
         None => false,
@@ -147,10 +149,14 @@ pub(super) fn beyond(record: &Record, of_interest: impl Fn(&Beyond) -> bool) -> 
 /// Whether readings of the force, or else of the displacement, enter a result. Results that are integrated or fitted depend on both;
 /// travels and speeds do not depend on the force.
 fn enters(of_force: bool, kind: &str, result: &str) -> bool {
-    let given = matches!(result, "time_step" | "steps");
-    let of_ways = matches!(
-        (kind, result),
-        ("stiffness ramp", "max_displacement") | ("damping sweep", "max_velocity")
-    );
+    let given = [impact::TIME_STEP, impact::STEPS];
+    let given = given.iter().any(|given| given.name == result);
+    let of_ways = [
+        (&stiffness_ramp::BLOCK, stiffness_ramp::MAX_DISPLACEMENT),
+        (&damping_sweep::BLOCK, damping_sweep::MAX_VELOCITY),
+    ];
+    let of_ways = of_ways
+        .iter()
+        .any(|(block, of_ways)| block.words() == kind && of_ways.name == result);
     !(given || (of_force && of_ways))
 }

@@ -7,6 +7,8 @@ use super::condition::assess_condition;
 use crate::plan::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
 use crate::plan::{Condition, DecisionRule};
 use crate::record::{Blow, EscalateHistory, FloorStep, Floors, History, ImpactHistory};
+use crate::schema::ResultKind;
+use crate::schema::procedures::{impact as schema, impact_series as series};
 use crate::uncertainty::{Contribution, Source};
 
 /// The part of one result that may have grown further, and the reason.
@@ -40,11 +42,12 @@ pub(super) fn undecided_by(
     condition: &Condition,
     rule: DecisionRule,
     results: &dyn Results,
-    (own, blow): (ProcedureId, &ImpactHistory),
+    own: ProcedureId,
+    blow: &ImpactHistory,
 ) -> Option<String> {
     hangs_on(condition, rule, results, |reference| {
         (reference.procedure == own)
-            .then(|| of_own(Steps::of(blow), reference.name, "the blow"))
+            .then(|| of_own(Steps::of(blow), reference.name, "the impact"))
             .flatten()
     })
 }
@@ -164,7 +167,7 @@ fn of_blow(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> Opt
         })
     };
     let still = |what: &str, largest: &str| {
-        format!("{what} as {name} ended: its largest {largest} is no peak")
+        format!("{what} when {name} ended: its largest {largest} is not a peak")
     };
     let last_largest = |values: &mut dyn Iterator<Item = f64>| {
         let values: Vec<f64> = values.collect();
@@ -179,7 +182,7 @@ fn of_blow(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> Opt
         let entries = growing_entries(floors, of, rate);
         let place = entries.first()? + 1;
         Some(Growth {
-            why: still(&format!("{what} {place} was still moving on"), largest),
+            why: still(&format!("{what} {place} was still moving"), largest),
             entries,
         })
     };
@@ -189,67 +192,85 @@ fn of_blow(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> Opt
             .iter()
             .all(|step| step.striker_velocity > 0.0);
     if under_way
-        && PUSHED.contains(&result)
-        && !(result == "max_displacement" && impact.still_rising())
+        && is(result, &PUSHED)
+        && !(is(result, &[schema::MAX_DISPLACEMENT]) && impact.still_rising())
     {
         let entries = (0..floors.last().map_or(1, |floor| floor.computed.len())).collect();
         let touched = impact.steps.iter().any(|step| step.contact_force > 0.0);
         let what = if touched {
-            "the striker was still pushing on"
+            "the striker was still pushing"
         } else {
-            "the striker had touched nothing"
+            "the striker had not touched the structure yet"
         };
         return Some(Growth {
             entries,
-            why: format!("{what} as {name} ended: the largest is yet to come"),
+            why: format!("{what} when {name} ended: the peak is not reached"),
         });
     }
-    match result {
-        "max_displacement" | "time_of_max_displacement" | "absorbed_energy" => number(
+    if is(
+        result,
+        &[
+            schema::MAX_DISPLACEMENT,
+            schema::TIME_OF_MAX_DISPLACEMENT,
+            schema::ABSORBED_ENERGY,
+        ],
+    ) {
+        number(
             impact.still_rising(),
-            still("the structure was still moving on", "displacement"),
-        ),
-        "max_velocity" => {
-            let growing = last_largest(&mut impact.steps.iter().map(|step| step.velocity.abs()));
-            number(
-                growing,
-                still("the structure was still gaining speed", "velocity"),
-            )
-        }
-        "max_contact_force" => {
-            let growing = last_largest(&mut impact.steps.iter().map(|step| step.contact_force));
-            number(
-                growing,
-                still("the contact force was still growing", "size"),
-            )
-        }
-        "max_base_shear" => {
-            let growing = last_largest(
-                &mut floors
-                    .iter()
-                    .map(|floor| floor.restoring_force.iter().sum::<f64>().abs()),
-            );
-            number(growing, still("the base shear was still growing", "size"))
-        }
-        "floor_displacement" => list(
+            still("the structure was still moving", "displacement"),
+        )
+    } else if is(result, &[schema::MAX_VELOCITY]) {
+        let growing = last_largest(&mut impact.steps.iter().map(|step| step.velocity.abs()));
+        number(
+            growing,
+            still(
+                "the velocity of the structure was still increasing",
+                "velocity",
+            ),
+        )
+    } else if is(result, &[schema::MAX_CONTACT_FORCE]) {
+        let growing = last_largest(&mut impact.steps.iter().map(|step| step.contact_force));
+        number(
+            growing,
+            still("the contact force was still increasing", "size"),
+        )
+    } else if is(result, &[schema::MAX_BASE_SHEAR]) {
+        let growing = last_largest(
+            &mut floors
+                .iter()
+                .map(|floor| floor.restoring_force.iter().sum::<f64>().abs()),
+        );
+        number(
+            growing,
+            still("the base shear was still increasing", "size"),
+        )
+    } else if is(result, &[schema::FLOOR_DISPLACEMENT]) {
+        list(
             |floor| floor.computed.clone(),
             |floor| floor.velocity.clone(),
             "floor",
             "displacement",
-        ),
-        "max_drift" => list(Floors::drift, drift_rate, "storey", "drift"),
-        _ => None,
+        )
+    } else if is(result, &[schema::MAX_DRIFT]) {
+        list(Floors::drift, drift_rate, "storey", "drift")
+    } else {
+        None
     }
 }
 
+/// Whether this is the name of one of these results.
+fn is(result: &str, kinds: &[ResultKind]) -> bool {
+    kinds.iter().any(|kind| kind.name == result)
+}
+
 /// Results that a moving striker can still increase.
-const PUSHED: [&str; 6] = [
-    "max_displacement",
-    "time_of_max_displacement",
-    "absorbed_energy",
-    "max_base_shear",
-    "floor_displacement",
-    "max_drift",
+const PUSHED: [ResultKind; 6] = [
+    schema::MAX_DISPLACEMENT,
+    schema::TIME_OF_MAX_DISPLACEMENT,
+    schema::ABSORBED_ENERGY,
+    schema::MAX_BASE_SHEAR,
+    schema::FLOOR_DISPLACEMENT,
+    schema::MAX_DRIFT,
 ];
 
 fn drift_rate(floor: &FloorStep) -> Vec<f64> {
@@ -281,17 +302,20 @@ fn growing_entries(
 /// Growth of a result of an impact, read by the condition of its series. If the impact ended before its peak, its final position is not
 /// determined either.
 fn of_own(steps: Steps<'_>, result: &str, name: &str) -> Option<Growth> {
-    match result {
-        "residual_displacement" | "final_displacement" => of_blow(steps, "max_displacement", name),
-        "residual_drift" | "final_drift" => {
-            let growth = of_blow(steps, "max_displacement", name)
-                .or_else(|| of_blow(steps, "max_drift", name))?;
-            Some(Growth {
-                entries: (0..steps.floors.last()?.computed.len()).collect(),
-                ..growth
-            })
-        }
-        result => of_blow(steps, result, name),
+    let of = |kind: ResultKind| of_blow(steps, kind.name, name);
+    if is(
+        result,
+        &[series::RESIDUAL_DISPLACEMENT, series::FINAL_DISPLACEMENT],
+    ) {
+        of(schema::MAX_DISPLACEMENT)
+    } else if is(result, &[series::RESIDUAL_DRIFT, series::FINAL_DRIFT]) {
+        let growth = of(schema::MAX_DISPLACEMENT).or_else(|| of(schema::MAX_DRIFT))?;
+        Some(Growth {
+            entries: (0..steps.floors.last()?.computed.len()).collect(),
+            ..growth
+        })
+    } else {
+        of_blow(steps, result, name)
     }
 }
 
@@ -299,11 +323,11 @@ fn of_own(steps: Steps<'_>, result: &str, name: &str) -> Option<Growth> {
 /// includes the last energy that passed.
 fn of_row(history: &EscalateHistory, result: &str, name: &str) -> Option<Growth> {
     let blows = || history.blows.iter().enumerate();
-    let of = |(index, blow): (usize, &Blow), own: &str| {
+    let of = |(index, blow): (usize, &Blow), own: ResultKind| {
         of_own(
             Steps::of(&blow.history),
-            own,
-            &format!("blow {} of {name}", index + 1),
+            own.name,
+            &format!("impact {} of {name}", index + 1),
         )
     };
     let one = |growth: Growth| Growth {
@@ -311,7 +335,7 @@ fn of_row(history: &EscalateHistory, result: &str, name: &str) -> Option<Growth>
         ..growth
     };
     // A list with one entry per impact.
-    let by_blow = |own: &str| {
+    let by_blow = |own: ResultKind| {
         let found: Vec<(usize, Growth)> = blows()
             .filter_map(|(index, blow)| Some((index, of((index, blow), own)?)))
             .collect();
@@ -321,41 +345,61 @@ fn of_row(history: &EscalateHistory, result: &str, name: &str) -> Option<Growth>
             why,
         })
     };
-    match result {
-        "last_passed_energy" | "passed" | "blows" => {
-            let (index, blow) = blows()
-                .next_back()
-                .filter(|(_, blow)| blow.held.is_none())?;
-            let why = of((index, blow), "max_displacement")
-                .or_else(|| of((index, blow), "max_drift"))
-                .map(|growth| growth.why);
-            let reason = why.map_or_else(String::new, |why| format!(": {why}"));
-            Some(Growth {
-                entries: vec![0],
-                why: format!(
-                    "{name} ended with blow {}, which decided nothing{reason}",
-                    index + 1
-                ),
-            })
-        }
-        "max_displacement" | "absorbed_energy" => by_blow(result).map(one),
-        "max_displacements" => by_blow("max_displacement"),
-        "absorbed_energies" => by_blow("absorbed_energy"),
-        "residual_displacements" | "final_displacements" => by_blow("residual_displacement"),
-        "residual_displacement" | "residual_drift" | "final_displacement" | "final_drift" => {
-            of(blows().next_back()?, result)
-        }
-        "max_drift" => {
-            let found: Vec<Growth> = blows().filter_map(|blow| of(blow, result)).collect();
-            let why = found.first()?.why.clone();
-            let mut entries: Vec<usize> = found
-                .into_iter()
-                .flat_map(|growth| growth.entries)
-                .collect();
-            entries.sort_unstable();
-            entries.dedup();
-            Some(Growth { entries, why })
-        }
-        _ => None,
+    if is(
+        result,
+        &[series::LAST_PASSED_ENERGY, series::PASSED, series::BLOWS],
+    ) {
+        let (index, blow) = blows()
+            .next_back()
+            .filter(|(_, blow)| blow.held.is_none())?;
+        let why = of((index, blow), schema::MAX_DISPLACEMENT)
+            .or_else(|| of((index, blow), schema::MAX_DRIFT))
+            .map(|growth| growth.why);
+        let reason = why.map_or_else(String::new, |why| format!(": {why}"));
+        return Some(Growth {
+            entries: vec![0],
+            why: format!(
+                "{name} ended with impact {}, which is inconclusive{reason}",
+                index + 1
+            ),
+        });
+    }
+    // The results of the last impact alone.
+    let of_last = [
+        series::RESIDUAL_DISPLACEMENT,
+        series::RESIDUAL_DRIFT,
+        series::FINAL_DISPLACEMENT,
+        series::FINAL_DRIFT,
+    ];
+    if let Some(kind) = of_last.into_iter().find(|kind| kind.name == result) {
+        return of(blows().next_back()?, kind);
+    }
+    if is(result, &[series::MAX_DISPLACEMENT]) {
+        by_blow(schema::MAX_DISPLACEMENT).map(one)
+    } else if is(result, &[series::ABSORBED_ENERGY]) {
+        by_blow(schema::ABSORBED_ENERGY).map(one)
+    } else if is(result, &[series::MAX_DISPLACEMENTS]) {
+        by_blow(schema::MAX_DISPLACEMENT)
+    } else if is(result, &[series::ABSORBED_ENERGIES]) {
+        by_blow(schema::ABSORBED_ENERGY)
+    } else if is(
+        result,
+        &[series::RESIDUAL_DISPLACEMENTS, series::FINAL_DISPLACEMENTS],
+    ) {
+        by_blow(series::RESIDUAL_DISPLACEMENT)
+    } else if is(result, &[series::MAX_DRIFT]) {
+        let found: Vec<Growth> = blows()
+            .filter_map(|blow| of(blow, schema::MAX_DRIFT))
+            .collect();
+        let why = found.first()?.why.clone();
+        let mut entries: Vec<usize> = found
+            .into_iter()
+            .flat_map(|growth| growth.entries)
+            .collect();
+        entries.sort_unstable();
+        entries.dedup();
+        Some(Growth { entries, why })
+    } else {
+        None
     }
 }

@@ -402,6 +402,13 @@ fn explain_gives_a_page_the_list_and_a_guess() {
             .stdout
             .starts_with("E202: ")
     );
+    let short = bench.psd(&["explain", "E301"]).with(0).stdout;
+    assert!(
+        short.contains("\n  - mass = 10 mm\n  + mass = 10 kg\n"),
+        "{short}"
+    );
+    let full = bench.psd(&["explain", "E301", "--full"]).with(0).stdout;
+    assert!(full.contains("wrong:\nspecimen beam {\n"), "{full}");
     let all = bench.psd(&["explain"]).with(0).stdout;
     assert_eq!(all.lines().count(), psd::text::diagnostic::Code::ALL.len());
     assert!(
@@ -478,7 +485,7 @@ fn limits_lists_the_bounds_of_every_stage() {
     assert!(
         has(
             psd::record::journal::MOST_BYTES.to_string(),
-            "the record of one run"
+            "the run log of one run"
         ),
         "{listed}"
     );
@@ -500,7 +507,7 @@ fn a_run_of_too_many_steps_does_not_begin() {
         .with(2)
         .stderr;
     assert!(
-        told.contains("one run has at most 2000000 steps") && told.contains("a longer `time_step`"),
+        told.contains("(at most 2000000)") && told.contains("increase `time_step`"),
         "{told}"
     );
     assert!(
@@ -530,22 +537,22 @@ fn colour_is_used_when_told_and_only_then() {
 }
 
 #[test]
-fn bless_writes_beside_the_plans_folder() {
+fn accept_writes_beside_the_plans_folder() {
     let bench = Bench::new(&[
         ("plans/small.psd", SOUND),
         ("reports/small/stale.txt", "old"),
         ("reports/other/kept.txt", "kept"),
     ]);
     bench
-        .psd(&["run", "plans/small.psd", "--bless", "--out", "here"])
+        .psd(&["run", "plans/small.psd", "--accept", "--out", "here"])
         .with(0);
     assert_eq!(
         bench.read("reports/small/summary.json"),
         bench.read("here/summary.json")
     );
     assert!(
-        bench.path("here/certificate.html").exists()
-            && !bench.path("reports/small/certificate.html").exists()
+        bench.path("here/report.html").exists()
+            && !bench.path("reports/small/report.html").exists()
             && bench.path("reports/small/tables/hit.csv").exists()
     );
     assert!(
@@ -660,7 +667,7 @@ const PAST_YIELD: &str = r"
 specimen bracket {
   mass      = 1 kg
   behaviour = maxwell(
-    of: bilinear(stiffness: 300 kN/m, yield_force: 600 N, hardening: 0.1),
+    of: bilinear(stiffness: 300 kN/m, yield_force: 600 N, post_yield_ratio: 0.1),
     stiffness: 20 kN/m,
     time_constant: 1 s,
   )
@@ -765,7 +772,7 @@ fn results_made_anew_from_the_record_are_the_same_to_the_byte() {
     assert_eq!(bench.psd(&["report", "cut"]).code, Some(3));
     assert!(
         bench
-            .read("cut/certificate.html")
-            .contains("INCOMPLETE: the record ends here")
+            .read("cut/report.html")
+            .contains("INCOMPLETE: the run log ends here")
     );
 }

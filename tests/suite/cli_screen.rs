@@ -215,7 +215,10 @@ fn ctrl_c_and_no_and_the_end_of_the_input_stop_and_none_is_a_yes() {
         ("\u{3}", "stopped on request"),
         ("q", "stopped on request"),
         ("\u{4}", "no answer at an inspection"),
-        ("icrack\rn\r", "stopped by a person at an inspection: crack"),
+        (
+            "icrack\rn\r",
+            "stopped by the operator at an inspection: crack",
+        ),
     ] {
         let mut terminal = Terminal::run(&["--operator", "B"]);
         terminal.wait_for("INSPECTION");

@@ -90,7 +90,7 @@ fn ready(folder: &Path) -> bool {
     let until = Instant::now() + PATIENCE;
     while Instant::now() < until {
         if fs::read_to_string(folder.join("simulator.txt"))
-            .is_ok_and(|text| text.contains("stands in until"))
+            .is_ok_and(|text| text.contains("emulates the rig until"))
         {
             return true;
         }
@@ -209,7 +209,7 @@ fn compare(case: &Case, ideal: &Value, real: &Value) -> Result<(), String> {
     let stiffness = (error + STIFFNESS * case.resolution / 2.0) * 3200.0;
     error += near(ideal, real, ("k0", "stiffness"), stiffness)? * INCREMENT;
     if case.sweep {
-        error += near(ideal, real, ("c", "damping"), 2.0 * error / 2e-3)? * VELOCITY;
+        error += near(ideal, real, ("c", "damping"), 2.0 * error / 1e-3)? * VELOCITY;
     }
     let displacement =
         std::f64::consts::FRAC_2_PI * FREQUENCY * STOP * error / STIFFNESS + case.resolution;

@@ -183,7 +183,7 @@ fn a_folder_is_signed_in_each_role_once_and_proven_with_the_keys() {
     assert!(
         bench
             .ends(2, &["sign", "run", "--key", "mine", "--role", "Cook"])
-            .contains("nobody signs as")
+            .contains("the plan has no role")
     );
     let signed = bench.ends(
         0,
@@ -202,10 +202,7 @@ fn a_folder_is_signed_in_each_role_once_and_proven_with_the_keys() {
         signed.contains("run/manifest.sha256.quality.minisig"),
         "{signed}"
     );
-    assert!(
-        signed.contains("`chmod 600` keeps it from them"),
-        "{signed}"
-    );
+    assert!(signed.contains("`chmod 600` prevents this"), "{signed}");
     assert!(
         bench
             .ends(3, &["sign", "run", "--key", "yours", "--role", "Quality"])
@@ -226,7 +223,7 @@ fn a_folder_is_signed_in_each_role_once_and_proven_with_the_keys() {
     );
     bench.ends(0, &["verify", "run"]);
     let said = bench.ends(3, &["verify", "run", "--key", "mine.pub"]);
-    assert!(said.contains("none of those named"), "{said}");
+    assert!(said.contains("not one of the named keys"), "{said}");
     fs::remove_file(bench.path("run/manifest.sha256.quality.minisig")).unwrap();
     bench.ends(
         3,
@@ -278,7 +275,7 @@ fn what_does_not_verify_is_neither_signed_nor_amended_and_the_part_is_named() {
         ("summary.json", "results"),
         ("tables/hit.csv", "results"),
         ("figures/hit_displacement.png", "figures"),
-        ("certificate.html", "certificate"),
+        ("report.html", "report"),
         ("plan/plan.psd", "plan"),
         ("manifest.sha256", "manifest"),
         ("journal.psdj", "record"),
@@ -325,7 +322,7 @@ fn what_does_not_verify_is_neither_signed_nor_amended_and_the_part_is_named() {
     assert!(
         bench
             .ends(3, &["verify", "run"])
-            .contains("there are results and no manifest")
+            .contains("there are results, but no manifest")
     );
 }
 
@@ -391,14 +388,14 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
     };
     let said = amend("run", "customer=Somebody & Sons", 0);
     assert!(
-        said.contains("run-amended-1") && said.contains("takes the place of report"),
+        said.contains("run-amended-1") && said.contains("replaces report"),
         "{said}"
     );
     assert!(
         bench.files("run") == before,
         "the report that is replaced stays as it is"
     );
-    let page = fs::read_to_string(bench.path("run-amended-1/certificate.html")).unwrap();
+    let page = fs::read_to_string(bench.path("run-amended-1/report.html")).unwrap();
     for told in [
         "Amendment to report",
         "B. Editor on 2026-06-12",
@@ -437,7 +434,7 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
             .contains("amends report")
     );
     // Each report is replaced by exactly one other report.
-    assert!(amend("run", "customer=Third Ltd", 3).contains("has been replaced already"));
+    assert!(amend("run", "customer=Third Ltd", 3).contains("has already been replaced"));
     assert!(!bench.path("run-amended-2").exists());
 
     // An amendment may be amended; the chain of reports is stated.
@@ -481,9 +478,9 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
 
     // The measured data and their dates are not particulars.
     for (particular, told) in [
-        ("date=2020-01-01", "on record"),
+        ("date=2020-01-01", "logged date"),
         ("custumer=X", "did you mean `customer`?"),
-        ("title=X", "no particular"),
+        ("title=X", "not a particular"),
     ] {
         let said = amend("run-amended-2", particular, 2);
         assert!(said.contains(told), "{said}");
@@ -518,7 +515,7 @@ fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
         )
         .contains("--date")
     );
-    assert!(issue("run", "2026-02-30", &[], 2).contains("no such day"));
+    assert!(issue("run", "2026-02-30", &[], 2).contains("not a date"));
     let said = issue(
         "run",
         "2026-06-02",
@@ -536,7 +533,7 @@ fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
     );
     assert!(bench.files("run") == before, "the run stays as it is");
 
-    let page = fs::read_to_string(bench.path("run-issued/certificate.html")).unwrap();
+    let page = fs::read_to_string(bench.path("run-issued/report.html")).unwrap();
     for stated in [
         "2026-06-02",
         "Q. Head",
@@ -563,7 +560,7 @@ fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
 
     // It is issued once. After that there are amendments, and each states its date.
     assert!(
-        issue("run", "2026-06-02", &["--out", "again"], 3).contains("has been replaced already")
+        issue("run", "2026-06-02", &["--out", "again"], 3).contains("has already been replaced")
     );
     assert!(issue("run-issued", "2026-06-03", &[], 2).contains("was issued on 2026-06-02"));
     let amend = |date: &str, code| {
@@ -587,7 +584,7 @@ fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
     };
     assert!(amend("2026-06-01", 2).contains("issued on 2026-06-02"));
     amend("2026-06-12", 0);
-    let page = fs::read_to_string(bench.path("run-amended-1/certificate.html")).unwrap();
+    let page = fs::read_to_string(bench.path("run-amended-1/report.html")).unwrap();
     assert!(
         page.contains("Amendment to report")
             && page.contains("issued (was “2026-06-02”, is “2026-06-12”)"),

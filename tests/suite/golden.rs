@@ -124,48 +124,48 @@ impl Ended {
 }
 
 #[test]
-fn a_plan_is_blessed_then_passes_and_is_not_blessed_again() {
+fn a_plan_is_accepted_then_passes_and_is_not_accepted_again() {
     let bench = Bench::new(&[("small", PLAN)]);
     bench.psd(&["test"]).with(5).says(&[
-        "FAILED   plans/small  no blessed results in reports/small",
-        "--bless",
+        "FAILED    plans/small  no accepted results in reports/small",
+        "--accept",
     ]);
     bench
-        .psd(&["test", "--bless"])
+        .psd(&["test", "--accept"])
         .with(0)
-        .says(&["blessed  plans/small  new", "1 plan, 1 blessed"]);
+        .says(&["accepted  plans/small  new", "1 plan, 1 accepted"]);
     bench
         .psd(&["test"])
         .with(0)
-        .says(&["ok       plans/small  pass", "1 plan as blessed"]);
+        .says(&["ok        plans/small  pass", "1 plan as accepted"]);
     assert!(
         !bench.path("runs").exists(),
         "a test that passes leaves nothing"
     );
-    let blessed = every_file(&bench.path("reports"));
+    let accepted = every_file(&bench.path("reports"));
     bench
-        .psd(&["test", "--bless"])
+        .psd(&["test", "--accept"])
         .with(0)
-        .says(&["same     plans/small  within tolerance: nothing written"]);
-    assert_eq!(every_file(&bench.path("reports")), blessed);
+        .says(&["same      plans/small  within tolerance: nothing written"]);
+    assert_eq!(every_file(&bench.path("reports")), accepted);
 
-    // `psd run --bless` does the same: it writes nothing if nothing changed, and writes the same files if none exist.
+    // `psd run --accept` does the same: it writes nothing if nothing changed, and writes the same files if none exist.
     bench
-        .psd(&["run", "plans/small.psd", "--bless", "--out", "here"])
+        .psd(&["run", "plans/small.psd", "--accept", "--out", "here"])
         .with(0)
         .says(&["nothing written"]);
     std::fs::remove_dir_all(bench.path("reports")).unwrap();
     bench
-        .psd(&["run", "plans/small.psd", "--bless", "--out", "again"])
+        .psd(&["run", "plans/small.psd", "--accept", "--out", "again"])
         .with(0)
-        .says(&["blessed  reports/small  new"]);
-    assert_eq!(every_file(&bench.path("reports")), blessed);
+        .says(&["accepted  reports/small  new"]);
+    assert_eq!(every_file(&bench.path("reports")), accepted);
     assert_eq!(
         bench.read("reports/small/summary.json"),
         bench.read("again/summary.json")
     );
     bench
-        .psd(&["run", "plans/small.psd", "--bless", "--date", "2026-05-31"])
+        .psd(&["run", "plans/small.psd", "--accept", "--date", "2026-05-31"])
         .with(2)
         .says(&["as it is written"]);
 
@@ -182,15 +182,15 @@ fn a_plan_is_blessed_then_passes_and_is_not_blessed_again() {
     let other = every_file(&bench.path("reports"));
     bench.psd(&["test"]).with(0);
     bench
-        .psd(&["test", "--bless"])
+        .psd(&["test", "--accept"])
         .with(0)
         .says(&["nothing written"]);
     assert_eq!(every_file(&bench.path("reports")), other);
     bench
-        .psd(&["test", "--bless", "--anew"])
+        .psd(&["test", "--accept", "--anew"])
         .with(0)
-        .says(&["written anew, no result moved"]);
-    assert_eq!(every_file(&bench.path("reports")), blessed);
+        .says(&["written again, no result changed"]);
+    assert_eq!(every_file(&bench.path("reports")), accepted);
 }
 
 #[test]
@@ -201,12 +201,12 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
     let bench = Bench::new(&names.map(|name| (name, PLAN)));
     bench.write(
         "plans/near.psd",
-        &format!("{PLAN}\ngolden {{\n  results = [near(hit.max_displacement, 0.1 mm)]\n  columns = [near(hit.restoring_force_n, 0.2 %)]\n}}\n"),
+        &format!("{PLAN}\ngolden {{\n  results = [tolerance(hit.max_displacement, 0.1 mm)]\n  columns = [tolerance(hit.restoring_force_n, 0.2 %)]\n}}\n"),
     );
     bench
-        .psd(&["test", "--bless"])
+        .psd(&["test", "--accept"])
         .with(0)
-        .says(&["10 plans, 10 blessed"]);
+        .says(&["10 plans, 10 accepted"]);
     let table = |name: &str| format!("reports/{name}/tables/hit.csv");
     let summary = |name: &str| format!("reports/{name}/summary.json");
     let displacement = "0.15786";
@@ -345,7 +345,7 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
     assert!(!left("same") && !left("near"));
     let told = bench.psd(&["test", "--filter", "column"]).with(5);
     told.says(&[
-        "FAILED   plans/column  1 difference",
+        "FAILED    plans/column  1 difference",
         "first at step 10, 0.1000 s; 1 of 30 rows",
         "−0.0999 %",
         "see runs/golden-failures/column",
@@ -353,9 +353,10 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
 
     // After acceptance it passes, and its output is removed. Plans that did not run stay unchanged.
     bench
+        // The name of version 0.1.
         .psd(&["test", "--filter", "column", "--bless"])
         .with(0)
-        .says(&["blessed  plans/column  1 changed", "hit.restoring_force_n"]);
+        .says(&["accepted  plans/column  1 changed", "hit.restoring_force_n"]);
     bench.psd(&["test", "--filter", "column"]).with(0);
     assert!(!left("column") && left("number"));
 
@@ -380,7 +381,7 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
 #[test]
 fn a_requirement_that_changes_its_verdict_comes_first() {
     let bench = Bench::new(&[("small", PLAN)]);
-    bench.psd(&["test", "--bless"]).with(0);
+    bench.psd(&["test", "--accept"]).with(0);
     bench.edit("plans/small.psd", "velocity = 1 m/s", "velocity = 1.1 m/s");
     let told = bench.psd(&["test"]).with(5).says(&[
         "\"pass\" → \"fail\"",
@@ -393,34 +394,34 @@ fn a_requirement_that_changes_its_verdict_comes_first() {
             && place("stays in travel") < place("hit.max_displacement")
     );
     // The plan that fails is also a result, once it is accepted.
-    bench.psd(&["test", "--bless"]).with(0);
+    bench.psd(&["test", "--accept"]).with(0);
     bench
         .psd(&["test"])
         .with(0)
-        .says(&["ok       plans/small  fail"]);
+        .says(&["ok        plans/small  fail"]);
 }
 
 #[test]
-fn a_plan_that_must_fail_to_check_has_its_words_blessed() {
+fn a_plan_that_must_fail_to_check_has_its_words_accepted() {
     let wrong = PLAN.replace("velocity = 1 m/s", "velocity = 1 m");
     let bench = Bench::new(&[("wrong", &wrong)]);
     bench
-        .psd(&["test", "--bless"])
+        .psd(&["test", "--accept"])
         .with(0)
-        .says(&["blessed  plans/wrong  new"]);
+        .says(&["accepted  plans/wrong  new"]);
     assert!(bench.read("reports/wrong/diagnostics.txt").contains("E301"));
     bench
         .psd(&["test"])
         .with(0)
-        .says(&["ok       plans/wrong  fails to check, as blessed"]);
+        .says(&["ok        plans/wrong  fails to check, as accepted"]);
     bench.edit("plans/wrong.psd", "velocity = 1 m", "velocity = 2 m");
     bench.psd(&["test"]).with(5).says(&["diagnostics.txt"]);
     bench.write("plans/wrong.psd", PLAN);
     bench
         .psd(&["test"])
         .with(5)
-        .says(&["the plan checks, and is blessed as one that does not"]);
-    bench.psd(&["test", "--bless"]).with(0);
+        .says(&["the plan checks, but is accepted as a plan that does not"]);
+    bench.psd(&["test", "--accept"]).with(0);
     assert!(!bench.path("reports/wrong/diagnostics.txt").exists());
     // The opposite change requires an explicit option.
     bench.write("plans/wrong.psd", &wrong);
@@ -429,9 +430,9 @@ fn a_plan_that_must_fail_to_check_has_its_words_blessed() {
         .with(5)
         .says(&["the plan fails to check"]);
     bench
-        .psd(&["test", "--bless"])
+        .psd(&["test", "--accept"])
         .with(5)
-        .says(&["remove the folder to bless that"]);
+        .says(&["delete its results folder first"]);
     assert!(bench.path("reports/wrong/summary.json").exists());
 }
 
@@ -444,7 +445,7 @@ fn names_are_found_listed_and_missed() {
     let listed = bench.psd(&["test", "--list"]).with(0).stdout;
     assert_eq!(
         listed,
-        "plans/one  (not blessed)\nplans/two  (not blessed)\n"
+        "plans/one  (not accepted)\nplans/two  (not accepted)\n"
     );
     bench
         .psd(&["test", "--filter", "three"])
@@ -454,13 +455,13 @@ fn names_are_found_listed_and_missed() {
     bench.psd(&["test", "--anew"]).with(2);
     bench.psd(&["test", "--tap", "--format", "json"]).with(2);
     bench
-        .psd(&["test", "--bless", "--golden", "kept", "plans/one.psd"])
+        .psd(&["test", "--accept", "--golden", "kept", "plans/one.psd"])
         .with(0);
     assert!(bench.path("kept/one/summary.json").exists() && !bench.path("reports/one").exists());
     bench
-        .psd(&["test", "--bless"])
+        .psd(&["test", "--accept"])
         .with(0)
-        .says(&["unused   reports/old  no plan has this name"]);
+        .says(&["unused    reports/old  no plan has this name"]);
     let told = bench.psd(&["test", "plans/one.psd"]).with(0);
     assert!(!told.stderr.contains("unused"), "{}", told.stderr);
     assert!(!told.stderr.contains("notes"), "{}", told.stderr);
@@ -535,14 +536,14 @@ fn runs_are_laid_side_by_side_with_differences_or_with_their_spread() {
     assert!(bench.path("two/figures/hit_displacement_1.png").exists());
 
     // A folder of accepted results contains the same numbers; a different plan has the same common parts.
-    bench.psd(&["test", "--bless"]).with(0);
-    let blessed = bench
+    bench.psd(&["test", "--accept"]).with(0);
+    let accepted = bench
         .psd(&["compare", "reports/small", "run-1"])
         .with(0)
         .stdout;
     assert!(
-        blessed.contains("0 %") && !blessed.contains("What differs\n  hit"),
-        "{blessed}"
+        accepted.contains("0 %") && !accepted.contains("Differences\n  hit"),
+        "{accepted}"
     );
     bench.write("plans/ramp.psd", "specimen s {\n  mass = 1 kg\n  behaviour = elastic(stiffness: 300 N/m)\n}\n\nstiffness ramp k0 {\n  displacements = 1 mm .. 5 mm step 1 mm\n}\n\nreport {\n  formats = [csv]\n}\n");
     bench
@@ -550,7 +551,7 @@ fn runs_are_laid_side_by_side_with_differences_or_with_their_spread() {
         .with(0);
     let apart = bench.psd(&["compare", "run-1", "ramp"]).with(0).stdout;
     assert!(
-        apart.contains("Only of some runs")
+        apart.contains("Results of some runs only")
             && !apart.contains("\nResults, ")
             && apart.contains("k0.stiffness"),
         "{apart}"
@@ -568,7 +569,7 @@ fn runs_are_laid_side_by_side_with_differences_or_with_their_spread() {
     bench
         .psd(&["compare", "run-1", "plans"])
         .with(3)
-        .says(&["is no run"]);
+        .says(&["is not a run"]);
     bench
         .psd(&["compare", "run-1", "run-2", "--out", "two"])
         .with(3);

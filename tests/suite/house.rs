@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use super::import_graph::{is_of_tests, without_comments_and_tests};
+use super::signatures::signatures;
 use super::source_text::{SourceText, none, rust_files};
 
 /// Code that converts text into a verdict and its outputs: a function of its input only, on every machine.
@@ -46,7 +48,6 @@ const KNOWS: &[(&[&str], &[&str])] = &[
         &[
             "polars",
             "plotters",
-            "png",
             "maud",
             "typst",
             "typst_layout",
@@ -55,6 +56,7 @@ const KNOWS: &[(&[&str], &[&str])] = &[
         ],
         &["report"],
     ),
+    (&["png"], &["report", "plan/report"]),
     (
         &[
             "clap",
@@ -123,7 +125,7 @@ fn only_the_run_and_those_it_is_lent_to_drive_a_rig() {
 fn emulator_and_drivers_share_no_parsing_code() {
     let files = rust_files("src");
     let mut found = Vec::new();
-    let tests = ["_tests.rs", "testing", "fault_table"];
+    let tests = ["_tests.rs", "/tests/", "testing", "fault_table"];
     let beside_tests = |file: &&SourceText| !tests.iter().any(|name| file.path.contains(name));
     for file in files
         .iter()
@@ -211,6 +213,92 @@ fn every_file_says_what_it_is_and_stays_short() {
         }
     }
     none(&found, "a file breaks the house rules");
+}
+
+/// Arguments of a function, at most; `self` does not count.
+const MOST_ARGUMENTS: usize = 6;
+
+/// Two numbers that change places are the same program to the compiler, and another result. Three in a row have names: the fields of a
+/// struct.
+#[test]
+fn the_arguments_of_a_function_are_few_and_have_names() {
+    let mut found = Vec::new();
+    let mut count = 0;
+    for file in rust_files("src") {
+        if is_of_tests(&file.path) || file.is_test() {
+            continue;
+        }
+        for signature in signatures(&without_comments_and_tests(&file.text)) {
+            count += 1;
+            let place = format!("{}: fn {}", file.path, signature.name);
+            if signature.longest_run_of_numbers() >= 3 {
+                found.push(format!("{place} takes three `f64` in a row"));
+            }
+            if signature.parameters.len() > MOST_ARGUMENTS {
+                found.push(format!(
+                    "{place} takes more than {MOST_ARGUMENTS} arguments"
+                ));
+            }
+            if signature.takes_a_tuple_apart() {
+                found.push(format!("{place} takes a tuple apart: give it the parts"));
+            }
+        }
+    }
+    assert!(count > 4000, "{count} functions");
+    none(&found, "give the arguments to a struct with named fields");
+}
+
+/// Entries of a folder, at most. A reader sees about a dozen at a glance.
+const MOST_ENTRIES: usize = 15;
+
+/// Folders with more entries, and why. The list may only shrink.
+const LARGE_FOLDERS: &[(&str, &str)] = &[
+    ("", "the stages, in the order of the arrows"),
+    (
+        "report/sections",
+        "one file a section of the report, listed in order",
+    ),
+    (
+        "text/diagnostic/explain",
+        "one page a diagnostic, found by its code and never by its neighbours",
+    ),
+];
+
+#[test]
+fn a_folder_is_seen_at_a_glance() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut open = vec![root.clone()];
+    let mut found = Vec::new();
+    let mut large = BTreeSet::new();
+    while let Some(folder) = open.pop() {
+        let mut entries = 0;
+        for entry in std::fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            let hidden = path
+                .file_name()
+                .is_some_and(|name| name.to_string_lossy().starts_with('.'));
+            entries += usize::from(!hidden);
+            if path.is_dir() {
+                open.push(path);
+            }
+        }
+        let name = folder.strip_prefix(&root).unwrap().to_string_lossy();
+        if entries <= MOST_ENTRIES {
+            continue;
+        }
+        large.insert(name.to_string());
+        if LARGE_FOLDERS.iter().all(|(listed, _)| *listed != name) {
+            found.push(format!(
+                "src/{name} has {entries} entries: group them by concept"
+            ));
+        }
+    }
+    let idle = LARGE_FOLDERS
+        .iter()
+        .filter(|(listed, _)| !large.contains(*listed))
+        .map(|(listed, _)| format!("src/{listed} is no longer large: remove it from the list"));
+    found.extend(idle);
+    none(&found, "a folder holds about a dozen entries");
 }
 
 #[test]

@@ -11,6 +11,8 @@ type Path = Vec<String>;
 /// The files of `src` that make up the product, by module, with the files that each uses.
 pub struct ImportGraph {
     files: BTreeMap<Path, Module>,
+    /// The modules whose file is a `lib.rs`: the program itself, and every member crate that lies in a folder of `src`.
+    crate_roots: BTreeSet<Path>,
 }
 
 struct Module {
@@ -29,8 +31,10 @@ impl ImportGraph {
     pub fn of(files: &[SourceText]) -> Self {
         let product = files.iter().filter(|file| !is_of_tests(&file.path));
         let modules = product.map(|file| (module_of(&file.path), read(file)));
+        let roots = files.iter().filter(|file| file.path.ends_with("lib.rs"));
         Self {
             files: modules.collect(),
+            crate_roots: roots.map(|file| module_of(&file.path)).collect(),
         }
     }
 
@@ -72,12 +76,21 @@ impl ImportGraph {
         None
     }
 
-    /// The same path from the root of the crate.
+    /// What `crate` means in the module `here`: the root of its own crate.
+    fn crate_root(&self, here: &[String]) -> Path {
+        let depths = (0..=here.len()).rev();
+        let mut around = depths.map(|depth| here[..depth].to_vec());
+        around
+            .find(|module| self.crate_roots.contains(module))
+            .unwrap_or_default()
+    }
+
+    /// The same path from the folder `src`.
     fn absolute(&self, here: &[String], written: &[String]) -> Option<Path> {
         let (first, rest) = written.split_first()?;
         let mut from = here.to_vec();
         match first.as_str() {
-            "crate" => from.clear(),
+            "crate" => from = self.crate_root(here),
             "self" => {}
             "super" => {
                 from.pop()?;
@@ -146,7 +159,7 @@ pub fn is_of_tests(path: &str) -> bool {
         .any(|part| part == "tests" || part == "testing" || part.ends_with("_tests"))
 }
 
-/// `plan/mod.rs` is `plan`, `main.rs` and `lib.rs` the root.
+/// `plan/mod.rs` is `plan`, `lib.rs` the root and `physics/lib.rs` is `physics`.
 fn module_of(path: &str) -> Path {
     let path = path.trim_end_matches(".rs");
     let parts = path

@@ -367,7 +367,7 @@ fn the_rigs_of_the_library_are_sound() {
         assert_eq!((link.actuator.dialect.name(), cell), dialects);
     }
     let beam = fs::read_to_string(plans.join("beam.psd")).expect("the plan is there");
-    assert_eq!(on(&beam, None).name, "rehearsal");
+    assert_eq!(on(&beam, None).name, "simulated");
     assert_eq!(
         on(&beam, Some("bench"))
             .link

@@ -1,9 +1,11 @@
 //! All integration tests in one binary: one link step, one module per topic.
 
 mod book;
+mod check_run;
 mod cli;
 mod cli_rig;
 mod cli_screen;
+mod declared;
 mod dialects;
 mod directions;
 mod docs;
@@ -19,13 +21,14 @@ mod outputs;
 mod physics;
 mod plans;
 mod reference;
-mod rehearse;
 mod relaxing_rig;
 mod serve;
 mod shake;
 mod shake_continuous;
+mod signatures;
 mod source_text;
 mod specimens_page;
 mod storey;
 mod sweep;
 mod uncertainty;
+mod words;

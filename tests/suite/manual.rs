@@ -281,7 +281,7 @@ fn every_refusal_on_the_page_is_one_the_driver_knows() {
     for code in codes {
         let told = native::codec::refusal(&[code.as_str()]);
         assert!(
-            !told.contains("for a reason psd does not know"),
+            !told.contains("for a reason unknown to psd"),
             "{code}: {told}"
         );
     }

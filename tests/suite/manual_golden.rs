@@ -83,7 +83,7 @@ fn every_command_of_the_page_is_one_with_these_options() {
     }
     let known = [
         "--golden",
-        "--bless",
+        "--accept",
         "--filter",
         "--list",
         "--jobs",
@@ -146,7 +146,7 @@ fn the_columns_of_the_tables_are_those_of_the_schema() {
             let Some((_, owner)) = owner else {
                 // The zero readings of the rig do not belong to a procedure.
                 assert!(
-                    stem == "drift" && summary["drift"].is_object(),
+                    stem == "zero_drift" && summary["zero_drift"].is_object(),
                     "{}: a table has its procedure",
                     table.display()
                 );

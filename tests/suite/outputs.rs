@@ -60,8 +60,6 @@ fn the_same_run_gives_the_same_bytes_and_the_files_of_the_language() {
     assert_eq!(
         paths,
         [
-            "certificate.html",
-            "certificate.pdf",
             "figures/c_damping_fit.png",
             "figures/c_damping_fit.svg",
             "figures/hit_contact_force.png",
@@ -81,6 +79,8 @@ fn the_same_run_gives_the_same_bytes_and_the_files_of_the_language() {
             "manifest.sha256",
             "plan/beam.psd",
             "plan/lib/frame.psd",
+            "report.html",
+            "report.pdf",
             "summary.json",
             "tables/c.csv",
             "tables/c.parquet",
@@ -237,10 +237,10 @@ fn the_summary_says_what_the_language_promises() {
 }
 
 #[test]
-fn the_certificate_loads_and_runs_nothing_and_says_what_it_is() {
+fn the_report_loads_and_runs_nothing_and_says_what_it_is() {
     let finished = hostile();
     let files = files(&finished);
-    let html = text(&files, "certificate.html");
+    let html = text(&files, "report.html");
     for forbidden in [
         "<script",
         "<img src=x",
@@ -253,17 +253,15 @@ fn the_certificate_loads_and_runs_nothing_and_says_what_it_is() {
     ] {
         assert!(
             !html.contains(forbidden),
-            "{forbidden} stands in the certificate"
+            "{forbidden} stands in the report"
         );
     }
     assert!(html.contains("default-src 'none'"));
     assert!(html.contains("&lt;script&gt;"));
     for wanted in [
-        "Simulated rig: rehearsal, not a test of a specimen.",
-        "NOT CERTIFIABLE",
-        "not given",
-        "clause 7.8",
-        "relate only to the items tested",
+        "SIMULATION: all 2 requirements met",
+        "no physical specimen was tested",
+        "not a test report",
         "e = Ms/(Ms + 2M) = 0.8333",
         "End of report <span class=\"id\">0123456789abcdef</span>",
     ] {
@@ -306,7 +304,7 @@ fn the_console_aligns_requirements_and_colours_only_when_asked() {
     let finished = finished();
     let plain = console::verdict_text(&finished.run(), false).replace('\u{a0}', " ");
     insta::assert_snapshot!(plain, @r"
-    PASS  Simply supported beam, midspan impact  (rig `rehearsal`, simulated: a rehearsal)
+    PASS  Simply supported beam, midspan impact  (rig `simulated`: a simulation)
       pass  stays in travel  0.15735 ± 0.00040 m  ≤ 0.17 m  margin 0.0126 m
       pass  energy closes    1.599 × 10⁻¹⁵        ≤ 0.01    margin 0.0100
       decision rule: simple; ± is U = 2u, the value alone decides
@@ -378,9 +376,9 @@ fn a_run_stopped_early_still_leaves_a_whole_folder() {
     (condition.value, condition.bound, condition.margin) = (None, None, None);
     condition.reason = Some("the result `max_displacement` does not exist in this run".into());
     let files = files(&finished);
-    let html = text(&files, "certificate.html");
+    let html = text(&files, "report.html");
     assert!(
-        html.contains("ABORTED")
+        html.contains("SIMULATION: stopped before its end")
             && html.contains("The run was stopped: force 12.1 kN is outside its limit.")
     );
     assert!(html.contains("Procedure hit did not run to its end."));
@@ -398,7 +396,7 @@ fn a_run_stopped_early_still_leaves_a_whole_folder() {
 
     finished.record.procedures.clear();
     let nothing = self::files(&finished);
-    assert!(text(&nothing, "certificate.html").contains("No procedure was run."));
+    assert!(text(&nothing, "report.html").contains("No procedure was run."));
     assert!(
         !nothing
             .iter()
@@ -435,12 +433,12 @@ fn a_run_of_which_nothing_is_required_is_completed_and_never_passed() {
     finished.plan.requirements.clear();
     finished.assessment = psd::verdict::assess(&finished.plan, &finished.record);
     let files = files(&finished);
-    let html = text(&files, "certificate.html");
+    let html = text(&files, "report.html");
     assert!(
-        html.contains("<div class=\"verdict completed\"><strong>COMPLETED</strong>")
+        html.contains("<div class=\"verdict neutral\"><strong>SIMULATION: completed</strong>")
             && !html.contains("<strong>PASS")
     );
-    assert!(html.contains("The plan states no requirement: nothing was decided."));
+    assert!(html.contains("Nothing moved and no physical specimen was tested."));
     let summary: serde_json::Value = serde_json::from_str(text(&files, "summary.json")).unwrap();
     assert_eq!(summary["verdict"], "completed");
     let told = console::verdict_text(&finished.run(), true);
@@ -449,7 +447,7 @@ fn a_run_of_which_nothing_is_required_is_completed_and_never_passed() {
         "{told}"
     );
     assert!(
-        bytes(&files, "certificate.pdf").starts_with(b"%PDF"),
+        bytes(&files, "report.pdf").starts_with(b"%PDF"),
         "paper knows the word too"
     );
     finished.record.outcome = Outcome::Aborted {

@@ -276,7 +276,7 @@ fn the_same_plan_gives_the_same_bytes() {
         let second = scratch.path().join(plan);
         psd_run(&root().join(format!("plans/{plan}.psd")), &second);
         let (first, second) = (files(&ran(plan).folder), files(&second));
-        assert!(first.contains_key("certificate.html") && first.contains_key("summary.json"));
+        assert!(first.contains_key("report.html") && first.contains_key("summary.json"));
         assert_eq!(
             first.keys().collect::<Vec<_>>(),
             second.keys().collect::<Vec<_>>()
@@ -292,7 +292,7 @@ fn the_same_plan_gives_the_same_bytes() {
 
 /// The accepted results equal the present results of the program, by the program's own test.
 #[test]
-fn the_blessed_reports_are_true() {
+fn the_accepted_reports_are_true() {
     let scratch = tempfile::tempdir().expect("a folder");
     let failures = scratch.path().join("failures");
     let output = Command::new(env!("CARGO_BIN_EXE_psd"))
@@ -303,7 +303,7 @@ fn the_blessed_reports_are_true() {
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{told}");
     assert!(
-        told.contains(&format!("{} plans as blessed", plans().len())) && !told.contains("unused"),
+        told.contains(&format!("{} plans as accepted", plans().len())) && !told.contains("unused"),
         "{told}"
     );
 }

@@ -6,7 +6,8 @@ use std::path::PathBuf;
 
 use psd::language::check::{LoadError, Loader, Options, check};
 use psd::language::syntax::{format, parse};
-use psd::schema::reference;
+use psd::schema::{BLOCKS, codes, reference};
+use psd::text::diagnostic::Code;
 use psd::text::diagnostic::render::{Appearance, render_all};
 use psd::text::source::Sources;
 
@@ -30,17 +31,18 @@ impl Loader for NoFiles {
     }
 }
 
-#[test]
-fn the_generated_part_is_what_the_schema_says() {
-    let page = page();
+/// Compares the generated part of a page with `text`, or writes it.
+fn compare(name: &str, text: &str) {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(name);
+    let page = fs::read_to_string(&path).expect("the page is there");
     let (before, rest) = page
         .split_once(START)
         .expect("the generated part has a start");
     let (generated, after) = rest.split_once(END).expect("the generated part has an end");
-    let wanted = format!("\n{}\n", reference());
+    let wanted = format!("\n{text}\n");
     if std::env::var_os("PSD_BLESS").is_some() {
-        fs::write(path(), format!("{before}{START}{wanted}{END}{after}"))
-            .expect("the reference can be written");
+        fs::write(path, format!("{before}{START}{wanted}{END}{after}"))
+            .expect("the page can be written");
         return;
     }
     let differs = generated
@@ -49,8 +51,48 @@ fn the_generated_part_is_what_the_schema_says() {
         .find(|(left, right)| left != right);
     assert!(
         generated == wanted,
-        "grammar/LANGUAGE.md is behind the schema ({differs:?}): run PSD_BLESS=1 cargo test reference"
+        "{name} is behind the schema ({differs:?}): run PSD_BLESS=1 cargo test reference"
     );
+}
+
+#[test]
+fn the_generated_parts_are_those_of_the_schema() {
+    compare("grammar/LANGUAGE.md", &reference());
+    compare("docs/reference/diagnostics.md", &codes());
+}
+
+/// A field and a result of a block may share a name: the anchor of the result then ends in `-result`.
+#[test]
+fn every_field_result_and_code_has_one_anchor() {
+    let (page, codes) = (reference(), codes());
+    let text = format!("{page}{codes}");
+    let mut found: Vec<&str> = text
+        .split("<b id=")
+        .skip(1)
+        .filter_map(|rest| rest.split('>').next())
+        .collect();
+    let mut wanted: Vec<String> = Code::ALL.iter().map(ToString::to_string).collect();
+    for block in BLOCKS {
+        let of = block.keyword.join("-");
+        let fields = block.fields.iter().filter(|field| field.available);
+        wanted.extend(fields.map(|field| format!("{of}.{}", field.name)));
+        for value in block.exports.iter().chain(block.results) {
+            let twice = block.field(value.name).is_some();
+            let end = if twice { "-result" } else { "" };
+            wanted.push(format!("{of}.{}{end}", value.name));
+        }
+    }
+    found.sort_unstable();
+    wanted.sort_unstable();
+    assert_eq!(found, wanted);
+    for link in page.split("](#").skip(1) {
+        let target = link.split(')').next().unwrap_or_default();
+        let heading = target.replace('-', " ");
+        assert!(
+            page.contains(&format!("### {heading}\n")),
+            "no heading {target}"
+        );
+    }
 }
 
 #[test]

@@ -26,7 +26,7 @@ rig bench {
   link        = serial(port: "/dev/none", dialect: native)
   settle      = within(0.005 mm, 500 N/s, for: 0.5 s, timeout: 20 s)
   safe_state  = hold
-  gate        = probe(0.2 mm, stiffness: 250 kN/m .. 450 kN/m, zero: 20 N)
+  pretest_check        = probe(0.2 mm, stiffness: 250 kN/m .. 450 kN/m, zero: 20 N)
   limits      = bench_limits
   resolution  = 1 um
   noise       = 2 N

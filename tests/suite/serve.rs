@@ -161,7 +161,7 @@ fn a_client_that_goes_away_is_a_fault() {
     drop(server.connect());
     let (printed, code) = server.end();
     assert!(
-        printed.starts_with("session: the client went away without closing\n"),
+        printed.starts_with("session: the client left without closing\n"),
         "{printed}"
     );
     assert_eq!(code, 3);
@@ -183,7 +183,7 @@ fn a_session_is_on_record_and_its_targets_come_out_again() {
     assert_eq!(code, 0, "{told}");
     // The cancelled step is in the run log and was never sent.
     assert!(
-        told.contains("all 2 came out again bit for bit, and 1 steps"),
+        told.contains("all 2 recomputed, bit-identical, and 1 steps"),
         "{told}"
     );
     let run = server.folder.path().join("runs/spring-1");

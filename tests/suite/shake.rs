@@ -43,7 +43,7 @@ impl Loader for Files {
 
 fn record(specimen: &str, shake: &str) -> Record {
     let text = format!(
-        "{specimen}\nground sine {{ record = \"sine.csv\" }}\nshake steady {{\n  ground = sine\n  damping_ratio = 10 %\n{shake}\n}}\n"
+        "{specimen}\nground sine {{ file = \"sine.csv\" }}\nshake steady {{\n  ground = sine\n  damping_ratio = 10 %\n{shake}\n}}\n"
     );
     let checked = check("plan.psd", &text, &Files, &Options::default());
     let plan = checked
@@ -195,8 +195,8 @@ fn the_record_of_a_shake_is_enough() {
         "tables/quake.csv",
         "tables/quake.parquet",
         "figures/quake_hysteresis.png",
-        "certificate.html",
-        "certificate.pdf",
+        "report.html",
+        "report.pdf",
         "plan/ground/three_sines.csv",
     ] {
         assert!(read("run", name) == read("again", name), "{name} differs");

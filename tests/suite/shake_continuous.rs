@@ -48,7 +48,7 @@ impl Loader for Files {
 fn plan(ground: &str, damped: &str, shake: &str, errs: &str) -> Plan {
     let storey = format!("storey(mass: 1 t, stiffness: {STIFFNESS} N/m{damped})");
     let text = format!(
-        "specimen frame {{ storeys = [{storey}, {storey}] }}\nground motion {{ record = \"{ground}.csv\" }}\n\
+        "specimen frame {{ storeys = [{storey}, {storey}] }}\nground motion {{ file = \"{ground}.csv\" }}\n\
          rig bench {{ link = virtual({errs}) }}\nshake test {{\n  ground = motion\n{shake}\n}}\n"
     );
     let checked = check("plan.psd", &text, &Files, &Options::default());
@@ -364,8 +364,8 @@ fn the_record_of_a_continuous_shake_is_enough() {
     for name in [
         "summary.json",
         "tables/moving.csv",
-        "certificate.html",
-        "certificate.pdf",
+        "report.html",
+        "report.pdf",
     ] {
         let read =
             |of: &str| fs::read(folder.path().join(of).join(name)).expect("a file of the run");

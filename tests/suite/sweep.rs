@@ -32,7 +32,7 @@ rig bench {
   link        = serial(port: "/dev/none", dialect: native)
   settle      = within(0.005 mm, 50 N/s, for: 0.05 s, timeout: 10 s)
   safe_state  = hold
-  gate        = probe(0.5 mm, stiffness: 250 kN/m .. 350 kN/m, zero: 20 N)
+  pretest_check        = probe(0.5 mm, stiffness: 250 kN/m .. 350 kN/m, zero: 20 N)
   limits      = bench_limits
   resolution  = 1 um
   noise       = 2 N
@@ -173,7 +173,7 @@ fn a_line_too_slow_for_the_fast_strokes_is_told() {
     let record = over_a_line(38_400.0, 1);
     assert_eq!(record.outcome, Outcome::Completed, "{:?}", record.events);
     let told = record.events.iter().any(|event| {
-        event.kind == EventKind::Remark && event.text.contains("the line is too slow")
+        event.kind == EventKind::Remark && event.text.contains("communication too slow")
     });
     assert!(told, "{:?}", record.events);
     let (found, error) = result(&record, "damping");

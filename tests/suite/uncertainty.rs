@@ -14,10 +14,10 @@ param speed = 1 m/s between 0.5 m/s .. 2 m/s
 specimen beam {
   mass             = 1 kg
   mass_uncertainty = 20 g
-  behaviour        = bilinear(stiffness: 300 kN/m, yield_force: 2 kN, hardening: 0.1)
+  behaviour        = bilinear(stiffness: 300 kN/m, yield_force: 2 kN, post_yield_ratio: 0.1)
 }
 
-rig rehearsal {
+rig simulated {
   link              = virtual(noise: 2 N, seed: 3)
   force_uncertainty = 1 %
   zero_uncertainty  = 1 N
@@ -120,15 +120,16 @@ fn a_budget_adds_up_and_comes_out_of_the_record_again() {
     for input in [
         "hammer.velocity",
         "force calibration",
-        "zero of the load cell",
+        "zero offset of the load cell",
         "beam.mass",
         "noise and resolution of the readings",
     ] {
         assert!(inputs.contains(&input), "{input} is not among {inputs:?}");
     }
-    let page = fs::read_to_string(at("run/certificate.html")).unwrap();
+    let page = fs::read_to_string(at("run/report.html")).unwrap();
     assert!(
-        page.contains("ncertainty budget of max displacement") && page.contains("Linearised, k")
+        page.contains("ncertainty budget of max displacement")
+            && page.contains("First-order propagation")
     );
     assert!(
         !page.contains("ncertainty budget of impulse"),
@@ -145,7 +146,7 @@ fn a_budget_adds_up_and_comes_out_of_the_record_again() {
             .code(),
         Some(0)
     );
-    for name in ["summary.json", "certificate.html"] {
+    for name in ["summary.json", "report.html"] {
         assert_eq!(
             fs::read(at("run").join(name)).unwrap(),
             fs::read(at("again").join(name)).unwrap(),

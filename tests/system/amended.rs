@@ -38,7 +38,7 @@ fn one_byte_of_the_plan_is_refused_and_amended_only_by_name() {
     let amended = wait(&mut stage.resume_with(&["--plan", &same, "--amend"]));
     assert_eq!(amended.code, Some(0), "{}", amended.told);
     assert_eq!(stage.verify().code, Some(0), "{}", stage.verify().told);
-    for file in ["certificate.html", "summary.json"] {
+    for file in ["report.html", "summary.json"] {
         let text = fs::read_to_string(stage.path("run").join(file)).unwrap();
         assert!(
             text.contains("B. Tester") && text.contains("it was interrupted"),

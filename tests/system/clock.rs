@@ -63,7 +63,7 @@ fn it_is_set_by_a_year() {
                 .all(|pair| 0.0 <= pair[1] - pair[0] && pair[1] - pair[0] < 30.0),
             "{times:?}"
         );
-        let page = fs::read_to_string(stage.path("run").join("certificate.html")).unwrap();
+        let page = fs::read_to_string(stage.path("run").join("report.html")).unwrap();
         let told = format!("The wall clock jumped by {sign}365");
         assert!(page.contains(&told), "page one tells it");
         assert!(stage.proven().contains("ok"));

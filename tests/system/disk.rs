@@ -44,7 +44,7 @@ fn a_sync_that_fails_once_ends_the_run_and_is_not_tried_again() {
     let ran = wait(&mut command);
     assert_eq!(ran.code, Some(3), "{}", ran.told);
     assert!(
-        ran.told.contains("the record could not be kept"),
+        ran.told.contains("the run log could not be written"),
         "{}",
         ran.told
     );
@@ -106,7 +106,7 @@ fn a_write_that_finds_no_room_holds_the_rig_and_the_run_goes_on_later() {
         let ran = wait(&mut command);
         assert_eq!(ran.code, Some(3), "{error}: {}", ran.told);
         assert!(
-            ran.told.contains("the record could not be kept"),
+            ran.told.contains("the run log could not be written"),
             "{error}: {}",
             ran.told
         );
@@ -158,11 +158,11 @@ fn a_disk_that_lies_about_what_it_took_is_found_out_before_a_report_is_made() {
     stage.run_arguments(&mut command, &["--yes"]);
     let ran = wait(&mut command);
     assert!(
-        ran.code == Some(3) && ran.told.contains("the record is damaged"),
+        ran.code == Some(3) && ran.told.contains("the run log is damaged"),
         "{}",
         ran.told
     );
-    assert!(!stage.path("run").join("certificate.html").exists());
+    assert!(!stage.path("run").join("report.html").exists());
     let verified = stage.verify();
     assert!(
         verified.code == Some(3) && verified.told.contains("WRONG"),
@@ -187,10 +187,10 @@ fn a_record_that_somebody_takes_away_under_way_ends_the_run_and_proves_nothing()
         signal(&run, Signal::CONT);
         let ran = finish(run);
         assert_eq!(ran.code, Some(3), "{}", ran.told);
-        assert!(!stage.path("run").join("certificate.html").exists());
+        assert!(!stage.path("run").join("report.html").exists());
         if removed {
             held(&stage);
-            assert!(ran.told.contains("somebody has removed it"), "{}", ran.told);
+            assert!(ran.told.contains("its file was deleted"), "{}", ran.told);
             assert!(
                 stage.moves().len() <= moves + 1,
                 "nothing moves that nobody records"
@@ -229,7 +229,7 @@ exit $status
     );
     assert_eq!(ran.code, Some(3), "{}", ran.told);
     assert!(
-        ran.told.contains("the record could not be kept"),
+        ran.told.contains("the run log could not be written"),
         "{}",
         ran.told
     );

@@ -174,13 +174,13 @@ fn a_script_that_says_nothing_known_stands_in_for_nothing() {
     for (script, said) in [
         (
             "after 3 moves drop reply",
-            "line 1: no `:` between when and what",
+            "line 1: `:` is missing between the time and the fault",
         ),
         (
             "# nothing\nat 1 s: explode",
-            "line 2: `explode` is no fault that is known",
+            "line 2: unknown fault `explode`",
         ),
-        ("after 3 goes: drop reply", "`goes` is not counted"),
+        ("after 3 goes: drop reply", "`goes` cannot be counted"),
     ] {
         std::fs::write(stage.path("wrong"), script).unwrap();
         let ended = wait(

@@ -147,8 +147,8 @@ rig bench {
   speed       = 100 mm/s
   resolution  = 1 nm
   axes        = [
-    axis(gate: probe(0.05 mm, stiffness: 400 kN/m .. 600 kN/m, zero: 5 N), displacement: -10 mm .. 10 mm),
-    axis(sign: negative, gate: probe(0.05 mm, stiffness: 150 kN/m .. 250 kN/m, zero: 5 N)),
+    axis(pretest_check: probe(0.05 mm, stiffness: 400 kN/m .. 600 kN/m, zero: 5 N), displacement: -10 mm .. 10 mm),
+    axis(polarity: negative, pretest_check: probe(0.05 mm, stiffness: 150 kN/m .. 250 kN/m, zero: 5 N)),
   ]
 }
 "#;
@@ -181,7 +181,7 @@ fn is(found: (f64, f64), place: f64, force: f64) {
 #[test]
 fn a_coordinator_drives_the_floors_of_a_real_rig_together_and_one_by_one() {
     let mut served = Served::start_on(frame(), "nees", &["--once"]);
-    let gate = served.stage.moves().len();
+    let pretest_check = served.stage.moves().len();
     let mut client = Coordinator::come(&served);
     let both =
         "propose\tt1\tMDL-00-01\tx\tdisplacement\t1.0E-3\tMDL-00-02\tx\tdisplacement\t3.0E-3";
@@ -202,7 +202,7 @@ fn a_coordinator_drives_the_floors_of_a_real_rig_together_and_one_by_one() {
     is(floor(&mut client, "MDL-00-01"), 1e-3, 300.0);
     is(floor(&mut client, "MDL-00-02"), 1e-3, 0.0);
     let moved = served.stage.moves().len();
-    assert_eq!(moved, gate + 2);
+    assert_eq!(moved, pretest_check + 2);
     // The lower axis has its own limit. A refused target of one axis moves neither.
     for (wish, said) in [
         (
@@ -219,7 +219,7 @@ fn a_coordinator_drives_the_floors_of_a_real_rig_together_and_one_by_one() {
         ),
         (
             "MDL-00-01\tx\tdisplacement\t0\tMDL-00-01:a\tx\tdisplacement\t0",
-            "NOT OK\t2\tt3\ta control point stands twice",
+            "NOT OK\t2\tt3\ta control point is listed twice",
         ),
         (
             "MDL-00-01\tx\tdisplacement\t0\ty\tdisplacement\t0",

@@ -16,7 +16,7 @@ fn two_plans() -> tempfile::TempDir {
     for name in ["as", "moved"] {
         std::fs::write(folder.path().join(format!("plans/{name}.psd")), PLAN).unwrap();
     }
-    assert!(psd(folder.path(), &["test", "--bless"]).status.success());
+    assert!(psd(folder.path(), &["test", "--accept"]).status.success());
     let summary = folder.path().join("reports/moved/summary.json");
     let text = std::fs::read_to_string(&summary)
         .unwrap()
@@ -64,7 +64,7 @@ fn junit_is_read_by_a_parser_of_xml() {
     assert_eq!(lines[..2], ["testsuites 2 1 0", "plans as -"], "{told}");
     assert!(
         lines[2].starts_with(
-            "plans moved 2 differences from the blessed results|require \"stout <&> \"sound\"\""
+            "plans moved 2 differences from the accepted results|require \"stout <&> \"sound\"\""
         ),
         "{told}"
     );

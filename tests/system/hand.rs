@@ -87,7 +87,7 @@ fn a_place_beyond_a_limit_is_refused_before_any_byte_asks_for_it() {
             ended.told
         );
         assert!(
-            stage.proven().contains("all 0 came out again"),
+            stage.proven().contains("all 0 recomputed"),
             "the refusal is on record"
         );
         std::fs::remove_dir_all(stage.path("run")).unwrap();
@@ -124,12 +124,12 @@ fn a_jog_goes_where_it_is_told_and_is_on_record() {
     assert!(
         stage
             .proven()
-            .contains("all 3 came out again bit for bit, and 3 steps")
+            .contains("all 3 recomputed, bit-identical, and 3 steps")
     );
     let record = std::fs::read_to_string(stage.journal()).unwrap();
     for expected in [
         "\"served\":\"by hand\"",
-        "move from 0 mm to 2.5 mm at 25 mm/s? answered by --yes (A. Tester)",
+        "MOVE from 0 mm to 2.5 mm at 25 mm/s? answered by --yes (A. Tester)",
     ] {
         assert!(record.contains(expected), "{expected} in {record}");
     }
@@ -183,7 +183,7 @@ fn a_jog_counts_from_the_zero_of_the_run_that_loaded_the_specimen() {
         moves.len() == 2 && moves[0].contains(" 3.500000 ") && moves[1].contains(" 3.000000 "),
         "{moves:?}"
     );
-    assert!(stage.proven().contains("all 1 came out again"));
+    assert!(stage.proven().contains("all 1 recomputed"));
 }
 
 #[test]
@@ -203,11 +203,11 @@ fn only_the_word_moves_and_the_end_of_the_input_is_none() {
             "{}",
             terminal.shown()
         );
-        assert!(stage.proven().contains("all 0 came out again"));
+        assert!(stage.proven().contains("all 0 recomputed"));
         // Manual operation is not a run that can be resumed.
         let resumed = wait(&mut stage.resume_with(&[]));
         assert!(
-            resumed.code == Some(2) && resumed.told.contains("done by hand"),
+            resumed.code == Some(2) && resumed.told.contains("driven by hand"),
             "{}",
             resumed.told
         );
@@ -216,7 +216,7 @@ fn only_the_word_moves_and_the_end_of_the_input_is_none() {
     assert!(stage.moves().is_empty());
     let piped = wait(&mut stage.recorded_tool("jog", &["--to", "1 mm"]));
     assert!(
-        piped.code == Some(2) && piped.told.contains("nobody can be asked"),
+        piped.code == Some(2) && piped.told.contains("no operator can be asked"),
         "{}",
         piped.told
     );
@@ -226,15 +226,15 @@ fn only_the_word_moves_and_the_end_of_the_input_is_none() {
 fn a_sitting_goes_from_place_to_place() {
     let stage = Stage::new();
     let mut terminal = Terminal::start(&mut stage.recorded_tool("jog", &[]));
-    terminal.answer("at 0 mm; where to?", "0.5\n");
+    terminal.answer("at 0 mm; target?", "0.5\n");
     terminal.answer("write it as 1 mm", "0.5 mm\n");
-    terminal.answer("it moves from 0 mm to 0.5 mm", "MOVE\n");
+    terminal.answer("it MOVES from 0 mm to 0.5 mm", "MOVE\n");
     terminal.answer(MOVE, "MOVE\n");
-    terminal.answer("at 0.5 mm; where to?", "11 mm\n");
+    terminal.answer("at 0.5 mm; target?", "11 mm\n");
     terminal.answer("refused: target displacement 11 mm", "0 mm\n");
-    terminal.answer("it moves from 0.5 mm to 0 mm", "");
+    terminal.answer("it MOVES from 0.5 mm to 0 mm", "");
     terminal.answer(MOVE, "MOVE\n");
-    terminal.answer("at 0 mm; where to?", "q\n");
+    terminal.answer("at 0 mm; target?", "q\n");
     assert_eq!(
         code(&mut terminal.child),
         Some(4),
@@ -242,7 +242,7 @@ fn a_sitting_goes_from_place_to_place() {
         terminal.shown()
     );
     assert_eq!(stage.moves().len(), 2);
-    assert!(stage.proven().contains("all 2 came out again"));
+    assert!(stage.proven().contains("all 2 recomputed"));
 }
 
 #[test]

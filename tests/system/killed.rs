@@ -79,7 +79,7 @@ fn one(whole: &Whole, at: At, count: usize) -> bool {
         return true;
     }
     // Only the final records of a finished run can be cut off without any work left.
-    let over = resumed.told.contains("there is nothing to go on with");
+    let over = resumed.told.contains("nothing is left to resume");
     assert!(
         resumed.code == Some(0) || over,
         "{at:?} {count}: {}",
@@ -88,7 +88,7 @@ fn one(whole: &Whole, at: At, count: usize) -> bool {
     if over && !stage.path("run").join("manifest.sha256").exists() {
         let gone = stage.verify();
         assert!(
-            gone.code == Some(3) && gone.told.contains("its results are gone"),
+            gone.code == Some(3) && gone.told.contains("its results are missing"),
             "{at:?} {count}: {}",
             gone.told
         );

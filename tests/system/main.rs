@@ -5,7 +5,6 @@
 mod amended;
 mod book;
 mod build;
-mod certificate;
 mod clock;
 mod disk;
 mod ended;
@@ -21,6 +20,7 @@ mod needs;
 mod opensees;
 mod person;
 mod released;
+mod report;
 mod resumed;
 mod served;
 mod signals;

@@ -13,18 +13,18 @@ fn unnamed(stage: &Stage, more: &[&str]) -> Vec<Command> {
         .args(["--rig", "bench", "--out"])
         .arg(stage.path("run"))
         .args(more);
-    let mut rehearse = Command::new(crate::stage::PSD);
-    rehearse
+    let mut check_run = Command::new(crate::stage::PSD);
+    check_run
         .arg("run")
         .arg(stage.path("plan.psd"))
-        .args(["--rig", "bench", "--rehearse"])
+        .args(["--rig", "bench", "--check-run"])
         .args(more);
     let serve = stage.tool(
         "serve",
         &[&["--protocol", "nees", "--listen", "127.0.0.1:0"], more].concat(),
     );
     let jog = stage.tool("jog", &[&["--to", "0.1 mm"], more].concat());
-    vec![run, rehearse, serve, jog]
+    vec![run, check_run, serve, jog]
 }
 
 #[test]
@@ -93,7 +93,7 @@ fn at_a_terminal_the_name_is_asked_for_before_anything_is_opened() {
     for mut command in unnamed(&stage, &[]) {
         let mut terminal = Terminal::start(&mut command);
         terminal.answer("your name", "  \n");
-        terminal.answer("at most 200 letters", "\u{4}");
+        terminal.answer("at most 200 characters", "\u{4}");
         assert_eq!(code(&mut terminal.child), Some(2), "{}", terminal.shown());
     }
     assert!(stage.requests().is_empty() && !stage.path("run").exists());

@@ -191,7 +191,7 @@ fn nothing_stands_before_or_beside_a_hold_that_nobody_confirms() {
 fn reports_of_records_that_differ_have_numbers_that_differ() {
     let stage = Stage::new();
     let number = || {
-        let page = fs::read_to_string(stage.path("run").join("certificate.html")).unwrap();
+        let page = fs::read_to_string(stage.path("run").join("report.html")).unwrap();
         let (_, after) = page.split_once("End of report").unwrap();
         after
             .split(['<', '>'])

@@ -19,7 +19,7 @@ fn stepper(plan: &str) -> String {
     let devices = format!(
         "  actuator   = serial(port: \"{port}\", dialect: grbl, reply_timeout: 3 s)\n  \
            load_cell  = serial(port: \"{port}-cell\", dialect: indicator, reply_timeout: 3 s)\n  \
-           sign       = negative\n  \
+           polarity       = negative\n  \
            datum      = here"
     );
     let plan = format!("{before}{devices}{after}").replace("duration  = 24 ms", "duration  = 3 ms");
@@ -61,8 +61,8 @@ fn refused(stage: &Stage, more: &[&str], reason: &str) {
     );
 }
 
-fn certificate(stage: &Stage) -> String {
-    fs::read_to_string(stage.path("run").join("certificate.html")).unwrap()
+fn report(stage: &Stage) -> String {
+    fs::read_to_string(stage.path("run").join("report.html")).unwrap()
 }
 
 #[test]
@@ -90,10 +90,10 @@ fn a_stepper_frame_that_was_stopped_is_let_go_of_and_goes_on() {
     all.dedup();
     assert!(count > moves.len() && all.len() == count, "{all:?}");
     for word in [
-        "it was not switched off since",
-        "it was let go of where it was held",
+        "it was not power-cycled since",
+        "its hold was cleared, and it did not move",
     ] {
-        assert!(certificate(&stage).contains(word), "{word}");
+        assert!(report(&stage).contains(word), "{word}");
     }
 }
 
@@ -127,7 +127,7 @@ fn a_jog_lets_go_too_and_a_new_run_begins() {
     assert_eq!(jog.code, Some(0), "{}", jog.told);
     let record = fs::read_to_string(stage.journal()).unwrap();
     assert!(
-        record.contains("what was found held was let go of where it stands (A. Tester)"),
+        record.contains("the hold was cleared, and the rig did not move (A. Tester)"),
         "{record}"
     );
     stage.proven();
@@ -158,15 +158,15 @@ fn stopped_at_zero() -> Stage {
 #[test]
 fn a_console_that_was_switched_off_meanwhile_does_not_go_on_unsaid() {
     for (word, told) in [
-        ("--re-referenced", "it was referenced anew"),
-        ("--same-power-up", "it was not switched off since"),
+        ("--re-referenced", "it was referenced again"),
+        ("--same-power-up", "it was not power-cycled since"),
     ] {
         let mut stage = stopped_at_zero();
         stage.power_up("");
-        refused(&stage, &[], "cannot say whether it was switched off");
+        refused(&stage, &[], "cannot report whether it was power-cycled");
         assert!(stage.moves().is_empty(), "nothing moved");
         let resumed: Ended = stage.goes_on(&[word]);
-        assert!(certificate(&stage).contains(told), "{}", resumed.told);
+        assert!(report(&stage).contains(told), "{}", resumed.told);
     }
 }
 
@@ -181,7 +181,7 @@ fn a_rig_that_is_not_there_leaves_the_record_as_it_was() {
     let other = stage.path("other.psd");
     let plan = fs::read_to_string(stage.path("plan.psd"))
         .unwrap()
-        .replace("look at the specimen", "look at it");
+        .replace("inspect the specimen", "inspect it");
     fs::write(&other, plan).unwrap();
     refused(
         &stage,
@@ -234,11 +234,11 @@ fn a_run_that_came_to_its_end_without_its_results_has_them_made_of_its_record() 
     let stage = Stage::new();
     let ran = wait(&mut stage.run_with(&["--yes"]));
     assert_eq!(ran.code, Some(0), "{}", ran.told);
-    refused(&stage, &[], "came to its end");
+    refused(&stage, &[], "the run is complete");
     let run = stage.path("run");
     let whole = fs::read(run.join("summary.json")).unwrap();
     // The files of a program that was killed while it wrote them: some are missing, and the last one is incomplete.
-    for file in ["manifest.sha256", "certificate.html"] {
+    for file in ["manifest.sha256", "report.html"] {
         fs::remove_file(run.join(file)).unwrap();
     }
     fs::write(run.join("summary.json"), &whole[..whole.len() / 2]).unwrap();
@@ -263,18 +263,18 @@ fn a_restart_on_record_is_outweighed_by_nobodys_word_that_there_was_none() {
     let stage = Stage::of(stepper, "after 5 moves: reboot");
     let run = wait(&mut stage.run_with(&["--yes"]));
     assert!(
-        run.code == Some(3) && run.told.contains("started anew"),
+        run.code == Some(3) && run.told.contains("restarted"),
         "{}",
         run.told
     );
     refused(
         &stage,
         &["--same-power-up"],
-        "the record says that it started anew",
+        "the run log shows that the rig restarted",
     );
     refused(
         &stage,
         &["--same-power-up", "--let-go"],
-        "the record says that it started anew",
+        "the run log shows that the rig restarted",
     );
 }

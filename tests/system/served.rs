@@ -1,5 +1,5 @@
 //! A real rig driven by clients: `psd rig serve` between small clients of its two protocols and a rig emulator behind a
-//! pseudo-terminal. Whatever client, rig or operator do, the rig is held afterwards, and the run log verifies.
+//! pseudo-terminal. Whatever client, rig or operator do, the rig is HELD afterwards, and the run log verifies.
 
 use std::io::{BufRead as _, BufReader, ErrorKind, Read as _, Write as _};
 use std::net::TcpStream;
@@ -280,7 +280,7 @@ fn each_signal_in_a_session_holds_the_rig_and_keeps_the_record() {
         let (code, printed) = served.stop(sent);
         assert_eq!(code, Some(4), "{printed}");
         assert!(
-            printed.starts_with("session: stopped by a person\ntargets: 1\n"),
+            printed.starts_with("session: stopped by the operator\ntargets: 1\n"),
             "{printed}"
         );
         assert!(is_closed(client.lines.get_mut()));
@@ -339,7 +339,7 @@ fn a_rig_that_goes_away_while_nobody_asks_is_noticed() {
     let mut served = hanging_up();
     let (code, printed) = served.ended();
     assert!(
-        code == Some(3) && printed.contains("the line is gone"),
+        code == Some(3) && printed.contains("connection lost"),
         "{printed}"
     );
 
@@ -356,7 +356,7 @@ fn a_client_that_goes_away_leaves_it_held_and_the_next_one_goes_on() {
     first.go(1e-3);
     first.send("propose\tlast\tMDL-00-01\tx\tdisplacement\t2.0E-3");
     drop(first);
-    served.says("session ended: the client went away without closing");
+    served.says("session ended: the client left without closing");
     served.held();
     let mut second = Coordinator::come(&served);
     assert_eq!(second.felt(), (1e-3, 100.0), "where the first one left it");
@@ -396,7 +396,7 @@ fn a_client_that_goes_away_in_the_middle_of_a_move_has_the_rig_held_at_once() {
     element.send([10.0, 0.0]);
     served.stage.after_moves(3);
     drop(element);
-    served.says("session ended: the client went away without closing");
+    served.says("session ended: the client left without closing");
     served.held();
     // The next client finds it at its hold position, and is served.
     let mut next = Element::come(&served);
@@ -549,8 +549,8 @@ fn a_program_that_is_killed_leaves_a_record_and_a_rig_that_holds_itself() {
     let verified = served.stage.verify();
     assert!(verified.told.contains("INCOMPLETE"), "{}", verified.told);
     assert!(
-        verified.told.contains("3 came out again"),
-        "two of the gate, and the client's: {}",
+        verified.told.contains("3 recomputed"),
+        "two of the pre-test check, and the client's: {}",
         verified.told
     );
     let_it_trip();

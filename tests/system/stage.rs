@@ -34,7 +34,7 @@ rig bench {
   rate       = 500 Hz
   samples    = 1
   speed      = 20 mm/s
-  gate       = probe(0.1 mm, stiffness: 90 kN/m .. 110 kN/m, zero: 20 N)
+  pretest_check       = probe(0.1 mm, stiffness: 90 kN/m .. 110 kN/m, zero: 20 N)
 }
 
 specimen bar {
@@ -171,10 +171,10 @@ impl Stage {
         let told = File::create(self.path("simulator.told")).unwrap();
         let mut simulator = command.stdin(Stdio::null()).stderr(told).spawn().unwrap();
         let told = self.path("simulator.told");
-        until("the simulator stands in", || {
+        until("the emulator runs", || {
             let told = fs::read_to_string(&told).unwrap();
             assert!(simulator.try_wait().unwrap().is_none(), "{told}");
-            told.contains("stands in")
+            told.contains("emulates the rig")
         });
         self.simulator = Some(simulator);
     }

@@ -19,10 +19,10 @@ use crate::stage::{signal, until};
 /// The text after each question once it can be answered, in line mode.
 pub const RELEASE: &str = "type RELEASE, or n: nothing moves";
 pub const GO_ON: &str = "type RELEASE, or n: the run ends here";
-pub const UNLOAD: &str = "type UNLOAD, or n: it stays held";
+pub const UNLOAD: &str = "type UNLOAD, or n: it stays HELD";
 pub const TO_UNLOAD: &str = "type u: unload";
 pub const TO_RESUME: &str = "type r: resume";
-pub const LEAVE: &str = "type x: leave; the rig stays held";
+pub const LEAVE: &str = "type x: leave; the rig stays HELD";
 pub const MOVE: &str = "type MOVE, or n: nothing moves";
 
 pub struct Terminal {

@@ -81,14 +81,14 @@ fn a_report_and_a_proof_of_a_run_that_is_going_on_are_refused_and_spoil_nothing(
                 .current_dir(stage.path("")),
         );
         assert!(
-            report.code == Some(3) && report.told.contains("in use by another psd"),
+            report.code == Some(3) && report.told.contains("another psd uses"),
             "{}",
             report.told
         );
     }
     let verified = stage.verify();
     assert!(
-        verified.code == Some(3) && verified.told.contains("in use by another psd"),
+        verified.code == Some(3) && verified.told.contains("another psd uses"),
         "{}",
         verified.told
     );

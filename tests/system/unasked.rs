@@ -76,7 +76,7 @@ fn a_rig_that_may_unload_is_held_when_nobody_says_yes() {
     let ran = finish(run);
     let moves = stage.moves();
     assert!(
-        ran.told.contains("held at ") && ran.told.contains("to go on: psd resume "),
+        ran.told.contains("HELD at ") && ran.told.contains("to resume: psd resume "),
         "{}",
         ran.told
     );
@@ -153,7 +153,7 @@ fn a_yes_unloads_and_the_screen_says_that_the_rig_moves() {
     terminal.drawn("type UNLOAD");
     assert_eq!(stage.moves().len(), moves);
     terminal.press("UNLOAD\r");
-    terminal.drawn("UNLOADING, THE RIG MOVES");
+    terminal.drawn("UNLOADING: THE RIG MOVES");
     terminal.drawn(" x leave");
     terminal.press("x");
     assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
@@ -203,7 +203,7 @@ fn a_rig_that_was_moved_by_hand_is_not_gone_on_with() {
     signal(&run, Signal::INT);
     let ran = finish(run);
     assert!(
-        ran.code == Some(4) && ran.told.contains("held at "),
+        ran.code == Some(4) && ran.told.contains("HELD at "),
         "{}",
         ran.told
     );
@@ -226,7 +226,7 @@ fn a_rig_that_was_moved_by_hand_is_not_gone_on_with() {
     let moves = stage.moves();
     let refused = wait(&mut stage.resume_with(&[]));
     assert!(
-        refused.code == Some(3) && refused.told.contains("the record left it at"),
+        refused.code == Some(3) && refused.told.contains("its last logged position is"),
         "{}",
         refused.told
     );
@@ -265,7 +265,7 @@ fn a_resumed_rig_moves_for_somebody_who_lets_it() {
         terminal.answer(RELEASE, "");
         let shown = terminal.shown();
         assert!(
-            shown.contains("found at ") && shown.contains("it will move to 0.1000 mm at 0.05 mm/s"),
+            shown.contains("found at ") && shown.contains("it MOVES to 0.1000 mm at 0.05 mm/s"),
             "{shown}"
         );
         terminal.press(no);
@@ -295,7 +295,7 @@ fn a_resumed_rig_moves_for_somebody_who_lets_it() {
     assert!(verified.code == Some(0), "{}", verified.told);
     let told = fs::read_to_string(stage.path("run").join("summary.json")).unwrap();
     assert!(
-        told.contains("had been held on the way and was sent anew, from "),
+        told.contains("had been held, and the target was sent again, from "),
         "{told}"
     );
 }
@@ -306,14 +306,14 @@ fn who_cannot_be_heard_is_told_to_press_the_emergency_stop() {
     let ran = wait(&mut stage.run_with(&["--yes"]));
     assert_eq!(ran.code, Some(3), "{}", ran.told);
     assert!(
-        ran.told.contains("NOT CONFIRMED HELD") && ran.told.contains("use the emergency stop"),
+        ran.told.contains("NOT CONFIRMED HELD") && ran.told.contains("Press the emergency stop"),
         "{}",
         ran.told
     );
     let verified = stage.verify();
     assert!(verified.code == Some(0), "{}", verified.told);
-    let certificate = fs::read_to_string(stage.path("run").join("certificate.html")).unwrap();
-    assert!(certificate.contains("NOT CONFIRMED HELD"));
+    let report = fs::read_to_string(stage.path("run").join("report.html")).unwrap();
+    assert!(report.contains("NOT CONFIRMED HELD"));
 }
 
 #[test]

@@ -13,7 +13,7 @@ pub use evidence::{
     IssueArguments, KeygenArguments, ReportArguments, SignArguments, VerifyArguments,
 };
 
-/// Pseudo-dynamic structural tests, from a plan to a certificate.
+/// Pseudo-dynamic structural tests, from a plan to a test report.
 #[derive(Debug, Parser)]
 #[command(name = "psd", version, long_version = concat!(
     env!("CARGO_PKG_VERSION"), "\nsources, SHA-256 ", env!("PSD_BUILD"), "\nbuilt for ", env!("PSD_TOOLCHAIN"),
@@ -22,43 +22,46 @@ pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
 
-    /// When to colour what is said; `NO_COLOR` is heeded
+    /// Colour the output; respects `NO_COLOR`
     #[arg(long, global = true, value_enum, default_value_t = Color::Auto, value_name = "WHEN")]
     pub color: Color,
 }
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Checks a plan, runs it, writes the results and gives the verdict
+    /// Check a plan, run it, write results and test report
     Run(RunArguments),
-    /// Goes on with a run on a real rig that was stopped or cut off
+    /// Resume an interrupted run on a real rig
     Resume(ResumeArguments),
-    /// Issues the report of a run: states who authorises it and what else is known only after the test; nothing moves
+    /// Issue the report of a run (no motion)
     Issue(IssueArguments),
-    /// Makes the results of a run anew, from its record alone; nothing moves and nothing is overwritten
+    /// Recompute the results of a run from its run log (no motion)
     Report(ReportArguments),
-    /// Proves that a run's record, targets and files belong together, and who signed them; nothing moves
+    /// Verify run log, results and signatures of a run (no motion)
     Verify(VerifyArguments),
-    /// Signs a run folder that verifies
+    /// Sign a verified run folder
     Sign(SignArguments),
-    /// Makes a pair of keys to sign with
+    /// Create a pair of signature keys
     Keygen(KeygenArguments),
-    /// Shows everything wrong with plans; nothing moves
+    /// Report all errors of plans (no motion)
     Check(CheckArguments),
-    /// Lays the results of runs side by side; nothing moves
+    /// Compare results of two or more runs
     Compare(CompareArguments),
-    /// Runs plans on virtual rigs and holds what they give against their blessed results
+    /// Compare plans on virtual rigs with their accepted results
     Test(TestArguments),
-    /// Writes plans in the canonical layout
+    /// Format plans in the canonical layout
     Fmt(FmtArguments),
-    /// Explains a diagnostic code, such as E202; without one, lists them all
+    /// Explain a diagnostic code, such as E202, or list all codes
     Explain {
-        /// The code
+        /// Diagnostic code
         code: Option<String>,
+        /// Show the wrong and the right plan in full
+        #[arg(long, requires = "code")]
+        full: bool,
     },
-    /// Lists the bounds of the language: sizes, nesting, steps
+    /// List the limits of the language: sizes, nesting, steps
     Limits,
-    /// Talks to rigs by hand, or stands in for one
+    /// Probe, monitor, jog, emulate or serve a rig
     Rig {
         #[command(subcommand)]
         command: RigCommand,
@@ -67,17 +70,18 @@ pub enum Command {
 
 #[derive(Debug, Subcommand)]
 pub enum RigCommand {
-    /// Lists the serial ports of this machine, with the names that stay
+    /// List serial ports of this machine, with their stable names
     List {
-        /// What is printed: a line a port, or JSON
+        /// Output format: one line per port, or JSON
         #[arg(long, value_enum, default_value_t = Format::Human)]
         format: Format,
     },
-    /// Says who the rig is, what it reads and how far it is from each limit; nothing moves
-    #[command(
-        after_help = "Exit codes: 0 it answers and stands inside the limits, 2 the plan or the command line is wrong,\n\
-        3 no rig answers there, or another than the plan's, 4 it stands outside a limit."
-    )]
+    /// Identify the rig and show its readings and margins (no motion)
+    #[command(after_help = "Exit codes:\n\
+    \x20 0  the rig answers and is within its limits\n\
+    \x20 2  error in the plan or on the command line\n\
+    \x20 3  no rig answers, or a different rig than the plan names\n\
+    \x20 4  the rig is outside a limit")]
     Probe {
         /// The plan, a `.psd` file
         #[arg(value_name = "PLAN")]
@@ -85,38 +89,41 @@ pub enum RigCommand {
         #[command(flatten)]
         plan_settings: PlanSettings,
     },
-    /// Shows the readings as they come; nothing moves
-    #[command(
-        after_help = "In a pipe one line a reading, in SI: `| head` ends it too.\n\n\
-        Exit codes: 0 ended by Ctrl-C, `q`, `--count` or its reader, 2 the plan or the command line is wrong,\n\
-        3 the rig failed or was silent."
-    )]
+    /// Show the readings continuously (no motion)
+    #[command(after_help = "In a pipe: one line per reading, in SI units.\n\n\
+    Exit codes:\n\
+    \x20 0  ended by Ctrl-C, `q`, `--count` or its reader\n\
+    \x20 2  error in the plan or on the command line\n\
+    \x20 3  fault of the rig, or no answer")]
     Monitor {
         /// The plan, a `.psd` file
         #[arg(value_name = "PLAN")]
         plan: PathBuf,
         #[command(flatten)]
         plan_settings: PlanSettings,
-        /// Ends after so many readings
+        /// Stop after this number of readings
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
         count: Option<u64>,
-        /// Time from one reading to the next, from 10 ms to 1 min
+        /// Time between two readings, from 10 ms to 1 min
         #[arg(long, value_name = "TIME", default_value = "100 ms")]
         every: String,
     },
-    /// Moves the rig by hand inside the plan's limits, asking first on every move
+    /// MOVE the rig by hand within the plan's limits
     Jog(JogArguments),
-    /// Stands in for the rig of a plan, at the plan's own port, until Ctrl-C
+    /// Emulate the rig of a plan at its own port, until Ctrl-C
     Simulate(SimulateArguments),
-    /// Lets a coordinator or OpenSees drive the plan's rig, inside the plan's limits
+    /// Let a coordinator or OpenSees MOVE the rig within the plan's limits
     Serve(ServeArguments),
 }
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "On a real rig every question, answer and move is on record, in a run folder that `psd verify` proves.\n\n\
-    Exit codes: 0 it went where it was told, 2 the plan or the command line is wrong, 3 the rig failed,\n\
-    4 a limit or a person stood in the way."
+    after_help = "THE RIG MOVES. On a real rig every question, answer and move is logged in a run folder for `psd verify`.\n\n\
+    Exit codes:\n\
+    \x20 0  all targets reached\n\
+    \x20 2  error in the plan or on the command line\n\
+    \x20 3  fault of the rig\n\
+    \x20 4  stopped by a limit or by the operator"
 )]
 pub struct JogArguments {
     /// The plan, a `.psd` file
@@ -124,36 +131,39 @@ pub struct JogArguments {
     pub plan: PathBuf,
     #[command(flatten)]
     pub plan_settings: PlanSettings,
-    /// Where to, such as "1 mm"; of several axes "1 mm, 2 mm" [default: places are typed, one a line]
-    #[arg(long, value_name = "PLACE", allow_hyphen_values = true)]
+    /// Target, such as "1 mm" or "1 mm, 2 mm" [default: typed]
+    #[arg(long, value_name = "POSITION", allow_hyphen_values = true)]
     pub to: Option<String>,
-    /// How fast, such as "0.5 mm/s" [default: the rig's own, within the plan's limits]
+    /// Speed, such as "0.5 mm/s" [default: the rig's own speed]
     #[arg(long, value_name = "SPEED")]
     pub speed: Option<String>,
-    /// Moves without asking: the rig MOVES at once
+    /// Answer every prompt with yes: the rig MOVES immediately
     #[arg(long)]
     pub yes: bool,
-    /// Lets go of an axis that is found held, where it stands; it is recorded
+    /// Clear the hold of an axis without moving it (logged)
     #[arg(long)]
     pub let_go: bool,
-    /// Counts places from the zero of this run, on a rig with `datum = here`
+    /// Count positions from the zero of this run (`datum = here`)
     #[arg(long, value_name = "RUN")]
     pub datum: Option<PathBuf>,
-    /// Whose hand it is [default: the plan's `operator`]
+    /// Operator name [default: the plan's `operator`]
     #[arg(long, value_name = "NAME", value_parser = name)]
     pub operator: Option<String>,
-    /// Run folder of the record on a real rig, new or empty [default: runs/PLAN-N]
+    /// Run folder on a real rig, new or empty [default: runs/PLAN-N]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Faults, one a line: WHEN: WHAT. WHEN is `at 4.5 s`, `after 12 moves`, `after 20 readings`,\n\
-    `after 3 replies`, `each reply with 0.01`. WHAT is, among others, `drop replies 3`,\n\
-    `delay reply 0.4 s`, `flip a bit`, `hang up`, `reboot`, `freeze force`, `scale force by -1`.\n\n\
-    Exit codes: 0 every target lay within the limits, 2 plan, script or command line are wrong,\n\
-    3 a port or a file failed, 4 a target lay outside the limits."
+    after_help = "The script has one fault per line, as TIME: FAULT. Times are `at 4.5 s`, `after 12 moves`, `after 20 readings`, `after 3 replies`, \
+    `each reply with 0.01`. Faults are, among others, `drop replies 3`, `delay reply 0.4 s`, `flip a bit`, `hang up`, `reboot`, \
+    `freeze force`, `scale force by -1`. See docs/reference/emulator-faults.md.\n\n\
+    Exit codes:\n\
+    \x20 0  all targets within the limits\n\
+    \x20 2  error in the plan, the script or on the command line\n\
+    \x20 3  fault of a port or a file\n\
+    \x20 4  a target outside the limits"
 )]
 pub struct SimulateArguments {
     /// The plan, a `.psd` file
@@ -161,64 +171,67 @@ pub struct SimulateArguments {
     pub plan: PathBuf,
     #[command(flatten)]
     pub plan_settings: PlanSettings,
-    /// What goes wrong, one fault a line: `after 12 moves: drop replies 3`
+    /// Script of faults, such as `after 12 moves: drop replies 3`
     #[arg(long, value_name = "FILE")]
     pub script: Option<PathBuf>,
-    /// Every byte and every move with its time; a new file
+    /// New log file of all bytes and moves, with their times
     #[arg(long, value_name = "FILE")]
     pub log: Option<PathBuf>,
-    /// Noise and faults by chance are the same for the same seed
+    /// Seed of random noise and faults
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Ends when its last host has hung up
+    /// End when the last host has disconnected
     #[arg(long)]
     pub once: bool,
 }
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Prints `ready` once it listens, and after each session what it asked of the specimen.\n\
-    Exit codes: 0 closed by the client, 2 the plan or the command line is wrong, 3 the client or the rig\n\
-    failed, 4 stopped by a limit or by a person. The worst session counts."
+    after_help = "THE RIG MOVES as the client requests. psd prints `ready` when it listens, and a summary after each session.\n\n\
+    Exit codes:\n\
+    \x20 0  closed by the client\n\
+    \x20 2  error in the plan or on the command line\n\
+    \x20 3  fault of the client or the rig\n\
+    \x20 4  stopped by a limit or by the operator\n\
+    The worst session determines the code."
 )]
 pub struct ServeArguments {
-    /// The plan, a `.psd` file: its rig, specimen and limits count
+    /// The plan, a `.psd` file: its rig, specimen and limits apply
     #[arg(value_name = "PLAN")]
     pub plan: PathBuf,
     #[command(flatten)]
     pub plan_settings: PlanSettings,
-    /// What the client speaks
+    /// Protocol of the client
     #[arg(long, value_enum)]
     pub protocol: ServedProtocol,
-    /// Where to listen; port 0: any free one. Other machines reach only another address than the loopback's
+    /// Address to listen at; port 0 is any free port
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8090")]
     pub listen: std::net::SocketAddr,
-    /// The constant stiffness that a generic client is told [default: the specimen's initial one]
+    /// Stiffness for a generic client [default: initial stiffness]
     #[arg(long, value_name = "STIFFNESS")]
     pub stiffness: Option<String>,
-    /// Names of a frame's floors for a NEES coordinator, the lowest first, with commas between [default: MDL-00-01, MDL-00-02, …;
-    /// of one axis any name]
+    /// Comma-separated floor names for NEES, the lowest first [default: MDL-00-01, MDL-00-02, …]
     #[arg(long, value_name = "NAMES")]
     pub control_points: Option<String>,
-    /// Ends after the first session
+    /// End after the first session
     #[arg(long)]
     pub once: bool,
     /// Run folder, new or empty [default: runs/PLAN-N]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Releases a real rig without asking: it MOVES as soon as it is open. Who starts this answers for it
+    /// Answer every prompt with yes: a real rig MOVES immediately
     #[arg(long)]
     pub yes: bool,
-    /// Who stands by at a real rig [default: the plan's `operator`]
+    /// Operator at the rig [default: the plan's `operator`]
     #[arg(long, value_name = "NAME", value_parser = name)]
     pub operator: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ServedProtocol {
-    /// NEES "LabVIEW plugin" ASCII, of OpenFresco and UI-SimCor
+    /// NEES "LabVIEW plugin" ASCII of OpenFresco and UI-SimCor
     Nees,
-    /// The socket of OpenSees' `genericClient` and of OpenFresco's `GenericTCP`
+    /// Socket of OpenSees `genericClient` and OpenFresco `GenericTCP`
     GenericClient,
 }
 
@@ -235,72 +248,78 @@ impl ServedProtocol {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Exit codes: 0 all requirements met, 1 a requirement failed or is inconclusive,\n\
-    2 the plan or the command line is wrong, 3 rig or file fault, 4 stopped by a limit or by a person."
+    after_help = "A REAL RIG MOVES after its release. psd first shows how far, how fast and with which force; the operator then types RELEASE. \
+    With `--yes` it MOVES without this prompt. With `--check-run` it MOVES for the pre-test check and the first stiffness ramps.\n\n\
+    Exit codes:\n\
+    \x20 0  all requirements met\n\
+    \x20 1  a requirement failed or is inconclusive\n\
+    \x20 2  error in the plan or on the command line\n\
+    \x20 3  fault of the rig or a file\n\
+    \x20 4  stopped by a limit or by the operator"
 )]
 pub struct RunArguments {
     /// The plan, a `.psd` file
     #[arg(value_name = "PLAN")]
     pub plan: PathBuf,
-    /// The run folder, new or empty [default: runs/PLAN-N, N the next free number]
+    /// Run folder, new or empty [default: runs/PLAN-N]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     #[command(flatten)]
     pub plan_settings: PlanSettings,
-    /// Releases the rig without asking: it MOVES as soon as it is open, and goes on at every inspection
+    /// Answer every prompt with yes, including the motion release
     #[arg(long)]
     pub yes: bool,
-    /// Who runs the test and answers at inspections [default: the plan's `operator`]
+    /// Operator name [default: the plan's `operator`]
     #[arg(long, value_name = "NAME", value_parser = name)]
     pub operator: Option<String>,
-    /// What is printed on standard output: the run folder, or the whole summary
+    /// Standard output: the run folder, or the summary as JSON
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub format: Format,
-    /// Also replaces the blessed results in reports/PLAN, beside the plan's folder
-    #[arg(long)]
-    pub bless: bool,
-    /// Runs only the gate and the leading stiffness ramps, on record; predicts the rest on a virtual specimen that is as
-    /// stiff, and how far it stays from each limit. Exit code 4: a limit would stop the run
-    #[arg(long, conflicts_with = "bless")]
-    pub rehearse: bool,
+    /// Also replace the accepted results in reports/PLAN
+    #[arg(long, alias = "bless")]
+    pub accept: bool,
+    /// Check run (A REAL RIG MOVES), and prediction of the rest
+    #[arg(long, alias = "rehearse", conflicts_with = "accept")]
+    pub check_run: bool,
 }
 
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
 #[command(
-    after_help = "Nothing moves before record, plan, program and rig are known to be those of the run, and the rig\n\
-    has said what became of the last target. See docs/record.md.\n\n\
-    Exit codes: as `psd run`; 3 also where the run must not go on."
+    after_help = "A REAL RIG MOVES after its release. Before that, psd checks that run log, plan, program and rig belong to the run, and reads the \
+    state of the last target from the rig. See docs/how-to/resume.md.\n\n\
+    Exit codes:\n\
+    \x20 as for `psd run`; 3 also if the run must not continue"
 )]
 pub struct ResumeArguments {
     /// The run folder
     #[arg(value_name = "RUN")]
     pub run: PathBuf,
-    /// Who answers for it that the run goes on; it is recorded
+    /// Person authorising the resumption (logged)
     #[arg(long, value_name = "NAME")]
     pub operator: String,
-    /// Why the run was interrupted and may go on; it is recorded
+    /// Reason of the interruption, and why the run may continue (logged)
     #[arg(long, value_name = "TEXT")]
     pub reason: String,
-    /// A plan that must be the recorded one, or, with --amend, takes its place
+    /// Plan to compare, or with --amend to use instead
     #[arg(long, value_name = "PLAN")]
     pub plan: Option<PathBuf>,
-    /// Accepts that the plan or the program is another one; the difference is recorded
+    /// Accept a different plan or program (logged)
     #[arg(long)]
     pub amend: bool,
-    /// The rig started anew, and has been referenced since; it is recorded
+    /// Confirm that the restarted rig was referenced (logged)
     #[arg(long)]
     pub re_referenced: bool,
-    /// The rig cannot say whether it was switched off since, and it was not; it is recorded
+    /// Confirm that the rig was not power-cycled (logged)
     #[arg(long)]
     pub same_power_up: bool,
-    /// Lets go of an axis that is found held, where it stands; it is recorded
+    /// Clear the hold of an axis without moving it (logged)
     #[arg(long)]
     pub let_go: bool,
-    /// The force changed beyond its band since, and someone has looked at the specimen; it is recorded
+    /// Confirm a force change after inspecting the specimen (logged)
     #[arg(long)]
     pub accept_relaxation: bool,
-    /// Releases the rig without asking: it MOVES as soon as it is open, and goes on at every inspection
+    /// Answer every prompt with yes, including the motion release
     #[arg(long)]
     pub yes: bool,
 }
@@ -312,10 +331,10 @@ pub struct CheckArguments {
     pub plans: Vec<PathBuf>,
     #[command(flatten)]
     pub plan_settings: PlanSettings,
-    /// Says what a run would do, from a dry run on an ideal copy of the specimen
+    /// Predict the run by a dry run on an ideal virtual rig
     #[arg(long)]
     pub explain: bool,
-    /// How diagnostics are given: drawn on standard error, or as JSON on standard output
+    /// Diagnostics as text on standard error, or JSON on standard output
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub format: Format,
 }
@@ -323,83 +342,86 @@ pub struct CheckArguments {
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
 #[command(
-    after_help = "Blessed results of plans/NAME.psd lie in reports/NAME, beside the folder of the plans.\n\
-    The plan's `golden` block says how near is near enough; docs/golden.md tells all.\n\n\
-    Exit codes: 0 everything is as blessed, 2 the command line is wrong, 3 a file failed,\n\
-    5 something differs, is not blessed, or could not be run."
+    after_help = "The accepted results of plans/NAME.psd are in reports/NAME, beside the folder of the plans. The `golden` block of a plan sets the \
+    tolerances; see docs/golden.md.\n\n\
+    Exit codes:\n\
+    \x20 0  all results as accepted\n\
+    \x20 2  error on the command line\n\
+    \x20 3  fault of a file\n\
+    \x20 5  a plan differs, has no accepted results, or could not run"
 )]
 pub struct TestArguments {
-    /// Plans, or folders whose plans are meant, not those of folders in them [default: plans]
+    /// Plans, or folders of plans (not recursive) [default: plans]
     #[arg(value_name = "PATH")]
     pub paths: Vec<PathBuf>,
-    /// Folder of the blessed results [default: reports, beside the folder of each plan]
+    /// Folder of the accepted results [default: reports]
     #[arg(long, value_name = "DIR")]
     pub golden: Option<PathBuf>,
-    /// Blesses what the plans give now, and says what changed; where nothing did, nothing is written
-    #[arg(long, conflicts_with_all = ["list", "fail_fast"])]
-    pub bless: bool,
-    /// With --bless: writes all files again, also of results that did not change
-    #[arg(long, requires = "bless")]
+    /// Accept the present results, and report the changes
+    #[arg(long, alias = "bless", conflicts_with_all = ["list", "fail_fast"])]
+    pub accept: bool,
+    /// With --accept: also write the files of unchanged results
+    #[arg(long, requires = "accept")]
     pub anew: bool,
-    /// With --bless: also keeps report and pictures; where they are kept already, they are updated without it
-    #[arg(long, requires = "bless")]
+    /// With --accept: also keep report and pictures
+    #[arg(long, requires = "accept")]
     pub pages: bool,
     /// Only plans with this text in their path
     #[arg(long, value_name = "TEXT")]
     pub filter: Option<String>,
-    /// Lists the plans and runs none
+    /// List the plans without running them
     #[arg(long)]
     pub list: bool,
-    /// Plans run at a time [default: as many as there are processors]; the outcome is the same
+    /// Number of plans run in parallel [default: number of processors]
     #[arg(long, value_name = "N")]
     pub jobs: Option<std::num::NonZeroUsize>,
-    /// Ends at the first plan that fails
+    /// Stop at the first plan that fails
     #[arg(long)]
     pub fail_fast: bool,
-    /// Where a plan that differs leaves its new results, and old and new on one picture
+    /// Folder for new results of plans that differ, with overlay pictures
     #[arg(long, value_name = "DIR", default_value = "runs/golden-failures")]
     pub out: PathBuf,
-    /// Also writes the outcome as JUnit XML
+    /// Also write the outcome as JUnit XML
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
-    /// Gives the outcome on standard output in the Test Anything Protocol
+    /// Write the outcome as TAP on standard output
     #[arg(long)]
     pub tap: bool,
-    /// How the outcome is given: told on standard error, or as JSON on standard output
+    /// Outcome as text on standard error, or JSON on standard output
     #[arg(long, value_enum, default_value_t = Format::Human, conflicts_with = "tap")]
     pub format: Format,
 }
 
 #[derive(Debug, Args)]
 pub struct CompareArguments {
-    /// Run folders, or folders of blessed results; at least two
+    /// Run folders, or folders of accepted results; at least two
     #[arg(value_name = "RUN", num_args = 2.., required = true)]
     pub runs: Vec<PathBuf>,
-    /// Also writes a page, a CSV and figures into this folder, new or empty
+    /// Also write a page, a CSV and figures into this new folder
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 pub struct FmtArguments {
-    /// Files, or folders whose `.psd` files are meant
+    /// Files, or folders of `.psd` files
     #[arg(value_name = "PATH", required = true)]
     pub paths: Vec<PathBuf>,
-    /// Writes nothing; prints the difference and exits with 1 if there is one
+    /// Print the difference only; exit with 1 if there is one
     #[arg(long)]
     pub check: bool,
 }
 
-/// What the command line says of the plan.
+/// Settings of the plan on the command line.
 #[derive(Debug, Default, Args)]
 pub struct PlanSettings {
     /// The rig to use; a real rig moves only when named
     #[arg(long, value_name = "NAME")]
     pub rig: Option<String>,
-    /// Gives a `param` another value: `--set impact_speed="1.5 m/s"`
+    /// Set a `param`: `--set impact_speed="1.5 m/s"`
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub set: Vec<(String, String)>,
-    /// The date on the certificate; a virtual rig never takes it from the clock, a real rig's record has its own day
+    /// Date on the test report [real rig: from its run log]
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = date)]
     pub date: Option<String>,
 }
@@ -431,16 +453,16 @@ pub(super) fn name(text: &str) -> Result<String, String> {
     let name = text.trim();
     if name.is_empty() || name.chars().count() > 200 || name != escape(name) || name.contains('\n')
     {
-        return Err("a name is one line of at most 200 letters".to_owned());
+        return Err("a name must be one line of at most 200 characters".to_owned());
     }
     Ok(name.to_owned())
 }
 
-/// A day of the calendar, in the one form that a certificate shows.
+/// A day of the calendar, in the form that a report shows.
 pub(super) fn date(text: &str) -> Result<String, String> {
     let day: jiff::civil::Date = text
         .parse()
-        .map_err(|_| "no such day; write it as 2026-05-31".to_owned())?;
+        .map_err(|_| "not a date; write it as 2026-05-31".to_owned())?;
     // The calendar's reader also takes times and other forms.
     if day.to_string() == text {
         Ok(text.to_owned())
@@ -450,43 +472,4 @@ pub(super) fn date(text: &str) -> Result<String, String> {
 }
 
 #[cfg(test)]
-mod tests {
-    use clap::CommandFactory as _;
-
-    use super::*;
-
-    #[test]
-    fn the_command_line_is_sound() {
-        Arguments::command().debug_assert();
-    }
-
-    #[test]
-    fn a_date_is_a_day_of_the_calendar() {
-        assert_eq!(date("2024-02-29").as_deref(), Ok("2024-02-29"));
-        assert!(date("2023-02-29").is_err());
-        assert!(date("20240229").unwrap_err().contains("2024-02-29"));
-        assert!(date("today").is_err());
-    }
-
-    #[test]
-    fn a_name_is_one_line_that_steers_nothing() {
-        assert_eq!(name(" A. Engineer ").as_deref(), Ok("A. Engineer"));
-        for wrong in [
-            "",
-            "  ",
-            "A\nB",
-            "A\u{1b}[2J",
-            "A\u{202e}B",
-            &"x".repeat(1024),
-        ] {
-            assert!(name(wrong).is_err(), "{wrong:?}");
-        }
-    }
-
-    #[test]
-    fn a_setting_keeps_an_equals_sign_of_its_value() {
-        assert_eq!(setting("v = 1.5 m/s"), Ok(("v".into(), "1.5 m/s".into())));
-        assert_eq!(setting("a=b=c"), Ok(("a".into(), "b=c".into())));
-        assert!(setting("v").is_err() && setting("=1").is_err() && setting("v=").is_err());
-    }
-}
+mod tests;

@@ -47,7 +47,7 @@ pub fn check(arguments: &CheckArguments, settings: Settings) -> Result<Exit, Fai
             let name = one_line(&path.display().to_string());
             print_message(&format!(
                 "{name}: {}\n",
-                settings.paint_note("the plan is sound")
+                settings.paint_note("no errors found in the plan")
             ));
         }
     }

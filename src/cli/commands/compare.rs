@@ -112,8 +112,8 @@ fn from_results(name: String, folder: &Path) -> Result<Side, Failure> {
     let truth = truth_in(folder)?;
     let Some(summary) = truth.text(SUMMARY) else {
         return Err(
-            Failure::file(folder, "is no run: it has neither a record nor a summary")
-                .help("name a run folder, such as runs/beam-1, or a folder of blessed results"),
+            Failure::file(folder, "is not a run: it has no run log and no summary")
+                .help("name a run folder, such as runs/beam-1, or a folder of accepted results"),
         );
     };
     let summary = older::summary(summary)

@@ -55,7 +55,7 @@ fn one(path: &Path, check: bool, settings: Settings) -> Result<Exit, Failure> {
     if canonical(path, &formatted, settings).as_deref() != Some(formatted.as_str()) {
         return Err(Failure::file(
             path,
-            "left as it is: its formatted text would not stay the same",
+            "unchanged: formatting its formatted text would change it again",
         ));
     }
     replace(path, &formatted).map_err(|error| Failure::file(path, plain(&error)))?;

@@ -17,35 +17,35 @@ pub fn limits() -> Result<Exit, Failure> {
         (syntax::FILE_BYTES, "bytes of one file"),
         (syntax::LINE_BYTES, "bytes of one line"),
         (syntax::NAME_CHARS, "characters of one name"),
-        (syntax::TEXT_BYTES, "bytes of one text"),
+        (syntax::TEXT_BYTES, "bytes of one string"),
         (syntax::NUMBER_CHARS, "characters of one number"),
-        (syntax::NESTING, "brackets inside brackets"),
+        (syntax::NESTING, "nested brackets"),
         (
             syntax::OPERATORS,
             "operators from the root of an expression to a leaf",
         ),
         (
             syntax::TOKENS,
-            "words, numbers, texts and signs of one file",
+            "words, numbers, strings and symbols of one file",
         ),
-        (syntax::ERRORS, "faults reported for one file"),
+        (syntax::ERRORS, "errors reported for one file"),
         (
             render::DRAWN,
-            "faults drawn on a terminal, all with `--format json`",
+            "errors shown on a terminal (all with `--format json`)",
         ),
         (
             journal::LINE_BYTES,
-            "bytes of one record of a run, its newline included",
+            "bytes of one run log entry, its newline included",
         ),
         (check::MOST_FILES, "files of one plan, the plan included"),
         (check::DEEPEST, "files that use files, one inside another"),
         (
             check::DEEPEST_VALUES,
-            "values that need one another, one inside another",
+            "values that depend on each other, one inside another",
         ),
         (
             check::MOST_TERMS,
-            "results and operators of one value, those of the values it names counted in",
+            "results and operators of one value, with those of the values that it names",
         ),
         (check::MOST_ENTRIES, "entries of one list or range"),
         (check::MOST_GROUND_SAMPLES, "samples of one ground motion"),
@@ -74,7 +74,7 @@ pub fn limits() -> Result<Exit, Failure> {
         ),
         (
             journal::MOST_BYTES.to_string(),
-            "bytes of the record of one run",
+            "bytes of the run log of one run",
         ),
     ];
     print_result(&counted.iter().chain(&reckoned).chain(&record).fold(

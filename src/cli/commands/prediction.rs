@@ -6,7 +6,7 @@ use crate::plan::{Behaviour, Frame, Plan};
 use crate::record::{Outcome, Record};
 use crate::report::Prediction;
 use crate::rig::VirtualRig;
-use crate::run::rehearsal;
+use crate::run::check_run;
 use crate::text::diagnostic::excerpt::escape;
 use crate::units::Dimension;
 use crate::units::display::readable;
@@ -15,10 +15,10 @@ use crate::units::display::readable;
 /// check run is not complete.
 pub fn prediction(part: &Plan, record: &Record) -> Option<Prediction> {
     let plan = part
-        .rehearses
+        .check_run_of
         .as_deref()
         .filter(|_| record.outcome == Outcome::Completed)?;
-    let stand_in = rehearsal::prediction(plan, record).ok()?;
+    let stand_in = check_run::prediction(plan, record).ok()?;
     Some(DryRun::on(plan, &stand_in, told(plan, &stand_in)).prediction())
 }
 
@@ -44,10 +44,10 @@ pub fn told(plan: &Plan, stand_in: &Plan) -> String {
     let name = escape(&plan.rig.name);
     if let Some(storeys) = storeys {
         return format!(
-            "rehearsal of the run on rig `{name}`, predicted on the {storeys} storeys of the plan, noise {noise}"
+            "check run on rig `{name}`, predicted with the {storeys} storeys of the plan, noise {noise}"
         );
     }
     format!(
-        "rehearsal of the run on rig `{name}`, predicted on a virtual specimen as measured: stiffness {stiffness}, noise {noise}"
+        "check run on rig `{name}`, predicted with a virtual specimen as measured: stiffness {stiffness}, noise {noise}"
     )
 }

@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use super::run_folder::write_new;
+use crate::evidence::names::present_name;
 use crate::files::failure::Failure;
 use crate::files::failure::plain;
 use crate::golden::{Accepted, SUMMARY, Tolerances, Truth, compare};
@@ -48,7 +49,7 @@ impl AcceptedFolder {
             }
             None => Err(Failure::file(
                 plan,
-                "has no folder above its own to keep blessed results in",
+                "has no folder above its own for accepted results",
             )),
         }
     }
@@ -60,10 +61,7 @@ impl AcceptedFolder {
                 reports: reports.to_owned(),
                 name: name.to_string_lossy().into_owned(),
             }),
-            None => Err(Failure::file(
-                plan,
-                "has no name to keep blessed results under",
-            )),
+            None => Err(Failure::file(plan, "has no name for its accepted results")),
         }
     }
 
@@ -88,7 +86,7 @@ impl AcceptedFolder {
         let (old, new) = (self.truth()?, truth_of(files));
         if old.text(SUMMARY).is_some() && new.is_of_faults() {
             return Ok(Accepted::Refused(
-                "the plan had results and now fails to check; remove the folder to bless that",
+                "the plan had results and now fails to check; delete its results folder first",
             ));
         }
         let before = names(&self.path())?;
@@ -210,7 +208,7 @@ pub fn is_page(path: &str) -> bool {
         && Path::new(path)
             .extension()
             .is_some_and(|ending| ending == "png");
-    picture || matches!(path, "certificate.html" | "certificate.pdf")
+    picture || matches!(present_name(path), "report.html" | "report.pdf")
 }
 
 #[cfg(test)]
@@ -238,21 +236,21 @@ mod tests {
         ] {
             std::fs::write(root.path().join(path), "old").unwrap();
         }
-        let blessed = AcceptedFolder::of(&root.path().join("plans/beam.psd")).unwrap();
+        let accepted = AcceptedFolder::of(&root.path().join("plans/beam.psd")).unwrap();
         let files = [
             file("summary.json"),
             file("tables/hit.csv"),
             file("tables/hit.parquet"),
             file("plan/beam.psd"),
-            file("certificate.html"),
+            file("report.html"),
         ];
-        let bless_with = |anew, pages| {
-            blessed
+        let accept_with = |anew, pages| {
+            accepted
                 .accept(&files, &Tolerances::default(), anew, pages)
                 .unwrap()
         };
-        let bless = |anew| bless_with(anew, false);
-        assert!(matches!(bless(false), Accepted::Changed(found) if !found.is_empty()));
+        let accept = |anew| accept_with(anew, false);
+        assert!(matches!(accept(false), Accepted::Changed(found) if !found.is_empty()));
         let read =
             |path: &str| std::fs::read_to_string(root.path().join("reports").join(path)).ok();
         assert_eq!(read("beam/summary.json").as_deref(), Some("{}"));
@@ -273,25 +271,25 @@ mod tests {
             2
         );
         assert_eq!(
-            (bless(false), bless(true)),
+            (accept(false), accept(true)),
             (Accepted::Unchanged, Accepted::Changed(Vec::new()))
         );
-        let page = "beam/certificate.html";
+        let page = "beam/report.html";
         assert_eq!(read(page), None, "data alone");
-        assert!(matches!(bless_with(false, true), Accepted::Changed(found) if found.is_empty()));
+        assert!(matches!(accept_with(false, true), Accepted::Changed(found) if found.is_empty()));
         assert_eq!(read(page).as_deref(), Some("{}"));
-        assert!(matches!(bless(true), Accepted::Changed(_)));
+        assert!(matches!(accept(true), Accepted::Changed(_)));
         assert_eq!(read(page).as_deref(), Some("{}"), "a page stays");
         let faults = [file(DIAGNOSTICS)];
         assert!(matches!(
-            blessed
+            accepted
                 .accept(&faults, &Tolerances::default(), true, false)
                 .unwrap(),
             Accepted::Refused(_)
         ));
-        std::fs::remove_dir_all(blessed.path()).unwrap();
+        std::fs::remove_dir_all(accepted.path()).unwrap();
         assert_eq!(
-            blessed
+            accepted
                 .accept(&faults, &Tolerances::default(), false, false)
                 .unwrap(),
             Accepted::New

@@ -97,7 +97,7 @@ mod tests {
         let refused = compare(folder, 9_960_000).unwrap_err();
         assert_eq!(
             refused.to_string(),
-            "runs/beam-1: its disk has 10 MB of free space, and a run begins with at least 200 MB; nothing has moved"
+            "runs/beam-1: its disk has 10 MB of free space (a run requires at least 200 MB); nothing has moved"
         );
         assert!(
             refused.help().starts_with("free 190 MB, or name a folder"),

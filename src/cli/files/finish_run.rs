@@ -69,12 +69,14 @@ pub fn finish_run(
         (None, None) => Ok(exit),
         (Some(fault), _) => {
             print_message(&format!(
-                "  the record could not be kept to its end: {fault}\n"
+                "  the run log could not be written to its end: {fault}\n"
             ));
             Ok(exit.max(Exit::Fault))
         }
         (None, Some(mismatch)) => {
-            print_message(&format!("  the record does not fit the plan: {mismatch}\n"));
+            print_message(&format!(
+                "  the run log does not match the plan: {mismatch}\n"
+            ));
             Ok(exit.max(Exit::Fault))
         }
     }
@@ -100,13 +102,13 @@ fn rig_state(folder: &Path, plan: &Plan, record: &Record, settings: Settings) ->
         .find(|event| matches!(event.kind, EventKind::Held | EventKind::NotHeld));
     let mut text = last.map_or_else(String::new, |event| match event.kind {
         EventKind::NotHeld => format!("  {}\n", settings.paint_error(&escape(&event.text))),
-        _ => format!("  the rig: {}\n", escape(&event.text)),
+        _ => format!("  the rig is {}\n", escape(&event.text)),
     });
     if hold_status::is_held(record) && hold_status::can_go_on(record) {
         let folder = folder.display();
         let _ = writeln!(
             text,
-            "  to go on: psd resume {folder} --operator \"your name\" --reason \"why it stopped\""
+            "  to resume: psd resume {folder} --operator \"your name\" --reason \"why it stopped\""
         );
     }
     text
@@ -167,9 +169,9 @@ fn as_recorded(
     if recorded.sealed.as_ref() != Some(&on_disk) {
         return Err(Failure::file(
             journal_of(folder),
-            "is not what this run has written: no results are made of it",
+            "differs from the run log that this run has written: no results are created",
         )
-        .help("look for who else writes there; `psd verify` says what is wrong with it"));
+        .help("find the other program that writes there; `psd verify` reports the difference"));
     }
     Ok(read.provenance)
 }

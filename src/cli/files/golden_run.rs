@@ -2,6 +2,7 @@
 //! the diagnostics if the plan has errors. The rig is simulated, every question is answered as by `--yes`, and no run log is kept: the
 //! same plan gives the same files everywhere.
 
+use crate::schema::plan_block::OPERATOR;
 use std::path::Path;
 
 use super::finish_run::numbered;
@@ -58,7 +59,7 @@ pub fn of(path: &Path, extent: Extent) -> Result<Trial, Failure> {
     let operator = plan
         .particulars
         .iter()
-        .find(|(field, _)| *field == "operator")
+        .find(|(field, _)| *field == OPERATOR.name)
         .map(|(_, name)| name.clone());
     let provenance = provenance::of(plan, None);
     let mut rig = virtual_rig(plan);

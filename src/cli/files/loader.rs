@@ -1,13 +1,17 @@
-//! Files of a plan. In: paths. Out: their text. A plan may `use` only files below its folder: relative paths of
+//! Files of a plan. In: paths. Out: their text; the bytes of a PNG or JPEG picture as base64. A plan may `use` only files below its folder: relative paths of
 //! regular files, no parent folder and no link to the outside, at most [`FILE_BYTES`] of UTF-8.
 
 use std::fs::File;
 use std::io::Read as _;
 use std::path::{Component, Path, PathBuf};
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+
 use crate::files::failure::{Failure, plain};
 use crate::language::check::{LoadError, Loader};
 use crate::language::syntax::limits::FILE_BYTES;
+use crate::plan::{PICTURE_BYTES, PictureKind};
 use crate::text::source::Position;
 
 /// Loads files of one folder and of the folders below it.
@@ -53,6 +57,11 @@ impl Loader for FolderLoader {
                 "it is a link that leads out of the plan's folder".to_owned(),
             ));
         }
+        if PictureKind::of(path).is_some_and(PictureKind::is_binary) {
+            return bytes(&file, PICTURE_BYTES)
+                .map(|bytes| STANDARD.encode(bytes))
+                .map_err(LoadError::Refused);
+        }
         read(&file).map_err(|fault| LoadError::Refused(fault.reason))
     }
 }
@@ -84,19 +93,25 @@ impl From<String> for Unread {
     }
 }
 
-fn read(path: &Path) -> Result<String, Unread> {
+/// The bytes of a regular file of up to `most` bytes.
+fn bytes(path: &Path, most: usize) -> Result<Vec<u8>, String> {
     // Checked before opening: opening a pipe or a device may block.
     if !path.metadata().map_err(|error| plain(&error))?.is_file() {
-        return Err("it is not a regular file".to_owned().into());
+        return Err("it is not a regular file".to_owned());
     }
     let file = File::open(path).map_err(|error| plain(&error))?;
     let mut bytes = Vec::new();
-    file.take(FILE_BYTES as u64 + 1)
+    file.take(most as u64 + 1)
         .read_to_end(&mut bytes)
         .map_err(|error| plain(&error))?;
-    if bytes.len() > FILE_BYTES {
-        return Err(format!("it is larger than {} MiB", FILE_BYTES >> 20).into());
+    if bytes.len() > most {
+        return Err(format!("it is larger than {} MiB", most >> 20));
     }
+    Ok(bytes)
+}
+
+fn read(path: &Path) -> Result<String, Unread> {
+    let bytes = bytes(path, FILE_BYTES)?;
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         let (line, column) = place(&error.as_bytes()[..at]);

@@ -28,7 +28,7 @@ pub fn open_to_run(
         if settings.set[..at].iter().any(|(before, _)| before == name) {
             return Err(
                 Failure::command_line(format!("`--set {name}` is given twice"))
-                    .help("give it once, with the value that is meant"),
+                    .help("give it once, with the intended value"),
             );
         }
     }

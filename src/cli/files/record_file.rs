@@ -10,7 +10,7 @@ use crate::record::equipment::{Device, Equipment};
 use crate::record::journal::{Durability, FileStorage, Journal, Storage};
 use crate::report::Provenance;
 use crate::rig::Rig;
-use crate::run::rehearsal;
+use crate::run::check_run;
 use crate::run::replay;
 use crate::run::replay::{Header, HeaderFile, RULES};
 use crate::text::digest::sha256;
@@ -46,7 +46,7 @@ pub fn header(
         settings: settings.set.clone(),
         rig: settings.rig.clone(),
         equipment: Some(Equipment::of(plan, device)),
-        rehearsal: rehearsal::rehearsed_plan(plan).is_some(),
+        check_run: check_run::performed_part(plan).is_some(),
         served,
         date: settings.date.clone(),
         operator,

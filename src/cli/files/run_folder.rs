@@ -68,7 +68,7 @@ impl RunFolder {
         loop {
             number = number
                 .checked_add(1)
-                .ok_or_else(|| Failure::file(runs, "no number is free"))?;
+                .ok_or_else(|| Failure::file(runs, "no run number is free"))?;
             let path = runs.join(format!("{plan}-{number}"));
             // Creating the folder reserves the number, also against a run that starts at the same time.
             match std::fs::create_dir(&path) {
@@ -93,8 +93,8 @@ pub fn write_new(folder: &Path, file: &OutputFile) -> Result<(), Failure> {
 /// The error of a file that was not written; with advice if one exists already.
 fn unwritten(path: &Path, error: &std::io::Error) -> Failure {
     match error.kind() {
-        ErrorKind::AlreadyExists => Failure::file(path, "is there already: somebody else wrote it")
-            .help("a record beside it is whole: make its results in a new folder with `psd report RUN --out FOLDER`"),
+        ErrorKind::AlreadyExists => Failure::file(path, "exists already, written by another program")
+            .help("a run log beside it is complete: create its results in a new folder with `psd report RUN --out FOLDER`"),
         _ => Failure::file(path, plain(error)),
     }
 }

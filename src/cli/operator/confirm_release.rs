@@ -32,7 +32,7 @@ pub fn ask(
                 return Err(refused(watcher, "stopped on request".to_owned()));
             }
             Inspection::GoOn { note, by } => {
-                let by = by.unwrap_or_else(|| "nobody".to_owned());
+                let by = by.unwrap_or_else(|| "the operator".to_owned());
                 return Ok(note.map_or_else(|| by.clone(), |note| format!("{by}: {note}")));
             }
             Inspection::Wait => match rig.pause(BREATH) {
@@ -74,14 +74,14 @@ fn next(link: &RealLink, found: &Reading, decision: &ResumeDecision) -> String {
     let next = match (&decision.sends, &decision.target_status) {
         (Some((to, speed)), TargetStatus::NotExecuted) => {
             format!(
-                "the last target did not arrive: it will move to {} at {}, then as the plan says",
+                "the last target did not arrive: it MOVES to {} at {}, then as the plan specifies",
                 places(to),
                 at(*speed)
             )
         }
         (Some((to, speed)), _) => {
             format!(
-                "the last target was not reached: it will move to {} at {}, then as the plan says",
+                "the last target was not reached: it MOVES to {} at {}, then as the plan specifies",
                 places(to),
                 at(*speed)
             )
@@ -91,17 +91,17 @@ fn next(link: &RealLink, found: &Reading, decision: &ResumeDecision) -> String {
                 .chain(others.iter().copied())
                 .collect();
             format!(
-                "a way was cut off: it will move back to {} at {own}, then as the plan says",
+                "a motion was interrupted: it MOVES back to {} at {own}, then as the plan specifies",
                 places(&to)
             )
         }
         (None, TargetStatus::RestOfTheWay { .. }) => {
-            "a way was cut off: it will go the rest of it from here, then as the plan says"
+            "a motion was interrupted: it MOVES on to its target from here, then as the plan specifies"
                 .to_owned()
         }
         (None, _) => {
             format!(
-                "it stands where the record left it, and will move as the plan says, at {own} where that says nothing"
+                "it is at its last logged position, and MOVES as the plan specifies, at {own} if the plan gives no speed"
             )
         }
     };

@@ -23,7 +23,7 @@ pub fn of(plan: &Plan) -> (Extent, u64) {
 }
 
 /// The remaining extent after `done` steps.
-pub fn rest((extent, steps): (Extent, u64), done: u64) -> Extent {
+pub fn rest(extent: Extent, steps: u64, done: u64) -> Extent {
     #[expect(clippy::cast_precision_loss, reason = "a share of steps")]
     let share = if steps > 0 {
         1.0 - (done.min(steps) as f64) / (steps as f64)

@@ -52,8 +52,8 @@ pub enum Choice {
 }
 
 /// The question to the operator who resumes a held run.
-pub const WHY_RESUME: &str = "Why was the run held, and why may it go on? With the reason you say that the rig was not switched off. \
-                              Both are recorded.";
+pub const WHY_RESUME: &str = "Why was the run held, and why may it continue? With the reason you confirm that the rig was not \
+                              power-cycled. Both are logged.";
 
 /// Position of a rig and its measured force there.
 pub fn felt(displacement: f64, force: f64) -> String {
@@ -73,13 +73,17 @@ impl After {
         let resume = resume.then_some((
             'r',
             Choice::Resume,
-            "resume the run; the rig is released first",
+            "resume the run; the rig MOVES only after its release",
         ));
-        let unload = unload.then_some(('u', Choice::Unload, "unload; the rig is released first"));
+        let unload = unload.then_some((
+            'u',
+            Choice::Unload,
+            "unload; the rig MOVES only after its release",
+        ));
         resume
             .into_iter()
             .chain(unload)
-            .chain([('x', Choice::Leave, "leave; the rig stays held")])
+            .chain([('x', Choice::Leave, "leave; the rig stays HELD")])
             .collect()
     }
 
@@ -104,7 +108,7 @@ impl Question {
             };
         };
         let onward = Motion {
-            does: "it goes on as the plan says".to_owned(),
+            does: "it MOVES on as the plan specifies".to_owned(),
             ..motion.clone()
         };
         Self {
@@ -148,7 +152,7 @@ impl Kind {
         match self {
             Self::Look | Self::GoOn => "the run ends here and the rig holds",
             Self::Release | Self::Jog => "nothing moves",
-            Self::Unload => "it stays held",
+            Self::Unload => "it stays HELD",
         }
     }
 
@@ -171,7 +175,7 @@ impl Kind {
             return Inspection::GoOn { note: remark, by };
         }
         let reason = match self {
-            Self::Look | Self::GoOn => "stopped by a person at an inspection",
+            Self::Look | Self::GoOn => "stopped by the operator at an inspection",
             Self::Release => "declined by the operator",
             Self::Unload | Self::Jog => "no",
         };

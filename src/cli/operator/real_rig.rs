@@ -9,6 +9,7 @@ use crate::cli::settings::Settings;
 use crate::plan::Plan;
 use crate::rig::{Connected, Rig as _, StopRequest, connect};
 use crate::run::replay::Wall;
+use crate::schema::plan_block::OPERATOR;
 
 /// Whether the command line names no operator, and no operator can be asked.
 pub fn unattended(attendance: &Attendance, settings: Settings) -> bool {
@@ -22,13 +23,13 @@ pub fn named(attendance: Attendance, plan: &Plan) -> Result<Attendance, Failure>
         return Ok(attendance);
     }
     let nobody = || {
-        Failure::command_line("nobody is named who runs the test: nothing was opened")
+        Failure::command_line("no operator is named: nothing was opened")
             .help("--operator \"A. Tester\"")
     };
     // Input typed before the question is not a name.
     throw_away();
     loop {
-        print_message("  who runs the test? [your name] ");
+        print_message("  name of the operator? [your name] ");
         let mut line = String::new();
         let count = std::io::stdin()
             .read_line(&mut line)
@@ -54,7 +55,7 @@ pub fn operator(plan: &Plan, attendance: &Attendance) -> Option<String> {
     let of_plan = plan
         .particulars
         .iter()
-        .find(|(field, _)| *field == "operator")
+        .find(|(field, _)| *field == OPERATOR.name)
         .map(|(_, name)| name.clone());
     attendance
         .operator

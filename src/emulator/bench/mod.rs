@@ -21,7 +21,7 @@ pub struct BenchSettings {
     /// Scale factor of a raw converter \[N per count\], with the polarity of the load cell.
     pub newtons_per_count: f64,
     /// Zero offset of a raw converter: the count at zero force.
-    pub zero_count: f64,
+    pub zero_offset: f64,
     pub seed: u64,
     /// Limits of the target. The emulator logs a target outside them as a failure of the host.
     pub limits: Interval,
@@ -370,8 +370,8 @@ impl Bench {
     pub fn counts(&mut self) -> i64 {
         let force = self.force();
         match self.converters.get(self.view) {
-            Some((newtons_per_count, zero_count)) => {
-                in_24_bits(force / newtons_per_count + zero_count)
+            Some((newtons_per_count, zero_offset)) => {
+                in_24_bits(force / newtons_per_count + zero_offset)
             }
             None => self.counts_of(force),
         }
@@ -380,7 +380,7 @@ impl Bench {
     /// Converts a force \[N\] to counts of a raw converter of 24 bits.
     #[must_use]
     pub fn counts_of(&self, force: f64) -> i64 {
-        in_24_bits(force / self.settings.newtons_per_count + self.settings.zero_count)
+        in_24_bits(force / self.settings.newtons_per_count + self.settings.zero_offset)
     }
 
     /// The string that the controller sends for a force of the actuator with this index: `ordinary`, unless a fault replaces

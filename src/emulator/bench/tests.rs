@@ -135,7 +135,7 @@ fn frame() -> Frame {
     let yielding = Behaviour::Bilinear {
         stiffness: 2000.0,
         yield_force: 4.0,
-        hardening: 0.0,
+        post_yield_ratio: 0.0,
     };
     Frame::of_storeys(vec![
         Storey::new(1.0, 3000.0, Behaviour::Elastic { stiffness: 3000.0 }),

@@ -11,7 +11,7 @@ pub fn spring() -> Bench {
         noise: 0.0,
         resolution: 0.0,
         newtons_per_count: 0.01,
-        zero_count: 0.0,
+        zero_offset: 0.0,
         seed: 1,
         limits: Interval {
             low: -0.02,

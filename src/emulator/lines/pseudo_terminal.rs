@@ -119,15 +119,15 @@ fn free(link: &Path) -> io::Result<()> {
     };
     let refused = |reason: &str| Err(Error::new(ErrorKind::AlreadyExists, reason));
     if !found.is_symlink() {
-        return refused("something is there that is no link of a simulator");
+        return refused("a file exists there that is not a link of an emulator");
     }
     let end = fs::read_link(link)?;
     if !end.starts_with(ENDS) {
-        return refused("a link is there that leads to no pseudo-terminal");
+        return refused("a link exists there that does not lead to a pseudo-terminal");
     }
     if end.exists() {
         return refused(
-            "a link is there that leads to a pseudo-terminal in use; another simulator may be running",
+            "a link exists there to a pseudo-terminal in use: another emulator may be running",
         );
     }
     fs::remove_file(link)
@@ -276,10 +276,10 @@ mod tests {
         };
         let file = folder.path().join("file");
         fs::write(&file, "kept").expect("written");
-        assert!(refusal(&file).contains("no link of a simulator"));
+        assert!(refusal(&file).contains("not a link of an emulator"));
         let other = folder.path().join("other");
         symlink(&file, &other).expect("linked");
-        assert!(refusal(&other).contains("no pseudo-terminal"));
+        assert!(refusal(&other).contains("does not lead to a pseudo-terminal"));
         let link = folder.path().join("rig");
         let running = PseudoTerminal::linked(&link).expect("a pseudo-terminal");
         assert!(refusal(&link).contains("in use"));

@@ -24,7 +24,7 @@ impl TcpLine {
         let address = loopback.ok_or_else(|| {
             Error::new(
                 ErrorKind::AddrNotAvailable,
-                "a simulator listens on 127.0.0.1 or ::1 only",
+                "a rig emulator listens on 127.0.0.1 or ::1 only",
             )
         })?;
         let listener = TcpListener::bind(address)?;

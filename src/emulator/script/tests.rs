@@ -105,44 +105,38 @@ fn a_wrong_line_is_named_with_its_reason() {
     let reason = |text: &str| Script::parse(text).expect_err(text).to_string();
     assert_eq!(
         reason("# fine\n\nat 1 s hang up"),
-        "line 3: no `:` between when and what"
+        "line 3: `:` is missing between the time and the fault"
     );
-    assert_eq!(reason("at nan s: hang up"), "line 1: `nan` is no number");
+    assert_eq!(reason("at nan s: hang up"), "line 1: `nan` is not a number");
     assert_eq!(
         reason("at 1 ms: hang up"),
-        "line 1: `ms` stands where `s` is expected"
+        "line 1: found `ms`, expected `s`"
     );
     assert_eq!(
         reason("after 3 steps: reboot"),
-        "line 1: `steps` is not counted: moves, readings and replies are"
+        "line 1: `steps` cannot be counted: write moves, readings or replies"
     );
-    assert_eq!(
-        reason("at 1 s: explode"),
-        "line 1: `explode` is no fault that is known"
-    );
-    assert_eq!(
-        reason("at 1 s: reboot now"),
-        "line 1: `now` is one word too many"
-    );
+    assert_eq!(reason("at 1 s: explode"), "line 1: unknown fault `explode`");
+    assert_eq!(reason("at 1 s: reboot now"), "line 1: unexpected `now`");
     assert_eq!(
         reason("each reply: drop reply with 2"),
-        "line 1: 2 is no probability"
+        "line 1: 2 is not a probability"
     );
     assert_eq!(
         reason("at 1 s: drop reply with 0.5"),
-        "line 1: a probability goes with `each reply` and `each reading`"
+        "line 1: a probability requires `each reply` or `each reading`"
     );
     assert_eq!(
         reason("each reading: reboot"),
-        "line 1: each reading can have a spike or a bad number only"
+        "line 1: `each reading` allows only a spike or a bad number"
     );
     assert_eq!(
         reason("at 1 s: axis 0 stick"),
-        "line 1: `0` is no axis: the first is 1"
+        "line 1: `0` is not an axis: the first is 1"
     );
     assert_eq!(
         reason("at 1 s: axis 2 reboot"),
-        "line 1: only what befalls a ram, its specimen or its sensors has an axis"
+        "line 1: only a fault of an actuator, its specimen or its sensors can have an axis"
     );
     assert_eq!(
         reason("at 1 s: drop replies"),

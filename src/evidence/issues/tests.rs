@@ -64,7 +64,7 @@ fn chain(all: &[Stated<'_>]) -> IssueFile {
 fn only_particulars_can_be_stated_after_the_test() {
     assert_eq!(may_be_stated("customer"), Ok("customer"));
     assert_eq!(may_be_stated("temperature"), Ok("temperature"));
-    assert!(may_be_stated("date").unwrap_err().contains("on record"));
+    assert!(may_be_stated("date").unwrap_err().contains("logged date"));
     assert!(may_be_stated("decision_rule").is_err() && may_be_stated("edition").is_err());
     assert!(
         may_be_stated("custumer")
@@ -132,24 +132,24 @@ fn days_must_be_in_order_and_a_report_is_issued_once() {
     );
     assert!(fault(&[issue("2026-11-24"), amend("2026-11-23")]).contains("issued on 2026-11-24"));
     assert!(fault(&[issue("2026-11-24"), issue("2026-11-25")]).contains("issued on 2026-11-24"));
-    assert!(fault(&[issue("2026-11-31")]).contains("is not the day of issue"));
+    assert!(fault(&[issue("2026-11-31")]).contains("is not the date of issue"));
     assert!(
         fault(&[(
             OneKind::Issue,
             "2026-11-24",
             &[("receipt_date", "last week")]
         )])
-        .contains("is no day")
+        .contains("is not a date")
     );
     let mut other = chain(&[issue("2026-11-24")]);
     other.issues[0].date = Some("2026-11-25".to_owned());
     assert!(
         applied(&other)
             .unwrap_err()
-            .contains("is not the day of issue")
+            .contains("is not the date of issue")
     );
     other.issues[0].date = None;
-    assert!(applied(&other).unwrap_err().contains("has no day"));
+    assert!(applied(&other).unwrap_err().contains("has no date"));
 }
 
 #[test]

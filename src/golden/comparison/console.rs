@@ -59,14 +59,14 @@ pub fn told(comparison: &Comparison) -> String {
         });
         let _ = writeln!(
             text,
-            "What differs\n{}",
+            "Differences\n{}",
             columns(&[vec![head(comparison.names.len())], rows.collect()].concat())
         );
     }
     for (name, lines) in &comparison.plans {
         let _ = writeln!(
             text,
-            "Plan of {name} against that of {}",
+            "Plan of {name} compared with that of {}",
             comparison.names[0]
         );
         for line in lines {

@@ -6,7 +6,10 @@ use crate::units::Dimension;
 use crate::units::display::{join, minus, readable, readable_beside, si_unit, significant, unit};
 
 /// The titles of the results that all runs have, and of those that only some have.
-pub const TITLES: [&str; 2] = ["Results, u in brackets", "Only of some runs, u in brackets"];
+pub const TITLES: [&str; 2] = [
+    "Results, u in brackets",
+    "Results of some runs only, u in brackets",
+];
 
 /// The headings of the columns after the name and the runs.
 #[must_use]

@@ -155,7 +155,7 @@ pub fn plan(
         if warns {
             if let Some(rig) = &rig {
                 rig::real_warnings::warn(checker, rig);
-                rig::drift::warn(checker, rig);
+                rig::zero_drift::warn(checker, rig);
             }
             if let Some(limits) = &limits {
                 declarations::specimen::warn_of_short_tables(checker, &specimens, limits);
@@ -194,7 +194,7 @@ pub fn plan(
         particulars,
         report: report?,
         golden: golden?,
-        rehearses: None,
+        check_run_of: None,
         unloads_at_once: false,
         files: [text.files, checker.data_files()].concat(),
         settings: text.settings,

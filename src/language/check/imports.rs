@@ -155,17 +155,17 @@ pub fn own_path(sources: &Sources, file: FileId) -> String {
 pub fn refused(path: &str) -> Option<&'static str> {
     let drive = path.as_bytes().get(1) == Some(&b':');
     if path.is_empty() {
-        Some("it is empty")
+        Some("the path is empty")
     } else if path.contains('\\') {
-        Some("folders are parted by `/`, also on Windows")
+        Some("folders are separated by `/`, also on Windows")
     } else if path.starts_with('/') || drive {
-        Some("it is absolute")
+        Some("the path is absolute")
     } else if path.split('/').any(|step| step == "..") {
-        Some("it leaves the plan's folder by `..`")
+        Some("the path leaves the plan's folder by `..`")
     } else if path.split('/').any(str::is_empty) {
-        Some("a folder in it has no name")
+        Some("a folder name is empty")
     } else if path.split('/').all(|step| step == ".") {
-        Some("it is the plan's folder, not a file")
+        Some("the path is the plan's folder, not a file")
     } else {
         None
     }

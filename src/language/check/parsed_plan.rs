@@ -10,6 +10,7 @@ use super::expressions::parameters::{names_of_parameters, read_settings};
 use super::messages::{self, names};
 use super::scope::{Scope, Setting};
 use super::{Checked, LoadError, Loader, Options, imports, rig};
+use crate::language::renamed;
 use crate::language::syntax::ast::Ast;
 use crate::plan::{Plan, PlanFile};
 use crate::text::diagnostic::Diagnostic;
@@ -66,8 +67,9 @@ impl ParsedPlan {
     pub fn parse(name: &str, text: &str, loader: &dyn Loader, options: &Options) -> Self {
         let mut sources = Sources::default();
         let mut errors = Vec::new();
-        let imports = imports::load(name, text, loader, &mut sources, &mut errors);
+        let mut imports = imports::load(name, text, loader, &mut sources, &mut errors);
         let unread = driver::unread_lines(&sources, &errors);
+        renamed::restate(&mut imports.asts, options.recorded, &mut errors);
         let files = sources
             .iter()
             .map(|(_, file)| PlanFile {

@@ -8,6 +8,8 @@ use crate::plan::{Procedure, Specimen};
 use crate::procedures;
 use crate::procedures::facts::Tests;
 use crate::schema::Kind;
+use crate::schema::procedures::SPECIMEN;
+use crate::schema::rig::AXES;
 use crate::text::source::Span;
 
 /// Every procedure; None for those with an error.
@@ -39,7 +41,7 @@ pub fn check_specimen(checker: &mut Checker, procedures: &[(usize, Option<Proced
         };
         let head = checker.scope.blocks[*block].block.head;
         let span = checker
-            .field(*block, "specimen")
+            .field(*block, SPECIMEN.name)
             .map_or(head, |(_, entry)| entry.value.span);
         let (first, first_span) = *on_rig.get_or_insert((specimen, span));
         if specimen != first {
@@ -80,7 +82,7 @@ pub fn check_axes(
     // A rig that lists its axes is checked as a whole.
     let one_axis = rig.filter(|rig| {
         rig.block
-            .is_some_and(|block| checker.field(block, "axes").is_none())
+            .is_some_and(|block| checker.field(block, AXES.name).is_none())
     });
     let one_axis = one_axis
         .filter(|rig| rig.plan.link.as_real().is_some())

@@ -4,6 +4,7 @@ use super::checker::Checker;
 use super::messages::{names, whole as message};
 use super::scope::{DeclaredBlock, Meaning};
 use crate::language::syntax::ast::ExprKind;
+use crate::schema::procedures::SPECIMEN;
 use crate::schema::{self, Kind};
 use crate::text::diagnostic::Code;
 
@@ -16,8 +17,8 @@ impl Checker<'_> {
 
     /// The specimen a procedure names, else the only one declared.
     pub fn specimen_block(&mut self, block: usize) -> Option<usize> {
-        if self.field(block, "specimen").is_some() {
-            return self.reference(block, "specimen", Kind::Specimen);
+        if self.field(block, SPECIMEN.name).is_some() {
+            return self.reference(block, SPECIMEN.name, Kind::Specimen);
         }
         let mut declared = self.scope.of_kind(Kind::Specimen);
         match (declared.len(), declared.next()) {
@@ -48,7 +49,7 @@ impl Checker<'_> {
     /// The same without diagnostics, which the check of the block itself makes.
     pub fn tested(&self, block: usize) -> Option<usize> {
         let mut declared = self.scope.of_kind(Kind::Specimen);
-        let Some((_, written)) = self.field(block, "specimen") else {
+        let Some((_, written)) = self.field(block, SPECIMEN.name) else {
             return declared
                 .next()
                 .filter(|_| declared.len() == 0)

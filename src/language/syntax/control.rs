@@ -13,12 +13,12 @@ pub fn is_condition(word: &str) -> bool {
 pub fn of_another_language(word: &str) -> Option<(&'static str, &'static str)> {
     if is_condition(word) {
         return Some((
-            "there are no conditions in a plan",
-            "every procedure runs, in the order written; what must hold is said by `require`, and a value is changed by `--set`",
+            "a plan has no conditional statements",
+            "write a requirement with `require`, or change a value with `--set`; every procedure runs, in the order written",
         ));
     }
     LOOPS.contains(&word).then_some((
-        "there are no loops in a plan",
-        "write each procedure out; a `cycle` repeats its amplitudes and an `escalate` its blows, and a value is changed by `--set`",
+        "a plan has no loops",
+        "write each procedure; `cycle` repeats amplitudes, `escalate` repeats impacts, and `--set` changes a value",
     ))
 }

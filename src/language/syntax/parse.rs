@@ -342,17 +342,20 @@ impl Pieces<'_> {
         let word = self.word(statement.start)?;
         let help = match word.node.as_str() {
             "import" | "include" | "from" | "source" => {
-                "another file is named by `use`, as in `use \"lib/frame.psd\"`".to_owned()
+                "write `use` to include a file, as in `use \"lib/frame.psd\"`".to_owned()
             }
             "if" | "assert" | "expect" | "ensure" | "check" | "verify" => {
-                "what must hold is said by `require`, as in `require \"stays in travel\" hit.max_displacement < 9 mm`".to_owned()
+                "write `require`, as in `require \"stays in travel\" hit.max_displacement < 9 mm`"
+                    .to_owned()
             }
             "run" | "start" | "do" | "call" => {
-                "every procedure of a plan runs, in the order written: take this line away".to_owned()
+                "remove this line: every procedure of a plan runs, in the order written".to_owned()
             }
             _ => {
-                let name = self.word(statement.start + 1).filter(|_| self.tokens.is(statement.start + 2, "="))?;
-                format!("a value is named by `let`, as in `let {} = …`", name.node)
+                let name = self
+                    .word(statement.start + 1)
+                    .filter(|_| self.tokens.is(statement.start + 2, "="))?;
+                format!("write `let` to name a value, as in `let {} = …`", name.node)
             }
         };
         Some((word, help))

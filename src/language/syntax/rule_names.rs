@@ -38,7 +38,7 @@ pub const fn human(rule: Rule) -> Option<&'static str> {
         | Rule::compare
         | Rule::dots
         | Rule::and_word => "an operator",
-        Rule::text => "a text in quotes",
+        Rule::text => "a string in quotes",
         Rule::unit => "a unit",
         Rule::name | Rule::new_name | Rule::word => "a name",
         Rule::between_word => "`between`",
@@ -80,7 +80,7 @@ pub fn expected(rules: &[Rule]) -> String {
     }
     // If a value may start here, the other possibilities (a string, an argument's name) carry no information.
     if names.contains(&"a value") {
-        names.retain(|name| !matches!(*name, "a text in quotes" | "an argument"));
+        names.retain(|name| !matches!(*name, "a string in quotes" | "an argument"));
     }
     // An operator may be `(` or `[` too, where a call or index could follow: that is not a new value.
     if names.contains(&"an operator") {

@@ -14,14 +14,26 @@ pub struct Approach {
     pub hertz: Option<f64>,
 }
 
+/// A striker from its start until it meets the structure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flight {
+    /// Ms \[kg\]
+    pub striker_mass: f64,
+    /// At the start \[m/s\].
+    pub velocity: f64,
+    /// Distance at the start \[m\].
+    pub gap: f64,
+    /// Acceleration along its path \[m/s²\].
+    pub gravity: f64,
+}
+
 impl Approach {
-    /// A striker of `mass` \[kg\] that starts with `velocity` \[m/s\] at the distance `gap` \[m\], under `gravity` \[m/s²\] along its
-    /// path; its speed when the gap closes.
+    /// A striker after its flight, with its speed when the gap closes.
     #[must_use]
-    pub fn after_gap(mass: f64, velocity: f64, gap: f64, gravity: f64, hertz: Option<f64>) -> Self {
-        let squared = velocity * velocity + 2.0 * gravity * gap;
+    pub fn after(flight: Flight, hertz: Option<f64>) -> Self {
+        let squared = flight.velocity * flight.velocity + 2.0 * flight.gravity * flight.gap;
         Self {
-            striker_mass: mass,
+            striker_mass: flight.striker_mass,
             speed: squared.max(0.0).sqrt(),
             hertz,
         }
@@ -32,7 +44,7 @@ impl Approach {
     #[must_use]
     pub fn contact_stiffness(&self, struck: f64) -> Option<f64> {
         let hertz = self.hertz.filter(|_| self.speed > 0.0)?;
-        let reduced_mass = struck * self.striker_mass / (struck + self.striker_mass);
+        let reduced_mass = super::reduced_mass(struck, self.striker_mass);
         let deepest = (1.25 * reduced_mass * self.speed * self.speed / hertz).powf(0.4);
         Some(1.5 * hertz * deepest.sqrt())
     }

@@ -43,6 +43,18 @@ impl Closing {
     }
 }
 
+/// A part of a step.
+struct Part {
+    /// Depth at its start \[m\].
+    from: f64,
+    /// Change of the depth without a contact force \[m\].
+    travel: f64,
+    /// Change of the depth by 1 N \[m/N\].
+    yielding: f64,
+    /// \[s\]
+    duration: f64,
+}
+
 /// A contact of finite stiffness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HertzContact {
@@ -61,13 +73,11 @@ impl HertzContact {
     #[must_use]
     pub fn new(stiffness: f64, loss: f64, force_limit: Option<f64>, impact: Approaching) -> Self {
         let Approaching {
-            mass,
-            striker_mass,
             velocity,
             time_step,
+            ..
         } = impact;
-        let reduced_mass = mass * striker_mass / (mass + striker_mass);
-        let speed = velocity.abs();
+        let (reduced_mass, speed) = (impact.reduced_mass(), velocity.abs());
         let deepest = (1.25 * reduced_mass * speed * speed / stiffness).powf(0.4);
         let duration_of_impact = if speed > 0.0 {
             2.943 * deepest / speed
@@ -91,8 +101,9 @@ impl HertzContact {
         }
     }
 
-    /// Mean force between two depths \[N\], and its derivative by the second \[N/m\].
-    fn mean(&self, from: f64, to: f64, duration: f64) -> (f64, f64) {
+    /// Mean force of a part that ends at the depth `to` \[N\], and its derivative by that \[N/m\].
+    fn mean(&self, part: &Part, to: f64) -> (f64, f64) {
+        let Part { from, duration, .. } = *part;
         let (mut force, mut slope) = (0.0, 0.0);
         for (node, weight) in GAUSS {
             let depth = from + node * (to - from);
@@ -112,13 +123,19 @@ impl HertzContact {
         }
     }
 
-    /// Mean force of a part: `to = from + travel − yielding·F` and F = mean(from, to), by Newton's method between bounds.
+    /// Mean force of a part: `to = from + travel − yielding·F` and F = mean(to), by Newton's method between bounds.
     /// Both sides are monotone, so that there is one answer.
-    fn solve(&self, from: f64, travel: f64, yielding: f64, duration: f64) -> f64 {
-        let (mut low, mut high) = (0.0, self.mean(from, from + travel, duration).0);
+    fn solve(&self, part: &Part) -> f64 {
+        let Part {
+            from,
+            travel,
+            yielding,
+            ..
+        } = *part;
+        let (mut low, mut high) = (0.0, self.mean(part, from + travel).0);
         let mut force = high.min(self.elastic(from));
         for _ in 0..60 {
-            let (mean, slope) = self.mean(from, from + travel - yielding * force, duration);
+            let (mean, slope) = self.mean(part, from + travel - yielding * force);
             let residual = force - mean;
             if residual > 0.0 {
                 high = force;
@@ -146,8 +163,8 @@ impl HertzContact {
     }
 
     /// Mean force of a part (see `solve`) \[N\], and whether the limit bounds it.
-    fn force(&self, from: f64, travel: f64, yielding: f64, duration: f64) -> (f64, bool) {
-        let force = self.solve(from, travel, yielding, duration);
+    fn force(&self, part: &Part) -> (f64, bool) {
+        let force = self.solve(part);
         if force > self.force_limit {
             (self.force_limit, true)
         } else {
@@ -227,8 +244,12 @@ impl HertzContact {
             substep.solve(&mut mean_velocity);
             done += 1.0;
             let falling = vs + half * gravity;
-            let approach = duration * (falling - mean_velocity.as_slice()[struck]);
-            let (force, over) = self.force(depth, approach, yielding, duration);
+            let (force, over) = self.force(&Part {
+                from: depth,
+                travel: duration * (falling - mean_velocity.as_slice()[struck]),
+                yielding,
+                duration,
+            });
             limited |= over;
             let mean_striker = falling - half * force / mass;
             let pushed = half * force;

@@ -16,6 +16,9 @@ use thiserror::Error;
 
 use super::contact::state::{ContactLaw, StepState};
 use crate::integrator::Integrator;
+use crate::integrator::step_form::Motion;
+use crate::integrator::substep::{Scratch, Striker, Substep};
+use crate::structure::matrix::Vector;
 
 /// Striker and struck degree of freedom at the start of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,8 +65,32 @@ pub struct NeedsTangent(pub &'static str);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AnyContact {
     Impulse(ImpulseContact),
+    Divided(DividingContact),
+}
+
+/// A law that follows the contact inside a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DividingContact {
     Restitution(RestitutionContact),
     Hertz(HertzContact),
+}
+
+impl DividingContact {
+    /// The step in tangent form from the state in `scratch`; its end is written to `to`.
+    #[inline]
+    pub(crate) fn pass<V: Vector>(
+        &mut self,
+        substep: &mut Substep<V>,
+        striker: &Striker,
+        start: &Start,
+        scratch: &mut Scratch<V>,
+        to: &mut Motion<V>,
+    ) -> Advance {
+        match self {
+            Self::Restitution(law) => law.pass(substep, striker, start, scratch, to),
+            Self::Hertz(law) => law.pass(substep, striker, start, scratch, to),
+        }
+    }
 }
 
 impl AnyContact {
@@ -82,20 +109,20 @@ impl AnyContact {
             ContactLaw::Rigid => Ok(Self::Impulse(ImpulseContact::rigid())),
             ContactLaw::Limit { force } => Ok(Self::Impulse(ImpulseContact::limited(force))),
             ContactLaw::Restitution { .. } if !tangent => Err(NeedsTangent("restitution")),
-            ContactLaw::Restitution { coefficient } => {
-                Ok(Self::Restitution(RestitutionContact::new(coefficient)))
-            }
+            ContactLaw::Restitution { coefficient } => Ok(Self::Divided(
+                DividingContact::Restitution(RestitutionContact::new(coefficient)),
+            )),
             ContactLaw::Hertz { .. } if !tangent => Err(NeedsTangent("hertz")),
             ContactLaw::Hertz {
                 stiffness,
                 loss,
                 force_limit,
-            } => Ok(Self::Hertz(HertzContact::new(
+            } => Ok(Self::Divided(DividingContact::Hertz(HertzContact::new(
                 stiffness,
                 loss,
                 force_limit,
                 impact,
-            ))),
+            )))),
         }
     }
 }
@@ -111,4 +138,17 @@ pub struct Approaching {
     pub velocity: f64,
     /// Δt \[s\]
     pub time_step: f64,
+}
+
+impl Approaching {
+    /// M Ms/(M + Ms) \[kg\].
+    #[must_use]
+    pub const fn reduced_mass(&self) -> f64 {
+        reduced_mass(self.mass, self.striker_mass)
+    }
+}
+
+/// M Ms/(M + Ms) of two masses \[kg\].
+const fn reduced_mass(mass: f64, striker_mass: f64) -> f64 {
+    mass * striker_mass / (mass + striker_mass)
 }

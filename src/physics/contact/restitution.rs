@@ -3,7 +3,7 @@
 //!
 //! An impulse p on the degree of freedom s changes the velocities by M⁻¹e_s p, so that an impact meets the mass 1/(e_sᵀM⁻¹e_s).
 
-use super::{Advance, Start};
+use super::{Advance, Start, reduced_mass};
 use crate::contact::state::StepState;
 use crate::integrator::step_form::Motion;
 use crate::integrator::substep::{Scratch, Striker, Substep};
@@ -47,15 +47,6 @@ struct Collision {
 }
 
 impl Collision {
-    /// Two masses \[kg\] that close at this speed \[m/s\].
-    const fn new(coefficient: f64, mass: f64, striker_mass: f64, closing: f64) -> Self {
-        Self {
-            coefficient,
-            reduced_mass: mass * striker_mass / (mass + striker_mass),
-            closing,
-        }
-    }
-
     /// \[N·s\]
     const fn impulse(&self) -> f64 {
         self.reduced_mass * (1.0 + self.coefficient) * self.closing
@@ -285,12 +276,11 @@ impl RestitutionContact {
             ..
         } = course.striker;
         let closing = course.striker_velocity - course.struck()[0];
-        let collision = Collision::new(
-            self.coefficient,
-            course.substep.struck_mass(),
-            mass,
+        let collision = Collision {
+            coefficient: self.coefficient,
+            reduced_mass: reduced_mass(course.substep.struck_mass(), mass),
             closing,
-        );
+        };
         course.strike(collision.impulse());
         course.loss += collision.loss();
 

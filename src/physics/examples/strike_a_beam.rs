@@ -5,13 +5,22 @@
 //! cargo run -p psd-physics --example strike_a_beam
 //! ```
 
+use psd_physics::contact::Approaching;
 use psd_physics::critical_time_step;
 use psd_physics::impact::{ImpactError, ImpactInput, ImpactSolver};
 
 fn main() -> Result<(), ImpactError> {
     let (mass, stiffness) = (1.0, 300.0);
     let time_step = critical_time_step(mass, stiffness) / 100.0;
-    let input = ImpactInput::rigid(mass, stiffness, 10.0, 1.0, time_step);
+    let input = ImpactInput::rigid(
+        stiffness,
+        Approaching {
+            mass,
+            striker_mass: 10.0,
+            velocity: 1.0,
+            time_step,
+        },
+    );
     let mut solver = ImpactSolver::new(&input, 0.0, 0.0)?;
     let (mut peak, mut time) = (0.0, 0.0);
     while !solver.finished() {

@@ -28,9 +28,7 @@ pub struct BilinearFit {
     /// `K_p`/K
     pub post_yield_ratio: f64,
     pub post_yield_ratio_error: f64,
-    /// Each error in [`SHARED`]'s order as a sum of four independent contributions: of the stiffness, then of the parts of
-    /// intercept, `K_p` and yield displacement that are uncorrelated with those before.
-    pub shares: [[f64; 4]; 6],
+    pub shares: BilinearShares,
     pub r_squared: f64,
     /// Degrees of freedom of the scatter about the two lines: number of points minus four parameters.
     pub degrees: f64,
@@ -38,15 +36,17 @@ pub struct BilinearFit {
     pub shown: f64,
 }
 
-/// Results of a bilinear fit in the order of their shares; the first four name the independent errors.
-pub const SHARED: [&str; 6] = [
-    "stiffness",
-    "intercept_force",
-    "hardened_stiffness",
-    "yield_displacement",
-    "yield_force",
-    "hardening",
-];
+/// The errors of the results of a bilinear fit, each as a sum of four independent contributions: of the stiffness, then of the parts of
+/// intercept, `K_p` and yield displacement that are uncorrelated with those before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BilinearShares {
+    pub stiffness: [f64; 4],
+    pub intercept: [f64; 4],
+    pub post_yield_stiffness: [f64; 4],
+    pub yield_displacement: [f64; 4],
+    pub yield_force: [f64; 4],
+    pub post_yield_ratio: [f64; 4],
+}
 
 /// Points on either side of the yield point, at least: fewer determine no line.
 const FEWEST_ON_A_SIDE: usize = 2;
@@ -83,14 +83,14 @@ impl BilinearFit {
             yield_force_error: force.1,
             post_yield_ratio: fit.post_yield_ratio.0,
             post_yield_ratio_error: fit.post_yield_ratio.1,
-            shares: [
-                row(&fit.shares.stiffnesses[0]),
-                row(&fit.shares.intercept),
-                row(&fit.shares.stiffnesses[1]),
-                row(&fit.shares.breakpoints[0]),
-                row(&fit.shares.forces[0]),
-                row(&fit.shares.post_yield_ratio),
-            ],
+            shares: BilinearShares {
+                stiffness: row(&fit.shares.stiffnesses[0]),
+                intercept: row(&fit.shares.intercept),
+                post_yield_stiffness: row(&fit.shares.stiffnesses[1]),
+                yield_displacement: row(&fit.shares.breakpoints[0]),
+                yield_force: row(&fit.shares.forces[0]),
+                post_yield_ratio: row(&fit.shares.post_yield_ratio),
+            },
             r_squared: fit.r_squared,
             degrees: fit.degrees,
             shown: fit.shown,
@@ -212,7 +212,13 @@ mod tests {
         for x in &x {
             assert_eq!(push.force(*x), -pull.force(-x));
         }
-        let [stiffness, intercept, _, yield_point, force, _] = pull.shares;
+        let BilinearShares {
+            stiffness,
+            intercept,
+            yield_displacement: yield_point,
+            yield_force: force,
+            ..
+        } = pull.shares;
         for column in 0..4 {
             let by_hand = intercept[column]
                 + pull.yield_displacement * stiffness[column]
@@ -220,8 +226,8 @@ mod tests {
             assert!((force[column] - by_hand).abs() < 1e-9 * pull.yield_force_error);
         }
         // The contribution of the stiffness to the intercept has the opposite sign.
-        assert_eq!(stiffness, push.shares[0]);
-        assert_eq!(intercept[0], -push.shares[1][0]);
+        assert_eq!(stiffness, push.shares.stiffness);
+        assert_eq!(intercept[0], -push.shares.intercept[0]);
     }
 
     /// The squares of the shares add up to the square of the error, and `F_y` = R₀ + K·`X_y` gives its row from the others.
@@ -233,24 +239,30 @@ mod tests {
             20.0 * (index * index).sin()
         });
         let fit = fit_bilinear(&x, &y).unwrap();
-        let errors = [
-            fit.stiffness_error,
-            fit.intercept_error,
-            fit.post_yield_stiffness_error,
-            fit.yield_displacement_error,
-            fit.yield_force_error,
-            fit.post_yield_ratio_error,
-        ];
-        for (row, error) in fit.shares.iter().zip(errors) {
+        let BilinearShares {
+            stiffness,
+            intercept,
+            post_yield_stiffness,
+            yield_displacement,
+            yield_force,
+            post_yield_ratio,
+        } = fit.shares;
+        for (row, error) in [
+            (stiffness, fit.stiffness_error),
+            (intercept, fit.intercept_error),
+            (post_yield_stiffness, fit.post_yield_stiffness_error),
+            (yield_displacement, fit.yield_displacement_error),
+            (yield_force, fit.yield_force_error),
+            (post_yield_ratio, fit.post_yield_ratio_error),
+        ] {
             let size = row.iter().map(|share| share * share).sum::<f64>().sqrt();
             assert!((size / error - 1.0).abs() < 1e-9, "{size} {error}");
         }
-        let [stiffness, intercept, _, yield_point, force, _] = fit.shares;
         for column in 0..4 {
             let by_hand = intercept[column]
                 + fit.yield_displacement * stiffness[column]
-                + fit.stiffness * yield_point[column];
-            assert!((force[column] - by_hand).abs() < 1e-9 * fit.yield_force_error);
+                + fit.stiffness * yield_displacement[column];
+            assert!((yield_force[column] - by_hand).abs() < 1e-9 * fit.yield_force_error);
         }
         assert_eq!(
             stiffness[1..],

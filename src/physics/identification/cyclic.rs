@@ -94,7 +94,7 @@ pub fn work(from: (f64, f64), to: (f64, f64)) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::specimen::{Bilinear, Elastic, RestoringForce};
+    use crate::specimen::{Bilinear, BilinearCurve, Elastic, RestoringForce};
 
     fn read(place: f64, model: &mut dyn RestoringForce) -> LoopPoint {
         LoopPoint {
@@ -139,14 +139,20 @@ mod tests {
     /// `K_sec` = K(1 + αµ − α)/µ.
     #[test]
     fn a_bilinear_loop_has_the_area_of_its_parallelogram_and_the_error_falls_with_the_points() {
-        let (stiffness, yield_force, hardening, amplitude) = (1000.0, 10.0, 0.1, 0.033);
+        let (stiffness, yield_force, post_yield_ratio, amplitude) = (1000.0, 10.0, 0.1, 0.033);
         let yields_at = yield_force / stiffness;
-        let exact = 4.0 * yield_force * (1.0 - hardening) * (amplitude - yields_at);
+        let exact = 4.0 * yield_force * (1.0 - post_yield_ratio) * (amplitude - yields_at);
         let ductility = amplitude / yields_at;
-        let ratio = 2.0 * (ductility - 1.0) * (1.0 - hardening)
-            / (std::f64::consts::PI * ductility * (1.0 + hardening * ductility - hardening));
+        let ratio = 2.0 * (ductility - 1.0) * (1.0 - post_yield_ratio)
+            / (std::f64::consts::PI
+                * ductility
+                * (1.0 + post_yield_ratio * ductility - post_yield_ratio));
         let of = |points: u32| {
-            let mut model = Bilinear::new(stiffness, yield_force, hardening);
+            let mut model = Bilinear::new(BilinearCurve {
+                stiffness,
+                yield_force,
+                post_yield_ratio,
+            });
             // The first cycle begins on the virgin curve: the second is the closed loop.
             cycle(&mut model, amplitude, points);
             loop_of(&cycle(&mut model, amplitude, points)).unwrap()
@@ -154,7 +160,7 @@ mod tests {
         // A corner inside a step of h cuts off at most (1 − α) K h²/8; a loop has four corners, two of them targets.
         for points in [10, 40, 160, 640] {
             let step = amplitude / f64::from(points);
-            let most = 2.0 * (1.0 - hardening) * stiffness * step * step / 8.0;
+            let most = 2.0 * (1.0 - post_yield_ratio) * stiffness * step * step / 8.0;
             let error = (of(points).energy - exact).abs();
             assert!(
                 error <= most * (1.0 + 1e-9),
@@ -168,7 +174,8 @@ mod tests {
             fine.energy
         );
         assert!((fine.damping_ratio.unwrap() / ratio - 1.0).abs() < 1e-6);
-        let secant = (yield_force + hardening * stiffness * (amplitude - yields_at)) / amplitude;
+        let secant =
+            (yield_force + post_yield_ratio * stiffness * (amplitude - yields_at)) / amplitude;
         assert!((fine.stiffness.unwrap() - secant).abs() < 1e-6);
     }
 
@@ -191,7 +198,11 @@ mod tests {
     #[test]
     fn a_one_sided_loop_is_closed_by_its_last_reading() {
         for error in [-1e-6, 0.0, 1e-6] {
-            let mut model = Bilinear::new(1000.0, 10.0, 0.0);
+            let mut model = Bilinear::new(BilinearCurve {
+                stiffness: 1000.0,
+                yield_force: 10.0,
+                post_yield_ratio: 0.0,
+            });
             let mut points = vec![
                 read(0.0, &mut model),
                 read(0.03, &mut model),

@@ -72,7 +72,9 @@ pub fn left_open(points: &[(f64, f64)], noise: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::specimen::{Bilinear, BoltedJoint, PinchedHysteresis, RestoringForce};
+    use crate::specimen::{
+        Bilinear, BilinearCurve, BoltedJoint, PinchedHysteresis, RestoringForce,
+    };
     use crate::specimen::{Bolted, Pinching};
 
     /// Positions of the closed second cycle to ±a with the forces of the model; `points` per quarter, `spacing` as [`spaced`].
@@ -113,8 +115,12 @@ mod tests {
     /// that of even steps, and for no loop more than 0.25 %.
     #[test]
     fn points_that_stand_closer_towards_the_turns_lose_less() {
-        let bilinear = |hardening: f64| {
-            Box::new(Bilinear::new(1e6, 1e3, hardening)) as Box<dyn RestoringForce>
+        let bilinear = |post_yield_ratio: f64| {
+            Box::new(Bilinear::new(BilinearCurve {
+                stiffness: 1e6,
+                yield_force: 1e3,
+                post_yield_ratio,
+            })) as Box<dyn RestoringForce>
         };
         let bolted = |bearing_force: f64, slip_force: f64| {
             let joint = Bolted {
@@ -125,11 +131,11 @@ mod tests {
             };
             Box::new(BoltedJoint::new(joint)) as Box<dyn RestoringForce>
         };
-        let pinching = |hardening: f64, force_factor: f64| {
+        let pinching = |post_yield_ratio: f64, force_factor: f64| {
             let plan = Pinching {
                 stiffness: 1e6,
                 yield_force: 1e3,
-                hardening,
+                post_yield_ratio,
                 force_factor,
                 displacement_factor: 0.5,
                 unloading_exponent: 0.0,
@@ -185,7 +191,11 @@ mod tests {
             let exact = 4.0 * 10.0 * 0.9 * (amplitude - 0.01);
             for (spacing, longest) in [(even as fn(f64) -> f64, 1.0), (spaced, 1.5)] {
                 let path = second_cycle(
-                    &mut Bilinear::new(1000.0, 10.0, 0.1),
+                    &mut Bilinear::new(BilinearCurve {
+                        stiffness: 1000.0,
+                        yield_force: 10.0,
+                        post_yield_ratio: 0.1,
+                    }),
                     amplitude,
                     points,
                     spacing,

@@ -11,6 +11,8 @@ pub mod multilinear_fit;
 mod multilinear_fit_tests;
 pub mod polyline;
 
+use crate::structure::Matrices;
+
 /// Straight line with standard errors: y = intercept + slope·x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineFit {
@@ -158,8 +160,8 @@ pub fn loop_energy(displacements: &[f64], forces: &[f64]) -> f64 {
 
 /// ζ = c / (2√(KM)).
 #[must_use]
-pub fn damping_ratio(damping: f64, stiffness: f64, mass: f64) -> f64 {
-    damping / (2.0 * (stiffness * mass).sqrt())
+pub fn damping_ratio(structure: &Matrices<f64>) -> f64 {
+    structure.damping / (2.0 * (structure.stiffness * structure.mass).sqrt())
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use super::StatedVariance;
 use super::breakpoints::best_lines;
 use super::polyline::{FEWEST, Polyline, row};
-use crate::statistics::least_squares::{Covariance, bic};
+use crate::statistics::least_squares::{Covariance, FitSize};
 
 /// Breakpoints of one curve, at most.
 pub const MOST_BREAKS: usize = 8;
@@ -171,11 +171,12 @@ fn chosen(lines: Vec<Polyline>, count: usize) -> Option<(Polyline, Vec<f64>)> {
     #[expect(clippy::cast_precision_loss, reason = "far fewer points than 2^53")]
     let criterion = |line: &Polyline| {
         let (count, parameters) = (count as f64, 2.0 * line.breakpoints.len() as f64 + 2.0);
-        bic(
-            line.squares.max(count * ROUNDING * ROUNDING),
+        FitSize {
+            squares: line.squares.max(count * ROUNDING * ROUNDING),
             count,
             parameters,
-        )
+        }
+        .bic()
     };
     let all: Vec<f64> = lines.iter().map(criterion).collect();
     let least = all.iter().copied().fold(f64::INFINITY, f64::min);

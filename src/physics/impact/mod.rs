@@ -1,6 +1,7 @@
 //! The inputs of an impact, its state at the end of a step, and an impact on an ideal rig from start to end. In: masses,
 //! stiffnesses, a striker, a contact law. Out: numbers. The steps are those of [`ImpactSolver`].
 
+pub mod batch;
 pub mod energy;
 pub mod peaks;
 mod solver;
@@ -12,8 +13,8 @@ pub use until::Until;
 
 use thiserror::Error;
 
-use crate::contact::NeedsTangent;
 use crate::contact::state::{ContactLaw, StepState};
+use crate::contact::{Approaching, NeedsTangent};
 use crate::integrator::Integrator;
 use crate::integrator::input::FrameError;
 use crate::integrator::state::State;
@@ -56,16 +57,15 @@ pub struct ImpactInput {
 }
 
 impl ImpactInput {
-    /// A rigid impact on an undamped structure at rest, by the tangent form: `mass` \[kg\] and `stiffness` \[N/m\] of the structure,
-    /// `striker_mass` \[kg\] and `striker_velocity` \[m/s\] of a striker that touches it at the start, steps of `time_step` \[s\].
+    /// A rigid impact on an undamped structure of `stiffness` \[N/m\] at rest, by the tangent form; the striker touches it at the start.
     #[must_use]
-    pub const fn rigid(
-        mass: f64,
-        stiffness: f64,
-        striker_mass: f64,
-        striker_velocity: f64,
-        time_step: f64,
-    ) -> Self {
+    pub const fn rigid(stiffness: f64, impact: Approaching) -> Self {
+        let Approaching {
+            mass,
+            striker_mass,
+            velocity: striker_velocity,
+            time_step,
+        } = impact;
         Self {
             mass,
             damping: 0.0,
@@ -267,7 +267,7 @@ pub fn simulate<S: RestoringForce, K: Sink>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::specimen::Bilinear;
+    use crate::specimen::{Bilinear, BilinearCurve};
 
     const STIFFNESS: f64 = 327.65;
     const RIGID: ContactLaw = ContactLaw::Rigid;
@@ -320,7 +320,11 @@ mod tests {
         for integrator in INTEGRATORS {
             for law in [RIGID, LIMIT, BOUNCE, HERTZ] {
                 let input = input(law, integrator);
-                let mut specimen = Bilinear::new(STIFFNESS, 20.0, 0.1);
+                let mut specimen = Bilinear::new(BilinearCurve {
+                    stiffness: STIFFNESS,
+                    yield_force: 20.0,
+                    post_yield_ratio: 0.1,
+                });
                 let mut solver = match (ImpactSolver::new(&input, 0.0, 0.0), integrator, law) {
                     (Ok(solver), Integrator::Tangent, _) | (Ok(solver), _, RIGID | LIMIT) => solver,
                     (
@@ -339,8 +343,14 @@ mod tests {
                         break;
                     }
                 }
-                let (mut ends, mut specimen) =
-                    (Ends(Vec::new()), Bilinear::new(STIFFNESS, 20.0, 0.1));
+                let (mut ends, mut specimen) = (
+                    Ends(Vec::new()),
+                    Bilinear::new(BilinearCurve {
+                        stiffness: STIFFNESS,
+                        yield_force: 20.0,
+                        post_yield_ratio: 0.1,
+                    }),
+                );
                 let mut solver = ImpactSolver::new(&input, 0.0, 0.0).unwrap();
                 let read = |solver: &mut ImpactSolver| {
                     let measured = solver.predict() * 0.999;

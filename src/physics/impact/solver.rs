@@ -12,12 +12,12 @@ use crate::integrator::solver::Solver;
 use crate::integrator::state::State;
 use crate::integrator::step_form::StepForm;
 use crate::integrator::substep::{Striker, Substep, Workspace};
-use crate::integrator::tangents::Tangents;
+use crate::integrator::tangents::{HasTangents, Tangents};
 use crate::structure::matrix::{Factor, Matrix, Vector};
 
 /// A pseudo-dynamic impact test: `predict`, command, read, `complete`.
 #[derive(Clone, Debug)]
-pub struct ImpactSolver<V: Vector = f64> {
+pub struct ImpactSolver<V: HasTangents = f64> {
     structure: Solver<V>,
     law: AnyContact,
     striker: Striker,
@@ -117,7 +117,7 @@ impl ImpactSolver {
     }
 }
 
-impl<V: Vector> ImpactSolver<V> {
+impl<V: HasTangents> ImpactSolver<V> {
     /// An impact on one degree of freedom of a structure, under its initial load throughout.
     ///
     /// # Errors
@@ -233,19 +233,7 @@ impl<V: Vector> ImpactSolver<V> {
                     decided.force
                 })
             }
-            AnyContact::Hertz(law) => {
-                structure.predict_by(unloaded.view(), |form, from, load_end, to| {
-                    let Some((mut substep, mut scratch)) =
-                        Substep::new(form, &from, load_end, workspace)
-                    else {
-                        return 0.0;
-                    };
-                    passed
-                        .insert(law.pass(&mut substep, striker, &start, &mut scratch, to))
-                        .damping_work
-                })
-            }
-            AnyContact::Restitution(law) => {
+            AnyContact::Divided(law) => {
                 structure.predict_by(unloaded.view(), |form, from, load_end, to| {
                     let Some((mut substep, mut scratch)) =
                         Substep::new(form, &from, load_end, workspace)
@@ -284,7 +272,7 @@ impl<V: Vector> ImpactSolver<V> {
                 before > 0.0
             }
             AnyContact::Impulse(_) => before > 0.0 || self.structure.form.contact_force() > 0.0,
-            AnyContact::Hertz(_) | AnyContact::Restitution(_) => {
+            AnyContact::Divided(_) => {
                 before > 0.0 || self.passed.is_some_and(|passed| passed.contact_force > 0.0)
             }
         }
@@ -462,7 +450,7 @@ impl<V: Vector> ImpactSolver<V> {
 
 /// The struck degree of freedom and the striker.
 #[inline]
-fn state<V: Vector>(
+fn state<V: HasTangents>(
     structure: &Solver<V>,
     struck: usize,
     advance: &Advance,

@@ -154,8 +154,7 @@ impl SummaryBuilder {
         };
         self.summary.still_rising = still_rising(
             self.last_velocity,
-            self.summary.final_displacement,
-            self.summary.max_displacement,
+            self.summary.final_displacement >= self.summary.max_displacement,
         );
         self.summary.last_blow_cut =
             self.summary.stop_time.is_some() && self.last_contact_force > 0.0;
@@ -172,10 +171,10 @@ impl<V> Sink<V> for SummaryBuilder {
     }
 }
 
-/// Whether a structure that ends with `velocity` Ẋ \[m/s\] at `displacement` X \[m\] was still moving outwards to the `largest` X \[m\].
+/// Whether a structure that ends with `velocity` Ẋ \[m/s\] was still moving outwards; `at_largest`: it ends at its largest X.
 /// A run that continues past that has a peak, whatever its direction at the end.
-pub fn still_rising(velocity: f64, displacement: f64, largest: f64) -> bool {
-    velocity > 0.0 && displacement >= largest
+pub fn still_rising(velocity: f64, at_largest: bool) -> bool {
+    velocity > 0.0 && at_largest
 }
 
 /// The summary of a complete run.

@@ -12,7 +12,6 @@ pub mod step_form;
 pub(crate) mod substep;
 pub mod tangent;
 pub mod tangents;
-pub(crate) mod tridiagonal;
 
 /// A time-integration method.
 #[derive(Clone, Copy, Debug, PartialEq)]

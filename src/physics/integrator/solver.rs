@@ -4,14 +4,15 @@
 use super::input::{FrameError, SolverInput};
 use super::state::State;
 use super::step_form::{Moment, Motion, StepForm};
-use super::tangents::{FollowedTangents as _, Following, Tangents};
+use super::tangent::Following;
+use super::tangents::{FollowedTangents as _, HasTangents, Tangents};
 use crate::integrator::Integrator;
 use crate::structure::energies::{Ends, FrameEnergies};
 use crate::structure::matrix::{Factor as _, Matrix, Vector};
 
 /// A pseudo-dynamic test: `predict`, command, read, `complete`.
 #[derive(Clone, Debug)]
-pub struct Solver<V: Vector> {
+pub struct Solver<V: HasTangents> {
     pub(crate) form: StepForm<V>,
     tangents: Option<V::Tangents>,
     modification: Option<V::Matrix>,
@@ -30,7 +31,7 @@ pub struct Solver<V: Vector> {
 /// That of a frame.
 pub type FrameSolver = Solver<Vec<f64>>;
 
-impl<V: Vector> Solver<V> {
+impl<V: HasTangents> Solver<V> {
     /// M Ẍ₀ = F₀ − R₀.
     ///
     /// # Errors
@@ -248,7 +249,7 @@ impl<V: Vector> Solver<V> {
             if form.integrator == Integrator::Tangent {
                 // No storey tangent is negative, so that M̂ has a factor because M has one; after a failure by rounding the last factor
                 // remains.
-                let _ = form.take_tangents(tangents);
+                let _ = form.set_tangent(|stiffness| tangents.compose(stiffness));
             }
             state.storey_stiffness.set(tangents.stiffness().view());
         }

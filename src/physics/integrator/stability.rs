@@ -21,6 +21,7 @@
 
 use super::coefficients::Coefficients;
 use crate::integrator::Integrator;
+use crate::structure::Matrices;
 
 /// Negative damping ratio of an integrator that is neglected: an amplitude grows by 0.06 % per cycle.
 const TRIFLE: f64 = 1e-4;
@@ -39,9 +40,14 @@ pub struct Met {
 }
 
 impl Met {
-    /// One degree of freedom: mass \[kg\], C \[N·s/m\], its stiffness and the operator stiffness \[N/m\].
+    /// One degree of freedom and the operator stiffness \[N/m\].
     #[must_use]
-    pub fn one(mass: f64, damping: f64, stiffness: f64, operator_stiffness: f64) -> Self {
+    pub fn one(structure: &Matrices<f64>, operator_stiffness: f64) -> Self {
+        let Matrices {
+            mass,
+            damping,
+            stiffness,
+        } = *structure;
         let beyond = stiffness - operator_stiffness;
         Self {
             highest: stiffness / mass,
@@ -85,12 +91,12 @@ fn longest_angle(integrator: Integrator, met: &Met) -> f64 {
     let damping_ratio = met.damping_ratio.max(TRIFLE);
     let stable = |angle: f64| {
         let k = angle * angle;
-        inside(amplification(
-            Coefficients::of(integrator),
-            2.0 * damping_ratio * angle,
-            k,
-            (1.0 - met.share) * k,
-        ))
+        let step = ScaledStep {
+            damping: 2.0 * damping_ratio * angle,
+            stiffness: k,
+            operator_stiffness: (1.0 - met.share) * k,
+        };
+        inside(amplification(Coefficients::of(integrator), &step))
     };
     let (mut low, mut high) = (0.0, 0.01);
     while stable(high) {
@@ -112,9 +118,24 @@ fn longest_angle(integrator: Integrator, met: &Met) -> f64 {
     }
 }
 
+/// A step of one degree of freedom, over its mass.
+struct ScaledStep {
+    /// c = CΔt/M
+    damping: f64,
+    /// k = KΔt²/M
+    stiffness: f64,
+    /// `k_I` = `K_I`Δt²/M
+    operator_stiffness: f64,
+}
+
 /// Coefficients of the cubic, from z³ down.
-fn amplification(by: Coefficients, c: f64, k: f64, operator: f64) -> [f64; 4] {
+fn amplification(by: Coefficients, step: &ScaledStep) -> [f64; 4] {
     let Coefficients { alpha, beta, gamma } = by;
+    let ScaledStep {
+        damping: c,
+        stiffness: k,
+        operator_stiffness: operator,
+    } = *step;
     let beyond = beta * (k - operator);
     // The bracket, from z² down.
     let two = c * gamma + k * beta - beyond;
@@ -156,7 +177,14 @@ mod tests {
         let omega: f64 = 2.0 * std::f64::consts::PI / 0.5;
         let limit = longest_stable_step(
             Integrator::Explicit,
-            &Met::one(1.0, 0.0, omega * omega, 0.0),
+            &Met::one(
+                &Matrices {
+                    mass: 1.0,
+                    damping: 0.0,
+                    stiffness: omega * omega,
+                },
+                0.0,
+            ),
         );
         assert!((limit - 0.5 / std::f64::consts::PI).abs() < 1e-15);
     }
@@ -168,7 +196,17 @@ mod tests {
             assert_eq!(split(alpha, 0.0, 0.0), f64::INFINITY);
         }
         assert_eq!(
-            longest_stable_step(Integrator::Tangent, &Met::one(1.0, 0.0, 400.0, 300.0)),
+            longest_stable_step(
+                Integrator::Tangent,
+                &Met::one(
+                    &Matrices {
+                        mass: 1.0,
+                        damping: 0.0,
+                        stiffness: 400.0
+                    },
+                    300.0
+                )
+            ),
             f64::INFINITY
         );
     }

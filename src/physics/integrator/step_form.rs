@@ -26,7 +26,6 @@
 //! example: numerical damping acts most on the fastest motion, which is the impact.
 
 use super::coefficients::Coefficients;
-use super::tangents::FollowedTangents;
 use crate::integrator::Integrator;
 use crate::structure::matrix::{Factor, Matrix, SetOut, Vector};
 use crate::structure::{Matrices, NotPositiveDefinite};
@@ -133,10 +132,13 @@ impl<V: Vector> StepForm<V> {
         })
     }
 
-    /// Sets a different `K_t`. M̂ stays positive definite: storeys are not negative.
+    /// Sets a different `K_t`, written by `stiffness`. M̂ stays positive definite: storeys are not negative.
     #[inline]
-    pub fn take_tangents(&mut self, tangents: &V::Tangents) -> Result<(), NotPositiveDefinite> {
-        tangents.compose(&mut self.operator);
+    pub fn set_tangent(
+        &mut self,
+        stiffness: impl FnOnce(&mut V::Matrix),
+    ) -> Result<(), NotPositiveDefinite> {
+        stiffness(&mut self.operator);
         compose(
             &self.coefficients,
             self.time_step,

@@ -15,6 +15,17 @@ pub const NOISE_MULTIPLE: f64 = 10.0;
 /// Largest number of readings of a window: a longer window would lag too far behind.
 const MOST_READINGS: usize = 4096;
 
+/// The parameters for the update of tangents.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Following {
+    /// c of `K_t within [0, c·K0]`
+    pub largest_ratio: f64,
+    /// Standard deviation of a load cell \[N\].
+    pub force_noise: f64,
+    /// Resolution of a displacement reading \[m\].
+    pub resolution: f64,
+}
+
 /// The current tangent stiffness `K_t`.
 #[derive(Clone, Debug)]
 pub struct TangentStiffness {
@@ -28,16 +39,15 @@ pub struct TangentStiffness {
 }
 
 impl TangentStiffness {
-    /// Begins with `initial` \[N/m\] and never exceeds `largest_ratio` times it; `force_noise` \[N\], `resolution` \[m\]. The first
-    /// reading is (m, N).
+    /// Begins with `initial` \[N/m\] and the first reading \[m\], \[N\].
     #[must_use]
-    pub fn new(
-        initial: f64,
-        largest_ratio: f64,
-        force_noise: f64,
-        resolution: f64,
-        first: (f64, f64),
-    ) -> Self {
+    pub fn new(initial: f64, following: Following, displacement: f64, force: f64) -> Self {
+        let Following {
+            largest_ratio,
+            force_noise,
+            resolution,
+        } = following;
+        let first = (displacement, force);
         let least_change = resolution.max(NOISE_MULTIPLE * force_noise / initial);
         let window = if least_change > 0.0 {
             VecDeque::from([first])
@@ -119,7 +129,16 @@ mod tests {
 
     /// The readings have no noise; the window follows from the stated one.
     fn followed(force_noise: f64, readings: impl IntoIterator<Item = (f64, f64)>) -> f64 {
-        let mut tangent = TangentStiffness::new(INITIAL, 2.0, force_noise, 0.0, (0.0, 0.0));
+        let mut tangent = TangentStiffness::new(
+            INITIAL,
+            Following {
+                largest_ratio: 2.0,
+                force_noise,
+                resolution: 0.0,
+            },
+            0.0,
+            0.0,
+        );
         for (displacement, force) in readings {
             tangent.take(displacement, force);
         }

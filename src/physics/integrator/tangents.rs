@@ -3,7 +3,7 @@
 
 use std::fmt::Debug;
 
-use super::tangent::TangentStiffness;
+use super::tangent::{Following, TangentStiffness};
 use crate::structure::matrix::{Matrix, Vector};
 use crate::structure::{SymmetricBand, set_storeys, storeys_of};
 
@@ -19,17 +19,6 @@ pub enum Tangents {
 /// Largest effect of rounding on a secant, over its first-order bound: products and the specimen's own arithmetic contribute too. With
 /// less, a linear frame is factored again in every step; with much more, a slow change is missed.
 const ROUNDING_MARGIN: f64 = 4.0;
-
-/// The parameters for the update of tangents.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Following {
-    /// c of `K_t within [0, c·K0]`
-    pub largest_ratio: f64,
-    /// Standard deviation of a load cell \[N\].
-    pub force_noise: f64,
-    /// Resolution of a displacement reading \[m\].
-    pub resolution: f64,
-}
 
 /// The current tangent stiffness `K_t`.
 pub trait FollowedTangents: Clone + Debug {
@@ -52,6 +41,19 @@ pub trait FollowedTangents: Clone + Debug {
     /// Adds the readings at the end of a step. True if the stiffness of a storey changed by more than rounding: only then is a new
     /// factorisation necessary.
     fn take(&mut self, displacement: &Self::Vector, force: &Self::Vector) -> bool;
+}
+
+/// A vector of a structure whose tangent stiffness can be followed.
+pub trait HasTangents: Vector {
+    type Tangents: FollowedTangents<Vector = Self>;
+}
+
+impl HasTangents for f64 {
+    type Tangents = StoreyTangent;
+}
+
+impl HasTangents for Vec<f64> {
+    type Tangents = StoreyTangents;
 }
 
 /// The tangent of one degree of freedom.
@@ -90,18 +92,7 @@ struct Reading {
 
 impl Storey {
     fn new(stiffness: f64, following: Following, last: Reading) -> Self {
-        let Following {
-            largest_ratio,
-            force_noise,
-            resolution,
-        } = following;
-        let followed = TangentStiffness::new(
-            stiffness,
-            largest_ratio,
-            force_noise,
-            resolution,
-            (last.drift, last.shear),
-        );
+        let followed = TangentStiffness::new(stiffness, following, last.drift, last.shear);
         Self { followed, last }
     }
 

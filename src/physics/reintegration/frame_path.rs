@@ -7,8 +7,9 @@
 //! position they change with the initial stiffness: this is exact for an elastic frame. At the recorded targets the readings are
 //! bit-identical to the recorded ones.
 
-use super::hysteresis_replay::{Reading, RecordedPath, Retrace, lag, nearest};
+use super::hysteresis_replay::{ContinuousMotion, Reading, RecordedPath, Retrace, lag, nearest};
 use crate::reintegration::perturbation::Perturbation;
+use crate::statistics::ReadingNoise;
 use crate::structure::{SymmetricBand, drifts, shears, storeys_of};
 
 /// One step of the record, one entry per floor.
@@ -40,17 +41,20 @@ enum Bends {
 }
 
 impl FramePath {
-    /// `velocities` are those predicted for the targets \[m/s\] of a continuous motion with a reading each `time_step` \[s\]; `stiffness`
-    /// is the initial K; `force_noise` \[N\] and `resolution` \[m\] are those of one floor. None without readings.
+    /// `motion` has no velocities where the run was not continuous; `stiffness` is the initial K; `noise` is that of one floor. None
+    /// without readings.
     #[must_use]
     pub fn new(
         readings: Vec<FrameReading>,
-        (velocities, time_step): (Vec<Vec<f64>>, f64),
+        motion: ContinuousMotion<Vec<Vec<f64>>>,
         stiffness: &SymmetricBand,
-        force_noise: f64,
-        resolution: f64,
+        noise: ReadingNoise,
     ) -> Option<Self> {
         readings.first()?;
+        let ContinuousMotion {
+            velocities,
+            time_step,
+        } = motion;
         let floors = stiffness.order();
         let of_floors = |read: fn(&FrameReading) -> &Vec<f64>,
                          to_storeys: fn(&[f64], &mut [f64])| {
@@ -72,7 +76,7 @@ impl FramePath {
                     if velocities.is_empty() {
                         0.0
                     } else {
-                        lag(behind, resolution)
+                        lag(behind, noise.resolution)
                     }
                 };
                 Bends::Together(stiffness.clone(), (0..floors).map(of_axis).collect())
@@ -92,26 +96,21 @@ impl FramePath {
                     // A shear is the sum of the cells above, a storey drift the difference of two floors.
                     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
                     let cells = (floors - storey) as f64;
-                    let quantum = if storey == 0 {
-                        resolution
-                    } else {
-                        resolution * 2.0_f64.sqrt()
+                    let noise = ReadingNoise {
+                        force: noise.force * cells.sqrt(),
+                        resolution: if storey == 0 {
+                            noise.resolution
+                        } else {
+                            noise.resolution * 2.0_f64.sqrt()
+                        },
                     };
-                    let (readings, noise) = (
-                        (0..readings.len()).map(at).collect(),
-                        force_noise * cells.sqrt(),
-                    );
-                    if passed.is_empty() {
-                        return RecordedPath::new(readings, stiffness, noise, quantum);
-                    }
+                    let readings = (0..readings.len()).map(at).collect();
                     let passed: Vec<f64> = passed.iter().map(|storeys| storeys[storey]).collect();
-                    RecordedPath::continuous(
-                        readings,
-                        (&passed, time_step),
-                        stiffness,
-                        noise,
-                        quantum,
-                    )
+                    let motion = (!passed.is_empty()).then_some(ContinuousMotion {
+                        velocities: passed.as_slice(),
+                        time_step,
+                    });
+                    RecordedPath::new(readings, motion, stiffness, noise)
                 };
                 Bends::Storeys(
                     stiffnesses
@@ -330,10 +329,9 @@ mod tests {
     fn path(stiffness: &SymmetricBand) -> FramePath {
         FramePath::new(
             targets().iter().map(|target| elastic(target)).collect(),
-            (Vec::new(), 0.0),
+            ContinuousMotion::default(),
             stiffness,
-            0.0,
-            0.0,
+            ReadingNoise::default(),
         )
         .unwrap()
     }

@@ -12,36 +12,35 @@ use crate::impact::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink};
 use crate::integrator::state::State;
 use crate::reintegration::perturbation::Perturbation;
 
-/// Results of an impact, SI; NaN if a result does not exist.
+/// Results of an impact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// As the run itself reports them, at the ends of steps.
-    pub summary: ImpactSummary,
-    /// Interpolated between them.
-    pub values: [f64; OUTCOMES.len()],
+    pub values: ImpactValues,
     /// The values at the departure from the record.
-    pub before_departure: Option<[f64; OUTCOMES.len()]>,
+    pub before_departure: Option<ImpactValues>,
     /// Peak |X| at the ends of steps \[m\].
     pub farthest: f64,
 }
 
-/// Names of the values, as the results are called.
-pub const OUTCOMES: [&str; 14] = [
-    "max_displacement",
-    "time_of_max_displacement",
-    "stop_time",
-    "final_displacement",
-    "max_velocity",
-    "max_contact_force",
-    "impulse",
-    "restitution",
-    "indentation",
-    "indentation_energy",
-    "absorbed_energy",
-    "restoring_energy",
-    "damping_energy",
-    "striker_energy",
-];
+/// The results of an impact, SI: as the run itself reports them at the ends of steps, and those that are interpolated between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImpactValues {
+    pub summary: ImpactSummary,
+    /// \[m\]
+    pub max_displacement: f64,
+    /// \[s\]
+    pub time_of_max_displacement: f64,
+    /// \[s\]; NaN if the striker does not stop.
+    pub stop_time: f64,
+    /// \[m\]
+    pub final_displacement: f64,
+    /// \[J\]
+    pub absorbed_energy: f64,
+    /// \[J\]
+    pub restoring_energy: f64,
+    /// \[J\]
+    pub damping_energy: f64,
+}
 
 /// Re-integrates the run, for `steps` steps of the record at most.
 ///
@@ -60,15 +59,19 @@ pub fn rerun(
         ..*input
     };
     let mut retrace = path.retrace(finer);
-    let (place, displacement, force) = retrace.start();
-    let start = readings.read(0, 0, 1, (displacement, force));
-    let place = place * readings.axes[0].displacement_scale;
+    let recorded = retrace.start();
+    let (displacement, force) = readings.read(0, 0, 1, (recorded.displacement, recorded.force));
+    let start = Reading {
+        target: recorded.target * readings.axes[0].displacement_scale,
+        displacement,
+        force,
+    };
     let mut reading = 0;
     run(
         input,
         until,
         steps * u64::from(finer),
-        (place, start.0, start.1),
+        start,
         |target, velocity| {
             reading += 1;
             let read = retrace.pass(readings.recorded(0, target), readings.recorded(0, velocity));
@@ -89,9 +92,8 @@ pub fn predicted_velocities(
     let Some(first) = readings.first() else {
         return velocities;
     };
-    let start = (first.target, first.displacement, first.force);
     // No velocity is predicted for a structure that cannot be integrated.
-    let _ = integrate(input, until, steps, start, |_, velocity| {
+    let _ = integrate(input, until, steps, *first, |_, velocity| {
         let reading = readings[velocities.len().min(readings.len() - 1)];
         velocities.push(velocity);
         (reading.displacement, reading.force)
@@ -99,7 +101,7 @@ pub fn predicted_velocities(
     velocities
 }
 
-/// Integrates the impact from a position \[m\] with its displacement \[m\] and force \[N\]. For each target \[m\] and its predicted
+/// Integrates the impact from a first reading. For each target \[m\] and its predicted
 /// velocity \[m/s\], `read` gives displacement \[m\] and force \[N\].
 ///
 /// # Errors
@@ -108,7 +110,7 @@ pub fn integrate(
     input: &ImpactInput,
     until: Until,
     steps: u64,
-    start: (f64, f64, f64),
+    start: Reading,
     mut read: impl FnMut(f64, f64) -> (f64, f64),
 ) -> Result<Outcome, ImpactError> {
     run(input, until, steps, start, |target, velocity| {
@@ -121,12 +123,12 @@ fn run(
     input: &ImpactInput,
     until: Until,
     steps: u64,
-    (place, displacement, force): (f64, f64, f64),
+    first: Reading,
     mut read: impl FnMut(f64, f64) -> ((f64, f64), bool),
 ) -> Result<Outcome, ImpactError> {
-    let mut solver = ImpactSolver::new(input, place, force)?;
+    let mut solver = ImpactSolver::new(input, first.target, first.force)?;
     let start = ImpactState {
-        measured_displacement: displacement,
+        measured_displacement: first.displacement,
         ..*solver.state()
     };
     let departed = Cell::new(false);
@@ -151,7 +153,7 @@ pub struct ImpactResults {
     between: Between,
     end: Ending,
     farthest: f64,
-    before_departure: Option<[f64; OUTCOMES.len()]>,
+    before_departure: Option<ImpactValues>,
     until: Until,
     time_step: f64,
     /// At the end of the step before.
@@ -243,30 +245,23 @@ impl ImpactResults {
         } = *self;
         Outcome {
             values: self.values(&summary),
-            summary,
             before_departure,
             farthest,
         }
     }
 
-    fn values(&self, summary: &ImpactSummary) -> [f64; OUTCOMES.len()] {
+    fn values(&self, summary: &ImpactSummary) -> ImpactValues {
         let Self { between, end, .. } = self;
-        [
-            between.displacement,
-            between.time,
-            between.stop_time.unwrap_or(f64::NAN),
-            end.displacement,
-            summary.max_velocity,
-            summary.max_contact_force,
-            summary.impulse,
-            summary.restitution.unwrap_or(f64::NAN),
-            summary.indentation,
-            summary.indentation_energy,
-            between.absorbed,
-            end.restoring,
-            end.damping,
-            summary.striker_energy,
-        ]
+        ImpactValues {
+            summary: *summary,
+            max_displacement: between.displacement,
+            time_of_max_displacement: between.time,
+            stop_time: between.stop_time.unwrap_or(f64::NAN),
+            final_displacement: end.displacement,
+            absorbed_energy: between.absorbed,
+            restoring_energy: end.restoring,
+            damping_energy: end.damping,
+        }
     }
 }
 
@@ -363,6 +358,7 @@ mod tests {
     use super::*;
     use crate::contact::state::ContactLaw;
     use crate::integrator::Integrator;
+    use crate::statistics::ReadingNoise;
 
     const STIFFNESS: f64 = 327.65;
 
@@ -392,7 +388,13 @@ mod tests {
             displacement: place,
             force: STIFFNESS * place,
         };
-        RecordedPath::new(vec![reading(0.0), reading(0.05)], STIFFNESS, 0.0, 0.0).unwrap()
+        RecordedPath::new(
+            vec![reading(0.0), reading(0.05)],
+            None,
+            STIFFNESS,
+            ReadingNoise::default(),
+        )
+        .unwrap()
     }
 
     /// Perfectly plastic: both continue with V = `Ms·V0/(M + Ms)`, to V/ω after a quarter period, ω = √(K/(M + Ms)). The ends of steps
@@ -414,27 +416,33 @@ mod tests {
             )
             .unwrap();
             let (near, missed) = (
-                found.values[2] - quarter,
-                found.summary.stop_time.unwrap() - quarter,
+                found.values.stop_time - quarter,
+                found.values.summary.stop_time.unwrap() - quarter,
             );
             assert!(
                 near.abs() < 20.0 * time_step * time_step,
                 "at {time_step}: {near}"
             );
             assert!((0.0..=time_step).contains(&missed));
-            assert_eq!(found.values[1], found.values[2]);
+            assert_eq!(
+                found.values.time_of_max_displacement,
+                found.values.stop_time
+            );
             // The period of the scheme is longer by (ωΔt)²/12; the peak only has a rounding error.
             assert!(
-                (found.values[0] / peak - 1.0).abs() < 0.2 * (frequency * time_step).powi(2),
+                (found.values.max_displacement / peak - 1.0).abs()
+                    < 0.2 * (frequency * time_step).powi(2),
                 "{time_step}"
             );
             assert!(
-                (found.values[3] / found.values[0] - 1.0).abs() < 1e-9,
+                (found.values.final_displacement / found.values.max_displacement - 1.0).abs()
+                    < 1e-9,
                 "the run ends at the peak"
             );
-            let energy = 0.5 * STIFFNESS * found.values[0] * found.values[0];
+            let energy =
+                0.5 * STIFFNESS * found.values.max_displacement * found.values.max_displacement;
             assert!(
-                (found.values[10] / energy - 1.0).abs()
+                (found.values.absorbed_energy / energy - 1.0).abs()
                     < 2.0 * frequency * frequency * time_step * time_step
             );
         }

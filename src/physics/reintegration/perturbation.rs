@@ -76,13 +76,8 @@ impl Perturbation {
     /// the mean of so many samples. Every reading has its own errors: noise, which a mean averages, and q/√12. All readings of an axis
     /// have q/√12 in common.
     #[must_use]
-    pub fn read(
-        &self,
-        reading: u64,
-        axis: usize,
-        samples: u32,
-        (displacement, force): (f64, f64),
-    ) -> (f64, f64) {
+    pub fn read(&self, reading: u64, axis: usize, samples: u32, read: (f64, f64)) -> (f64, f64) {
+        let (displacement, force) = read;
         let Instruments {
             force_scale,
             displacement_scale,

@@ -71,7 +71,7 @@ impl Extent {
 }
 
 /// `count` times from `low` to `high`, in geometric progression.
-pub(super) fn geometric((low, high): (f64, f64), count: u32) -> impl Iterator<Item = f64> {
+pub(super) fn geometric(low: f64, high: f64, count: u32) -> impl Iterator<Item = f64> {
     (0..count).map(move |index| low * (high / low).powf(f64::from(index) / f64::from(count - 1)))
 }
 

@@ -22,33 +22,10 @@ pub enum RelaxationLaw {
 impl RelaxationLaw {
     pub const BOTH: [Self; 2] = [Self::Exponential, Self::Logarithmic];
 
-    /// Loss of 1 N with a share of 1, `since` \[s\] the end of a move that brought it at a constant rate in `moved_for` \[s\]: the mean of
-    /// the law over the instants of the move. `time` is τ or t₀ \[s\].
-    ///
-    /// Exponential: 1 − e^(−u/τ)·(1 − e^(−m/τ))·τ/m. Logarithmic, with A = 1 + u/t₀ and r = m/(t₀A):
-    /// ln A + (1 + r) ln(1 + r)/r − 1.
+    /// The law with τ or t₀ \[s\].
     #[must_use]
-    pub fn lost(self, since: f64, moved_for: f64, time: f64) -> f64 {
-        match self {
-            Self::Exponential => 1.0 - (-since / time).exp() * mean_fall(moved_for / time),
-            Self::Logarithmic => (since / time).ln_1p() + mean_rise(moved_for / (time + since)),
-        }
-    }
-
-    /// Rate of that loss \[1/s\].
-    #[must_use]
-    pub fn rate(self, since: f64, moved_for: f64, time: f64) -> f64 {
-        match self {
-            Self::Exponential => (-since / time).exp() * mean_fall(moved_for / time) / time,
-            Self::Logarithmic => {
-                let (from, ratio) = (time + since, moved_for / (time + since));
-                if ratio < 1e-8 {
-                    (1.0 - 0.5 * ratio) / from
-                } else {
-                    ratio.ln_1p() / moved_for
-                }
-            }
-        }
+    pub const fn timed(self, time: f64) -> TimedLaw {
+        TimedLaw { law: self, time }
     }
 
     /// Symbol of its time.
@@ -57,6 +34,51 @@ impl RelaxationLaw {
         match self {
             Self::Exponential => "τ",
             Self::Logarithmic => "t₀",
+        }
+    }
+}
+
+/// A law with its time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimedLaw {
+    law: RelaxationLaw,
+    /// τ or t₀ \[s\].
+    time: f64,
+}
+
+impl TimedLaw {
+    /// Loss of 1 N with a share of 1, `since` \[s\] the end of a move that brought it at a constant rate in `moved_for` \[s\]: the mean of
+    /// the law over the instants of the move.
+    ///
+    /// Exponential: 1 − e^(−u/τ)·(1 − e^(−m/τ))·τ/m. Logarithmic, with A = 1 + u/t₀ and r = m/(t₀A):
+    /// ln A + (1 + r) ln(1 + r)/r − 1.
+    #[must_use]
+    pub fn lost(self, since: f64, moved_for: f64) -> f64 {
+        let time = self.time;
+        match self.law {
+            RelaxationLaw::Exponential => 1.0 - (-since / time).exp() * mean_fall(moved_for / time),
+            RelaxationLaw::Logarithmic => {
+                (since / time).ln_1p() + mean_rise(moved_for / (time + since))
+            }
+        }
+    }
+
+    /// Rate of that loss \[1/s\].
+    #[must_use]
+    pub fn rate(self, since: f64, moved_for: f64) -> f64 {
+        let time = self.time;
+        match self.law {
+            RelaxationLaw::Exponential => {
+                (-since / time).exp() * mean_fall(moved_for / time) / time
+            }
+            RelaxationLaw::Logarithmic => {
+                let (from, ratio) = (time + since, moved_for / (time + since));
+                if ratio < 1e-8 {
+                    (1.0 - 0.5 * ratio) / from
+                } else {
+                    ratio.ln_1p() / moved_for
+                }
+            }
         }
     }
 }
@@ -102,16 +124,19 @@ mod tests {
                     RelaxationLaw::Logarithmic => f64::ln(1.0 + t / time),
                 };
                 let mean = (0..parts).map(|part| instant(at(part))).sum::<f64>() / f64::from(parts);
-                let lost = law.lost(since, moved_for, time);
+                let lost = law.timed(time).lost(since, moved_for);
                 assert!((lost - mean).abs() < 1e-7, "{law:?}: {lost} is not {mean}");
-                let slope = (law.lost(since + 1e-5, moved_for, time) - lost) / 1e-5;
-                let rate = law.rate(since + 5e-6, moved_for, time);
+                let slope = (law.timed(time).lost(since + 1e-5, moved_for) - lost) / 1e-5;
+                let rate = law.timed(time).rate(since + 5e-6, moved_for);
                 assert!(
                     (rate / slope - 1.0).abs() < 1e-5,
                     "{law:?}: {rate} is not {slope}"
                 );
             }
-            assert!(law.lost(0.0, 0.0, 1.0).abs() < 1e-15, "no loss in no time");
+            assert!(
+                law.timed(1.0).lost(0.0, 0.0).abs() < 1e-15,
+                "no loss in no time"
+            );
         }
         let below_and_above = [0.009_999_999, 0.010_000_001].map(mean_rise);
         assert!(

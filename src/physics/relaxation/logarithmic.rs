@@ -37,16 +37,32 @@ pub struct LogarithmicLoss {
     steepest: f64,
 }
 
-/// The fraction of an instantaneous force that is lost after long.
-#[must_use]
-pub fn lost_after_long(share: f64, reference_time: f64, longest: f64) -> f64 {
-    spectrum(share, reference_time, longest)
-        .map(|(part, _)| part)
-        .sum()
+/// The law a ln(1 + t/t₀) of a specimen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LogarithmicRelaxation {
+    /// a
+    pub share: f64,
+    /// t₀ \[s\]
+    pub reference_time: f64,
+    /// T \[s\]
+    pub longest: f64,
+}
+
+impl LogarithmicRelaxation {
+    /// The fraction of an instantaneous force that is lost after long.
+    #[must_use]
+    pub fn lost_after_long(&self) -> f64 {
+        spectrum(self).map(|(part, _)| part).sum()
+    }
 }
 
 /// gᵢ and τᵢ \[s\], from the slowest.
-fn spectrum(share: f64, reference_time: f64, longest: f64) -> impl Iterator<Item = (f64, f64)> {
+fn spectrum(law: &LogarithmicRelaxation) -> impl Iterator<Item = (f64, f64)> {
+    let LogarithmicRelaxation {
+        share,
+        reference_time,
+        longest,
+    } = *law;
     let range = (longest / (FASTEST * reference_time)).ln().max(STEP);
     #[expect(
         clippy::cast_possible_truncation,
@@ -64,8 +80,8 @@ fn spectrum(share: f64, reference_time: f64, longest: f64) -> impl Iterator<Item
 impl LogarithmicLoss {
     /// `steepest`: the largest slope of the specimen \[N/m\].
     #[must_use]
-    pub fn new(share: f64, reference_time: f64, longest: f64, steepest: f64) -> Self {
-        let parts: Vec<(f64, f64)> = spectrum(share, reference_time, longest).collect();
+    pub fn new(law: &LogarithmicRelaxation, steepest: f64) -> Self {
+        let parts: Vec<(f64, f64)> = spectrum(law).collect();
         let all = parts.iter().map(|(part, _)| part).sum();
         let branches = parts
             .iter()
@@ -123,8 +139,14 @@ mod tests {
     const TIME: f64 = 2.0;
     const LONGEST: f64 = 2e12;
 
+    const LAW: LogarithmicRelaxation = LogarithmicRelaxation {
+        share: SHARE,
+        reference_time: TIME,
+        longest: LONGEST,
+    };
+
     fn loss() -> LogarithmicLoss {
-        LogarithmicLoss::new(SHARE, TIME, LONGEST, 1e6)
+        LogarithmicLoss::new(&LAW, 1e6)
     }
 
     /// A step of 1 kN: 10 N ln(1 + t/2 s) are lost, from a millisecond to a month, with any number of evaluations.
@@ -192,7 +214,7 @@ mod tests {
             "{} N after long",
             once.force()
         );
-        assert!((lost_after_long(SHARE, TIME, LONGEST) / after_long - 1.0).abs() < 1e-6);
+        assert!((LAW.lost_after_long() / after_long - 1.0).abs() < 1e-6);
     }
 
     /// Ramps with holds between: each increment relaxes from its own instants on, by the mean of the law over the move.
@@ -208,10 +230,9 @@ mod tests {
             );
             loss.follow(&Motion::rest(pause), Increment { moved: 0.0, force });
             let lost = |earlier: i32| {
-                RelaxationLaw::Logarithmic.lost(
+                RelaxationLaw::Logarithmic.timed(TIME).lost(
                     pause + f64::from(step - earlier) * (pause + moved_for),
                     moved_for,
-                    TIME,
                 )
             };
             let by_hand: f64 = (1..=step)

@@ -189,7 +189,7 @@ impl MaxwellBranch {
         let mut moved =
             start.velocity * once + start.acceleration * by_time + 0.5 * start.jerk * by_square;
         if fading != 0.0 {
-            moved += fading * faded(seconds, lag, tau);
+            moved += fading * faded(seconds, [lag, tau]);
         }
         self.force = self.force * (-seconds / tau).exp() + self.stiffness * moved;
     }
@@ -217,8 +217,8 @@ fn weights(seconds: f64, tau: f64) -> [f64; 3] {
     [series(0), series(1), series(2)]
 }
 
-/// ∫₀ᵀ e^(−s/lag) e^(−(T−s)/τ) ds, also where the two are equal.
-fn faded(seconds: f64, lag: f64, tau: f64) -> f64 {
+/// ∫₀ᵀ e^(−s/τ₁) e^(−(T−s)/τ₂) ds of two time constants \[s\], also where they are equal. Which comes first does not matter.
+fn faded(seconds: f64, [lag, tau]: [f64; 2]) -> f64 {
     let apart = (1.0 / lag - 1.0 / tau) * seconds;
     let slower = lag.max(tau);
     let share = if apart == 0.0 {

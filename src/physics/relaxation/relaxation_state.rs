@@ -1,7 +1,7 @@
 //! The relaxation of a specimen: Maxwell branches in parallel with it, and the logarithmic loss of its force. In: a behaviour, then its
 //! motion in time and its instantaneous force. Out: the force that a load cell measures beside it. A behaviour itself knows no time.
 
-use super::logarithmic::{Increment, LogarithmicLoss};
+use super::logarithmic::{Increment, LogarithmicLoss, LogarithmicRelaxation};
 use super::maxwell::{MaxwellBranch, Motion};
 use crate::specimen::Behaviour;
 use crate::specimen::{RestoringForce, SpecimenModel};
@@ -47,12 +47,14 @@ impl RelaxationState {
                 share,
                 reference_time,
                 longest,
-            } => Some(LogarithmicLoss::new(
-                *share,
-                *reference_time,
-                *longest,
-                of.largest_stiffness(),
-            )),
+            } => {
+                let law = LogarithmicRelaxation {
+                    share: *share,
+                    reference_time: *reference_time,
+                    longest: *longest,
+                };
+                Some(LogarithmicLoss::new(&law, of.largest_stiffness()))
+            }
             _ => None,
         };
         Self { branches, loss }
@@ -233,18 +235,20 @@ mod tests {
         let plastic = Behaviour::Bilinear {
             stiffness: 2e6,
             yield_force: 6e3,
-            hardening: 0.0,
+            post_yield_ratio: 0.0,
         };
         let wen = Behaviour::BoucWen {
             stiffness: 2e6,
             yield_force: 6e3,
-            hardening: 0.1,
+            post_yield_ratio: 0.1,
             sharpness: 2.0,
             beta: 0.6,
         };
         let by_hand = -6e3
             * 0.05
-            * crate::relaxation::law::RelaxationLaw::Logarithmic.lost(90.0 + 120.0, 30.0, 0.4);
+            * crate::relaxation::law::RelaxationLaw::Logarithmic
+                .timed(0.4)
+                .lost(90.0 + 120.0, 30.0);
         assert!(
             (lost(&plastic, 0.012, 1, 120.0) - by_hand).abs() < 1e-4,
             "{} N, by hand {by_hand} N",

@@ -1,5 +1,6 @@
 //! The runs of the self-test, on ideal specimens. In: a law, an integrator, a step. Out: peaks and displacements.
 
+use crate::contact::Approaching;
 use crate::contact::state::ContactLaw;
 use crate::impact::summary::{ImpactSummary, SummaryBuilder};
 use crate::impact::{FrameImpactSolver, ImpactInput, ImpactSetup, ImpactSolver, Until, simulate};
@@ -17,7 +18,15 @@ const STEPS: u32 = 4000;
 pub(super) fn input(mass: f64, stiffness: f64, law: ContactLaw, time_step: f64) -> ImpactInput {
     ImpactInput {
         law,
-        ..ImpactInput::rigid(mass, stiffness, 10.0, 1.0, time_step)
+        ..ImpactInput::rigid(
+            stiffness,
+            Approaching {
+                mass,
+                striker_mass: 10.0,
+                velocity: 1.0,
+                time_step,
+            },
+        )
     }
 }
 

@@ -2,27 +2,27 @@
 //! [`SpecimenModel::new`](super::SpecimenModel::new) takes, and their stiffnesses and capacity. It has no state.
 
 use super::{Bolted, Breaks, Deterioration, Pinching, Table};
-use crate::relaxation::logarithmic::lost_after_long;
-use crate::structure::beam::{self, Beam};
+use crate::relaxation::logarithmic::LogarithmicRelaxation;
+use crate::structure::beam::{self, Beam, EquivalentMasses};
 use crate::structure::portal::Portal;
-use crate::structure::portal::mass::{self, EquivalentMasses};
+use crate::structure::portal::mass;
 
 /// Restoring force of a simulated specimen against displacement.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Behaviour {
     /// R = K X, K \[N/m\].
     Elastic { stiffness: f64 },
-    /// Elastic–plastic with kinematic hardening; `hardening` is the post-yield stiffness ratio.
+    /// Elastic–plastic with kinematic hardening; `post_yield_ratio` is the post-yield stiffness ratio.
     Bilinear {
         stiffness: f64,
         yield_force: f64,
-        hardening: f64,
+        post_yield_ratio: f64,
     },
     /// The same, with cyclic deterioration by absorbed energy.
     DeterioratingBilinear {
         stiffness: f64,
         yield_force: f64,
-        hardening: f64,
+        post_yield_ratio: f64,
         deterioration: Deterioration,
     },
     /// A beam by geometry.
@@ -34,7 +34,7 @@ pub enum Behaviour {
     BoucWen {
         stiffness: f64,
         yield_force: f64,
-        hardening: f64,
+        post_yield_ratio: f64,
         sharpness: f64,
         beta: f64,
     },
@@ -115,10 +115,10 @@ impl Behaviour {
         match self {
             Self::BoucWen {
                 stiffness,
-                hardening,
+                post_yield_ratio,
                 beta,
                 ..
-            } => stiffness * (hardening + (1.0 - hardening) * (2.0 * beta).max(1.0)),
+            } => stiffness * (post_yield_ratio + (1.0 - post_yield_ratio) * (2.0 * beta).max(1.0)),
             Self::Bolted(bolted) if bolted.slip_force > 0.0 => 2.0 * bolted.stiffness,
             Self::Table(table) => table.steepest(|_| true),
             Self::Fracture { .. }
@@ -155,15 +155,26 @@ impl Behaviour {
     pub fn relaxed_stiffness(&self) -> f64 {
         match self {
             Self::Maxwell { of, .. } => of.relaxed_stiffness(),
+            Self::Logarithmic { of, .. } => of.relaxed_stiffness() * (1.0 - self.lost_after_long()),
+            other => other.initial_stiffness(),
+        }
+    }
+
+    /// The fraction of an instantaneous force that logarithmic relaxation takes in the end.
+    fn lost_after_long(&self) -> f64 {
+        match self {
             Self::Logarithmic {
-                of,
                 share,
                 reference_time,
                 longest,
-            } => {
-                of.relaxed_stiffness() * (1.0 - lost_after_long(*share, *reference_time, *longest))
+                ..
+            } => LogarithmicRelaxation {
+                share: *share,
+                reference_time: *reference_time,
+                longest: *longest,
             }
-            other => other.initial_stiffness(),
+            .lost_after_long(),
+            _ => 0.0,
         }
     }
 
@@ -183,8 +194,8 @@ impl Behaviour {
     /// Capacity, the largest force \[N\]; infinite where unbounded, None where only its file determines it.
     #[must_use]
     pub fn capacity(&self) -> f64 {
-        let hardens = |hardening: f64, force: f64| {
-            if hardening > 0.0 {
+        let hardens = |post_yield_ratio: f64, force: f64| {
+            if post_yield_ratio > 0.0 {
                 f64::INFINITY
             } else {
                 force
@@ -195,30 +206,32 @@ impl Behaviour {
             Self::Elastic { .. } | Self::Beam(_) | Self::Maxwell { .. } => f64::INFINITY,
             Self::Bilinear {
                 yield_force,
-                hardening,
+                post_yield_ratio,
                 ..
             }
             | Self::DeterioratingBilinear {
                 yield_force,
-                hardening,
+                post_yield_ratio,
                 ..
             }
             | Self::BoucWen {
                 yield_force,
-                hardening,
+                post_yield_ratio,
                 ..
-            } => hardens(*hardening, *yield_force),
+            } => hardens(*post_yield_ratio, *yield_force),
             Self::Pinching(Pinching {
                 stiffness,
                 yield_force,
-                hardening,
+                post_yield_ratio,
                 capping: Some(capping),
                 ..
             }) => {
                 yield_force
-                    + hardening * stiffness * (capping.displacement - yield_force / stiffness)
+                    + post_yield_ratio
+                        * stiffness
+                        * (capping.displacement - yield_force / stiffness)
             }
-            Self::Pinching(pinching) => hardens(pinching.hardening, pinching.yield_force),
+            Self::Pinching(pinching) => hardens(pinching.post_yield_ratio, pinching.yield_force),
             Self::Multilinear { corners } => match corners.as_slice() {
                 [.., [_, before], [_, last]] if before == last => *last,
                 _ => f64::INFINITY,
@@ -242,12 +255,7 @@ impl Behaviour {
             } => of.capacity().min(*force),
             Self::Fracture { of, .. } | Self::Rate { of, .. } => of.capacity(),
             // The loss in one direction increases the force in the other direction.
-            Self::Logarithmic {
-                of,
-                share,
-                reference_time,
-                longest,
-            } => of.capacity() * (1.0 + lost_after_long(*share, *reference_time, *longest)),
+            Self::Logarithmic { of, .. } => of.capacity() * (1.0 + self.lost_after_long()),
             Self::Series(parts) => parts
                 .iter()
                 .map(Self::capacity)
@@ -321,7 +329,7 @@ impl Behaviour {
                 return Self::Bilinear {
                     stiffness,
                     yield_force,
-                    hardening: 0.0,
+                    post_yield_ratio: 0.0,
                 };
             }
             Self::Multilinear { corners } => {

@@ -2,6 +2,17 @@
 
 use super::RestoringForce;
 
+/// The parameters of a curve with two slopes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BilinearCurve {
+    /// K \[N/m\]
+    pub stiffness: f64,
+    /// `F_y` \[N\]
+    pub yield_force: f64,
+    /// Post-yield stiffness ratio `K_p/K`, 0 to 1.
+    pub post_yield_ratio: f64,
+}
+
 /// Elastic–plastic with kinematic hardening: the force has the stiffness K between two parallel lines of slope `K_p`,
 /// `R = K_p X ± (1 − K_p/K) F_y`, and along the line it meets. The elastic trial cut to the band is the exact return map.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,16 +25,26 @@ pub struct Bilinear {
 }
 
 impl Bilinear {
-    /// `stiffness` K \[N/m\], `yield_force` \[N\], post-yield stiffness ratio `hardening` `K_p/K`, 0 to 1.
+    /// A spring at zero displacement.
     #[must_use]
-    pub fn new(stiffness: f64, yield_force: f64, hardening: f64) -> Self {
+    pub fn new(curve: BilinearCurve) -> Self {
         Self {
-            stiffness,
-            hardened: hardening * stiffness,
-            half_band: (1.0 - hardening) * yield_force,
+            stiffness: curve.stiffness,
+            hardened: curve.post_yield_ratio * curve.stiffness,
+            half_band: (1.0 - curve.post_yield_ratio) * curve.yield_force,
             displacement: 0.0,
             force: 0.0,
         }
+    }
+
+    /// Whether it has not been displaced yet.
+    pub(crate) fn is_undisplaced(&self) -> bool {
+        self.displacement == 0.0 && self.force == 0.0
+    }
+
+    /// K, `K_p` \[N/m\] and half of the height of the band between the two lines \[N\].
+    pub(crate) const fn lines(&self) -> [f64; 3] {
+        [self.stiffness, self.hardened, self.half_band]
     }
 }
 
@@ -50,7 +71,11 @@ mod tests {
     /// K 1000 N/m, `F_y` 10 N, `K_p` 100 N/m: yield at 10 mm, 20 N of elastic range, then the loop closes on itself.
     #[test]
     fn bilinear_corners_by_hand() {
-        let mut model = Bilinear::new(1000.0, 10.0, 0.1);
+        let mut model = Bilinear::new(BilinearCurve {
+            stiffness: 1000.0,
+            yield_force: 10.0,
+            post_yield_ratio: 0.1,
+        });
         let corners = [
             (0.010, 10.0),
             (0.030, 12.0),
@@ -75,8 +100,16 @@ mod tests {
     #[test]
     fn bilinear_does_not_depend_on_the_size_of_its_moves() {
         let (mut once, mut often) = (
-            Bilinear::new(1000.0, 10.0, 0.1),
-            Bilinear::new(1000.0, 10.0, 0.1),
+            Bilinear::new(BilinearCurve {
+                stiffness: 1000.0,
+                yield_force: 10.0,
+                post_yield_ratio: 0.1,
+            }),
+            Bilinear::new(BilinearCurve {
+                stiffness: 1000.0,
+                yield_force: 10.0,
+                post_yield_ratio: 0.1,
+            }),
         );
         let mut from = 0.0;
         for to in [0.030, -0.020, 0.005] {

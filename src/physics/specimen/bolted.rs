@@ -1,7 +1,7 @@
 //! A bolted joint: clamped faces that slip, then the bolt bears on the edge of its hole, which grows when it yields. In: a displacement.
 //! Out: the force there, by exact return maps.
 
-use super::{Bilinear, RestoringForce};
+use super::{Bilinear, BilinearCurve, RestoringForce};
 
 /// Parameters of a bolted joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,8 +33,13 @@ impl BoltedJoint {
     /// A joint in the middle of its clearance, without load.
     #[must_use]
     pub fn new(joint: Bolted) -> Self {
-        let friction =
-            (joint.slip_force > 0.0).then(|| Bilinear::new(joint.stiffness, joint.slip_force, 0.0));
+        let friction = (joint.slip_force > 0.0).then(|| {
+            Bilinear::new(BilinearCurve {
+                stiffness: joint.stiffness,
+                yield_force: joint.slip_force,
+                post_yield_ratio: 0.0,
+            })
+        });
         let gaps = [joint.clearance; 2];
         Self {
             stiffness: joint.stiffness,
@@ -49,26 +54,26 @@ impl BoltedJoint {
     pub fn play(&self) -> f64 {
         self.gaps[0] + self.gaps[1]
     }
-}
 
-/// Force of an edge at `displacement` towards it; its gap grows where the hole yields.
-fn bearing(gap: &mut f64, displacement: f64, stiffness: f64, bearing_force: f64) -> f64 {
-    let force = stiffness * (displacement - *gap);
-    if force <= 0.0 {
-        0.0
-    } else if force < bearing_force {
-        force
-    } else {
-        *gap = displacement - bearing_force / stiffness;
-        bearing_force
+    /// Force of the edge on `side` (0 forwards, 1 backwards) at a displacement towards it; its gap grows where the hole yields.
+    fn bearing(&mut self, side: usize, displacement: f64) -> f64 {
+        let gap = &mut self.gaps[side];
+        let force = self.stiffness * (displacement - *gap);
+        if force <= 0.0 {
+            0.0
+        } else if force < self.bearing_force {
+            force
+        } else {
+            *gap = displacement - self.bearing_force / self.stiffness;
+            self.bearing_force
+        }
     }
 }
 
 impl RestoringForce for BoltedJoint {
     fn move_to(&mut self, displacement: f64) -> f64 {
-        let [forwards, backwards] = &mut self.gaps;
-        let ahead = bearing(forwards, displacement, self.stiffness, self.bearing_force);
-        let behind = bearing(backwards, -displacement, self.stiffness, self.bearing_force);
+        let ahead = self.bearing(0, displacement);
+        let behind = self.bearing(1, -displacement);
         ahead - behind
             + self
                 .friction

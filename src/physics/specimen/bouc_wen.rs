@@ -1,7 +1,7 @@
 //! Smooth hysteresis after Bouc and Wen, independent of rate. In: a displacement. Out: the force there, integrated over the
 //! displacement to a stated error, for a move of any length.
 
-use super::RestoringForce;
+use super::{BilinearCurve, RestoringForce};
 
 /// R = α K X + (1 − α) F_y z, dz/dX = (K/F_y) [1 − |z|ⁿ (γ + β sign(z dX))], known as the Bouc–Wen model, normalised to γ = 1 − β, so
 /// that z tends to ±1. Its dissipation beyond the elastic energy ½z² F_y/K is z dX − (F_y/K) z dz = |z|ⁿ⁺¹ |dX| (β + γ sign(z dX)). This
@@ -13,9 +13,7 @@ use super::RestoringForce;
 /// exact solution for n up to 20, and as much between one move and many (the tests measure both).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoucWen {
-    stiffness: f64,
-    yield_force: f64,
-    hardening: f64,
+    curve: BilinearCurve,
     sharpness: f64,
     beta: f64,
     displacement: f64,
@@ -29,19 +27,11 @@ const STEPS: f64 = 32.0;
 const SHORTEST: f64 = 1e-4;
 
 impl BoucWen {
-    /// `stiffness` K \[N/m\], `yield_force` F_y \[N\], `hardening` α, `sharpness` n ≥ 1, `beta` β, ½ to 1.
+    /// A spring at zero displacement that rounds the knee of `curve`, with `sharpness` n ≥ 1 and `beta` β, ½ to 1.
     #[must_use]
-    pub const fn new(
-        stiffness: f64,
-        yield_force: f64,
-        hardening: f64,
-        sharpness: f64,
-        beta: f64,
-    ) -> Self {
+    pub const fn new(curve: BilinearCurve, sharpness: f64, beta: f64) -> Self {
         Self {
-            stiffness,
-            yield_force,
-            hardening,
+            curve,
             sharpness,
             beta,
             displacement: 0.0,
@@ -115,7 +105,7 @@ impl RestoringForce for BoucWen {
     fn move_to(&mut self, displacement: f64) -> f64 {
         let moved = displacement - self.displacement;
         if moved != 0.0 {
-            let mut length = moved.abs() * self.stiffness / self.yield_force;
+            let mut length = moved.abs() * self.curve.stiffness / self.curve.yield_force;
             let mut along = self.plastic * moved.signum();
             if along < 0.0 {
                 // du/dy is largest here, so that no shorter distance leads to 0.
@@ -138,12 +128,12 @@ impl RestoringForce for BoucWen {
             self.plastic = along * moved.signum();
             self.displacement = displacement;
         }
-        self.hardening * self.stiffness * displacement
-            + (1.0 - self.hardening) * self.yield_force * self.plastic
+        self.curve.post_yield_ratio * self.curve.stiffness * displacement
+            + (1.0 - self.curve.post_yield_ratio) * self.curve.yield_force * self.plastic
     }
 
     fn initial_stiffness(&self) -> f64 {
-        self.stiffness
+        self.curve.stiffness
     }
 }
 
@@ -153,7 +143,15 @@ mod tests {
 
     /// z of a specimen whose y is X itself: K = F_y = 1, no hardening.
     fn bare(sharpness: f64, beta: f64) -> BoucWen {
-        BoucWen::new(1.0, 1.0, 0.0, sharpness, beta)
+        BoucWen::new(
+            BilinearCurve {
+                stiffness: 1.0,
+                yield_force: 1.0,
+                post_yield_ratio: 0.0,
+            },
+            sharpness,
+            beta,
+        )
     }
 
     /// n = 1: z = 1 − e^(−y). n = 2: z = tanh y. Unloading with β = ½ is straight: slope 1.
@@ -179,7 +177,19 @@ mod tests {
         let top = model.move_to(1.5);
         assert!((model.move_to(1.5 - back) - (top.atan() - back).tan()).abs() < 1e-8);
         assert!(
-            (BoucWen::new(2e6, 1e3, 0.1, 1.0, 0.5).move_to(1e-9) - 2e-3).abs() < 1e-8,
+            (BoucWen::new(
+                BilinearCurve {
+                    stiffness: 2e6,
+                    yield_force: 1e3,
+                    post_yield_ratio: 0.1
+                },
+                1.0,
+                0.5
+            )
+            .move_to(1e-9)
+                - 2e-3)
+                .abs()
+                < 1e-8,
             "K at first"
         );
     }
@@ -285,8 +295,14 @@ mod tests {
     /// n → ∞ is the elastic–plastic specimen.
     #[test]
     fn a_sharp_knee_is_perfectly_plastic() {
-        let (mut sharp, mut plastic) =
-            (bare(400.0, 0.5), super::super::Bilinear::new(1.0, 1.0, 0.0));
+        let (mut sharp, mut plastic) = (
+            bare(400.0, 0.5),
+            super::super::Bilinear::new(BilinearCurve {
+                stiffness: 1.0,
+                yield_force: 1.0,
+                post_yield_ratio: 0.0,
+            }),
+        );
         for to in [0.5, 2.0, 1.2, -3.0, -2.5, 1.0] {
             assert!((sharp.move_to(to) - plastic.move_to(to)).abs() < 0.01);
         }

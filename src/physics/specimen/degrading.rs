@@ -8,20 +8,27 @@ use super::RestoringForce;
 /// ∫R dX − ½ K(x_m) x_m² = (1 − r) K h² [s − ln(1 + s) − ½ s²/(1 + s)], s = x_m/h.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Degrading {
-    stiffness: f64,
-    half_displacement: f64,
-    residual: f64,
+    curve: DegradingCurve,
     farthest: f64,
 }
 
+/// The parameters of the backbone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DegradingCurve {
+    /// K \[N/m\]
+    pub stiffness: f64,
+    /// h \[m\]
+    pub half_displacement: f64,
+    /// r, 0 to 1.
+    pub residual: f64,
+}
+
 impl Degrading {
-    /// `stiffness` K \[N/m\], `half_displacement` h \[m\], `residual` r, 0 to 1.
+    /// A spring that has not moved.
     #[must_use]
-    pub const fn new(stiffness: f64, half_displacement: f64, residual: f64) -> Self {
+    pub const fn new(curve: DegradingCurve) -> Self {
         Self {
-            stiffness,
-            half_displacement,
-            residual,
+            curve,
             farthest: 0.0,
         }
     }
@@ -29,14 +36,18 @@ impl Degrading {
 
 impl RestoringForce for Degrading {
     fn move_to(&mut self, displacement: f64) -> f64 {
+        let DegradingCurve {
+            stiffness,
+            half_displacement,
+            residual,
+        } = self.curve;
         self.farthest = self.farthest.max(displacement.abs());
-        let left =
-            self.residual + (1.0 - self.residual) / (1.0 + self.farthest / self.half_displacement);
-        self.stiffness * left * displacement
+        let left = residual + (1.0 - residual) / (1.0 + self.farthest / half_displacement);
+        stiffness * left * displacement
     }
 
     fn initial_stiffness(&self) -> f64 {
-        self.stiffness
+        self.curve.stiffness
     }
 }
 
@@ -47,7 +58,11 @@ mod tests {
 
     #[test]
     fn the_first_loading_is_the_hyperbola_and_unloading_goes_to_the_origin() {
-        let mut model = Degrading::new(1e6, 0.002, 0.0);
+        let mut model = Degrading::new(DegradingCurve {
+            stiffness: 1e6,
+            half_displacement: 0.002,
+            residual: 0.0,
+        });
         assert!((model.move_to(0.002) - 1000.0).abs() < 1e-9, "half of K X");
         assert!((model.move_to(0.006) - 1500.0).abs() < 1e-9, "a quarter");
         assert!((model.move_to(0.003) - 750.0).abs() < 1e-9);
@@ -56,14 +71,22 @@ mod tests {
             (model.move_to(-0.003) + 750.0).abs() < 1e-9,
             "the other way it is as weak"
         );
-        let mut stubborn = Degrading::new(1e6, 0.002, 0.25);
+        let mut stubborn = Degrading::new(DegradingCurve {
+            stiffness: 1e6,
+            half_displacement: 0.002,
+            residual: 0.25,
+        });
         assert!((stubborn.move_to(0.002) - 1250.0).abs() < 1e-9);
     }
 
     #[test]
     fn the_energy_lost_is_that_of_the_closed_form() {
         let (stiffness, half, residual, far) = (1e6, 0.002, 0.2, 0.007);
-        let mut model = Degrading::new(stiffness, half, residual);
+        let mut model = Degrading::new(DegradingCurve {
+            stiffness,
+            half_displacement: half,
+            residual,
+        });
         let lost = energy_along(&mut model, 0.0, &[far, 0.0], 1e-6);
         let s: f64 = far / half;
         let by_hand =

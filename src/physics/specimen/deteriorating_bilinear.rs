@@ -1,8 +1,8 @@
 //! A bilinear spring with cyclic deterioration. In: a displacement. Out: the force there, exact for a move of any length; without
 //! deterioration bit-identical to the bilinear spring.
 
-use super::RestoringForce;
 use super::deterioration::Degradation;
+use super::{BilinearCurve, RestoringForce};
 use crate::specimen::Deterioration;
 
 /// The bilinear spring (`Bilinear`: K between two lines of slope k, R = kX ± Y, Y = (1 − h)F_y, k = hK) with two of the modes of
@@ -32,13 +32,18 @@ pub struct DeterioratingBilinear {
 }
 
 impl DeterioratingBilinear {
-    /// `stiffness` K \[N/m\], `yield_force` \[N\], post-yield stiffness ratio `hardening` h, 0 to 1.
+    /// A spring at zero displacement that has not deteriorated.
     #[must_use]
-    pub fn new(stiffness: f64, yield_force: f64, hardening: f64, rule: Deterioration) -> Self {
+    pub fn new(curve: BilinearCurve, rule: Deterioration) -> Self {
+        let BilinearCurve {
+            stiffness,
+            yield_force,
+            post_yield_ratio,
+        } = curve;
         Self {
             stiffness,
-            half_band: (1.0 - hardening) * yield_force,
-            post_yield: hardening * stiffness,
+            half_band: (1.0 - post_yield_ratio) * yield_force,
+            post_yield: post_yield_ratio * stiffness,
             displacement: 0.0,
             force: 0.0,
             degradation: Degradation::new(Some(rule), yield_force, stiffness),
@@ -195,8 +200,15 @@ mod tests {
     };
 
     /// 1000 N/mm to 1 kN; γ `F_y` `x_y` = 40 J of a γ of 40.
-    fn spring(hardening: f64, rule: Deterioration) -> DeterioratingBilinear {
-        DeterioratingBilinear::new(1e6, 1000.0, hardening, rule)
+    fn spring(post_yield_ratio: f64, rule: Deterioration) -> DeterioratingBilinear {
+        DeterioratingBilinear::new(
+            BilinearCurve {
+                stiffness: 1e6,
+                yield_force: 1000.0,
+                post_yield_ratio,
+            },
+            rule,
+        )
     }
 
     /// Reversals of all kinds: elastic, yielding, before zero force, on either side, tiny.
@@ -213,16 +225,20 @@ mod tests {
     /// Infinite capacities: bit-identical to the bilinear spring, also if its hardening is so large that it yields before zero force.
     #[test]
     fn without_wear_it_is_the_bilinear_spring() {
-        for hardening in [0.0, 0.03, 0.1, 0.6, 1.0] {
+        for post_yield_ratio in [0.0, 0.03, 0.1, 0.6, 1.0] {
             let (mut plain, mut degraded) = (
-                Bilinear::new(1e6, 1000.0, hardening),
-                spring(hardening, NO_WEAR),
+                Bilinear::new(BilinearCurve {
+                    stiffness: 1e6,
+                    yield_force: 1000.0,
+                    post_yield_ratio,
+                }),
+                spring(post_yield_ratio, NO_WEAR),
             );
             for direction in ways() {
                 assert_eq!(
                     plain.move_to(direction).to_bits(),
                     degraded.move_to(direction).to_bits(),
-                    "hardening {hardening}, {direction} m"
+                    "hardening {post_yield_ratio}, {direction} m"
                 );
             }
         }
@@ -306,10 +322,11 @@ mod tests {
     /// releases more energy than it absorbed, and the counted energy is the work done.
     #[test]
     fn it_wears_out_and_gives_back_no_more_than_it_took() {
-        for (hardening, unloading) in [(0.0, f64::INFINITY), (0.0, 30.0), (0.05, 60.0), (0.4, 60.0)]
+        for (post_yield_ratio, unloading) in
+            [(0.0, f64::INFINITY), (0.0, 30.0), (0.05, 60.0), (0.4, 60.0)]
         {
             let mut model = spring(
-                hardening,
+                post_yield_ratio,
                 Deterioration {
                     strength: 60.0,
                     unloading,
@@ -338,22 +355,22 @@ mod tests {
                     least = least.min(work);
                 }
             }
-            assert!(least >= -1e-9, "{hardening}: {least} J");
+            assert!(least >= -1e-9, "{post_yield_ratio}: {least} J");
             let exhausted = model.degradation.strength == [0.1; 2];
             assert!(
                 exhausted || (unloading.is_finite() && model.degradation.energy[0] < 60.0),
-                "{hardening}: {:?}",
+                "{post_yield_ratio}: {:?}",
                 model.degradation
             );
             assert!(
                 unloading.is_infinite() || model.degradation.unloading < 0.3,
-                "{hardening}: {:?}",
+                "{post_yield_ratio}: {:?}",
                 model.degradation
             );
             let counted = model.degradation.energy[0] + model.degradation.energy[1];
             assert!(
                 (counted / work - 1.0).abs() < 2e-3,
-                "{hardening}: {counted} J are counted, {work} J were done"
+                "{post_yield_ratio}: {counted} J are counted, {work} J were done"
             );
         }
     }

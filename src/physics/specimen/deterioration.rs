@@ -42,6 +42,14 @@ pub struct Degradation {
     charged: f64,
 }
 
+/// The energy of an excursion.
+struct ExcursionEnergy {
+    /// `E_i` \[J\]
+    absorbed: f64,
+    /// ΣE_j, all including it \[J\].
+    all: f64,
+}
+
 /// Energy below this share of `F_y` `x_y` is rounding.
 const ROUNDING: f64 = 1e-12;
 
@@ -76,11 +84,11 @@ impl Degradation {
         self.energy[1] += done;
     }
 
-    /// β for the energy `absorbed` \[J\] of `all` so far \[J\], for a capacity γ.
-    fn share(&self, capacity: f64, exponent: f64, absorbed: f64, all: f64) -> f64 {
-        let left = capacity * self.yield_force * self.yield_force / self.stiffness - all;
-        if left > absorbed {
-            (absorbed / left).powf(exponent)
+    /// β of an excursion, for a capacity γ.
+    fn share(&self, capacity: f64, exponent: f64, energy: &ExcursionEnergy) -> f64 {
+        let left = capacity * self.yield_force * self.yield_force / self.stiffness - energy.all;
+        if left > energy.absorbed {
+            (energy.absorbed / left).powf(exponent)
         } else {
             1.0
         }
@@ -91,8 +99,11 @@ impl Degradation {
         let Some(rule) = self.rule else { return };
         let absorbed = self.energy[1] - stored - self.charged;
         if absorbed > ROUNDING * self.yield_force * self.yield_force / self.stiffness {
-            let all = self.energy[0] + self.energy[1] - stored;
-            self.unloading *= 1.0 - self.share(rule.unloading, rule.exponent, absorbed, all);
+            let energy = ExcursionEnergy {
+                absorbed,
+                all: self.energy[0] + self.energy[1] - stored,
+            };
+            self.unloading *= 1.0 - self.share(rule.unloading, rule.exponent, &energy);
             self.charged += absorbed;
         }
     }
@@ -103,7 +114,8 @@ impl Degradation {
         let absorbed = self.energy[1].max(0.0);
         let all = self.energy[0] + absorbed;
         (self.energy, self.charged) = ([all, 0.0], 0.0);
-        let share = |capacity| self.share(capacity, rule.exponent, absorbed, all);
+        let energy = ExcursionEnergy { absorbed, all };
+        let share = |capacity| self.share(capacity, rule.exponent, &energy);
         let [strength, capping, reloading] =
             [rule.strength, rule.capping, rule.reloading].map(share);
         self.strength[side] = (self.strength[side] * (1.0 - strength)).max(rule.residual);

@@ -19,10 +19,10 @@ mod table;
 mod tests;
 
 pub use behaviour::Behaviour;
-pub use bilinear::Bilinear;
+pub use bilinear::{Bilinear, BilinearCurve};
 pub use bolted::{Bolted, BoltedJoint};
 pub use bouc_wen::BoucWen;
-pub use degrading::Degrading;
+pub use degrading::{Degrading, DegradingCurve};
 pub use deteriorating_bilinear::DeterioratingBilinear;
 pub use deterioration::Deterioration;
 pub use fracture::{Breaks, Fracture};
@@ -87,33 +87,43 @@ impl SpecimenModel {
             Behaviour::Bilinear {
                 stiffness,
                 yield_force,
-                hardening,
-            } => Self::Bilinear(Bilinear::new(*stiffness, *yield_force, *hardening)),
+                post_yield_ratio,
+            } => Self::Bilinear(Bilinear::new(BilinearCurve {
+                stiffness: *stiffness,
+                yield_force: *yield_force,
+                post_yield_ratio: *post_yield_ratio,
+            })),
             Behaviour::DeterioratingBilinear {
                 stiffness,
                 yield_force,
-                hardening,
+                post_yield_ratio,
                 deterioration,
             } => Self::DeterioratingBilinear(Box::new(DeterioratingBilinear::new(
-                *stiffness,
-                *yield_force,
-                *hardening,
+                BilinearCurve {
+                    stiffness: *stiffness,
+                    yield_force: *yield_force,
+                    post_yield_ratio: *post_yield_ratio,
+                },
                 *deterioration,
             ))),
-            Behaviour::Portal(portal) => {
-                Self::Bilinear(Bilinear::new(portal.stiffness, portal.capacity(), 0.0))
-            }
+            Behaviour::Portal(portal) => Self::Bilinear(Bilinear::new(BilinearCurve {
+                stiffness: portal.stiffness,
+                yield_force: portal.capacity(),
+                post_yield_ratio: 0.0,
+            })),
             Behaviour::Multilinear { corners } => Self::Multilinear(Multilinear::new(corners)),
             Behaviour::BoucWen {
                 stiffness,
                 yield_force,
-                hardening,
+                post_yield_ratio,
                 sharpness,
                 beta,
             } => Self::BoucWen(Box::new(BoucWen::new(
-                *stiffness,
-                *yield_force,
-                *hardening,
+                BilinearCurve {
+                    stiffness: *stiffness,
+                    yield_force: *yield_force,
+                    post_yield_ratio: *post_yield_ratio,
+                },
                 *sharpness,
                 *beta,
             ))),
@@ -124,11 +134,11 @@ impl SpecimenModel {
                 stiffness,
                 half_displacement,
                 residual,
-            } => Self::Degrading(Box::new(Degrading::new(
-                *stiffness,
-                *half_displacement,
-                *residual,
-            ))),
+            } => Self::Degrading(Box::new(Degrading::new(DegradingCurve {
+                stiffness: *stiffness,
+                half_displacement: *half_displacement,
+                residual: *residual,
+            }))),
             Behaviour::Bolted(bolted) => Self::Bolted(Box::new(BoltedJoint::new(*bolted))),
             Behaviour::Table(table) => table::model(table),
             Behaviour::Fracture { of, at } => {

@@ -76,7 +76,7 @@ impl RestoringForce for Multilinear {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Bilinear;
+    use super::super::{Bilinear, BilinearCurve};
     use super::*;
 
     const CORNERS: [[f64; 2]; 3] = [[0.001, 1000.0], [0.003, 2000.0], [0.008, 3000.0]];
@@ -141,7 +141,11 @@ mod tests {
     fn two_slopes_are_the_bilinear_specimen() {
         let (mut two, mut bilinear) = (
             Multilinear::new(&[[0.01, 10.0], [0.03, 12.0]]),
-            Bilinear::new(1000.0, 10.0, 0.1),
+            Bilinear::new(BilinearCurve {
+                stiffness: 1000.0,
+                yield_force: 10.0,
+                post_yield_ratio: 0.1,
+            }),
         );
         for displacement in [0.03, 0.01, -0.02, 0.05, 0.0] {
             assert!((two.move_to(displacement) - bilinear.move_to(displacement)).abs() < 1e-12);

@@ -13,7 +13,7 @@ pub struct Pinching {
     /// F_y \[N\]
     pub yield_force: f64,
     /// Post-yield stiffness ratio of the backbone.
-    pub hardening: f64,
+    pub post_yield_ratio: f64,
     /// κ_F: force of the break point over that of the straight line to the peak.
     pub force_factor: f64,
     /// κ_D: 1 − displacement of the break point over the largest residual displacement.
@@ -83,7 +83,8 @@ impl PinchedHysteresis {
         let strength = self.degradation.strength[usize::from(direction < 0.0)];
         let yield_force = strength * self.plan.yield_force;
         let past = displacement - yield_force / self.plan.stiffness;
-        let post_yield = yield_force + strength * self.plan.hardening * self.plan.stiffness * past;
+        let post_yield =
+            yield_force + strength * self.plan.post_yield_ratio * self.plan.stiffness * past;
         match self.plan.capping {
             None => post_yield,
             Some(capping) => {
@@ -106,10 +107,11 @@ impl PinchedHysteresis {
         let Pinching {
             stiffness,
             yield_force,
-            hardening,
+            post_yield_ratio,
             ..
         } = self.plan;
-        let top = yield_force + hardening * stiffness * (displacement - yield_force / stiffness);
+        let top =
+            yield_force + post_yield_ratio * stiffness * (displacement - yield_force / stiffness);
         self.degradation.capping[usize::from(direction < 0.0)]
             * (top + slope * stiffness * displacement)
     }
@@ -122,13 +124,13 @@ impl PinchedHysteresis {
         let Pinching {
             stiffness,
             yield_force,
-            hardening,
+            post_yield_ratio,
             ..
         } = self.plan;
         let strength = self.degradation.strength[usize::from(direction < 0.0)];
         let (cap, falls) = (self.cap(direction, capping), capping.slope * stiffness);
-        let hardens = strength * hardening * stiffness;
-        let at_none = strength * yield_force * (1.0 - strength * hardening);
+        let hardens = strength * post_yield_ratio * stiffness;
+        let at_none = strength * yield_force * (1.0 - strength * post_yield_ratio);
         let begins = (cap - at_none) / (hardens + falls);
         [begins, (cap - capping.residual * yield_force) / falls]
     }
@@ -280,7 +282,7 @@ pub(super) mod tests {
     pub(crate) const PLAN: Pinching = Pinching {
         stiffness: 1e6,
         yield_force: 1000.0,
-        hardening: 0.0,
+        post_yield_ratio: 0.0,
         force_factor: 0.4,
         displacement_factor: 0.5,
         unloading_exponent: 0.0,
@@ -332,7 +334,7 @@ pub(super) mod tests {
         assert!((model.move_to(0.003) - 500.0).abs() < 1e-9);
         let mut hard = PinchedHysteresis::new(Pinching {
             unloading_exponent: 1.0,
-            hardening: 0.5,
+            post_yield_ratio: 0.5,
             ..PLAN
         });
         let top = hard.move_to(0.004);

@@ -230,7 +230,7 @@ fn without_a_capacity_nothing_wears() {
         CAPPED,
         Pinching {
             unloading_exponent: 1.0,
-            hardening: 0.3,
+            post_yield_ratio: 0.3,
             ..PLAN
         },
     ] {

@@ -127,7 +127,7 @@ impl RestoringForce for Series {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Bilinear, Elastic};
+    use super::super::{Bilinear, BilinearCurve, Elastic};
     use super::*;
     use crate::specimen::{Behaviour, Bolted};
 
@@ -135,7 +135,7 @@ mod tests {
     const YIELDS: Behaviour = Behaviour::Bilinear {
         stiffness: 1500.0,
         yield_force: 10.0,
-        hardening: 0.2,
+        post_yield_ratio: 0.2,
     };
 
     fn series(parts: &[Behaviour]) -> SpecimenModel {
@@ -147,7 +147,11 @@ mod tests {
     #[test]
     fn a_spring_behind_a_bilinear_one_is_a_bilinear_one() {
         let mut found = series(&[SPRING, YIELDS]);
-        let mut by_hand = Bilinear::new(1000.0, 10.0, 3000.0 / 11.0 / 1000.0);
+        let mut by_hand = Bilinear::new(BilinearCurve {
+            stiffness: 1000.0,
+            yield_force: 10.0,
+            post_yield_ratio: 3000.0 / 11.0 / 1000.0,
+        });
         assert!((found.initial_stiffness() - 1000.0).abs() < 1e-9);
         for displacement in [0.005, 0.02, 0.05, 0.03, -0.04, -0.01, 0.0] {
             let (force, hand) = (found.move_to(displacement), by_hand.move_to(displacement));
@@ -193,7 +197,7 @@ mod tests {
         let wen = Behaviour::BoucWen {
             stiffness: 2000.0,
             yield_force: 8.0,
-            hardening: 0.05,
+            post_yield_ratio: 0.05,
             sharpness: 2.0,
             beta: 0.6,
         };

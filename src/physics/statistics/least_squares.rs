@@ -179,21 +179,39 @@ impl Covariance {
     }
 }
 
-/// Schwarz's criterion (BIC) n ln(S/n) + k ln n of n readings, k parameters and the sum of squares S.
-#[must_use]
-pub fn bic(squares: f64, count: f64, parameters: f64) -> f64 {
-    count * (squares / count).ln() + parameters * count.ln()
+/// A fit by least squares, as the criteria of model selection see it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FitSize {
+    /// S, the sum of squares.
+    pub squares: f64,
+    /// n, the number of readings.
+    pub count: f64,
+    /// k, the number of parameters.
+    pub parameters: f64,
 }
 
-/// BIC with the correction of McQuarrie (*A small-sample correction for the Schwarz SIC model selection criterion*, Statistics &
-/// Probability Letters 44 (1999) 79–86): n ln(S/n) + k ln n · n/(n − k − 2). Infinite for too few readings.
-#[must_use]
-pub fn corrected_bic(squares: f64, count: f64, parameters: f64) -> f64 {
-    let left = count - parameters - 2.0;
-    if left <= 0.0 {
-        f64::INFINITY
-    } else {
-        count * (squares / count).ln() + parameters * count.ln() * count / left
+impl FitSize {
+    /// Schwarz's criterion (BIC) n ln(S/n) + k ln n.
+    #[must_use]
+    pub fn bic(&self) -> f64 {
+        self.likelihood() + self.parameters * self.count.ln()
+    }
+
+    /// BIC with the correction of McQuarrie (*A small-sample correction for the Schwarz SIC model selection criterion*, Statistics &
+    /// Probability Letters 44 (1999) 79–86): n ln(S/n) + k ln n · n/(n − k − 2). Infinite for too few readings.
+    #[must_use]
+    pub fn corrected_bic(&self) -> f64 {
+        let left = self.count - self.parameters - 2.0;
+        if left <= 0.0 {
+            f64::INFINITY
+        } else {
+            self.likelihood() + self.parameters * self.count.ln() * self.count / left
+        }
+    }
+
+    /// n ln(S/n)
+    fn likelihood(&self) -> f64 {
+        self.count * (self.squares / self.count).ln()
     }
 }
 
@@ -274,8 +292,14 @@ mod tests {
 
     #[test]
     fn a_criterion_counts_parameters() {
-        assert!((bic(10.0, 10.0, 3.0) - 3.0 * 10.0_f64.ln()).abs() < 1e-12);
-        assert!(corrected_bic(10.0, 10.0, 3.0) > bic(10.0, 10.0, 3.0));
-        assert_eq!(corrected_bic(1.0, 5.0, 3.0), f64::INFINITY);
+        let fit = FitSize {
+            squares: 10.0,
+            count: 10.0,
+            parameters: 3.0,
+        };
+        assert!((fit.bic() - 3.0 * 10.0_f64.ln()).abs() < 1e-12);
+        assert!(fit.corrected_bic() > fit.bic());
+        let short = FitSize { count: 5.0, ..fit };
+        assert_eq!(short.corrected_bic(), f64::INFINITY);
     }
 }

@@ -1,7 +1,5 @@
 //! Beams by geometry: stiffness at the struck section and the mass that moves with it in the first mode.
 
-use super::portal::mass::EquivalentMasses;
-
 /// A beam by geometry: its stiffness at the struck section \[N/m\], and the data from which it follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beam {
@@ -31,6 +29,31 @@ pub enum Ends {
     },
 }
 
+/// Masses of the equivalent single degree of freedom of a beam or portal \[kg\]. They have the same kinetic energy: M = ∫m φ² ds, with a
+/// shape φ that is 1 where the load does work. The load then needs no factor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EquivalentMasses {
+    /// φ is the elastic deflection under the static load: before any hinge forms.
+    pub elastic: f64,
+    /// φ is the shape of the governing mechanism with rigid links between the hinges: after the last hinge formed. None without a
+    /// mechanism.
+    pub plastic: Option<f64>,
+    /// Half of each member at either end (for the beam: half at midspan and half at the corners), moved elastically: Melo et al. 2006,
+    /// Fig. 5. There a swaying frame has the mass of its beam and of one column, and a beam half its own.
+    pub lumped: f64,
+    /// The total mass that moves or bends.
+    pub whole: f64,
+}
+
+/// A uniform beam between its supports.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// L \[m\]
+    pub length: f64,
+    /// EI \[N·m²\]
+    pub bending: f64,
+}
+
 /// Stiffness of a uniform beam at the struck section (tip of a cantilever, middle of the others) \[N/m\]. Partly built-in ends, with `r =
 /// k_θ L / EI` at each, range from simply supported (r = 0) to built-in (r = ∞).
 ///
@@ -38,14 +61,8 @@ pub enum Ends {
 /// support of their ends. The shear strain P/κGA therefore adds PL/κGA to the tip and (P/2)(L/2)/κGA = PL/4κGA to midspan. Bending does
 /// not change: moments of the symmetric beams follow from rotations of the sections alone.
 #[must_use]
-pub fn stiffness(
-    length: f64,
-    youngs_modulus: f64,
-    second_moment: f64,
-    ends: Ends,
-    shear: Option<f64>,
-) -> f64 {
-    let bending = youngs_modulus * second_moment;
+pub fn stiffness(span: Span, ends: Ends, shear: Option<f64>) -> f64 {
+    let Span { length, bending } = span;
     let unit = bending / (length * length * length);
     let by_bending = match ends {
         Ends::Cantilever => 3.0 * unit,
@@ -70,14 +87,14 @@ pub fn stiffness(
 
 /// Ends of fixity factor `p = 1/(1 + 3EI/(k_θ L))`, 0 pinned, 1 built in: `k_θ = 3EI/L · p/(1 − p)`.
 #[must_use]
-pub fn ends_of_fixity(factor: f64, length: f64, bending_stiffness: f64) -> Ends {
+pub fn ends_of_fixity(factor: f64, span: Span) -> Ends {
     if factor >= 1.0 {
         Ends::BuiltIn
     } else if factor <= 0.0 {
         Ends::SimplySupported
     } else {
         Ends::PartlyBuiltIn {
-            rotational_stiffness: 3.0 * bending_stiffness / length * factor / (1.0 - factor),
+            rotational_stiffness: 3.0 * span.bending / span.length * factor / (1.0 - factor),
         }
     }
 }
@@ -127,21 +144,24 @@ pub fn partly_built_in_mass_factor(ratio: f64) -> f64 {
 mod tests {
     use super::*;
 
+    const SPAN: Span = Span {
+        length: 2.0,
+        bending: 7.0e10 * 3.0e-8,
+    };
+
     #[test]
     fn partly_built_in_ends_lie_between_the_two_it_joins() {
         let of = |rotational_stiffness| {
             stiffness(
-                2.0,
-                7.0e10,
-                3.0e-8,
+                SPAN,
                 Ends::PartlyBuiltIn {
                     rotational_stiffness,
                 },
                 None,
             )
         };
-        let simple = stiffness(2.0, 7.0e10, 3.0e-8, Ends::SimplySupported, None);
-        let built_in = stiffness(2.0, 7.0e10, 3.0e-8, Ends::BuiltIn, None);
+        let simple = stiffness(SPAN, Ends::SimplySupported, None);
+        let built_in = stiffness(SPAN, Ends::BuiltIn, None);
         assert!((of(0.0) / simple - 1.0).abs() < 1e-15);
         assert!((of(1e30) / built_in - 1.0).abs() < 1e-15);
         assert_eq!(of(f64::INFINITY), built_in);
@@ -151,16 +171,14 @@ mod tests {
     #[test]
     fn closed_forms() {
         // EI = 2100 N·m², L³ = 8 m³.
-        assert!((stiffness(2.0, 7.0e10, 3.0e-8, Ends::Cantilever, None) - 787.5).abs() < 1e-9);
-        assert!(
-            (stiffness(2.0, 7.0e10, 3.0e-8, Ends::SimplySupported, None) - 12_600.0).abs() < 1e-8
-        );
-        assert!((stiffness(2.0, 7.0e10, 3.0e-8, Ends::BuiltIn, None) - 50_400.0).abs() < 1e-7);
+        assert!((stiffness(SPAN, Ends::Cantilever, None) - 787.5).abs() < 1e-9);
+        assert!((stiffness(SPAN, Ends::SimplySupported, None) - 12_600.0).abs() < 1e-8);
+        assert!((stiffness(SPAN, Ends::BuiltIn, None) - 50_400.0).abs() < 1e-7);
         // r = 4: 192·(6/12) = 96 times EI/L³.
         let partly = Ends::PartlyBuiltIn {
             rotational_stiffness: 4200.0,
         };
-        assert!((stiffness(2.0, 7.0e10, 3.0e-8, partly, None) - 25_200.0).abs() < 1e-8);
+        assert!((stiffness(SPAN, partly, None) - 25_200.0).abs() < 1e-8);
     }
 
     /// ∫ shape² over the length, by Simpson, is the factor.
@@ -219,7 +237,14 @@ mod tests {
 
     fn beam(ends: Ends) -> Beam {
         let (length, youngs_modulus, second_moment) = (2.0, 7.0e10, 3.0e-8);
-        let stiffness = stiffness(length, youngs_modulus, second_moment, ends, None);
+        let stiffness = stiffness(
+            Span {
+                length,
+                bending: youngs_modulus * second_moment,
+            },
+            ends,
+            None,
+        );
         Beam {
             stiffness,
             length,
@@ -234,14 +259,14 @@ mod tests {
     /// κGA = 5000 N: the cantilever gains L/κGA = 0.4 mm/N, the others a quarter of it.
     #[test]
     fn shear_adds_its_flexibility() {
-        let half = ends_of_fixity(0.5, 2.0, 2100.0);
+        let half = ends_of_fixity(0.5, SPAN);
         for (ends, gain) in [
             (Ends::Cantilever, 4e-4),
             (Ends::SimplySupported, 1e-4),
             (Ends::BuiltIn, 1e-4),
             (half, 1e-4),
         ] {
-            let of = |shear| 1.0 / stiffness(2.0, 7.0e10, 3.0e-8, ends, shear);
+            let of = |shear| 1.0 / stiffness(SPAN, ends, shear);
             assert!(
                 (of(Some(5000.0)) - of(None) - gain).abs() < 1e-15,
                 "{ends:?}"
@@ -252,15 +277,7 @@ mod tests {
     /// p = ½ is r = 3: 192·5/11 EI/L³.
     #[test]
     fn fixity_runs_from_pinned_to_built_in() {
-        let of = |factor| {
-            stiffness(
-                2.0,
-                7.0e10,
-                3.0e-8,
-                ends_of_fixity(factor, 2.0, 2100.0),
-                None,
-            )
-        };
+        let of = |factor| stiffness(SPAN, ends_of_fixity(factor, SPAN), None);
         assert!((of(0.0) - 12_600.0).abs() < 1e-8 && (of(1.0) - 50_400.0).abs() < 1e-8);
         assert!((of(0.5) - 50_400.0 * 5.0 / 11.0).abs() < 1e-8);
     }

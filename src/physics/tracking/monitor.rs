@@ -68,14 +68,40 @@ impl Tracking {
     }
 }
 
+/// One axis at the end of a step.
+#[derive(Clone, Copy, Debug)]
+pub struct TrackedStep {
+    /// d_c \[m\]
+    pub commanded: f64,
+    /// d_m \[m\]
+    pub measured: f64,
+    /// r_m \[N\]
+    pub force: f64,
+    /// r*, with which the recursion continues at the command \[N\]: r_m if nothing corrects it.
+    pub effective_force: f64,
+}
+
+impl TrackedStep {
+    /// r* − r_m \[N\]
+    fn corrected(&self) -> f64 {
+        self.effective_force - self.force
+    }
+
+    /// ½(r_m + r*)(d_c − d_m) \[J\]; zero without a force correction, because then nothing is assumed between the two displacements.
+    fn work_behind(&self) -> f64 {
+        let corrected = self.corrected();
+        if corrected == 0.0 {
+            0.0
+        } else {
+            (self.force + 0.5 * corrected) * (self.commanded - self.measured)
+        }
+    }
+}
+
 /// Sums up the steps of one degree of freedom.
 #[derive(Clone, Copy, Debug)]
 pub struct Monitor {
-    commanded: f64,
-    measured: f64,
-    force: f64,
-    /// r* − r_m at the last step \[N\].
-    corrected: f64,
+    last: TrackedStep,
     /// ∫ r* dd_c − ∫ r_m dd_m \[J\].
     integrated: f64,
     /// Work between the measured and the commanded displacement before the first step \[J\].
@@ -86,60 +112,39 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// From the command \[m\], the measured displacement \[m\] and force \[N\] before the first step.
+    /// From the command and the reading before the first step. The recursion begins with the measured force.
     #[must_use]
-    pub fn new(commanded: f64, measured: f64, force: f64) -> Self {
-        Self::with_effective_force(commanded, measured, force, force)
-    }
-
-    /// As [`Self::new`], if a correction uses `taken` \[N\] as the force at the command; the recursion begins with the measured force.
-    #[must_use]
-    pub fn with_effective_force(
-        commanded: f64,
-        measured: f64,
-        force: f64,
-        effective_force: f64,
-    ) -> Self {
+    pub fn new(start: &TrackedStep) -> Self {
         let mut monitor = Self {
-            commanded,
-            measured,
-            force,
-            corrected: 0.0,
+            last: TrackedStep {
+                effective_force: start.force,
+                ..*start
+            },
             integrated: 0.0,
-            behind_at_start: work_behind((commanded, measured), force, effective_force - force),
+            behind_at_start: start.work_behind(),
             errors: 0.0,
             commands: 0.0,
             tracking: Tracking::default(),
         };
-        monitor.size(commanded, measured);
+        monitor.size(start);
         monitor
     }
 
-    /// Adds the end of a step.
-    pub fn take(&mut self, commanded: f64, measured: f64, force: f64) -> Tracking {
-        self.take_effective(commanded, measured, force, force)
-    }
-
-    /// As [`Self::take`], if the recursion uses `taken` \[N\] as the force at the command.
-    pub fn take_effective(
-        &mut self,
-        commanded: f64,
-        measured: f64,
-        force: f64,
-        effective_force: f64,
-    ) -> Tracking {
-        let corrected = effective_force - force;
-        let (asked, went) = (commanded - self.commanded, measured - self.measured);
+    /// Adds a step.
+    pub fn take(&mut self, step: &TrackedStep) -> Tracking {
+        let last = self.last;
+        let (asked, went) = (
+            step.commanded - last.commanded,
+            step.measured - last.measured,
+        );
         let tracking = &mut self.tracking;
-        self.integrated += 0.5 * (self.force + force) * (asked - went)
-            + 0.5 * (self.corrected + corrected) * asked;
-        tracking.energy_error = self.integrated
-            - (work_behind((commanded, measured), force, corrected) - self.behind_at_start);
-        tracking.indicator +=
-            0.25 * ((self.measured + measured) * asked - (self.commanded + commanded) * went);
-        (self.commanded, self.measured, self.force, self.corrected) =
-            (commanded, measured, force, corrected);
-        self.size(commanded, measured);
+        self.integrated += 0.5 * (last.force + step.force) * (asked - went)
+            + 0.5 * (last.corrected() + step.corrected()) * asked;
+        tracking.energy_error = self.integrated - (step.work_behind() - self.behind_at_start);
+        tracking.indicator += 0.25
+            * ((last.measured + step.measured) * asked - (last.commanded + step.commanded) * went);
+        self.last = *step;
+        self.size(step);
         self.tracking
     }
 
@@ -149,25 +154,16 @@ impl Monitor {
         self.tracking
     }
 
-    fn size(&mut self, commanded: f64, measured: f64) {
-        let error = measured - commanded;
+    fn size(&mut self, step: &TrackedStep) {
+        let error = step.measured - step.commanded;
         self.errors += error * error;
-        self.commands += commanded * commanded;
+        self.commands += step.commanded * step.commanded;
         self.tracking.peak_error = self.tracking.peak_error.max(error.abs());
         self.tracking.nrms_error = if self.commands > 0.0 {
             (self.errors / self.commands).sqrt()
         } else {
             0.0
         };
-    }
-}
-
-/// ½(r_m + r*)(d_c − d_m) \[J\]; zero without a force correction, because then nothing is assumed between the two displacements.
-fn work_behind((commanded, measured): (f64, f64), force: f64, corrected: f64) -> f64 {
-    if corrected == 0.0 {
-        0.0
-    } else {
-        (force + 0.5 * corrected) * (commanded - measured)
     }
 }
 
@@ -178,14 +174,28 @@ mod tests {
     const STIFFNESS: f64 = 1000.0;
     const STEPS: u32 = 4000;
 
+    /// A step whose force is not corrected.
+    fn uncorrected(commanded: f64, measured: f64, force: f64) -> TrackedStep {
+        TrackedStep {
+            commanded,
+            measured,
+            force,
+            effective_force: force,
+        }
+    }
+
     /// One cycle of A sin ωt; the actuator moves to `place`.
     fn cycle(amplitude: f64, place: impl Fn(f64) -> f64) -> Tracking {
         let at = |step: u32| std::f64::consts::TAU * f64::from(step) / f64::from(STEPS);
-        let mut monitor = Monitor::new(0.0, place(0.0), STIFFNESS * place(0.0));
+        let mut monitor = Monitor::new(&uncorrected(0.0, place(0.0), STIFFNESS * place(0.0)));
         for step in 1..=STEPS {
             let angle = at(step);
             let measured = place(angle);
-            monitor.take(amplitude * angle.sin(), measured, STIFFNESS * measured);
+            monitor.take(&uncorrected(
+                amplitude * angle.sin(),
+                measured,
+                STIFFNESS * measured,
+            ));
         }
         monitor.tracking()
     }
@@ -234,18 +244,16 @@ mod tests {
         let effective_force =
             |commanded: f64, measured: f64| force(measured) - operator * (measured - commanded);
         let first = place(0.0);
-        let mut monitor =
-            Monitor::with_effective_force(0.0, first, force(first), effective_force(0.0, first));
-        let steps = (1..=2 * STEPS).map(|step| {
-            let (commanded, measured) = (amplitude * angle(step).sin(), place(angle(step)));
-            monitor
-                .take_effective(
-                    commanded,
-                    measured,
-                    force(measured),
-                    effective_force(commanded, measured),
-                )
-                .energy_error
+        let step = |commanded: f64, measured: f64| TrackedStep {
+            commanded,
+            measured,
+            force: force(measured),
+            effective_force: effective_force(commanded, measured),
+        };
+        let mut monitor = Monitor::new(&step(0.0, first));
+        let steps = (1..=2 * STEPS).map(|index| {
+            let (commanded, measured) = (amplitude * angle(index).sin(), place(angle(index)));
+            monitor.take(&step(commanded, measured)).energy_error
         });
         steps.collect()
     }
@@ -294,17 +302,16 @@ mod tests {
     #[test]
     fn a_correction_of_what_flows_is_an_error() {
         let (flow, behind, operator, step) = (5.0, 1e-3, STIFFNESS, 1e-4);
-        let mut monitor =
-            Monitor::with_effective_force(0.1, 0.1 - behind, flow, flow + operator * behind);
+        let at = |commanded: f64| TrackedStep {
+            commanded,
+            measured: commanded - behind,
+            force: flow,
+            effective_force: flow + operator * behind,
+        };
+        let mut monitor = Monitor::new(&at(0.1));
         let mut last = Tracking::default();
         for index in 1..=100 {
-            let commanded = 0.1 + step * f64::from(index);
-            last = monitor.take_effective(
-                commanded,
-                commanded - behind,
-                flow,
-                flow + operator * behind,
-            );
+            last = monitor.take(&at(0.1 + step * f64::from(index)));
         }
         // Minus half of the first step, which begins with the measured force.
         let exact = operator * behind * step * 99.5;
@@ -317,11 +324,11 @@ mod tests {
     /// By hand: from rest to a command of 2 mm, 1 mm reached, 10 N read: ½·10 N·1 mm. ¼(1·2 − 2·1) mm² is zero on the first step.
     #[test]
     fn one_step_by_hand() {
-        let mut monitor = Monitor::new(0.0, 0.0, 0.0);
-        let first = monitor.take(0.002, 0.001, 10.0);
+        let mut monitor = Monitor::new(&uncorrected(0.0, 0.0, 0.0));
+        let first = monitor.take(&uncorrected(0.002, 0.001, 10.0));
         assert!((first.energy_error - 0.005).abs() < 1e-15 && first.indicator.abs() < 1e-18);
         // Command 0, 1.5 mm reached: ½(10+15)(−2 − 0.5) mm, ¼((1+1.5)(−2) − 2·0.5) mm².
-        let second = monitor.take(0.0, 0.0015, 15.0);
+        let second = monitor.take(&uncorrected(0.0, 0.0015, 15.0));
         assert!(
             (second.energy_error - (0.005 - 0.03125)).abs() < 1e-15,
             "{second:?}"

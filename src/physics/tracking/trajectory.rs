@@ -26,16 +26,26 @@ pub struct Rate {
     pub jerk: f64,
 }
 
+/// Motion of an actuator at an instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ActuatorMotion {
+    /// \[m\]
+    pub place: f64,
+    /// \[m/s\]
+    pub velocity: f64,
+    /// \[m/s²\]
+    pub acceleration: f64,
+}
+
 impl Path {
-    /// From a position with a velocity, at constant acceleration for `seconds`.
+    /// From a motion on at its acceleration, for `seconds`.
     #[must_use]
-    pub fn accelerated(from: f64, start_velocity: f64, acceleration: f64, seconds: f64) -> Self {
-        let end_velocity = start_velocity + acceleration * seconds;
-        let to = from + 0.5 * (start_velocity + end_velocity) * seconds;
+    pub fn accelerated(start: ActuatorMotion, seconds: f64) -> Self {
+        let end_velocity = start.velocity + start.acceleration * seconds;
         Self {
-            from,
-            to,
-            start_velocity,
+            from: start.place,
+            to: start.place + 0.5 * (start.velocity + end_velocity) * seconds,
+            start_velocity: start.velocity,
             end_velocity,
             seconds,
         }
@@ -170,7 +180,14 @@ mod tests {
             end_velocity: 1.0,
             seconds: 3.0,
         };
-        let back = Path::accelerated(0.0, 1.0, -2.0, 1.5);
+        let back = Path::accelerated(
+            ActuatorMotion {
+                place: 0.0,
+                velocity: 1.0,
+                acceleration: -2.0,
+            },
+            1.5,
+        );
         for path in [CUBIC, jerky, even, back] {
             let times = (0..=100_000).map(|part| path.seconds * f64::from(part) / 1e5);
             let (mut low, mut high, mut fastest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
@@ -191,7 +208,14 @@ mod tests {
     /// x = 1·t − t² for 1.5 s: back to −0.75 m at −2 m/s, with the turn at ¼ m.
     #[test]
     fn constant_acceleration_is_a_path() {
-        let path = Path::accelerated(0.0, 1.0, -2.0, 1.5);
+        let path = Path::accelerated(
+            ActuatorMotion {
+                place: 0.0,
+                velocity: 1.0,
+                acceleration: -2.0,
+            },
+            1.5,
+        );
         assert!((path.to + 0.75).abs() < 1e-15 && path.end_velocity == -2.0);
         assert!(
             (path.rate(0.7).acceleration + 2.0).abs() < 1e-12 && path.rate(0.7).jerk.abs() < 1e-12

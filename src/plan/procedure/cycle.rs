@@ -21,7 +21,7 @@ pub struct Cycle {
     pub pause: Formula,
     /// Actuator speed \[m/s\].
     pub speed: Option<Formula>,
-    /// Sampling rate \[Hz\]: the actuator moves without stopping between the reversal points. None: step and pause.
+    /// Sampling rate \[Hz\]: the actuator moves without stopping between the reversal points. None: ramp-and-hold.
     pub rate: Option<Formula>,
     pub inspect: Vec<CycleInspection>,
     /// For the curve that is fitted to the backbone.
@@ -93,7 +93,7 @@ impl Cycle {
             .sum()
     }
 
-    /// Total number of targets with step and pause.
+    /// Total number of targets with ramp-and-hold.
     #[must_use]
     pub fn targets(&self) -> u64 {
         let quarters = if self.sides == Sides::Both { 4 } else { 2 };

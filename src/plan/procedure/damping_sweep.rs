@@ -1,27 +1,28 @@
 //! The fields of a `damping sweep`, declared once: its parameters here, its schema in `schema::procedures::damping_sweep`, its reader in
 //! `procedures::damping_sweep::check`.
 
-use super::declaration::parameters;
+use crate::plan::declaration::parameters;
 use crate::plan::formula::Formula;
 
 macro_rules! damping_sweep_fields {
     ($into:ident) => {
         $into! {
             /// Constant-velocity passes at increasing velocities (Melo et al. 2006, sec. 6 (b)).
+            #[derive(Clone, Debug)]
             struct DampingSweep {
                 /// Index into `Plan::specimens`.
                 specimen: usize = specimen(),
                 /// \[m/s\]
-                velocities: Vec<Formula> = quantities(Dimension::VELOCITY, "speeds of the ramps")
+                velocities: Vec<Formula> = quantities(Dimension::VELOCITY, "velocities of the strokes")
                     .required("velocities = [0.5, 1, 2, 5, 10] mm/s")
                     .above_zero(),
                 /// \[m\]
-                stroke: Formula = quantity(Dimension::LENGTH, "length of each ramp")
+                stroke: Formula = quantity(Dimension::LENGTH, "length of each stroke")
                     .required("stroke = 1 mm")
                     .above_zero(),
                 /// The middle of the passes \[m\]. None: they begin at the present position of the actuator.
-                about: Option<Formula> = quantity(Dimension::LENGTH, "the middle of the strokes")
-                    .or_said("they begin where the actuator is"),
+                about: Option<Formula> = quantity(Dimension::LENGTH, "centre of the strokes")
+                    .or_said("the start position of the actuator"),
                 /// K of F_d = R − K·X \[N/m\].
                 stiffness: Formula = quantity(Dimension::STIFFNESS, "K of the damping force R − K·X")
                     .required("stiffness = 300 kN/m")

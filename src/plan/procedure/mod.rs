@@ -3,7 +3,6 @@
 
 pub(crate) mod cycle;
 pub(crate) mod damping_sweep;
-pub(crate) mod declaration;
 pub(crate) mod identification;
 pub(crate) mod impact;
 pub(crate) mod impact_series;

@@ -1,13 +1,14 @@
 //! The fields of a `move`, declared once: its parameters here, its schema in `schema::procedures::move_to`, its reader in
 //! `procedures::move_to::check`.
 
-use super::declaration::parameters;
+use crate::plan::declaration::parameters;
 use crate::plan::formula::Formula;
 
 macro_rules! move_fields {
     ($into:ident) => {
         $into! {
             /// The actuator moves to a displacement.
+            #[derive(Clone, Debug)]
             struct Move {
                 /// \[m\], absolute.
                 to: Formula = quantity(Dimension::LENGTH, "absolute target").required("to = 0 mm"),

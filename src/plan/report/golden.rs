@@ -8,8 +8,8 @@ use crate::units::Dimension;
 pub struct Golden {
     /// For every number, relative to its absolute value.
     pub tolerance: f64,
-    pub results: Vec<NearResult>,
-    pub columns: Vec<NearColumn>,
+    pub results: Vec<ResultTolerance>,
+    pub columns: Vec<ColumnTolerance>,
 }
 
 impl Golden {
@@ -38,7 +38,7 @@ pub enum Tolerance {
 
 /// A result with a separate tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NearResult {
+pub struct ResultTolerance {
     pub procedure: ProcedureId,
     pub name: &'static str,
     pub dimension: Dimension,
@@ -47,7 +47,7 @@ pub struct NearResult {
 
 /// A column with a separate tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NearColumn {
+pub struct ColumnTolerance {
     /// The procedure whose table has the column. None: every table that has it.
     pub procedure: Option<ProcedureId>,
     pub name: &'static str,

@@ -72,7 +72,10 @@ impl RigPlan {
                 "the zero of the load cell",
                 lacks(|calibration| calibration.zero_uncertainty),
             ),
-            ("the drift of that zero in the run", self.drift.is_none()),
+            (
+                "the drift of that zero in the run",
+                self.zero_drift.is_none(),
+            ),
         ];
         all.into_iter()
             .filter(|(_, lacking)| *lacking)
@@ -153,7 +156,7 @@ mod tests {
             ..Calibration::default()
         };
         assert_eq!(rig.undeclared(2), ["the drift of that zero in the run"]);
-        rig.drift = Some(DriftCheck {
+        rig.zero_drift = Some(DriftCheck {
             force: 5.0,
             displacement: None,
             over: 1.0,

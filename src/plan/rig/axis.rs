@@ -2,14 +2,14 @@
 //! of a plan, the index of an axis. Out: its polarity, limits, pre-test check, reading rules and calibration.
 
 use crate::plan::{
-    Calibration, DeviceLink, Gate, Interval, Limits, ReadingRules, RealLink, RigPlan,
+    Calibration, DeviceLink, Interval, Limits, PretestCheck, ReadingRules, RealLink, RigPlan,
 };
 
 /// The entries of one axis of a real rig. None: the rig's entry applies.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct AxisPlan {
     /// Polarity: +1 or −1.
-    pub sign: Option<f64>,
+    pub polarity: Option<f64>,
     /// \[m\]
     pub resolution: Option<f64>,
     /// \[N\]
@@ -19,7 +19,7 @@ pub struct AxisPlan {
     /// Beside the limits of the run \[m, N\].
     pub displacement: Option<Interval>,
     pub force: Option<Interval>,
-    pub gate: Option<Gate>,
+    pub pretest_check: Option<PretestCheck>,
     pub calibration: AxisCalibration,
     /// The pre-test check of this axis, instead of that of the rig.
     pub actuator: Option<DeviceLink>,
@@ -45,7 +45,7 @@ pub struct AxisCalibration {
     /// For a load cell that returns raw counts: the scale factor \[N per count\].
     pub newtons_per_count: Option<f64>,
     /// Zero offset: the count at zero force.
-    pub zero_count: Option<f64>,
+    pub zero_offset: Option<f64>,
     /// Standard uncertainty, as a fraction of the force.
     pub force_uncertainty: Option<f64>,
     /// Standard uncertainty, as a fraction of the displacement.
@@ -79,7 +79,7 @@ impl AxisCalibration {
             zero_uncertainty: self.zero_uncertainty.unwrap_or(all.zero_uncertainty),
             zero_drift: all.zero_drift,
             newtons_per_count: self.newtons_per_count.or(all.newtons_per_count),
-            zero_count: self.zero_count.unwrap_or(all.zero_count),
+            zero_offset: self.zero_offset.unwrap_or(all.zero_offset),
         }
     }
 }
@@ -87,8 +87,10 @@ impl AxisCalibration {
 impl RigPlan {
     /// Polarity of the axis with this index, the factor of displacement and force: +1 or −1.
     #[must_use]
-    pub fn sign_of(&self, axis: usize) -> f64 {
-        self.own(axis).and_then(|own| own.sign).unwrap_or(self.sign)
+    pub fn polarity_of(&self, axis: usize) -> f64 {
+        self.own(axis)
+            .and_then(|own| own.polarity)
+            .unwrap_or(self.polarity)
     }
 
     /// Calibration of the axis with this index, with its uncertainties.
@@ -127,11 +129,11 @@ impl RigPlan {
 impl RealLink {
     /// The pre-test check of the axis with this index.
     #[must_use]
-    pub fn gate_of(&self, axis: usize) -> Gate {
+    pub fn pretest_check_of(&self, axis: usize) -> PretestCheck {
         self.axes
             .get(axis)
-            .and_then(|own| own.gate)
-            .unwrap_or(self.gate)
+            .and_then(|own| own.pretest_check)
+            .unwrap_or(self.pretest_check)
     }
 
     /// The reading rules of the axis with this index.
@@ -160,7 +162,7 @@ mod tests {
             displacement: Some(("scale".to_owned(), text("2027-02-01"))),
             force_uncertainty: 0.005,
             zero_uncertainty: 2.0,
-            zero_count: 17.0,
+            zero_offset: 17.0,
             ..Calibration::default()
         };
         assert_eq!(AxisCalibration::default().over(&all), all);

@@ -1,7 +1,8 @@
-//! The limits of a rig, and the intervals that express them. In: SI numbers. It enforces nothing: that is done by the
-//! guard.
+//! The limits of a rig, declared once: the parameters here, the schema in `schema::limits`, the reader in
+//! `language::check::declarations::limits`; and the intervals that express them. It enforces nothing: that is done by the guard.
 
 use crate::physics::tracking::monitor;
+use crate::plan::declaration::{names, parameters};
 use crate::units::Dimension;
 
 /// A closed interval in SI units. An absent bound is infinite, so that `low <= x && x <= high` is the whole test.
@@ -39,26 +40,44 @@ impl Interval {
     }
 }
 
-/// The limits that no command may exceed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
-    /// Every target and every displacement reading \[m\].
-    pub displacement: Interval,
-    /// Every force reading \[N\].
-    pub force: Interval,
-    /// Speed of the actuator \[m/s\]; 0 ≤ speed ≤ high.
-    pub speed: Interval,
-    /// Largest change of target in one step, absolute value \[m\].
-    pub increment: Interval,
-    /// abs(measured − target) after settling \[m\].
-    pub tracking_error: Interval,
-    /// abs(energy error) over the input energy.
-    pub energy_error: Interval,
-    /// abs(tracking-error energy) over the input energy; without a bound the default applies.
-    pub tracking_energy_error: Interval,
-    /// Root mean square of the tracking error over that of the command.
-    pub nrms_error: Interval,
+macro_rules! limits_fields {
+    ($into:ident) => {
+        $into! {
+            /// The limits that no command may exceed.
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            struct Limits {
+                /// Every target and every displacement reading \[m\].
+                displacement: Interval = bounds(Dimension::LENGTH, true, "of all targets and readings"),
+                /// Every force reading \[N\].
+                force: Interval = bounds(Dimension::FORCE, true, "of all readings"),
+                /// Speed of the actuator \[m/s\]; 0 ≤ speed ≤ high.
+                speed: Interval = bounds(Dimension::VELOCITY, false, "of the actuator"),
+                /// Largest change of target in one step, absolute value \[m\].
+                increment: Interval = bounds(Dimension::LENGTH, false, "largest change of the target in one step"),
+                /// abs(measured − target) after settling \[m\].
+                tracking_error: Interval =
+                    bounds(Dimension::LENGTH, false, "absolute tracking error after settling"),
+                /// abs(energy error) over the input energy.
+                energy_error: Interval =
+                    bounds(Dimension::NUMBER, false, "absolute energy error relative to the input energy"),
+                /// abs(tracking-error energy) over the input energy; without a bound the default applies.
+                tracking_energy_error: Interval = bounds(
+                    Dimension::NUMBER,
+                    false,
+                    "absolute tracking-error energy relative to the input energy"
+                )
+                .or_said("5 %"),
+                /// Root mean square of the tracking error over that of the command.
+                nrms_error: Interval =
+                    bounds(Dimension::NUMBER, false, "rms tracking error relative to rms command, of the run"),
+            }
+        }
+    };
 }
+pub(crate) use limits_fields;
+
+limits_fields!(parameters);
+limits_fields!(names);
 
 impl Limits {
     pub const NONE: Self = Self {
@@ -91,18 +110,18 @@ impl Limits {
     #[must_use]
     pub const fn named(&self) -> [(&'static str, Interval, Dimension); 8] {
         [
-            ("displacement", self.displacement, Dimension::LENGTH),
-            ("force", self.force, Dimension::FORCE),
-            ("speed", self.speed, Dimension::VELOCITY),
-            ("increment", self.increment, Dimension::LENGTH),
-            ("tracking_error", self.tracking_error, Dimension::LENGTH),
-            ("energy_error", self.energy_error, Dimension::NUMBER),
+            (NAMES.displacement, self.displacement, Dimension::LENGTH),
+            (NAMES.force, self.force, Dimension::FORCE),
+            (NAMES.speed, self.speed, Dimension::VELOCITY),
+            (NAMES.increment, self.increment, Dimension::LENGTH),
+            (NAMES.tracking_error, self.tracking_error, Dimension::LENGTH),
+            (NAMES.energy_error, self.energy_error, Dimension::NUMBER),
             (
-                "tracking_energy_error",
+                NAMES.tracking_energy_error,
                 self.tracking_energy_error,
                 Dimension::NUMBER,
             ),
-            ("nrms_error", self.nrms_error, Dimension::NUMBER),
+            (NAMES.nrms_error, self.nrms_error, Dimension::NUMBER),
         ]
     }
 }

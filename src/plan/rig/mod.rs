@@ -18,10 +18,10 @@ pub struct RigPlan {
     pub link: Link,
     pub settle: Settle,
     /// Polarity, the factor on displacement and force: +1 or −1.
-    pub sign: f64,
+    pub polarity: f64,
     pub calibration: Calibration,
     /// Allowed zero drift in a run; None: it is not checked.
-    pub drift: Option<DriftCheck>,
+    pub zero_drift: Option<DriftCheck>,
 }
 
 impl RigPlan {
@@ -211,7 +211,7 @@ pub struct Calibration {
     /// For a load cell that returns raw counts: the scale factor \[N per count\], with the polarity of the cell.
     pub newtons_per_count: Option<f64>,
     /// Zero offset: the count at zero force.
-    pub zero_count: f64,
+    pub zero_offset: f64,
     /// Standard uncertainty of the scale factor of the force, relative; 0 if none is stated.
     pub force_uncertainty: f64,
     /// Standard uncertainty of the scale factor of the displacement, relative.
@@ -238,7 +238,7 @@ pub struct RealLink {
     pub load_cell: Option<DeviceLink>,
     pub safe_state: SafeState,
     pub datum: Datum,
-    pub gate: Gate,
+    pub pretest_check: PretestCheck,
     pub readings: ReadingRules,
     /// Watchdog time of the communication between program and rig \[s\]. After it the rig must hold automatically, and the program stops.
     pub watchdog: f64,
@@ -471,7 +471,7 @@ pub enum Datum {
 
 /// The pre-test check: readings at rest, and the stiffness that a small move shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gate {
+pub struct PretestCheck {
     /// abs(force) at rest before any move \[N\].
     pub zero: f64,
     /// Length of the small move \[m\].

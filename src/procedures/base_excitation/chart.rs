@@ -3,7 +3,7 @@
 
 use super::figures;
 use crate::plan::{Figure, FigureKind};
-use crate::procedures::limit_lines::limits_on;
+use crate::procedures::common::limit_lines::limits_on;
 use crate::record::{Floors as _, ShakeHistory, ShakeStep, UnloadStep};
 use crate::report::Run;
 use crate::report::figures::chart::{Chart, Quantity, SharedCurve};
@@ -47,46 +47,44 @@ pub(crate) fn chart(
     }
     let limits = |result: ResultKind| figures::of_size(limits_on(run, figure.procedure, result));
     let chosen = if figures::is_chosen(&history.steps) {
-        "; not every one is drawn"
+        "; not all are drawn"
     } else {
         ""
     };
     Some(match figure.kind {
         FigureKind::Modes => (
             figures::modes(history.modes.as_ref()?),
-            format!(
-                "{name}: shapes of the natural modes and their periods, floor by floor from the ground up."
-            ),
+            format!("{name}: natural mode shapes and periods, floor by floor from the ground up."),
         ),
         FigureKind::Ground => (
             figures::ground(history),
-            format!("{name}: acceleration of the ground, as it was applied, against virtual time."),
+            format!("{name}: applied ground acceleration against simulated time."),
         ),
         FigureKind::Displacement => (
             figures::displacement(&history.steps),
             format!(
-                "{name}: displacement of each floor relative to the ground against virtual time{chosen}."
+                "{name}: displacement of each floor relative to the ground against simulated time{chosen}."
             ),
         ),
         FigureKind::Drift => (
             figures::drift(&history.steps, &limits(schema::MAX_DRIFT)),
-            format!("{name}: drift of each storey against virtual time{chosen}."),
+            format!("{name}: drift of each storey against simulated time{chosen}."),
         ),
         FigureKind::Hysteresis => (
             figures::hysteresis(&history.steps),
             format!(
-                "{name}: measured storey shear against drift; the area of a loop is the energy that the storey took{chosen}."
+                "{name}: measured storey shear against drift; the area of a loop is the energy absorbed by the storey{chosen}."
             ),
         ),
         FigureKind::BaseShear => (
             figures::base_shear(&history.steps, &limits(schema::MAX_BASE_SHEAR)),
             format!(
-                "{name}: base shear, the sum of the measured restoring forces, against virtual time."
+                "{name}: base shear, the sum of the measured restoring forces, against simulated time."
             ),
         ),
         FigureKind::Energy => (
             figures::energy(history),
-            format!("{name}: what the motion of the ground put in, and what became of it."),
+            format!("{name}: input energy of the ground motion and its parts."),
         ),
         FigureKind::Tracking => (figures::tracking(&history.steps), followed(name, chosen)),
         _ => return None,
@@ -103,7 +101,7 @@ pub(crate) fn unloading_chart(
         (
             figures::hysteresis(steps),
             format!(
-                "{name}: measured storey shear against drift, from where the unloading began to where each storey rests."
+                "{name}: measured storey shear against drift, from the start of the unloading to the unloaded position of each storey."
             ),
         )
     })
@@ -112,8 +110,8 @@ pub(crate) fn unloading_chart(
 /// The caption of the tracking of a frame.
 pub(crate) fn followed(name: &str, chosen: &str) -> String {
     format!(
-        "{name}: what the actuator of each floor missed of its commands{chosen}, and the tracking indicator of all of them over the \
-         largest command; an indicator that falls says that the lag feeds energy into the test."
+        "{name}: tracking error of each floor's actuator{chosen}, and the tracking indicator of all of them over the \
+         largest command; a falling indicator shows that lag adds energy to the test."
     )
 }
 
@@ -125,11 +123,11 @@ pub(crate) fn shared(kind: FigureKind, history: &ShakeHistory) -> Option<SharedC
     let ((x, y), caption) = match kind {
         FigureKind::Displacement => (
             over_time("Displacement of the top floor", length),
-            "displacement of the top floor against virtual time",
+            "displacement of the top floor against simulated time",
         ),
         FigureKind::Drift => (
             over_time("Drift of the lowest storey", length),
-            "drift of the lowest storey against virtual time",
+            "drift of the lowest storey against simulated time",
         ),
         FigureKind::Hysteresis => (
             (
@@ -140,7 +138,7 @@ pub(crate) fn shared(kind: FigureKind, history: &ShakeHistory) -> Option<SharedC
         ),
         FigureKind::BaseShear => (
             over_time("Base shear", force),
-            "base shear, the sum of the measured restoring forces, against virtual time",
+            "base shear, the sum of the measured restoring forces, against simulated time",
         ),
         _ => return None,
     };

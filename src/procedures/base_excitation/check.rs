@@ -6,19 +6,24 @@ use crate::language::check::messages::{frames as fault, types};
 use crate::plan::formula::Formula;
 use crate::plan::{Contact, Frame, Ground, ProcedureKind, Shake, ShakeDamping};
 use crate::procedures::stepping;
-use crate::procedures::stepping::check::FrameSteps;
+use crate::procedures::stepping::check::frame_check;
+use crate::procedures::stepping::check::frame_check::FrameSteps;
 use crate::schema::Kind;
+use crate::schema::frames;
+use crate::schema::methods;
+use crate::schema::procedures::SPECIMEN;
+use crate::schema::procedures::base_excitation as schema;
 
 pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let declared = &checker.scope.blocks[block];
     let head = declared.block.head;
-    let ground = checker.reference(block, "ground", Kind::Ground);
+    let ground = checker.reference(block, schema::GROUND.name, Kind::Ground);
     let specimen = checker.specimen_block(block);
     let damping = damping(checker, block);
     let damping_uncertainty = damping_uncertainty(checker, block, damping.as_ref());
     let stepping = stepping::check::stepping(checker, block, Some(&Contact::Rigid), 5.0);
-    let scale = checker.quantity(block, "scale");
-    let duration = checker.optional(block, "duration");
+    let scale = checker.quantity(block, schema::SCALE.name);
+    let duration = checker.optional(block, methods::DURATION.name);
     let specimen = specimen?;
     if !frame::is_frame(checker, specimen) {
         let tested = &checker.scope.blocks[specimen];
@@ -27,7 +32,7 @@ pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
             tested.block.head,
         );
         let at = checker
-            .field(block, "specimen")
+            .field(block, SPECIMEN.name)
             .map_or(head, |(_, entry)| entry.value.span);
         return checker.fail(fault::no_storeys(name, at, declared));
     }
@@ -44,7 +49,7 @@ pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
 
 /// One number is for Rayleigh damping; a list has one ratio for each mode.
 pub fn damping(checker: &mut Checker, block: usize) -> Option<ShakeDamping> {
-    let Some((entry, written)) = checker.field(block, "damping_ratio") else {
+    let Some((entry, written)) = checker.field(block, frames::DAMPING_RATIO.name) else {
         return Some(ShakeDamping::Rayleigh(Formula::Constant(0.0)));
     };
     let typed = checker.entry(block, entry, written.value.span)?;
@@ -63,7 +68,7 @@ pub fn damping_uncertainty(
     block: usize,
     damping: Option<&ShakeDamping>,
 ) -> Option<f64> {
-    const FIELD: &str = "damping_ratio_uncertainty";
+    const FIELD: &str = frames::DAMPING_UNCERTAINTY.name;
     let uncertainty = checker.constant(block, FIELD)?;
     let ratios = match damping? {
         ShakeDamping::Rayleigh(ratio) => std::slice::from_ref(ratio),
@@ -102,7 +107,7 @@ pub fn judge(checker: &mut Checker, block: usize, shake: &Shake, frame: &Frame, 
         stepping,
         duration,
     };
-    let Some((_, step)) = stepping::check::judge(checker, block, &steps, |properties| {
+    let Some((_, step)) = frame_check::judge(checker, block, &steps, |properties| {
         Some(properties.critical_time_step())
     }) else {
         return;
@@ -111,7 +116,7 @@ pub fn judge(checker: &mut Checker, block: usize, shake: &Shake, frame: &Frame, 
     if step > spacing * (1.0 + 1e-9) {
         let head = checker.scope.blocks[block].block.head;
         let at = checker
-            .field(block, "time_step")
+            .field(block, methods::TIME_STEP.name)
             .map_or(head, |(_, entry)| entry.value.span);
         checker.diagnostics.push(fault::record_finer_than_step(
             at,

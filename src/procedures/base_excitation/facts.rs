@@ -4,8 +4,9 @@ use super::chart;
 use crate::plan::{Dependence, Plan, Shake};
 use crate::procedures::facts::{Delay, Facts, Recorded, Tests};
 use crate::procedures::stepping;
-use crate::procedures::stepping::delay::of_frame;
+use crate::procedures::stepping::tracking::delay::of_frame;
 use crate::record::ShakeHistory;
+use crate::schema::procedures::base_excitation as schema;
 
 pub(crate) fn facts(shake: &Shake) -> Facts<'_> {
     Facts {
@@ -18,6 +19,17 @@ pub(crate) fn facts(shake: &Shake) -> Facts<'_> {
         },
         figures: chart::FIGURES,
         shared_figures: chart::SHARED,
+        headline: vec![
+            schema::MAX_DRIFT.name,
+            schema::MAX_BASE_SHEAR.name,
+            schema::FINAL_DRIFT.name,
+            schema::MAX_DISPLACEMENT.name,
+        ],
+        unprinted: [
+            &[schema::STEPS.name, schema::PERIODS.name][..],
+            stepping::report::TRACKING,
+        ]
+        .concat(),
         ..Facts::default()
     }
 }

@@ -152,26 +152,17 @@ pub(crate) fn tracking<S: Floors>(steps: &[S]) -> Chart {
 
 /// The input, and the energies that it became.
 pub(crate) fn energy(history: &ShakeHistory) -> Chart {
-    let curve = |label, read: fn(&ShakeStep) -> f64, style| EnergyCurve { label, read, style };
     let curves = [
-        curve(
+        EnergyCurve::new(
             "input",
-            |step| step.energies.input,
+            |step: &ShakeStep| step.energies.input,
             Style::line(palette::BLACK, 1.6, SOLID),
         ),
-        curve(
-            "restoring",
-            |step| step.energies.restoring,
-            Style::line(palette::BLUE, 2.0, LONG),
-        ),
-        curve(
-            "damping",
-            |step| step.energies.damping,
-            Style::line(palette::PURPLE, 2.0, DASH_DOT),
-        ),
-        curve(
+        EnergyCurve::restoring(|step: &ShakeStep| step.energies.restoring),
+        EnergyCurve::damping(|step: &ShakeStep| step.energies.damping),
+        EnergyCurve::new(
             "kinetic",
-            |step| step.energies.kinetic,
+            |step: &ShakeStep| step.energies.kinetic,
             Style::line(palette::SKY, 1.4, SOLID),
         ),
     ];

@@ -10,9 +10,8 @@ use crate::procedures::facts::Motion;
 pub(crate) fn left(shake: &Shake, grounds: &[Option<Ground>]) -> Motion<'static> {
     Motion {
         what: "shake",
-        ends: "ends wherever its last step is",
-        help: "take the load off in between: `unload rest { }`, or let the ground rest until the frame does: a longer \
-    `duration`, with a `damping_ratio`",
+        ends: "ends at its last step, possibly in motion",
+        help: "unload in between: `unload rest { }`; or let the frame come to rest: a longer `duration`, with a `damping_ratio`",
         rests: comes_to_rest(shake, grounds),
     }
 }

@@ -74,7 +74,7 @@ fn integration(
     sentences.extend(tracking::sentence(procedure));
     if let Some(ground) = run.plan.grounds.get(shake.ground) {
         sentences.push(format!(
-            "The record is linear between its samples, and each step reads it at its end: {}.",
+            "The record is linear between its samples; each step uses its value at the end of the step: {}.",
             resampled(ground, history)
         ));
     }
@@ -115,9 +115,9 @@ pub(crate) fn integrated(
         }
     };
     let damping = match (damping, ratios.iter().any(|ratio| *ratio != 0.0)) {
-        (_, false) => "No damping is computed.",
+        (_, false) => "No computed damping.",
         (ShakeDamping::Rayleigh(_), true) => "Rayleigh damping on the first two modes.",
-        (ShakeDamping::Modal(_), true) => "Each mode has a damping ratio of its own.",
+        (ShakeDamping::Modal(_), true) => "Each mode has a separate damping ratio.",
     };
     format!("Integrated by {integrator}. {damping}")
 }
@@ -131,7 +131,7 @@ fn resampled(ground: &Ground, history: &ShakeHistory) -> String {
         .fold(0.0, f64::max);
     let text = |value| number::text(value, Dimension::ACCELERATION);
     format!(
-        "largest acceleration as applied {}, of the record {} before the factor of the run",
+        "peak applied acceleration {}, of the record before scaling {}",
         text(applied),
         text(ground.peak())
     )
@@ -197,11 +197,11 @@ pub(crate) fn storey_table<S: Floors>(
     };
     let columns = vec![
         Column::words("Storey", 1),
-        with_u("Largest displacement of its floor", displacement),
-        with_u("Largest drift", schema::MAX_DRIFT),
-        Column::numbers("Of its height"),
-        with_u("Drift at the end", schema::FINAL_DRIFT),
-        Column::numbers("Largest shear"),
+        with_u("Peak floor displacement", displacement),
+        with_u("Peak drift", schema::MAX_DRIFT),
+        Column::numbers("Over height"),
+        with_u("Final drift", schema::FINAL_DRIFT),
+        Column::numbers("Peak shear"),
     ];
     let height = |storey: usize| {
         frame
@@ -289,12 +289,12 @@ pub(crate) fn unloaded(
     let frame = specimen.and_then(|specimen| frame_of(run, specimen));
     let moves = steps.len() - 1;
     let by = if frame.is_some_and(|frame| !of_storeys(frame)) {
-        "by the inverse of the initial stiffness matrix"
+        "with the inverse of the initial stiffness matrix"
     } else {
-        "each storey by the stiffness that its last move showed"
+        "with the stiffness of each storey in its last move"
     };
     body.push(Block::paragraph(format!(
-        "All floors moved together to where their forces vanish, in {moves} {}: {by}.",
+        "All floors moved together to zero restoring force, in {moves} {}: {by}.",
         if moves == 1 { "move" } else { "moves" }
     )));
     let whole = |values: &[f64]| {
@@ -307,12 +307,12 @@ pub(crate) fn unloaded(
     let travel = whole(&before).max(whole(&drift));
     let columns = vec![
         Column::words("Storey", 1),
-        Column::numbers("Its floor rests at"),
+        Column::numbers("Unloaded floor position"),
         Column::numbers("Drift before"),
-        Column::numbers("Permanent drift"),
-        Column::numbers("Of its height"),
+        Column::numbers("Residual drift"),
+        Column::numbers("Over height"),
         Column::numbers("Shear before"),
-        Column::numbers("Shear left"),
+        Column::numbers("Remaining shear"),
     ];
     let height = |storey: usize| {
         frame

@@ -4,7 +4,7 @@
 use crate::physics::integrator::state::FrameState;
 use crate::physics::statistics::noisy_largest::NoisyLargest;
 use crate::physics::structure::{Modes, drifts};
-use crate::procedures::stepping::tracking_summary::Followed;
+use crate::procedures::stepping::tracking::tracking_summary::Followed;
 use crate::record::NamedResult;
 use crate::schema::ResultKind;
 use crate::schema::procedures::base_excitation as schema;

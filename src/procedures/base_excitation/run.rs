@@ -5,12 +5,12 @@
 use super::results::{ShakeSummary, results};
 use super::setting::Setting;
 use super::steps::Shaking;
-use super::uncertainty;
+use super::uncertainty::{self, ShakeUncertainty};
 use crate::plan::{Plan, Shake};
 use crate::procedures::stepping::energy::observe_imbalance;
 use crate::procedures::stepping::frame_uncertainty::FrameUncertainty;
 use crate::procedures::stepping::run::{FrameSteps, above_critical, frame_of};
-use crate::procedures::stepping::tracking_summary::Followed;
+use crate::procedures::stepping::tracking::tracking_summary::Followed;
 use crate::record::{History, ShakeHistory};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
@@ -61,15 +61,13 @@ pub(crate) fn perform(
         }
         let doubts = FrameUncertainty::of_shake(plan, whole, inputs, session);
         stop = session.evaluate_uncertainty(|tick| {
-            uncertainty::propagate(
-                &doubts,
+            let shake = ShakeUncertainty {
+                doubts: &doubts,
                 plan,
                 ground,
-                &setting,
-                &shaking.history,
-                &mut results,
-                tick,
-            )
+                setting: &setting,
+            };
+            uncertainty::propagate(shake, &shaking.history, &mut results, tick)
         });
     }
     Performed {

@@ -5,10 +5,12 @@ use crate::physics::structure::ground::peak_velocity;
 use crate::plan::formula::Formula;
 use crate::plan::{Frame, Ground, Shake};
 use crate::procedures::stepping;
-use crate::procedures::stepping::run::{FrameSteps, Steps};
+use crate::procedures::stepping::run::{FrameSteps, Times};
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
+use crate::schema::methods;
+use crate::schema::procedures::base_excitation as schema;
 use crate::units::Dimension;
 
 /// Everything known before the first step.
@@ -34,21 +36,17 @@ impl Setting {
         stepping::run::stable_on_frame(&plan.stepping, time_step, frame, &properties, session)?;
         let to_the_end = Formula::Constant(ground.duration());
         let duration = inputs.positive(
-            "duration",
+            methods::DURATION.name,
             plan.duration.as_ref().unwrap_or(&to_the_end),
             Dimension::TIME,
         )?;
-        let scale = inputs.number("scale", &plan.scale, Dimension::NUMBER)?;
-        let floors = properties.matrices.order();
-        let steps = Steps::evaluate(
-            &plan.stepping,
+        let scale = inputs.number(schema::SCALE.name, &plan.scale, Dimension::NUMBER)?;
+        let times = Times {
             time_step,
-            critical,
+            critical_time_step: critical,
             duration,
-            floors,
-            inputs,
-        )?;
-        let frame_steps = FrameSteps::new(properties, plan.stepping.integrator, steps);
+        };
+        let frame_steps = FrameSteps::evaluate(properties, &plan.stepping, times, inputs)?;
         let velocity = scale * peak_velocity(&ground.times, &ground.accelerations);
         let ground_energy = 0.5 * frame.total_mass() * velocity * velocity;
         Ok(Self {

@@ -12,7 +12,7 @@ use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::start::{Start, not_stepped};
 use crate::procedures::stepping::step_loop;
 use crate::procedures::stepping::step_loop::{Balance, Stepped};
-use crate::procedures::stepping::tracking_summary::Followed;
+use crate::procedures::stepping::tracking::tracking_summary::Followed;
 use crate::record::{ShakeHistory, ShakeStep};
 use crate::rig::Reading;
 use crate::run::session::Session;

@@ -3,42 +3,24 @@
 //! energy is that of each floor.
 
 use crate::record::{FloorStep, Floors, FloorsAt, ImpactStep, ShakeHistory, ShakeStep, UnloadStep};
-use crate::report::tables::{Column, Table, integers, numbers, texts};
-use crate::schema;
+use crate::report::tables::TableColumn::{self, Integer, Number, Optional, Text};
+use crate::report::tables::{Column, Table, written};
 use crate::schema::columns::{self, column};
 use crate::units::Dimension;
 
-/// The numeric columns of its table: one row a step and storey; the energies are those of the whole frame.
-pub(crate) const COLUMNS: &[schema::Column] = &[
-    columns::STEP,
-    column("storey", Dimension::NUMBER),
-    columns::TIME,
-    columns::WALL_TIME,
-    column("ground_acceleration_m_per_s2", Dimension::ACCELERATION),
-    columns::COMMAND,
-    columns::DISPLACEMENT,
-    column("computed_m", Dimension::LENGTH),
-    columns::VELOCITY,
-    column("acceleration_m_per_s2", Dimension::ACCELERATION),
-    columns::RESTORING_FORCE,
-    column("drift_m", Dimension::LENGTH),
-    column("storey_shear_n", Dimension::FORCE),
-    column("kinetic_energy_j", Dimension::ENERGY),
-    column("restoring_energy_j", Dimension::ENERGY),
-    column("damping_energy_j", Dimension::ENERGY),
-    column("input_energy_j", Dimension::ENERGY),
-    column("energy_error_j", Dimension::ENERGY),
-    column("tracking_energy_error_j", Dimension::ENERGY),
-    column("tracking_indicator_m2", Dimension::AREA),
-];
-
 /// A storey at the end of a step.
-struct Row<'a, S> {
+pub(crate) struct Row<'a, S> {
     step: &'a S,
     floors: FloorsAt<'a>,
     floor: usize,
     drift: f64,
     shear: f64,
+}
+
+/// An impact on a storey: the step of the striker, and that of the floors.
+pub(crate) struct StruckStep<'a> {
+    impact: &'a ImpactStep,
+    floors: &'a FloorStep,
 }
 
 /// The storeys of a step after each other, from the ground up.
@@ -62,49 +44,47 @@ fn rows_of<S: Floors>(steps: &[S]) -> Vec<Row<'_, S>> {
 }
 
 /// The number of the storey, from 1.
-fn storey<S>(rows: &[Row<'_, S>]) -> Column {
-    integers("storey", rows, |row| row.floor as u64 + 1)
+const fn storey<'a, S>() -> TableColumn<Row<'a, S>> {
+    Integer(columns::STOREY, |row| row.floor as u64 + 1)
 }
 
 /// Commanded and measured positions of the floors.
-fn positions<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
+fn positions<'a, S>() -> Vec<TableColumn<Row<'a, S>>> {
     vec![
-        numbers("command_m", rows, |row| row.floors.command[row.floor]),
-        numbers("displacement_m", rows, |row| row.floors.measured[row.floor]),
+        Number(columns::COMMAND, |row| row.floors.command[row.floor]),
+        Number(columns::DISPLACEMENT, |row| row.floors.measured[row.floor]),
     ]
 }
 
 /// The computed motion of the floors.
-fn computed<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
+fn computed<'a, S>() -> Vec<TableColumn<Row<'a, S>>> {
     vec![
-        numbers("computed_m", rows, |row| row.floors.computed[row.floor]),
-        numbers("velocity_m_per_s", rows, |row| {
-            row.floors.velocity[row.floor]
-        }),
-        numbers("acceleration_m_per_s2", rows, |row| {
+        Number(columns::COMPUTED, |row| row.floors.computed[row.floor]),
+        Number(columns::VELOCITY, |row| row.floors.velocity[row.floor]),
+        Number(columns::ACCELERATION, |row| {
             row.floors.acceleration[row.floor]
         }),
     ]
 }
 
 /// The restoring forces of the floors, and the drifts and shears of the storeys.
-fn forces<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
+fn forces<'a, S>() -> Vec<TableColumn<Row<'a, S>>> {
     vec![
-        numbers("restoring_force_n", rows, |row| {
+        Number(columns::RESTORING_FORCE, |row| {
             row.floors.restoring_force[row.floor]
         }),
-        numbers("drift_m", rows, |row| row.drift),
-        numbers("storey_shear_n", rows, |row| row.shear),
+        Number(columns::DRIFT, |row| row.drift),
+        Number(columns::STOREY_SHEAR, |row| row.shear),
     ]
 }
 
 /// The tracking of the floors.
-fn tracking<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
+fn tracking<'a, S>() -> Vec<TableColumn<Row<'a, S>>> {
     vec![
-        numbers("tracking_energy_error_j", rows, |row| {
+        Number(columns::TRACKING_ENERGY_ERROR, |row| {
             row.floors.tracking[row.floor].energy_error
         }),
-        numbers("tracking_indicator_m2", rows, |row| {
+        Number(columns::TRACKING_INDICATOR, |row| {
             row.floors.tracking[row.floor].indicator
         }),
     ]
@@ -114,95 +94,119 @@ fn tracking<S>(rows: &[Row<'_, S>]) -> Vec<Column> {
 pub(crate) fn table(name: String, history: &ShakeHistory) -> Table<'_> {
     let storeys = history.steps.first().map_or(1, |step| step.computed.len());
     Table::of_steps(name, history.steps.len(), storeys, |range| {
-        shake(&history.steps[range])
+        written(&shake(), &rows_of(&history.steps[range]))
     })
 }
 
-pub(crate) fn shake(steps: &[ShakeStep]) -> Vec<Column> {
-    let rows = rows_of(steps);
-    let of = |name, read: fn(&Row<'_, ShakeStep>) -> f64| numbers(name, &rows, read);
+/// The columns of a ground-motion test; the energies are those of the whole frame.
+pub(crate) fn shake<'a>() -> Vec<TableColumn<Row<'a, ShakeStep>>> {
+    let ground_acceleration = column("ground_acceleration_m_per_s2", Dimension::ACCELERATION);
     let step = vec![
-        integers("step", &rows, |row| row.step.step),
-        storey(&rows),
-        of("time_s", |row| row.floors.time),
-        of("wall_time_s", |row| row.step.wall_time),
-        of("ground_acceleration_m_per_s2", |row| {
-            row.step.ground_acceleration
-        }),
+        Integer(columns::STEP, |row: &Row<'a, ShakeStep>| row.step.step),
+        storey(),
+        Number(columns::TIME, |row| row.floors.time),
+        Number(columns::WALL_TIME, |row| row.step.wall_time),
+        Number(ground_acceleration, |row| row.step.ground_acceleration),
     ];
     let energies = vec![
-        of("kinetic_energy_j", |row| row.step.energies.kinetic),
-        of("restoring_energy_j", |row| row.step.energies.restoring),
-        of("damping_energy_j", |row| row.step.energies.damping),
-        of("input_energy_j", |row| row.step.energies.input),
-        of("energy_error_j", |row| row.step.energies.error),
+        Number(
+            column("kinetic_energy_j", Dimension::ENERGY),
+            |row: &Row<'a, ShakeStep>| row.step.energies.kinetic,
+        ),
+        Number(columns::RESTORING_ENERGY, |row| row.step.energies.restoring),
+        Number(columns::DAMPING_ENERGY, |row| row.step.energies.damping),
+        Number(column("input_energy_j", Dimension::ENERGY), |row| {
+            row.step.energies.input
+        }),
+        Number(columns::ENERGY_ERROR, |row| row.step.energies.error),
     ];
-    [
+    joined([
         step,
-        positions(&rows),
-        computed(&rows),
-        forces(&rows),
+        positions(),
+        computed(),
+        forces(),
         energies,
-        tracking(&rows),
-    ]
-    .concat()
+        tracking(),
+    ])
 }
 
 /// The columns of an impact on a storey: the striker, and the floors.
-pub(crate) fn storey_impact(steps: &[ImpactStep], floors: &[FloorStep]) -> Vec<Column> {
-    let rows = rows(floors.iter().zip(steps));
-    let of = |name, read: fn(&Row<'_, ImpactStep>) -> f64| numbers(name, &rows, read);
+pub(crate) fn struck<'a>() -> Vec<TableColumn<Row<'a, StruckStep<'a>>>> {
     let step = vec![
-        integers("step", &rows, |row| row.step.step),
-        storey(&rows),
-        of("time_s", |row| row.step.time),
-        of("wall_time_s", |row| row.step.wall_time),
-        texts("state", &rows, |row| row.step.state.name()),
-    ];
-    let storeys = floors
-        .iter()
-        .zip(steps)
-        .flat_map(|(floors, _)| floors.storey_energy.iter().copied());
-    let striker = vec![
-        Column::new("storey_energy_j".into(), storeys.collect::<Vec<f64>>()),
-        of("contact_force_n", |row| row.step.contact_force),
-        of("striker_displacement_m", |row| {
-            row.step.striker_displacement
+        Integer(columns::STEP, |row: &Row<'a, StruckStep<'a>>| {
+            row.step.impact.step
         }),
-        of("striker_velocity_m_per_s", |row| row.step.striker_velocity),
-        of("indentation_m", |row| row.step.indentation),
-        of("striker_energy_j", |row| row.step.energies.striker),
-        of("structure_energy_j", |row| row.step.energies.structure),
-        of("restoring_energy_j", |row| row.step.energies.restoring),
-        of("damping_energy_j", |row| row.step.energies.damping),
-        of("contact_loss_j", |row| row.step.energies.contact_loss),
-        of("indentation_energy_j", |row| row.step.energies.indentation),
-        of("weight_work_j", |row| row.step.energies.weight),
-        of("energy_error_j", |row| row.step.energies.error),
+        storey(),
+        Number(columns::TIME, |row| row.step.impact.time),
+        Number(columns::WALL_TIME, |row| row.step.impact.wall_time),
+        Text(columns::STATE, |row| row.step.impact.state.name()),
     ];
-    [
-        step,
-        positions(&rows),
-        computed(&rows),
-        forces(&rows),
-        striker,
-        tracking(&rows),
-    ]
-    .concat()
+    let striker = vec![
+        Number(columns::STOREY_ENERGY, |row: &Row<'a, StruckStep<'a>>| {
+            row.step.floors.storey_energy[row.floor]
+        }),
+        Number(columns::CONTACT_FORCE, |row| row.step.impact.contact_force),
+        Number(columns::STRIKER_DISPLACEMENT, |row| {
+            row.step.impact.striker_displacement
+        }),
+        Number(columns::STRIKER_VELOCITY, |row| {
+            row.step.impact.striker_velocity
+        }),
+        Number(columns::INDENTATION, |row| row.step.impact.indentation),
+        Number(columns::STRIKER_ENERGY, |row| {
+            row.step.impact.energies.striker
+        }),
+        Number(columns::STRUCTURE_ENERGY, |row| {
+            row.step.impact.energies.structure
+        }),
+        Number(columns::RESTORING_ENERGY, |row| {
+            row.step.impact.energies.restoring
+        }),
+        Number(columns::DAMPING_ENERGY, |row| {
+            row.step.impact.energies.damping
+        }),
+        Number(columns::CONTACT_LOSS, |row| {
+            row.step.impact.energies.contact_loss
+        }),
+        Number(columns::INDENTATION_ENERGY, |row| {
+            row.step.impact.energies.indentation
+        }),
+        Number(columns::WEIGHT_WORK, |row| row.step.impact.energies.weight),
+        Number(columns::ENERGY_ERROR, |row| row.step.impact.energies.error),
+    ];
+    joined([step, positions(), computed(), forces(), striker, tracking()])
 }
 
-/// The columns of an unloading; step 0 is its start.
-pub(crate) fn unloading(steps: &[UnloadStep]) -> Vec<Column> {
-    let rows = rows_of(steps);
-    let step = vec![
-        integers("step", &rows, |row| row.step.step),
-        storey(&rows),
-        numbers("wall_time_s", &rows, |row| row.step.wall_time),
-    ];
-    let tangents: Vec<Option<f64>> = rows
+/// The table of an impact on a storey.
+pub(crate) fn storey_impact(steps: &[ImpactStep], floors: &[FloorStep]) -> Vec<Column> {
+    let steps: Vec<StruckStep<'_>> = floors
         .iter()
-        .map(|row| row.step.tangent_stiffness[row.floor])
+        .zip(steps)
+        .map(|(floors, impact)| StruckStep { impact, floors })
         .collect();
-    let tangents = vec![Column::new("tangent_stiffness_n_per_m".into(), tangents)];
-    [step, positions(&rows), forces(&rows), tangents].concat()
+    let rows = rows(steps.iter().map(|step| (step.floors, step)));
+    written(&struck(), &rows)
+}
+
+/// The columns of an unloading.
+pub(crate) fn unloaded<'a>() -> Vec<TableColumn<Row<'a, UnloadStep>>> {
+    let step = vec![
+        Integer(columns::STEP, |row: &Row<'a, UnloadStep>| row.step.step),
+        storey(),
+        Number(columns::WALL_TIME, |row| row.step.wall_time),
+    ];
+    let tangents = vec![Optional(
+        columns::TANGENT_STIFFNESS,
+        |row: &Row<'a, UnloadStep>| row.step.tangent_stiffness[row.floor],
+    )];
+    joined([step, positions(), forces(), tangents])
+}
+
+/// The table of an unloading; step 0 is its start.
+pub(crate) fn unloading(steps: &[UnloadStep]) -> Vec<Column> {
+    written(&unloaded(), &rows_of(steps))
+}
+
+fn joined<T, const N: usize>(parts: [Vec<TableColumn<T>>; N]) -> Vec<TableColumn<T>> {
+    parts.into_iter().flatten().collect()
 }

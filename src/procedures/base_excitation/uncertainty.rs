@@ -8,8 +8,8 @@ use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
 use crate::physics::reintegration::perturbation::Perturbation;
 use crate::physics::structure::ground::acceleration_at;
 use crate::plan::{Ground, Shake};
-use crate::procedures::perturbed_inputs::LEADS_ELSEWHERE;
-use crate::procedures::results::{give, values};
+use crate::procedures::common::perturbed_inputs::LEADS_ELSEWHERE;
+use crate::procedures::common::results::{Evaluated, flat, give, layout_of, place, values};
 use crate::procedures::stepping;
 use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there};
 use crate::procedures::stepping::run::Steps;
@@ -23,16 +23,28 @@ use crate::units::Dimension;
 /// Steps of the finest run for each of the record.
 const FINEST: u8 = FINER[1];
 
+/// The uncertain inputs of a ground-motion test.
+#[derive(Clone, Copy)]
+pub(crate) struct ShakeUncertainty<'a, 'run> {
+    pub doubts: &'a FrameUncertainty<'run>,
+    pub plan: &'a Shake,
+    pub ground: &'a Ground,
+    pub setting: &'a Setting,
+}
+
 /// Gives `results` their contributions.
 pub(crate) fn propagate(
-    doubts: &FrameUncertainty<'_>,
-    plan: &Shake,
-    ground: &Ground,
-    setting: &Setting,
+    shake: ShakeUncertainty<'_, '_>,
     history: &ShakeHistory,
     results: &mut [NamedResult],
     tick: Tick<'_, Stop>,
 ) -> Result<(), Unknown<Stop>> {
+    let ShakeUncertainty {
+        doubts,
+        plan,
+        ground,
+        setting,
+    } = shake;
     let reading = |step: &ShakeStep| FrameReading {
         target: step.command.clone(),
         displacement: step.displacement.clone(),
@@ -54,17 +66,16 @@ pub(crate) fn propagate(
     };
     let accelerations = (0..=steps * u64::from(FINEST)).map(at).collect();
     let mut evaluate = RecordedShake {
-        doubts,
-        plan,
-        ground,
-        setting,
+        shake,
         accelerations,
         path,
+        length: 0,
     };
     let floors = doubts.floors();
     let exact = Perturbation::none(floors);
+    let inputs = evaluate.inputs(&[])?;
     let mut found = evaluate
-        .run(&evaluate.inputs(&[])?, &exact)
+        .run(&inputs, &exact)
         .map_err(|error| error.to_string())?;
     if !leads_there(&found.ends, schema::MAX_DISPLACEMENT, results) {
         return Err(LEADS_ELSEWHERE.to_owned().into());
@@ -74,21 +85,12 @@ pub(crate) fn propagate(
         evaluate.path,
         std::mem::take(&mut found.velocities),
     )?;
-    let lists = [
-        schema::MAX_DISPLACEMENT,
-        schema::MAX_DRIFT,
-        schema::FINAL_DRIFT,
-        schema::PERIODS,
-    ]
-    .map(|kind| (kind.name, floors));
-    let layout: Vec<(&'static str, usize)> = lists
-        .into_iter()
-        .chain([(schema::MAX_BASE_SHEAR.name, 1)])
-        .collect();
+    let layout = layout_of(&inputs.numbers(&found.between));
     let mut reported = values(&layout, results);
-    if let Some(shear) = reported.last_mut() {
+    evaluate.length = reported.len();
+    if let Some(shear) = place(&layout, schema::MAX_BASE_SHEAR) {
         // The reported one is without the part of noise; the re-integrated one has it in finer steps as well.
-        *shear = found.between.max_base_shear;
+        reported[shear] = found.between.max_base_shear;
     }
     let sources = doubts.sources(
         &[&plan.scale],
@@ -104,13 +106,12 @@ pub(crate) fn propagate(
 
 /// A ground-motion test along its recorded path.
 struct RecordedShake<'a, 'run> {
-    doubts: &'a FrameUncertainty<'run>,
-    plan: &'a Shake,
-    ground: &'a Ground,
-    setting: &'a Setting,
+    shake: ShakeUncertainty<'a, 'run>,
     /// Ground acceleration at every finest step \[m/s²\].
     accelerations: Vec<f64>,
     path: FramePath,
+    /// Number of values of an evaluation.
+    length: usize,
 }
 
 /// The frame, its periods \[s\] and the factor on the ground.
@@ -118,6 +119,19 @@ struct Inputs {
     run: FrameRun,
     periods: Vec<f64>,
     scale: f64,
+}
+
+impl Inputs {
+    /// The results with their values.
+    fn numbers(&self, floors: &Floors) -> Evaluated {
+        vec![
+            (schema::MAX_DISPLACEMENT, floors.max_displacement.clone()),
+            (schema::MAX_DRIFT, floors.max_drift.clone()),
+            (schema::FINAL_DRIFT, floors.final_drift.clone()),
+            (schema::PERIODS, self.periods.clone()),
+            (schema::MAX_BASE_SHEAR, vec![floors.max_base_shear]),
+        ]
+    }
 }
 
 impl RecordedShake<'_, '_> {
@@ -137,19 +151,18 @@ impl Evaluate for RecordedShake<'_, '_> {
     type Inputs = Inputs;
 
     fn inputs(&self, shifts: Shifts<'_>) -> Result<Inputs, String> {
-        let Self {
+        let ShakeUncertainty {
             doubts,
             plan,
             ground,
             setting,
-            ..
-        } = self;
+        } = self.shake;
         let (frame, damping) = (doubts.moved_frame(shifts)?, doubts.moved_damping(shifts));
         let (properties, scale) = doubts.with_inputs(shifts, &mut |inputs| {
             let properties = stepping::run::properties(&frame, &damping, inputs)?;
             Ok((
                 properties,
-                inputs.number("scale", &plan.scale, Dimension::NUMBER)?,
+                inputs.number(schema::SCALE.name, &plan.scale, Dimension::NUMBER)?,
             ))
         })?;
         let source = Source::GroundScale(plan.ground);
@@ -171,27 +184,14 @@ impl Evaluate for RecordedShake<'_, '_> {
     }
 
     fn evaluate(&self, readings: &Perturbation, inputs: &Inputs) -> Evaluation {
-        let numbers = |floors: &Floors| {
-            let lists = [
-                &floors.max_displacement,
-                &floors.max_drift,
-                &floors.final_drift,
-                &inputs.periods,
-            ];
-            lists
-                .into_iter()
-                .flatten()
-                .copied()
-                .chain([floors.max_base_shear])
-                .collect::<Vec<f64>>()
-        };
+        let numbers = |floors: &Floors| flat(inputs.numbers(floors));
         let Ok(FloorsOutcome {
             between,
             before_departure,
             ..
         }) = self.run(inputs, readings)
         else {
-            return Evaluation::none(4 * self.doubts.floors() + 1);
+            return Evaluation::none(self.length);
         };
         Evaluation {
             values: numbers(&between),

@@ -37,7 +37,7 @@ pub(crate) fn chart(
         ),
         FigureKind::CycleEnergy => (
             figures::energy(history),
-            format!("{name}: energy of each cycle, and of all cycles so far."),
+            format!("{name}: energy of each cycle, and cumulative energy."),
         ),
         FigureKind::StiffnessDegradation => (
             figures::stiffness(history),

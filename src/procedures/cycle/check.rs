@@ -6,27 +6,28 @@ use crate::language::check::expressions::fields::whole;
 use crate::language::check::messages::{cyclic as fault, names, values};
 use crate::plan::formula::{Formula, Operator};
 use crate::plan::{BreakCount, Cycle, CycleInspection, Level, MOST_TARGETS, ProcedureKind, Sides};
+use crate::schema::procedures::{SPEED, cycle as schema};
 
 pub fn cycle(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let head = checker.scope.blocks[block].block.head;
     let specimen = checker.specimen_of(block);
     let levels = levels(checker, block);
-    let sides = checker.word(block, "sides", "both");
-    let about = checker.quantity(block, "about");
-    let points = checker.count(block, "points");
-    let samples = checker.count(block, "samples");
-    let pause = checker.quantity(block, "pause");
+    let sides = checker.word(block, schema::SIDES.name, "both");
+    let about = checker.quantity(block, schema::ABOUT.name);
+    let points = checker.count(block, schema::POINTS.name);
+    let samples = checker.count(block, schema::SAMPLES.name);
+    let pause = checker.quantity(block, schema::PAUSE.name);
     let (speed, rate) = (
-        checker.optional(block, "speed"),
-        checker.optional(block, "rate"),
+        checker.optional(block, SPEED.name),
+        checker.optional(block, schema::RATE.name),
     );
-    if let Some((_, rate)) = checker.field(block, "rate") {
-        if checker.field(block, "speed").is_none() && !checker.misspelt(block, &["speed"]) {
+    if let Some((_, rate)) = checker.field(block, schema::RATE.name) {
+        if checker.field(block, SPEED.name).is_none() && !checker.misspelt(block, &[SPEED.name]) {
             checker
                 .diagnostics
                 .push(fault::rate_without_speed(rate.span, head));
         }
-        for field in ["points", "samples"] {
+        for field in [schema::POINTS.name, schema::SAMPLES.name] {
             if let Some((_, entry)) = checker.field(block, field) {
                 checker
                     .diagnostics
@@ -60,7 +61,7 @@ pub fn cycle(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     )]
     let readings = cycle.targets() as f64 * f64::from(cycle.samples);
     if readings > MOST_TARGETS {
-        let help = "take fewer `repeats`, `points` or `samples`";
+        let help = "write fewer `repeats`, `points` or `samples`";
         return checker.fail(values::too_many(
             "readings",
             readings,
@@ -78,43 +79,50 @@ pub fn cycle(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     reason = "left out and faulty are different things here"
 )]
 fn fit(checker: &mut Checker, block: usize) -> Option<Option<BreakCount>> {
-    let Some((entry, _)) = checker.field(block, "fit") else {
+    let Some((entry, _)) = checker.field(block, schema::FIT.name) else {
         return Some(None);
     };
     let place = checker.context_of(block, entry);
-    let chosen = checker.choice(block, "fit")?;
+    let chosen = checker.choice(block, schema::FIT.name)?;
     curve::breaks(checker, &chosen, place).map(Some)
 }
 
 /// The amplitudes in order, each with its number of cycles; None if an error was reported.
 fn levels(checker: &mut Checker, block: usize) -> Option<Vec<Level>> {
     let declared = &checker.scope.blocks[block];
-    let repeats = match checker.field(block, "repeats") {
-        Some(_) => Some(checker.count(block, "repeats")?),
+    let repeats = match checker.field(block, schema::REPEATS.name) {
+        Some(_) => Some(checker.count(block, schema::REPEATS.name)?),
         None => None,
     };
     match (
-        checker.field(block, "amplitudes"),
-        checker.field(block, "protocol"),
+        checker.field(block, schema::GIVEN_AMPLITUDES.name),
+        checker.field(block, schema::PROTOCOL.name),
     ) {
         (Some((_, amplitudes)), Some((_, protocol))) => checker.fail(fault::amplitudes_twice(
             protocol.key.span,
             amplitudes.key.span,
         )),
-        (None, None) if checker.misspelt(block, &["amplitudes", "protocol"]) => None,
+        (None, None)
+            if checker.misspelt(
+                block,
+                &[schema::GIVEN_AMPLITUDES.name, schema::PROTOCOL.name],
+            ) =>
+        {
+            None
+        }
         (None, None) => {
             let example = "amplitudes = [1, 2, 5] mm";
             checker.fail(names::missing_field(
                 declared.kind,
                 declared.name,
                 declared.block.head,
-                "amplitudes",
+                schema::GIVEN_AMPLITUDES.name,
                 example,
             ))
         }
         (Some(_), None) => {
             let cycles = repeats.unwrap_or(1);
-            let amplitudes = checker.quantities(block, "amplitudes")?;
+            let amplitudes = checker.quantities(block, schema::GIVEN_AMPLITUDES.name)?;
             Some(
                 amplitudes
                     .into_iter()
@@ -143,24 +151,24 @@ const FEMA_CYCLES: u32 = 2;
 
 /// The amplitudes of a protocol, and the number of cycles at each.
 fn protocol(checker: &mut Checker, block: usize, place: Context) -> Option<(Vec<Formula>, u32)> {
-    let chosen = checker.choice(block, "protocol")?;
+    let chosen = checker.choice(block, schema::PROTOCOL.name)?;
     let levels = checker
-        .constant_argument(&chosen, "levels", place)
+        .constant_argument(&chosen, schema::LEVELS.name, place)
         .and_then(whole)?;
     let times = |factor: f64, of: &Formula| product(Formula::Constant(factor), of.clone());
     Some(match chosen.variant.name {
         "ramped" => {
             let (first, last) = (
-                checker.argument(&chosen, "first", place)?,
-                checker.argument(&chosen, "last", place)?,
+                checker.argument(&chosen, schema::FIRST.name, place)?,
+                checker.argument(&chosen, schema::LAST.name, place)?,
             );
-            if let (1, Some(span)) = (levels, chosen.span("last")) {
+            if let (1, Some(span)) = (levels, chosen.span(schema::LAST.name)) {
                 let message = "a ramp of one level has its first amplitude alone".to_owned();
                 checker.diagnostics.push(values::no_effect(
                     message,
                     span,
-                    "is never reached",
-                    "take `levels` of 2 or more",
+                    "never reached",
+                    "write `levels` of 2 or more",
                 ));
             }
             let amplitude = |level: u32| {
@@ -182,8 +190,8 @@ fn protocol(checker: &mut Checker, block: usize, place: Context) -> Option<(Vec<
         }
         "geometric" => {
             let (first, ratio) = (
-                checker.argument(&chosen, "first", place)?,
-                checker.argument(&chosen, "ratio", place)?,
+                checker.argument(&chosen, schema::FIRST.name, place)?,
+                checker.argument(&chosen, schema::RATIO.name, place)?,
             );
             let amplitude = |level: u32| {
                 let power = Formula::Constant(f64::from(level));
@@ -195,7 +203,7 @@ fn protocol(checker: &mut Checker, block: usize, place: Context) -> Option<(Vec<
             ((0..levels).map(amplitude).collect(), 1)
         }
         _ => {
-            let largest = checker.argument(&chosen, "largest", place)?;
+            let largest = checker.argument(&chosen, schema::LARGEST.name, place)?;
             let amplitude =
                 |level: u32| times(FEMA_RATIO.powf(-f64::from(levels - 1 - level)), &largest);
             ((0..levels).map(amplitude).collect(), FEMA_CYCLES)
@@ -209,19 +217,23 @@ fn product(one: Formula, other: Formula) -> Formula {
 }
 
 fn inspections(checker: &mut Checker, block: usize) -> Option<Vec<CycleInspection>> {
-    let Some((entry, _)) = checker.field(block, "inspect") else {
+    let Some((entry, _)) = checker.field(block, schema::INSPECT.name) else {
         return Some(Vec::new());
     };
     let place = checker.context_of(block, entry);
-    let chosen = checker.choices(block, "inspect")?;
+    let chosen = checker.choices(block, schema::INSPECT.name)?;
     let each = chosen.iter().map(|chosen| {
         Some(match chosen.variant.name {
             "every" => CycleInspection::Every(
                 checker
-                    .constant_argument(chosen, "amplitudes", place)
+                    .constant_argument(chosen, schema::AMPLITUDES_BETWEEN.name, place)
                     .and_then(whole)?,
             ),
-            _ => CycleInspection::ForceDrop(checker.constant_argument(chosen, "fraction", place)?),
+            _ => CycleInspection::ForceDrop(checker.constant_argument(
+                chosen,
+                schema::FRACTION.name,
+                place,
+            )?),
         })
     });
     let each: Vec<Option<CycleInspection>> = each.collect();

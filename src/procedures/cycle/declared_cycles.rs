@@ -11,7 +11,7 @@ use crate::units::Dimension;
 /// Lists of a `cycle` with one entry for each of its cycles.
 const BY_CYCLE: [&str; 4] = [
     schema::AMPLITUDES.name,
-    "energies",
+    schema::ENERGIES.name,
     schema::DAMPING_RATIOS.name,
     schema::STIFFNESSES.name,
 ];
@@ -69,8 +69,8 @@ pub fn hold_cycles(
             continue;
         };
         let given = checker
-            .field(*block, "amplitudes")
-            .or_else(|| checker.field(*block, "protocol"));
+            .field(*block, schema::GIVEN_AMPLITUDES.name)
+            .or_else(|| checker.field(*block, schema::PROTOCOL.name));
         let Some((_, entry)) = given else { continue };
         let (field, span) = (entry.key.node.as_str(), entry.value.span);
         checker.diagnostics.push(whole::beyond_limits(

@@ -2,10 +2,19 @@
 
 use super::{chart, report};
 use crate::procedures::facts::{Facts, Recorded};
+use crate::schema::procedures::cycle as schema;
 
 pub(crate) fn facts() -> Facts<'static> {
     Facts {
         figures: chart::FIGURES,
+        headline: vec![
+            schema::DISSIPATED_ENERGY.name,
+            schema::EQUIVALENT_DAMPING_RATIO.name,
+            schema::STIFFNESS.name,
+            schema::YIELD_FORCE.name,
+            schema::MAX_FORCE.name,
+            schema::MIN_FORCE.name,
+        ],
         ..Facts::default()
     }
 }

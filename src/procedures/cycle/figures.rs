@@ -110,7 +110,7 @@ fn sides(fit: &MultilinearFit, history: &CycleHistory) -> Vec<Series> {
             .flat_map(|cycle| cycle.found.ends)
             .any(|(x, _)| way * (x - middle) > 0.5 * reach)
     };
-    let mut label = format!("fit of {} stretches", fit.stiffnesses.len());
+    let mut label = format!("fit of {} segments", fit.stiffnesses.len());
     let side = |way: f64| Series {
         label: std::mem::take(&mut label),
         points: places
@@ -144,7 +144,7 @@ pub(crate) fn energy(history: &CycleHistory) -> Chart {
         .collect();
     let series = vec![
         Series {
-            label: "all cycles so far".to_owned(),
+            label: "cumulative".to_owned(),
             points: cumulated,
             style: Style::line(palette::SKY, 1.8, DASHED),
         },

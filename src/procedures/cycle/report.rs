@@ -1,13 +1,14 @@
 //! The cycles of a `cycle`, one row each, and the meaning of the numbers. In: the history. Out: a table.
 
-use crate::procedures::stiffness_ramp::curve_report;
+use crate::procedures::stiffness_ramp::curve::curve_report;
 use crate::record::{CycleHistory, WholeCycle};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::units::Dimension;
 
 /// How the contributions to its uncertainty were found.
-pub(crate) const UNCERTAINTY: &str = "each input in turn was moved by its standard uncertainty, and the loops were reckoned again from their readings";
+pub(crate) const UNCERTAINTY: &str = "each input was perturbed by its standard uncertainty, one at a time, and the \
+ loops were computed again from their readings";
 
 /// Number of cycles printed; the tables contain every one.
 const PRINTED: usize = 40;
@@ -30,14 +31,15 @@ pub(crate) fn table(history: &CycleHistory, body: &mut Vec<Block>) {
             .map(|(x, _)| *x)
             .fold(0.0, f64::max);
         body.push(Block::note(
-            "Backbone, from the middle of the cycles on, both sides on one:",
+            "Backbone, from the centre of the cycles, both directions together:",
         ));
         curve_report::table(fit, reach, body);
     }
     body.push(Block::note(
-        "Energy is ∫R dX over the cycle by the trapezoid through the readings. Secant stiffness is from the leftmost to the rightmost \
-         point of the loop. ζ = E/(4π E₀) with E₀ = ½ K a², K that stiffness and a half the width of the loop. The first cycle at an \
-         amplitude begins where the one before ended: it also holds what loading further took.",
+        "Energy is ∫R dX over the cycle (trapezoidal rule). Secant stiffness is between the extreme displacements of \
+         the loop. ζ = E/(4π E₀) with E₀ = ½ K a²; K is the secant stiffness and a half the width of the loop. The \
+         first cycle at an amplitude starts where the one before ended, so it also contains the energy of further \
+         loading.",
     ));
 }
 

@@ -1,19 +1,20 @@
 //! `cycle`: displacement cycles about one position, amplitude by amplitude. In: amplitudes, sides, the kind of readings. Out: every
-//! reading, and energy, stiffness and damping of each complete cycle. Ramp-and-hold (`step_and_pause`) by default; with a rate the
+//! reading, and energy, stiffness and damping of each complete cycle. Ramp-and-hold by default; with a rate the
 //! actuator moves from end to end without stopping.
 
 use super::results::results;
 use super::uncertainty::RecordedLoops;
 use crate::physics::identification::cyclic::{LoopPoint, loop_of, work};
 use crate::physics::identification::loop_sampling::spaced;
-use crate::physics::statistics::samples::{mean, scatter};
 use crate::plan::{Cycle, CycleInspection, MOST_TARGETS, Plan};
+use crate::procedures::common::dwell_readings::DwellReadings;
 use crate::procedures::stiffness_ramp::curve;
 use crate::record::{CycleHistory, CycleStep, EventKind, History, WholeCycle};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
-use crate::run::session::{Session, first};
+use crate::run::session::{Session, StepReading, first};
 use crate::run::stop::Stop;
+use crate::schema::procedures::cycle as schema;
 use crate::uncertainty::InstrumentUncertainty;
 use crate::units::Dimension;
 use crate::units::display::readable;
@@ -100,8 +101,8 @@ fn few_points(history: &CycleHistory, left_open: &[f64]) -> Option<String> {
     (worst > OPEN).then(|| {
         let percent = 100.0 * worst;
         format!(
-            "few points: between them cycle {cycle} may have {percent:.0} % more energy or less than its trapezia, and its damping ratio \
-             with it: more `points`, or a higher `rate`, tell more"
+            "few points: the energy and damping ratio of cycle {cycle} may be wrong by {percent:.0} %; use more \
+             `points`, or a higher `rate`"
         )
     })
 }
@@ -115,12 +116,37 @@ struct Manner {
     pause: f64,
     /// \[m/s\]
     speed: Option<f64>,
-    /// Sampling frequency \[Hz\] and speed \[m/s\] during the motion.
-    moving: Option<(f64, f64)>,
+    /// None: the rig stops at its targets and is read there.
+    moving: Option<SampledMotion>,
     /// Number of targets of a quarter, from the middle to an end.
     points: u32,
     /// The targets are evenly spaced.
     evenly: bool,
+}
+
+/// A motion that is read on the way.
+#[derive(Clone, Copy)]
+struct SampledMotion {
+    /// Sampling frequency \[Hz\].
+    rate: f64,
+    /// \[m/s\]
+    speed: f64,
+}
+
+/// The reading at one target.
+struct TargetReading {
+    /// \[m\]
+    command: f64,
+    /// \[m\]
+    displacement: f64,
+    /// \[N\]
+    restoring_force: f64,
+    /// \[N\]
+    force_scatter: f64,
+    /// \[N\]
+    relaxation: f64,
+    /// Rig time \[s\].
+    wall_time: f64,
 }
 
 struct Cycling {
@@ -142,33 +168,35 @@ impl Cycling {
             .iter()
             .map(|level| level.amplitude.clone())
             .collect::<Vec<_>>();
-        let amplitudes = inputs.list("amplitudes", &amplitudes)?;
+        let amplitudes = inputs.list(schema::GIVEN_AMPLITUDES.name, &amplitudes)?;
         if let Some(value) = amplitudes
             .iter()
             .copied()
             .find(|amplitude| !(*amplitude > 0.0 && amplitude.is_finite()))
         {
-            return Err(Stop::BadInput {
-                field: "amplitudes",
+            return Err(Stop::bad_input(
+                schema::GIVEN_AMPLITUDES.name,
                 value,
-                dimension: Dimension::LENGTH,
-                wanted: "greater than 0".into(),
-            });
+                Dimension::LENGTH,
+                "greater than 0",
+            ));
         }
-        let about = inputs.number("about", &plan.about, Dimension::LENGTH)?;
-        let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
+        let about = inputs.number(schema::ABOUT.name, &plan.about, Dimension::LENGTH)?;
+        let pause = inputs.not_negative(schema::PAUSE.name, &plan.pause, Dimension::TIME)?;
         let speed = inputs.speed(plan.speed.as_ref())?;
         let rate = plan
             .rate
             .as_ref()
-            .map(|rate| inputs.positive("rate", rate, Dimension::FREQUENCY))
+            .map(|rate| inputs.positive(schema::RATE.name, rate, Dimension::FREQUENCY))
             .transpose()?;
         let (samples, points, evenly) = (plan.samples.max(1), plan.points.max(1), plan.evenly);
         let manner = Manner {
             samples,
             pause,
             speed,
-            moving: rate.zip(speed),
+            moving: rate
+                .zip(speed)
+                .map(|(rate, speed)| SampledMotion { rate, speed }),
             points,
             evenly,
         };
@@ -214,12 +242,12 @@ impl Cycling {
         manner: Manner,
         session: &mut Session<'_>,
     ) -> Result<(), Stop> {
-        let from = session.commanded();
-        if let Some((rate, speed)) = manner.moving {
-            self.moving(from, to, rate, speed, session)?;
+        if let Some(sampled) = manner.moving {
+            self.moving(to, sampled, session)?;
             session.guard.pause(manner.pause)?;
             return Ok(());
         }
+        let from = session.commanded();
         // The number of quarters; 5e-10 allows for the rounding of the amplitude.
         let quarters = ((to - from).abs() / self.amplitude - 5e-10).ceil().max(1.0);
         #[expect(
@@ -254,51 +282,43 @@ impl Cycling {
         manner: Manner,
         session: &mut Session<'_>,
     ) -> Result<(), Stop> {
-        let (settled, mut broken) = session.read_kept()?;
-        let (_, settled_force) = first(&settled);
-        let mut readings = Vec::new();
-        if broken.is_some() {
-            readings.push(first(&settled));
-        } else {
+        let (settled, broken) = session.read_kept()?;
+        if broken.is_none() {
             session.guard.pause(manner.pause)?;
         }
-        for _ in 0..manner.samples {
-            if broken.is_none() {
-                let (reading, stop) = session.read_kept()?;
-                readings.push(first(&reading));
-                broken = stop;
-            }
-        }
-        let displacement = mean(readings.iter().map(|(x, _)| *x));
-        let restoring_force = mean(readings.iter().map(|(_, r)| *r));
-        let force_scatter = scatter(readings.iter().map(|(_, r)| *r), restoring_force);
-        let relaxation = settled_force - restoring_force;
-        let (time, point) = (session.guard.time(), (displacement, restoring_force));
-        if let Some(stop) = broken {
-            self.keep(command, point, force_scatter, relaxation, time);
+        let dwell = DwellReadings::take(&settled, broken, manner.samples, session)?;
+        let reading = TargetReading {
+            command,
+            displacement: dwell.displacement,
+            restoring_force: dwell.restoring_force,
+            force_scatter: dwell.force_scatter,
+            relaxation: dwell.relaxation,
+            wall_time: dwell.wall_time,
+        };
+        if let Some(stop) = dwell.broken {
+            self.keep(&reading);
             return Err(stop);
         }
-        self.take(command, point, force_scatter, relaxation, time, session)
+        self.take(&reading, session)
     }
 
     /// Moves to `to` without a stop and reads during the motion.
     fn moving(
         &mut self,
-        from: f64,
         to: f64,
-        rate: f64,
-        speed: f64,
+        sampled: SampledMotion,
         session: &mut Session<'_>,
     ) -> Result<(), Stop> {
+        let from = session.commanded();
+        let SampledMotion { rate, speed } = sampled;
         let wanted = ((to - from).abs() / speed * rate).round().max(1.0);
         if wanted > MOST_TARGETS {
-            let wanted_words = format!("at most {MOST_TARGETS} readings a way").into();
-            return Err(Stop::BadInput {
-                field: "rate",
-                value: wanted,
-                dimension: Dimension::NUMBER,
-                wanted: wanted_words,
-            });
+            return Err(Stop::bad_input(
+                schema::RATE.name,
+                wanted,
+                Dimension::NUMBER,
+                format!("at most {MOST_TARGETS} readings a way"),
+            ));
         }
         #[expect(
             clippy::cast_possible_truncation,
@@ -314,43 +334,44 @@ impl Cycling {
         for (sample, reading) in (1_u32..).zip(&traversed.readings) {
             #[expect(clippy::cast_precision_loss, reason = "at most MOST_TARGETS")]
             let command = from + (to - from) * (f64::from(sample) / samples as f64);
+            let (displacement, restoring_force) = first(reading);
+            let reading = TargetReading {
+                command,
+                displacement,
+                restoring_force,
+                force_scatter: 0.0,
+                relaxation: 0.0,
+                wall_time: reading.time,
+            };
             if sample as usize > whole {
-                self.keep(command, first(reading), 0.0, 0.0, reading.time);
+                self.keep(&reading);
             } else {
-                self.take(command, first(reading), 0.0, 0.0, reading.time, session)?;
+                self.take(&reading, session)?;
             }
         }
         traversed.fault.map_or(Ok(()), |fault| Err(fault.into()))
     }
 
-    fn take(
-        &mut self,
-        command: f64,
-        (displacement, restoring_force): (f64, f64),
-        force_scatter: f64,
-        relaxation: f64,
-        wall_time: f64,
-        session: &mut Session<'_>,
-    ) -> Result<(), Stop> {
-        let step = self.keep(
-            command,
-            (displacement, restoring_force),
-            force_scatter,
-            relaxation,
-            wall_time,
-        );
-        session.measured(step, wall_time, displacement, restoring_force)
+    fn take(&mut self, reading: &TargetReading, session: &mut Session<'_>) -> Result<(), Stop> {
+        let step = self.keep(reading);
+        session.measured(&StepReading {
+            step,
+            time: reading.wall_time,
+            displacement: reading.displacement,
+            force: reading.restoring_force,
+        })
     }
 
     /// Records a step and returns its number.
-    fn keep(
-        &mut self,
-        command: f64,
-        (displacement, restoring_force): (f64, f64),
-        force_scatter: f64,
-        relaxation: f64,
-        wall_time: f64,
-    ) -> u64 {
+    fn keep(&mut self, reading: &TargetReading) -> u64 {
+        let TargetReading {
+            command,
+            displacement,
+            restoring_force,
+            force_scatter,
+            relaxation,
+            wall_time,
+        } = *reading;
         let steps = &mut self.history.steps;
         let energy = steps.last().map_or(0.0, |before| {
             before.energy

@@ -1,15 +1,16 @@
 //! The uncertainty of the results of a `cycle`. In: the recorded loops. Out: the contributions of each source, and of the unknown curve
 //! between the points of each loop. The backbone fit has its own scatter, and is not touched here.
 
+use crate::schema::ResultKind;
 use std::convert::Infallible;
 
 use super::results::results;
 use crate::physics::identification::cyclic::{LoopPoint, loop_of};
 use crate::physics::reintegration::perturbation::{Perturbation, ReadingErrors};
 use crate::plan::formula::ProcedureId;
-use crate::procedures::fit_uncertainty::Fits;
-use crate::procedures::loop_sampling::{left_open_by, of_open};
-use crate::procedures::results::{Layout, give, values};
+use crate::procedures::common::fit_uncertainty::Fits;
+use crate::procedures::common::loop_sampling::{left_open_by, of_open};
+use crate::procedures::common::results::{Layout, give, place, values};
 use crate::record::{CycleHistory, CycleStep, NamedResult, WholeCycle};
 use crate::schema::procedures::cycle as schema;
 use crate::uncertainty::engine::{Evaluate, Evaluation, Shifts, Study};
@@ -124,16 +125,11 @@ pub(crate) fn propagate(
     let layout = loops.layout();
     // Inputs have no bounds here, and no one waits for progress.
     if let Ok(mut contributions) = study.contributions::<Infallible>(&mut |_, _| Ok(())) {
-        for (name, entry, amount) in of_sampling(loops.history, loops.left_open) {
-            let before = layout
-                .iter()
-                .take_while(|(result, _)| *result != name)
-                .map(|(_, count)| count)
-                .sum::<usize>();
-            contributions[before + entry].push(Contribution::new(
-                Source::LoopSampling { procedure },
-                amount,
-            ));
+        for (kind, entry, amount) in of_sampling(loops.history, loops.left_open) {
+            let sampling = Contribution::new(Source::LoopSampling { procedure }, amount);
+            if let Some(first) = place(&layout, kind) {
+                contributions[first + entry].push(sampling);
+            }
         }
         give(&layout, contributions, results);
     }
@@ -159,7 +155,7 @@ pub(crate) fn left_open_by_points(
 }
 
 /// Uncertainties of the results due to the points of the loops. Loops are alike, and so are their corners.
-fn of_sampling(history: &CycleHistory, open: &[f64]) -> Vec<(&'static str, usize, f64)> {
+fn of_sampling(history: &CycleHistory, open: &[f64]) -> Vec<(ResultKind, usize, f64)> {
     let uncertain: Vec<f64> = open.iter().copied().map(of_open).collect();
     // ζ = E_D/(4π·½K a²)
     let ratio = |(cycle, energy): (&WholeCycle, &f64)| {
@@ -175,14 +171,14 @@ fn of_sampling(history: &CycleHistory, open: &[f64]) -> Vec<(&'static str, usize
     let of_each = uncertain.iter().zip(&ratios).enumerate();
     let lists = of_each.flat_map(|(entry, (energy, ratio))| {
         [
-            (schema::ENERGIES.name, entry, *energy),
-            (schema::DAMPING_RATIOS.name, entry, *ratio),
+            (schema::ENERGIES, entry, *energy),
+            (schema::DAMPING_RATIOS, entry, *ratio),
         ]
     });
     let whole = [
-        (schema::DISSIPATED_ENERGY.name, 0, uncertain.iter().sum()),
+        (schema::DISSIPATED_ENERGY, 0, uncertain.iter().sum()),
         (
-            schema::EQUIVALENT_DAMPING_RATIO.name,
+            schema::EQUIVALENT_DAMPING_RATIO,
             0,
             ratios.last().copied().unwrap_or(0.0),
         ),

@@ -18,7 +18,8 @@ pub(crate) fn chart(
         FigureKind::DampingFit if history.steps.iter().any(|step| step.steady) => (
             stiffness_ramp::figures::damping_fit(history),
             format!(
-                "{name}: damping force along the motion against velocity: steady readings of both ways, half the difference of out and back at one place with its standard error, and the line fitted to it."
+                "{name}: damping force along the motion against velocity: steady readings of both directions, half \
+                 the difference of out and back at one position with its standard error, and the fitted line."
             ),
         ),
         _ => return None,

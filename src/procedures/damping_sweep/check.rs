@@ -1,12 +1,14 @@
 //! `damping sweep NAME { … }`
 
 use crate::language::check::checker::Checker;
+use crate::language::check::expressions::read_field::ReadField;
 use crate::language::check::messages::methods as fault;
+use crate::plan::declaration::reader;
 use crate::plan::procedure::damping_sweep::damping_sweep_fields;
-use crate::plan::procedure::declaration::reader;
 use crate::plan::{DampingSweep, ProcedureKind};
-use crate::procedures::read_field::ReadField;
-use crate::procedures::stepping::mode_check::stops_at_targets;
+use crate::procedures::stepping::check::mode_check::stops_at_targets;
+use crate::schema::procedures::damping_sweep::NAMES;
+use crate::schema::rig;
 
 pub fn damping_sweep(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     read_together(checker, block);
@@ -25,17 +27,14 @@ fn read_together(checker: &mut Checker, block: usize) {
             .field(rig, field)
             .map(|(_, entry)| entry.key.span.to(entry.value.span))
     };
-    let apart = match (entry("load_cell"), stops_at_targets(checker, rig)) {
-        (Some(cell), _) => Some((
-            cell,
-            "the force is read here, and the displacement elsewhere".to_owned(),
-        )),
-        (None, Some(dialect)) => entry("link").or_else(|| entry("actuator")).map(|link| {
-            let reason = format!(
-                "`{dialect}` gives no displacement and force of one instant while it moves"
-            );
-            (link, reason)
-        }),
+    let apart = match (entry(rig::LOAD_CELL.name), stops_at_targets(checker, rig)) {
+        (Some(cell), _) => Some((cell, "force read here, displacement elsewhere".to_owned())),
+        (None, Some(dialect)) => entry(rig::LINK.name)
+            .or_else(|| entry(rig::ACTUATOR.name))
+            .map(|link| {
+                let reason = format!("`{dialect}` has no simultaneous readings during motion");
+                (link, reason)
+            }),
         (None, None) => None,
     };
     if let Some((link, reason)) = apart {

@@ -3,10 +3,16 @@
 use super::chart;
 use crate::procedures::facts::{Facts, Recorded};
 use crate::procedures::stiffness_ramp;
+use crate::schema::procedures::damping_sweep as schema;
 
 pub(crate) fn facts() -> Facts<'static> {
     Facts {
         figures: chart::FIGURES,
+        headline: vec![
+            schema::DAMPING.name,
+            schema::COULOMB_FORCE.name,
+            schema::DAMPING_RATIO.name,
+        ],
         ..Facts::default()
     }
 }

@@ -2,7 +2,7 @@
 //! readings. Out: findings, and observations for the reader of c. It moves nothing.
 
 use super::pairing::{Paired, velocity_of};
-use super::run::{Stroke, Sweep};
+use super::sweep::{Stroke, Sweep};
 use crate::physics::identification::damping_strokes::{OutAndBack, change_along, own_stiffness};
 use crate::units::Dimension;
 use crate::units::display::readable;
@@ -48,7 +48,7 @@ impl Sweep {
             let shown = readable(stroke.speed, Dimension::VELOCITY);
             let few = (!stroke.on_grid && pairs < FEW).then(|| {
                 format!(
-                    "the strokes at {shown} give {pairs} steady pairs of readings: the line is too slow, or the stroke too short"
+                    "the strokes at {shown} have {pairs} steady pairs of readings: communication too slow, or stroke too short"
                 )
             });
             let off = [&stroke.out, &stroke.back].into_iter().filter(|_| !stroke.on_grid).find_map(|pass| {
@@ -57,7 +57,7 @@ impl Sweep {
                 let differs = error > OFF_SPEED * stroke.speed + 3.0 * moved.slope_error;
                 let measured = readable(moved.slope.abs(), Dimension::VELOCITY);
                 differs.then(|| {
-                    format!("by the times of the readings the piston went at {measured}, not at {shown}: c is as wrong as that")
+                    format!("stroke speed from the reading times is {measured}, not {shown}: c has the same relative error")
                 })
             });
             few.into_iter().chain(off)
@@ -81,13 +81,12 @@ impl Sweep {
                 readable(*change, Dimension::FORCE),
             );
             let so = if all {
-                "c and the Coulomb force are of its loop too"
+                "c and the Coulomb force include its hysteresis"
             } else {
-                "it is left out"
+                "the stroke is excluded"
             };
             observations.push(format!(
-                "the stroke at {speed} comes back by another way: half of out minus back changes by {change} along it, as of a specimen \
-                 that flows; {so}"
+                "the stroke at {speed} shows yielding: half of out minus back changes by {change} along it; {so}"
             ));
         }
         let left_out: Vec<usize> = yielded
@@ -99,7 +98,7 @@ impl Sweep {
             .iter()
             .filter(|(stroke, _)| !left_out.contains(&stroke.out.start));
         let stiffness = own_stiffness(&kept.map(|(_, pairs)| pairs.as_slice()));
-        let own_stiffness = stiffness.filter(|own| self.contradicts(*own));
+        let own_stiffness = stiffness.filter(|(own, error)| self.contradicts(*own, *error));
         let resists = |(own, error): (f64, f64)| {
             let pairs = || strokes.iter().flat_map(|(_, pairs)| pairs);
             let most = |read: fn(&OutAndBack) -> f64| pairs().map(read).fold(0.0, f64::max);
@@ -116,12 +115,12 @@ impl Sweep {
         match ratio_of {
             RatioOf::Plan => {}
             RatioOf::Strokes((own, _)) => observations.push(format!(
-                "the strokes run at {}, not at the {assumed} of `stiffness`: the damping ratio is told with theirs",
+                "the strokes have a stiffness of {}, not the {assumed} of `stiffness`: the damping ratio uses the measured one",
                 shown(own)
             )),
             RatioOf::Nothing => {
                 observations
-                    .push(format!("the strokes show no stiffness, not the {assumed} of `stiffness`: there is no damping ratio"));
+                    .push(format!("no damping ratio: the strokes show no stiffness, not the {assumed} of `stiffness`"));
             }
         }
         Findings {
@@ -133,7 +132,7 @@ impl Sweep {
     }
 
     /// Whether the K of the strokes (N/m, with its standard error) differs from that of the plan.
-    fn contradicts(&self, (own, error): (f64, f64)) -> bool {
+    fn contradicts(&self, own: f64, error: f64) -> bool {
         let Some(assumed) = self.stiffness else {
             return false;
         };

@@ -9,6 +9,7 @@ mod pairing;
 pub(crate) mod rate_separated_stiffness;
 pub(crate) mod report;
 pub(crate) mod run;
+mod sweep;
 pub(crate) mod tables;
 pub(crate) mod uncertainty;
 

@@ -1,7 +1,7 @@
 //! Pairs of readings of a stroke at the same position, out and back. In: the steps of both passes. Out: pairs, and the measured velocity.
 //! It moves nothing.
 
-use super::run::Stroke;
+use super::sweep::Stroke;
 use crate::physics::identification::damping_strokes::OutAndBack;
 use crate::physics::identification::fit_line;
 use crate::record::{LineFit, SweepStep};

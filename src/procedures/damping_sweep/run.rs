@@ -16,17 +16,19 @@ use std::ops::Range;
 
 use super::findings::RatioOf;
 use super::pairing::{Paired, paired_by_position, paired_by_time};
+use super::sweep::{Stroke, Sweep};
 use crate::physics::identification::damping_strokes::OutAndBack;
 use crate::physics::identification::{StatedVariance, damping_ratio, fit_damping, fit_line};
+use crate::physics::structure::Matrices;
 use crate::plan::formula::Estimate;
 use crate::plan::{DampingSweep, Plan};
-use crate::procedures::results::largest;
+use crate::procedures::common::results::largest;
 use crate::record::{
     BroughtTogether, EventKind, History, LineFit, NamedResult, SweepHistory, SweepStep,
 };
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
-use crate::run::session::{Session, first};
+use crate::run::session::{Session, StepReading, first};
 use crate::run::stop::Stop;
 use crate::schema::procedures::damping_sweep as schema;
 use crate::uncertainty::InstrumentUncertainty;
@@ -100,7 +102,7 @@ pub(crate) fn perform(
     let fit = fit_of(&pairs, stated);
     if fit.is_none() && stop.is_none() {
         let text =
-            "no damping: the steady parts of the strokes hold too few readings, or too few velocities, for a line".to_owned();
+            "no damping: the steady parts of the strokes have too few readings, or too few velocities, for a line".to_owned();
         session.event(EventKind::Remark, text);
     }
     for text in sweep
@@ -145,7 +147,7 @@ pub(crate) fn perform(
 fn negative(fit: &LineFit) -> Option<String> {
     (fit.slope + fit.slope_error < 0.0).then(|| {
         let damping = readable(fit.slope, Dimension::DAMPING);
-        format!("c is {damping}, and no specimen gives energy back: what changed between the strokes is not damping")
+        format!("c = {damping} is negative, which no specimen can have: the change between the strokes is not damping")
     })
 }
 
@@ -190,28 +192,6 @@ fn effects_of_stiffness<'a>(pairs: impl Iterator<Item = &'a OutAndBack>) -> [f64
     fit_line(&speeds, &apart).map_or([0.0; 2], |line| [-line.slope, -line.intercept])
 }
 
-/// Steps of one stroke, out and back.
-pub(super) struct Stroke {
-    pub out: Range<usize>,
-    pub back: Range<usize>,
-    /// Commanded \[m/s\].
-    pub speed: f64,
-    /// Whether every reading was made at the requested time.
-    pub on_grid: bool,
-}
-
-pub(super) struct Sweep {
-    pub steps: Vec<SweepStep>,
-    /// The steps of each stroke that was completed, out and back.
-    pub strokes: Vec<Stroke>,
-    /// K of the plan \[N/m\].
-    pub stiffness: Option<Estimate>,
-    /// \[s\]
-    pub lag: f64,
-    /// Whether the rig reads at the requested times.
-    pub exact: bool,
-}
-
 /// A commanded constant-velocity pass.
 #[derive(Clone, Copy)]
 struct Pass {
@@ -232,26 +212,30 @@ impl Sweep {
         inputs: &mut Inputs<'_>,
         session: &mut Session<'_>,
     ) -> Result<(), Stop> {
-        let velocities = inputs.list("velocities", &plan.velocities)?;
+        let velocities = inputs.list(schema::NAMES.velocities, &plan.velocities)?;
         let stroke = inputs.number("stroke", &plan.stroke, Dimension::LENGTH)?;
-        let stiffness =
-            inputs.positive_estimate("stiffness", &plan.stiffness, Dimension::STIFFNESS, None)?;
+        let stiffness = inputs.positive_estimate(
+            schema::NAMES.stiffness,
+            &plan.stiffness,
+            Dimension::STIFFNESS,
+            None,
+        )?;
         let rate = plan
             .rate
             .as_ref()
-            .map(|rate| inputs.positive("rate", rate, Dimension::FREQUENCY))
+            .map(|rate| inputs.positive(schema::NAMES.rate, rate, Dimension::FREQUENCY))
             .transpose()?;
         if stroke == 0.0 {
-            return Err(Stop::BadInput {
-                field: "stroke",
-                value: stroke,
-                dimension: Dimension::LENGTH,
-                wanted: "other than 0".into(),
-            });
+            return Err(Stop::bad_input(
+                "stroke",
+                stroke,
+                Dimension::LENGTH,
+                "other than 0",
+            ));
         }
         self.stiffness = Some(stiffness);
         if let Some(about) = &plan.about {
-            let middle = inputs.number("about", about, Dimension::LENGTH)?;
+            let middle = inputs.number(schema::NAMES.about, about, Dimension::LENGTH)?;
             // Plastic deformation of the first stroke occurs before anything is read.
             session.go_to(middle + 0.5 * stroke, None)?;
             session.go_to(middle - 0.5 * stroke, None)?;
@@ -259,12 +243,12 @@ impl Sweep {
         let home = session.commanded();
         for velocity in velocities {
             if velocity == 0.0 {
-                return Err(Stop::BadInput {
-                    field: "velocities",
-                    value: velocity,
-                    dimension: Dimension::VELOCITY,
-                    wanted: "other than 0".into(),
-                });
+                return Err(Stop::bad_input(
+                    schema::NAMES.velocities,
+                    velocity,
+                    Dimension::VELOCITY,
+                    "other than 0",
+                ));
             }
             let seconds = (stroke / velocity).abs();
             let samples = self.samples(seconds, rate)?;
@@ -307,12 +291,12 @@ impl Sweep {
     fn samples(&self, seconds: f64, rate: Option<f64>) -> Result<usize, Stop> {
         let wanted = wanted(seconds, self.lag, rate);
         if wanted > MOST_SAMPLES {
-            return Err(Stop::BadInput {
-                field: "rate",
-                value: wanted,
-                dimension: Dimension::NUMBER,
-                wanted: format!("at most {MOST_SAMPLES} readings a stroke").into(),
-            });
+            return Err(Stop::bad_input(
+                schema::NAMES.rate,
+                wanted,
+                Dimension::NUMBER,
+                format!("at most {MOST_SAMPLES} readings a stroke"),
+            ));
         }
         #[expect(
             clippy::cast_possible_truncation,
@@ -356,7 +340,12 @@ impl Sweep {
                 steady: steady_from <= passed && passed <= 1.0 - END,
             });
             if sample as usize <= whole {
-                session.measured(step, reading.time, displacement, restoring_force)?;
+                session.measured(&StepReading {
+                    step,
+                    time: reading.time,
+                    displacement,
+                    force: restoring_force,
+                })?;
             }
         }
         traversed
@@ -383,11 +372,6 @@ impl Sweep {
             .collect()
     }
 
-    /// K of the plan \[N/m\].
-    pub(super) fn planned(&self) -> f64 {
-        self.stiffness.map_or(0.0, |stiffness| stiffness.value)
-    }
-
     fn results(
         &self,
         fit: Option<&LineFit>,
@@ -406,9 +390,16 @@ impl Sweep {
             .zip(stiffness)
             .zip(mass)
             .map(|((fit, stiffness), mass)| {
-                let ratio = damping_ratio(fit.slope, stiffness.value, mass);
+                let ratio_of = |damping| {
+                    damping_ratio(&Matrices {
+                        mass,
+                        damping,
+                        stiffness: stiffness.value,
+                    })
+                };
+                let ratio = ratio_of(fit.slope);
                 // ζ = c/(2√(KM)): u(ζ)² = (u(c)/(2√(KM)))² + (ζ·u(K)/(2K))².
-                let by_damping = damping_ratio(fit.slope_error, stiffness.value, mass);
+                let by_damping = ratio_of(fit.slope_error);
                 let by_stiffness =
                     ratio * stiffness.uncertainty.unwrap_or(0.0) / (2.0 * stiffness.value);
                 (ratio, Some(by_damping.hypot(by_stiffness)))

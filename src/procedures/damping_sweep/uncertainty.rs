@@ -3,9 +3,10 @@
 
 use crate::plan::formula::{Formula, ResultValue};
 use crate::plan::{DampingSweep, DeclaredNoise, Plan};
-use crate::procedures::fit_uncertainty::{Fits, attribute};
+use crate::procedures::common::fit_uncertainty::{Fits, attribute};
 use crate::record::{BroughtTogether, NamedResult, SweepHistory};
 use crate::run::inputs::Inputs;
+use crate::schema::procedures::damping_sweep as schema;
 use crate::uncertainty::{Contribution, Source, share};
 
 /// Gives the results their contributions.
@@ -31,7 +32,8 @@ pub(crate) fn propagate(
     let uncertain = specimen.map_or(0.0, |specimen| specimen.mass_uncertainty / specimen.mass);
     damping_ratio(
         results,
-        (&sweep.stiffness, found.own_stiffness),
+        &sweep.stiffness,
+        found.own_stiffness,
         (Source::SpecimenMass(sweep.specimen), uncertain),
         inputs,
     );
@@ -58,7 +60,7 @@ fn of_stroke_stiffness(
             .unwrap_or_default()
     };
     let in_stiffness = together.error.map_or_else(of_plan, of_strokes);
-    for (name, effect) in ["damping", "coulomb_force"]
+    for (name, effect) in [schema::DAMPING.name, schema::COULOMB_FORCE.name]
         .into_iter()
         .zip(together.effects)
     {
@@ -80,7 +82,8 @@ fn of_stroke_stiffness(
 /// mass with its relative uncertainty.
 fn damping_ratio(
     results: &mut [NamedResult],
-    (stiffness, own): (&Formula, Option<(f64, f64)>),
+    stiffness: &Formula,
+    own: Option<(f64, f64)>,
     mass: (Source, f64),
     inputs: &Inputs<'_>,
 ) {
@@ -88,7 +91,10 @@ fn damping_ratio(
         ResultValue::Number { value, .. } => value,
         ResultValue::List(_) => None,
     };
-    let (Some(ratio), Some(damping)) = (number("damping_ratio"), number("damping")) else {
+    let (Some(ratio), Some(damping)) = (
+        number(schema::DAMPING_RATIO.name),
+        number(schema::DAMPING.name),
+    ) else {
         return;
     };
     let (known, in_stiffness) = if let Some((stiffness, error)) = own {
@@ -113,7 +119,7 @@ fn damping_ratio(
     };
     let of_damping = results
         .iter()
-        .find(|result| result.name == "damping")
+        .find(|result| result.name == schema::DAMPING.name)
         .map(|found| found.contributions.clone());
     let mut parts: Vec<Contribution> = of_damping.unwrap_or_default();
     for part in &mut parts {
@@ -130,7 +136,7 @@ fn damping_ratio(
     }
     if let Some(result) = results
         .iter_mut()
-        .find(|result| result.name == "damping_ratio")
+        .find(|result| result.name == schema::DAMPING_RATIO.name)
         && parts.iter().all(|part| part.amount.is_finite())
     {
         result.contributions = parts;

@@ -5,7 +5,7 @@ use crate::plan::{
     Contact, Escalate, Impact, ImpactTarget, Plan, PointTarget, StoreyTarget, Striker,
 };
 use crate::procedures::facts::Delay;
-use crate::procedures::stepping::delay::{late, of_frame};
+use crate::procedures::stepping::tracking::delay::{late, of_frame};
 
 pub(crate) fn of_impact(plan: &Plan, impact: &Impact) -> Option<Delay> {
     with_striker(plan, impact, plan.strikers.get(impact.striker)?)

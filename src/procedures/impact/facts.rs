@@ -1,7 +1,7 @@
 //! The facts about an impact that check and report need without running it. In: an impact of the plan, or its history. Out: facts, the
 //! motion at its end, the parts of the program that it uses.
 
-use super::{figures, report};
+use super::{figures, report, results};
 use crate::physics::self_test::Part;
 use crate::plan::{Contact, Dependence, Impact, ImpactTarget, Until};
 use crate::procedures::facts::{Facts, Motion, Recorded, Tests};
@@ -13,6 +13,12 @@ pub(crate) fn facts(impact: &Impact) -> Facts<'_> {
     let shared = Facts {
         stepping: Some(&impact.stepping),
         contact: Some(&impact.contact),
+        headline: report::headline(&impact.contact),
+        unprinted: report::unprinted(&impact.contact),
+        implied: match impact.until {
+            Until::StrikerStop => &[results::CUT],
+            _ => &[],
+        },
         ..Facts::default()
     };
     match &impact.target {
@@ -35,6 +41,7 @@ pub(crate) fn facts(impact: &Impact) -> Facts<'_> {
                 frame: Some(impact.specimen),
             },
             figures: figures::STOREY_FIGURES,
+            headline: report::storey::HEADLINE.to_vec(),
             ..shared
         },
     }
@@ -64,16 +71,15 @@ pub(crate) const PEAK: &str = "ends near its largest displacement";
 pub(crate) fn motion(impact: &Impact) -> Motion<'static> {
     match &impact.target {
         ImpactTarget::Point(_) => Motion {
-            what: "blow",
+            what: "impact",
             ends: PEAK,
-            help: "take the load off in between: `unload rest { }`",
+            help: "unload in between: `unload rest { }`",
             rests: false,
         },
         ImpactTarget::Storey(_) => Motion {
-            what: "blow",
+            what: "impact",
             ends: PEAK,
-            help: "take the load off in between: `unload rest { }`, or let the first run on until the frame rests: \
-    `until = duration`, with a `damping_ratio`",
+            help: "unload in between: `unload rest { }`; or let the frame come to rest: `until = duration`, with a `damping_ratio`",
             rests: impact.until == Until::Duration,
         },
     }

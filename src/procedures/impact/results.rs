@@ -3,10 +3,13 @@
 
 use super::summary::{FloorSummary, StruckSummary};
 use crate::physics::contact::state::ContactLaw;
+use crate::physics::impact::energy::Energies;
 use crate::physics::impact::summary::ImpactSummary;
+use crate::physics::reintegration::impact::ImpactValues;
 use crate::plan::Until;
+use crate::procedures::common::results::Evaluated;
 use crate::procedures::stepping::energy;
-use crate::procedures::stepping::tracking_summary::{Followed, tracking_results};
+use crate::procedures::stepping::tracking::tracking_summary::{Followed, tracking_results};
 use crate::record::{EventKind, ImpactHistory, NamedResult, StruckFrame};
 use crate::run::session::Session;
 use crate::schema::ResultKind;
@@ -21,7 +24,7 @@ pub(crate) fn results(
     history: &ImpactHistory,
 ) -> Vec<NamedResult> {
     let impact = summary.map(StruckSummary::impact);
-    let mut results = of_impact(impact.as_ref(), history).to_vec();
+    let mut results = of_impact(impact.as_ref(), history).collect::<Vec<_>>();
     let tracking = history.steps.last().map(|last| last.tracking);
     results.extend(tracking_results(followed.worst(), tracking));
     results.extend(of_steps(history));
@@ -32,35 +35,110 @@ pub(crate) fn results(
     results
 }
 
-/// Displacements, contact and energies.
-fn of_impact(summary: Option<&ImpactSummary>, history: &ImpactHistory) -> [NamedResult; 16] {
-    let peak = |kind: ResultKind, read: fn(&ImpactSummary) -> f64| kind.found(summary.map(read));
-    let event = |kind: ResultKind, read: fn(&ImpactSummary) -> Option<f64>| {
-        kind.found(summary.and_then(read))
-    };
-    let energies = history.steps.last().map(|last| last.energies);
+/// The value of a result of an impact, in a run and, if it has an uncertainty, in a re-integration of the run.
+enum Value {
+    /// Of the run alone.
+    OfRun(fn(&ImpactSummary) -> Option<f64>),
+    /// At the ends of steps, in both.
+    AtSteps(fn(&ImpactSummary) -> Option<f64>),
+    /// At the ends of steps in the run, interpolated between them in the re-integration.
+    Between(fn(&ImpactSummary) -> Option<f64>, fn(&ImpactValues) -> f64),
+    /// An energy at the last step of the run; in the re-integration at the end inside that step.
+    Energy(fn(&Energies) -> f64, fn(&ImpactValues) -> f64),
+}
+
+/// Displacements, contact and energies: the results of an impact on any structure.
+const OF_IMPACT: [(ResultKind, Value); 16] = [
+    (
+        schema::MAX_DISPLACEMENT,
+        Value::Between(|it| Some(it.max_displacement), |it| it.max_displacement),
+    ),
+    (
+        schema::TIME_OF_MAX_DISPLACEMENT,
+        Value::Between(
+            |it| Some(it.time_of_max_displacement),
+            |it| it.time_of_max_displacement,
+        ),
+    ),
+    (
+        schema::STOP_TIME,
+        Value::Between(|it| it.stop_time, |it| it.stop_time),
+    ),
+    (
+        schema::FINAL_DISPLACEMENT,
+        Value::Between(|it| Some(it.final_displacement), |it| it.final_displacement),
+    ),
+    (
+        schema::MAX_VELOCITY,
+        Value::AtSteps(|it| Some(it.max_velocity)),
+    ),
+    (
+        schema::MAX_CONTACT_FORCE,
+        Value::AtSteps(|it| Some(it.max_contact_force)),
+    ),
+    (schema::IMPULSE, Value::AtSteps(|it| Some(it.impulse))),
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
-    let contacts: fn(&ImpactSummary) -> f64 = |summary| summary.contacts as f64;
-    [
-        peak(schema::MAX_DISPLACEMENT, |it| it.max_displacement),
-        peak(schema::TIME_OF_MAX_DISPLACEMENT, |it| {
-            it.time_of_max_displacement
-        }),
-        event(schema::STOP_TIME, |it| it.stop_time),
-        peak(schema::FINAL_DISPLACEMENT, |it| it.final_displacement),
-        peak(schema::MAX_VELOCITY, |it| it.max_velocity),
-        peak(schema::MAX_CONTACT_FORCE, |it| it.max_contact_force),
-        peak(schema::IMPULSE, |it| it.impulse),
-        peak(schema::CONTACTS, contacts),
-        event(schema::RESTITUTION, |it| it.restitution),
-        peak(schema::INDENTATION, |it| it.indentation),
-        peak(schema::INDENTATION_ENERGY, |it| it.indentation_energy),
-        peak(schema::ABSORBED_ENERGY, |it| it.absorbed_energy),
-        schema::RESTORING_ENERGY.found(energies.map(|it| it.restoring)),
-        schema::DAMPING_ENERGY.found(energies.map(|it| it.damping)),
-        peak(schema::STRIKER_ENERGY, |it| it.striker_energy),
-        peak(schema::ENERGY_ERROR, |it| it.energy_error),
-    ]
+    (
+        schema::CONTACTS,
+        Value::OfRun(|it| Some(it.contacts as f64)),
+    ),
+    (schema::RESTITUTION, Value::AtSteps(|it| it.restitution)),
+    (
+        schema::INDENTATION,
+        Value::AtSteps(|it| Some(it.indentation)),
+    ),
+    (
+        schema::INDENTATION_ENERGY,
+        Value::AtSteps(|it| Some(it.indentation_energy)),
+    ),
+    (
+        schema::ABSORBED_ENERGY,
+        Value::Between(|it| Some(it.absorbed_energy), |it| it.absorbed_energy),
+    ),
+    (
+        schema::RESTORING_ENERGY,
+        Value::Energy(|it| it.restoring, |it| it.restoring_energy),
+    ),
+    (
+        schema::DAMPING_ENERGY,
+        Value::Energy(|it| it.damping, |it| it.damping_energy),
+    ),
+    (
+        schema::STRIKER_ENERGY,
+        Value::AtSteps(|it| Some(it.striker_energy)),
+    ),
+    (
+        schema::ENERGY_ERROR,
+        Value::OfRun(|it| Some(it.energy_error)),
+    ),
+];
+
+fn of_impact(
+    summary: Option<&ImpactSummary>,
+    history: &ImpactHistory,
+) -> impl Iterator<Item = NamedResult> {
+    let energies = history.steps.last().map(|last| &last.energies);
+    OF_IMPACT.into_iter().map(move |(kind, value)| {
+        kind.found(match value {
+            Value::OfRun(read) | Value::AtSteps(read) | Value::Between(read, _) => {
+                summary.and_then(read)
+            }
+            Value::Energy(read, _) => energies.map(read),
+        })
+    })
+}
+
+/// The results of a re-integrated impact that have an uncertainty; NaN if a result does not exist.
+pub(crate) fn re_integrated(values: &ImpactValues) -> Evaluated {
+    let found = |(kind, value)| {
+        let number = match value {
+            Value::OfRun(_) => return None,
+            Value::AtSteps(read) => read(&values.summary).unwrap_or(f64::NAN),
+            Value::Between(_, read) | Value::Energy(_, read) => read(values),
+        };
+        Some((kind, vec![number]))
+    };
+    OF_IMPACT.into_iter().filter_map(found).collect()
 }
 
 /// Time steps, and how many.
@@ -93,6 +171,10 @@ fn of_frame(floors: Option<&FloorSummary>, frame: &StruckFrame) -> [NamedResult;
     ]
 }
 
+/// The contact was still active at the last step. The end condition `striker_stop` implies it.
+pub(crate) const CUT: &str =
+    "contact still active at the last step: contact duration and final impulse are lower bounds";
+
 /// Records the observations that a reader of the results needs on the end of the run.
 pub(crate) fn observe(
     summary: &ImpactSummary,
@@ -104,8 +186,7 @@ pub(crate) fn observe(
         session.remark("the striker did not stop within the duration".to_owned());
     }
     if summary.still_rising {
-        let text =
-            "the structure was still moving on at the end: its largest displacement is not a peak";
+        let text = "maximum displacement not reached within the run: the structure was still moving outward";
         session.remark(text.to_owned());
     }
     energy::observe_imbalance(summary.energy_error, session);
@@ -114,13 +195,11 @@ pub(crate) fn observe(
     {
         let limit = readable(*force, Dimension::FORCE);
         let text = format!(
-            "the limit force {limit} was not reached: the largest contact force grows as the time step shrinks"
+            "limit force {limit} not reached: the largest contact force depends on the time step"
         );
         session.event(EventKind::Remark, text);
     }
     if summary.last_blow_cut {
-        let text =
-            "the striker stopped with a contact force in its last step: the last blow is cut";
-        session.remark(text.to_owned());
+        session.remark(CUT.to_owned());
     }
 }

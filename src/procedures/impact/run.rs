@@ -6,7 +6,7 @@
 use super::results::{observe, results};
 use super::setting::{Setting, StruckStructure};
 use super::steps::{ImpactSteps, Kept};
-use super::storey_uncertainty;
+use super::storey_uncertainty::{self, StoreyRecord};
 use super::summary::StruckSummary;
 use super::uncertainty::ImpactUncertainty;
 use crate::physics::impact::{FrameImpactSolver, ImpactSetup, ImpactSolver};
@@ -16,7 +16,7 @@ use crate::procedures::stepping::frame_uncertainty::FrameUncertainty;
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::run::{FrameSteps, above_critical};
 use crate::procedures::stepping::start::{Start, not_stepped};
-use crate::procedures::stepping::tracking_summary::Followed;
+use crate::procedures::stepping::tracking::tracking_summary::Followed;
 use crate::record::{FloorStep, History, ImpactHistory, ImpactStep, NamedResult, StruckFrame};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
@@ -143,9 +143,11 @@ pub(crate) fn strike(
             (UncertaintyInputs::Storey(storey), Some(frame)) => storey_uncertainty::propagate(
                 storey,
                 plan,
-                setting,
-                &frame.floors,
-                &summary,
+                StoreyRecord {
+                    setting,
+                    floors: &frame.floors,
+                    summary: &summary,
+                },
                 &mut results,
                 tick,
             ),

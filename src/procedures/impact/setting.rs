@@ -5,16 +5,19 @@ use crate::physics::contact::contact_time_step::Approach;
 use crate::physics::contact::state::ContactLaw;
 use crate::physics::impact::ImpactInput;
 use crate::physics::integrator::stability::{Met, longest_stable_step};
+use crate::physics::structure::Matrices;
 use crate::plan::formula::Estimate;
 use crate::plan::{
     Contact, Frame, Impact, ImpactTarget, Plan, PointTarget, StoreyTarget, Striker, Structure,
 };
 use crate::procedures::stepping;
-use crate::procedures::stepping::run::{FrameSteps, Steps, frame_of, stable};
+use crate::procedures::stepping::run::{FrameSteps, Steps, Times, frame_of, stable};
 use crate::rig::DeclaredNoise;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
+use crate::schema::methods;
+use crate::schema::procedures::{STIFFNESS, impact as schema};
 use crate::units::{Dimension, Exponent};
 
 /// Everything known before the first step.
@@ -64,22 +67,42 @@ impl Setting {
         inputs: &mut Inputs<'_>,
         noise: DeclaredNoise,
     ) -> Result<Self, Stop> {
-        let mass = inputs.positive("mass", &point.mass, Dimension::MASS)?;
+        let mass = inputs.positive(schema::MASS.name, &point.mass, Dimension::MASS)?;
         inputs.also_uncertain(point.mass_uncertainty);
-        let stiffness =
-            inputs.positive_estimate("stiffness", &point.stiffness, Dimension::STIFFNESS, None)?;
+        let stiffness = inputs.positive_estimate(
+            STIFFNESS.name,
+            &point.stiffness,
+            Dimension::STIFFNESS,
+            None,
+        )?;
         let (stiffness, operator_stiffness) = (stiffness.value, upper_end(stiffness));
-        let damping = inputs.damping("damping", &point.damping, Dimension::DAMPING)?;
+        let damping = inputs.damping(schema::DAMPING.name, &point.damping, Dimension::DAMPING)?;
         let law = contact_law(&plan.contact, inputs)?;
         let approach = striker.approach(law.stiffness());
         let critical = approach.critical_time_step(mass, stiffness);
         let time_step = stepping::run::time_step(&plan.stepping, critical, inputs)?;
-        let duration = inputs.positive("duration", &plan.duration, Dimension::TIME)?;
-        let steps = Steps::evaluate(&plan.stepping, time_step, critical, duration, 1, inputs)?;
+        let duration = inputs.positive(methods::DURATION.name, &plan.duration, Dimension::TIME)?;
+        let steps = Steps::evaluate(
+            &plan.stepping,
+            Times {
+                time_step,
+                critical_time_step: critical,
+                duration,
+            },
+            1,
+            inputs,
+        )?;
         // `check` cannot know the stability limit where the stiffness is a result of an earlier procedure.
         let limit = longest_stable_step(
             plan.stepping.integrator,
-            &Met::one(mass, damping, stiffness, stiffness),
+            &Met::one(
+                &Matrices {
+                    mass,
+                    damping,
+                    stiffness,
+                },
+                stiffness,
+            ),
         );
         stable(&plan.stepping, time_step, limit)?;
         let structure = Structure {
@@ -116,26 +139,23 @@ impl Setting {
         let critical = properties.critical_on_impact(target.storey, &approach);
         let time_step = stepping::run::time_step(&plan.stepping, critical, inputs)?;
         stepping::run::stable_on_frame(&plan.stepping, time_step, frame, &properties, session)?;
-        let duration = inputs.positive("duration", &plan.duration, Dimension::TIME)?;
-        let floors = properties.matrices.order();
-        let steps = Steps::evaluate(
-            &plan.stepping,
+        let duration = inputs.positive(methods::DURATION.name, &plan.duration, Dimension::TIME)?;
+        let times = Times {
             time_step,
-            critical,
+            critical_time_step: critical,
             duration,
-            floors,
-            inputs,
-        )?;
+        };
+        let frame_steps = FrameSteps::evaluate(properties, &plan.stepping, times, inputs)?;
         let noise = session.guard.declared_noise();
         let stiffness = frame.stiffness[target.storey][target.storey];
         let floor = Structure {
-            mass: properties.struck_mass(target.storey),
+            mass: frame_steps.properties.struck_mass(target.storey),
             damping: 0.0,
             stiffness,
             operator_stiffness: stiffness,
             law,
             time_step,
-            max_tangent_ratio: steps.max_tangent_ratio,
+            max_tangent_ratio: frame_steps.steps.max_tangent_ratio,
             force_noise: noise.force,
             resolution: noise.resolution,
         };
@@ -143,11 +163,7 @@ impl Setting {
             input: floor.struck_by(striker, &plan.stepping),
             approach,
             fastest: striker.velocity,
-            structure: StruckStructure::Storey(Box::new(FrameSteps::new(
-                properties,
-                plan.stepping.integrator,
-                steps,
-            ))),
+            structure: StruckStructure::Storey(Box::new(frame_steps)),
         })
     }
 
@@ -188,17 +204,17 @@ pub(crate) fn contact_law(contact: &Contact, inputs: &mut Inputs<'_>) -> Result<
     Ok(match contact {
         Contact::Rigid => ContactLaw::Rigid,
         Contact::Limit { force } => ContactLaw::Limit {
-            force: inputs.positive("force_limit", force, Dimension::FORCE)?,
+            force: inputs.positive(schema::FORCE_LIMIT.name, force, Dimension::FORCE)?,
         },
         Contact::Restitution { coefficient } => {
             let coefficient = inputs.not_negative("restitution", coefficient, Dimension::NUMBER)?;
             if coefficient > 1.0 {
-                return Err(Stop::BadInput {
-                    field: "restitution",
-                    value: coefficient,
-                    dimension: Dimension::NUMBER,
-                    wanted: "at most 1".into(),
-                });
+                return Err(Stop::bad_input(
+                    "restitution",
+                    coefficient,
+                    Dimension::NUMBER,
+                    "at most 1",
+                ));
             }
             ContactLaw::Restitution { coefficient }
         }
@@ -212,9 +228,11 @@ pub(crate) fn contact_law(contact: &Contact, inputs: &mut Inputs<'_>) -> Result<
                 stiffness,
                 Dimension::HERTZ_STIFFNESS,
             )?,
-            loss: inputs.not_negative("loss", loss, SECONDS_PER_METRE)?,
+            loss: inputs.not_negative(schema::LOSS.name, loss, SECONDS_PER_METRE)?,
             force_limit: match force_limit {
-                Some(force) => Some(inputs.positive("force_limit", force, Dimension::FORCE)?),
+                Some(force) => {
+                    Some(inputs.positive(schema::FORCE_LIMIT.name, force, Dimension::FORCE)?)
+                }
                 None => None,
             },
         },

@@ -4,16 +4,16 @@
 
 use super::summary::StruckSummary;
 use crate::physics::impact::ImpactSolver;
-use crate::physics::structure::matrix::Vector;
+use crate::physics::integrator::tangents::HasTangents;
 use crate::physics::tracking::monitor::Tracking;
 use crate::plan::{Stepping, Until};
 use crate::procedures::stepping::axes::AxesState;
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
-use crate::procedures::stepping::pace::Pace;
 use crate::procedures::stepping::start::Start;
 use crate::procedures::stepping::step_loop;
+use crate::procedures::stepping::step_loop::pace::Pace;
 use crate::procedures::stepping::step_loop::{Balance, Stepped};
-use crate::procedures::stepping::tracking_summary::Followed;
+use crate::procedures::stepping::tracking::tracking_summary::Followed;
 use crate::record::{FloorStep, ImpactStep};
 use crate::rig::Reading;
 use crate::run::session::Session;
@@ -55,7 +55,7 @@ impl Kept {
 
 impl ImpactSteps<'_> {
     /// All steps, with the solver that `begin` makes from the present position of the rig.
-    pub(crate) fn run<V: Vector>(
+    pub(crate) fn run<V: HasTangents>(
         &self,
         kept: &mut Kept,
         session: &mut Session<'_>,
@@ -87,7 +87,7 @@ impl ImpactSteps<'_> {
 }
 
 /// The structure in motion, with its striker.
-struct Struck<'a, V: Vector> {
+struct Struck<'a, V: HasTangents> {
     solver: ImpactSolver<V>,
     until: Until,
     before: u64,
@@ -96,7 +96,7 @@ struct Struck<'a, V: Vector> {
     summary: &'a mut StruckSummary,
 }
 
-impl<V: Vector> Stepped for Struck<'_, V> {
+impl<V: HasTangents> Stepped for Struck<'_, V> {
     fn axes(&self) -> AxesState<'_> {
         AxesState::of(self.solver.structure())
     }

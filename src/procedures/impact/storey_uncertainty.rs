@@ -1,17 +1,20 @@
 //! The uncertainty of the results of an impact on a storey. In: its inputs with their sources of uncertainty, and the recorded steps. Out:
 //! the contributions of each source to each number. The frame is re-integrated along its recorded path.
 
+use super::results::re_integrated;
 use super::setting::{Setting, contact_law};
-use super::uncertainty::{at_least, contact_formulas, no_known_force, same, whole_steps};
+use super::uncertainty::{
+    at_least, contact_formulas, no_known_force, same, striker_sources, whole_steps,
+};
 use crate::physics::impact::ImpactInput;
 use crate::physics::impact::summary::ImpactSummary;
 use crate::physics::reintegration::frame::{Blow, Floors, FrameRun, StrikerOutcome};
 use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
-use crate::physics::reintegration::impact::OUTCOMES;
+use crate::physics::reintegration::impact::ImpactValues;
 use crate::physics::reintegration::perturbation::Perturbation;
 use crate::plan::{Impact, StoreyTarget, Striker};
-use crate::procedures::perturbed_inputs::LEADS_ELSEWHERE;
-use crate::procedures::results::{Layout, give, values};
+use crate::procedures::common::perturbed_inputs::LEADS_ELSEWHERE;
+use crate::procedures::common::results::{Evaluated, flat, give, layout_of, place, values};
 use crate::procedures::stepping;
 use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there};
 use crate::procedures::stepping::run::FrameSteps;
@@ -21,32 +24,27 @@ use crate::schema::procedures::impact as schema;
 use crate::uncertainty::Source;
 use crate::uncertainty::engine::{Evaluate, Evaluation, Shifts, Tick, Unknown};
 
-/// Numbers after those of any impact.
-const SCALARS: [&str; 4] = [
-    schema::CONTACT_DURATION.name,
-    schema::REBOUND_VELOCITY.name,
-    schema::MAX_BASE_SHEAR.name,
-    schema::CRITICAL_TIME_STEP.name,
-];
-/// Lists after them, an entry a floor.
-const LISTS: [&str; 5] = [
-    schema::FLOOR_DISPLACEMENT.name,
-    schema::MAX_DRIFT.name,
-    schema::FINAL_DRIFT.name,
-    schema::STOREY_ENERGY.name,
-    schema::PERIODS.name,
-];
+/// An impact on a storey as it was recorded.
+#[derive(Clone, Copy)]
+pub(crate) struct StoreyRecord<'a> {
+    pub setting: &'a Setting,
+    pub floors: &'a [FloorStep],
+    pub summary: &'a ImpactSummary,
+}
 
 /// Gives `results` their contributions.
 pub(crate) fn propagate(
     doubts: &FrameUncertainty<'_>,
     plan: &Impact,
-    setting: &Setting,
-    history: &[FloorStep],
-    recorded: &ImpactSummary,
+    recorded: StoreyRecord<'_>,
     results: &mut [NamedResult],
     tick: Tick<'_, Stop>,
 ) -> Result<(), Unknown<Stop>> {
+    let StoreyRecord {
+        setting,
+        floors: history,
+        summary,
+    } = recorded;
     let reading = |step: &FloorStep| FrameReading {
         target: step.command.clone(),
         displacement: step.displacement.clone(),
@@ -64,43 +62,44 @@ pub(crate) fn propagate(
         setting,
         frame,
         path,
+        length: 0,
     };
-    let Inputs { run, blow, .. } = evaluate.inputs(&[])?;
-    let found = run
-        .struck(&blow, &evaluate.path, &Perturbation::none(floors))
+    let inputs = evaluate.inputs(&[])?;
+    let found = inputs
+        .run
+        .struck(&inputs.blow, &evaluate.path, &Perturbation::none(floors))
         .map_err(|error| error.to_string())?;
-    if !same(&found.blow.summary, recorded)
+    if !same(&found.blow.values.summary, summary)
         || !leads_there(&found.floors.ends, schema::FLOOR_DISPLACEMENT, results)
     {
         return Err(LEADS_ELSEWHERE.to_owned().into());
     }
     evaluate.path = doubts.under_way(frame, evaluate.path, found.floors.velocities)?;
-    let scalars = OUTCOMES.iter().chain(&SCALARS).map(|name| (*name, 1));
-    let layout: Layout = scalars.chain(LISTS.map(|name| (name, floors))).collect();
+    let layout = layout_of(&inputs.numbers(
+        &found.blow.values,
+        &found.striker,
+        &found.floors.between,
+        inputs.run.time_step,
+    ));
     let mut reported = values(&layout, results);
-    // The reported one is without the part of noise; the re-integrated one has it in finer steps as well.
-    reported[OUTCOMES.len() + 2] = found.floors.between.max_base_shear;
-    let Striker {
-        mass_uncertainty,
-        velocity_uncertainty,
-        ..
-    } = doubts.whole.strikers[plan.striker];
-    let stated = [
-        (Source::StrikerMass(plan.striker), mass_uncertainty),
-        (Source::StrikerVelocity(plan.striker), velocity_uncertainty),
-    ];
+    evaluate.length = reported.len();
+    if let Some(shear) = place(&layout, schema::MAX_BASE_SHEAR) {
+        // The reported one is without the part of noise; the re-integrated one has it in finer steps as well.
+        reported[shear] = found.floors.between.max_base_shear;
+    }
+    let stated = striker_sources(doubts.whole, plan.striker);
     let sources = doubts.sources(&contact_formulas(&plan.contact), &stated);
     let mut contributions =
         doubts.contributions(&evaluate, sources, history.len(), reported, tick)?;
-    no_known_force(setting.input.law, recorded, &mut contributions);
+    no_known_force(setting.input.law, summary, &layout, &mut contributions);
     let time_step = frame.steps.time_step;
     // From the beginning of a step to the end of one: two times.
-    let duration = (schema::CONTACT_DURATION.name, time_step / 6.0_f64.sqrt());
-    for (name, quantum) in whole_steps(time_step).into_iter().chain([duration]) {
+    let duration = (schema::CONTACT_DURATION, time_step / 6.0_f64.sqrt());
+    for (kind, quantum) in whole_steps(time_step).into_iter().chain([duration]) {
         at_least(
             quantum,
             doubts.procedure,
-            layout.iter().position(|(result, _)| *result == name),
+            place(&layout, kind),
             &mut contributions,
         );
     }
@@ -116,6 +115,8 @@ struct RecordedStoreyImpact<'a, 'run> {
     setting: &'a Setting,
     frame: &'a FrameSteps,
     path: FramePath,
+    /// Number of values of an evaluation.
+    length: usize,
 }
 
 struct Inputs {
@@ -124,6 +125,47 @@ struct Inputs {
     /// \[s\]
     periods: Vec<f64>,
     critical_time_step: f64,
+}
+
+impl Inputs {
+    /// The results with their values: those of any impact, then those of a storey.
+    fn numbers(
+        &self,
+        blow: &ImpactValues,
+        striker: &StrikerOutcome,
+        floors: &Floors,
+        time_step: f64,
+    ) -> Evaluated {
+        let StrikerOutcome {
+            storey_energy,
+            first_blow,
+            striker_velocity,
+        } = striker;
+        #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
+        let duration = if *first_blow > 0 {
+            *first_blow as f64 * time_step
+        } else {
+            f64::NAN
+        };
+        let back = if *striker_velocity < 0.0 {
+            -striker_velocity
+        } else {
+            f64::NAN
+        };
+        let mut numbers = re_integrated(blow);
+        numbers.extend([
+            (schema::CONTACT_DURATION, vec![duration]),
+            (schema::REBOUND_VELOCITY, vec![back]),
+            (schema::MAX_BASE_SHEAR, vec![floors.max_base_shear]),
+            (schema::CRITICAL_TIME_STEP, vec![self.critical_time_step]),
+            (schema::FLOOR_DISPLACEMENT, floors.max_displacement.clone()),
+            (schema::MAX_DRIFT, floors.max_drift.clone()),
+            (schema::FINAL_DRIFT, floors.final_drift.clone()),
+            (schema::STOREY_ENERGY, storey_energy.clone()),
+            (schema::PERIODS, self.periods.clone()),
+        ]);
+        numbers
+    }
 }
 
 impl Evaluate for RecordedStoreyImpact<'_, '_> {
@@ -200,47 +242,11 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
 
     fn evaluate(&self, readings: &Perturbation, inputs: &Inputs) -> Evaluation {
         let Ok(found) = inputs.run.struck(&inputs.blow, &self.path, readings) else {
-            return Evaluation::none(
-                OUTCOMES.len() + SCALARS.len() + LISTS.len() * self.doubts.floors(),
-            );
+            return Evaluation::none(self.length);
         };
         let time_step = inputs.run.time_step / f64::from(readings.finer);
-        // In the order of the layout.
-        let numbers = |blow: &[f64], striker: &StrikerOutcome, floors: &Floors| {
-            let StrikerOutcome {
-                storey_energy,
-                first_blow,
-                striker_velocity,
-            } = striker;
-            #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
-            let duration = if *first_blow > 0 {
-                *first_blow as f64 * time_step
-            } else {
-                f64::NAN
-            };
-            let back = if *striker_velocity < 0.0 {
-                -striker_velocity
-            } else {
-                f64::NAN
-            };
-            let lists = [
-                &floors.max_displacement,
-                &floors.max_drift,
-                &floors.final_drift,
-                storey_energy,
-                &inputs.periods,
-            ];
-            let scalars = [
-                duration,
-                back,
-                floors.max_base_shear,
-                inputs.critical_time_step,
-            ];
-            blow.iter()
-                .copied()
-                .chain(scalars)
-                .chain(lists.into_iter().flatten().copied())
-                .collect::<Vec<f64>>()
+        let numbers = |blow: &ImpactValues, striker: &StrikerOutcome, floors: &Floors| {
+            flat(inputs.numbers(blow, striker, floors, time_step))
         };
         let before = (
             &found.blow.before_departure,

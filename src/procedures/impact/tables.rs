@@ -4,86 +4,58 @@ use std::ops::Range;
 
 use crate::procedures::base_excitation;
 use crate::record::{ImpactHistory, ImpactStep, StruckFrame};
-use crate::report::tables::{Column, Table, integers, numbers, texts};
-use crate::schema;
-use crate::schema::columns::{self, column};
-use crate::units::Dimension;
+use crate::report::tables::TableColumn::{self, Integer, Number, Text};
+use crate::report::tables::{Table, numeric, written};
+use crate::schema::{Column, columns};
 
-/// The numeric columns of its table.
-pub(crate) const COLUMNS: &[schema::Column] = &[
-    columns::STEP,
-    columns::TIME,
-    columns::WALL_TIME,
-    columns::COMMAND,
-    columns::DISPLACEMENT,
-    columns::VELOCITY,
-    column("acceleration_m_per_s2", Dimension::ACCELERATION),
-    columns::RESTORING_FORCE,
-    column("contact_force_n", Dimension::FORCE),
-    column("striker_displacement_m", Dimension::LENGTH),
-    column("striker_velocity_m_per_s", Dimension::VELOCITY),
-    columns::TANGENT_STIFFNESS,
-    column("indentation_m", Dimension::LENGTH),
-    column("striker_energy_j", Dimension::ENERGY),
-    column("structure_energy_j", Dimension::ENERGY),
-    column("restoring_energy_j", Dimension::ENERGY),
-    column("damping_energy_j", Dimension::ENERGY),
-    column("contact_loss_j", Dimension::ENERGY),
-    column("indentation_energy_j", Dimension::ENERGY),
-    column("energy_error_j", Dimension::ENERGY),
-    column("weight_work_j", Dimension::ENERGY),
-    column("computed_m", Dimension::LENGTH),
-    column("tracking_energy_error_j", Dimension::ENERGY),
-    column("tracking_indicator_m2", Dimension::AREA),
+/// The columns of an impact on one degree of freedom.
+pub(crate) const STEPS: &[TableColumn<ImpactStep>] = &[
+    Integer(columns::STEP, |step| step.step),
+    Number(columns::TIME, |step| step.time),
+    Number(columns::WALL_TIME, |step| step.wall_time),
+    Text(columns::STATE, |step| step.state.name()),
+    Number(columns::COMMAND, |step| step.command),
+    Number(columns::COMPUTED, |step| step.computed),
+    Number(columns::DISPLACEMENT, |step| step.displacement),
+    Number(columns::VELOCITY, |step| step.velocity),
+    Number(columns::ACCELERATION, |step| step.acceleration),
+    Number(columns::RESTORING_FORCE, |step| step.restoring_force),
+    Number(columns::CONTACT_FORCE, |step| step.contact_force),
+    Number(columns::STRIKER_DISPLACEMENT, |step| {
+        step.striker_displacement
+    }),
+    Number(columns::STRIKER_VELOCITY, |step| step.striker_velocity),
+    Number(columns::TANGENT_STIFFNESS, |step| step.tangent_stiffness),
+    Number(columns::INDENTATION, |step| step.indentation),
+    Number(columns::STRIKER_ENERGY, |step| step.energies.striker),
+    Number(columns::STRUCTURE_ENERGY, |step| step.energies.structure),
+    Number(columns::RESTORING_ENERGY, |step| step.energies.restoring),
+    Number(columns::DAMPING_ENERGY, |step| step.energies.damping),
+    Number(columns::CONTACT_LOSS, |step| step.energies.contact_loss),
+    Number(columns::INDENTATION_ENERGY, |step| {
+        step.energies.indentation
+    }),
+    Number(columns::WEIGHT_WORK, |step| step.energies.weight),
+    Number(columns::ENERGY_ERROR, |step| step.energies.error),
+    Number(columns::TRACKING_ENERGY_ERROR, |step| {
+        step.tracking.energy_error
+    }),
+    Number(columns::TRACKING_INDICATOR, |step| step.tracking.indicator),
 ];
 
-/// Further numeric columns of an impact on a storey: one row per step and storey.
-pub(crate) const STOREY_COLUMNS: &[schema::Column] = &[
-    column("storey", Dimension::NUMBER),
-    column("drift_m", Dimension::LENGTH),
-    column("storey_shear_n", Dimension::FORCE),
-    column("storey_energy_j", Dimension::ENERGY),
-];
+/// The numeric columns of both tables.
+pub(crate) fn columns() -> Vec<Column> {
+    [numeric(STEPS), numeric(&base_excitation::tables::struck())].concat()
+}
 
 /// The table under this name.
 pub(crate) fn table(name: String, history: &ImpactHistory) -> Table<'_> {
     let Some(StruckFrame { floors, .. }) = &history.frame else {
-        return Table::of(name, &history.steps, impact);
+        return Table::of(name, &history.steps, |steps| written(STEPS, steps));
     };
     let storeys = floors.first().map_or(1, |floors| floors.computed.len());
     let columns = |range: Range<usize>| {
         base_excitation::tables::storey_impact(&history.steps[range.clone()], &floors[range])
     };
     Table::of_steps(name, floors.len(), storeys, columns)
-}
-
-fn impact(steps: &[ImpactStep]) -> Vec<Column> {
-    let of = |name, read: fn(&ImpactStep) -> f64| numbers(name, steps, read);
-    vec![
-        integers("step", steps, |step| step.step),
-        of("time_s", |step| step.time),
-        of("wall_time_s", |step| step.wall_time),
-        texts("state", steps, |step| step.state.name()),
-        of("command_m", |step| step.command),
-        of("computed_m", |step| step.computed),
-        of("displacement_m", |step| step.displacement),
-        of("velocity_m_per_s", |step| step.velocity),
-        of("acceleration_m_per_s2", |step| step.acceleration),
-        of("restoring_force_n", |step| step.restoring_force),
-        of("contact_force_n", |step| step.contact_force),
-        of("striker_displacement_m", |step| step.striker_displacement),
-        of("striker_velocity_m_per_s", |step| step.striker_velocity),
-        of("tangent_stiffness_n_per_m", |step| step.tangent_stiffness),
-        of("indentation_m", |step| step.indentation),
-        of("striker_energy_j", |step| step.energies.striker),
-        of("structure_energy_j", |step| step.energies.structure),
-        of("restoring_energy_j", |step| step.energies.restoring),
-        of("damping_energy_j", |step| step.energies.damping),
-        of("contact_loss_j", |step| step.energies.contact_loss),
-        of("indentation_energy_j", |step| step.energies.indentation),
-        of("weight_work_j", |step| step.energies.weight),
-        of("energy_error_j", |step| step.energies.error),
-        of("tracking_energy_error_j", |step| step.tracking.energy_error),
-        of("tracking_indicator_m2", |step| step.tracking.indicator),
-    ]
 }

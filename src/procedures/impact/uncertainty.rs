@@ -2,28 +2,39 @@
 //! contributions of each source to each result. The impact is re-integrated along the recorded force–displacement path with perturbed
 //! inputs and readings; no rig is moved.
 
+use super::results::re_integrated;
 use super::setting::{Setting, StruckStructure};
 use crate::physics::contact::state::ContactLaw;
 use crate::physics::impact::ImpactError;
 use crate::physics::impact::summary::ImpactSummary;
-use crate::physics::reintegration::hysteresis_replay::{Reading, RecordedPath};
-use crate::physics::reintegration::impact::{OUTCOMES, Outcome, predicted_velocities, rerun};
+use crate::physics::reintegration::hysteresis_replay::{ContinuousMotion, Reading, RecordedPath};
+use crate::physics::reintegration::impact::{ImpactValues, Outcome, predicted_velocities, rerun};
 use crate::physics::reintegration::perturbation::Perturbation;
+use crate::physics::statistics::ReadingNoise;
 use crate::plan::formula::{Formula, ProcedureId, Results};
 use crate::plan::{Contact, Impact, Mode, Plan, PointTarget, Striker};
-use crate::procedures::perturbed_inputs::{
+use crate::procedures::common::perturbed_inputs::{
     LEADS_ELSEWHERE, out_of_bounds, uncertain_inputs, with_shifts,
 };
-use crate::procedures::results::{Layout, give, values};
+use crate::procedures::common::results::{Evaluated, flat, give, layout_of, place, values};
 use crate::record::{ImpactStep, NamedResult};
 use crate::rig::DeclaredNoise;
 use crate::run::inputs::Inputs;
 use crate::run::stop::Stop;
+use crate::schema::ResultKind;
 use crate::schema::procedures::impact as schema;
 use crate::uncertainty::engine::{
     CLOSE, Contributions, Evaluate, Evaluation, Shifts, Study, Tick, Unknown,
 };
 use crate::uncertainty::{InstrumentUncertainty, Source};
+
+/// The numbers of an impact on one degree of freedom.
+fn numbers(values: &ImpactValues, setting: &Setting) -> Evaluated {
+    let critical = vec![setting.steps().critical_time_step];
+    let mut numbers = re_integrated(values);
+    numbers.push((schema::CRITICAL_TIME_STEP, critical));
+    numbers
+}
 
 /// The uncertain inputs of an impact.
 #[derive(Clone, Copy)]
@@ -80,23 +91,20 @@ impl<'run> ImpactUncertainty<'run> {
         let path = self
             .path(setting, steps)
             .ok_or_else(|| "nothing was recorded".to_owned())?;
-        let evaluate = RecordedImpact {
+        let mut evaluate = RecordedImpact {
             doubts: self,
             setting,
             path,
+            length: 0,
         };
         let unperturbed = evaluate
             .run(setting, &Perturbation::none(1))
             .map_err(|error| error.to_string())?;
-        if !same(&unperturbed.summary, recorded) {
+        if !same(&unperturbed.values.summary, recorded) {
             return Err(LEADS_ELSEWHERE.to_owned().into());
         }
-        let layout: Layout = OUTCOMES
-            .iter()
-            .copied()
-            .chain([schema::CRITICAL_TIME_STEP.name])
-            .map(|name| (name, 1))
-            .collect();
+        let layout = layout_of(&numbers(&unperturbed.values, setting));
+        evaluate.length = layout.len();
         let study = Study {
             procedure: self.procedure,
             impact: self.blow,
@@ -107,15 +115,15 @@ impl<'run> ImpactUncertainty<'run> {
             reported: Some(values(&layout, results)),
         };
         let mut contributions = study.contributions(tick)?;
-        for (name, quantum) in whole_steps(setting.input.time_step) {
+        for (kind, quantum) in whole_steps(setting.input.time_step) {
             at_least(
                 quantum,
                 self.procedure,
-                layout.iter().position(|(result, _)| *result == name),
+                place(&layout, kind),
                 &mut contributions,
             );
         }
-        no_known_force(setting.input.law, recorded, &mut contributions);
+        no_known_force(setting.input.law, recorded, &layout, &mut contributions);
         give(&layout, contributions, results);
         Ok(())
     }
@@ -128,23 +136,18 @@ impl<'run> ImpactUncertainty<'run> {
             force: step.restoring_force,
         });
         let (input, readings) = (&setting.input, readings.collect::<Vec<Reading>>());
-        if self.plan.stepping.mode == Mode::StepAndPause {
-            return RecordedPath::new(
-                readings,
-                input.stiffness,
-                input.force_noise,
-                input.resolution,
-            );
-        }
-        let velocities =
-            predicted_velocities(input, self.plan.until, setting.steps().count, &readings);
-        RecordedPath::continuous(
-            readings,
-            (&velocities, input.time_step),
-            input.stiffness,
-            input.force_noise,
-            input.resolution,
-        )
+        let velocities = (self.plan.stepping.mode != Mode::StepAndPause).then(|| {
+            predicted_velocities(input, self.plan.until, setting.steps().count, &readings)
+        });
+        let motion = velocities.as_deref().map(|velocities| ContinuousMotion {
+            velocities,
+            time_step: input.time_step,
+        });
+        let noise = ReadingNoise {
+            force: input.force_noise,
+            resolution: input.resolution,
+        };
+        RecordedPath::new(readings, motion, input.stiffness, noise)
     }
 
     /// The uncertain inputs, each once.
@@ -165,18 +168,24 @@ impl<'run> ImpactUncertainty<'run> {
             .into_iter()
             .chain(contact_formulas(contact))
             .collect();
-        let Striker {
-            mass_uncertainty,
-            velocity_uncertainty,
-            ..
-        } = self.whole.strikers[*striker];
-        let stated = [
-            (Source::StrikerMass(*striker), mass_uncertainty),
-            (Source::StrikerVelocity(*striker), velocity_uncertainty),
-            (Source::SpecimenMass(*specimen), self.point.mass_uncertainty),
-        ];
-        uncertain_inputs(&formulas, stated.into_iter(), self.results)
+        let stated = striker_sources(self.whole, *striker)
+            .into_iter()
+            .chain([(Source::SpecimenMass(*specimen), self.point.mass_uncertainty)]);
+        uncertain_inputs(&formulas, stated, self.results)
     }
+}
+
+/// The uncertain inputs of a striker, each with its standard uncertainty.
+pub(super) fn striker_sources(whole: &Plan, striker: usize) -> [(Source, f64); 2] {
+    let Striker {
+        mass_uncertainty,
+        velocity_uncertainty,
+        ..
+    } = whole.strikers[striker];
+    [
+        (Source::StrikerMass(striker), mass_uncertainty),
+        (Source::StrikerVelocity(striker), velocity_uncertainty),
+    ]
 }
 
 /// An impact along its recorded path.
@@ -184,6 +193,8 @@ struct RecordedImpact<'a, 'run> {
     doubts: &'a ImpactUncertainty<'run>,
     setting: &'a Setting,
     path: RecordedPath,
+    /// Number of values of an evaluation.
+    length: usize,
 }
 
 impl RecordedImpact<'_, '_> {
@@ -250,18 +261,12 @@ impl Evaluate for RecordedImpact<'_, '_> {
 
     fn evaluate(&self, readings: &Perturbation, setting: &Setting) -> Evaluation {
         let Ok(found) = self.run(setting, readings) else {
-            return Evaluation::none(OUTCOMES.len() + 1);
+            return Evaluation::none(self.length);
         };
-        let with_step = |values: [f64; OUTCOMES.len()]| -> Vec<f64> {
-            values
-                .iter()
-                .copied()
-                .chain([setting.steps().critical_time_step])
-                .collect()
-        };
+        let with_step = |values: &ImpactValues| flat(numbers(values, setting));
         Evaluation {
-            values: with_step(found.values),
-            before_departure: found.before_departure.map(with_step),
+            values: with_step(&found.values),
+            before_departure: found.before_departure.as_ref().map(with_step),
             farthest: found.farthest,
         }
     }
@@ -282,9 +287,9 @@ pub(crate) fn contact_formulas(contact: &Contact) -> Vec<&Formula> {
 }
 
 /// The results that are times at the end of a step, with the standard uncertainty of a step Δt, Δt/√12 \[s\].
-pub(crate) fn whole_steps(time_step: f64) -> [(&'static str, f64); 2] {
+pub(crate) fn whole_steps(time_step: f64) -> [(ResultKind, f64); 2] {
     [schema::STOP_TIME, schema::TIME_OF_MAX_DISPLACEMENT]
-        .map(|kind| (kind.name, time_step / 12.0_f64.sqrt()))
+        .map(|kind| (kind, time_step / 12.0_f64.sqrt()))
 }
 
 /// Raises the contribution of the time step to the number at an index to at least this amount.
@@ -308,12 +313,11 @@ pub(crate) fn at_least(
 pub(crate) fn no_known_force(
     law: ContactLaw,
     recorded: &ImpactSummary,
+    layout: &[(&'static str, usize)],
     contributions: &mut Contributions,
 ) {
     if law.force_follows_the_step(recorded.max_contact_force)
-        && let Some(index) = OUTCOMES
-            .iter()
-            .position(|outcome| *outcome == schema::MAX_CONTACT_FORCE.name)
+        && let Some(index) = place(layout, schema::MAX_CONTACT_FORCE)
     {
         contributions[index].clear();
     }

@@ -35,17 +35,17 @@ pub(crate) fn chart(
         FigureKind::ForceDisplacement => (
             figures::force_displacement(history),
             format!(
-                "{name}: restoring force against computed displacement, blow over blow; lighter lines are earlier blows."
+                "{name}: restoring force against computed displacement for all impacts; lighter lines are earlier impacts."
             ),
         ),
         FigureKind::Displacement => (
             figures::displacement(history),
             match history.storeys().next() {
                 None => format!(
-                    "{name}: displacement against the virtual time of each blow; lighter lines are earlier blows."
+                    "{name}: displacement against the simulated time of each impact; lighter lines are earlier impacts."
                 ),
                 Some(blow) => format!(
-                    "{name}: displacement of floor {} against the virtual time of each blow; lighter lines are earlier blows.",
+                    "{name}: displacement of floor {} against the simulated time of each impact; lighter lines are earlier impacts.",
                     blow.struck + 1
                 ),
             },
@@ -54,10 +54,10 @@ pub(crate) fn chart(
             figures::blows(history),
             match history.storeys().next() {
                 None => format!(
-                    "{name}: largest displacement of each blow, and where the specimen rested after it, against its energy."
+                    "{name}: largest displacement of each impact, and the position after it, against its energy."
                 ),
                 Some(blow) => format!(
-                    "{name}: largest displacement of floor {} in each blow, and where it rested after it, against its energy.",
+                    "{name}: largest displacement of floor {} in each impact, and its position after it, against its energy.",
                     blow.struck + 1
                 ),
             },
@@ -65,14 +65,13 @@ pub(crate) fn chart(
         FigureKind::Drift => (
             figures::drift(history),
             format!(
-                "{name}: largest drift of each storey in each blow, and the drift that stayed after it, against its energy."
+                "{name}: largest drift of each storey in each impact, and the drift after it, against its energy."
             ),
         ),
         FigureKind::Hysteresis => {
             let steps: Vec<&FloorStep> = history.storeys().flat_map(|blow| &blow.floors).collect();
             let caption = format!(
-                "{name}: measured storey shear against drift, blow after blow; between two blows the straight way from the end of \
-                 the one to the start of the next."
+                "{name}: measured storey shear against drift, impact after impact; straight lines connect successive impacts."
             );
             (base_excitation::figures::hysteresis(&steps), caption)
         }

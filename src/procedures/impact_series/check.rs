@@ -7,18 +7,25 @@ use crate::plan::formula::{Formula, Function, Operator};
 use crate::plan::{Between, Condition, Escalate, MOST_IMPACTS, ProcedureKind};
 use crate::procedures::impact;
 use crate::schema::Kind;
+use crate::schema::procedures::impact::STRIKER;
+use crate::schema::procedures::impact_series as schema;
+use crate::schema::striker;
 use crate::text::source::Span;
 
 /// The fields that give the levels; exactly one of them is given.
-const LEVELS: [&str; 3] = ["speeds", "drop_heights", "energies"];
+const LEVELS: [&str; 3] = [
+    schema::SPEEDS.name,
+    schema::DROP_HEIGHTS.name,
+    schema::ENERGIES.name,
+];
 
 pub fn escalate(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let own = checker.scope.blocks[block].procedure?;
     let levels = levels(checker, block);
     let condition = condition(checker, block);
-    let between = checker.word(block, "between", "unload");
+    let between = checker.word(block, schema::BETWEEN.name, "unload");
     let inspect_between = checker
-        .word(block, "inspect_between", "false")
+        .word(block, schema::INSPECT_BETWEEN.name, "false")
         .map(|word| word == "true");
     let impact = impact::check::fields(checker, block);
     let (velocities, energies) = levels?;
@@ -57,7 +64,7 @@ fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<V
                     kind,
                     name,
                     head,
-                    "speeds",
+                    schema::SPEEDS.name,
                     "speeds = [0.5, 1, 1.5] m/s",
                 ));
             }
@@ -80,11 +87,11 @@ fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<V
         )]
         let (found, most) = (levels.len() as f64, MOST_IMPACTS as f64);
         return checker.fail(values::too_many(
-            "blows",
+            "impacts",
             found,
             most,
             span,
-            "take fewer levels",
+            "write fewer levels",
         ));
     }
     let known: Vec<f64> = levels.iter().filter_map(Formula::constant).collect();
@@ -103,8 +110,8 @@ fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<V
         root.constant().map_or(root, Formula::Constant)
     };
     Some(match field {
-        "speeds" => (levels, None),
-        "drop_heights" => (
+        _ if field == schema::SPEEDS.name => (levels, None),
+        _ if field == schema::DROP_HEIGHTS.name => (
             levels
                 .into_iter()
                 .map(|height| root(2.0 * STANDARD_GRAVITY, height))
@@ -112,8 +119,8 @@ fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<V
             None,
         ),
         _ => {
-            let hammer = checker.reference(block, "striker", Kind::Striker)?;
-            let mass = checker.constant(hammer, "mass")?;
+            let hammer = checker.reference(block, STRIKER.name, Kind::Striker)?;
+            let mass = checker.constant(hammer, striker::MASS.name)?;
             (
                 levels
                     .iter()
@@ -129,7 +136,7 @@ fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<V
 /// `while`: conditions on the results of an impact, by their own names.
 fn condition(checker: &mut Checker, block: usize) -> Option<Vec<Condition>> {
     let own = checker.scope.blocks[block].procedure?;
-    let (entry, written) = checker.field(block, "while")?;
+    let (entry, written) = checker.field(block, schema::WHILE.name)?;
     let place = Context {
         entry: Some((block, entry)),
         reads: Reads::Impact(own),

@@ -5,6 +5,7 @@ use super::chart;
 use crate::plan::{Escalate, ImpactTarget};
 use crate::procedures::facts::{Facts, Recorded};
 use crate::procedures::{impact, stepping};
+use crate::schema::procedures::impact_series as schema;
 
 pub(crate) fn facts(series: &Escalate) -> Facts<'_> {
     let figures = match &series.impact.target {
@@ -16,6 +17,16 @@ pub(crate) fn facts(series: &Escalate) -> Facts<'_> {
         frame_damping: None,
         figures,
         shared_figures: &[],
+        headline: vec![
+            schema::LAST_PASSED_ENERGY.name,
+            schema::FIRST_FAILED_ENERGY.name,
+            schema::MAX_DISPLACEMENT.name,
+            schema::RESIDUAL_DISPLACEMENT.name,
+            schema::ABSORBED_ENERGY.name,
+            schema::MAX_DRIFT.name,
+            schema::RESIDUAL_DRIFT.name,
+        ],
+        unprinted: stepping::report::TRACKING.to_vec(),
         ..impact::facts::facts(&series.impact)
     }
 }
@@ -23,7 +34,7 @@ pub(crate) fn facts(series: &Escalate) -> Facts<'_> {
 pub(crate) fn recorded() -> Recorded {
     Recorded {
         lists_are_tabled: true,
-        entries: "blow",
+        entries: "impact",
         uncertainty: stepping::report::UNCERTAINTY,
         ..Recorded::default()
     }

@@ -63,7 +63,7 @@ pub(crate) fn blows(history: &EscalateHistory) -> Chart {
             },
         },
         Series {
-            label: "at rest after it".to_owned(),
+            label: "position after it".to_owned(),
             points: rests,
             style: Style {
                 marker: Some(Marker::Ring(4.0)),
@@ -73,13 +73,13 @@ pub(crate) fn blows(history: &EscalateHistory) -> Chart {
     ];
     if !failed.is_empty() {
         series.push(Series {
-            label: "condition no longer held".to_owned(),
+            label: "condition false".to_owned(),
             points: failed,
             style: Style::marker(palette::VERMILION, Marker::Ring(7.0)),
         });
     }
     Chart {
-        x: Quantity::along("Energy of the blow", Dimension::ENERGY),
+        x: Quantity::along("Energy of the impact", Dimension::ENERGY),
         y: Quantity {
             name: displaced(history),
             ..Quantity::of("", Dimension::LENGTH)
@@ -127,14 +127,14 @@ pub(crate) fn drift(history: &EscalateHistory) -> Chart {
                     style: peak,
                 },
                 Series {
-                    label: format!("storey {}, stayed", storey + 1),
+                    label: format!("storey {}, after it", storey + 1),
                     points: points(&stayed, storey),
                     style: rest,
                 },
             ]
         });
     Chart {
-        x: Quantity::along("Energy of the blow", Dimension::ENERGY),
+        x: Quantity::along("Energy of the impact", Dimension::ENERGY),
         y: Quantity::of("Drift", Dimension::LENGTH),
         bands: Vec::new(),
         series: series.collect(),
@@ -173,7 +173,7 @@ fn over_each_other(
         .enumerate()
         .map(|(index, blow)| Series {
             label: if labelled(index) {
-                format!("blow {}, {}", index + 1, energy(blow))
+                format!("impact {}, {}", index + 1, energy(blow))
             } else {
                 String::new()
             },

@@ -28,7 +28,7 @@ pub(crate) fn judge(
 /// The motion that the series leaves.
 pub(crate) fn motion(series: &Escalate) -> Motion<'static> {
     Motion {
-        what: "row of blows",
+        what: "impact series",
         ends: PEAK,
         help: "write `between = unload`, or `unload rest { }` in between",
         rests: series.between != Between::Stay,

@@ -11,6 +11,7 @@ use crate::procedures::unload;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
+use crate::schema::procedures::impact_series::SPEEDS;
 use crate::units::Dimension;
 
 pub(crate) struct RepeatedImpact<'a> {
@@ -83,18 +84,18 @@ impl<'a> RepeatedImpact<'a> {
 
 /// The velocity of the striker in each impact \[m/s\], each above 0.
 pub(crate) fn velocities(plan: &Escalate, inputs: &Inputs<'_>) -> Result<Vec<f64>, Stop> {
-    let velocities = inputs.list("speeds", &plan.velocities)?;
+    let velocities = inputs.list(SPEEDS.name, &plan.velocities)?;
     match velocities
         .iter()
         .copied()
         .find(|velocity| !(*velocity > 0.0 && velocity.is_finite()))
     {
-        Some(value) => Err(Stop::BadInput {
-            field: "speeds",
+        Some(value) => Err(Stop::bad_input(
+            SPEEDS.name,
             value,
-            dimension: Dimension::VELOCITY,
-            wanted: "greater than 0".into(),
-        }),
+            Dimension::VELOCITY,
+            "greater than 0",
+        )),
         None => Ok(velocities),
     }
 }

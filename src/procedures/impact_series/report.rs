@@ -57,7 +57,7 @@ pub(crate) fn table(
     body.push(rows(procedure, blows));
     if blows.len() > PRINTED {
         body.push(Block::note(format!(
-            "{} more blows are in the table of this procedure.",
+            "{} more impacts are in the table of this procedure.",
             blows.len() - PRINTED
         )));
     }
@@ -69,14 +69,14 @@ pub(crate) fn table(
             .and_then(|specimen| specimen.frame.as_ref());
         body.push(storeys(procedure, frame));
         body.push(Block::note(
-            "X is that of the struck floor and counts from where the frame was born; the striker of each blow touches the floor where \
-             it then was. Every blow has a table of its own, with all its floors.",
+            "X is the displacement of the struck floor from its initial position. Each impact starts with the striker \
+             at the current position of the floor. Each impact has a separate table with all floors.",
         ));
         return;
     }
     body.push(Block::note(
-        "X counts from where the specimen was born; the striker of each blow touches the surface where it then was. Every blow has a \
-         table of its own.",
+        "X is the displacement from the initial position of the specimen. Each impact starts with the striker at the \
+         current surface. Each impact has a separate table.",
     ));
 }
 
@@ -90,7 +90,7 @@ fn struck(
 ) -> String {
     let time = |value| number::text(value, Dimension::TIME);
     format!(
-        "Floor {} is struck in every blow. Contact law: {}. {} Time step {}; the critical one is {}.",
+        "Floor {} is struck in every impact. Contact law: {}. {} Time step {}; critical time step {}.",
         frame.struck + 1,
         contact_law(&impact.contact),
         base_excitation::report::integrated(
@@ -132,11 +132,11 @@ fn storeys(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Block {
     };
     let columns = vec![
         Column::words("Storey", 1),
-        Column::numbers("Largest drift of all blows"),
-        Column::numbers("Of its height"),
-        Column::numbers("Drift after the last blow"),
-        Column::numbers("Of its height"),
-        Column::numbers("Energy it took"),
+        Column::numbers("Largest drift of all impacts"),
+        Column::numbers("Over height"),
+        Column::numbers("Drift after the last impact"),
+        Column::numbers("Over height"),
+        Column::numbers("Absorbed energy"),
     ];
     let row = |storey: usize| -> Vec<Text> {
         let length = |kind: ResultKind, values: &[f64]| {
@@ -198,9 +198,9 @@ fn rows(procedure: &ProcedureRecord, blows: &[Blow]) -> Block {
     let row = |(index, blow): (usize, &Blow)| {
         let held = match blow.held {
             Some(true) => "held",
-            Some(false) => "no longer held",
-            None if blow.rest.is_some() => "not decided",
-            None => "not complete",
+            Some(false) => "condition false",
+            None if blow.rest.is_some() => "inconclusive",
+            None => "incomplete",
         };
         let known = |list: ResultKind, other: Text| {
             base_excitation::report::known_entry(procedure, list, index).unwrap_or(other)
@@ -237,12 +237,12 @@ fn rows(procedure: &ProcedureRecord, blows: &[Blow]) -> Block {
         ]
     };
     let columns = vec![
-        Column::words("Blow", 1),
+        Column::words("Impact", 1),
         Column::numbers("Velocity"),
         Column::numbers("Energy"),
         Column::numbers("Largest X"),
         Column::numbers("Absorbed"),
-        Column::numbers(if unloaded { "At rest at" } else { "Left at" }),
+        Column::numbers(if unloaded { "Unloaded at" } else { "Left at" }),
         Column::words("Condition", 1),
     ];
     Block::Table(Table {

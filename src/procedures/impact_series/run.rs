@@ -15,6 +15,7 @@ use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
+use crate::schema::procedures::impact_series as schema;
 use crate::uncertainty::{Contribution, Source};
 use crate::units::Dimension;
 use crate::units::display::readable;
@@ -51,7 +52,7 @@ fn run(
     let energies = plan
         .energies
         .as_ref()
-        .map(|energies| inputs.list("energies", energies))
+        .map(|energies| inputs.list(schema::ENERGIES.name, energies))
         .transpose()?;
     above_critical(impact.steps(), session);
     let home = session.guard.commanded().to_vec();
@@ -94,24 +95,24 @@ fn run(
             blow.held = held;
             let ends = match held {
                 Some(true) => None,
-                Some(false) => Some("the condition no longer holds".to_owned()),
-                None => Some(format!("it decides nothing: {reason}")),
+                Some(false) => Some("the condition is false".to_owned()),
+                None => Some(format!("the condition is inconclusive: {reason}")),
             };
             if let Some(why) = ends {
                 session.event(
                     EventKind::Remark,
-                    format!("blow {} of {stated}: {why}", index + 1),
+                    format!("impact {} of {stated}: {why}", index + 1),
                 );
                 return Ok(());
             }
         }
         if plan.inspect_between && index + 1 < velocities.len() {
-            session.inspect(&format!("after blow {} of {stated}", index + 1))?;
+            session.inspect(&format!("after impact {} of {stated}", index + 1))?;
         }
     }
     session.event(
         EventKind::Remark,
-        "the condition held after every blow of the list".to_owned(),
+        "the condition was true after every impact of the series".to_owned(),
     );
     Ok(())
 }
@@ -132,7 +133,7 @@ fn decide(
     let parts = plan
         .condition
         .iter()
-        .map(|part| assess_on_blow(part, rule, &known, (plan.own, &blow.history)));
+        .map(|part| assess_on_blow(part, rule, &known, plan.own, &blow.history));
     let worst = parts.reduce(|worst, next| {
         if next.verdict > worst.verdict {
             next

@@ -2,9 +2,10 @@
 
 use crate::language::check::checker::Checker;
 use crate::plan::ProcedureKind;
+use crate::schema::procedures::inspect::NOTE;
 
 pub fn inspect(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     checker
-        .text_field(block, "note")
+        .text_field(block, NOTE.name)
         .map(|note| ProcedureKind::Inspect { note })
 }

@@ -1,10 +1,11 @@
 //! `move NAME { … }`
 
 use crate::language::check::checker::Checker;
-use crate::plan::procedure::declaration::reader;
+use crate::language::check::expressions::read_field::ReadField;
+use crate::plan::declaration::reader;
 use crate::plan::procedure::move_to::move_fields;
 use crate::plan::{Move, ProcedureKind};
-use crate::procedures::read_field::ReadField;
+use crate::schema::procedures::move_to::NAMES;
 
 pub fn move_block(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     checker.specimen_needed(block);

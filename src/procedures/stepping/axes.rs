@@ -3,7 +3,7 @@
 
 use crate::physics::integrator::state::State;
 use crate::physics::structure::matrix::Vector;
-use crate::physics::tracking::monitor::{Monitor, Tracking};
+use crate::physics::tracking::monitor::{Monitor, TrackedStep, Tracking};
 use crate::rig::Reading;
 use crate::run::{AxisReport, StepReport};
 
@@ -45,16 +45,8 @@ pub(crate) struct Monitors(Vec<Monitor>);
 impl Monitors {
     /// `taken` are the effective forces of the recursion at the commanded displacements \[N\].
     pub(crate) fn new(commanded: &[f64], reading: &Reading, taken: &[f64]) -> Self {
-        let axes = commanded.iter().zip(
-            reading
-                .displacement
-                .iter()
-                .zip(reading.force.iter().zip(taken)),
-        );
-        let monitor = |(commanded, (measured, (force, taken))): (&f64, (&f64, (&f64, &f64)))| {
-            Monitor::with_effective_force(*commanded, *measured, *force, *taken)
-        };
-        Self(axes.map(monitor).collect())
+        let axes = tracked(commanded, reading, taken);
+        Self(axes.map(|axis| Monitor::new(&axis)).collect())
     }
 
     /// The tracking of each axis so far.
@@ -69,13 +61,25 @@ impl Monitors {
         reading: &Reading,
         taken: &[f64],
     ) -> Vec<Tracking> {
-        let read = reading.displacement.iter().zip(&reading.force).zip(taken);
-        let axes = self.0.iter_mut().zip(commanded).zip(read);
-        axes.map(|((monitor, to), ((measured, force), taken))| {
-            monitor.take_effective(*to, *measured, *force, *taken)
-        })
-        .collect()
+        let axes = self.0.iter_mut().zip(tracked(commanded, reading, taken));
+        axes.map(|(monitor, axis)| monitor.take(&axis)).collect()
     }
+}
+
+/// The step of each axis.
+fn tracked<'a>(
+    commanded: &'a [f64],
+    reading: &'a Reading,
+    taken: &'a [f64],
+) -> impl Iterator<Item = TrackedStep> {
+    let read = reading.displacement.iter().zip(&reading.force).zip(taken);
+    let axes = commanded.iter().zip(read);
+    axes.map(|(commanded, ((measured, force), taken))| TrackedStep {
+        commanded: *commanded,
+        measured: *measured,
+        force: *force,
+        effective_force: *taken,
+    })
 }
 
 /// The errors of a step.

@@ -4,7 +4,7 @@
 use crate::physics::impact::energy::UNBALANCED;
 use crate::record::EventKind;
 use crate::report::document::{Block, Column, Table, Text};
-use crate::report::figures::chart::{Series, Style};
+use crate::report::figures::chart::{DASH_DOT, LONG, Series, Style, palette};
 use crate::report::number;
 use crate::report::number::percent;
 use crate::run::session::Session;
@@ -18,11 +18,11 @@ pub(crate) fn observe_imbalance(energy_error: f64, session: &mut Session<'_>) {
             "the energy balance cannot be computed: its energies are not finite".to_owned()
         } else {
             format!(
-                "the energy balance is off by {} % of the energy put in",
+                "energy balance error: {} % of the input energy",
                 significant(100.0 * energy_error, 3)
             )
         };
-        let text = format!("{off}: a shorter time step is needed");
+        let text = format!("{off}: use a shorter time step");
         session.event(EventKind::Remark, text);
     }
 }
@@ -33,6 +33,22 @@ pub(crate) struct EnergyCurve<S> {
     /// \[J\]
     pub read: fn(&S) -> f64,
     pub style: Style,
+}
+
+impl<S> EnergyCurve<S> {
+    pub(crate) const fn new(label: &'static str, read: fn(&S) -> f64, style: Style) -> Self {
+        Self { label, read, style }
+    }
+
+    /// Energy of the restoring forces.
+    pub(crate) const fn restoring(read: fn(&S) -> f64) -> Self {
+        Self::new("restoring", read, Style::line(palette::BLUE, 2.0, LONG))
+    }
+
+    /// Energy of the dampers.
+    pub(crate) const fn damping(read: fn(&S) -> f64) -> Self {
+        Self::new("damping", read, Style::line(palette::PURPLE, 2.0, DASH_DOT))
+    }
 }
 
 /// The curves of the energies that are not 0 throughout; `time` gives the simulated time of a step \[s\].

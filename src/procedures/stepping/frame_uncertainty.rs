@@ -5,9 +5,11 @@
 use super::run::FrameSteps;
 use crate::physics::reintegration::frame::{Floors, FrameRun};
 use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
+use crate::physics::reintegration::hysteresis_replay::ContinuousMotion;
+use crate::physics::statistics::ReadingNoise;
 use crate::plan::formula::{Formula, Operator, ProcedureId, ResultValue, Results};
 use crate::plan::{Frame, Impact, Mode, Plan, Shake, ShakeDamping, Stepping, StoreyTarget};
-use crate::procedures::perturbed_inputs::{out_of_bounds, uncertain_inputs, with_shifts};
+use crate::procedures::common::perturbed_inputs::{out_of_bounds, uncertain_inputs, with_shifts};
 use crate::record::NamedResult;
 use crate::rig::DeclaredNoise;
 use crate::run::inputs::Inputs;
@@ -38,6 +40,15 @@ pub(crate) struct FrameUncertainty<'run> {
     pub blow: u16,
 }
 
+/// What a procedure says of its frame and its steps.
+#[derive(Clone, Copy)]
+struct TestedFrame<'run> {
+    specimen: usize,
+    damping: &'run ShakeDamping,
+    damping_uncertainty: f64,
+    stepping: &'run Stepping,
+}
+
 impl<'run> FrameUncertainty<'run> {
     pub fn of_shake(
         plan: &'run Shake,
@@ -52,12 +63,13 @@ impl<'run> FrameUncertainty<'run> {
             stepping,
             ..
         } = plan;
-        Self::new(
-            (*specimen, damping, *damping_uncertainty, stepping),
-            whole,
-            inputs,
-            session,
-        )
+        let tested = TestedFrame {
+            specimen: *specimen,
+            damping,
+            damping_uncertainty: *damping_uncertainty,
+            stepping,
+        };
+        Self::new(tested, whole, inputs, session)
     }
 
     pub fn of_blow(
@@ -75,25 +87,27 @@ impl<'run> FrameUncertainty<'run> {
             damping_uncertainty,
             ..
         } = target;
-        Self::new(
-            (*specimen, damping, *damping_uncertainty, stepping),
-            whole,
-            inputs,
-            session,
-        )
+        let tested = TestedFrame {
+            specimen: *specimen,
+            damping,
+            damping_uncertainty: *damping_uncertainty,
+            stepping,
+        };
+        Self::new(tested, whole, inputs, session)
     }
 
     fn new(
-        (specimen, damping, damping_uncertainty, stepping): (
-            usize,
-            &'run ShakeDamping,
-            f64,
-            &'run Stepping,
-        ),
+        tested: TestedFrame<'run>,
         whole: &'run Plan,
         inputs: &Inputs<'run>,
         session: &Session<'_>,
     ) -> Self {
+        let TestedFrame {
+            specimen,
+            damping,
+            damping_uncertainty,
+            stepping,
+        } = tested;
         Self {
             whole,
             specimen,
@@ -305,10 +319,15 @@ impl<'run> FrameUncertainty<'run> {
         let stiffness = &steps.properties.matrices.stiffness;
         let path = FramePath::new(
             readings,
-            (velocities, steps.steps.time_step),
+            ContinuousMotion {
+                velocities,
+                time_step: steps.steps.time_step,
+            },
             stiffness,
-            self.noise.force,
-            self.noise.resolution,
+            ReadingNoise {
+                force: self.noise.force,
+                resolution: self.noise.resolution,
+            },
         );
         path.ok_or_else(|| "nothing was recorded".to_owned())
     }

@@ -4,19 +4,12 @@
 
 pub(crate) mod axes;
 pub(crate) mod check;
-pub(crate) mod continuous_motion;
-pub(crate) mod delay;
 pub(crate) mod energy;
 pub(crate) mod frame_uncertainty;
-pub(crate) mod integrator_check;
-pub(crate) mod mode_check;
 pub(crate) mod operator_stability_watch;
-pub(crate) mod pace;
-pub(crate) mod remarks;
 pub(crate) mod report;
 pub(crate) mod run;
 pub(crate) mod self_tested;
 pub(crate) mod start;
 pub(crate) mod step_loop;
-pub(crate) mod tracking_summary;
-pub(crate) mod triggers;
+pub(crate) mod tracking;

@@ -5,7 +5,7 @@
 use super::start::Start;
 use crate::physics::impact::ImpactInput;
 use crate::physics::integrator::stability::{Met, longest_stable_step};
-use crate::physics::structure::{FrameMatrices, drifts, shears, storeys_of};
+use crate::physics::structure::{FrameMatrices, Matrices, drifts, shears, storeys_of};
 use crate::plan::{Integrator, Mode, Stepping};
 use crate::procedures::damping_sweep::rate_separated_stiffness::RateSeparatedFit;
 use crate::record::EventKind;
@@ -111,7 +111,14 @@ impl Stiffer {
         let limit = |stiffness: f64| {
             longest_stable_step(
                 integrator,
-                &Met::one(1.0 / mobility, 0.0, stiffness, operator_stiffness),
+                &Met::one(
+                    &Matrices {
+                        mass: 1.0 / mobility,
+                        damping: 0.0,
+                        stiffness,
+                    },
+                    operator_stiffness,
+                ),
             )
         };
         // The stiffness of the specimen, not the assumed one, limits explicit Newmark.
@@ -123,7 +130,7 @@ impl Stiffer {
             self.observed = true;
             let limit = time(limit(measured));
             return Some(format!(
-                "{}: {name} reached {}: explicit Newmark is stable up to {limit} there, and the time step is {}",
+                "{}: {name} reached {}: explicit Newmark is then stable up to {limit}, but the time step is {}",
                 Code::StifferThanOperator,
                 stiffness(measured),
                 time(time_step),
@@ -139,12 +146,12 @@ impl Stiffer {
         }
         self.observed = true;
         let so = if time_step > limit {
-            "which it is beyond"
+            "exceeded here"
         } else {
-            "which it is within"
+            "not exceeded here"
         };
         Some(format!(
-            "{}: {name} is stiffer than α-OS takes it for, {} measured against K_I = {}: a time step is stable up to {} only, {so} ({})",
+            "{}: {name} is stiffer than assumed in α-OS, {} measured, K_I = {}: time step stable up to {} only, {so} ({})",
             Code::StifferThanOperator,
             stiffness(measured),
             stiffness(operator_stiffness),
@@ -313,12 +320,11 @@ mod tests {
             .judge((0.002, 0.8), "the specimen")
             .expect("a remark");
         assert!(
-            text.contains("500.0 N/m measured against K_I = 300.0 N/m")
-                && text.contains("up to 0.2000 s"),
+            text.contains("500.0 N/m measured, K_I = 300.0 N/m") && text.contains("up to 0.2000 s"),
             "{text}"
         );
         assert!(
-            text.starts_with("W718") && text.contains("within (0.1000 s)"),
+            text.starts_with("W718") && text.contains("not exceeded here (0.1000 s)"),
             "{text}"
         );
         assert_eq!(stiffer.judge((0.003, 1.5), "the specimen"), None, "once");
@@ -388,7 +394,7 @@ mod tests {
         let splitting = Integrator::AlphaOs { alpha: 0.0 };
         let told = of(splitting, 1.3, 900.0);
         assert!(
-            told.len() == 1 && told[0].contains("900.0 N/m measured against K_I = 300.0 N/m"),
+            told.len() == 1 && told[0].contains("900.0 N/m measured, K_I = 300.0 N/m"),
             "{told:?}"
         );
         let told = of(Integrator::Explicit, 1.3, 900.0);

@@ -2,7 +2,7 @@
 //! properties and tangents. In: a procedure of the plan, and a frame where it tests one. Out: numbers, each inside its domain. It knows
 //! no ground and no striker.
 
-use super::pace::Pace;
+use super::step_loop::pace::Pace;
 use crate::physics::integrator::tangents::Tangents;
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::physics::structure::{Damping, storeys_of};
@@ -13,6 +13,8 @@ use crate::record::EventKind;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
+use crate::schema::frames;
+use crate::schema::methods;
 use crate::units::Dimension;
 use crate::units::display::stated;
 
@@ -31,19 +33,30 @@ pub(crate) struct Steps {
     pub max_tangent_ratio: f64,
 }
 
+/// The times of a procedure that integrates \[s\].
+#[derive(Clone, Copy)]
+pub(crate) struct Times {
+    pub time_step: f64,
+    pub critical_time_step: f64,
+    pub duration: f64,
+}
+
 impl Steps {
-    /// Steps of `time_step` in `duration`; both times, and the critical step, in s. A frame has several `axes`.
+    /// A frame has several `axes`.
     pub(crate) fn evaluate(
         plan: &Stepping,
-        time_step: f64,
-        critical_time_step: f64,
-        duration: f64,
+        times: Times,
         axes: usize,
         inputs: &mut Inputs<'_>,
     ) -> Result<Self, Stop> {
-        let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
+        let Times {
+            time_step,
+            critical_time_step,
+            duration,
+        } = times;
+        let pause = inputs.not_negative(methods::PAUSE.name, &plan.pause, Dimension::TIME)?;
         let max_tangent_ratio = inputs.positive(
-            "max_tangent_ratio",
+            methods::MAX_TANGENT_RATIO.name,
             &plan.max_tangent_ratio,
             Dimension::NUMBER,
         )?;
@@ -52,12 +65,12 @@ impl Steps {
         let axes = axes as f64;
         if steps_in(duration, time_step) * axes > MOST_STEPS {
             let wanted = format!("long enough for at most {} steps", MOST_STEPS / axes);
-            return Err(Stop::BadInput {
-                field: "time_step",
-                value: time_step,
-                dimension: Dimension::TIME,
-                wanted: wanted.into(),
-            });
+            return Err(Stop::bad_input(
+                methods::TIME_STEP.name,
+                time_step,
+                Dimension::TIME,
+                wanted,
+            ));
         }
         Ok(Self {
             time_step,
@@ -85,18 +98,24 @@ pub(crate) struct FrameSteps {
 }
 
 impl FrameSteps {
-    pub(crate) fn new(properties: FrameProperties, integrator: Integrator, steps: Steps) -> Self {
+    pub(crate) fn evaluate(
+        properties: FrameProperties,
+        plan: &Stepping,
+        times: Times,
+        inputs: &mut Inputs<'_>,
+    ) -> Result<Self, Stop> {
+        let steps = Steps::evaluate(plan, times, properties.matrices.order(), inputs)?;
         let tangents = match storeys_of(&properties.matrices.stiffness) {
-            Some(_) if integrator == Integrator::Tangent => Tangents::Storeys {
+            Some(_) if plan.integrator == Integrator::Tangent => Tangents::Storeys {
                 largest_ratio: steps.max_tangent_ratio,
             },
             _ => Tangents::Initial,
         };
-        Self {
+        Ok(Self {
             properties,
             tangents,
             steps,
-        }
+        })
     }
 
     /// Degrees of freedom.
@@ -120,11 +139,13 @@ pub(crate) fn properties(
     inputs: &mut Inputs<'_>,
 ) -> Result<FrameProperties, Stop> {
     let (damping, value) = damping(plan, inputs)?;
-    FrameProperties::of(frame, &damping).map_err(|reason| Stop::BadInput {
-        field: "damping_ratio",
-        value,
-        dimension: Dimension::NUMBER,
-        wanted: format!("other: {reason}").into(),
+    FrameProperties::of(frame, &damping).map_err(|reason| {
+        Stop::bad_input(
+            frames::DAMPING_RATIO.name,
+            value,
+            Dimension::NUMBER,
+            format!("other: {reason}"),
+        )
     })
 }
 
@@ -132,20 +153,21 @@ pub(crate) fn properties(
 fn damping(plan: &ShakeDamping, inputs: &mut Inputs<'_>) -> Result<(Damping, f64), Stop> {
     let known = |ratio: f64| match ratio {
         ratio if (0.0..=1.0).contains(&ratio) => Ok(ratio),
-        value => Err(Stop::BadInput {
-            field: "damping_ratio",
+        value => Err(Stop::bad_input(
+            frames::DAMPING_RATIO.name,
             value,
-            dimension: Dimension::NUMBER,
-            wanted: "between 0 and 1".into(),
-        }),
+            Dimension::NUMBER,
+            "between 0 and 1",
+        )),
     };
     Ok(match plan {
         ShakeDamping::Rayleigh(ratio) => {
-            let ratio = known(inputs.damping("damping_ratio", ratio, Dimension::NUMBER)?)?;
+            let ratio =
+                known(inputs.damping(frames::DAMPING_RATIO.name, ratio, Dimension::NUMBER)?)?;
             (rayleigh(ratio), ratio)
         }
         ShakeDamping::Modal(ratios) => {
-            let ratios = inputs.list("damping_ratio", ratios)?;
+            let ratios = inputs.list(frames::DAMPING_RATIO.name, ratios)?;
             let ratios = ratios
                 .into_iter()
                 .map(known)
@@ -163,7 +185,7 @@ pub(crate) fn time_step(
     inputs: &mut Inputs<'_>,
 ) -> Result<f64, Stop> {
     let time_step = inputs.positive_estimate(
-        "time_step",
+        methods::TIME_STEP.name,
         &plan.time_step,
         Dimension::TIME,
         Some(critical),
@@ -197,12 +219,12 @@ pub(crate) fn stable(plan: &Stepping, time_step: f64, limit: f64) -> Result<(), 
         stated(limit, Dimension::TIME),
         plan.integrator.name()
     );
-    Err(Stop::BadInput {
-        field: "time_step",
-        value: time_step,
-        dimension: Dimension::TIME,
-        wanted: wanted.into(),
-    })
+    Err(Stop::bad_input(
+        methods::TIME_STEP.name,
+        time_step,
+        Dimension::TIME,
+        wanted,
+    ))
 }
 
 /// Notes a time step above the critical one: `check` could not know it, and a reader of the results must.
@@ -213,7 +235,7 @@ pub(crate) fn above_critical(steps: &Steps, session: &mut Session<'_>) {
             stated(steps.critical_time_step, Dimension::TIME),
         );
         let text = format!(
-            "the time step {step} is above the critical time step {critical} (W701): peaks between two steps are missed"
+            "peaks may be wrong: time step {step} exceeds the critical time step {critical} (W701)"
         );
         session.event(EventKind::Remark, text);
     }
@@ -228,10 +250,10 @@ fn holds_a_step(time_step: f64, duration: f64) -> Result<(), Stop> {
         "no longer than the run, {}",
         stated(duration, Dimension::TIME)
     );
-    Err(Stop::BadInput {
-        field: "time_step",
-        value: time_step,
-        dimension: Dimension::TIME,
-        wanted: wanted.into(),
-    })
+    Err(Stop::bad_input(
+        methods::TIME_STEP.name,
+        time_step,
+        Dimension::TIME,
+        wanted,
+    ))
 }

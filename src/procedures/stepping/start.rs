@@ -1,6 +1,7 @@
 //! The state of rig and structure before the first time step. In: the first reading, the frame of the plan. Out: the initial state of a
 //! solver.
 
+use crate::schema::methods;
 use std::fmt::Display;
 
 use super::run::FrameSteps;
@@ -46,11 +47,6 @@ impl Start {
 
 /// The input error of a structure that cannot be integrated with `time_step` \[s\].
 pub(crate) fn not_stepped(time_step: f64, error: &impl Display) -> Stop {
-    let wanted = format!("one that can be stepped: {error}").into();
-    Stop::BadInput {
-        field: "time_step",
-        value: time_step,
-        dimension: Dimension::TIME,
-        wanted,
-    }
+    let wanted = format!("one that can be stepped: {error}");
+    Stop::bad_input(methods::TIME_STEP.name, time_step, Dimension::TIME, wanted)
 }

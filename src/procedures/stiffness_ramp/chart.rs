@@ -1,6 +1,7 @@
 //! The list of figures of a stiffness ramp, and their content. In: a history. Out: [`Chart`]s in SI with their captions.
 
-use super::{figures, relaxation_figures};
+use super::figures;
+use super::figures::relaxation_figures;
 use crate::plan::FigureKind;
 use crate::record::RampHistory;
 use crate::report::figures::chart::Chart;
@@ -24,13 +25,13 @@ pub(crate) fn chart(
         (FigureKind::Relaxation, Some(fit)) => (
             relaxation_figures::lost(&history.holds, fit),
             format!(
-                "{name}: force lost in the pauses, by the laws of relaxation, against the time held."
+                "{name}: force lost in the pauses, with the relaxation laws, against dwell time."
             ),
         ),
         (FigureKind::Relaxation, None) => (
             relaxation_figures::left(history, history.relaxation.as_ref()?),
             format!(
-                "{name}: force still to relax, the measured less the fitted one after long, against the time held."
+                "{name}: remaining relaxation, measured minus fitted final force, against dwell time."
             ),
         ),
         _ => return None,

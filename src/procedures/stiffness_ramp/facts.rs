@@ -5,10 +5,18 @@ use crate::physics::self_test::Part;
 use crate::plan::{RampFit, StiffnessRamp};
 use crate::procedures::facts::{Facts, Recorded};
 use crate::record::RampHistory;
+use crate::schema::procedures::stiffness_ramp as schema;
 
 pub(crate) fn facts() -> Facts<'static> {
     Facts {
         figures: chart::FIGURES,
+        headline: vec![
+            schema::STIFFNESS.name,
+            schema::YIELD_FORCE.name,
+            schema::YIELD_DISPLACEMENT.name,
+            schema::TIME_CONSTANT.name,
+            schema::MAX_FORCE.name,
+        ],
         ..Facts::default()
     }
 }

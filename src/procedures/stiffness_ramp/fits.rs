@@ -1,18 +1,19 @@
 //! The fits of a stiffness ramp, for the uncertainty of its results.
 
-use crate::procedures::fit_uncertainty::Fits;
+use crate::procedures::common::fit_uncertainty::Fits;
 use crate::record::RampHistory;
+use crate::schema::procedures::stiffness_ramp as schema;
 
 /// Results of a ramp that are fitted to its holds.
 const OF_HOLDS: [&str; 8] = [
-    "time_constant",
-    "relaxed_stiffness",
-    "branch_stiffness",
-    "remaining_relaxation",
-    "needed_pause",
-    "relaxation_share",
-    "reference_time",
-    "relaxation_rate",
+    schema::TIME_CONSTANT.name,
+    schema::RELAXED_STIFFNESS.name,
+    schema::BRANCH_STIFFNESS.name,
+    schema::REMAINING_RELAXATION.name,
+    schema::REQUIRED_PAUSE.name,
+    schema::RELAXATION_SHARE.name,
+    schema::REFERENCE_TIME.name,
+    schema::RELAXATION_RATE.name,
 ];
 
 /// Calls with the fits of a ramp.

@@ -101,14 +101,12 @@ pub(crate) fn told(
 
 const fn unrelaxed(reason: Unrelaxed) -> &'static str {
     match reason {
-        Unrelaxed::TooFew => {
-            "no relaxation fitted: the holds have fewer readings than there are numbers to find"
-        }
+        Unrelaxed::TooFew => "no relaxation fitted: the pauses have fewer readings than parameters",
         Unrelaxed::Steady => {
-            "no relaxation: by BIC the forces of the holds are as well told without one"
+            "no relaxation: by BIC the forces in the pauses are described equally well without it"
         }
         Unrelaxed::OutOfReach => {
-            "no relaxation fitted: the forces change, but slower than the holds, or faster than their readings, can tell"
+            "no relaxation fitted: the forces change too slowly for the pauses, or too fast for their readings"
         }
     }
 }
@@ -128,13 +126,13 @@ fn reached_remarks(
     let best = fit.best();
     if fit.margin().is_some_and(|margin| margin.abs() < STRONG) {
         told.push(
-            "the holds hardly tell whether the force relaxes exponentially or with the logarithm of time: longer pauses, or more readings, would"
+            "the pauses do not distinguish exponential from logarithmic relaxation: use longer pauses, or more readings"
                 .to_owned(),
         );
     }
     if let Some(noise) = noise.filter(|noise| best.scatter > FAR * noise) {
         told.push(format!(
-            "the readings of the holds scatter by {} about the law, the cell by {}: they do not relax by it alone",
+            "the readings in the pauses scatter by {} about the law, but the noise is {}: relaxation is not the only effect",
             readable(best.scatter, Dimension::FORCE),
             readable(noise, Dimension::FORCE),
         ));
@@ -146,7 +144,7 @@ fn reached_remarks(
             .map(|(time, _)| *time)
             .fold(0.0, f64::max);
         told.push(format!(
-            "at the end of the pause of {} the force was still falling by {}, faster than the {} asked for: {} would do",
+            "at the end of the pause of {} the force rate was {} (limit {}): a pause of {} is sufficient",
             readable(longest, Dimension::TIME),
             readable(best.rate.0, Dimension::FORCE_RATE),
             readable(rate, Dimension::FORCE_RATE),
@@ -161,7 +159,9 @@ fn remarks(fit: &RelaxationFit, holds: &[Hold], accuracy: Option<f64>) -> Vec<St
     let (tau, error) = fit.time_constant;
     if error > 0.5 * tau {
         let shown = readable(tau, Dimension::TIME);
-        told.push(format!("the holds hardly tell the time constant {shown}: its standard error is more than half of it"));
+        told.push(format!(
+            "the time constant {shown} is uncertain: its standard error is more than half of it"
+        ));
     }
     let longest = holds
         .iter()
@@ -170,7 +170,7 @@ fn remarks(fit: &RelaxationFit, holds: &[Hold], accuracy: Option<f64>) -> Vec<St
         .fold(0.0, f64::max);
     if let Some(accuracy) = accuracy.filter(|accuracy| fit.remaining.0 > *accuracy) {
         told.push(format!(
-            "the pause of {} leaves {} to relax, more than the {} asked for: {} would do",
+            "the pause of {} leaves a relaxation of {} (limit {}): a pause of {} is sufficient",
             readable(longest, Dimension::TIME),
             readable(fit.remaining.0, Dimension::FORCE),
             readable(accuracy, Dimension::FORCE),
@@ -180,8 +180,9 @@ fn remarks(fit: &RelaxationFit, holds: &[Hold], accuracy: Option<f64>) -> Vec<St
     told
 }
 
-const fn told_with((value, error): (f64, f64)) -> (f64, Option<f64>) {
-    (value, Some(error))
+/// A result with its standard error.
+fn with_error(kind: ResultKind, value: Option<(f64, f64)>) -> NamedResult {
+    kind.found_with(value.map(|(value, error)| (value, Some(error))))
 }
 
 /// In the order of the reference.
@@ -190,33 +191,32 @@ fn results(
     reached: Option<&SuperpositionFit>,
     accuracy: Option<f64>,
 ) -> [NamedResult; 5] {
-    let of = |kind: ResultKind, value: Option<(f64, f64)>| kind.found_with(value.map(told_with));
     let reached = reached.map(SuperpositionFit::best);
     let decays = reached.filter(|fit| fit.law == RelaxationLaw::Exponential);
     let needed = fit
         .zip(accuracy)
         .map(|(fit, accuracy)| fit.required_pause(accuracy));
     [
-        of(
+        with_error(
             schema::TIME_CONSTANT,
             fit.map(|fit| fit.time_constant)
                 .or(decays.map(|fit| fit.time)),
         ),
-        of(
+        with_error(
             schema::RELAXED_STIFFNESS,
             fit.and_then(|fit| fit.relaxed_stiffness),
         ),
-        of(
+        with_error(
             schema::BRANCH_STIFFNESS,
             fit.and_then(|fit| fit.branch_stiffness),
         ),
-        of(
+        with_error(
             schema::REMAINING_RELAXATION,
             fit.map(|fit| fit.remaining)
                 .or(decays.and_then(|fit| fit.remaining)),
         ),
-        of(
-            schema::NEEDED_PAUSE,
+        with_error(
+            schema::REQUIRED_PAUSE,
             needed.or(reached.map(|fit| fit.required_pause)),
         ),
     ]
@@ -224,13 +224,12 @@ fn results(
 
 /// The results that only a law of the instantaneous force has.
 fn of_the_law(fit: Option<&SuperpositionFit>) -> [NamedResult; 4] {
-    let of = |kind: ResultKind, value: Option<(f64, f64)>| kind.found_with(value.map(told_with));
     let best = fit.map(SuperpositionFit::best);
     let by_logarithm = best.filter(|fit| fit.law == RelaxationLaw::Logarithmic);
     [
-        of(schema::RELAXATION_SHARE, best.map(|fit| fit.share)),
-        of(schema::REFERENCE_TIME, by_logarithm.map(|fit| fit.time)),
-        of(schema::RELAXATION_RATE, best.map(|fit| fit.rate)),
+        with_error(schema::RELAXATION_SHARE, best.map(|fit| fit.share)),
+        with_error(schema::REFERENCE_TIME, by_logarithm.map(|fit| fit.time)),
+        with_error(schema::RELAXATION_RATE, best.map(|fit| fit.rate)),
         schema::BIC_MARGIN.found(fit.and_then(SuperpositionFit::margin)),
     ]
 }

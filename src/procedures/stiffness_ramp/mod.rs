@@ -5,14 +5,12 @@
 pub(crate) mod chart;
 pub(crate) mod check;
 pub(crate) mod curve;
-pub(crate) mod curve_report;
 pub(crate) mod facts;
 pub(crate) mod figures;
 pub(crate) mod fits;
 pub(crate) mod hold;
 pub(crate) mod points;
 pub(crate) mod read_results;
-pub(crate) mod relaxation_figures;
 pub(crate) mod report;
 pub(crate) mod run;
 pub(crate) mod tables;

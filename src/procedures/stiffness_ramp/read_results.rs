@@ -16,16 +16,16 @@ const FITTED: [&str; 6] = [
     schema::INTERCEPT_FORCE.name,
     schema::YIELD_FORCE.name,
     schema::YIELD_DISPLACEMENT.name,
-    schema::HARDENED_STIFFNESS.name,
-    schema::HARDENING.name,
+    schema::POST_YIELD_STIFFNESS.name,
+    schema::POST_YIELD_RATIO.name,
 ];
 
 /// The results that one straight line does not have.
 const OF_A_KNEE: [&str; 4] = [
     schema::YIELD_FORCE.name,
     schema::YIELD_DISPLACEMENT.name,
-    schema::HARDENED_STIFFNESS.name,
-    schema::HARDENING.name,
+    schema::POST_YIELD_STIFFNESS.name,
+    schema::POST_YIELD_RATIO.name,
 ];
 
 /// Reported once for each ramp; called only if there is no error.
@@ -40,7 +40,7 @@ pub fn hold(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
         };
         let head = checker.scope.blocks[*block].block.head;
         let displacements = checker
-            .field(*block, "displacements")
+            .field(*block, schema::NAMES.displacements)
             .map_or(head, |(_, entry)| entry.value.span);
         if let Some((lacks, way_out)) = lacks(ramp, reference.name) {
             if never.insert(*block) {
@@ -75,14 +75,14 @@ fn lacks(ramp: &StiffnessRamp, result: &str) -> Option<(String, &'static str)> {
     let steps = ramp.displacements.len();
     match result {
         name if name == schema::LOOP_ENERGY.name && !ramp.return_path => {
-            Some(("it does not come back".to_owned(), "write `return = true`"))
+            Some(("it does not return".to_owned(), "write `return = true`"))
         }
         name if name == schema::TANGENT_STIFFNESS.name && steps < 2 => Some((
             "it has one step".to_owned(),
-            "take two displacements or more",
+            "write two displacements or more",
         )),
         name if OF_A_KNEE.contains(&name) && ramp.fit == RampFit::Linear => Some((
-            "a straight line does not yield".to_owned(),
+            "a straight line has no yield point".to_owned(),
             "write `fit = bilinear`, or `fit = multilinear`",
         )),
         name if FITTED.contains(&name) || name == schema::R_SQUARED.name => fitted_to_too_few(ramp),
@@ -108,22 +108,22 @@ fn fitted_to_too_few(ramp: &StiffnessRamp) -> Option<(String, &'static str)> {
         }
     };
     if points < wanted {
-        let bear = if points == 1 { "bears" } else { "bear" };
+        let bear = if points == 1 { "is" } else { "are" };
         let lacks = format!(
-            "{} {bear} no such fit, which takes {wanted} at least",
+            "{} {bear} not enough for the fit, which requires {wanted}",
             count(points)
         );
         return Some((
             lacks,
-            "take more displacements, five or more of a straight line",
+            "write more displacements; for a straight line five or more",
         ));
     }
     let places: Option<Vec<f64>> = ramp.displacements.iter().map(Formula::constant).collect();
     let one_place = places.is_some_and(|places| places.iter().all(|place| *place == places[0]));
     one_place.then(|| {
         (
-            "all its steps go to one place".to_owned(),
-            "take displacements that differ",
+            "all its steps are at one position".to_owned(),
+            "write different displacements",
         )
     })
 }

@@ -1,6 +1,6 @@
 //! The report of a stiffness ramp: its curve, the relaxation in its pauses, the line through its readings. In: a history. Out: blocks.
 
-use super::curve_report;
+use super::curve::curve_report;
 use crate::plan::{RelaxationLaw, RelaxationModel};
 use crate::record::{Hold, RampHistory, RelaxationFit, SuperpositionFit};
 use crate::report::document::Block;
@@ -9,8 +9,8 @@ use crate::report::sections::results::line_fit::{Coefficient, fitted};
 use crate::units::Dimension;
 
 /// How the contributions to its uncertainty were found; also for every other fitted line.
-pub(crate) const UNCERTAINTY: &str = "what its own readings scatter is the covariance of the fit, a calibration goes with the powers of force and displacement in the \
-    result, and rounding is told beside the scatter where it leaves more open";
+pub(crate) const UNCERTAINTY: &str = "scatter of its readings: covariance of the fit; calibration: by the powers of \
+ force and displacement in the result; resolution: reported beside the scatter where it is the larger contribution";
 
 /// The blocks below its results.
 pub(crate) fn report(history: &RampHistory, body: &mut Vec<Block>) {
@@ -63,8 +63,8 @@ fn relaxed(fit: &RelaxationFit, holds: &[Hold]) -> Block {
     };
     let readings: usize = holds.iter().map(|hold| hold.readings.len()).sum();
     Block::note(format!(
-        "Relaxation by least squares over {readings} readings in {} pauses: {model}, τ = {} (in brackets the standard error); the readings scatter \
-         by {} about it. The pauses left {} to relax, at most.",
+        "Relaxation by least squares over {readings} readings in {} pauses: {model}, τ = {} (in parentheses the \
+         standard error); scatter of the readings {}. Remaining relaxation after the pauses: {} at most.",
         holds.len(),
         with(fit.time_constant, Dimension::TIME),
         number::text(fit.scatter, Dimension::FORCE),
@@ -95,9 +95,9 @@ fn relaxed_by_a_law(fit: &SuperpositionFit, holds: &[Hold]) -> Block {
     });
     let readings: usize = holds.iter().map(|hold| hold.readings.len()).sum();
     Block::note(format!(
-        "Relaxation by least squares over {readings} readings in {} pauses, each step by its own time: {law} of each increment of the \
-         reached force R̂, {share} = {}, {} = {} (in brackets the standard error); the readings scatter by {} about it.{chosen} The worst pause ended \
-         while the force fell by {}.",
+        "Relaxation by least squares over {readings} readings in {} pauses, superposed from each step: {law} for each \
+         increment of the unrelaxed force R̂, {share} = {}, {} = {} (in parentheses the standard error); scatter of \
+         the readings {}.{chosen} Largest force rate at the end of a pause: {}.",
         holds.len(),
         with(best.share, Dimension::NUMBER),
         best.law.time_name(),

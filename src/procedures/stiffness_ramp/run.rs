@@ -3,19 +3,19 @@
 //! every one, relaxation and, with an unloading branch, the energy of the loop.
 
 use super::points::{Point, point, secant};
-use super::uncertainty::{DIRECT, Readings};
+use super::uncertainty::{Direct, Readings};
 use super::{curve, hold};
 use crate::physics::identification::bilinear_fit::fit_bilinear_stated;
 use crate::physics::identification::{StatedVariance, fit_line};
-use crate::physics::statistics::samples::{mean, scatter};
 use crate::plan::{Plan, RampFit, StiffnessRamp, WatchedHold};
+use crate::procedures::common::dwell_readings::DwellReadings;
 use crate::record::{
     BilinearFit, EventKind, History, Hold, LineFit, MultilinearFit, NamedResult, RampHistory,
     RampStep,
 };
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
-use crate::run::session::{Session, first};
+use crate::run::session::{Session, StepReading};
 use crate::run::stop::Stop;
 use crate::schema::procedures::stiffness_ramp as schema;
 use crate::uncertainty::InstrumentUncertainty;
@@ -61,7 +61,7 @@ pub(crate) fn perform(
             steps: ramp.steps,
         },
     );
-    let mut results = results(readings.direct(plan, declared.force), &fits);
+    let mut results = results(&readings.direct(plan, declared.force), &fits);
     if session.settings.uncertainty {
         super::uncertainty::propagate(
             &readings,
@@ -123,6 +123,26 @@ struct Ramp {
     last_reading: f64,
 }
 
+/// How a target is approached and read.
+#[derive(Clone, Copy)]
+struct Manner {
+    samples: u32,
+    /// \[s\]
+    pause: f64,
+    /// \[m/s\]
+    speed: Option<f64>,
+}
+
+/// One target of a ramp.
+struct Target {
+    /// \[m\]
+    command: f64,
+    /// Whether it is on the way back.
+    returning: bool,
+    /// The reading at the target before.
+    before: Option<Point>,
+}
+
 impl Ramp {
     fn run(
         &mut self,
@@ -130,9 +150,12 @@ impl Ramp {
         inputs: &mut Inputs<'_>,
         session: &mut Session<'_>,
     ) -> Result<(), Stop> {
-        let displacements = inputs.list("displacements", &plan.displacements)?;
-        let pause = inputs.not_negative("pause", &plan.pause, Dimension::TIME)?;
-        let speed = inputs.speed(plan.speed.as_ref())?;
+        let displacements = inputs.list(schema::NAMES.displacements, &plan.displacements)?;
+        let manner = Manner {
+            samples: plan.samples,
+            pause: inputs.not_negative(schema::NAMES.pause, &plan.pause, Dimension::TIME)?,
+            speed: inputs.speed(plan.speed.as_ref())?,
+        };
         let home = session.commanded();
         for repeat in 0..plan.repeats {
             let start = session.read()?;
@@ -146,85 +169,69 @@ impl Ramp {
                 self.last_reading,
             ));
             let mut before = None;
-            for command in &displacements {
-                before = Some(self.step(
-                    *command,
-                    false,
+            let outwards = displacements.iter().map(|command| (*command, false));
+            let way_back = displacements
+                .iter()
+                .rev()
+                .skip(1)
+                .copied()
+                .chain(std::iter::once(home))
+                .filter(|_| plan.return_path)
+                .map(|command| (command, true));
+            for (command, returning) in outwards.chain(way_back) {
+                let target = Target {
+                    command,
+                    returning,
                     before,
-                    plan.samples,
-                    (pause, asked),
-                    speed,
-                    session,
-                )?);
+                };
+                before = Some(self.step(&target, manner, asked, session)?);
             }
-            if plan.return_path {
-                let way_back = displacements
-                    .iter()
-                    .rev()
-                    .skip(1)
-                    .copied()
-                    .chain(std::iter::once(home));
-                for command in way_back {
-                    before = Some(self.step(
-                        command,
-                        true,
-                        before,
-                        plan.samples,
-                        (pause, asked),
-                        speed,
-                        session,
-                    )?);
-                }
-            } else {
-                session.go_to(home, speed)?;
+            if !plan.return_path {
+                session.go_to(home, manner.speed)?;
             }
         }
         Ok(())
     }
 
     /// Moves, settles, reads once for the relaxation, pauses, reads the samples.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "one step of a ramp is what it is told"
-    )]
     fn step(
         &mut self,
-        command: f64,
-        returning: bool,
-        before: Option<Point>,
-        samples: u32,
-        (pause, asked): (f64, Option<WatchedHold>),
-        speed: Option<f64>,
+        target: &Target,
+        manner: Manner,
+        asked: Option<WatchedHold>,
         session: &mut Session<'_>,
     ) -> Result<Point, Stop> {
-        session.guard.move_to(&[command], speed)?;
-        let (settled, moved, mut broken) = match asked {
+        let Target {
+            command,
+            returning,
+            before,
+        } = *target;
+        session.guard.move_to(&[command], manner.speed)?;
+        let (settled, moved, broken) = match asked {
             Some(_) => session.read_moved_kept()?,
             None => session
                 .read_kept()
                 .map(|(reading, broken)| (reading, None, broken))?,
         };
-        let (_, settled_force) = first(&settled);
-        let mut readings = Vec::new();
         let watched = match asked {
-            _ if broken.is_some() => {
-                readings.push(first(&settled));
-                None
-            }
-            Some(asked) => Some(hold::watched(&settled, pause, asked.readings, session)?),
-            None => session.guard.pause(pause).map(|()| None)?,
+            _ if broken.is_some() => None,
+            Some(asked) => Some(hold::watched(
+                &settled,
+                manner.pause,
+                asked.readings,
+                session,
+            )?),
+            None => session.guard.pause(manner.pause).map(|()| None)?,
         };
-        for _ in 0..samples.max(1) {
-            if broken.is_none() {
-                let (reading, stop) = session.read_kept()?;
-                readings.push(first(&reading));
-                broken = stop;
-            }
-        }
-        let displacement = mean(readings.iter().map(|(x, _)| *x));
-        let restoring_force = mean(readings.iter().map(|(_, r)| *r));
+        let DwellReadings {
+            displacement,
+            restoring_force,
+            force_scatter,
+            relaxation,
+            wall_time,
+            broken,
+        } = DwellReadings::take(&settled, broken, manner.samples, session)?;
         let step = self.steps.len() as u64 + 1;
-        let wall_time = session.guard.time();
         if let Some((readings, last)) = watched {
             let [waited_for, moved_for, settled_for] =
                 hold::parts(self.last_reading, moved, settled.time);
@@ -244,8 +251,8 @@ impl Ramp {
             command,
             displacement,
             restoring_force,
-            force_scatter: scatter(readings.iter().map(|(_, r)| *r), restoring_force),
-            relaxation: settled_force - restoring_force,
+            force_scatter,
+            relaxation,
             tangent_stiffness: before
                 .and_then(|before| secant(before, (displacement, restoring_force))),
             returning,
@@ -253,7 +260,12 @@ impl Ramp {
         if let Some(stop) = broken {
             return Err(stop);
         }
-        session.measured(step, wall_time, displacement, restoring_force)?;
+        session.measured(&StepReading {
+            step,
+            time: wall_time,
+            displacement,
+            force: restoring_force,
+        })?;
         Ok((displacement, restoring_force))
     }
 
@@ -332,7 +344,7 @@ const fn before_moving(
 }
 
 /// In the order of the reference; `direct` are the results that are read without a fit.
-fn results(direct: [Option<f64>; DIRECT.len()], fits: &Fits) -> Vec<NamedResult> {
+fn results(direct: &Direct, fits: &Fits) -> Vec<NamedResult> {
     let Fits {
         line: fit,
         bilinear,
@@ -354,24 +366,16 @@ fn results(direct: [Option<f64>; DIRECT.len()], fits: &Fits) -> Vec<NamedResult>
         .or(bilinear.map(|fit| fit.r_squared));
     let r_squared = r_squared.or(multilinear.map(|fit| fit.r_squared));
     let of = |value: fn(&BilinearFit) -> (f64, f64)| bilinear.map(value).map(told);
-    let [
-        first_secant,
-        max_force,
-        max_displacement,
-        loop_energy,
-        relaxation,
-        tangent_stiffness,
-    ] = direct;
     let mut results = vec![
         schema::STIFFNESS.found_with(stiffness),
-        schema::SECANT_STIFFNESS.found(first_secant),
+        schema::SECANT_STIFFNESS.found(direct.secant_stiffness),
         schema::INTERCEPT_FORCE.found_with(intercept),
         schema::R_SQUARED.found(r_squared),
-        schema::MAX_FORCE.found(max_force),
-        schema::MAX_DISPLACEMENT.found(max_displacement),
-        schema::LOOP_ENERGY.found(loop_energy),
-        schema::RELAXATION.found(relaxation),
-        schema::TANGENT_STIFFNESS.found(tangent_stiffness),
+        schema::MAX_FORCE.found(direct.max_force),
+        schema::MAX_DISPLACEMENT.found(direct.max_displacement),
+        schema::LOOP_ENERGY.found(direct.loop_energy),
+        schema::RELAXATION.found(direct.relaxation),
+        schema::TANGENT_STIFFNESS.found(direct.tangent_stiffness),
     ];
     if bilinear.is_some() {
         results.extend([
@@ -379,10 +383,10 @@ fn results(direct: [Option<f64>; DIRECT.len()], fits: &Fits) -> Vec<NamedResult>
             schema::YIELD_DISPLACEMENT.found_with(of(|fit| {
                 (fit.yield_displacement, fit.yield_displacement_error)
             })),
-            schema::HARDENED_STIFFNESS.found_with(of(|fit| {
+            schema::POST_YIELD_STIFFNESS.found_with(of(|fit| {
                 (fit.post_yield_stiffness, fit.post_yield_stiffness_error)
             })),
-            schema::HARDENING
+            schema::POST_YIELD_RATIO
                 .found_with(of(|fit| (fit.post_yield_ratio, fit.post_yield_ratio_error))),
         ]);
     } else {

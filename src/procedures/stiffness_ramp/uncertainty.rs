@@ -1,6 +1,7 @@
 //! The direct readings of a `stiffness ramp`, beside its fits, and their uncertainty. In: the readings of the ramp. Out: forces,
 //! displacements, secants and the energy of its loops, with the contributions of each source. It fits nothing.
 
+use crate::schema::ResultKind;
 use std::convert::Infallible;
 
 use super::points::{Point, point, secant};
@@ -10,22 +11,34 @@ use crate::physics::statistics::noisy_largest::NoisyLargest;
 use crate::physics::statistics::samples::mean;
 use crate::plan::StiffnessRamp;
 use crate::plan::formula::ProcedureId;
-use crate::procedures::loop_sampling::{left_open_by, of_open};
-use crate::procedures::results::{give, largest};
+use crate::procedures::common::loop_sampling::{left_open_by, of_open};
+use crate::procedures::common::results::{give, largest, place};
 use crate::record::{NamedResult, RampStep};
 use crate::rig::DeclaredNoise;
 use crate::schema::procedures::stiffness_ramp as schema;
 use crate::uncertainty::engine::{Evaluate, Evaluation, Shifts, Study};
 use crate::uncertainty::{Contribution, InstrumentUncertainty, Source};
 
-/// The results that are read directly.
-pub(crate) const DIRECT: [&str; 6] = [
-    schema::SECANT_STIFFNESS.name,
-    schema::MAX_FORCE.name,
-    schema::MAX_DISPLACEMENT.name,
-    schema::LOOP_ENERGY.name,
-    schema::RELAXATION.name,
-    schema::TANGENT_STIFFNESS.name,
+/// The results that are read directly, SI; None for a result that does not exist.
+pub(crate) struct Direct {
+    pub secant_stiffness: Option<f64>,
+    pub max_force: Option<f64>,
+    pub max_displacement: Option<f64>,
+    pub loop_energy: Option<f64>,
+    pub relaxation: Option<f64>,
+    pub tangent_stiffness: Option<f64>,
+}
+
+type ReadDirect = fn(&Direct) -> Option<f64>;
+
+/// The same, each with its value.
+const DIRECT: [(ResultKind, ReadDirect); 6] = [
+    (schema::SECANT_STIFFNESS, |direct| direct.secant_stiffness),
+    (schema::MAX_FORCE, |direct| direct.max_force),
+    (schema::MAX_DISPLACEMENT, |direct| direct.max_displacement),
+    (schema::LOOP_ENERGY, |direct| direct.loop_energy),
+    (schema::RELAXATION, |direct| direct.relaxation),
+    (schema::TANGENT_STIFFNESS, |direct| direct.tangent_stiffness),
 ];
 
 /// The readings of a ramp.
@@ -37,8 +50,8 @@ pub(crate) struct Readings {
 }
 
 impl Readings {
-    /// In the order of [`DIRECT`]; None for a result that does not exist. `noise` is that of one reading of the cell \[N\].
-    pub(crate) fn direct(&self, plan: &StiffnessRamp, noise: f64) -> [Option<f64>; DIRECT.len()] {
+    /// The results that are read without a fit. `noise` is that of one reading of the cell \[N\].
+    pub(crate) fn direct(&self, plan: &StiffnessRamp, noise: f64) -> Direct {
         let Self { starts, steps } = self;
         let targets = plan.displacements.len();
         let a_repeat = if plan.return_path {
@@ -63,14 +76,15 @@ impl Readings {
             loop_energy(&x, &r)
         };
         let loops: Vec<f64> = self.loops(plan).map(energy).collect();
-        [
-            first_secant,
-            NoisyLargest::of(noise / f64::from(plan.samples.max(1)).sqrt(), sizes).value(),
-            largest(steps.iter().map(|step| step.displacement)),
-            (!loops.is_empty()).then(|| mean(loops.iter().copied())),
-            (!steps.is_empty()).then(|| mean(steps.iter().map(|step| step.relaxation))),
-            tangent,
-        ]
+        let noise = noise / f64::from(plan.samples.max(1)).sqrt();
+        Direct {
+            secant_stiffness: first_secant,
+            max_force: NoisyLargest::of(noise, sizes).value(),
+            max_displacement: largest(steps.iter().map(|step| step.displacement)),
+            loop_energy: (!loops.is_empty()).then(|| mean(loops.iter().copied())),
+            relaxation: (!steps.is_empty()).then(|| mean(steps.iter().map(|step| step.relaxation))),
+            tangent_stiffness: tangent,
+        }
     }
 
     /// The points of every repeat that returns.
@@ -145,7 +159,8 @@ impl Evaluate for RecordedRamp<'_> {
             .readings
             .perturbed(readings, self.plan.samples)
             .direct(self.plan, noise);
-        Evaluation::of_readings(direct.map(|value| value.unwrap_or(f64::NAN)).to_vec())
+        let values = DIRECT.map(|(_, read)| read(&direct).unwrap_or(f64::NAN));
+        Evaluation::of_readings(values.to_vec())
     }
 }
 
@@ -173,17 +188,14 @@ pub(crate) fn propagate(
     };
     // Inputs have no bounds here, and no one waits for progress.
     if let Ok(mut contributions) = study.contributions::<Infallible>(&mut |_, _| Ok(())) {
-        let of_loops = DIRECT
-            .iter()
-            .zip(&mut contributions)
-            .find(|(name, _)| **name == schema::LOOP_ENERGY.name);
-        if let Some((_, parts)) = of_loops {
-            parts.push(Contribution::new(
+        let layout = DIRECT.map(|(kind, _)| (kind.name, 1));
+        if let Some(of_loops) = place(&layout, schema::LOOP_ENERGY) {
+            contributions[of_loops].push(Contribution::new(
                 Source::LoopSampling { procedure },
                 of_open(readings.left_open(plan, instruments.errors(0))),
             ));
         }
-        give(&DIRECT.map(|name| (name, 1)), contributions, results);
+        give(&layout, contributions, results);
     }
 }
 
@@ -207,7 +219,7 @@ mod tests {
         plan.specimens[0].behaviour = Some(Behaviour::Bilinear {
             stiffness: STIFFNESS,
             yield_force: 10.0,
-            hardening: 0.1,
+            post_yield_ratio: 0.1,
         });
         plan.rig.link = Link::Virtual(link);
         plan.rig.calibration = calibration;
@@ -289,7 +301,7 @@ mod tests {
         let yielding = || Behaviour::Bilinear {
             stiffness: STIFFNESS,
             yield_force: 10.0,
-            hardening: 0.1,
+            post_yield_ratio: 0.1,
         };
         let (exact, _) = energy(yielding(), 3000);
         let mut last = f64::INFINITY;
@@ -365,7 +377,7 @@ mod tests {
             plan.specimens[0].behaviour = Some(Behaviour::Bilinear {
                 stiffness: 9e4,
                 yield_force: 420.0,
-                hardening: 0.0,
+                post_yield_ratio: 0.0,
             });
             plan.rig.link = Link::Virtual(VirtualLink {
                 noise,
@@ -396,17 +408,18 @@ mod tests {
                 seed: 9,
                 ..VirtualLink::default()
             });
-            run_unwatched(&plan)
-                .events
-                .iter()
-                .any(|event| event.text.starts_with("the outward steps bend near"))
+            run_unwatched(&plan).events.iter().any(|event| {
+                event
+                    .text
+                    .starts_with("the outward steps are nonlinear near")
+            })
         };
         for noise in [0.0, 0.1] {
             assert!(says(
                 Behaviour::Bilinear {
                     stiffness: STIFFNESS,
                     yield_force: 10.0,
-                    hardening: 0.05
+                    post_yield_ratio: 0.05
                 },
                 noise
             ));

@@ -5,19 +5,21 @@ use crate::language::check::declarations::specimen::frame;
 use crate::language::check::messages::frames as fault;
 use crate::plan::formula::Formula;
 use crate::plan::{FrameUnload, ProcedureKind, Unload};
+use crate::schema::procedures::unload as schema;
+use crate::schema::procedures::{SPEED, STIFFNESS};
 
 pub fn unload(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let tested = checker.specimen_block(block);
     let specimen = tested.map(|tested| checker.scope.index_in_kind(tested));
     if tested.is_some_and(|tested| frame::is_frame(checker, tested)) {
         let (within, speed) = (
-            checker.optional(block, "within"),
-            checker.optional(block, "speed"),
+            checker.optional(block, schema::WITHIN.name),
+            checker.optional(block, SPEED.name),
         );
-        if let Some((_, entry)) = checker.field(block, "stiffness") {
-            let help = "remove it: the storeys of the frame have stiffnesses of their own";
+        if let Some((_, entry)) = checker.field(block, STIFFNESS.name) {
+            let help = "remove it: the storeys of the frame have stiffnesses";
             return checker.fail(fault::no_use_on_a_frame(
-                "stiffness",
+                STIFFNESS.name,
                 "the unloading of a frame",
                 entry.key.span,
                 help,
@@ -31,8 +33,8 @@ pub fn unload(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     }
     let stiffness = checker.stiffness_or_specimens(block, tested);
     let (within, speed) = (
-        checker.optional(block, "within"),
-        checker.optional(block, "speed"),
+        checker.optional(block, schema::WITHIN.name),
+        checker.optional(block, SPEED.name),
     );
     Some(ProcedureKind::Unload(Unload {
         specimen: specimen?,
@@ -50,14 +52,19 @@ impl Checker<'_> {
         block: usize,
         specimen: Option<usize>,
     ) -> Option<Formula> {
-        if self.field(block, "stiffness").is_some() {
-            return self.quantity(block, "stiffness");
+        if self.field(block, STIFFNESS.name).is_some() {
+            return self.quantity(block, STIFFNESS.name);
         }
         if self.real_rig.is_some() {
             return None;
         }
         let head = self.scope.blocks[block].block.head;
-        crate::language::check::declarations::specimen::export(self, specimen?, "stiffness", head)
-            .map(Formula::Constant)
+        crate::language::check::declarations::specimen::export(
+            self,
+            specimen?,
+            STIFFNESS.name,
+            head,
+        )
+        .map(Formula::Constant)
     }
 }

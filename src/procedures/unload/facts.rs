@@ -2,10 +2,12 @@
 
 use crate::procedures::base_excitation::chart;
 use crate::procedures::facts::{Facts, Recorded, Tests};
+use crate::schema::procedures::unload as schema;
 
 pub(crate) fn of_specimen() -> Facts<'static> {
     Facts {
         unloads: true,
+        headline: vec![schema::RESIDUAL_DISPLACEMENT.name],
         ..Facts::default()
     }
 }
@@ -15,6 +17,7 @@ pub(crate) fn of_frame() -> Facts<'static> {
         tests: Tests::Frame,
         unloads: true,
         figures: chart::UNLOADING_FIGURES,
+        headline: vec![schema::RESIDUAL_DRIFT.name],
         ..Facts::default()
     }
 }

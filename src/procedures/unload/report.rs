@@ -1,4 +1,5 @@
 //! A constant of the report of an unloading.
 
 /// The method by which the contributions to its uncertainty were found.
-pub(crate) const UNCERTAINTY: &str = "told in closed form of where the specimen carries no load, R + K(x₀ − x) = 0 with the stiffness that it showed on the way there";
+pub(crate) const UNCERTAINTY: &str = "in closed form, from the unloaded position: R + K(x₀ − x) = 0 with the \
+ stiffness measured on the way there";

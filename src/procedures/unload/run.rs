@@ -3,6 +3,7 @@
 //! the slopes of the moves before it (`physics/frame/unloading_path.rs`); the guard compares every one with the limits.
 
 use super::uncertainty::{NOISE, RestUncertainty};
+use crate::physics::statistics::ReadingNoise;
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
 use crate::plan::formula::{Formula, ResultValue};
@@ -14,6 +15,8 @@ use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::schema::ResultKind;
+use crate::schema::procedures::SPECIMEN;
+use crate::schema::procedures::STIFFNESS;
 use crate::schema::procedures::unload as schema;
 use crate::uncertainty::{Contribution, combined};
 use crate::units::Dimension;
@@ -34,7 +37,7 @@ pub(crate) fn perform(
 ) -> Performed {
     let mut steps = Vec::new();
     let outcome = inputs
-        .positive("stiffness", &plan.stiffness, Dimension::STIFFNESS)
+        .positive(STIFFNESS.name, &plan.stiffness, Dimension::STIFFNESS)
         .and_then(|stiffness| {
             unload(
                 &Request {
@@ -106,12 +109,7 @@ pub(crate) fn perform_frame(
 
 /// The expected unloading of a frame.
 pub(crate) fn of_frame(frame: &Frame) -> Result<Unloading, Stop> {
-    let unfit = |reason: String| Stop::BadInput {
-        field: "specimen",
-        value: 0.0,
-        dimension: Dimension::NUMBER,
-        wanted: reason.into(),
-    };
+    let unfit = |reason: String| Stop::bad_input(SPECIMEN.name, 0.0, Dimension::NUMBER, reason);
     let properties = FrameProperties::of(frame, &Damping::None);
     let properties =
         properties.map_err(|reason| unfit(format!("a frame that can be unloaded: {reason}")))?;
@@ -194,7 +192,7 @@ fn unload(
 ) -> Result<Rest, Stop> {
     let within = request
         .within
-        .map(|within| inputs.positive("within", within, Dimension::FORCE))
+        .map(|within| inputs.positive(schema::WITHIN.name, within, Dimension::FORCE))
         .transpose()?;
     let speed = inputs.speed(request.speed)?;
     let mut rest = to_rest(unloading.clone(), within, speed, 0, session, steps)?;
@@ -220,7 +218,14 @@ pub(crate) fn to_rest(
     let detectable = (NOISE * noise.force).max(unloading.force_of(noise.resolution.max(rounding)));
     let mut left = largest(&at.force);
     let within = within.unwrap_or_else(|| detectable.max(SMALL * left).max(f64::MIN_POSITIVE));
-    let mut path = UnloadingPath::new(unloading, (noise.force, noise.resolution), loaded(&at));
+    let mut path = UnloadingPath::new(
+        unloading,
+        ReadingNoise {
+            force: noise.force,
+            resolution: noise.resolution,
+        },
+        loaded(&at),
+    );
     if session.unloads_at_once {
         path = path.at_once();
     }
@@ -261,7 +266,7 @@ pub(crate) fn to_rest(
         let force = readable(force, Dimension::FORCE);
         session.event(
             EventKind::Remark,
-            format!("the load could not be taken off to within {wanted}: {force} is left"),
+            format!("unloading incomplete: remaining force {force} (limit {wanted})"),
         );
     }
     Ok(rest(at))

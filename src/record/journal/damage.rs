@@ -4,7 +4,7 @@ use super::{FORMAT, LINE_BYTES, OLDEST_FORMAT};
 
 /// The run log was altered, or is not one: it must not be continued.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the journal is damaged at line {line} (byte {offset}{}): {reason}", .step.map(|step| format!(", after step {step}")).unwrap_or_default())]
+#[error("the run log is damaged at line {line} (byte {offset}{}): {reason}", .step.map(|step| format!(", after step {step}")).unwrap_or_default())]
 pub struct Damage {
     /// Offset of the first byte of the first bad line.
     pub offset: u64,
@@ -18,30 +18,30 @@ pub struct Damage {
 /// The damage of a line.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Wrong {
-    #[error("this is no record")]
+    #[error("this is not an entry")]
     Shape,
     #[error("the line has more than {LINE_BYTES} bytes")]
     TooLong,
-    #[error("the checksum is of other bytes than these")]
+    #[error("the checksum does not match the bytes")]
     Checksum,
-    #[error("record {found} stands where record {expected} belongs")]
+    #[error("entry {found} is at the position of entry {expected}")]
     Sequence { expected: u64, found: u64 },
     #[error(
-        "the chain does not lead here from the record before: one of the two was altered, or comes from another run"
+        "the hash chain from the entry before is broken: one of the two was altered, or is from another run"
     )]
     Chain,
-    #[error("no record is called {0}")]
+    #[error("unknown entry type {0}")]
     UnknownKind(String),
-    #[error("what it says is no JSON object")]
+    #[error("its body is not a JSON object")]
     NotAnObject,
-    #[error("the journal does not begin with HEADER")]
+    #[error("the run log does not begin with HEADER")]
     NoHeader,
     #[error("a second HEADER")]
     SecondHeader,
     #[error("its format is version {found}; this psd reads versions {OLDEST_FORMAT} to {FORMAT}")]
     Format { found: String },
-    #[error("END counts {count} records with head {head}, and others stand before it")]
+    #[error("END states {count} entries with head {head}, but the entries before it differ")]
     EndOfAnother { count: String, head: String },
-    #[error("a record stands after END")]
+    #[error("an entry follows END")]
     AfterEnd,
 }

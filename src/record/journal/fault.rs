@@ -12,14 +12,14 @@ pub const DEEPEST: usize = 64;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum JournalFault {
     /// The disk failed. Final: every later call gives the same fault and does not use the disk again.
-    #[error("the journal cannot be {doing}: {text}")]
+    #[error("the run log cannot be {doing}: {text}")]
     Storage {
         doing: Doing,
         kind: io::ErrorKind,
         text: String,
     },
     /// The entry is invalid; nothing was written, and the run log can be continued.
-    #[error("the journal refuses a record: {0}")]
+    #[error("the run log rejects an entry: {0}")]
     Refused(#[from] Refusal),
 }
 
@@ -47,7 +47,7 @@ impl std::fmt::Display for Doing {
         f.write_str(match self {
             Self::Append => "written",
             Self::Sync => "made durable",
-            Self::Cut => "cut back",
+            Self::Cut => "truncated",
         })
     }
 }
@@ -57,19 +57,19 @@ impl std::fmt::Display for Doing {
 pub enum Refusal {
     #[error("a number in it is not finite")]
     NotFinite,
-    #[error("it is no JSON object")]
+    #[error("it is not a JSON object")]
     NotAnObject,
     #[error("a number in it has more than 64 bits")]
     TooWide,
-    #[error("it has more than {} brackets inside brackets", DEEPEST)]
+    #[error("it has more than {} nested brackets", DEEPEST)]
     TooDeep,
-    #[error("its line would have {bytes} bytes, the most is {}", super::LINE_BYTES)]
+    #[error("its line would have {bytes} bytes (limit {})", super::LINE_BYTES)]
     TooLong { bytes: usize },
-    #[error("its field `{0}` is written by the journal itself")]
+    #[error("its field `{0}` is reserved for the run log itself")]
     Reserved(&'static str),
     /// HEADER is the first and the only one; END is written by `end`; nothing follows it.
-    #[error("{} has no place here", .0.word())]
+    #[error("{} is not allowed here", .0.word())]
     OutOfPlace(EntryKind),
-    #[error("it does not turn into JSON: {0}")]
+    #[error("it cannot be converted to JSON: {0}")]
     NotJson(String),
 }

@@ -7,6 +7,7 @@ use crate::record::ProcedureRecord;
 use crate::report::run::Run;
 use crate::report::wording::budget as wording;
 use crate::rig::named_axis;
+use crate::schema::frames::{DAMPING_RATIO, MASS_MATRIX, STIFFNESS_MATRIX};
 use crate::uncertainty::{Contribution, Source};
 use crate::units::Dimension;
 
@@ -142,8 +143,8 @@ impl Input {
                     Some(plan.rig.calibration_of(axis).zero()),
                 )
             },
-            Source::MassMatrix(index) => Self::matrix(plan, index, "mass_matrix", 0),
-            Source::StiffnessMatrix(index) => Self::matrix(plan, index, "stiffness_matrix", 1),
+            Source::MassMatrix(index) => Self::matrix(plan, index, MASS_MATRIX.name, 0),
+            Source::StiffnessMatrix(index) => Self::matrix(plan, index, STIFFNESS_MATRIX.name, 1),
             Source::RestLoad { .. } => {
                 Self::unnamed(wording::REST_LOAD, Origin::Program, Dimension::FORCE)
             }
@@ -230,7 +231,7 @@ impl Input {
             Some((&planned.name, damping, uncertainty))
         });
         let Some((procedure, damping, uncertainty)) = damping else {
-            return Self::unnamed("damping_ratio", Origin::Plan, Dimension::NUMBER);
+            return Self::unnamed(DAMPING_RATIO.name, Origin::Plan, Dimension::NUMBER);
         };
         let (name, ratio) = match damping {
             ShakeDamping::Rayleigh(ratio) => (format!("{procedure}.damping_ratio"), Some(ratio)),

@@ -6,7 +6,7 @@ use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::text::Piece;
-use super::{Block, Document, Figure, Notice, Style, Table, Text};
+use super::{Block, Document, Figure, Notice, Photo, Style, Table, Text};
 use crate::report::wording::LABELS;
 
 /// Inline style and embedded images only: markup in a label could neither load nor run anything.
@@ -26,9 +26,9 @@ pub(crate) fn html(document: &Document) -> String {
             }
             body {
                 (watermark(document))
-                (top(document))
-                @for section in sections(&document.body) {
-                    section { @for block in section { (render(block)) } }
+                main {
+                    (top(document))
+                    @for (index, blocks) in sections(&document.body).enumerate() { (section(index, blocks)) }
                 }
                 footer { p.end { (line(&document.end)) } }
             }
@@ -69,34 +69,26 @@ fn top(document: &Document) -> Markup {
     html! {
         header.title {
             div {
+                @if let Some(logo) = &document.logo { p.logo { (photo(logo)) } }
                 p.kind { (document.kind) }
                 @if let Some(replaced) = &document.replaces { p.kind { b { (LABELS.amendment_to) " " (replaced) } } }
                 h1 { (line(&document.title)) }
             }
             div.run {
-                (LABELS.report) " " span.id { (document.id) } br;
-                @if let Some(date) = &document.date { (LABELS.tested) " " (date) } @else { (LABELS.date_not_given) }
+                (LABELS.report) " " span.id { (document.id) }
+                @if let Some(dated) = &document.dated { br; (dated) }
             }
         }
-        div.front {
-            @for (name, value) in in_two_columns(&document.front) { div { span.name { (line(name)) } span { (line(value)) } } }
+        dl.front {
+            @for (name, value) in &document.front { div { dt { (line(name)) } dd { (line(value)) } } }
         }
         @if !document.missing_fields.is_empty() { p.note.lacking { (LABELS.not_given) " " (document.missing_fields.join(", ")) "." } }
-        div class={ "verdict " (document.verdict.name) } {
-            strong { (document.verdict.name.to_uppercase()) }
+        div class={ "verdict " (document.verdict.tone.name()) } {
+            strong { (document.verdict.heading) }
             (line(&document.verdict.text))
         }
         @for notice in &document.notices { (boxed(notice)) }
     }
-}
-
-/// Rows of two pairs: the first half on the left, the second on the right.
-fn in_two_columns<T>(items: &[T]) -> impl Iterator<Item = &T> {
-    let (left, right) = items.split_at(items.len().div_ceil(2));
-    left.iter()
-        .enumerate()
-        .flat_map(|(row, item)| [Some(item), right.get(row)])
-        .flatten()
 }
 
 fn boxed(notice: &Notice) -> Markup {
@@ -113,17 +105,36 @@ fn sections(body: &[Block]) -> impl Iterator<Item = &[Block]> {
     body.chunk_by(|_, next| !matches!(next, Block::Section { .. }))
 }
 
-fn render(block: &Block) -> Markup {
+/// Blocks with the heading that names their tables.
+fn section(index: usize, blocks: &[Block]) -> Markup {
+    let mut heading = String::new();
+    let rendered: Vec<Markup> = blocks
+        .iter()
+        .enumerate()
+        .map(|(at, block)| {
+            if matches!(block, Block::Section { .. } | Block::Part { .. }) {
+                heading = format!("h{index}-{at}");
+            }
+            render(block, &heading)
+        })
+        .collect();
+    html! { section { @for block in rendered { (block) } } }
+}
+
+/// A block; `heading` is the id of the heading before it, or its own.
+fn render(block: &Block, heading: &str) -> Markup {
     html! {
         @match block {
-            Block::Section { title } => { h2 { (line(title)) } }
-            Block::Part { title } => { h3 { (line(title)) } }
+            Block::Section { title } => { h2 id=(heading) { (line(title)) } }
+            Block::Part { title } => { h3 id=(heading) { (line(title)) } }
+            Block::NewPage => { div.new-page {} }
             Block::Paragraph { text } => { p { (line(text)) } }
             Block::Note { text } => { p.note { (line(text)) } }
             Block::List { items } => { ul { @for item in items { li { (line(item)) } } } }
-            Block::Pairs { rows } => { (pairs(rows)) }
-            Block::Table(it) => { (table(it)) }
+            Block::Pairs { rows } => { (pairs(rows, heading)) }
+            Block::Table(it) => { (table(it, heading)) }
             Block::Figure(it) => { (figure(it)) }
+            Block::Photos { photos } => { div.photos { @for it in photos { figure { (photo(it)) figcaption { (line(&it.caption)) } } } } }
             Block::Code { lines } => {
                 pre { @for (index, line) in lines.iter().enumerate() { span.n { (index + 1) } (line) "\n" } }
             }
@@ -132,13 +143,19 @@ fn render(block: &Block) -> Markup {
     }
 }
 
-fn pairs(rows: &[(Text, Text)]) -> Markup {
+fn pairs(rows: &[(Text, Text)], heading: &str) -> Markup {
     html! {
-        table.pairs { tbody { @for (name, value) in rows { tr { th scope="row" { (line(name)) } td { (line(value)) } } } } }
+        table.pairs aria-labelledby=[labelled(heading)] { tbody { @for (name, value) in rows { tr { th scope="row" { (line(name)) } td { (line(value)) } } } } }
     }
 }
 
-fn table(it: &Table) -> Markup {
+/// The id of the heading that names a table; none before the first heading.
+fn labelled(heading: &str) -> Option<&str> {
+    (!heading.is_empty()).then_some(heading)
+}
+
+/// The first cell of a row names it. On a narrow screen the cells stand below each other, each after the title of its column.
+fn table(it: &Table, heading: &str) -> Markup {
     let shares: u32 = it
         .columns
         .iter()
@@ -150,21 +167,23 @@ fn table(it: &Table) -> Markup {
         (false, false) => "words",
     };
     html! {
-        div.scroll { table.data {
+        div.scroll { table.data aria-labelledby=[labelled(heading)] {
             thead {
                 tr {
                     @for column in &it.columns {
                         // CSS has no fraction of the remaining width: 70 % are distributed.
                         @let width = if column.share == 0 { String::new() } else { format!("width: {}%", 70 * u32::from(column.share) / shares.max(1)) };
-                        th class=(class(column.numeric, column.share == 0)) style=[(!width.is_empty()).then_some(width)] { (line(&column.title)) }
+                        th scope="col" class=(class(column.numeric, column.share == 0)) style=[(!width.is_empty()).then_some(width)] { (line(&column.title)) }
                     }
                 }
             }
             tbody {
                 @for row in &it.rows {
                     tr {
-                        @for (cell, column) in row.iter().zip(&it.columns) {
-                            td class=(class(column.numeric, column.share == 0)) { (line(cell)) }
+                        @for (index, (cell, column)) in row.iter().zip(&it.columns).enumerate() {
+                            @let class = class(column.numeric, column.share == 0);
+                            @if index == 0 { th scope="row" class=(class) { (line(cell)) } }
+                            @else { td class=(class) data-title=(plain(&column.title)) { (line(cell)) } }
                         }
                     }
                 }
@@ -177,10 +196,15 @@ fn table(it: &Table) -> Markup {
 fn figure(it: &Figure) -> Markup {
     html! {
         figure {
-            div.scroll { img alt=(plain(&it.caption)) src={ "data:image/svg+xml;base64," (STANDARD.encode(&it.svg)) }; }
+            div.scroll { img alt=(plain(&it.description)) src={ "data:image/svg+xml;base64," (STANDARD.encode(&it.svg)) }; }
             figcaption { b { (LABELS.figure) " " (it.number) ". " } (line(&it.caption)) }
         }
     }
+}
+
+fn photo(it: &Photo) -> Markup {
+    let data = STANDARD.encode(&it.picture.bytes);
+    html! { img alt=(plain(&it.caption)) src={ "data:" (it.picture.kind.media_type()) ";base64," (data) }; }
 }
 
 fn line(text: &Text) -> Markup {
@@ -196,6 +220,7 @@ fn render_piece(piece: &Piece) -> Markup {
             Style::Code => code.soft { (text) },
             Style::Id => span.id { (text) },
             Style::Missing => span.missing { (text) },
+            Style::Strong => strong { (text) },
             Style::Pass => span.pass { (text) },
             Style::Inconclusive => span.doubt { (text) },
             Style::Fail => span.fail { (text) },

@@ -12,6 +12,7 @@ mod world;
 use serde::Serialize;
 
 use super::wording::Labels;
+use crate::plan::Picture;
 
 pub(crate) use text::{Style, Text, printable};
 
@@ -23,10 +24,14 @@ pub(super) struct Document {
     /// The report that this one replaces.
     pub replaces: Option<String>,
     pub title: Text,
+    /// The logo of the laboratory, with its name.
+    pub logo: Option<Photo>,
     /// Identifies the report on every page.
     pub id: String,
     /// Date of the test, `YYYY-MM-DD` or as given.
     pub date: Option<String>,
+    /// The same in words; None if there is nothing to print.
+    pub dated: Option<String>,
     /// Particulars below the title: names and values.
     pub front: Vec<(Text, Text)>,
     /// Names of particulars that are missing there.
@@ -45,12 +50,35 @@ pub(super) struct Document {
     pub attachments: Vec<Attachment>,
 }
 
-/// The verdict on the whole run.
+/// The statement on the whole run.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Verdict {
-    /// The name in `summary.json`.
-    pub name: &'static str,
+    pub tone: Tone,
+    pub heading: String,
     pub text: Text,
+}
+
+/// The colour of a statement. The words alone are enough: a report may be printed in grey.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Tone {
+    /// No statement of conformity, or a simulation.
+    Neutral,
+    Pass,
+    Inconclusive,
+    Fail,
+}
+
+impl Tone {
+    /// The name in the style of a page.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Neutral => "neutral",
+            Self::Pass => "pass",
+            Self::Inconclusive => "inconclusive",
+            Self::Fail => "fail",
+        }
+    }
 }
 
 /// A notice against an incorrect use of the report: text in a box, and the reason.
@@ -77,6 +105,8 @@ pub(crate) enum Block {
     Part {
         title: Text,
     },
+    /// The next block begins a page.
+    NewPage,
     Paragraph {
         text: Text,
     },
@@ -93,6 +123,10 @@ pub(crate) enum Block {
     },
     Table(Table),
     Figure(Figure),
+    /// Photographs beside each other.
+    Photos {
+        photos: Vec<Photo>,
+    },
     /// A file with line numbers.
     Code {
         lines: Vec<String>,
@@ -152,8 +186,20 @@ impl Column {
 pub(crate) struct Figure {
     pub number: usize,
     pub caption: Text,
+    /// Its content in words, for a reader who cannot see it.
+    pub description: Text,
     #[serde(skip)]
     pub svg: String,
+}
+
+/// A picture of the plan.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Photo {
+    /// Its name among the files of the layout.
+    pub name: String,
+    pub caption: Text,
+    #[serde(skip)]
+    pub picture: Picture,
 }
 
 impl Block {
@@ -179,6 +225,15 @@ impl Block {
 }
 
 impl Document {
+    /// Its pictures: the logo, then the photographs.
+    pub fn photos(&self) -> impl Iterator<Item = &Photo> {
+        let photos = self.body.iter().filter_map(|block| match block {
+            Block::Photos { photos } => Some(photos),
+            _ => None,
+        });
+        self.logo.iter().chain(photos.flatten())
+    }
+
     /// Its figures, in order.
     pub fn figures(&self) -> impl Iterator<Item = &Figure> {
         self.body.iter().filter_map(|block| match block {

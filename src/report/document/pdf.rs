@@ -13,9 +13,9 @@ use super::Document;
 use super::world::Sealed;
 use crate::text::glyphs;
 
-const TEMPLATE: &str = include_str!("certificate.typ");
+const TEMPLATE: &str = include_str!("report.typ");
 
-/// The report as a PDF: PDF/A-3b, which requires a date, if the day of the test is known; else PDF 1.7.
+/// The report as a tagged PDF: PDF/UA-1, and PDF/A-3a, which requires a date, if the day of the test is known.
 pub(crate) fn pdf(document: &Document) -> Result<Vec<u8>, String> {
     let day = document.date.as_deref().and_then(day);
     let mut data = serde_json::to_value(document).map_err(|error| error.to_string())?;
@@ -28,7 +28,8 @@ pub(crate) fn pdf(document: &Document) -> Result<Vec<u8>, String> {
         .map(|file| serde_json::json!([file.name, file.text]))
         .collect();
     for key in [
-        "title", "kind", "id", "date", "front", "verdict", "notices", "body", "end",
+        "title", "kind", "logo", "id", "date", "dated", "front", "verdict", "notices", "body",
+        "end",
     ] {
         make_settable(&mut data[key]);
     }
@@ -39,24 +40,47 @@ pub(crate) fn pdf(document: &Document) -> Result<Vec<u8>, String> {
             figure.svg.clone().into_bytes(),
         )
     }));
+    files.extend(
+        document
+            .photos()
+            .map(|photo| (photo.name.clone(), photo.picture.bytes.clone())),
+    );
     let world = Sealed::new(TEMPLATE, files)?;
     let paged = typst::compile::<PagedDocument>(&world)
         .output
         .map_err(|errors| messages(&errors))?;
-    let standard = if day.is_some() {
-        PdfStandard::A_3b
+    let mut refused = String::new();
+    for standards in standards(day.is_some()) {
+        let options = PdfOptions {
+            ident: Smart::Custom(document.id.clone()),
+            creator: Smart::Custom(Some("psd".to_owned())),
+            standards: PdfStandards::new(standards).map_err(|error| error.message().to_string())?,
+            tagged: true,
+            ..PdfOptions::default()
+        };
+        match typst_pdf::pdf(&paged, &options) {
+            Ok(bytes) => return Ok(bytes),
+            Err(errors) => refused = messages(&errors),
+        }
+    }
+    Err(refused)
+}
+
+/// Standards of the file, the strictest first: archived and accessible. A text of the plan may have a character that the first does
+/// not allow; the report is then made after the next.
+const fn standards(dated: bool) -> &'static [&'static [PdfStandard]] {
+    if dated {
+        &[
+            &[PdfStandard::A_3a, PdfStandard::Ua_1],
+            &[PdfStandard::A_3b],
+            &[PdfStandard::V_1_7],
+        ]
     } else {
-        PdfStandard::V_1_7
-    };
-    let options = PdfOptions {
-        ident: Smart::Custom(document.id.clone()),
-        creator: Smart::Custom(Some("psd".to_owned())),
-        standards: PdfStandards::new(&[standard]).map_err(|error| error.message().to_string())?,
-        // Common readers report structure errors in tagged files.
-        tagged: false,
-        ..PdfOptions::default()
-    };
-    typst_pdf::pdf(&paged, &options).map_err(|errors| messages(&errors))
+        &[
+            &[PdfStandard::V_1_7, PdfStandard::Ua_1],
+            &[PdfStandard::V_1_7],
+        ]
+    }
 }
 
 fn messages(errors: &[SourceDiagnostic]) -> String {

@@ -19,6 +19,8 @@ pub(crate) enum Style {
     Id,
     /// A missing value.
     Missing,
+    /// A word of a verdict without a colour.
+    Strong,
     /// A word of a verdict, in its colour.
     Pass,
     Inconclusive,

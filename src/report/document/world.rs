@@ -8,7 +8,7 @@ use typst::foundations::{Bytes, Datetime, Duration};
 use typst::syntax::{FileId, RootedPath, Source, VirtualPath, VirtualRoot};
 use typst::text::{Font, FontBook};
 use typst::utils::LazyHash;
-use typst::{Library, LibraryExt as _, World};
+use typst::{Feature, Library, LibraryExt as _, World};
 
 use super::fonts::FONTS;
 
@@ -24,12 +24,16 @@ impl Sealed {
     /// # Errors
     /// A name that is not a path.
     pub fn new(template: &str, files: Vec<(String, Vec<u8>)>) -> Result<Self, String> {
-        let main = Source::new(id("certificate.typ")?, template.to_owned());
+        let main = Source::new(id("report.typ")?, template.to_owned());
         let files = files
             .into_iter()
             .map(|(name, bytes)| Ok((id(&name)?, Bytes::new(bytes))));
         Ok(Self {
-            library: LazyHash::new(Library::default()),
+            library: LazyHash::new(
+                Library::builder()
+                    .with_features([Feature::A11yExtras].into_iter().collect())
+                    .build(),
+            ),
             main,
             files: files.collect::<Result<_, String>>()?,
         })

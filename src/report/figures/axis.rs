@@ -1,6 +1,8 @@
 //! An axis: range, ticks and title. In: the range of the data in SI, and the quantity. Out: an [`Axis`] in a readable unit. It
 //! knows no pixels.
 
+use std::ops::RangeInclusive;
+
 use super::chart::{End, Quantity};
 use crate::units::display::{minus, typeset, unit};
 
@@ -70,7 +72,7 @@ impl Axis {
         Self {
             low,
             high,
-            ticks: ticks(low, high, step),
+            ticks: ticks(low..=high, step),
             title,
             factor,
         }
@@ -98,17 +100,17 @@ fn nice_step(rough: f64) -> f64 {
     nice * power
 }
 
-fn ticks(low: f64, high: f64, step: f64) -> Vec<(f64, String)> {
+fn ticks(range: RangeInclusive<f64>, step: f64) -> Vec<(f64, String)> {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "decimals of a step, bounded to 0..=12"
     )]
     let decimals = (-(step * 1.000_001).log10().floor()).clamp(0.0, 12.0) as usize;
-    let first = (low / step - 1e-9).ceil();
+    let first = (range.start() / step - 1e-9).ceil();
     (0_u32..64)
         .map(|index| (first + f64::from(index)) * step)
-        .take_while(|tick| *tick <= high + 1e-9 * step)
+        .take_while(|tick| *tick <= range.end() + 1e-9 * step)
         .map(|tick| {
             // Rounding to the decimals of the step removes the sign of a negative zero.
             let tick = if tick.abs() < 1e-9 * step { 0.0 } else { tick };

@@ -4,6 +4,8 @@
 use std::borrow::Cow;
 
 use super::points::Points;
+use crate::report::number;
+use crate::report::wording::figures as wording;
 use crate::units::Dimension;
 
 /// A chart of two quantities.
@@ -13,6 +15,27 @@ pub(crate) struct Chart {
     pub bands: Vec<Band>,
     pub series: Vec<Series>,
     pub references: Vec<Reference>,
+}
+
+impl Chart {
+    /// The axes and the range of each curve in words, for a reader who cannot see the chart.
+    pub fn description(&self) -> String {
+        let range = |series: &Series| {
+            let ends = series
+                .points
+                .iter()
+                .map(|(_, y)| *y)
+                .filter(|y| y.is_finite())
+                .fold(None, |ends: Option<(f64, f64)>, y| {
+                    Some(ends.map_or((y, y), |(low, high)| (low.min(y), high.max(y))))
+                });
+            let (low, high) = ends?;
+            let [low, high] = [low, high].map(|y| number::text(y, self.y.dimension));
+            Some(wording::curve(&series.label, low, high))
+        };
+        let curves = self.series.iter().filter_map(range);
+        wording::axes(&self.y.name, &self.x.name) + &curves.collect::<String>()
+    }
 }
 
 /// The quantity of an axis.

@@ -28,6 +28,11 @@ pub(super) struct Drawn {
     pub svg: String,
     /// The content of the figure, in one sentence.
     pub caption: String,
+    /// Its axes and curves in words.
+    pub description: String,
+    pub kind: FigureKind,
+    /// The name of the procedure that it shows, the first one of several.
+    pub procedure: String,
 }
 
 /// A figure that is not drawn yet.
@@ -65,7 +70,10 @@ impl Undrawn {
         let svg = draw::svg(&self.chart).map_err(|reason| self.failed(reason))?;
         Ok(Drawn {
             svg,
+            description: self.chart.description(),
             caption: self.caption,
+            kind: self.kind,
+            procedure: self.procedure,
         })
     }
 

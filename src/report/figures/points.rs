@@ -83,7 +83,8 @@ impl PointCollector {
     }
 
     /// Adds a point to the segments; a point that is not finite is not drawn.
-    fn add(&mut self, (x, y): (f64, f64)) {
+    fn add(&mut self, point: (f64, f64)) {
+        let (x, y) = point;
         if !x.is_finite() || !y.is_finite() {
             return;
         }

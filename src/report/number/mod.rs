@@ -7,7 +7,7 @@ mod uncertain;
 pub(crate) use condition::bound;
 pub(super) use condition::{guard_band, margin, probability, value};
 pub(crate) use uncertain::with_uncertainty;
-pub(super) use uncertain::{parts, plus_minus};
+pub(super) use uncertain::{parts, plus_minus, with_expanded};
 
 use crate::units::Dimension;
 use crate::units::display;

@@ -93,6 +93,15 @@ pub(in crate::report) fn plus_minus(value: &str, uncertainty: &str) -> String {
     }
 }
 
+/// A value and its expanded uncertainty in one unit: `7.88 ± 0.32 mm`.
+pub(in crate::report) fn with_expanded(value: f64, known: Known, dimension: Dimension) -> String {
+    let parts = parts(value, Some(known), dimension);
+    match parts.expanded {
+        Some(expanded) => join_typeset(&plus_minus(&parts.value, &expanded), &parts.unit),
+        None => text(value, dimension),
+    }
+}
+
 /// A value and its standard uncertainty in one unit, both to the uncertainty's second digit, in parentheses (JCGM 100:2008, 7.2.2, form 3):
 /// `300.02(0.15) kN/m`.
 pub(crate) fn with_uncertainty(

@@ -61,7 +61,7 @@ pub fn put_everything(
             progress.begin(OutputPart::Report, sink);
             let page = sanitize::page(&document::html::html(&report));
             let page = OutputFile {
-                path: "certificate.html".to_owned(),
+                path: "report.html".to_owned(),
                 bytes: page.into_bytes(),
             };
             digests.push(put_file(sink, &page)?);
@@ -69,7 +69,7 @@ pub fn put_everything(
         if pdf {
             progress.begin(OutputPart::Report, sink);
             let pages = OutputFile {
-                path: "certificate.pdf".to_owned(),
+                path: "report.pdf".to_owned(),
                 bytes: document::pdf::pdf(&report).map_err(OutputError::Pdf)?,
             };
             digests.push(put_file(sink, &pages)?);

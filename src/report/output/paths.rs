@@ -11,7 +11,7 @@ use crate::text::sanitize;
 pub(in crate::report) fn plan_files(plan: &Plan) -> Vec<OutputFile> {
     let file = |file: &PlanFile| OutputFile {
         path: format!("plan/{}", safe_path(&file.name)),
-        bytes: file.text.clone().into(),
+        bytes: file.bytes(),
     };
     let mut files: Vec<OutputFile> = plan.files.iter().map(file).collect();
     make_unique(files.iter_mut().map(|file| &mut file.path));

@@ -1,8 +1,8 @@
-//! Conditions of the test: environment, time scale, specimens, ground motions, strikers, limits, parameters. In: a run. Out: blocks. A
-//! missing condition is marked, and so is a value that the plan states without a measurement.
+//! Conditions of the test: environment and time scale on the second page; specimens, ground motions, strikers, limits and parameters
+//! in an annex. In: a run. Out: blocks. A value that the plan states without a measurement is marked.
 
 use super::frame;
-use super::{Source, described, pairs, with_spaces};
+use super::{Source, described, pairs, validation, with_spaces};
 use crate::plan::{Interval, Parameter, Settle, Specimen, Striker};
 use crate::procedures;
 use crate::record::equipment::HeldLimit;
@@ -11,42 +11,55 @@ use crate::report::number;
 use crate::report::run::Run;
 use crate::report::status::particulars::{FRONT, stated};
 use crate::report::wording::{common, conditions as wording, specimen as specimen_text};
+use crate::schema::limits::NAMES;
+use crate::schema::plan_block as schema;
 use crate::units::Dimension;
 
 /// Fields of the `plan` block that another section prints, or that concern the language.
 const PRINTED_ELSEWHERE: &[&str] = &[
-    "edition",
-    "revision",
-    "decision_rule",
-    "deviations",
-    "rehearsal",
-    "equipment",
-    "validation",
-    "opinions",
+    schema::EDITION.name,
+    schema::REVISION.name,
+    schema::DECISION_RULE.name,
+    schema::DEVIATIONS.name,
+    "check_run",
+    schema::EQUIPMENT.name,
+    schema::VALIDATION.name,
+    schema::OPINIONS.name,
 ];
 
 /// Fields of the `plan` block that are always printed here, with their labels.
 const ENVIRONMENT: &[(&str, &str)] = &[
-    ("temperature", wording::TEMPERATURE),
-    ("humidity", wording::HUMIDITY),
+    (schema::TEMPERATURE.name, wording::TEMPERATURE),
+    (schema::HUMIDITY.name, wording::HUMIDITY),
 ];
 
 /// Fields that are printed here if they are given.
 const WHERE_GIVEN: &[(&str, &str)] = &[
-    ("sampling", wording::SAMPLING),
-    ("external", wording::EXTERNAL),
-    ("notes", wording::NOTES),
+    (schema::SAMPLING.name, wording::SAMPLING),
+    (schema::EXTERNAL.name, wording::EXTERNAL),
+    (schema::NOTES.name, wording::NOTES),
 ];
 
-/// The section.
+/// The second page: environment, sampling, time scale, program.
+pub(super) fn summary(source: &Source<'_>, body: &mut Vec<Block>) {
+    let run = source.run;
+    let mut rows = environment(run);
+    if !run.record.rig.simulated {
+        rows.extend(time_scales(run));
+    }
+    rows.push((wording::PROGRAM.into(), program(run).into()));
+    body.push(Block::section(wording::TITLE));
+    body.push(Block::Pairs { rows });
+}
+
+/// The version, and the outcome of its self-test.
+fn program(run: &Run<'_>) -> String {
+    wording::program(&run.provenance.psd_version, validation::outcome())
+}
+
+/// The annex: specimens, ground motions, strikers, limits, parameters.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     let run = source.run;
-    body.push(Block::section(wording::TITLE));
-    body.push(Block::Pairs {
-        rows: environment(run),
-    });
-    time_scale(run, body);
-    body.push(Block::note(wording::PSEUDO_DYNAMIC));
     let as_stated = |name: String| Text::from(name).soft(wording::NOT_MEASURED);
     for specimen in &run.plan.specimens {
         body.push(Block::part(as_stated(wording::specimen(&specimen.name))));
@@ -76,11 +89,15 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     }
 }
 
-/// Temperature, humidity, and every other field of the plan that no other section prints.
+/// Temperature, humidity, and every other field of the plan that no other section prints. A simulation has no environment: what is
+/// not given is not missing.
 fn environment(run: &Run<'_>) -> Vec<(Text, Text)> {
+    let simulated = run.record.rig.simulated;
     let mut rows: Vec<(Text, Text)> = ENVIRONMENT
         .iter()
-        .map(|(field, name)| ((*name).into(), Text::given(stated(run, field).as_deref())))
+        .map(|(field, name)| (name, stated(run, field)))
+        .filter(|(_, text)| text.is_some() || !simulated)
+        .map(|(name, text)| ((*name).into(), Text::given(text.as_deref())))
         .collect();
     rows.extend(
         WHERE_GIVEN
@@ -105,7 +122,7 @@ fn environment(run: &Run<'_>) -> Vec<(Text, Text)> {
 }
 
 /// Simulated time of each impact beside its laboratory time.
-fn time_scale(run: &Run<'_>, body: &mut Vec<Block>) {
+fn time_scales(run: &Run<'_>) -> Vec<(Text, Text)> {
     let rows = run.record.procedures.iter().filter_map(|procedure| {
         let (virtual_time, rig_time) = procedures::recorded(&procedure.history).time_spans?;
         let slower = if rig_time > 0.0 {
@@ -122,10 +139,7 @@ fn time_scale(run: &Run<'_>, body: &mut Vec<Block>) {
             )
         })
     });
-    let rows: Vec<(Text, Text)> = rows.collect();
-    if !rows.is_empty() {
-        body.push(Block::Pairs { rows });
-    }
+    rows.collect()
 }
 
 /// The restoring-force model of a virtual specimen is printed only on a simulated rig.
@@ -218,7 +232,7 @@ pub(super) fn settling(settle: Settle) -> String {
 fn limits(run: &Run<'_>) -> Block {
     let equipment = run.equipment();
     let row = |limit: &HeldLimit| {
-        let name = if limit.quantity == "nrms_error" {
+        let name = if limit.quantity == NAMES.nrms_error {
             common::NRMS_TRACKING_ERROR.to_owned()
         } else {
             with_spaces(&limit.quantity)

@@ -1,63 +1,87 @@
-//! Deviations from the plan, and observations on the numbers. In: a run. Out: blocks.
+//! Deviations from the plan on the first page, observations on the numbers on the second, the notes of the run in an annex. In: a
+//! run. Out: blocks.
 
 use super::{Source, capitalised};
+use crate::procedures;
 use crate::record::EventKind;
 use crate::report::document::{Block, Text};
 use crate::report::run::Run;
 use crate::report::status::deviations;
 use crate::report::wording::deviations as wording;
 
-/// The section, if it precedes the requirements.
-pub(super) fn before_requirements(source: &Source<'_>, body: &mut Vec<Block>) {
-    if come_first(source.run) {
-        section(source.run, body);
+/// Every deviation. A simulation without any has no such section.
+pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
+    let mut found = deviations::of_run(source.run);
+    // A stated “none” must not precede a deviation, and without any it states what is printed anyway.
+    found.retain(|text| {
+        !text
+            .trim_end_matches('.')
+            .eq_ignore_ascii_case(wording::STATED_NONE)
+    });
+    if found.is_empty() && source.run.record.rig.simulated {
+        return;
     }
-}
-
-/// The section, if it follows the requirements.
-pub(super) fn after_requirements(source: &Source<'_>, body: &mut Vec<Block>) {
-    if !come_first(source.run) {
-        section(source.run, body);
-    }
-}
-
-/// Whether deviations precede the requirements: on a real rig, and if long requirements would move them off the first page.
-fn come_first(run: &Run<'_>) -> bool {
-    const ON_ONE_PAGE: usize = 8;
-    let conditions: usize = run
-        .assessment
-        .requirements
-        .iter()
-        .map(|requirement| requirement.conditions.len())
-        .sum();
-    run.plan.rig.link.as_real().is_some() || conditions > ON_ONE_PAGE
-}
-
-fn section(run: &Run<'_>, body: &mut Vec<Block>) {
     body.push(Block::section(wording::TITLE));
-    let found = deviations::of_run(run);
     if found.is_empty() {
         body.push(Block::paragraph(wording::NO_DEVIATION));
+    } else {
+        list(found, body);
     }
-    let observations = run.record.events.iter().filter(|event| match event.kind {
-        EventKind::Remark | EventKind::Inspection => true,
-        EventKind::Note => !deviations::is_of_the_line(&event.text),
+}
+
+/// The observations of the program on the results.
+pub(super) fn observations(source: &Source<'_>, body: &mut Vec<Block>) {
+    let implied: Vec<&str> = source
+        .run
+        .plan
+        .procedures
+        .iter()
+        .flat_map(|procedure| procedures::facts_of(&procedure.kind).implied)
+        .copied()
+        .collect();
+    let observations = of_kind(source.run, |kind, text| {
+        kind == EventKind::Remark && !implied.iter().any(|end| text.ends_with(end))
+    });
+    if !observations.is_empty() {
+        body.push(Block::section(wording::OBSERVATIONS));
+        list(observations, body);
+    }
+}
+
+/// Notes and inspections in the order of the run.
+pub(super) fn notes(source: &Source<'_>, body: &mut Vec<Block>) {
+    let notes = of_kind(source.run, |kind, text| match kind {
+        EventKind::Inspection => true,
+        EventKind::Note => !deviations::is_of_the_line(text),
         _ => false,
     });
-    let observations = observations.map(|event| {
-        let position = deviations::position(event.procedure.as_deref(), event.step);
-        format!(
-            "{}{position}: {}",
-            capitalised(event.kind.word()),
-            event.text
-        )
-    });
-    let items: Vec<Text> = found
-        .into_iter()
-        .chain(observations)
-        .map(Text::from)
-        .collect();
-    if !items.is_empty() {
-        body.push(Block::List { items });
+    if !notes.is_empty() {
+        body.push(Block::part(wording::NOTES));
+        list(notes, body);
     }
+}
+
+fn of_kind(run: &Run<'_>, is_printed: impl Fn(EventKind, &str) -> bool) -> Vec<String> {
+    let events = run
+        .record
+        .events
+        .iter()
+        .filter(|event| is_printed(event.kind, &event.text));
+    let text = |event: &crate::record::Event| {
+        let position = deviations::position(event.procedure.as_deref(), event.step);
+        let position = position.strip_prefix(' ').unwrap_or(&position);
+        let text = event.text.trim_end_matches('.');
+        if position.is_empty() {
+            format!("{}.", capitalised(text))
+        } else {
+            format!("{}: {text}.", capitalised(position))
+        }
+    };
+    events.map(text).collect()
+}
+
+fn list(texts: Vec<String>, body: &mut Vec<Block>) {
+    body.push(Block::List {
+        items: texts.into_iter().map(Text::from).collect(),
+    });
 }

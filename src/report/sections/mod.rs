@@ -7,7 +7,9 @@ mod deviations;
 mod equipment;
 mod figures;
 mod frame;
+mod headline;
 mod opinions;
+mod photos;
 mod plan;
 mod prediction;
 mod provenance;
@@ -22,25 +24,58 @@ use super::figures::Drawn;
 use super::output::sink::FileDigest;
 use super::run::Run;
 use super::wording;
+use crate::plan::Annex;
 
-/// The sections of a report, in order. A section without content writes nothing.
-const SECTIONS: &[Section] = &[
-    amendment::section,
-    deviations::before_requirements,
-    requirements::section,
-    deviations::after_requirements,
-    prediction::section,
-    results::section,
-    figures::section,
-    opinions::section,
-    equipment::section,
-    conditions::section,
-    statements::section,
-    plan::section,
-    provenance::section,
-    validation::section,
-    statements::signatures,
+/// The parts of a report, in order, with their sections. A section without content writes nothing, and neither does an annex of
+/// such sections. The first two pages decide; the annexes prove.
+const SECTIONS: &[(Division, &[Section])] = &[
+    (
+        Division::FirstPage,
+        &[
+            amendment::section,
+            requirements::section,
+            deviations::section,
+            statements::signatures,
+        ],
+    ),
+    (
+        Division::SecondPage,
+        &[
+            prediction::section,
+            headline::section,
+            figures::headline,
+            deviations::observations,
+            conditions::summary,
+            opinions::section,
+            statements::section,
+        ],
+    ),
+    (Division::Annex(Annex::Results), &[results::section]),
+    (Division::Annex(Annex::Budgets), &[results::budgets]),
+    (
+        Division::Annex(Annex::Figures),
+        &[figures::section, photos::section],
+    ),
+    (
+        Division::Annex(Annex::Equipment),
+        &[equipment::section, conditions::section, deviations::notes],
+    ),
+    (
+        Division::Annex(Annex::Provenance),
+        &[provenance::section, validation::section],
+    ),
+    (Division::Annex(Annex::Plan), &[plan::section]),
 ];
+
+/// A division of a report.
+enum Division {
+    /// Who, what, when; the statement of conformity.
+    FirstPage,
+    /// The results that the statement is based on.
+    SecondPage,
+    /// An annex, if the plan requests it.
+    Annex(Annex),
+}
 
 /// Writes one section.
 type Section = fn(&Source<'_>, &mut Vec<Block>);
@@ -60,16 +95,15 @@ pub(super) fn document(run: &Run<'_>, figures: &[Drawn], tables: &[FileDigest]) 
         figures,
         tables,
     };
-    let mut body = Vec::new();
-    for section in SECTIONS {
-        section(&source, &mut body);
-    }
+    let body = body(&source);
     Document {
-        kind: wording::title_page::KIND,
+        kind: title_page::kind(run),
         title: title_page::title(run).into(),
+        logo: title_page::logo(run),
         replaces: amendment::replaced_report(run),
         id: run.provenance.report_id().to_owned(),
         date: title_page::date(run),
+        dated: title_page::dated(run),
         front: title_page::particulars(run),
         missing_fields: title_page::missing_particulars(run),
         verdict: title_page::verdict(run),
@@ -81,6 +115,53 @@ pub(super) fn document(run: &Run<'_>, figures: &[Drawn], tables: &[FileDigest]) 
             .and(" —"),
         labels: wording::LABELS,
         attachments: plan::attachments(run),
+    }
+}
+
+/// The blocks of every division. The annexes have letters in their order, so that none is skipped.
+fn body(source: &Source<'_>) -> Vec<Block> {
+    let mut body = Vec::new();
+    let mut letters = 'A'..='Z';
+    for (division, sections) in SECTIONS {
+        let mut blocks = Vec::new();
+        for section in *sections {
+            section(source, &mut blocks);
+        }
+        if blocks.is_empty() {
+            continue;
+        }
+        match division {
+            Division::FirstPage => {}
+            Division::SecondPage => body.push(Block::NewPage),
+            Division::Annex(annex) => {
+                if !source.run.plan.report.annexes.contains(annex) {
+                    continue;
+                }
+                let Some(letter) = letters.next() else {
+                    continue;
+                };
+                if letter == 'A' {
+                    body.push(Block::NewPage);
+                }
+                body.push(Block::section(wording::annexes::title(
+                    letter,
+                    name_of(*annex),
+                )));
+            }
+        }
+        body.append(&mut blocks);
+    }
+    body
+}
+
+const fn name_of(annex: Annex) -> &'static str {
+    match annex {
+        Annex::Results => wording::annexes::RESULTS,
+        Annex::Budgets => wording::annexes::BUDGETS,
+        Annex::Figures => wording::annexes::FIGURES,
+        Annex::Equipment => wording::annexes::EQUIPMENT,
+        Annex::Provenance => wording::annexes::PROVENANCE,
+        Annex::Plan => wording::annexes::PLAN,
     }
 }
 

@@ -1,7 +1,7 @@
 //! The plan as it was run, and its files as attachments. In: a run. Out: blocks; files.
 
 use super::Source;
-use crate::plan::PlanFile;
+use crate::plan::{PictureKind, PlanFile};
 use crate::report::document::{Attachment, Block, Text};
 use crate::report::output::paths::plan_files;
 use crate::report::run::Run;
@@ -11,8 +11,8 @@ use crate::text::sanitize;
 /// Every file of the plan.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     let plan = source.run.plan;
-    body.push(Block::section(wording::TITLE));
-    for (file, kept) in plan.files.iter().zip(plan_files(plan)) {
+    let listed = plan.files.iter().zip(plan_files(plan));
+    for (file, kept) in listed.filter(|(file, _)| PictureKind::of(&file.name).is_none()) {
         body.push(Block::part(file.name.as_str()));
         listing(file, &kept.path, body);
     }
@@ -51,6 +51,7 @@ fn listing(file: &PlanFile, kept: &str, body: &mut Vec<Block>) {
 pub(super) fn attachments(run: &Run<'_>) -> Vec<Attachment> {
     let named = plan_files(run.plan).into_iter().zip(&run.plan.files);
     named
+        .filter(|(_, file)| PictureKind::of(&file.name).is_none())
         .map(|(named, file)| Attachment {
             name: named.path,
             text: file.text.clone(),

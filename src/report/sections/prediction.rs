@@ -1,4 +1,4 @@
-//! The prediction of a rehearsal: the margin of the whole run to each limit, and the demand of each procedure on the rig. In: a
+//! The prediction of a check run: the margin of the whole run to each limit, and the demand of each procedure on the rig. In: a
 //! run with a prediction. Out: blocks; none for any other run.
 
 use super::{Source, capitalised, with_spaces};
@@ -7,6 +7,7 @@ use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::report::summary::{PredictedLimit, PredictedProcedure, PredictedZeros};
 use crate::report::wording::{common, prediction as wording};
+use crate::schema::limits::NAMES;
 use crate::units::Dimension;
 
 /// Returns nothing if the run has no prediction.
@@ -61,7 +62,7 @@ fn limit(limit: &PredictedLimit) -> Vec<Text> {
     let reached = limit.reached.map_or_else(no_value, |[low, high]| {
         wording::range(value(low), value(high))
     });
-    let name = if limit.quantity == "nrms_error" {
+    let name = if limit.quantity == NAMES.nrms_error {
         common::NRMS_TRACKING_ERROR.to_owned()
     } else {
         with_spaces(&limit.quantity)

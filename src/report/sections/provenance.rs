@@ -12,7 +12,6 @@ use crate::text::digest::sha256;
 /// The section.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     let run = source.run;
-    body.push(Block::section(wording::TITLE));
     body.push(origin(run));
     body.push(Block::part(wording::FILES));
     body.push(files(run, source.tables));
@@ -93,16 +92,26 @@ fn id_or_unknown(digits: &str) -> Text {
     }
 }
 
+/// The ending of a table as text.
+const TEXT: &str = ".csv";
+
 /// Digests of the files of the plan and of the tables. With them the paper alone is enough to verify the files.
 fn files(run: &Run<'_>, tables: &[FileDigest]) -> Block {
     let row = |(path, digest): FileDigest| vec![Text::from(path), Text::new().id(digest)];
     let plan = plan_files(run.plan)
         .into_iter()
         .map(|file| (file.path, sha256(&file.bytes)));
+    // The two formats of a table hold the same numbers.
+    let is_text = |(path, _): &&FileDigest| path.ends_with(TEXT);
+    let tables: Vec<&FileDigest> = if tables.iter().any(|table| is_text(&table)) {
+        tables.iter().filter(is_text).collect()
+    } else {
+        tables.iter().collect()
+    };
     let [path, digest] = wording::FILE_COLUMNS;
     Block::Table(Table {
         columns: vec![Column::words(path, 1), Column::short(digest)],
-        rows: plan.chain(tables.iter().cloned()).map(row).collect(),
+        rows: plan.chain(tables.into_iter().cloned()).map(row).collect(),
     })
 }
 

@@ -1,30 +1,33 @@
-//! The requirements, each with value, limit, margin and verdict, and the decision rule. In: a run. Out: blocks.
+//! The statement of conformity: every requirement with value, limit and verdict, and the decision rule. In: a run. Out: blocks.
 
-use super::Source;
-use super::results::budget_table;
-use crate::plan::formula::{Part, ResultValue};
+use super::results::budget_table::{self, Scope};
+use super::{Source, with_spaces};
+use crate::plan::formula::{Formula, Part, ResultValue};
 use crate::plan::{Condition, DecisionRule, Requirement};
 use crate::report::budget::coverage_factor;
 use crate::report::document::{Block, Column, Style, Table, Text};
 use crate::report::number;
 use crate::report::run::Run;
-use crate::report::wording::{common, requirements as wording};
+use crate::report::wording::{common, headline, requirements as wording};
 use crate::verdict::{ConditionOutcome, RequirementOutcome, Verdict};
 
-/// Every requirement with value, expanded uncertainty, limit, margin and verdict; below them the decision rule.
+/// Every requirement with value, expanded uncertainty, limit, probability of conformity and verdict; below them the decision rule.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     let run = source.run;
-    body.push(Block::section(wording::TITLE));
     if run.assessment.requirements.is_empty() {
-        body.push(Block::paragraph(wording::NONE));
         return;
     }
-    let [name, value, accepted, margin, conforms, verdict] = wording::COLUMNS;
-    let columns = vec![
+    body.push(Block::section(wording::TITLE));
+    let uncertain = conditions(run).any(|(condition, _)| condition.conforms.is_some());
+    let [name, value, accepted, conforms, verdict] = wording::COLUMNS;
+    let mut columns = vec![
         Column::words(name, 1),
-        Column::numbers(value),
+        Column::numbers(if is_partial(run) {
+            headline::VALUE_WITH_U
+        } else {
+            value
+        }),
         Column::numbers(accepted),
-        Column::numbers(margin),
         Column::numbers(conforms),
         Column::short(verdict),
     ];
@@ -33,22 +36,47 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
         .requirements
         .iter()
         .zip(&run.plan.requirements);
-    let marked = run
-        .plan
+    let mut rows: Vec<Vec<Text>> = requirements
+        .flat_map(|(requirement, planned)| rows(run, requirement, planned))
+        .collect();
+    if !uncertain {
+        columns.remove(PROBABILITY);
+        for row in &mut rows {
+            row.remove(PROBABILITY);
+        }
+    }
+    body.push(Block::Table(Table { columns, rows }));
+    body.push(Block::note(decision_rule(run, uncertain)));
+    if prints_mark(run) {
+        body.push(Block::note(common::MARKED));
+    }
+}
+
+/// Whether the budgets of a real rig give no expanded uncertainty.
+fn is_partial(run: &Run<'_>) -> bool {
+    Scope::of(run) == Scope::PartialReal
+}
+
+/// The column of the probability of conformity; it is omitted if no value has an uncertainty.
+const PROBABILITY: usize = 3;
+
+/// Every condition with the one of the plan.
+fn conditions<'a>(run: &Run<'a>) -> impl Iterator<Item = (&'a ConditionOutcome, &'a Condition)> {
+    let requirements = run
+        .assessment
         .requirements
         .iter()
-        .flat_map(|requirement| &requirement.conditions)
-        .any(|condition| !is_reliable(run, condition));
-    body.push(Block::Table(Table {
-        columns,
-        rows: requirements
-            .flat_map(|(requirement, planned)| rows(run, requirement, planned))
-            .collect(),
-    }));
-    body.push(Block::note(decision_rule(run)));
-    if marked {
-        body.push(Block::note(wording::MARKED));
-    }
+        .zip(&run.plan.requirements);
+    requirements.flat_map(|(outcome, planned)| outcome.conditions.iter().zip(&planned.conditions))
+}
+
+/// Whether a value of this section is marked as an estimate, so that its note is printed here.
+pub(super) fn prints_mark(run: &Run<'_>) -> bool {
+    conditions(run).any(|(condition, planned)| is_marked(run, condition, planned))
+}
+
+fn is_marked(run: &Run<'_>, condition: &ConditionOutcome, planned: &Condition) -> bool {
+    condition.uncertainty.is_some() && !is_reliable(run, planned)
 }
 
 /// Whether a condition reads no result whose uncertainty is marked as an estimate.
@@ -74,14 +102,22 @@ fn is_reliable(run: &Run<'_>, condition: &Condition) -> bool {
 }
 
 /// The decision rule with its risk, and the meaning of the columns.
-fn decision_rule(run: &Run<'_>) -> String {
-    let rule = match run.assessment.rule {
+fn decision_rule(run: &Run<'_>, uncertain: bool) -> String {
+    let mut sentences = vec![match run.assessment.rule {
         DecisionRule::Simple => wording::SIMPLE_RULE.to_owned(),
         DecisionRule::Guarded => wording::guarded_rule(coverage_factor::equation(run.assessment)),
-    };
-    let expanded = coverage_factor::largest(run.assessment)
-        .map_or_else(|| wording::EXPANDED.to_owned(), wording::expanded_up_to);
-    format!("{rule} {expanded} {}", wording::CONFORMS_AND_MARGIN)
+    }];
+    if uncertain {
+        sentences.push(
+            coverage_factor::largest(run.assessment)
+                .map_or_else(|| wording::EXPANDED.to_owned(), wording::expanded_up_to),
+        );
+        sentences.push(wording::PROBABILITY.to_owned());
+    }
+    if is_partial(run) {
+        sentences.push(headline::STANDARD.to_owned());
+    }
+    sentences.join(" ")
 }
 
 fn rows(run: &Run<'_>, requirement: &RequirementOutcome, planned: &Requirement) -> Vec<Vec<Text>> {
@@ -92,10 +128,10 @@ fn rows(run: &Run<'_>, requirement: &RequirementOutcome, planned: &Requirement) 
             none(),
             none(),
             none(),
-            none(),
-            verdict(requirement.verdict),
+            verdict(run, requirement.verdict),
         ]];
     }
+    let single = requirement.conditions.len() == 1;
     let conditions = requirement.conditions.iter().zip(&planned.conditions);
     let mut rows = Vec::new();
     for (index, (condition, planned)) in conditions.enumerate() {
@@ -104,33 +140,39 @@ fn rows(run: &Run<'_>, requirement: &RequirementOutcome, planned: &Requirement) 
         } else {
             Text::new()
         };
-        rows.push(row(run, label, condition, planned));
+        rows.push(row(run, label, condition, planned, single));
     }
     rows
 }
 
-/// The row of one condition; its name follows `label`.
-fn row(run: &Run<'_>, label: Text, condition: &ConditionOutcome, planned: &Condition) -> Vec<Text> {
+/// The row of one condition; the quantity that it reads follows `label`.
+fn row(
+    run: &Run<'_>,
+    label: Text,
+    condition: &ConditionOutcome,
+    planned: &Condition,
+    single: bool,
+) -> Vec<Text> {
     let rule = run.assessment.rule;
-    let mut name = label.code(&condition.text);
+    let mut name = match quantity(run, planned).filter(|_| single) {
+        Some(quantity) => label.soft(quantity),
+        None => label.code(&condition.text),
+    };
     if let Some(reason) = &condition.reason {
         name = name.line().soft(reason);
     }
-    let conforms = condition
-        .conforms
-        .map_or_else(|| "—".to_owned(), number::probability);
     if condition.wider_than_tolerance && rule == DecisionRule::Simple {
-        name = name.line().soft(wording::wider_than_tolerance(&conforms));
+        name = name.line().soft(wording::WIDER_THAN_TOLERANCE);
     }
-    let mark = if condition.uncertainty.is_some() && !is_reliable(run, planned) {
+    let mark = if is_marked(run, condition, planned) {
         budget_table::MARK
     } else {
         ""
     };
-    let margin = number::margin(condition).map_or_else(|| "—".into(), Text::from);
-    let margin = match (rule, number::guard_band(condition)) {
-        (DecisionRule::Guarded, Some(band)) => margin.line().soft(format!("w = {band}")),
-        (DecisionRule::Simple, _) | (DecisionRule::Guarded, None) => margin,
+    let bound = Text::from(number::bound(condition));
+    let bound = match (rule, number::guard_band(condition)) {
+        (DecisionRule::Guarded, Some(band)) => bound.line().soft(format!("w = {band}")),
+        (DecisionRule::Simple, _) | (DecisionRule::Guarded, None) => bound,
     };
     vec![
         name,
@@ -138,16 +180,44 @@ fn row(run: &Run<'_>, label: Text, condition: &ConditionOutcome, planned: &Condi
             || Text::missing(common::NO_VALUE),
             |value| Text::from(value + mark),
         ),
-        number::bound(condition).into(),
-        margin,
-        conforms.into(),
-        verdict(condition.verdict),
+        bound,
+        condition
+            .conforms
+            .map_or_else(|| "—".to_owned(), number::probability)
+            .into(),
+        verdict(run, condition.verdict),
     ]
 }
 
-fn verdict(verdict: Verdict) -> Text {
+/// The result that a condition compares, in words; None if it compares a calculated value.
+fn quantity(run: &Run<'_>, condition: &Condition) -> Option<String> {
+    let (reference, entry) = match &condition.value {
+        Formula::Index(inner, index) => (inner.as_result()?, Some(*index)),
+        formula => (formula.as_result()?, None),
+    };
+    let procedure = run.plan.procedures.get(reference.procedure.0)?;
+    if reference.part != Part::Value {
+        return None;
+    }
+    let entry = match (entry, run.record.procedures.get(reference.procedure.0)) {
+        (None, _) => String::new(),
+        (Some(entry), Some(record)) => {
+            headline::entry(budget_table::entry_kind(reference.name, record), entry + 1)
+        }
+        (Some(_), None) => return None,
+    };
+    Some(wording::quantity(
+        with_spaces(reference.name),
+        entry,
+        &procedure.name,
+    ))
+}
+
+/// In a simulation, a met requirement has no colour: nothing passed a test.
+fn verdict(run: &Run<'_>, verdict: Verdict) -> Text {
     let style = match verdict {
         Verdict::Completed => Style::Plain,
+        Verdict::Pass if run.record.rig.simulated => Style::Strong,
         Verdict::Pass => Style::Pass,
         Verdict::Inconclusive => Style::Inconclusive,
         Verdict::Fail | Verdict::Aborted | Verdict::Error => Style::Fail,

@@ -2,23 +2,35 @@
 
 use super::Source;
 use crate::report::document::{Block, Text};
+use crate::report::status::particulars::stated;
 use crate::report::wording::statements as wording;
+use crate::schema::plan_block::SAMPLING;
 
-/// The statements. They precede the long listings, so that they do not occupy a separate page.
+/// The statements; those on the items tested only if items were tested.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
+    let run = source.run;
     body.push(Block::section(wording::TITLE));
-    let items = if source.run.record.rig.simulated {
-        wording::VIRTUAL_SPECIMEN
-    } else {
-        ""
-    };
-    body.push(Block::paragraph(wording::use_of_the_report(items)));
+    if run.record.rig.simulated {
+        body.push(Block::paragraph(wording::SIMULATION));
+        return;
+    }
+    let mut sentences = vec![wording::ITEMS];
+    if stated(run, SAMPLING.name).is_none() {
+        sentences.push(wording::AS_RECEIVED);
+    }
+    sentences.extend([
+        wording::STATED_VALUES,
+        wording::PSEUDO_DYNAMIC,
+        wording::REPRODUCTION,
+        wording::FORM,
+    ]);
+    body.push(Block::paragraph(sentences.join(" ")));
 }
 
-/// A line for each signatory that the plan names.
+/// A line for each signatory that the plan names. Nobody signs a simulation as a test.
 pub(super) fn signatures(source: &Source<'_>, body: &mut Vec<Block>) {
     let signatories = &source.run.plan.report.sign;
-    if !signatories.is_empty() {
+    if !signatories.is_empty() && !source.run.record.rig.simulated {
         let line = |name: &String| Text::from(wording::signature(name));
         body.push(Block::Signatures {
             names: signatories.iter().map(line).collect(),

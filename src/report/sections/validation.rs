@@ -1,5 +1,5 @@
-//! Validation of the program: the self-test cases of the parts that this run used, and the parts that no case covers. In: a
-//! run. Out: blocks.
+//! Validation of the program: the parts of this run that its self-test covers, and those that no case covers. In: a run. Out:
+//! blocks.
 
 use super::Source;
 use crate::physics::self_test;
@@ -10,26 +10,23 @@ use crate::report::number;
 use crate::report::run::Run;
 use crate::report::status::particulars::stated;
 use crate::report::wording::validation as wording;
+use crate::schema::plan_block::VALIDATION;
 use crate::units::Dimension;
 
 /// Parts of the program that one procedure uses together.
 type Combination = Vec<Part>;
 
-/// The self-test cases of this run, the parts that they do and do not cover, and the laboratory's own validation.
+/// The parts of this run that the self-test does and does not cover, its failed cases, and the laboratory's own validation.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     body.push(Block::part(wording::TITLE));
     let (covered, others): (Vec<Combination>, Vec<Combination>) = used_parts(source.run)
         .into_iter()
         .partition(|parts| self_test::covers(parts));
-    // A failed case is listed on every report.
-    let is_listed = |case: &&SelfTest| {
-        !case.passed()
-            || covered
-                .iter()
-                .any(|parts| case.parts.iter().all(|part| parts.contains(part)))
-    };
-    let listed: Vec<&SelfTest> = self_test::all().iter().filter(is_listed).collect();
-    if !listed.is_empty() {
+    let failed: Vec<&SelfTest> = self_test::all()
+        .iter()
+        .filter(|case| !case.passed())
+        .collect();
+    if !failed.is_empty() {
         let [case, computed, reference, verdict] = wording::COLUMNS;
         body.push(Block::Table(Table {
             columns: vec![
@@ -38,11 +35,11 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
                 Column::numbers(reference),
                 Column::short(verdict),
             ],
-            rows: listed.iter().map(|case| row(case)).collect(),
+            rows: failed.iter().map(|case| row(case)).collect(),
         }));
     }
     body.push(Block::paragraph(coverage(&covered, &others)));
-    body.push(Block::note(match stated(source.run, "validation") {
+    body.push(Block::note(match stated(source.run, VALIDATION.name) {
         Some(text) => Text::from(wording::by_the_laboratory(text)),
         None => Text::from(wording::BY_THE_PROGRAM)
             .code("psd test")
@@ -51,18 +48,13 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
 }
 
 fn row(case: &SelfTest) -> Vec<Text> {
-    let verdict = if case.passed() {
-        Text::new().with(Style::Pass, wording::PASS)
-    } else {
-        Text::new().with(Style::Fail, wording::FAIL)
-    };
     vec![
         Text::from(format!("{}: {}", case.case, case.result))
             .line()
             .soft(names(case.parts)),
         number::stated(case.computed, dimension(case.quantity)).into(),
         number::stated(case.expected, dimension(case.quantity)).into(),
-        verdict,
+        Text::new().with(Style::Fail, wording::FAIL),
     ]
 }
 
@@ -87,13 +79,17 @@ fn coverage(covered: &[Combination], others: &[Combination]) -> String {
     if covered.is_empty() && others.is_empty() {
         sentences.push(wording::COVERS_NOTHING.to_owned());
     }
-    let cases = self_test::all();
-    let failed = cases.iter().filter(|case| !case.passed()).count();
-    sentences.push(match failed {
-        0 => wording::all_pass(cases.len()),
-        _ => wording::some_fail(cases.len(), failed),
-    });
+    sentences.push(outcome());
     sentences.join(" ")
+}
+
+/// The number of self-test cases, and of those that fail.
+pub(super) fn outcome() -> String {
+    let cases = self_test::all();
+    match cases.iter().filter(|case| !case.passed()).count() {
+        0 => wording::all_pass(cases.len()),
+        failed => wording::some_fail(cases.len(), failed),
+    }
 }
 
 fn listed(combinations: &[Combination]) -> String {

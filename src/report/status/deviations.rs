@@ -7,7 +7,8 @@ use crate::record::{Drift, EventKind, Outcome, Record};
 use crate::report::number;
 use crate::report::run::{ClockJump, Run};
 use crate::report::wording::deviations as wording;
-use crate::run::rehearsal;
+use crate::run::check_run;
+use crate::schema::plan_block::DEVIATIONS;
 use crate::units::Dimension;
 use crate::units::display::trimmed;
 
@@ -17,14 +18,14 @@ pub(in crate::report) fn of_run(run: &Run<'_>) -> Vec<String> {
         .plan
         .particulars
         .iter()
-        .filter(|(field, _)| *field == "deviations");
+        .filter(|(field, _)| *field == DEVIATIONS.name);
     let mut found: Vec<String> = stated
         .map(|(_, text)| format!("{}.", text.trim_end_matches('.')))
         .collect();
     let set = |(name, value): &(String, String)| wording::parameter_set(name, value);
     found.extend(run.plan.settings.iter().map(set));
-    if let Some(text) = rehearsal::rehearsed_plan(run.plan) {
-        found.insert(0, wording::rehearsal(text));
+    if let Some(text) = check_run::performed_part(run.plan) {
+        found.insert(0, wording::check_run(text));
     }
     match &run.record.outcome {
         Outcome::Completed => {}
@@ -142,7 +143,7 @@ const LINE: &str = "line:";
 /// Whether a note reports a communication error that was recovered.
 pub(in crate::report) fn is_of_the_line(text: &str) -> bool {
     text.starts_with(LINE)
-        || ["sent again", "taken again", "read again"]
+        || ["sent again", "reading repeated", "readings repeated"]
             .iter()
             .any(|words| text.contains(words))
 }

@@ -2,6 +2,7 @@
 //! only, never a measured number.
 
 use crate::report::wording::{amendment as wording, common};
+use crate::schema::plan_block::{AUTHORISED_BY, ISSUED};
 
 /// Every issue of the report of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -83,7 +84,7 @@ pub(in crate::report) fn first(issues: Option<&Issues>) -> Option<String> {
     let others = issue
         .changes
         .iter()
-        .filter(|change| !matches!(change.field, "issued" | "authorised_by"));
+        .filter(|change| ![ISSUED.name, AUTHORISED_BY.name].contains(&change.field));
     let stated: Vec<String> = others.map(change).collect();
     let stated = if stated.is_empty() {
         wording::NOTHING_ELSE.to_owned()

@@ -4,6 +4,7 @@
 use super::days::{days_after, first_day, last_day};
 use crate::report::run::Run;
 use crate::report::wording::particulars as wording;
+use crate::schema::plan_block as schema;
 use crate::text::sanitize;
 
 /// A particular of the first page.
@@ -34,21 +35,33 @@ const fn particular(field: &'static str, name: &'static str, wanted: Wanted) -> 
 
 /// The particulars of the first page, in order.
 pub(in crate::report) const FRONT: &[Particular] = &[
-    particular("laboratory", wording::LABORATORY, Wanted::Always),
-    particular("address", wording::ADDRESS, Wanted::Always),
-    particular("place", wording::PLACE, Wanted::No),
-    particular("operator", wording::OPERATOR, Wanted::Always),
-    particular("authorised_by", wording::AUTHORISED_BY, Wanted::Always),
-    particular("customer", wording::CUSTOMER, Wanted::Always),
-    particular("contact", wording::CONTACT, Wanted::Always),
-    particular("project", wording::PROJECT, Wanted::No),
-    particular("specimen_id", wording::ITEM, Wanted::Always),
-    particular("material", wording::MATERIAL, Wanted::No),
-    particular("condition", wording::CONDITION, Wanted::WhereItMatters),
-    particular("receipt_date", wording::RECEIVED, Wanted::WhereItMatters),
-    particular("date", wording::DATE, Wanted::Always),
-    particular("issued", wording::ISSUED, Wanted::Always),
-    particular("standard", wording::METHOD, Wanted::Always),
+    particular(schema::LABORATORY.name, wording::LABORATORY, Wanted::Always),
+    particular(schema::ADDRESS.name, wording::ADDRESS, Wanted::Always),
+    particular(schema::PLACE.name, wording::PLACE, Wanted::No),
+    particular(schema::OPERATOR.name, wording::OPERATOR, Wanted::Always),
+    particular(
+        schema::AUTHORISED_BY.name,
+        wording::AUTHORISED_BY,
+        Wanted::Always,
+    ),
+    particular(schema::CUSTOMER.name, wording::CUSTOMER, Wanted::Always),
+    particular(schema::CONTACT.name, wording::CONTACT, Wanted::Always),
+    particular(schema::PROJECT.name, wording::PROJECT, Wanted::No),
+    particular(schema::SPECIMEN_ID.name, wording::ITEM, Wanted::Always),
+    particular(schema::MATERIAL.name, wording::MATERIAL, Wanted::No),
+    particular(
+        schema::CONDITION.name,
+        wording::CONDITION,
+        Wanted::WhereItMatters,
+    ),
+    particular(
+        schema::RECEIPT_DATE.name,
+        wording::RECEIVED,
+        Wanted::WhereItMatters,
+    ),
+    particular(schema::DATE.name, wording::DATE, Wanted::Always),
+    particular(schema::ISSUED.name, wording::ISSUED, Wanted::Always),
+    particular(schema::STANDARD.name, wording::METHOD, Wanted::Always),
 ];
 
 /// The text of a particular; None if it is blank. The operator and the days come from the run log, not from the plan. An issue of the
@@ -56,8 +69,10 @@ pub(in crate::report) const FRONT: &[Particular] = &[
 pub(in crate::report) fn stated(run: &Run<'_>, field: &str) -> Option<String> {
     let restated = || run.provenance.restated(field);
     let recorded = match field {
-        "operator" if restated().is_none() => run.provenance.operator().map(str::to_owned),
-        "date" => days(run),
+        _ if field == schema::OPERATOR.name && restated().is_none() => {
+            run.provenance.operator().map(str::to_owned)
+        }
+        _ if field == schema::DATE.name => days(run),
         _ => None,
     };
     let of_plan = || {
@@ -119,14 +134,14 @@ fn out_of_order(run: &Run<'_>) -> Vec<String> {
     const TIME_ZONES: i64 = 1;
     let (first, last) = (first_day(run.provenance), last_day(run.provenance));
     let mut found = Vec::new();
-    if let (Some(received), Some(first)) = (stated(run, "receipt_date"), first) {
+    if let (Some(received), Some(first)) = (stated(run, schema::RECEIPT_DATE.name), first) {
         match days_after(first, &received) {
             Some(days) if days <= TIME_ZONES => {}
             Some(_) => found.push(wording::received_after_test(received, first)),
             None => found.push(wording::received_is_no_day(received)),
         }
     }
-    if let (Some(issued), Some(last)) = (stated(run, "issued"), last)
+    if let (Some(issued), Some(last)) = (stated(run, schema::ISSUED.name), last)
         && days_after(&issued, last).is_none_or(|days| days > TIME_ZONES)
     {
         found.push(wording::issued_before_test(last, issued));

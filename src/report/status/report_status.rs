@@ -9,15 +9,17 @@ use crate::physics::self_test;
 use crate::record::Outcome;
 use crate::report::run::Run;
 use crate::report::wording::status as wording;
-use crate::run::rehearsal;
+use crate::run::check_run;
 
 /// Whether a report may be signed as the report of a test.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ReportStatus {
     /// A real rig, a completed run, and no field is missing.
     Certifiable,
-    /// No real rig moved, or only the first part of the plan was run to predict the rest.
-    Rehearsal,
+    /// Only the pre-test check and the leading ramps were run, to predict the rest.
+    CheckRun,
+    /// No real rig moved.
+    Simulation,
     /// The run was not completed, or its run log has no end.
     Incomplete,
     /// A test of a specimen. Fields are missing that cannot be added after the test.
@@ -40,8 +42,11 @@ impl ReportStatus {
     #[must_use]
     pub fn reasons(run: &Run<'_>) -> Vec<Self> {
         let mut reasons = Vec::new();
-        if is_rehearsal(run) {
-            reasons.push(Self::Rehearsal);
+        if is_check_run(run) {
+            reasons.push(Self::CheckRun);
+        }
+        if run.record.rig.simulated {
+            reasons.push(Self::Simulation);
         }
         if run.record.outcome != Outcome::Completed {
             reasons.push(Self::Incomplete);
@@ -62,7 +67,8 @@ impl ReportStatus {
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Certifiable => "certifiable",
-            Self::Rehearsal => "rehearsal",
+            Self::CheckRun => "check run",
+            Self::Simulation => "simulation",
             Self::Incomplete => "incomplete",
             Self::NotCertifiable { .. } => "not certifiable",
             Self::ParticularsMissing { .. } => "particulars missing",
@@ -70,18 +76,18 @@ impl ReportStatus {
     }
 }
 
-/// The missing particulars that the report of a test must state. A rehearsal is not a test: none is missing there.
+/// The missing particulars that the report of a test must state. A check run is not a test: none is missing there.
 #[must_use]
 pub fn missing_particulars(run: &Run<'_>) -> Vec<String> {
-    if run.plan.rig.link.as_real().is_none() || is_rehearsal(run) {
+    if run.plan.rig.link.as_real().is_none() || run.record.rig.simulated || is_check_run(run) {
         Vec::new()
     } else {
         particulars::missing(run)
     }
 }
 
-fn is_rehearsal(run: &Run<'_>) -> bool {
-    run.record.rig.simulated || rehearsal::rehearsed_plan(run.plan).is_some()
+fn is_check_run(run: &Run<'_>) -> bool {
+    check_run::performed_part(run.plan).is_some()
 }
 
 /// The missing fields of operator, calibration and program that the report on a real rig must state. A simulated rig has neither operator

@@ -1,10 +1,10 @@
 //! Fills a [`Summary`] from a run. In: a run. Out: the summary; its format is in `mod.rs`.
 
 use super::{
-    BudgetSummary, ChangeSummary, ConditionSummary, ContributionSummary, DriftSummary,
-    EventSummary, IssueSummary, IssuesSummary, Ordered, OutcomeSummary, ParameterSummary,
-    PlanSummary, ProcedureSummary, Quantity, RecordSummary, RequirementSummary, RigSummary, SCHEMA,
-    Summary, Uncertainty, Value, finite,
+    BudgetSummary, ChangeSummary, ConditionSummary, ContributionSummary, EventSummary,
+    IssueSummary, IssuesSummary, Ordered, OutcomeSummary, ParameterSummary, PlanSummary,
+    ProcedureSummary, Quantity, RecordSummary, RequirementSummary, RigSummary, SCHEMA, Summary,
+    Uncertainty, Value, ZeroDriftSummary, finite,
 };
 use crate::plan::formula::{Estimate, Part, ProcedureId, ResultReference, ResultValue};
 use crate::record::{NamedResult, Outcome, ProcedureRecord};
@@ -60,7 +60,7 @@ impl Summary {
                 records: real.sealed.as_ref().map(|(records, _)| *records),
                 head: real.sealed.as_ref().map(|(_, head)| head.clone()),
             }),
-            drift: record.drift.as_ref().map(DriftSummary::of),
+            zero_drift: record.drift.as_ref().map(ZeroDriftSummary::of),
             verdict: assessment.verdict.name(),
             decision_rule: assessment.rule.name(),
             report_status: ReportStatus::of(run).name(),

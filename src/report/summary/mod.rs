@@ -17,10 +17,10 @@ use crate::text::sanitize;
 pub(super) use fill::governing;
 pub(in crate::report) use prediction::file as prediction_file;
 pub use prediction::{
-    PredictedLimit, PredictedProcedure, PredictedRequirement, PredictedZeros, Prediction,
-    REHEARSAL_FILE,
+    CHECK_RUN_FILE, PredictedLimit, PredictedProcedure, PredictedRequirement, PredictedZeros,
+    Prediction,
 };
-pub use zero_drift::{AxisDriftSummary, DriftSummary, ZeroSummary};
+pub use zero_drift::{AxisZeroDriftSummary, ZeroDriftSummary, ZeroSummary};
 
 /// Name and version of the format; a change that breaks a reader raises the number.
 pub const SCHEMA: &str = "psd.summary/1";
@@ -42,18 +42,18 @@ pub struct Summary {
     pub record: Option<RecordSummary>,
     /// Only of a rig that says how far its zeros may drift.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub drift: Option<DriftSummary>,
+    pub zero_drift: Option<ZeroDriftSummary>,
     /// The worst of all requirements, or how the run ended if that is worse; `completed` where nothing is required.
     #[schemars(extend("enum" = ["completed", "pass", "inconclusive", "fail", "aborted", "error"]))]
     pub verdict: &'static str,
     /// By which every condition was decided.
     #[schemars(extend("enum" = ["simple", "guarded"]))]
     pub decision_rule: &'static str,
-    /// What the report may be taken for: its gravest ground against a certificate.
-    #[schemars(extend("enum" = ["certifiable", "rehearsal", "incomplete", "not certifiable", "particulars missing"]))]
+    /// What the report may be taken for: its gravest ground against a test report.
+    #[schemars(extend("enum" = ["certifiable", "check run", "simulation", "incomplete", "not certifiable", "particulars missing"]))]
     #[serde(rename = "standing")]
     pub report_status: &'static str,
-    /// What the certificate of a real rig must state and does not: of how it was measured, then particulars.
+    /// What the report of a real rig must state and does not: of how it was measured, then particulars.
     pub missing: Vec<String>,
     pub outcome: OutcomeSummary,
     /// By name, in the order run.

@@ -1,4 +1,4 @@
-//! The prediction of the whole run by a rehearsal, as data. In: a run on the virtual specimen. Out: `rehearsal.json`; the section
+//! The prediction of the whole run by a check run, as data. In: a run on the virtual specimen. Out: `check_run.json`; the section
 //! of the report prints the same data. SI; a limit or a range that does not exist is null.
 
 use serde::Serialize;
@@ -7,10 +7,10 @@ use crate::report::output::file::OutputFile;
 use crate::text::sanitize;
 
 /// Name of the file in the run folder.
-pub const REHEARSAL_FILE: &str = "rehearsal.json";
+pub const CHECK_RUN_FILE: &str = "check_run.json";
 
 /// Name and version of the format.
-const SCHEMA: &str = "psd.rehearsal/1";
+const SCHEMA: &str = "psd.check_run/1";
 
 /// The predicted course of the whole run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -91,7 +91,7 @@ pub(in crate::report) fn file(prediction: &Prediction) -> Result<OutputFile, ser
         prediction,
     })? + "\n";
     Ok(OutputFile {
-        path: REHEARSAL_FILE.to_owned(),
+        path: CHECK_RUN_FILE.to_owned(),
         bytes: sanitize::json(&text).into_bytes(),
     })
 }

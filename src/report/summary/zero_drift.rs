@@ -9,7 +9,7 @@ use crate::record::{AxisDrift, Drift, Zero};
 
 /// What the zeros of the rig did in the run, and how far they may drift.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct DriftSummary {
+pub struct ZeroDriftSummary {
     /// Whether none drifted farther than is allowed.
     pub within: bool,
     /// Why not.
@@ -29,12 +29,12 @@ pub struct DriftSummary {
     /// Largest growth of the force in a hold farther out than ever before, where a specimen can only relax, N.
     pub grown: Option<f64>,
     /// Lowest floor first.
-    pub axes: Vec<AxisDriftSummary>,
+    pub axes: Vec<AxisZeroDriftSummary>,
 }
 
 /// Of one actuator and its load cell.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct AxisDriftSummary {
+pub struct AxisZeroDriftSummary {
     pub before: ZeroSummary,
     /// Null where it was not read.
     pub after: Option<ZeroSummary>,
@@ -63,12 +63,12 @@ pub struct ZeroSummary {
     pub displacement_slope: Option<f64>,
 }
 
-impl DriftSummary {
+impl ZeroDriftSummary {
     pub(super) fn of(drift: &Drift) -> Self {
         let reasons: Vec<String> = drift.all_beyond().map(|beyond| beyond.reason).collect();
         let slope_in_holds =
             |axis: usize| drift.held.slopes.get(axis).filter(|_| drift.held.count > 0);
-        let axis = |(index, axis): (usize, &AxisDrift)| AxisDriftSummary {
+        let axis = |(index, axis): (usize, &AxisDrift)| AxisZeroDriftSummary {
             before: zero(&axis.before),
             after: axis.after.as_ref().map(zero),
             force_change: axis.change().and_then(|(force, _)| finite(force)),

@@ -1,6 +1,7 @@
 //! Tables: one row per step, SI, with the column names of the schema. In: the record. Out: CSV and
 //! Parquet, into the sink of the caller. It knows no display unit.
 
+mod column;
 mod table;
 mod zero_drift;
 
@@ -17,7 +18,10 @@ use crate::plan::Format;
 use crate::procedures;
 use crate::record::Drift;
 use crate::record::remote::DrivenStep;
+use crate::schema::columns;
 use crate::text::sanitize;
+use TableColumn::{Integer, Number};
+pub(crate) use column::{TableColumn, each_once, numeric, written};
 use table::Form;
 pub(crate) use table::Table;
 
@@ -82,7 +86,7 @@ pub fn put_driven(
         driven_rows(&steps[range], axes > 1)
     });
     let served = (table, "tables/served.csv");
-    let drift = zero_drift.map(|drift| (zero_drift_table(drift), "tables/drift.csv"));
+    let drift = zero_drift.map(|drift| (zero_drift_table(drift), "tables/zero_drift.csv"));
     once(served)
         .chain(drift)
         .map(|(table, path)| put_one(&table, Form::Csv, path, sink))
@@ -90,7 +94,9 @@ pub fn put_driven(
 }
 
 fn zero_drift_table(drift: &Drift) -> Table<'_> {
-    Table::of_steps("drift".to_owned(), 1, 1, |_| zero_drift::columns(drift))
+    Table::of_steps("zero_drift".to_owned(), 1, 1, |_| {
+        zero_drift::table_columns(drift)
+    })
 }
 
 fn put_one(
@@ -106,42 +112,29 @@ fn put_one(
     put_chunks(sink, path, |out| table.write(form, out)).map_err(failed)
 }
 
+/// One axis of a target and its readings.
+struct DrivenRow<'a> {
+    step: &'a DrivenStep,
+    axis: usize,
+}
+
 fn driven_rows(steps: &[DrivenStep], several: bool) -> Vec<Column> {
-    let rows: Vec<(&DrivenStep, usize)> = steps
+    let axes = |step| move |axis| DrivenRow { step, axis };
+    let rows: Vec<DrivenRow<'_>> = steps
         .iter()
-        .flat_map(|step| (0..step.command.len()).map(move |axis| (step, axis)))
+        .flat_map(|step| (0..step.command.len()).map(axes(step)))
         .collect();
-    let column = |name, read: fn(&(&DrivenStep, usize)) -> f64| numbers(name, &rows, read);
-    let mut columns = vec![integers("step", &rows, |(step, _)| step.step)];
-    if several {
-        columns.push(integers("storey", &rows, |(_, axis)| *axis as u64 + 1));
-    }
-    columns.extend([
-        column("wall_time_s", |(step, _)| step.time),
-        column("command_m", |(step, axis)| step.command[*axis]),
-        column("displacement_m", |(step, axis)| step.displacement[*axis]),
-        column("restoring_force_n", |(step, axis)| step.force[*axis]),
-    ]);
-    columns
-}
-
-/// A column of numbers.
-pub(crate) fn numbers<T>(name: &str, steps: &[T], read: fn(&T) -> f64) -> Column {
-    Column::new(name.into(), steps.iter().map(read).collect::<Vec<f64>>())
-}
-
-/// A column of whole numbers.
-pub(crate) fn integers<T>(name: &str, steps: &[T], read: fn(&T) -> u64) -> Column {
-    Column::new(name.into(), steps.iter().map(read).collect::<Vec<u64>>())
-}
-
-/// A column of strings.
-pub(crate) fn texts<T>(name: &str, steps: &[T], read: fn(&T) -> &'static str) -> Column {
-    Column::new(
-        name.into(),
-        steps
-            .iter()
-            .map(|step| sanitize::cell(read(step)))
-            .collect::<Vec<String>>(),
-    )
+    let step: TableColumn<DrivenRow<'_>> = Integer(columns::STEP, |row| row.step.step);
+    let storey: TableColumn<DrivenRow<'_>> = Integer(columns::STOREY, |row| row.axis as u64 + 1);
+    let readings: [TableColumn<DrivenRow<'_>>; 4] = [
+        Number(columns::WALL_TIME, |row| row.step.time),
+        Number(columns::COMMAND, |row| row.step.command[row.axis]),
+        Number(columns::DISPLACEMENT, |row| row.step.displacement[row.axis]),
+        Number(columns::RESTORING_FORCE, |row| row.step.force[row.axis]),
+    ];
+    let driven: Vec<TableColumn<DrivenRow<'_>>> = once(step)
+        .chain(several.then_some(storey))
+        .chain(readings)
+        .collect();
+    written(&driven, &rows)
 }

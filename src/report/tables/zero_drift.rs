@@ -2,8 +2,11 @@
 
 use polars::prelude::Column;
 
-use super::{integers, numbers, texts};
+use super::TableColumn::{self, Integer, Number, Text};
+use super::written;
 use crate::record::{Drift, Zero};
+use crate::schema::columns::{self, column};
+use crate::units::Dimension;
 
 /// One zero reading of one axis.
 struct Row {
@@ -14,8 +17,24 @@ struct Row {
     zero: Zero,
 }
 
+const COLUMNS: &[TableColumn<Row>] = &[
+    Integer(column("axis", Dimension::NUMBER), |row| row.axis),
+    Text("test", |row| row.test),
+    Number(columns::WALL_TIME, |row| row.zero.time),
+    Number(column("force_n", Dimension::FORCE), |row| row.zero.force),
+    Number(columns::DISPLACEMENT, |row| row.zero.displacement),
+    Number(
+        column("force_slope_n_per_s", Dimension::FORCE_RATE),
+        |row| row.zero.force_slope,
+    ),
+    Number(
+        column("displacement_slope_m_per_s", Dimension::VELOCITY),
+        |row| row.zero.displacement_slope,
+    ),
+];
+
 /// The columns of the table.
-pub(super) fn columns(drift: &Drift) -> Vec<Column> {
+pub(super) fn table_columns(drift: &Drift) -> Vec<Column> {
     let axes = (1..).zip(&drift.axes);
     let rows: Vec<Row> = axes
         .flat_map(|(number, axis)| {
@@ -28,16 +47,5 @@ pub(super) fn columns(drift: &Drift) -> Vec<Column> {
             std::iter::once(row("before", axis.before)).chain(after)
         })
         .collect();
-    let column = |name, read: fn(&Row) -> f64| numbers(name, &rows, read);
-    vec![
-        integers("axis", &rows, |row| row.axis),
-        texts("test", &rows, |row| row.test),
-        column("wall_time_s", |row| row.zero.time),
-        column("force_n", |row| row.zero.force),
-        column("displacement_m", |row| row.zero.displacement),
-        column("force_slope_n_per_s", |row| row.zero.force_slope),
-        column("displacement_slope_m_per_s", |row| {
-            row.zero.displacement_slope
-        }),
-    ]
+    written(COLUMNS, &rows)
 }

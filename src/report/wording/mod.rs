@@ -40,8 +40,6 @@ pub(crate) use english::*;
 pub(crate) struct Labels {
     pub report: &'static str,
     pub amendment_to: &'static str,
-    pub tested: &'static str,
-    pub date_not_given: &'static str,
     pub not_given: &'static str,
     pub figure: &'static str,
     pub page: &'static str,

@@ -1,9 +1,10 @@
 //! The description of a virtual specimen: one text per restoring-force model, with its parameters. In: a model, and a function that
 //! prints a number. Out: labelled strings, for the report and for `psd check --explain`.
 
+use crate::physics::structure::beam::EquivalentMasses;
 use crate::physics::structure::beam::first_mode_mass_factor;
 use crate::physics::structure::portal::limit::mechanism_limit;
-use crate::physics::structure::portal::mass::{EquivalentMasses, equivalent_masses};
+use crate::physics::structure::portal::mass::equivalent_masses;
 use crate::plan::{
     Beam, Behaviour, Breaks, Deterioration, Ends, FrameMasses, Loads, Mechanism, Pinching, Portal,
     Sections, Unloading,
@@ -63,25 +64,25 @@ pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
         Behaviour::Bilinear {
             stiffness,
             yield_force,
-            hardening,
+            post_yield_ratio,
         } => list(
             "bilinear",
             &[
                 ("stiffness", *stiffness, Of::STIFFNESS),
                 ("yield force", *yield_force, Of::FORCE),
-                ("hardening", *hardening, Of::NUMBER),
+                ("post-yield stiffness ratio", *post_yield_ratio, Of::NUMBER),
             ],
         ),
         Behaviour::DeterioratingBilinear {
             stiffness,
             yield_force,
-            hardening,
+            post_yield_ratio,
             deterioration,
         } => {
             let plain = Behaviour::Bilinear {
                 stiffness: *stiffness,
                 yield_force: *yield_force,
-                hardening: *hardening,
+                post_yield_ratio: *post_yield_ratio,
             };
             words(&plain, shown)
                 + &deteriorating(*deterioration, yield_force * yield_force / stiffness, shown)
@@ -101,7 +102,7 @@ pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
         Behaviour::BoucWen {
             stiffness,
             yield_force,
-            hardening,
+            post_yield_ratio,
             sharpness,
             beta,
         } => list(
@@ -109,7 +110,7 @@ pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
             &[
                 ("stiffness", *stiffness, Of::STIFFNESS),
                 ("yield force", *yield_force, Of::FORCE),
-                ("hardening", *hardening, Of::NUMBER),
+                ("post-yield stiffness ratio", *post_yield_ratio, Of::NUMBER),
                 ("n", *sharpness, Of::NUMBER),
                 ("β", *beta, Of::NUMBER),
                 ("γ", 1.0 - beta, Of::NUMBER),
@@ -121,7 +122,11 @@ pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
                 &[
                     ("stiffness", pinching.stiffness, Of::STIFFNESS),
                     ("yield force", pinching.yield_force, Of::FORCE),
-                    ("hardening", pinching.hardening, Of::NUMBER),
+                    (
+                        "post-yield stiffness ratio",
+                        pinching.post_yield_ratio,
+                        Of::NUMBER,
+                    ),
                     ("force factor", pinching.force_factor, Of::NUMBER),
                     (
                         "displacement factor",

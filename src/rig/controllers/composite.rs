@@ -82,12 +82,12 @@ impl Device for Several {
             let (has, wanted) = (member.device.axes(), member.axes.len());
             if has != wanted {
                 return Err(DeviceFault::Unfit(format!(
-                    "it has {has} channels, and {wanted} of the rig's axes are behind it"
+                    "it has {has} channels, but {wanted} axes of the rig use it"
                 )));
             }
             match &member.serial_number {
                 Some(wanted) if *wanted != said.serial => Err(DeviceFault::Unfit(format!(
-                    "the plan wants serial number `{wanted}`, this one is `{}`",
+                    "the plan requires serial number `{wanted}`; this device has `{}`",
                     said.serial
                 ))),
                 _ => Ok(said),
@@ -159,7 +159,7 @@ impl Device for Several {
             .eq(going.frames.iter());
         if moves.len() != self.members.len() || !ours {
             return Err(DeviceFault::Unfit(
-                "this is not the move that was made last".to_owned(),
+                "this move is not the last one that was proposed".to_owned(),
             ));
         }
         self.offer_to_all(&moves)?;

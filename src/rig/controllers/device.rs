@@ -119,7 +119,7 @@ pub struct Flags {
 }
 
 /// The text in the run log if a device has lost its position.
-pub const NOT_TRUSTED: &str = "its position is not to be trusted";
+pub const NOT_TRUSTED: &str = "its position is not reliable";
 
 /// The reason why a device did not do a request.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -127,19 +127,19 @@ pub enum DeviceFault {
     /// The same frame was sent several times, and no usable answer was received.
     #[error("no usable answer within {} s", (.seconds * 100.0).round() / 100.0)]
     Silent { seconds: f64 },
-    #[error("the line is gone: {reason}")]
+    #[error("connection lost: {reason}")]
     Lost { reason: String },
     /// The device refused.
     #[error("refused: {reason}")]
     Refused { reason: String },
     /// It restarted, so that its position is not to be trusted.
-    #[error("the device started anew ({was} became {is}): {NOT_TRUSTED}")]
+    #[error("the device restarted ({was} became {is}): {NOT_TRUSTED}")]
     Rebooted { was: String, is: String },
     /// An answer that is not a valid reading: it is not used, and the reading may be requested again.
-    #[error("`{}` is no reading: {reason}", raw.escape_ascii())]
+    #[error("`{}` is not a reading: {reason}", raw.escape_ascii())]
     NoReading { raw: Vec<u8>, reason: String },
     /// A complete reply with an impossible number: not a fault of the line.
-    #[error("`{}` is no reading: {reason}", raw.escape_ascii())]
+    #[error("`{}` is not a reading: {reason}", raw.escape_ascii())]
     Impossible { raw: Vec<u8>, reason: String },
     /// The device is not configured as required, or lacks this function.
     #[error("{0}")]
@@ -219,7 +219,7 @@ pub trait Device: Send {
     /// As `encode`; most devices follow no path.
     fn encode_path(&mut self, _paths: &[Path]) -> Result<DeviceMove, DeviceFault> {
         Err(DeviceFault::Unfit(
-            "it goes to targets, and follows no path without stopping".to_owned(),
+            "it moves to targets, and follows no path without a stop".to_owned(),
         ))
     }
 

@@ -12,15 +12,13 @@ pub mod modbus;
 pub mod native;
 pub mod nees;
 pub mod scpi;
+#[cfg(test)]
+mod tests;
 
 mod composite;
 mod device;
 mod line;
 mod load_cell;
-#[cfg(test)]
-mod meeting_tests;
-#[cfg(test)]
-mod open_tests;
 
 use crate::plan::{DeviceLink, Dialect, PortPlan};
 use crate::rig::StopRequest;

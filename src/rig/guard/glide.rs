@@ -56,6 +56,7 @@ impl Guard<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::physics::tracking::trajectory::ActuatorMotion;
     use crate::plan::{Interval, Limits, Settle, VirtualLink};
     use crate::rig::VirtualRig;
 
@@ -81,8 +82,22 @@ mod tests {
 
     #[test]
     fn paths_join_in_place_and_velocity() {
-        let first = Path::accelerated(0.0, 0.0, 1.0, 0.1);
-        let on = Path::accelerated(first.to, first.end_velocity, -1.0, 0.1);
+        let first = Path::accelerated(
+            ActuatorMotion {
+                place: 0.0,
+                velocity: 0.0,
+                acceleration: 1.0,
+            },
+            0.1,
+        );
+        let on = Path::accelerated(
+            ActuatorMotion {
+                place: first.to,
+                velocity: first.end_velocity,
+                acceleration: -1.0,
+            },
+            0.1,
+        );
         assert_eq!(glided(Limits::NONE, &[first, on]), None);
         let jumps = Path {
             from: first.to + 1e-9,
@@ -102,8 +117,22 @@ mod tests {
     /// Loading and unloading: both ends are at 0, the reversal point is at 2.5 mm. The speed is 0.1 m/s at the ends and nowhere higher.
     #[test]
     fn the_whole_path_is_held_against_the_limits_before_it_begins() {
-        let first = Path::accelerated(0.0, 0.0, 1.0, 0.1);
-        let turn = Path::accelerated(first.to, 0.1, -2.0, 0.1);
+        let first = Path::accelerated(
+            ActuatorMotion {
+                place: 0.0,
+                velocity: 0.0,
+                acceleration: 1.0,
+            },
+            0.1,
+        );
+        let turn = Path::accelerated(
+            ActuatorMotion {
+                place: first.to,
+                velocity: 0.1,
+                acceleration: -2.0,
+            },
+            0.1,
+        );
         let within = |high| Limits {
             displacement: Interval { low: -0.01, high },
             ..Limits::NONE

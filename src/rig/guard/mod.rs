@@ -5,14 +5,15 @@
 pub(crate) mod about;
 pub(crate) mod final_hold;
 pub(crate) mod glide;
+mod holds;
 pub(crate) mod path;
 pub(crate) mod read;
 pub(crate) mod speed;
 
-use super::holds::Holds;
 use super::safety::failpoint::{Guarding, on};
 use super::{EachReading, LimitedQuantity, Reading, Rig, RigFault, named_axis};
 use crate::plan::{Interval, Limits};
+use holds::Holds;
 use read::is_finite;
 
 /// A rig and the limits of its motion.
@@ -34,7 +35,7 @@ pub struct Guard<'rig> {
     /// Rig time when the rig last answered \[s\].
     pub(super) heard: f64,
     /// The evaluation of dwells, if it is requested.
-    pub(super) holds: Option<Holds>,
+    holds: Option<Holds>,
     /// The first reading: displacements, m, and forces \[N\].
     pub(super) found: (Vec<f64>, Vec<f64>),
     /// The last reading that exceeded a limit, if it is a reading.
@@ -283,7 +284,7 @@ impl<'rig> Guard<'rig> {
         if targets.len() != self.commanded.len() {
             self.hold();
             let reason = format!(
-                "{} targets for a rig of {} degrees of freedom",
+                "{} targets, but the rig has {} degrees of freedom",
                 targets.len(),
                 self.commanded.len()
             );

@@ -27,7 +27,7 @@ impl Guard<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::tracking::trajectory::Path;
+    use crate::physics::tracking::trajectory::{ActuatorMotion, Path};
     use crate::plan::{Interval, Limits, Settle, VirtualLink};
     use crate::rig::VirtualRig;
 
@@ -54,7 +54,7 @@ mod tests {
         assert_eq!(
             guard.speed(),
             Some(0.02),
-            "none was asked for: as fast as allowed"
+            "none was asked for: at the limit"
         );
         guard.move_to(&[0.002], Some(0.005)).unwrap();
         assert_eq!(guard.speed(), Some(0.005));
@@ -64,7 +64,17 @@ mod tests {
         assert_eq!(guard.speed(), Some(0.004));
         assert!(
             guard
-                .glide(&[Path::accelerated(0.001, 0.0, 0.1, 0.1)], 2)
+                .glide(
+                    &[Path::accelerated(
+                        ActuatorMotion {
+                            place: 0.001,
+                            velocity: 0.0,
+                            acceleration: 0.1
+                        },
+                        0.1
+                    )],
+                    2
+                )
                 .fault
                 .is_none()
         );

@@ -60,7 +60,7 @@ impl RealRig {
             .max(4.0 * self.settle.band / self.link.own_speed)
             .min(1.0);
         let mut before: Option<Vec<f64>> = None;
-        let mut last = "it still moves".to_owned();
+        let mut last = "it is still moving".to_owned();
         while self.clock.now() - began <= COMES_TO_REST {
             match self.actuator.sample() {
                 Ok(sample) => {
@@ -80,7 +80,7 @@ impl RealRig {
                         return Ok(());
                     }
                     before = Some(places);
-                    "it still moves".clone_into(&mut last);
+                    "it is still moving".clone_into(&mut last);
                 }
                 Err(DeviceFault::Interrupted) => self.stop_request.acknowledge(),
                 Err(fault @ (DeviceFault::NoReading { .. } | DeviceFault::Impossible { .. })) => {

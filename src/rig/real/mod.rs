@@ -4,6 +4,7 @@
 
 mod coordinate;
 mod halt;
+mod median;
 mod motion;
 mod open;
 mod path;
@@ -213,7 +214,7 @@ impl Rig for RealRig {
     fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
         self.proposed = None;
         if let Some(reason) = &self.untrusted {
-            return Err(RigFault::Device(format!("not moved any more: {reason}")));
+            return Err(RigFault::Device(format!("no further motion: {reason}")));
         }
         if targets.len() != self.axes.len() {
             let reason = format!(
@@ -224,9 +225,7 @@ impl Rig for RealRig {
             return Err(RigFault::Device(reason));
         }
         if let Some(target) = targets.iter().find(|target| !target.is_finite()) {
-            return Err(RigFault::Device(format!(
-                "the target {target} m is no place"
-            )));
+            return Err(RigFault::Device(format!("invalid target: {target} m")));
         }
         let speed = speed.unwrap_or(self.link.own_speed);
         // Polled before the bytes are made, because nothing is polled between them and their sending. The status flags may
@@ -256,7 +255,7 @@ impl Rig for RealRig {
         if on(Guarding::WireNumber) && !apt {
             let [asked, said] = [targets, &said].map(places);
             let reason = format!(
-                "asked for {asked} m, the bytes say {said} m at {} m/s: not sent",
+                "requested: {asked} m; encoded: {said} m at {} m/s; not sent",
                 going.speed
             );
             return Err(RigFault::Device(reason));

@@ -2,7 +2,7 @@
 //! bounded, observes stop requests, and keeps the heartbeat of the devices alive.
 
 use super::poll::Point;
-use super::settle::Settling;
+use super::settle::{Disturbed, Settling, SettlingReading};
 use super::{Axis, Part, Proposed, RealRig};
 use crate::plan::Interval;
 use crate::rig::controllers::SLICE;
@@ -61,7 +61,14 @@ impl RealRig {
                 .iter_mut()
                 .zip(point.displacement.iter().zip(&point.force));
             let met: Vec<bool> = readings
-                .map(|(axis, (x, force))| axis.add_reading(now, *x, *force, steady))
+                .map(|(axis, (x, force))| {
+                    axis.add_reading(&SettlingReading {
+                        time: now,
+                        displacement: *x,
+                        force: *force,
+                        steady,
+                    })
+                })
                 .collect();
             let Some(unmet) = met.iter().position(|met| !met) else {
                 self.rested = settling.iter().map(Settling::rested).collect();
@@ -144,7 +151,7 @@ impl RealRig {
                     shown(way.high),
                 );
                 return Err(RigFault::Device(format!(
-                    "{who} went off its way: it is at {at}, not within {low} .. {high}"
+                    "{who} deviated from the commanded path: it is at {at}, outside {low} .. {high}"
                 )));
             }
         }
@@ -246,14 +253,6 @@ impl RealRig {
             axis,
         }
     }
-}
-
-/// Why the rig is not settled any more.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Disturbed {
-    /// The first axis that left its band, by index. None: a device reports that it moves, or that its reading has not
-    /// settled.
-    pub(super) astray: Option<usize>,
 }
 
 /// The first axis that is not in position.

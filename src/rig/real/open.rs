@@ -26,7 +26,7 @@ impl RealRig {
         let link = plan
             .link
             .as_real()
-            .ok_or_else(|| RigFault::Device("the plan's rig is not a real one".to_owned()))?
+            .ok_or_else(|| RigFault::Device("the plan's rig is not a real rig".to_owned()))?
             .clone();
         let began = clock.now();
         let mut rig = Self {
@@ -87,7 +87,7 @@ impl RealRig {
     fn begin_at(&mut self, places: &[f64]) -> Result<(), RigFault> {
         if places.len() != self.axes.len() || !places.iter().all(|place| place.is_finite()) {
             return Err(RigFault::Device(format!(
-                "{places:?} m is no datum of a rig of {}",
+                "{places:?} m is not a datum of a rig with {}",
                 degrees_of_freedom(self.axes.len())
             )));
         }
@@ -102,7 +102,7 @@ impl RealRig {
         if self.poll()?.moving == Some(true) {
             self.hold();
             return Err(RigFault::Device(
-                "it was moving before it was told to: held".to_owned(),
+                "it was already moving before any command: rig put on hold".to_owned(),
             ));
         }
         Ok(())
@@ -152,7 +152,7 @@ impl RealRig {
             let wanted = degrees_of_freedom(wanted);
             Err(self.device_fault(
                 part,
-                &DeviceFault::Unfit(format!("it has {axes}, and the plan's rig is of {wanted}")),
+                &DeviceFault::Unfit(format!("it has {axes}, but the plan's rig has {wanted}")),
             ))
         })
     }
@@ -208,7 +208,7 @@ pub(super) fn identity_of(name: &str, link: &RealLink, said: &[DeviceIdentity]) 
 fn axes(plan: &RigPlan, link: &RealLink, limits: &Limits) -> Vec<Axis> {
     let count = plan.axes().unwrap_or(1);
     let axis = |place| Axis {
-        coordinate: Coordinate::of_sign(plan.sign_of(place)),
+        coordinate: Coordinate::of_sign(plan.polarity_of(place)),
         limits: plan.limits_of(place, limits),
         rules: link.readings_of(place),
         calibration: plan.calibration_of(place),
@@ -248,7 +248,7 @@ fn nobody(name: &str) -> Identity {
 fn pinned(link: &DeviceLink, identity: &DeviceIdentity) -> Result<(), DeviceFault> {
     match &link.serial_number {
         Some(wanted) if *wanted != identity.serial => Err(DeviceFault::Unfit(format!(
-            "the plan wants serial number `{wanted}`, this one is `{}`",
+            "the plan requires serial number `{wanted}`; this device has `{}`",
             identity.serial
         ))),
         _ => Ok(()),

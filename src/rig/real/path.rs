@@ -21,7 +21,7 @@ impl RealRig {
         self.proposed = None;
         self.axes.iter_mut().for_each(|axis| axis.way = None);
         if let Some(reason) = &self.untrusted {
-            return Err(RigFault::Device(format!("not moved any more: {reason}")));
+            return Err(RigFault::Device(format!("no further motion: {reason}")));
         }
         let seconds = paths.first().map_or(0.0, |path| path.seconds);
         let together = paths
@@ -33,7 +33,7 @@ impl RealRig {
             || !(seconds > 0.0 && seconds.is_finite())
         {
             let reason = format!(
-                "{} paths of {seconds} s with {samples} readings lead nowhere",
+                "{} invalid paths of {seconds} s with {samples} readings",
                 paths.len()
             );
             return Err(RigFault::Device(reason));
@@ -102,7 +102,7 @@ impl RealRig {
             && (going.targets.len() != paths.len() || !self.axes.iter().zip(ends).all(apt))
         {
             return Err(RigFault::Device(format!(
-                "asked for {turned:?}, the bytes say {:?} m: not sent",
+                "requested: {turned:?}; encoded: {:?} m; not sent",
                 going.targets
             )));
         }

@@ -2,7 +2,8 @@
 //! polarity, validated, with the bytes they were decoded from. An invalid reading is requested again a few times. It moves
 //! nothing.
 
-use super::motion::Disturbed;
+use super::median::representative;
+use super::settle::Disturbed;
 use super::validity::{Invalid, RawSample};
 use super::{Part, RealRig};
 use crate::plan::Calibration;
@@ -199,8 +200,8 @@ impl RealRig {
     fn check_line_gap(&self, away: f64) -> Result<(), RigFault> {
         if on(Guarding::Away) && (away.is_nan() || away > self.link.watchdog) {
             return Err(RigFault::Device(format!(
-                "the program was away for {away:.1} s: nothing went between it and the rig for longer than the watchdog's \
-                 {} s, and it does not go on by itself",
+                "psd did not poll the rig for {away:.1} s, longer than the watchdog's {} s; the run does not continue \
+                 automatically",
                 self.link.watchdog
             )));
         }
@@ -222,7 +223,7 @@ impl RealRig {
         if moved.axis_count() != count || weighed.axis_count() != count {
             let (found, wanted) = (moved.axis_count().min(weighed.axis_count()), count);
             return Err(Unusable::Fault(RigFault::Device(format!(
-                "an answer of {found} axes, the rig has {wanted}"
+                "the answer has {found} axes, but the rig has {wanted}"
             ))));
         }
         let time = self.clock.now() - self.began;
@@ -332,7 +333,7 @@ pub(super) fn newtons(calibration: &Calibration, force: Force) -> Option<f64> {
         )]
         Force::Counts { count, .. } => calibration
             .newtons_per_count
-            .map(|factor| (count as f64 - calibration.zero_count) * factor),
+            .map(|factor| (count as f64 - calibration.zero_offset) * factor),
     }
 }
 
@@ -348,7 +349,7 @@ enum Unusable {
 fn before_the_first_move(fault: RigFault) -> RigFault {
     match fault {
         RigFault::Device(reason) => RigFault::Device(format!(
-            "{reason}; nothing has moved: look for a wrong unit, scale or word order, or a dead sensor"
+            "{reason}; nothing has moved: check unit, scale, register order and sensor"
         )),
         other => other,
     }
@@ -365,20 +366,5 @@ const fn either(one: Flags, other: Flags) -> Flags {
         unreferenced: one.unreferenced || other.unreferenced,
         unsettled: one.unsettled || other.unsettled,
         watchdog_tripped: one.watchdog_tripped || other.watchdog_tripped,
-    }
-}
-
-/// The median, which a single spike does not change; for an even count the mean of the middle two.
-#[must_use]
-pub fn representative(mut values: Vec<f64>) -> f64 {
-    if !on(Guarding::Median) {
-        return values[0];
-    }
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    if values.len() % 2 == 1 {
-        values[middle]
-    } else {
-        f64::midpoint(values[middle - 1], values[middle])
     }
 }

@@ -3,8 +3,20 @@
 
 use std::collections::VecDeque;
 
-use super::poll::representative;
+use super::median::representative;
 use crate::plan::Settle;
+
+/// One axis of a rig after its motion.
+pub(super) struct SettlingReading {
+    /// \[s\]
+    pub time: f64,
+    /// \[m\]
+    pub displacement: f64,
+    /// \[N\]
+    pub force: f64,
+    /// The device is at rest and reports no objection to its reading.
+    pub steady: bool,
+}
 
 /// Readings of the last dwell, all in position.
 #[derive(Clone, Debug)]
@@ -47,15 +59,14 @@ impl Settling {
         ))
     }
 
-    /// One more reading at `time` \[s\]; `steady`: the device is at rest and reports no objection to its reading. Gives
-    /// whether the rig has settled: in position and |dF/dt| within its bound over the whole dwell.
-    pub(super) fn add_reading(
-        &mut self,
-        time: f64,
-        displacement: f64,
-        force: f64,
-        steady: bool,
-    ) -> bool {
+    /// Adds a reading. Gives whether the rig has settled: in position and |dF/dt| within its bound over the whole dwell.
+    pub(super) fn add_reading(&mut self, reading: &SettlingReading) -> bool {
+        let SettlingReading {
+            time,
+            displacement,
+            force,
+            steady,
+        } = *reading;
         if !steady || !self.in_position(displacement) {
             self.window.clear();
             return false;
@@ -80,6 +91,14 @@ impl Settling {
         self.settle.force_rate == 0.0
             || slope(&self.window).is_some_and(|rate| rate.abs() <= self.settle.force_rate)
     }
+}
+
+/// Why the rig is not settled any more.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Disturbed {
+    /// The first axis that left its band, by index. None: a device reports that it moves, or that its reading has not
+    /// settled.
+    pub(super) astray: Option<usize>,
 }
 
 /// dF/dt \[N/s\] by least squares: with times t and their mean m, Σ(t − m)·F / Σ(t − m)². None for fewer than two times.
@@ -112,9 +131,14 @@ mod tests {
         force: impl Fn(f64) -> f64,
     ) -> Option<f64> {
         let mut settling = Settling::new(settle, 0.001);
-        (0..100)
-            .map(|i| f64::from(i) * 0.125)
-            .find(|time| settling.add_reading(*time, displacement(*time), force(*time), true))
+        (0..100).map(|i| f64::from(i) * 0.125).find(|time| {
+            settling.add_reading(&SettlingReading {
+                time: *time,
+                displacement: displacement(*time),
+                force: force(*time),
+                steady: true,
+            })
+        })
     }
 
     #[test]
@@ -174,9 +198,29 @@ mod tests {
     #[test]
     fn a_device_that_moves_begins_the_dwell_anew() {
         let mut settling = Settling::new(SETTLE, 0.001);
-        assert!(!settling.add_reading(0.0, 0.001, 1.0, true));
-        assert!(!settling.add_reading(0.5, 0.001, 1.0, false));
-        assert!(!settling.add_reading(0.75, 0.001, 1.0, true));
-        assert!(settling.add_reading(1.25, 0.001, 1.0, true));
+        assert!(!settling.add_reading(&SettlingReading {
+            time: 0.0,
+            displacement: 0.001,
+            force: 1.0,
+            steady: true
+        }));
+        assert!(!settling.add_reading(&SettlingReading {
+            time: 0.5,
+            displacement: 0.001,
+            force: 1.0,
+            steady: false
+        }));
+        assert!(!settling.add_reading(&SettlingReading {
+            time: 0.75,
+            displacement: 0.001,
+            force: 1.0,
+            steady: true
+        }));
+        assert!(settling.add_reading(&SettlingReading {
+            time: 1.25,
+            displacement: 0.001,
+            force: 1.0,
+            steady: true
+        }));
     }
 }

@@ -23,7 +23,7 @@ impl RealRig {
     ) -> Result<(), RigFault> {
         if self.axes.len() > 1 {
             return Err(RigFault::Device(
-                "the axes of a frame go to targets: they are not read on the way".to_owned(),
+                "the axes of a frame move to targets: they are not read during a motion".to_owned(),
             ));
         }
         self.propose(targets, Some(velocity.abs()))?;
@@ -33,7 +33,7 @@ impl RealRig {
             .is_some_and(|Proposed { targets, from, .. }| (targets[0] - from[0]) * velocity > 0.0);
         if samples == 0 || !ahead {
             return Err(RigFault::Device(format!(
-                "a traverse at {velocity} m/s with {samples} samples leads nowhere"
+                "invalid stroke at {velocity} m/s with {samples} readings"
             )));
         }
         let (targets, seconds) = self.set_off()?;
@@ -57,7 +57,7 @@ impl RealRig {
         }
         if taken < LEAST.min(samples) {
             let reason = format!(
-                "the readings cannot keep up: {taken} in a stroke of {seconds:.3} s, {samples} are wanted"
+                "the readings are too slow: {taken} in a stroke of {seconds:.3} s (required: {samples})"
             );
             return Err(RigFault::Device(reason));
         }

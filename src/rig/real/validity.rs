@@ -108,7 +108,7 @@ impl ReadingValidator {
         match (before, said.device_time) {
             (Some(before), Some(now)) if on(Guarding::Reboot) && now < before => {
                 Err(Invalid::Untrusted(format!(
-                    "its clock went back from {before} s to {now} s: it started anew, and {NOT_TRUSTED}"
+                    "its clock ran backwards from {before} s to {now} s: it restarted, and {NOT_TRUSTED}"
                 )))
             }
             _ => Ok(()),
@@ -160,7 +160,7 @@ fn whole_rig(flags: Flags) -> Result<(), Invalid> {
             (flags.emergency_stop, "the emergency stop is pressed"),
             (
                 flags.watchdog_tripped,
-                "its watchdog tripped: it heard nothing for too long and holds by itself",
+                "its watchdog tripped: it holds after a communication time-out",
             ),
         ] {
             if set {
@@ -178,7 +178,7 @@ fn flags(flags: Flags) -> Result<(), Invalid> {
         ));
     }
     if on(Guarding::Invalid) && flags.stale {
-        return Err(Invalid::AskAgain("the reading is an old one".to_owned()));
+        return Err(Invalid::AskAgain("the reading is out of date".to_owned()));
     }
     Ok(())
 }
@@ -189,7 +189,7 @@ fn number(said: &RawSample) -> Result<(), Invalid> {
         return Ok(());
     }
     Err(Invalid::Impossible(format!(
-        "{x} m and {force} N are no reading"
+        "invalid reading: {x} m, {force} N"
     )))
 }
 
@@ -204,7 +204,7 @@ fn saturation(said: &RawSample, rules: &ReadingRules) -> Result<(), Invalid> {
         )))
     };
     if said.flags.saturated {
-        return hold("the device says so".to_owned());
+        return hold("reported by the device".to_owned());
     }
     if let Force::Counts { count, low, high } = said.original {
         #[expect(

@@ -49,13 +49,13 @@ impl std::fmt::Display for FinalHold {
             (Some(unconfirmed), _) => {
                 write!(
                     f,
-                    "NOT CONFIRMED HELD ({unconfirmed}): it may still be moving; use the emergency stop"
+                    "NOT CONFIRMED HELD ({unconfirmed}): IT MAY STILL BE MOVING. Press the emergency stop"
                 )
             }
             (None, Some((displacement, force))) => {
-                write!(f, "held at {}", position_and_force(displacement, force))
+                write!(f, "HELD at {}", position_and_force(displacement, force))
             }
-            (None, None) => f.write_str("held; where it stands could not be read"),
+            (None, None) => f.write_str("HELD; its position could not be read"),
         }
     }
 }
@@ -72,23 +72,23 @@ mod tests {
             found: Some((vec![0.001_523], vec![457.0])),
             raw: Vec::new(),
         };
-        assert_eq!(held.to_string(), "held at 1.523 mm, 457.0 N");
+        assert_eq!(held.to_string(), "HELD at 1.523 mm, 457.0 N");
         assert_eq!(
             FinalHold {
                 found: None,
                 ..held.clone()
             }
             .to_string(),
-            "held; where it stands could not be read"
+            "HELD; its position could not be read"
         );
         let lost = FinalHold {
-            unconfirmed: Some("the line is gone".to_owned()),
+            unconfirmed: Some("connection lost".to_owned()),
             ..held
         };
         assert!(!lost.is_held());
         assert_eq!(
             lost.to_string(),
-            "NOT CONFIRMED HELD (the line is gone): it may still be moving; use the emergency stop"
+            "NOT CONFIRMED HELD (connection lost): IT MAY STILL BE MOVING. Press the emergency stop"
         );
         assert_eq!(
             position_and_force(&[0.001, -0.002], &[10.0, 20.0]),

@@ -38,7 +38,7 @@ pub(super) fn lock(place: SocketAddr) -> io::Result<Option<PortLock>> {
     taken.map(|name| Some(PortLock { _name: name })).map_err(|error| match error.kind() {
         io::ErrorKind::AddrInUse => io::Error::new(
             io::ErrorKind::ResourceBusy,
-            "another program on this machine speaks with it: end that one, for two cannot drive one rig",
+            "another program on this machine uses it: end that program, because two programs cannot drive one rig",
         ),
         _ => error,
     })

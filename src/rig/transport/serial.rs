@@ -34,7 +34,7 @@ impl SerialPort {
         let refuse = |what: &str| {
             Err(io::Error::new(
                 io::ErrorKind::InvalidInput,
-                format!("it is {what}, not a serial line"),
+                format!("it is {what}, not a serial port"),
             ))
         };
         if kind.is_dir() {
@@ -44,7 +44,7 @@ impl SerialPort {
             return refuse("a file");
         }
         if !kind.is_char_device() {
-            return refuse("no device of characters");
+            return refuse("not a character device");
         }
         // Opened before the line is made exclusive, which keeps out all later openers, this program too.
         let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
@@ -70,15 +70,16 @@ fn readable_error(error: &io::Error) -> io::Error {
         .any(|errno| error.raw_os_error() == Some(errno.raw_os_error()));
     let text = error.to_string();
     if busy || text.contains("lock") || text.contains("busy") {
-        let told = "it is in use by another program: end that one, for two cannot drive one rig";
+        let told =
+            "another program uses it: end that program, because two programs cannot drive one rig";
         return io::Error::new(io::ErrorKind::ResourceBusy, told);
     }
     let told = match error.kind() {
         io::ErrorKind::NotFound => {
-            "there is no such port: is it plugged in and switched on? `psd rig list` shows those there are"
+            "there is no such port: is it plugged in and switched on? `psd rig list` lists the ports"
         }
         io::ErrorKind::PermissionDenied => {
-            "you may not open it: on most systems members of the group `dialout` may"
+            "permission denied: on most systems the group `dialout` may open it"
         }
         _ => return io::Error::new(error.kind(), format!("it cannot be opened: {text}")),
     };
@@ -190,9 +191,7 @@ mod tests {
         let port = SerialPort::open(&path, 115_200).unwrap();
         let second = SerialPort::open(&path, 115_200).err().unwrap();
         assert!(
-            second
-                .to_string()
-                .starts_with("it is in use by another program"),
+            second.to_string().starts_with("another program uses it"),
             "{second}"
         );
         drop(port);
@@ -206,7 +205,7 @@ mod tests {
             let refused = SerialPort::open(path, 115_200).err().unwrap();
             assert_eq!(
                 refused.to_string(),
-                format!("it is {what}, not a serial line")
+                format!("it is {what}, not a serial port")
             );
         }
         let refused = SerialPort::open("/dev/no-such-line", 115_200)

@@ -32,7 +32,7 @@ impl TcpPort {
                 format!("`{address}` cannot be reached: {error}"),
             )
         };
-        let mut last = io::Error::new(ErrorKind::NotFound, format!("`{address}` is no address"));
+        let mut last = io::Error::new(ErrorKind::NotFound, format!("invalid address: `{address}`"));
         for place in address.to_socket_addrs().map_err(|error| told(&error))? {
             // Before the first packet: some controllers end one conversation when another begins.
             let taken = lock(place)?;
@@ -160,7 +160,7 @@ mod tests {
             assert!(
                 second
                     .to_string()
-                    .starts_with("another program on this machine speaks with it"),
+                    .starts_with("another program on this machine uses it"),
                 "{same}: {second}"
             );
         }

@@ -10,7 +10,7 @@ fn frame() -> Frame {
     let yielding = Behaviour::Bilinear {
         stiffness: 2000.0,
         yield_force: 4.0,
-        hardening: 0.0,
+        post_yield_ratio: 0.0,
     };
     Frame::of_storeys(vec![
         Storey::new(1.0, 3000.0, Behaviour::Elastic { stiffness: 3000.0 }),
@@ -254,7 +254,7 @@ const UPPER: Path = Path {
 
 fn readings(link: VirtualLink, samples: usize) -> Vec<crate::rig::Reading> {
     let (mut rig, mut readings) = (damped_rig(link), Vec::new());
-    rig.glide_along(&[LOWER, UPPER], (samples, 0), &mut |reading| {
+    rig.glide_along(&[LOWER, UPPER], samples, 0, &mut |reading| {
         readings.push(reading);
         Ok(())
     })
@@ -324,12 +324,12 @@ fn paths_that_are_not_of_one_length_lead_nowhere() {
     };
     assert!(
         damped_rig(VirtualLink::default())
-            .glide_along(&[LOWER, short], (4, 0), &mut |_| Ok(()))
+            .glide_along(&[LOWER, short], 4, 0, &mut |_| Ok(()))
             .is_err()
     );
     assert!(
         damped_rig(VirtualLink::default())
-            .glide_along(&[LOWER], (4, 0), &mut |_| Ok(()))
+            .glide_along(&[LOWER], 4, 0, &mut |_| Ok(()))
             .is_err()
     );
 }

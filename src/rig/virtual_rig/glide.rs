@@ -85,7 +85,7 @@ pub(crate) fn instants(paths: &[Path], samples: usize) -> Result<Vec<f64>, RigFa
         .all(|path| path.seconds.to_bits() == seconds.to_bits());
     if samples == 0 || seconds <= 0.0 || !finite || !together {
         return Err(RigFault::Device(format!(
-            "a path of {seconds} s with {samples} readings leads nowhere"
+            "invalid path of {seconds} s with {samples} readings"
         )));
     }
     #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
@@ -102,7 +102,8 @@ impl VirtualRig {
     pub(super) fn glide_along(
         &mut self,
         paths: &[Path],
-        (samples, done): (usize, usize),
+        samples: usize,
+        done: usize,
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
         if paths.len() != self.axes.len() {
@@ -143,7 +144,7 @@ mod tests {
     fn readings(link: VirtualLink, path: &Path, samples: usize) -> Vec<(f64, f64, f64)> {
         let mut rig = VirtualRig::new(link, AT_ONCE, Some(&specimen(50.0, 0.25)), 1.0);
         let mut readings = Vec::new();
-        rig.glide_along(&[*path], (samples, 0), &mut |reading| {
+        rig.glide_along(&[*path], samples, 0, &mut |reading| {
             readings.push((reading.time, reading.displacement[0], reading.force[0]));
             Ok(())
         })

@@ -5,6 +5,8 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
+use crate::plan::VirtualLink;
+
 #[derive(Clone, Debug)]
 pub(crate) struct LoadCell {
     /// Standard deviation of one reading \[N\].
@@ -17,11 +19,11 @@ pub(crate) struct LoadCell {
 }
 
 impl LoadCell {
-    pub(crate) fn new(noise: f64, resolution: f64, drift: f64, seed: u64) -> Self {
+    pub(crate) fn new(link: &VirtualLink, seed: u64) -> Self {
         Self {
-            noise,
-            resolution,
-            drift,
+            noise: link.noise,
+            resolution: link.force_resolution,
+            drift: link.drift,
             generator: Pcg64Mcg::seed_from_u64(seed),
         }
     }
@@ -55,7 +57,12 @@ mod tests {
 
     #[test]
     fn drift_grows_with_rig_time_and_the_quantum_rounds_to_the_nearest() {
-        let mut cell = LoadCell::new(0.0, 0.5, 0.25, 0);
+        let link = VirtualLink {
+            force_resolution: 0.5,
+            drift: 0.25,
+            ..VirtualLink::default()
+        };
+        let mut cell = LoadCell::new(&link, 0);
         assert_eq!(cell.read(10.0, 0.0), 10.0);
         assert_eq!(cell.read(10.0, 4.0), 11.0);
         assert_eq!(cell.read(10.2, 0.0), 10.0);
@@ -65,7 +72,11 @@ mod tests {
     #[test]
     fn noise_has_the_stated_deviation_no_mean_and_repeats_by_seed() {
         let readings = |seed| {
-            let mut cell = LoadCell::new(2.0, 0.0, 0.0, seed);
+            let link = VirtualLink {
+                noise: 2.0,
+                ..VirtualLink::default()
+            };
+            let mut cell = LoadCell::new(&link, seed);
             (0..10_000).map(|_| cell.read(0.0, 0.0)).collect::<Vec<_>>()
         };
         let first = readings(7);

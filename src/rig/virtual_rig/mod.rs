@@ -9,12 +9,14 @@ pub(super) mod glide;
 pub(crate) mod load_cell;
 pub(crate) mod settling;
 mod springs;
+mod stroke;
 #[cfg(test)]
 mod tests;
 
 use self::glide::Course;
 use self::springs::Springs;
-use super::motion::even;
+use self::stroke::Stroke;
+use super::motion::{Instants, even};
 use super::virtual_rig::actuator::Actuator;
 use super::virtual_rig::load_cell::{LoadCell, to_quantum};
 use super::virtual_rig::settling::{Unsettled, dying, relaxing_time, settling_time, shared};
@@ -74,12 +76,7 @@ impl VirtualRig {
     fn of_springs(link: VirtualLink, settle: Settle, mut springs: Springs, sign: f64) -> Self {
         let axis = |number: u64| Axis {
             actuator: Actuator::new(link.lag, link.tracking),
-            cell: LoadCell::new(
-                link.noise,
-                link.force_resolution,
-                link.drift,
-                seed_of(link.seed, number),
-            ),
+            cell: LoadCell::new(&link, seed_of(link.seed, number)),
         };
         let axes: Vec<Axis> = (0..).take(springs.order()).map(axis).collect();
         let at_rest = vec![0.0; axes.len()];
@@ -111,7 +108,7 @@ impl VirtualRig {
     pub fn of_plan(plan: &Plan) -> Self {
         let link = plan.rig.link.as_virtual().copied().unwrap_or_default();
         let specimen = Self::specimen_of(plan);
-        let (settle, sign) = (plan.rig.settle, plan.rig.sign);
+        let (settle, sign) = (plan.rig.settle, plan.rig.polarity);
         let rig = match specimen.and_then(|specimen| specimen.frame.as_ref()) {
             Some(frame) => Self::of_frame(link, settle, frame, sign),
             None => Self::new(link, settle, specimen, sign),
@@ -143,9 +140,7 @@ impl VirtualRig {
             return Err(self.other_order(targets.len()));
         }
         match targets.iter().find(|target| !target.is_finite()) {
-            Some(target) => Err(RigFault::Device(format!(
-                "the target {target} m is no place"
-            ))),
+            Some(target) => Err(RigFault::Device(format!("invalid target: {target} m"))),
             None => Ok(targets.iter().map(|target| self.sign * target).collect()),
         }
     }
@@ -156,7 +151,7 @@ impl VirtualRig {
         match (&mut self.axes[..], &target[..]) {
             ([axis], [target]) => Ok((&mut axis.actuator, *target)),
             _ => Err(RigFault::Device(
-                "the axes of a frame go to targets: they are not read on the way".to_owned(),
+                "the axes of a frame move to targets: they are not read during a motion".to_owned(),
             )),
         }
     }
@@ -194,54 +189,6 @@ impl VirtualRig {
             .collect();
         self.time += seconds;
         self.follow(&travels);
-    }
-
-    /// The readings of a uniform motion between two positions at the rig \[m\], of which some may be done.
-    fn stroke(
-        &mut self,
-        (from, aim): (f64, f64),
-        velocity: f64,
-        (samples, done): (usize, usize),
-        each: EachReading<'_>,
-    ) -> Result<(), RigFault> {
-        let seconds = (aim - from) / (self.sign * velocity);
-        if samples == 0 || !(seconds > 0.0 && seconds.is_finite()) {
-            return Err(RigFault::Device(format!(
-                "a traverse at {velocity} m/s with {samples} samples leads nowhere"
-            )));
-        }
-        #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
-        let fraction = |sample: usize| sample as f64 / samples as f64;
-        #[expect(clippy::cast_precision_loss, reason = "the same")]
-        let each_takes = seconds / samples as f64;
-        let began = self.time - seconds * fraction(done);
-        for sample in done + 1..=samples {
-            let to = if sample == samples {
-                aim
-            } else {
-                from + (aim - from) * fraction(sample)
-            };
-            let actuator = &mut self.axes[0].actuator;
-            let travel = if sample == done + 1
-                && done_already(
-                    to,
-                    actuator.reference(),
-                    (aim - from) / seconds * each_takes,
-                ) {
-                actuator.pass((aim - from) / seconds)
-            } else {
-                actuator.advance(to, each_takes)
-            };
-            self.time = began + seconds * fraction(sample);
-            self.follow(&[travel]);
-            let reading = self.reading();
-            if let Err(refused) = each(reading) {
-                self.hold();
-                return Err(refused);
-            }
-        }
-        self.axes[0].actuator.stop();
-        Ok(())
     }
 
     fn reading(&mut self) -> Reading {
@@ -348,7 +295,7 @@ impl Rig for VirtualRig {
         let speed = speed.unwrap_or(OWN_SPEED);
         if !(speed > 0.0 && speed.is_finite()) {
             return Err(RigFault::Device(format!(
-                "a move at {speed} m/s never arrives"
+                "invalid speed of a move: {speed} m/s"
             )));
         }
         self.proposed = Some((at_rig, speed));
@@ -389,8 +336,10 @@ impl Rig for VirtualRig {
         let lag = self.link.lag;
         self.moved = Some(even(
             self.time,
-            self.time + 0.5 * seconds + lag,
-            seconds * seconds / 12.0 + lag * lag,
+            &Instants {
+                mean: self.time + 0.5 * seconds + lag,
+                variance: seconds * seconds / 12.0 + lag * lag,
+            },
         ));
         self.time += seconds;
         self.follow(&travels);
@@ -435,8 +384,12 @@ impl Rig for VirtualRig {
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
         let (actuator, target) = self.only(targets)?;
-        let (from, aim) = (actuator.reference(), actuator.aim(target));
-        self.stroke((from, aim), velocity, (samples, 0), each)
+        let stroke = Stroke {
+            from: actuator.reference(),
+            aim: actuator.aim(target),
+            velocity,
+        };
+        self.stroke(stroke, samples, 0, each)
     }
 
     fn traverse_on(
@@ -447,8 +400,12 @@ impl Rig for VirtualRig {
     ) -> Result<(), RigFault> {
         let (_, from) = self.only(cut_off.from)?;
         let (actuator, target) = self.only(cut_off.to)?;
-        let aim = actuator.aim(target);
-        self.stroke((from, aim), velocity, (cut_off.samples, cut_off.done), each)
+        let stroke = Stroke {
+            from,
+            aim: actuator.aim(target),
+            velocity,
+        };
+        self.stroke(stroke, cut_off.samples, cut_off.done, each)
     }
 
     fn glide(
@@ -468,7 +425,7 @@ impl Rig for VirtualRig {
         done: usize,
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
-        self.glide_along(paths, (samples, done), each)
+        self.glide_along(paths, samples, done, each)
     }
 
     fn hold(&mut self) {
@@ -484,10 +441,4 @@ impl Rig for VirtualRig {
             resolution: self.link.resolution,
         }
     }
-}
-
-/// Whether a stroke was interrupted exactly when its next reading was due, one step \[m\] after the previous one: that reading is then
-/// repeated during the motion.
-fn done_already(to: f64, stands: f64, step: f64) -> bool {
-    (to - stands).abs() < 1e-6 * step.abs()
 }

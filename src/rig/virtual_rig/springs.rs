@@ -34,12 +34,12 @@ pub(super) struct Storey {
 }
 
 impl Storey {
-    fn new(behaviour: &Behaviour, stiffness: f64, damping: f64, coulomb: f64) -> Self {
+    fn new(behaviour: &Behaviour, stiffness: f64, damper: CellDamping) -> Self {
         let mut model = SpecimenModel::new(behaviour);
         Self {
             shear: model.move_to(0.0),
             model,
-            damper: CellDamping::new(damping, coulomb).with_rate_of(behaviour),
+            damper: damper.with_rate_of(behaviour),
             relaxing: RelaxationState::new(behaviour),
             stiffness,
             drift: 0.0,
@@ -54,10 +54,11 @@ impl Springs {
         let behaviour = specimen
             .and_then(|specimen| specimen.behaviour.as_ref())
             .unwrap_or(&nothing);
-        let (damping, coulomb) =
-            specimen.map_or((0.0, 0.0), |specimen| (specimen.damping, specimen.coulomb));
+        let damper = specimen.map_or(CellDamping::new(0.0, 0.0), |specimen| {
+            CellDamping::new(specimen.damping, specimen.coulomb)
+        });
         let stiffness = SpecimenModel::new(behaviour).initial_stiffness();
-        Self::Storeys(vec![Storey::new(behaviour, stiffness, damping, coulomb)])
+        Self::Storeys(vec![Storey::new(behaviour, stiffness, damper)])
     }
 
     pub(super) fn of_frame(frame: &Frame) -> Self {
@@ -79,8 +80,7 @@ impl Springs {
                     Storey::new(
                         &storey.behaviour,
                         storey.stiffness,
-                        storey.damping,
-                        storey.coulomb,
+                        CellDamping::new(storey.damping, storey.coulomb),
                     )
                 })
                 .collect(),

@@ -8,14 +8,15 @@ use super::logged_run::{LoggedRun, body};
 use crate::plan::{Plan, ProcedureKind};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Line};
-use crate::rig::RigFault;
-use crate::run::session::STOPPED_ON_REQUEST;
 use crate::run::zero_drift::READINGS;
 
-/// The computation rules of this version, as stated in the header of a run log. 1: an `unload` may pass the unloaded position, and a
-/// `cycle` without a number has ten targets in each quarter. 2: neither applies, but the targets of a `cycle` are equally spaced. 3: they
-/// are not equally spaced.
-pub const RULES: u32 = 3;
+/// The rules of this version, as stated in the header of a run log. 1: an `unload` may pass the unloaded position, and a `cycle` without
+/// a number has ten targets in each quarter. 2: neither applies, but the targets of a `cycle` are equally spaced. 3: they are not equally
+/// spaced. 4: events and questions have their present wording.
+pub const RULES: u32 = 4;
+
+/// The first rules with the present wording of events and questions.
+const PRESENT_WORDING: u32 = 4;
 
 /// Targets between the middle and an amplitude if the plan gives no number, now and by rules 1.
 const POINTS: u32 = 25;
@@ -23,7 +24,7 @@ const OLDER_POINTS: u32 = 10;
 
 /// The plan as it was run by the version that wrote the run log.
 pub(super) fn as_it_was_run<'a>(plan: &'a Plan, logged: &LoggedRun) -> Cow<'a, Plan> {
-    let without_zeros = plan.rig.drift.is_some() && serves_without_zeros(logged);
+    let without_zeros = plan.rig.zero_drift.is_some() && serves_without_zeros(logged);
     if !without_zeros && logged.header.rules >= RULES {
         return Cow::Borrowed(plan);
     }
@@ -31,7 +32,7 @@ pub(super) fn as_it_was_run<'a>(plan: &'a Plan, logged: &LoggedRun) -> Cow<'a, P
     // The first versions that served a rig with a zero-drift limit read no zeros before the first client. In their run logs the first
     // request follows the pre-test check. They are replayed in this form, without a zero drift.
     if without_zeros {
-        plan.rig.drift = None;
+        plan.rig.zero_drift = None;
     }
     let first = logged.header.rules < 2;
     plan.unloads_at_once |= first;
@@ -70,29 +71,21 @@ fn is_request(line: &Line) -> bool {
     line.kind == EntryKind::Operator && matches!(body(line), Ok(OperatorBody::Asked { .. }))
 }
 
-/// Whether an event is the logged one. Older versions stated an unusable input in SI units, as a number without a unit, and
-/// logged a request to hold during a question to the operator as a hold during a motion.
-pub(super) fn is_recorded(event: &Event, recorded: &Event) -> bool {
-    const CAME_OUT: &str = " came out as ";
-    let stopped_while_asked =
-        event.text == STOPPED_ON_REQUEST && recorded.text == RigFault::Interrupted.to_string();
-    let field = |event: &Event| {
-        event
-            .text
-            .split_once(CAME_OUT)
-            .map(|(field, _)| field.to_owned())
-    };
-    let older = field(recorded).is_some() && recorded.text.contains(" in SI units, but must be ");
-    let same_otherwise = || {
-        Event {
-            text: event.text.clone(),
-            ..recorded.clone()
-        } == *event
-    };
-    let same_text = recorded.text == event.text
-        || stopped_while_asked
-        || older && field(recorded) == field(event);
-    same_text && same_otherwise()
+/// Whether the events and questions of a run log have the wording of this version. Otherwise only their kind, time and position are
+/// compared.
+pub(super) const fn has_present_wording(logged: &LoggedRun) -> bool {
+    logged.header.rules >= PRESENT_WORDING
+}
+
+/// Whether an event is the logged one.
+pub(super) fn is_recorded(event: &Event, recorded: &Event, present_wording: bool) -> bool {
+    if present_wording {
+        return event == recorded;
+    }
+    Event {
+        text: event.text.clone(),
+        ..recorded.clone()
+    } == *event
 }
 
 #[cfg(test)]
@@ -101,44 +94,30 @@ mod tests {
     use crate::record::EventKind;
 
     #[test]
-    fn a_hold_requested_while_a_person_was_asked_is_the_stop_on_record() {
-        let hold = |text: &str| Event {
-            time: 1.5,
-            procedure: None,
-            step: None,
-            kind: EventKind::Hold,
-            text: text.to_owned(),
-        };
-        let (now, older) = (
-            hold("stopped on request"),
-            hold("held on request in the middle of a step"),
-        );
-        assert!(is_recorded(&now, &older) && !is_recorded(&older, &now));
-        assert!(!is_recorded(&now, &hold("declined by the operator")));
-    }
-
-    #[test]
-    fn an_input_that_was_told_in_si_units_is_the_one_on_record() {
-        let told = |text: &str| Event {
-            time: 1.5,
+    fn the_text_of_an_event_counts_if_it_has_the_present_wording() {
+        let event = |time: f64, text: &str| Event {
+            time,
             procedure: None,
             step: None,
             kind: EventKind::Fault,
             text: text.to_owned(),
         };
-        let now = told("`damping` came out as \u{2212}0.33 N·s/m, but must be at least 0");
-        let older =
-            told("`damping` came out as -0.3284410318426494 in SI units, but must be at least 0");
-        assert!(is_recorded(&now, &now) && is_recorded(&now, &older));
-        for other in [
-            told("`stiffness` came out as -0.3284410318426494 in SI units, but must be at least 0"),
-            told("`damping` came out as \u{2212}0.34 N·s/m, but must be at least 0"),
-            Event {
-                time: 2.0,
-                ..older.clone()
-            },
-        ] {
-            assert!(!is_recorded(&now, &other), "{}", other.text);
+        let now = event(
+            1.5,
+            "`damping` = \u{2212}0.33 N·s/m is invalid: it must be at least 0",
+        );
+        let older = event(
+            1.5,
+            "`damping` came out as -0.3284410318426494 in SI units, but must be at least 0",
+        );
+        assert!(is_recorded(&now, &now, true) && !is_recorded(&now, &older, true));
+        assert!(is_recorded(&now, &older, false));
+        let other_kind = Event {
+            kind: EventKind::Hold,
+            ..older.clone()
+        };
+        for other in [event(2.0, &older.text), other_kind] {
+            assert!(!is_recorded(&now, &other, false), "{other:?}");
         }
     }
 }

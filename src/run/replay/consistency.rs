@@ -20,7 +20,7 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// An entry that contradicts another.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("record {seq} contradicts itself: {reason}")]
+#[error("entry {seq} contradicts itself: {reason}")]
 pub struct Contradiction {
     pub seq: u64,
     pub reason: String,
@@ -67,14 +67,14 @@ fn is_of_the_plans_rig(
             }
             if first_datum.get_or_insert_with(|| datum.clone()) != &datum {
                 return Err(format!(
-                    "a datum at {datum:?} m is another than the run began with"
+                    "a datum at {datum:?} m differs from the datum at the start of the run"
                 ));
             }
             Ok(())
         }
         (EntryKind::Rig, None) => {
             let rig: RigBody = body(line).map_err(unread)?;
-            without_bytes(rig.said.is_empty(), "a virtual rig says nothing in bytes")
+            without_bytes(rig.said.is_empty(), "a virtual rig sends no bytes")
         }
         (EntryKind::Intent, None) => {
             let intent: IntentBody = body(line).map_err(unread)?;
@@ -82,9 +82,9 @@ fn is_of_the_plans_rig(
         }
         (EntryKind::Sample, None) => {
             let sample: SampleBody = body(line).map_err(unread)?;
-            without_bytes(sample.raw.is_empty(), "a virtual rig answers in no bytes")
+            without_bytes(sample.raw.is_empty(), "a virtual rig answers without bytes")
         }
-        (EntryKind::Held, None) => Err("a virtual rig is not held".to_owned()),
+        (EntryKind::Held, None) => Err("a virtual rig has no final hold".to_owned()),
         _ => Ok(()),
     }
 }
@@ -141,7 +141,7 @@ fn written<T: DeserializeOwned + Serialize>(
     if let Some(foreign) = names.find(|name| again.get(*name) != said.get(*name)) {
         return Err(at(
             line,
-            format!("psd writes no `{}` like this", foreign.escape_debug()),
+            format!("psd never writes this `{}`", foreign.escape_debug()),
         ));
     }
     let missing = again.keys().find(|name| !said.contains_key(*name));
@@ -158,7 +158,7 @@ fn runs_on<'a>(lines: impl Iterator<Item = &'a Line>) -> Result<(), Contradictio
         if time < before - ROUNDING * before.abs() {
             return Err(at(
                 line,
-                format!("it is of {time} s, and the record before it of {before} s"),
+                format!("its time is {time} s, but the entry before has {before} s"),
             ));
         }
         before = time;
@@ -177,14 +177,14 @@ fn counts_on(logged: &LoggedRun) -> Result<(), Contradiction> {
             if intent.n != targets {
                 return Err(at(
                     line,
-                    format!("it is target {}, and says {}", targets, intent.n),
+                    format!("it is target {}, but states {}", targets, intent.n),
                 ));
             }
             if intent.t.to_bits() != time.to_bits() {
                 return Err(at(
                     line,
                     format!(
-                        "it is of {} s, and the record before it of {time} s",
+                        "its time is {} s, but the entry before has {time} s",
                         intent.t
                     ),
                 ));

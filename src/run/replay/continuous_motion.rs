@@ -55,7 +55,8 @@ impl ContinuousMove<'_> {
         &self,
         rig: &mut dyn Rig,
         from: &[f64],
-        (samples, done): (usize, usize),
+        samples: usize,
+        done: usize,
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
         match self {
@@ -118,7 +119,7 @@ impl RecordedRig<'_> {
                 .peek(EntryKind::Intent, "a target")?;
             if !same(&recorded, &intent) {
                 return Err(self.state.borrow_mut().report_mismatch(format!(
-                    "a way to {:?} m at {:?} m/s",
+                    "a path to {:?} m at {:?} m/s",
                     intent.to, intent.speed
                 )));
             }
@@ -133,7 +134,7 @@ impl RecordedRig<'_> {
                 return Err(ended());
             };
             return self.follow_recorded(done, each, &mut |rig, each| {
-                motion.follow_rest(rig, &from, (samples, done), each)
+                motion.follow_rest(rig, &from, samples, done, each)
             });
         }
         self.rig()?;

@@ -33,9 +33,13 @@ pub struct Header {
     /// Measuring equipment and limits. None in run logs of version 1, which do not state them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub equipment: Option<Equipment>,
-    /// Whether only the measured part of a rehearsal was to run.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub rehearsal: bool,
+    /// Whether only the measured part of a check run was to run. The run log has the word of version 0.1.
+    #[serde(
+        default,
+        rename = "rehearsal",
+        skip_serializing_if = "std::ops::Not::not"
+    )]
+    pub check_run: bool,
     /// Protocol of the clients that drive the rig, or that it is driven by hand. None: the plan's procedures drive it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub served: Option<String>,
@@ -347,10 +351,10 @@ impl Assurance {
     #[must_use]
     pub const fn describe(self) -> &'static str {
         match self {
-            Self::SamePowerUp => "it was not switched off since",
-            Self::ReReferenced => "it was referenced anew",
+            Self::SamePowerUp => "it was not power-cycled since",
+            Self::ReReferenced => "it was referenced again",
             Self::AcceptedRelaxation => "the change of the force is accepted",
-            Self::LetGo => "it was let go of where it was held",
+            Self::LetGo => "its hold was cleared, and it did not move",
         }
     }
 }

@@ -95,7 +95,7 @@ pub(super) fn finite(reading: Reading) -> Result<Reading, RigFault> {
         return Ok(reading);
     }
     Err(RigFault::Device(format!(
-        "a reading is no number: {:?}",
+        "a reading is not a number: {:?}",
         numbers().collect::<Vec<_>>()
     )))
 }

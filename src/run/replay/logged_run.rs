@@ -38,7 +38,7 @@ pub struct LoggedRun {
 /// The file is complete, but is not the run log of a run.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UnreadableLog {
-    #[error("record {seq} is no {kind:?} that this version can read: {reason}")]
+    #[error("this version cannot read entry {seq} ({kind:?}): {reason}")]
     Body {
         seq: u64,
         kind: EntryKind,
@@ -50,7 +50,7 @@ pub enum UnreadableLog {
 
 /// The replay of the run log gave a different result.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("record {seq}: the run calls for {called}, but the record has {found}")]
+#[error("entry {seq}: the run requires {called}, but the run log has {found}")]
 pub struct Mismatch {
     pub seq: u64,
     pub called: String,
@@ -163,7 +163,7 @@ impl LoggedRun {
     pub fn recovered(&mut self) {
         self.interrupted(
             EventKind::Resume,
-            "a torn end of the record was put aside".to_owned(),
+            "an incomplete last entry was moved aside".to_owned(),
         );
     }
 
@@ -181,18 +181,18 @@ impl LoggedRun {
 /// A resumption, in one sentence.
 fn describe(resume: &ResumeBody) -> String {
     let target = match resume.target_status {
-        TargetStatus::None => "no target was in doubt",
-        TargetStatus::Executed => "the last target had been carried out, its reading is late",
-        TargetStatus::NotExecuted => "the last target had not arrived and was sent",
+        TargetStatus::None => "no target was uncertain",
+        TargetStatus::Executed => "the last target had been executed; its reading is late",
+        TargetStatus::NotExecuted => "the last target had not arrived, and was sent",
         TargetStatus::HeldOnTheWay if resume.held.is_some() => {
-            "the last target had been held on the way and was sent anew"
+            "the move to the last target had been held, and the target was sent again"
         }
-        TargetStatus::HeldOnTheWay => "the last target had not been reached and was sent anew",
+        TargetStatus::HeldOnTheWay => "the last target had not been reached, and was sent again",
         TargetStatus::RestOfTheWay { .. } => {
-            "a way had been cut off and was gone on with from where the rig stood"
+            "a motion had been interrupted, and was continued from the position of the rig"
         }
         TargetStatus::Stroke { .. } => {
-            "a way had been cut off, and the rig was brought back to where it begins"
+            "a motion had been interrupted, and the rig was moved back to its start"
         }
     };
     // At a position different from that of the last reading, the force gives no information about the specimen.

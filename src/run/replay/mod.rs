@@ -55,6 +55,12 @@ use crate::run::remote_control::Specimen;
 /// Gives the time of day, as text; None for a virtual run.
 pub type Wall = Box<dyn Fn() -> Option<String>>;
 
+/// A run log that has its header, and the clock that dates its entries.
+pub struct OpenLog {
+    pub journal: Journal,
+    pub wall: Wall,
+}
+
 /// Runs the plan on a rig and logs every answer. The header is in the run log already.
 ///
 /// # Errors
@@ -72,13 +78,12 @@ pub fn record(
     })
 }
 
-/// Lets a client drive the plan's rig, and logs its requests and every answer. The header is in the run log already.
+/// Lets a client drive the plan's rig, and logs its requests and every answer.
 pub fn record_driven(
     plan: &Plan,
     rig: &mut dyn Rig,
     observer: &mut dyn Observer,
-    journal: Journal,
-    wall: Wall,
+    log: OpenLog,
     driver: Driver,
     client: &mut dyn FnMut(&mut Specimen<'_, '_>),
 ) -> (Recorded, Vec<DrivenStep>) {
@@ -86,7 +91,7 @@ pub fn record_driven(
     let recorded = perform(
         Some(rig),
         observer,
-        State::recording(journal, wall),
+        State::recording(log.journal, log.wall),
         |rig, observer, _| {
             let ClientRunRecord { record, steps } = drive(plan, rig, observer, driver, client);
             done = steps;

@@ -12,7 +12,7 @@ use crate::record::journal::{EntryKind, Line, Recovered};
 
 /// An entry that no run of its plan can have written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("record {seq} ({}) is malformed: {reason}", .kind.word())]
+#[error("entry {seq} ({}) is malformed: {reason}", .kind.word())]
 pub struct Malformed {
     pub seq: u64,
     pub kind: EntryKind,
@@ -80,7 +80,7 @@ impl Shape<'_> {
     }
 
     fn rig(&self) -> Result<FirstRig, String> {
-        self.rig.ok_or_else(|| "no RIG stands before it".to_owned())
+        self.rig.ok_or_else(|| "no RIG precedes it".to_owned())
     }
 
     /// Checks that each list has an entry for every axis of the rig, and that the plan moves the same number of axes.
@@ -89,13 +89,13 @@ impl Shape<'_> {
         let planned = self.plan.degrees_of_freedom();
         if axes != planned {
             return Err(format!(
-                "the plan moves {}, and the rig has {axes}",
+                "the plan moves {}, but the rig has {axes}",
                 counted(planned)
             ));
         }
         match lists.iter().find(|(_, list)| list.len() != axes) {
             Some((name, list)) => Err(format!(
-                "its `{name}` has {}, and the rig has {}",
+                "its `{name}` has {}, but the rig has {}",
                 entries(list.len()),
                 counted(axes)
             )),
@@ -112,7 +112,7 @@ impl Shape<'_> {
         });
         if rig.axes != first.axes {
             return Err(format!(
-                "it has {}, and the rig of record {} has {}",
+                "it has {}, but the rig of entry {} has {}",
                 counted(rig.axes),
                 first.seq,
                 first.axes
@@ -120,7 +120,7 @@ impl Shape<'_> {
         }
         match &rig.last_move {
             Some(last) if last.targets.len() != rig.axes => Err(format!(
-                "its `last_move` has {}, and the rig has {}",
+                "its `last_move` has {}, but the rig has {}",
                 entries(last.targets.len()),
                 counted(rig.axes)
             )),
@@ -138,7 +138,7 @@ impl Shape<'_> {
             return Ok(());
         }
         Err(format!(
-            "its `path` has {}, and the rig has {}",
+            "its `path` has {}, but the rig has {}",
             entries(paths),
             counted(intent.to.len())
         ))
@@ -150,7 +150,7 @@ impl Shape<'_> {
             return Ok(());
         }
         Err(format!(
-            "its `axes` has {}, and the rig has {}",
+            "its `axes` has {}, but the rig has {}",
             entries(step.axes.len()),
             counted(axes)
         ))
@@ -171,7 +171,7 @@ impl Shape<'_> {
         let FirstRig { seq: first, .. } = self.rig()?;
         if resume.from <= first || resume.from > seq {
             return Err(format!(
-                "it goes on from record {}, which is none of this run before it",
+                "it continues from entry {}, which is not an earlier entry of this run",
                 resume.from
             ));
         }

@@ -8,6 +8,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::Wall;
+use super::compatibility::has_present_wording;
 use super::entry::{
     Call, EndBody, EndOutcome, FaultBody, HeldBody, IntentBody, OperatorBody, RigBody, TargetStatus,
 };
@@ -40,6 +41,8 @@ pub(super) struct State<'rig> {
     opened: Option<&'rig mut dyn Rig>,
     /// A client drove the rig: the client's requests are logged between a proposal and its target.
     pub(super) driven: bool,
+    /// Events and questions of the run log have the wording of this version: their texts are compared.
+    pub(super) present_wording: bool,
     pub(super) rig: Option<RigBody>,
     journal: Option<Journal>,
     /// The status of the target at the end of the replay, from the resumption.
@@ -72,6 +75,7 @@ impl<'rig> State<'rig> {
         let time = logged.rig.as_ref().map_or(0.0, |rig| rig.t);
         Self {
             driven: logged.header.served.is_some(),
+            present_wording: has_present_wording(&logged),
             lines: logged.lines,
             time,
             rig: logged.rig,
@@ -104,6 +108,7 @@ impl<'rig> State<'rig> {
             undecided: None,
             opened: None,
             driven: false,
+            present_wording: true,
             rig: None,
             journal: None,
             target_status: None,
@@ -257,7 +262,9 @@ impl<'rig> State<'rig> {
         if self.mismatch.is_some() || self.next_kind() != Some(EntryKind::Held) {
             return None;
         }
-        let held = self.peek(EntryKind::Held, "where the rig was held").ok()?;
+        let held = self
+            .peek(EntryKind::Held, "the final hold of the rig")
+            .ok()?;
         self.consume();
         Some(held)
     }
@@ -450,7 +457,7 @@ impl<'rig> State<'rig> {
 }
 
 /// Reported at the end of the replay of a run log without an END.
-pub const CUT_OFF: &str = "the record ends here: the run was cut off";
+pub const CUT_OFF: &str = "the run log ends here: the run was interrupted";
 
 /// Repeats the logged requests of a client on the specimen.
 pub(super) fn repeat_requests(state: &RefCell<State<'_>>, specimen: &mut Specimen<'_, '_>) {
@@ -487,5 +494,5 @@ pub(super) fn ended() -> RigFault {
 }
 
 fn unkept(fault: &JournalFault) -> RigFault {
-    RigFault::Device(format!("the record cannot be kept: {fault}"))
+    RigFault::Device(format!("the run log cannot be written: {fault}"))
 }

@@ -12,7 +12,7 @@ const STOREY: &[Variant] = &[Variant::with(
             .above_zero(),
         Field {
             example: "stiffness: 3 MN/m",
-            ..STIFFNESS.or_said("that of the behaviour, or 2 `column_stiffness`")
+            ..STIFFNESS.or_said("that of the behaviour, or 2 × `column_stiffness`")
         },
         Field::quantity(
             "column_stiffness",
@@ -38,63 +38,76 @@ const STOREY: &[Variant] = &[Variant::with(
         Field::choice(
             "behaviour",
             BEHAVIOURS,
-            "storey shear against drift, what a virtual rig bends",
+            "restoring-force model of a virtual rig: storey shear against drift",
         )
-        .or_said("elastic, of its stiffness"),
+        .or_said("elastic with `stiffness`"),
         Field::quantity(
             "damping",
             Dimension::DAMPING,
-            "viscous, c times the velocity of the drift, on a virtual rig's load cells",
+            "viscous damping, c times drift velocity, in the force of a virtual rig",
         )
         .or(0.0, "N*s/m")
         .at_least_zero(),
         Field::quantity(
             "coulomb",
             Dimension::FORCE,
-            "friction against the drift, on a virtual rig's load cells",
+            "friction against the drift, in the force of a virtual rig",
         )
         .or(0.0, "N")
         .at_least_zero(),
     ],
-    "a floor on its columns",
+    "floor on its columns",
 )];
 
 pub(crate) const STOREYS: Field = Field::choices(
     "storeys",
     STOREY,
-    "storeys from the ground up, in place of mass and behaviour",
+    "storeys from the ground up, instead of `mass` and `behaviour`",
 );
 
 pub(crate) const MASS_MATRIX: Field = Field::text(
     "mass_matrix",
-    "file of M in kg, a row a line, in place of mass and behaviour; with `stiffness_matrix`",
-);
+    "CSV file of M in kg, one row per line; requires `stiffness_matrix`",
+)
+.advanced();
 
 pub(crate) const STIFFNESS_MATRIX: Field = Field::text(
     "stiffness_matrix",
-    "file of K in N/m, a row a line; with `mass_matrix`",
-);
+    "CSV file of K in N/m, one row per line; requires `mass_matrix`",
+)
+.advanced();
 
 pub(crate) const MASS_MATRIX_UNCERTAINTY: Field = Field::quantity(
     "mass_matrix_uncertainty",
     Dimension::NUMBER,
-    "standard uncertainty of M, of it: one factor on all its entries, which keep their ratios",
+    "relative standard uncertainty of M (one factor for all entries)",
 )
 .or(0.0, "%")
-.within(0.0, 0.2);
+.within(0.0, 0.2)
+.advanced();
 
 pub(crate) const STIFFNESS_MATRIX_UNCERTAINTY: Field = Field::quantity(
     "stiffness_matrix_uncertainty",
     Dimension::NUMBER,
-    "standard uncertainty of K, of it, in the same way",
+    "relative standard uncertainty of K (one factor for all entries)",
 )
 .or(0.0, "%")
-.within(0.0, 0.2);
+.within(0.0, 0.2)
+.advanced();
+
+/// The damping of a frame.
+pub(crate) const DAMPING_RATIO: Field = Field::quantities(
+    "damping_ratio",
+    Dimension::NUMBER,
+    "one value: Rayleigh damping with this ratio in the first two modes; a list: one ratio per mode",
+)
+.within(0.0, 1.0)
+.or(0.0, "");
 
 pub(crate) const DAMPING_UNCERTAINTY: Field = Field::quantity(
     "damping_ratio_uncertainty",
     Dimension::NUMBER,
-    "standard uncertainty of the damping ratio of a frame; of a list, of each by itself",
+    "standard uncertainty of the damping ratio of a frame; of each ratio separately if it is a list",
 )
 .or(0.0, "%")
 .within(0.0, 0.2);

@@ -3,62 +3,63 @@
 use crate::schema::types::{BlockKind, Field, FieldType, Kind, Naming, Variant};
 use crate::units::Dimension;
 
-const WITHIN: Field = Field::of_type("within", FieldType::Tolerance, "how near").required("1 us");
+pub(crate) const WITHIN: Field =
+    Field::of_type("within", FieldType::Tolerance, "largest difference").required("1 us");
 
-const NEAR_RESULT: &[Variant] = &[Variant::with(
-    "near",
-    &[
-        Field::of_type(
-            "result",
-            FieldType::ResultName,
-            "the result; its uncertainty is held alike",
-        )
-        .required("hit.stop_time"),
-        WITHIN,
-    ],
-    "a tolerance of its own",
+pub(crate) const RESULT: Field = Field::of_type(
+    "result",
+    FieldType::ResultName,
+    "result; its uncertainty is compared with the same tolerance",
+)
+.required("hit.stop_time");
+
+pub(crate) const COLUMN: Field = Field::of_type(
+    "column",
+    FieldType::ColumnName,
+    "column, of one procedure or of all",
+)
+.required("hit.restoring_force_n");
+
+const RESULT_TOLERANCE: &[Variant] = &[Variant::with(
+    "tolerance",
+    &[RESULT, WITHIN],
+    "tolerance of this result",
 )];
 
-const NEAR_COLUMN: &[Variant] = &[Variant::with(
-    "near",
-    &[
-        Field::of_type(
-            "column",
-            FieldType::ColumnName,
-            "the column, of one procedure or of all",
-        )
-        .required("hit.restoring_force_n"),
-        WITHIN,
-    ],
-    "a tolerance of its own",
+const COLUMN_TOLERANCE: &[Variant] = &[Variant::with(
+    "tolerance",
+    &[COLUMN, WITHIN],
+    "tolerance of this column",
 )];
+
+pub(crate) const TOLERANCE: Field = Field::quantity(
+    "tolerance",
+    Dimension::NUMBER,
+    "for every number, relative to its value; in a column, relative to the largest value",
+)
+.or(1e-9, "")
+.within(0.0, 1.0);
+
+pub(crate) const RESULTS: Field = Field::choices(
+    "results",
+    RESULT_TOLERANCE,
+    "results with a separate tolerance",
+);
+
+pub(crate) const COLUMNS: Field = Field::choices(
+    "columns",
+    COLUMN_TOLERANCE,
+    "columns of tables with a separate tolerance",
+);
 
 pub(crate) const GOLDEN: BlockKind = BlockKind {
     kind: Kind::Golden,
     keyword: &["golden"],
     naming: Naming::Unnamed,
     procedure: false,
-    fields: &[
-        Field::quantity(
-            "tolerance",
-            Dimension::NUMBER,
-            "of every number, relative to its size, of a column to its largest",
-        )
-        .or(1e-9, "")
-        .within(0.0, 1.0),
-        Field::choices(
-            "results",
-            NEAR_RESULT,
-            "results with a tolerance of their own",
-        ),
-        Field::choices(
-            "columns",
-            NEAR_COLUMN,
-            "columns of tables with a tolerance of their own",
-        ),
-    ],
+    fields: &[TOLERANCE, RESULTS, COLUMNS],
     exports: &[],
     results: &[],
     example: "golden { tolerance = 1e-9 }",
-    doc: "How near a rerun must come to the blessed results",
+    doc: "Tolerances of the comparison with accepted results",
 };

@@ -3,19 +3,19 @@
 use crate::schema::types::{BlockKind, Field, Kind, Naming};
 use crate::units::Dimension;
 
-pub(crate) const RECORD: Field = Field::text(
-            "record",
-            "file: a table with the header `time_s,acceleration_m_per_s2`, or an `.AT2` file of the PEER database",
+pub(crate) const FILE: Field = Field::text(
+            "file",
+            "CSV file with the header `time_s,acceleration_m_per_s2`, or an `.AT2` file of the PEER database",
         )
-        .required("record = \"ground.csv\"");
+        .required("file = \"ground.csv\"");
 
 pub(crate) const SCALE: Field =
-    Field::quantity("scale", Dimension::NUMBER, "factor on the record").or(1.0, "");
+    Field::quantity("scale", Dimension::NUMBER, "factor on the accelerations").or(1.0, "");
 
 pub(crate) const SCALE_UNCERTAINTY: Field = Field::quantity(
     "scale_uncertainty",
     Dimension::NUMBER,
-    "standard uncertainty of the accelerations, of them",
+    "relative standard uncertainty of the accelerations",
 )
 .or(0.0, "%")
 .within(0.0, 0.2);
@@ -23,19 +23,19 @@ pub(crate) const SCALE_UNCERTAINTY: Field = Field::quantity(
 pub(crate) const UNIT: Field = Field::quantity(
     "unit",
     Dimension::ACCELERATION,
-    "what 1 in the record is worth, where its header does not say",
+    "unit of the accelerations, if the header does not state it",
 )
 .above_zero()
-.or_said("as its header says");
+.or_said("stated in the header");
 
 pub(crate) const GROUND: BlockKind = BlockKind {
     kind: Kind::Ground,
     keyword: &["ground"],
     naming: Naming::Named,
     procedure: false,
-    fields: &[RECORD, SCALE, SCALE_UNCERTAINTY, UNIT],
+    fields: &[FILE, SCALE, SCALE_UNCERTAINTY, UNIT],
     exports: &[],
     results: &[],
-    example: "ground quake { record = \"ground.csv\" }",
-    doc: "The motion of the ground, from a file",
+    example: "ground quake { file = \"ground.csv\" }",
+    doc: "Ground motion from a file",
 };

@@ -4,18 +4,19 @@ use crate::schema::types::{Field, Variant};
 use crate::units::Dimension;
 
 /// −⅓ ≤ α ≤ 0; the bound is the double nearest to −⅓.
-const ALPHA: Field = Field::quantity(
+pub(crate) const ALPHA: Field = Field::quantity(
     "alpha",
     Dimension::NUMBER,
-    "numerical damping of what a step does not resolve",
+    "numerical damping of modes that the step does not resolve",
 )
 .or(-0.05, "")
-.within(-1.0 / 3.0, 0.0);
+.within(-1.0 / 3.0, 0.0)
+.advanced();
 
 const INTEGRATORS: &[Variant] = &[
     Variant::word(
         "tangent",
-        "Newmark with the measured tangent stiffness, eqs. 2 to 6; stable at every step while no slope changes",
+        "Newmark with measured tangent stiffness (eqs. 2 to 6); unconditionally stable while no slope changes",
     ),
     Variant::word(
         "explicit",
@@ -24,7 +25,7 @@ const INTEGRATORS: &[Variant] = &[
     Variant::with(
         "alpha_os",
         &[ALPHA],
-        "α-operator splitting with the initial stiffness: softening specimens, noisy cells",
+        "α-operator splitting with the initial stiffness: for softening specimens and noisy load cells",
     ),
 ];
 
@@ -36,35 +37,88 @@ pub(crate) const TRUTH: &[Variant] = &[Variant::word("true", "yes"), Variant::wo
 pub(crate) const I_MODIFICATION: Field = Field::choice(
     "i_modification",
     TRUTH,
-    "whether the force is corrected to where the specimen was to be, r_m − K_I(d_m − d): as long as it is nearly elastic",
+    "I-modification: corrects the force to the target, r_m − K_I(d_m − d); for nearly elastic specimens",
 )
 .or_said("false; `true` in continuous mode");
 
+pub(crate) const TIME_SCALE: Field = Field::quantity(
+    "time_scale",
+    Dimension::NUMBER,
+    "laboratory time over simulated time",
+)
+.required("time_scale: 100")
+.above_zero();
+
 const MODES: &[Variant] = &[
     Variant::word(
-        "step_and_pause",
-        "the actuator stops at every target and is read at rest",
+        "ramp_and_hold",
+        "ramp-and-hold: the actuator stops at every target and is read at rest",
     ),
     Variant::with(
         "continuous",
-        &[Field::quantity(
-            "time_scale",
-            Dimension::NUMBER,
-            "rig time over virtual time",
-        )
-        .required("time_scale: 100")
-        .above_zero()],
-        "the actuator does not stop: what a damper does at this speed is in the force; on virtual rigs, and real ones that speak `native`",
+        &[TIME_SCALE],
+        "the actuator does not stop; the force includes damping at this speed; virtual rigs and `native` only",
     ),
 ];
 
 pub(crate) const MODE: Field =
-    Field::choice("mode", MODES, "how the actuator goes from target to target")
-        .or_said("step_and_pause");
+    Field::choice("mode", MODES, "motion of the actuator between targets").or_said("ramp_and_hold");
 
 pub(crate) const ALLOW_UNSTABLE: Field = Field::choice(
     "allow_unstable",
     TRUTH,
-    "whether it runs beyond the stability limit of its integrator",
+    "runs beyond the stability limit of the integrator",
 )
-.or_said("false");
+.or_said("false")
+.advanced();
+
+pub(crate) const TIME_STEP: Field =
+    Field::quantity("time_step", Dimension::TIME, "Δt").above_zero();
+
+/// The simulated time of a run.
+pub(crate) const DURATION: Field =
+    Field::quantity("duration", Dimension::TIME, "simulated time").above_zero();
+
+pub(crate) const PAUSE: Field = Field::quantity("pause", Dimension::TIME, "dwell at every step")
+    .or(0.0, "s")
+    .at_least_zero();
+
+pub(crate) const MAX_TANGENT_RATIO: Field = Field::quantity(
+    "max_tangent_ratio",
+    Dimension::NUMBER,
+    "upper bound of the tangent stiffness, as a multiple of the initial one",
+)
+.or(2.0, "")
+.above_zero()
+.advanced();
+
+pub(crate) const STEPS_BETWEEN: Field =
+    Field::count("steps", 1.0, 1e7, "steps between inspections").required("20");
+
+pub(crate) const FRACTION: Field = Field::quantity(
+    "fraction",
+    Dimension::NUMBER,
+    "fraction of the largest restoring force so far",
+)
+.required("10 %")
+.within(0.0, 1.0);
+
+pub(crate) const AT_TIME: Field = Field::quantity("time", Dimension::TIME, "simulated time")
+    .required("5 ms")
+    .at_least_zero();
+
+const INSPECT_TRIGGERS: &[Variant] = &[
+    Variant::with("every", &[STEPS_BETWEEN], "every so many steps"),
+    Variant::with(
+        "force_drop",
+        &[FRACTION],
+        "when the restoring force has fallen by this fraction",
+    ),
+    Variant::with("at", &[AT_TIME], "at a simulated time"),
+];
+
+pub(crate) const INSPECT: Field = Field::choices(
+    "inspect",
+    INSPECT_TRIGGERS,
+    "when the operator inspects the specimen",
+);

@@ -2,53 +2,141 @@
 
 use crate::schema::types::{BlockKind, Field, Kind, Naming, Variant};
 
+pub(crate) const EDITION: Field =
+    Field::count("edition", 1.0, f64::INFINITY, "edition of the language").or(1.0, "");
+
+pub(crate) const STANDARD: Field =
+    Field::text("standard", "standard or procedure the test follows");
+
+pub(crate) const SPECIMEN_ID: Field = Field::text("specimen_id", "the specimen's identification");
+
+pub(crate) const LABORATORY: Field =
+    Field::text("laboratory", "laboratory that carries out the test");
+
+pub(crate) const ADDRESS: Field = Field::text("address", "address of the laboratory");
+
+pub(crate) const CUSTOMER: Field = Field::text("customer", "name of the customer");
+
+pub(crate) const CONTACT: Field = Field::text("contact", "contact details of the customer");
+
+pub(crate) const OPERATOR: Field = Field::text("operator", "person who carries out the test");
+
+pub(crate) const DATE: Field = Field::text("date", "date of the test, ISO 8601");
+
+pub(crate) const ISSUED: Field =
+    Field::text("issued", "day on which the report is issued, ISO 8601");
+
+pub(crate) const AUTHORISED_BY: Field =
+    Field::text("authorised_by", "person who authorises the report");
+
+pub(crate) const REVISION: Field = Field::text("revision", "revision of the plan");
+
+pub(crate) const PROJECT: Field = Field::text("project", "project the test belongs to");
+
+pub(crate) const MATERIAL: Field = Field::text("material", "material of the specimen");
+
+pub(crate) const EQUIPMENT: Field = Field::text("equipment", "equipment used");
+
+pub(crate) const PLACE: Field =
+    Field::text("place", "location of the test, if not the laboratory").advanced();
+
+pub(crate) const RECEIPT_DATE: Field = Field::text(
+    "receipt_date",
+    "day on which the specimen was received, ISO 8601",
+)
+.advanced();
+
+pub(crate) const CONDITION: Field = Field::text(
+    "condition",
+    "condition of the specimen when it was received",
+)
+.advanced();
+
+pub(crate) const TEMPERATURE: Field =
+    Field::text("temperature", "temperature during the test, with its unit");
+
+pub(crate) const HUMIDITY: Field = Field::text("humidity", "humidity during the test");
+
+pub(crate) const SAMPLING: Field = Field::text(
+    "sampling",
+    "sampling plan and method, if the specimen was sampled",
+)
+.advanced();
+
+pub(crate) const EXTERNAL: Field = Field::text(
+    "external",
+    "results from external providers, with their names",
+)
+.advanced();
+
+pub(crate) const VALIDATION: Field = Field::text(
+    "validation",
+    "reference to the validation of this program on this rig",
+)
+.advanced();
+
+pub(crate) const OPINIONS: Field =
+    Field::text("opinions", "opinions and interpretations, with their basis").advanced();
+
+pub(crate) const DEVIATIONS: Field = Field::text(
+    "deviations",
+    "known deviations from the standard or procedure",
+);
+
+pub(crate) const NOTES: Field = Field::text("notes", "further remarks for the report");
+
+pub(crate) const DECISION_RULE: Field = Field::choice(
+    "decision_rule",
+    &[
+        Variant::word(
+            "simple",
+            "simple acceptance: the value decides, whatever its uncertainty",
+        ),
+        Variant::word(
+            "guarded",
+            "guarded acceptance with w = U = k·u: a value inside the guard band is inconclusive",
+        ),
+    ],
+    "decision rule for requirements",
+)
+.or_said("simple");
+
 pub(crate) const PLAN: BlockKind = BlockKind {
     kind: Kind::Plan,
     keyword: &["plan"],
     naming: Naming::Titled,
     procedure: false,
     fields: &[
-        Field::count("edition", 1.0, f64::INFINITY, "edition of the language").or(1.0, ""),
-        Field::text("standard", "standard or procedure the test follows"),
-        Field::text("specimen_id", "the specimen's identification"),
-        Field::text("laboratory", "laboratory that tests"),
-        Field::text("address", "address of the laboratory"),
-        Field::text("customer", "who asked for the test"),
-        Field::text("contact", "how the customer is reached"),
-        Field::text("operator", "who runs the test"),
-        Field::text("date", "date of the test, ISO 8601"),
-        Field::text("issued", "day on which the report is issued, ISO 8601"),
-        Field::text("authorised_by", "who authorises the report"),
-        Field::text("revision", "revision of the plan"),
-        Field::text("project", "project the test belongs to"),
-        Field::text("material", "material of the specimen"),
-        Field::text("equipment", "equipment used"),
-        Field::text("place", "where the test is made, if not in the laboratory"),
-        Field::text("receipt_date", "day on which the specimen was received, ISO 8601"),
-        Field::text("condition", "condition of the specimen when it was received"),
-        Field::text("temperature", "temperature during the test, with its unit"),
-        Field::text("humidity", "humidity during the test"),
-        Field::text("sampling", "sampling plan and method, where the specimen was sampled"),
-        Field::text("external", "results that come from somebody else, and from whom"),
-        Field::text("validation", "where the validation of this program on this rig is on record"),
-        Field::text("opinions", "opinions and interpretations, and what they rest on"),
-        Field::text("deviations", "known deviations from the standard or procedure"),
-        Field::text("notes", "remarks for the certificate"),
-        Field::choice(
-            "decision_rule",
-            &[
-                Variant::word("simple", "the value decides, whatever its uncertainty"),
-                Variant::word(
-                    "guarded",
-                    "a value passes or fails only if it is further from its limit than its expanded uncertainty U = k·u, and is inconclusive else",
-                ),
-            ],
-            "how a value is held against a limit",
-        )
-        .or_said("simple"),
+        EDITION,
+        STANDARD,
+        SPECIMEN_ID,
+        LABORATORY,
+        ADDRESS,
+        CUSTOMER,
+        CONTACT,
+        OPERATOR,
+        DATE,
+        ISSUED,
+        AUTHORISED_BY,
+        REVISION,
+        PROJECT,
+        MATERIAL,
+        EQUIPMENT,
+        PLACE,
+        RECEIPT_DATE,
+        CONDITION,
+        TEMPERATURE,
+        HUMIDITY,
+        SAMPLING,
+        EXTERNAL,
+        VALIDATION,
+        OPINIONS,
+        DEVIATIONS,
+        NOTES,
+        DECISION_RULE,
     ],
     exports: &[],
     results: &[],
     example: "plan \"My test\" { edition = 1 }",
-    doc: "Title and certificate data of the plan",
+    doc: "Title and report data of the plan",
 };

@@ -1,6 +1,63 @@
 //! `report { … }`: the files that a run writes for its readers.
 
-use crate::schema::types::{BlockKind, Field, Kind, Naming, Variant};
+use crate::schema::types::{BlockKind, Field, FieldType, Kind, Naming, Variant};
+
+pub(crate) const TITLE: Field =
+    Field::text("title", "title of the test report").or_said("the plan's");
+
+pub(crate) const RESULTS: Field = Field::of_type(
+    "results",
+    FieldType::ResultNames,
+    "results on the second page, beside those that a requirement reads",
+)
+.or_said("the headline results of the procedures, six at most");
+
+pub(crate) const ANNEXES: Field = Field::choices(
+    "annexes",
+    &[
+        Variant::word("results", "every result, with the method of its procedure"),
+        Variant::word("budgets", "uncertainty budgets"),
+        Variant::word("figures", "figures that the second page does not show"),
+        Variant::word("equipment", "rig, calibration, conditions, limits"),
+        Variant::word("provenance", "program, run log, digests of the files"),
+        Variant::word("plan", "text of the plan and of its files"),
+    ],
+    "annexes after the first two pages; `[]`: none",
+)
+.or_said("every annex without `plan`");
+
+pub(crate) const FIGURES: Field = Field::figures(
+    "figures",
+    "figures, each as `figure(procedure)`, or `figure(one, other)` for several procedures on one chart",
+)
+.or_said("all figures");
+
+pub(crate) const FORMATS: Field = Field::choices(
+    "formats",
+    &[
+        Variant::word("html", "the test report as a self-contained page"),
+        Variant::word("pdf", "the same report as PDF/A, with the plan attached"),
+        Variant::word("csv", "tables as text"),
+        Variant::word("parquet", "tables in binary columns"),
+    ],
+    "file formats",
+)
+.or_said("all formats");
+
+pub(crate) const LOGO: Field = Field::text(
+    "logo",
+    "picture at the head of the report: a PNG, JPEG or SVG file of up to 2 MiB",
+);
+
+pub(crate) const PHOTOS: Field = Field::texts(
+    "photos",
+    "photographs of the specimen: up to 8 such files, in the annex of the figures",
+);
+
+pub(crate) const SIGN: Field = Field::texts(
+    "sign",
+    "signatories: one signature line each on the first page; a simulation has none",
+);
 
 pub(crate) const REPORT: BlockKind = BlockKind {
     kind: Kind::Report,
@@ -8,24 +65,10 @@ pub(crate) const REPORT: BlockKind = BlockKind {
     naming: Naming::Unnamed,
     procedure: false,
     fields: &[
-        Field::text("title", "title of the certificate").or_said("the plan's"),
-        Field::figures("figures", "what is drawn, each as `figure(procedure)`, or `figure(one, other)` for several on one chart")
-            .or_said("every figure"),
-        Field::choices(
-            "formats",
-            &[
-                Variant::word("html", "a self-contained certificate"),
-                Variant::word("pdf", "the same certificate on paper"),
-                Variant::word("csv", "tables as text"),
-                Variant::word("parquet", "tables in columns"),
-            ],
-            "what is written",
-        )
-        .or_said("every format"),
-        Field::texts("sign", "who signs: a line each on the certificate"),
+        TITLE, RESULTS, ANNEXES, FIGURES, FORMATS, LOGO, PHOTOS, SIGN,
     ],
     exports: &[],
     results: &[],
     example: "report { formats = [html, csv] }",
-    doc: "What a run leaves for people",
+    doc: "Output of a run: formats, figures, signatories",
 };

@@ -8,9 +8,15 @@ pub(crate) use super::frames::{
 use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind, RigKind};
 use crate::units::Dimension;
 
-pub(crate) const MASS: Field = Field::quantity("mass", Dimension::MASS, "equivalent mass at the struck section")
-            .above_zero()
-            .or_said("density * area * length / 2, or that of a `portal` as it deflects elastically; a `beam` says it");
+pub(crate) const MASS: Field = Field::quantity(
+    "mass",
+    Dimension::MASS,
+    "equivalent mass at the struck section",
+)
+.above_zero()
+.or_said(
+    "density * area * length / 2, or the elastic mass of a `portal`; must be given for a `beam`",
+);
 
 pub(crate) const MASS_UNCERTAINTY: Field = Field::quantity(
     "mass_uncertainty",
@@ -29,17 +35,21 @@ pub(crate) const AREA: Field =
 pub(crate) const DENSITY: Field =
     Field::quantity("density", Dimension::DENSITY, "density of the material").above_zero();
 
-pub(crate) const BEHAVIOUR: Field =
-    Field::choice("behaviour", BEHAVIOURS, "what a virtual rig bends").required_on(
-        RigKind::Virtual,
-        "behaviour = elastic(stiffness: 300 kN/m)",
-        "",
-    );
+pub(crate) const BEHAVIOUR: Field = Field::choice(
+    "behaviour",
+    BEHAVIOURS,
+    "restoring-force model of a virtual rig",
+)
+.required_on(
+    RigKind::Virtual,
+    "behaviour = elastic(stiffness: 300 kN/m)",
+    "",
+);
 
 pub(crate) const DAMPING: Field = Field::quantity(
     "damping",
     Dimension::DAMPING,
-    "c of c·v on the virtual load cell while the actuator moves",
+    "c of the force c·v that a virtual rig adds during motion",
 )
 .or(0.0, "N*s/m")
 .at_least_zero();
@@ -47,7 +57,7 @@ pub(crate) const DAMPING: Field = Field::quantity(
 pub(crate) const COULOMB: Field = Field::quantity(
     "coulomb",
     Dimension::FORCE,
-    "friction on the virtual load cell",
+    "friction that a virtual rig adds to the force",
 )
 .or(0.0, "N")
 .at_least_zero();
@@ -76,32 +86,32 @@ pub(crate) const SPECIMEN: BlockKind = BlockKind {
         ResultKind::new(
             MASS.name,
             Dimension::MASS,
-            "equivalent mass; of storeys, all floors together",
+            "equivalent mass; with storeys, total mass of the floors",
         ),
         ResultKind::new(
             "stiffness",
             Dimension::STIFFNESS,
-            "stiffness of the behaviour at no displacement",
+            "initial stiffness of the behaviour",
         ),
         ResultKind::new(
             "capacity",
             Dimension::FORCE,
-            "largest force of a behaviour that has one",
+            "largest force of a behaviour that is bounded",
         ),
         ResultKind::new(
             "elastic_mass",
             Dimension::MASS,
-            "of a beam or portal, by its elastic deflection",
+            "of a beam or portal, from the elastic deflected shape",
         ),
         ResultKind::new(
             "plastic_mass",
             Dimension::MASS,
-            "of a portal, by the mechanism that governs",
+            "of a portal, from the governing mechanism",
         ),
         ResultKind::new(
             "lumped_mass",
             Dimension::MASS,
-            "of a beam or portal, its members' halves at their ends",
+            "of a beam or portal, half of each member at each of its ends",
         ),
         ResultKind::new(
             "beam_collapse_load",
@@ -121,10 +131,10 @@ pub(crate) const SPECIMEN: BlockKind = BlockKind {
         ResultKind::new(
             "mechanism_limit",
             Dimension::FORCE,
-            "of a portal under one load, the largest that its mechanism follows",
+            "of a portal under one load: largest load for which the mechanism is valid",
         ),
     ],
     results: &[],
     example: "specimen beam {\n  mass = 0.73 kg\n  behaviour = elastic(stiffness: 300 kN/m)\n}",
-    doc: "The structure on the rig",
+    doc: "Structure on the rig",
 };

@@ -18,7 +18,7 @@ pub(crate) const MASS_UNCERTAINTY: Field = Field::quantity(
 pub(crate) const VELOCITY: Field = Field::quantity(
     "velocity",
     Dimension::VELOCITY,
-    "velocity at the start, towards the structure; or `drop_height`, or `arm` and `angle`",
+    "initial velocity, towards the structure; or `drop_height`, or `arm` and `angle`",
 )
 .above_zero()
 .or_said("sqrt(2 gn * drop_height), or sqrt(2 gn * arm * (1 - cos(angle)))");
@@ -34,7 +34,7 @@ pub(crate) const VELOCITY_UNCERTAINTY: Field = Field::quantity(
 pub(crate) const DROP_HEIGHT: Field = Field::quantity(
     "drop_height",
     Dimension::LENGTH,
-    "height of fall that gives the velocity",
+    "drop height that gives the velocity",
 )
 .above_zero();
 
@@ -47,14 +47,14 @@ pub(crate) const ARM: Field = Field::quantity(
 
 pub(crate) const ANGLE: Field = Field::angle(
     "angle",
-    "from which a pendulum is let go, measured from where it hangs",
+    "release angle of a pendulum, from its position at rest",
 )
 .above_zero_up_to(std::f64::consts::PI);
 
 pub(crate) const GRAVITY: Field = Field::quantity(
     "gravity",
     Dimension::ACCELERATION,
-    "acceleration along its way: `1 gn` for a weight that falls",
+    "acceleration in the direction of impact: `1 gn` for a falling weight",
 )
 .or(0.0, "m/s^2")
 .at_least_zero();
@@ -62,7 +62,7 @@ pub(crate) const GRAVITY: Field = Field::quantity(
 pub(crate) const GAP: Field = Field::quantity(
     "gap",
     Dimension::LENGTH,
-    "distance to the structure at the start",
+    "initial distance to the structure",
 )
 .or(0.0, "mm")
 .at_least_zero();
@@ -85,24 +85,24 @@ pub(crate) const STRIKER: BlockKind = BlockKind {
     ],
     exports: &[
         ResultKind::new(MASS.name, Dimension::MASS, "mass of the striker"),
-        ResultKind::new(VELOCITY.name, Dimension::VELOCITY, "velocity at the start"),
+        ResultKind::new(VELOCITY.name, Dimension::VELOCITY, "initial velocity"),
         ResultKind::new(
             "energy",
             Dimension::ENERGY,
-            "kinetic energy at the start, ½ m v²",
+            "initial kinetic energy, ½ m v²",
         ),
         ResultKind::new(
             DROP_HEIGHT.name,
             Dimension::LENGTH,
-            "height of fall, v² / (2 gn)",
+            "drop height, v² / (2 gn)",
         ),
         ResultKind::new(
             GAP.name,
             Dimension::LENGTH,
-            "distance to the structure at the start",
+            "initial distance to the structure",
         ),
     ],
     results: &[],
     example: "striker pendulum {\n  mass = 20 kg\n  velocity = 1 m/s\n}",
-    doc: "A computed body that strikes the structure",
+    doc: "Simulated body that strikes the structure",
 };

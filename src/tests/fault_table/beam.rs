@@ -62,19 +62,19 @@ const CASES: &[Case] = &[
     ),
     case(
         "actuator = serial(port: \"/a\", dialect: grbl)\n  load_cell = serial(port: \"/b\", dialect: hx711)\n  \
-         force_per_count = 0.01 N\n  zero_count = 8123\n  sign = negative\n  datum = here",
+         force_per_count = 0.01 N\n  zero_offset = 8123\n  polarity = negative\n  datum = here",
         5e-3,
     ),
     case(
-        "actuator = serial(port: \"/a\", dialect: grbl)\n  load_cell = serial(port: \"/b\", dialect: indicator)\n  sign = negative\n  datum = here",
+        "actuator = serial(port: \"/a\", dialect: grbl)\n  load_cell = serial(port: \"/b\", dialect: indicator)\n  polarity = negative\n  datum = here",
         0.05,
     ),
     case(
-        "actuator = serial(port: \"/a\", dialect: grbl)\n  load_cell = serial(port: \"/b\", dialect: scpi(1 N))\n  sign = negative\n  datum = here",
+        "actuator = serial(port: \"/a\", dialect: grbl)\n  load_cell = serial(port: \"/b\", dialect: scpi(1 N))\n  polarity = negative\n  datum = here",
         0.05,
     ),
     case(
-        "actuator = serial(port: \"/a\", dialect: grbl)\n  load_cell = serial(port: \"/b\", dialect: mark10_gauge)\n  sign = negative\n  datum = here",
+        "actuator = serial(port: \"/a\", dialect: grbl)\n  load_cell = serial(port: \"/b\", dialect: mark10_gauge)\n  polarity = negative\n  datum = here",
         0.05,
     ),
 ];

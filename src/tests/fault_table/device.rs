@@ -125,10 +125,6 @@ fn a_rig_that_starts_anew_is_held_and_not_moved_any_more() {
         "{}",
         ended.reason()
     );
-    assert!(
-        ended.reason().contains("started anew"),
-        "{}",
-        ended.reason()
-    );
+    assert!(ended.reason().contains("restarted"), "{}", ended.reason());
     assert_eq!(ended.stand.stand().bench().moves().len(), 4);
 }

@@ -20,7 +20,7 @@ fn drifting(check: DriftCheck) -> Plan {
         ..ramp(1e-4)
     };
     let mut plan = plan_of(vec![ProcedureKind::StiffnessRamp(slow)]);
-    plan.rig.drift = Some(check);
+    plan.rig.zero_drift = Some(check);
     let above = |name, limit, dimension| Requirement {
         label: String::new(),
         conditions: vec![Condition {
@@ -83,8 +83,7 @@ fn a_zero_that_drifts_too_far_decides_nothing_that_the_force_enters() {
         "{reason}"
     );
     assert!(
-        reason.starts_with("the zero of the force drifted by")
-            && reason.ends_with("2 N is allowed"),
+        reason.starts_with("the zero of the force drifted by") && reason.ends_with("(limit 2 N)"),
         "{reason}"
     );
     let drift = ended.record.drift.as_ref().unwrap();
@@ -159,7 +158,7 @@ fn a_force_that_grows_in_a_hold_farther_out_than_ever_is_drift() {
     let (verdicts, reason) = decided(&plan, &run(&plan, "after 20 readings: drift force 0.4 N/s"));
     assert_eq!(verdicts[0], Verdict::Inconclusive);
     assert!(
-        reason.contains("where a specimen can only relax"),
+        reason.contains("in which a specimen can only relax"),
         "{reason}"
     );
     assert_eq!(
@@ -209,7 +208,7 @@ fn a_free_cell_is_read_where_it_is() {
     assert!((ended.stand.stand().bench().commanded() - 2e-4).abs() < 1e-6);
     let asked = ended.events(EventKind::Inspection);
     assert!(
-        asked.last().unwrap().contains("take the specimen off"),
+        asked.last().unwrap().contains("remove the specimen"),
         "{asked:?}"
     );
 }

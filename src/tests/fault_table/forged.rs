@@ -3,8 +3,8 @@
 
 use serde_json::{Value, json};
 
+use super::axes::two_axes::shaken;
 use super::stage::{Ended, link, plan, run};
-use super::two_axes::shaken;
 use crate::plan::Plan;
 use crate::record::journal::{EntryKind, Recovered};
 use crate::run::replay;
@@ -46,34 +46,22 @@ fn a_record_that_says_two_things_is_found_out() {
         assert_eq!(judged(&plan, &ended.recovered), Ok(()));
         let cases: [(EntryKind, usize, &str, Value, &str); 7] = [
             (EntryKind::Intent, 3, "/n", json!(9), "it is target 4"),
-            (
-                EntryKind::Intent,
-                3,
-                "/t",
-                json!(0.001),
-                "the record before it",
-            ),
+            (EntryKind::Intent, 3, "/t", json!(0.001), "the entry before"),
             (
                 EntryKind::Sample,
                 3,
                 "/x/0",
                 json!(0.123),
-                "the run calls for",
+                "the run requires",
             ),
             (
                 EntryKind::Sample,
                 3,
                 "/r/0",
                 json!(0.123),
-                "the run calls for",
+                "the run requires",
             ),
-            (
-                EntryKind::Sample,
-                9,
-                "/t",
-                json!(0.001),
-                "the record before it",
-            ),
+            (EntryKind::Sample, 9, "/t", json!(0.001), "the entry before"),
             (EntryKind::End, 0, "/outcome", json!("aborted"), "aborted"),
             (EntryKind::Header, 0, "/psd", json!(7), "invalid type"),
         ];
@@ -103,7 +91,7 @@ fn a_field_that_psd_does_not_write_is_found_in_every_record() {
 #[test]
 fn what_is_taken_out_of_an_ended_record_is_missed() {
     let mut plan = plan();
-    link(&mut plan).gate.zero = 5.0;
+    link(&mut plan).pretest_check.zero = 5.0;
     let ended = run(&plan, "");
     let of_kind = |kind| {
         ended

@@ -13,12 +13,12 @@
 //! | 14 | replies doubled, late, out of order | `line::a_doubled_a_late_and_an_old_reply_are_ignored`, `unnumbered::*` |
 //! | 16 | reboot | `device::a_rig_that_starts_anew_is_held_and_not_moved_any_more`, `unnumbered::a_start_of_grbl_is_seen` |
 //! | 18 | lag, stuck | `motion::a_ram_that_sticks_or_lags_is_a_following_error` |
-//! | 19 | polarity, unit, scale, offset | `gate::*` |
+//! | 19 | polarity, unit, scale, offset | `pretest_check::*` |
 //! | 19 | a rig at another position, invalid numbers at rest | `start::*` |
 //! | 20 | values that are not numbers | `device::what_is_no_number_is_never_integrated` |
 //! | 21 | saturation | `device::a_clipped_force_holds_the_rig` |
 //! | 22 | frozen sensor | `device::a_frozen_sensor_holds_the_rig` |
-//! | 23 | zero drift, of force and displacement | `drift::*`, `gate::the_drift_at_rest_is_told` |
+//! | 23 | zero drift, of force and displacement | `drift::*`, `pretest_check::the_drift_at_rest_is_told` |
 //! | 24 | spike | `device::a_spike_does_not_move_the_median` |
 //! | 25 | force beyond its limit, fracture | `motion::a_force_beyond_its_limit_holds_the_rig`, `motion::a_break_is_an_event_and_no_error` |
 //! | 26 | targets beyond limits or not finite | `targets::nothing_beyond_a_limit_is_ever_on_the_wire` |
@@ -34,21 +34,14 @@
 
 mod axes;
 mod beam;
-mod control_points;
-mod cut_off;
 mod device;
 mod drift;
 mod forged;
-mod gate;
-mod gliding;
+mod interrupted;
 mod line;
-mod long;
 mod manual;
 mod motion;
-mod several;
+mod pretest_check;
 pub(crate) mod stage;
 mod start;
 mod targets;
-mod two_axes;
-mod unnumbered;
-mod words;

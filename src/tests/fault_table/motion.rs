@@ -135,7 +135,7 @@ fn tracking_that_changes_the_energy_holds_the_rig() {
     assert!(
         warned
             .iter()
-            .any(|text| text.starts_with("tracking ") && text.ends_with("% of the input")),
+            .any(|text| text.starts_with("tracking ") && text.ends_with("% of the input energy")),
         "{warned:?}"
     );
     assert!(run(&plan, "").completed());

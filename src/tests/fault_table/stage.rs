@@ -5,7 +5,7 @@ use crate::emulator::testing::SharedText;
 use crate::emulator::{InProcess, Log, Script, SimulatedPort, of_plan};
 use crate::plan::formula::Formula;
 use crate::plan::{
-    Behind, Datum, DeviceLink, Dialect, Gate, Interval, Limits, Link, Move, Plan, PortPlan,
+    Behind, Datum, DeviceLink, Dialect, Interval, Limits, Link, Move, Plan, PortPlan, PretestCheck,
     ProcedureKind, ReadingRules, RealLink, SafeState, Settle,
 };
 use crate::record::journal::testing::PowerLoss;
@@ -46,7 +46,7 @@ pub(super) fn plan_of(procedures: Vec<ProcedureKind>) -> Plan {
         load_cell: None,
         safe_state: SafeState::Hold,
         datum: Datum::Machine,
-        gate: Gate {
+        pretest_check: PretestCheck {
             zero: 5.0,
             probe: 5e-5,
             stiffness: Interval {

@@ -1,13 +1,13 @@
 //! Position and readings of the rig when a run begins. In: rigs that are not at their zero position, or whose numbers are invalid. Out:
 //! nothing moves, or every position counts from the present one.
 
-use super::cut_off::{GoneOn, gone_on, killed};
+use super::axes::two_axes::{results, shaken};
 use super::forged::{found, judged};
+use super::interrupted::cut_off::{GoneOn, gone_on, killed};
+use super::line::unnumbered::{grbl, modbus};
 use super::stage::{
     Ended, STIFFNESS, device_link, link, open, plan, plan_of, run, run_without, stand, to,
 };
-use super::two_axes::{results, shaken};
-use super::unnumbered::{grbl, modbus};
 use crate::emulator::Log;
 use crate::plan::{Datum, Dialect, ModbusMap, ModbusNumber, Plan};
 use crate::record::journal::EntryKind;
@@ -43,11 +43,7 @@ fn here(mut plan: Plan) -> Plan {
 
 #[test]
 fn a_rig_that_stands_elsewhere_without_load_is_not_sent_to_the_plans_start() {
-    let ended = refused(
-        &plan(),
-        AT_3_MM,
-        "stands at 3.000 mm, and the plan begins at 0",
-    );
+    let ended = refused(&plan(), AT_3_MM, "is at 3.000 mm, but the plan starts at 0");
     assert!(
         ended.reason().contains("`datum = here`"),
         "{}",
@@ -68,7 +64,7 @@ fn a_rig_that_stands_elsewhere_without_load_is_not_sent_to_the_plans_start() {
     assert!(least < 0.2e-3, "{least}");
     // A start position within the settling tolerance is accepted.
     assert!(run(&plan(), "stands at 0.004 mm").completed());
-    refused(&plan(), "stands at -0.006 mm", "and the plan begins at 0");
+    refused(&plan(), "stands at -0.006 mm", "but the plan starts at 0");
 }
 
 #[test]
@@ -80,17 +76,17 @@ fn what_a_specimen_carries_there_is_told() {
     let Outcome::Faulted { reason } = &record.outcome else {
         panic!("{:?}", record.outcome)
     };
-    assert!(reason.contains("as a run without `unload`"), "{reason}");
+    assert!(
+        reason.contains("as after a run without a final `unload`"),
+        "{reason}"
+    );
     // The zero is not set again either, because the specimen carries load at this position.
     let mut rig = open(&here(plan()), &bent).unwrap();
     let record = crate::run::run(&here(plan()), &mut rig, &mut crate::run::Unwatched);
     let Outcome::Faulted { reason } = &record.outcome else {
         panic!("{:?}", record.outcome)
     };
-    assert!(
-        reason.contains("10.00 N at rest, 5 N is allowed"),
-        "{reason}"
-    );
+    assert!(reason.contains("10.00 N at rest (limit 5 N)"), "{reason}");
     assert_eq!(bent.stand().bench().moves().len(), 3);
 }
 
@@ -99,7 +95,7 @@ fn a_plan_whose_zero_is_where_the_rig_stands_counts_from_there() {
     for sign in [1.0, -1.0] {
         for place in [3.0, -41.7] {
             let mut plan = here(plan());
-            plan.rig.sign = sign;
+            plan.rig.polarity = sign;
             let ended = run(&plan, &format!("stands at {place} mm"));
             ended.sound();
             let own = place * 1e-3;
@@ -107,12 +103,9 @@ fn a_plan_whose_zero_is_where_the_rig_stands_counts_from_there() {
                 ended.body(EntryKind::Rig, 0)["datum"],
                 serde_json::json!([own])
             );
-            assert!(
-                ended
-                    .events(EventKind::Note)
-                    .iter()
-                    .any(|note| note.starts_with("the plan's zero is where the rig stands"))
-            );
+            assert!(ended.events(EventKind::Note).iter().any(|note| {
+                note.starts_with("the plan's zero is the present position of the rig")
+            }));
             let stand = ended.stand.stand();
             let targets = stand.bench().targets().to_vec();
             assert!(
@@ -152,7 +145,7 @@ fn every_axis_of_several_counts_from_where_it_stands() {
     refused(
         &shaken("0.1 s"),
         "axis 2 stands at 1 mm",
-        "axis 2 stands at −1.000 mm",
+        "axis 2 is at −1.000 mm",
     );
 }
 
@@ -216,13 +209,13 @@ fn a_grbl_as_it_comes_is_run_from_where_it_was_homed() {
     );
     // Its own zero is the limit switch, and all positions above it are outside its travel.
     let mut upwards = grbl();
-    upwards.rig.sign = 1.0;
+    upwards.rig.polarity = 1.0;
     upwards.procedures = plan_of(vec![to(1.1e-3)]).procedures;
     let ended = run(&upwards, "");
     assert!(ended.reason().contains("error:15"), "{}", ended.reason());
     let mut own = grbl();
     link(&mut own).datum = Datum::Machine;
-    refused(&own, "", "stands at 1.000 mm, and the plan begins at 0");
+    refused(&own, "", "is at 1.000 mm, but the plan starts at 0");
 }
 
 fn swapped(number: ModbusNumber) -> ModbusNumber {
@@ -290,7 +283,7 @@ fn a_drive_in_the_other_word_order_is_not_moved() {
                 }
             };
             assert!(
-                outcome.contains("word order"),
+                outcome.contains("register order"),
                 "{:?}, noise {noise}: {outcome}",
                 map.number
             );

@@ -73,8 +73,8 @@ fn without_the_guard_a_target_beyond_the_limits_leaves() {
     );
     link(&mut plan).actuator = device_link(Dialect::Grbl);
     link(&mut plan).load_cell = Some(device_link(Dialect::Indicator));
-    link(&mut plan).gate.stiffness = Interval::ALL;
-    super::unnumbered::as_homed(&mut plan);
+    link(&mut plan).pretest_check.stiffness = Interval::ALL;
+    crate::tests::fault_table::line::unnumbered::as_homed(&mut plan);
     let outside = |guarded: bool| {
         let ended = if guarded {
             run(&plan, "")

@@ -14,7 +14,7 @@ fn yielding(time_step: f64) -> Record {
             Behaviour::Bilinear {
                 stiffness,
                 yield_force,
-                hardening: 0.05,
+                post_yield_ratio: 0.05,
             },
         )
     };
@@ -34,7 +34,7 @@ fn yielding(time_step: f64) -> Record {
 fn a_shake_says_that_its_balance_is_off() {
     let told = |record: &Record| {
         record.events.iter().any(|event| {
-            event.kind == EventKind::Remark && event.text.contains("energy balance is off")
+            event.kind == EventKind::Remark && event.text.contains("energy balance error")
         })
     };
     let error = |record: &Record| number(record, 0, "energy_error").0.unwrap().abs();

@@ -38,7 +38,7 @@ fn yielding(cycle: Cycle) -> Plan {
     plan.specimens[0].behaviour = Some(Behaviour::Bilinear {
         stiffness: 1000.0,
         yield_force: 10.0,
-        hardening: 0.1,
+        post_yield_ratio: 0.1,
     });
     plan
 }

@@ -12,7 +12,7 @@ fn perfectly_plastic(procedures: Vec<ProcedureKind>) -> Plan {
     plan.specimens[0].behaviour = Some(Behaviour::Bilinear {
         stiffness: 2e4,
         yield_force: 200.0,
-        hardening: 0.0,
+        post_yield_ratio: 0.0,
     });
     plan
 }

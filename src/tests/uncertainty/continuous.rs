@@ -50,12 +50,12 @@ fn plan(case: Case) -> Plan {
             Kind::Bilinear => Behaviour::Bilinear {
                 stiffness,
                 yield_force,
-                hardening: 0.1,
+                post_yield_ratio: 0.1,
             },
             Kind::BoucWen => Behaviour::BoucWen {
                 stiffness,
                 yield_force,
-                hardening: 0.1,
+                post_yield_ratio: 0.1,
                 sharpness: 2.0,
                 beta: 0.5,
             },

@@ -76,7 +76,7 @@ fn replays_on_coarse_rigs_are_held() {
     let yielding = |by: f64| Behaviour::Bilinear {
         stiffness: 1000.0 * by,
         yield_force: 10.0,
-        hardening: 0.1,
+        post_yield_ratio: 0.1,
     };
     let cell = |quantum| VirtualLink {
         force_resolution: quantum,

@@ -138,14 +138,14 @@ fn both_lines_of_a_ramp_past_yield_are_predicted() {
     plan.specimens[0].behaviour = Some(Behaviour::Bilinear {
         stiffness: STIFFNESS,
         yield_force: 400.0,
-        hardening: 0.2,
+        post_yield_ratio: 0.2,
     });
     let names = [
         "stiffness",
         "yield_force",
         "yield_displacement",
-        "hardened_stiffness",
-        "hardening",
+        "post_yield_stiffness",
+        "post_yield_ratio",
     ];
     assert_predicted(&plan, NOISY, &names, (60, 20.0, 0.03));
     let ProcedureKind::StiffnessRamp(asked) = &mut plan.procedures[0].kind else {
@@ -204,7 +204,7 @@ fn the_loops_of_a_cycle_are_predicted() {
     plan.specimens[0].behaviour = Some(Behaviour::Bilinear {
         stiffness: 1000.0,
         yield_force: 10.0,
-        hardening: 0.1,
+        post_yield_ratio: 0.1,
     });
     // Both with the same Monte Carlo trials.
     let link = VirtualLink {
@@ -255,7 +255,7 @@ fn the_relaxation_of_dwells_is_predicted() {
             model,
             accuracy: Some(1.0),
         });
-        let names = ["time_constant", "remaining_relaxation", "needed_pause"];
+        let names = ["time_constant", "remaining_relaxation", "required_pause"];
         let noisy = VirtualLink {
             noise: 0.3,
             ..NOISY

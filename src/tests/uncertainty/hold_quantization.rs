@@ -93,7 +93,7 @@ fn replays_of_holds_on_a_coarse_load_cell_are_held() {
                 "time_constant",
                 "relaxed_stiffness",
                 "remaining_relaxation",
-                "needed_pause",
+                "required_pause",
             ],
         ),
         (
@@ -103,7 +103,7 @@ fn replays_of_holds_on_a_coarse_load_cell_are_held() {
                 "relaxed_stiffness",
                 "branch_stiffness",
                 "remaining_relaxation",
-                "needed_pause",
+                "required_pause",
             ],
         ),
     ];
@@ -165,7 +165,7 @@ fn replays_of_forces_that_relax_with_the_logarithm_are_held() {
         "relaxation_share",
         "reference_time",
         "relaxation_rate",
-        "needed_pause",
+        "required_pause",
     ];
     for (name, error, told, held) in replayed(40, &names, link, &plan) {
         assert!(

@@ -2,13 +2,16 @@
 //! compared with the re-integration along the recorded path.
 
 use crate::physics::impact::ImpactInput;
-use crate::physics::reintegration::impact::{OUTCOMES, integrate};
+use crate::physics::reintegration::hysteresis_replay::Reading;
+use crate::physics::reintegration::impact::integrate;
 use crate::physics::specimen::{RestoringForce, SpecimenModel};
 use crate::plan::formula::{Formula, ProcedureId};
 use crate::plan::{
     Behaviour, Bolted, Calibration, Contact, Impact, Link, Pinching, Plan, ProcedureKind, Until,
     VirtualLink,
 };
+use crate::procedures::common::results::Evaluated;
+use crate::procedures::impact::results::re_integrated;
 use crate::procedures::impact::setting::Setting;
 use crate::rig::DeclaredNoise;
 use crate::run::inputs::Inputs;
@@ -38,7 +41,7 @@ fn specimens(force: f64, displacement: f64) -> Vec<(&'static str, Behaviour)> {
             Behaviour::Bilinear {
                 stiffness,
                 yield_force,
-                hardening: 0.1,
+                post_yield_ratio: 0.1,
             },
         ),
         (
@@ -46,7 +49,7 @@ fn specimens(force: f64, displacement: f64) -> Vec<(&'static str, Behaviour)> {
             Behaviour::Bilinear {
                 stiffness,
                 yield_force: 1.25 * yield_force,
-                hardening: 0.0,
+                post_yield_ratio: 0.0,
             },
         ),
         (
@@ -60,7 +63,7 @@ fn specimens(force: f64, displacement: f64) -> Vec<(&'static str, Behaviour)> {
             Behaviour::BoucWen {
                 stiffness,
                 yield_force,
-                hardening: 0.1,
+                post_yield_ratio: 0.1,
                 sharpness: 2.0,
                 beta: 0.5,
             },
@@ -70,7 +73,7 @@ fn specimens(force: f64, displacement: f64) -> Vec<(&'static str, Behaviour)> {
             Behaviour::Pinching(Pinching {
                 stiffness,
                 yield_force,
-                hardening: 0.05,
+                post_yield_ratio: 0.05,
                 force_factor: 0.4,
                 displacement_factor: 0.5,
                 unloading_exponent: 0.0,
@@ -125,19 +128,18 @@ fn laws() -> Vec<(&'static str, Contact)> {
 }
 
 /// Results of an impact on the virtual specimen.
-fn truth(
-    input: &ImpactInput,
-    until: Until,
-    steps: u64,
-    behaviour: &Behaviour,
-) -> [f64; OUTCOMES.len()] {
+fn truth(input: &ImpactInput, until: Until, steps: u64, behaviour: &Behaviour) -> Evaluated {
     let mut model = SpecimenModel::new(behaviour);
     let force = model.move_to(0.0);
-    integrate(input, until, steps, (0.0, 0.0, force), |target, _| {
+    let start = Reading {
+        target: 0.0,
+        displacement: 0.0,
+        force,
+    };
+    let found = integrate(input, until, steps, start, |target, _| {
         (target, model.move_to(target))
-    })
-    .unwrap()
-    .values
+    });
+    re_integrated(&found.unwrap().values)
 }
 
 struct Cell {
@@ -223,7 +225,8 @@ fn cells(specimen: usize, contact: &Contact, blow: Blow) -> Vec<Cell> {
     let mut found = Vec::new();
     for source in SOURCES {
         let (up, down) = (at(source, 1.0), at(source, -1.0));
-        for (index, outcome) in OUTCOMES.into_iter().enumerate() {
+        for (index, (kind, values)) in nominal.iter().enumerate() {
+            let (outcome, nominal) = (kind.name, values[0]);
             let result = record.procedures[0].result(outcome).unwrap();
             let Some(told) = result
                 .contributions
@@ -232,14 +235,14 @@ fn cells(specimen: usize, contact: &Contact, blow: Blow) -> Vec<Cell> {
             else {
                 continue;
             };
-            let change = |moved: f64| (moved - nominal[index]).abs();
-            let truth = change(up[index]).max(change(down[index]));
+            let change = |moved: &Evaluated| (moved[index].1[0] - nominal).abs();
+            let truth = change(&up).max(change(&down));
             found.push(Cell {
                 source,
                 outcome,
                 told: *told,
                 truth,
-                value: nominal[index],
+                value: nominal,
             });
         }
     }

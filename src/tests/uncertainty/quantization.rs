@@ -237,7 +237,7 @@ fn replays_of_a_sweep_on_a_coarse_load_cell_are_held() {
 /// Both stiffnesses and the yield point of a ramp past yield, each segment of which is a few quantization steps.
 #[test]
 fn replays_of_a_bilinear_ramp_on_a_coarse_load_cell_are_held() {
-    for name in ["stiffness", "hardened_stiffness", "yield_force"] {
+    for name in ["stiffness", "post_yield_stiffness", "yield_force"] {
         let found = replayed(80, |state| {
             let stiffness = STIFFNESS * (0.9 + 0.2 * uniform(state));
             let yield_force = 150.0 + 10.0 * uniform(state);
@@ -249,7 +249,7 @@ fn replays_of_a_bilinear_ramp_on_a_coarse_load_cell_are_held() {
             plan.specimens[0].behaviour = Some(Behaviour::Bilinear {
                 stiffness,
                 yield_force,
-                hardening: 0.2,
+                post_yield_ratio: 0.2,
             });
             let ProcedureKind::StiffnessRamp(ramp) = &mut plan.procedures[0].kind else {
                 panic!()
@@ -258,7 +258,7 @@ fn replays_of_a_bilinear_ramp_on_a_coarse_load_cell_are_held() {
             let (value, known) = told(&run_unwatched(&plan), 0, name);
             let truth = match name {
                 "stiffness" => stiffness,
-                "hardened_stiffness" => 0.2 * stiffness,
+                "post_yield_stiffness" => 0.2 * stiffness,
                 _ => yield_force,
             };
             (value - truth, known)

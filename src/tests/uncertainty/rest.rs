@@ -175,7 +175,7 @@ fn a_rig_with_calibration_errors_unloads_as_predicted() {
             Behaviour::Bilinear {
                 stiffness: 500.0,
                 yield_force: 10.0,
-                hardening: 0.1,
+                post_yield_ratio: 0.1,
             },
         ),
         (
@@ -191,7 +191,7 @@ fn a_rig_with_calibration_errors_unloads_as_predicted() {
             Behaviour::BoucWen {
                 stiffness: 500.0,
                 yield_force: 10.0,
-                hardening: 0.1,
+                post_yield_ratio: 0.1,
                 sharpness: 2.0,
                 beta: 0.5,
             },

@@ -228,7 +228,7 @@ fn a_damping_that_is_not_significantly_below_none_is_none() {
         .collect();
     assert!(
         said.iter()
-            .any(|text| text.contains("not significantly below 0: it is taken as 0")),
+            .any(|text| text.contains("not significantly below 0, and is set to 0")),
         "{said:?}"
     );
     let refused = damped(-5.0, 2.0);

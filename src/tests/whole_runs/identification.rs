@@ -69,9 +69,9 @@ fn results_are_in_the_order_of_the_reference() {
             .collect()
     };
     let ramp = "stiffness, secant_stiffness, intercept_force, r_squared, max_force, max_displacement, loop_energy, relaxation, \
-                tangent_stiffness, yield_force, yield_displacement, hardened_stiffness, hardening, breaks, break_uncertainties, \
-                break_forces, break_force_uncertainties, curve_stiffnesses, curve_stiffness_uncertainties, time_constant, \
-                relaxed_stiffness, branch_stiffness, remaining_relaxation, needed_pause";
+                tangent_stiffness, yield_force, yield_displacement, post_yield_stiffness, post_yield_ratio, breaks, \
+                break_forces, curve_stiffnesses, time_constant, \
+                relaxed_stiffness, branch_stiffness, remaining_relaxation, required_pause";
     assert_eq!(names(0).join(", "), ramp);
     assert_eq!(
         names(1).join(", "),

@@ -59,6 +59,7 @@ codes! {
     E212 BlockName Error;
     E213 BadArgument Error;
     E214 UnknownParameter Error;
+    E215 OldName Error;
     // 3: dimensions and types
     E301 WrongDimension Error;
     E302 MissingUnit Error;
@@ -162,7 +163,7 @@ codes! {
     W724 BeyondMechanism Warning;
     W726 FewDecades Warning;
     W728 NoEffect Warning;
-    W727 GateWithinNoise Warning;
+    W727 CheckWithinNoise Warning;
     W729 NothingToGuard Warning;
     W730 FinalIsNotResidual Warning;
 }

@@ -103,7 +103,7 @@ fn every_dialect_is_probed_and_watched_and_nothing_moves() {
         }
         let homed = probed
             .out
-            .contains("stands at -1 mm of its own: a run would begin there, at 0");
+            .contains("at -1 mm in its own coordinate: a run would start there, at 0");
         assert_eq!(homed, case.name.starts_with("grbl"), "{}", probed.out);
         let open_loop = probed.out.contains("open loop");
         assert_eq!(open_loop, case.name.starts_with("grbl"), "{}", probed.out);
@@ -166,7 +166,7 @@ fn not_understood(said: &Said, place: &str) {
     assert_eq!(
         lines
             .get(error + 2)
-            .is_some_and(|line| line.starts_with(" help: the baud rate, the dialect")),
+            .is_some_and(|line| line.starts_with(" help: the baud rate, the `dialect`")),
         silent,
         "{}",
         said.told

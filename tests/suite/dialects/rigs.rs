@@ -37,7 +37,7 @@ pub const CASES: &[Case] = &[
         ..serial(
             "grbl with hx711",
             "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: hx711)\n  \
-             force_per_count = 0.01 N\n  zero_count = 8123\n  sign = negative\n  datum = here",
+             force_per_count = 0.01 N\n  zero_offset = 8123\n  polarity = negative\n  datum = here",
         )
     },
     // Hundredths of a kilogram, ten a second.
@@ -46,14 +46,14 @@ pub const CASES: &[Case] = &[
         duration: 4.0,
         ..serial(
             "grbl with indicator",
-            "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: indicator)\n  sign = negative\n  datum = here",
+            "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: indicator)\n  polarity = negative\n  datum = here",
         )
     },
     Case {
         force_error: 0.05,
         ..serial(
             "grbl with scpi",
-            "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: scpi(1 N))\n  sign = negative\n  datum = here",
+            "actuator = serial(port: \"FOLDER/a\", dialect: grbl)\n  load_cell = serial(port: \"FOLDER/b\", dialect: scpi(1 N))\n  polarity = negative\n  datum = here",
         )
     },
     // Eight decimals of 1 m and of 15 kN; it accepts ten polls a second.
@@ -162,7 +162,7 @@ rig real {{
   {devices}
   settle      = within({band} um, 50 kN/s, timeout: 10 min)
   safe_state  = hold
-  gate        = probe(0.1 mm, stiffness: 250 kN/m .. 350 kN/m, zero: 2 N)
+  pretest_check        = probe(0.1 mm, stiffness: 250 kN/m .. 350 kN/m, zero: 2 N)
   speed       = {speed} mm/s
   watchdog    = {watchdog} s
   rate        = 200 Hz
@@ -204,7 +204,7 @@ report {{
 
 const SWEEP: &str = "
 damping sweep c {
-  velocities = [2, 4] mm/s
+  velocities = [1, 2] mm/s
   stroke     = 8 mm
   stiffness  = k0.stiffness
   rate       = 20 Hz

@@ -7,10 +7,11 @@ use psd::physics::impact::energy::Energies;
 use psd::physics::tracking::monitor::Tracking;
 use psd::plan::formula::{Estimate, Formula, Part, ProcedureId, ResultReference, ResultValue};
 use psd::plan::{
-    Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, DecisionRule, Figure,
-    FigureKind, Impact, ImpactTarget, InspectTrigger, Integrator, Interval, Limits, Link, Mode,
-    Parameter, Plan, PlanFile, PointTarget, Procedure, ProcedureKind, RampFit, Report, Requirement,
-    RigPlan, Settle, Specimen, Stepping, StiffnessRamp, Striker, Test, Until, VirtualLink,
+    Annex, Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, DecisionRule,
+    Figure, FigureKind, Impact, ImpactTarget, InspectTrigger, Integrator, Interval, Limits, Link,
+    Mode, Parameter, Plan, PlanFile, PointTarget, Procedure, ProcedureKind, RampFit, Report,
+    Requirement, RigPlan, Settle, Specimen, Stepping, StiffnessRamp, Striker, Test, Until,
+    VirtualLink,
 };
 use psd::record::{
     BroughtTogether, Event, EventKind, History, ImpactHistory, ImpactStep, NamedResult, Outcome,
@@ -487,7 +488,7 @@ fn plan() -> Plan {
         strikers: vec![Striker::new("pendulum", STRIKER_MASS, 1.0)],
         grounds: Vec::new(),
         rig: RigPlan {
-            name: "rehearsal".into(),
+            name: "simulated".into(),
             link: Link::Virtual(VirtualLink {
                 noise: 0.1,
                 resolution: 1e-6,
@@ -501,9 +502,9 @@ fn plan() -> Plan {
                 dwell: 0.3,
                 timeout: 10.0,
             },
-            sign: 1.0,
+            polarity: 1.0,
             calibration: Calibration::default(),
-            drift: None,
+            zero_drift: None,
         },
         limits: Limits {
             displacement: Interval {
@@ -549,9 +550,13 @@ fn plan() -> Plan {
             figures,
             formats: Vec::new(),
             sign: vec!["Test engineer".into(), "Quality".into()],
+            annexes: Annex::ALL.to_vec(),
+            results: None,
+            logo: None,
+            photos: Vec::new(),
         },
         golden: psd::plan::Golden::default(),
-        rehearses: None,
+        check_run_of: None,
         unloads_at_once: false,
         files: vec![
             PlanFile {
@@ -561,7 +566,7 @@ fn plan() -> Plan {
             },
             PlanFile {
                 name: "lib/frame.psd".into(),
-                text: "rig rehearsal { link = virtual }\n".into(),
+                text: "rig simulated { link = virtual }\n".into(),
             },
         ],
         settings: vec![("impact_speed".into(), "1 m/s".into())],

@@ -3,9 +3,8 @@
 
 use psd::golden::comparison::page;
 use psd::golden::comparison::{Comparison, Side, csv};
-use psd::golden::{
-    Change, Finding, Outcome as TestOutcome, Part, Report, Tested, json as golden_json, junit, tap,
-};
+use psd::golden::print::json as golden_json;
+use psd::golden::{Change, Finding, Outcome as TestOutcome, Part, Report, Tested, junit, tap};
 use psd::language::check::{Checked, LoadError, Loader, Options, check};
 use psd::plan::Format;
 use psd::record::journal::{Durability, EntryKind, FileStorage, Journal, recover};
@@ -112,14 +111,11 @@ fn tags(page: &str) -> Vec<String> {
 
 #[test]
 fn no_label_is_markup_on_a_page() {
-    let plain = tags(text(
-        &files_of(&run_with("a plain label")),
-        "certificate.html",
-    ));
+    let plain = tags(text(&files_of(&run_with("a plain label")), "report.html"));
     assert!(plain.len() > 200);
     labels().par_iter().for_each(|label| {
         let files = files_of(&run_with(label));
-        let page = text(&files, "certificate.html");
+        let page = text(&files, "report.html");
         assert_eq!(steering(page), "", "{label:?}");
         // A label without letters may be reported as missing. A label with several lines adds lines to the plan.
         if !label.trim().is_empty()
@@ -153,7 +149,7 @@ fn no_label_is_markup_on_paper() {
         finished.provenance.date = Some("2026-05-31".to_owned());
         files_of(&finished)
             .into_iter()
-            .find(|file| file.path == "certificate.pdf")
+            .find(|file| file.path == "report.pdf")
             .unwrap()
             .bytes
     };
@@ -302,7 +298,7 @@ fn no_label_is_another_place_or_another_line_of_the_manifest() {
                 [
                     "plan/",
                     "tables/",
-                    "certificate.",
+                    "report.",
                     "summary.json",
                     "manifest.sha256"
                 ]

@@ -10,8 +10,8 @@ fn a_run_has_one_paper_whatever_its_texts_want_to_be() {
     for mut finished in [finished(), hostile()] {
         finished.plan.report.formats = vec![Format::Pdf];
         let (first, second) = (files(&finished), files(&finished));
-        let paper = bytes(&first, "certificate.pdf");
-        assert!(paper.starts_with(b"%PDF-1.7") && paper == bytes(&second, "certificate.pdf"));
+        let paper = bytes(&first, "report.pdf");
+        assert!(paper.starts_with(b"%PDF-1.7") && paper == bytes(&second, "report.pdf"));
     }
 }
 
@@ -22,7 +22,7 @@ fn another_day_is_another_paper_and_an_impossible_day_is_none() {
         finished.provenance.date = Some(date.into());
         finished.plan.report.figures.clear();
         finished.plan.report.formats = vec![Format::Pdf];
-        bytes(&files(&finished), "certificate.pdf").to_vec()
+        bytes(&files(&finished), "report.pdf").to_vec()
     };
     let archived = |paper: &[u8]| {
         paper

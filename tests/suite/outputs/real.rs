@@ -1,8 +1,8 @@
 //! Statements of the outputs about a run on a real rig: its status, its equipment, its record.
 
 use psd::plan::{
-    Calibration, Datum, DeviceLink, Dialect, Format, Gate, Interval, Link, PortPlan, ReadingRules,
-    RealLink, SafeState,
+    Calibration, Datum, DeviceLink, Dialect, Format, Interval, Link, PortPlan, PretestCheck,
+    ReadingRules, RealLink, SafeState,
 };
 use psd::record::{Event, EventKind, Outcome};
 use psd::report::ReportStatus;
@@ -37,7 +37,7 @@ fn real() -> Finished {
         }),
         safe_state: SafeState::Hold,
         datum: Datum::Machine,
-        gate: Gate {
+        pretest_check: PretestCheck {
             zero: 20.0,
             probe: 20e-6,
             stiffness: Interval {
@@ -112,7 +112,7 @@ fn a_real_run_that_lacks_nothing_is_certifiable_and_says_what_it_was_made_with()
     let finished = real();
     assert_eq!(ReportStatus::of(&finished.run()), ReportStatus::Certifiable);
     let files = files(&finished);
-    let html = text(&files, "certificate.html").replace('\u{a0}', " ");
+    let html = text(&files, "report.html").replace('\u{a0}', " ");
     for told in [
         "serial, 115200 baud",
         "TCP",
@@ -135,8 +135,8 @@ fn a_real_run_that_lacks_nothing_is_certifiable_and_says_what_it_was_made_with()
         "ttyUSB7",
         "10.0.0.7",
         "class=\"watermark\"",
-        "REHEARSAL",
-        "NOT CERTIFIABLE",
+        "SIMULATION",
+        "NOT ISSUABLE",
         "Seed",
     ] {
         assert!(!html.contains(secret), "{secret}");
@@ -154,19 +154,19 @@ fn a_real_run_that_lacks_nothing_is_certifiable_and_says_what_it_was_made_with()
 }
 
 #[test]
-fn what_a_certificate_must_state_and_lacks_is_named() {
+fn what_a_report_must_state_and_lacks_is_named() {
     let mut anonymous = real();
     anonymous.provenance.real.as_mut().unwrap().operator = Some("  ".into());
     assert_eq!(missing(&anonymous), ["the operator's name"]);
     let mut uncalibrated = real();
     uncalibrated.plan.rig.calibration = Calibration::default();
-    let ranges = ["displacement", "force"]
-        .map(|channel| format!("the range over which the {channel} is calibrated"));
+    let ranges =
+        ["displacement", "force"].map(|channel| format!("the calibrated range of the {channel}"));
     let lacks = [
-        "the calibration's reference",
+        "the reference of the calibration",
         &ranges[0],
         &ranges[1],
-        "the day until which the calibration holds",
+        "the due date of the calibration",
     ];
     assert_eq!(missing(&uncalibrated), lacks);
     // It was valid when the run began, and not when it ended, a day later.
@@ -174,13 +174,13 @@ fn what_a_certificate_must_state_and_lacks_is_named() {
     expired.plan.rig.calibration.due = Some("2027-02-28".into());
     assert_eq!(
         missing(&expired),
-        ["a valid calibration (it held until 2027-02-28, the test ended on 2027-03-01)"]
+        ["a valid calibration (due 2027-02-28, test ended 2027-03-01)"]
     );
     let files = files(&expired);
-    let html = text(&files, "certificate.html");
+    let html = text(&files, "report.html");
     assert!(
         html.contains("class=\"watermark\"")
-            && html.contains("NOT CERTIFIABLE")
+            && html.contains("NOT ISSUABLE")
             && html.contains("OVERDUE</span> on 2027-03-01")
     );
     assert!(
@@ -226,13 +226,13 @@ fn what_lies_outside_the_range_of_its_calibration_is_told() {
     assert!(
         weak.len() == 1
             && weak[0].starts_with("The largest force, ")
-            && weak[0].contains("is below the range"),
+            && weak[0].contains("is below its calibrated range"),
         "{weak:?}"
     );
     assert!(
         far.len() == 1
             && far[0].starts_with("The largest displacement, ")
-            && far[0].contains("is beyond"),
+            && far[0].contains("is above"),
         "{far:?}"
     );
 }
@@ -273,16 +273,14 @@ fn a_report_without_what_every_report_states_is_not_certifiable_and_names_it() {
         .particulars
         .retain(|(field, _)| *field != "receipt_date");
     assert_eq!(ReportStatus::of(&bare.run()), ReportStatus::Certifiable);
-    assert!(
-        text(&files(&bare), "certificate.html").contains("Not given: Condition, Item received.")
-    );
+    assert!(text(&files(&bare), "report.html").contains("Not given: Condition, Item received."));
 
     bare.plan.particulars.clear();
     let files = files(&bare);
-    let html = text(&files, "certificate.html");
+    let html = text(&files, "report.html");
     for told in [
         "<div>PARTICULARS MISSING</div>",
-        "wants of a report and this one lacks: laboratory; address; ",
+        "7.8.2.1. Missing: laboratory; address; ",
     ] {
         assert!(html.contains(told), "{told}");
     }
@@ -303,11 +301,11 @@ fn a_report_without_what_every_report_states_is_not_certifiable_and_names_it() {
         told.contains("(PARTICULARS MISSING: laboratory, address, ") && told.contains("psd issue"),
         "{told}"
     );
-    // A low-level check run is not issuable.
+    // A simulation is not issuable.
     bare.record.rig.simulated = true;
     assert_eq!(
         ReportStatus::reasons(&bare.run()),
-        [ReportStatus::Rehearsal]
+        [ReportStatus::Simulation]
     );
 }
 
@@ -335,7 +333,7 @@ fn days_out_of_their_order_are_told() {
     );
     assert_eq!(
         dated("receipt_date", "in spring"),
-        ["a day on which the item was received (“in spring” is none)"]
+        ["a valid day of receipt (found “in spring”)"]
     );
     let mut near = real();
     for (field, day) in [("issued", "2027-02-28"), ("receipt_date", "2027-03-01")] {
@@ -374,8 +372,8 @@ fn an_amended_name_of_the_operator_stands_on_the_first_page_and_not_in_the_prove
         all: vec![issue],
     });
     let files = files(&amended);
-    let html = text(&files, "certificate.html");
-    assert!(html.contains("Operator</span><span>A. B. Tester</span>"));
+    let html = text(&files, "report.html");
+    assert!(html.contains("Operator</dt><dd>A. B. Tester</dd>"));
     assert!(
         html.contains("Operator</th><td>A. Tester</td>"),
         "the record says who stood by"
@@ -386,25 +384,25 @@ fn an_amended_name_of_the_operator_stands_on_the_first_page_and_not_in_the_prove
 
 #[test]
 fn a_simulated_rig_on_a_real_line_is_marked_across_the_page_whatever_else_is_wrong() {
-    let mut rehearsed = real();
-    rehearsed.record.rig.simulated = true;
-    assert_eq!(ReportStatus::of(&rehearsed.run()), ReportStatus::Rehearsal);
-    rehearsed.record.outcome = Outcome::Aborted {
+    let mut emulated = real();
+    emulated.record.rig.simulated = true;
+    assert_eq!(ReportStatus::of(&emulated.run()), ReportStatus::Simulation);
+    emulated.record.outcome = Outcome::Aborted {
         reason: "stopped on request".into(),
     };
     assert_eq!(
-        ReportStatus::reasons(&rehearsed.run()),
-        [ReportStatus::Rehearsal, ReportStatus::Incomplete]
+        ReportStatus::reasons(&emulated.run()),
+        [ReportStatus::Simulation, ReportStatus::Incomplete]
     );
-    let files = files(&rehearsed);
-    let html = text(&files, "certificate.html");
-    assert!(html.contains("<div>REHEARSAL ON A SIMULATED RIG</div><div>INCOMPLETE</div>"));
+    let files = files(&emulated);
+    let html = text(&files, "report.html");
+    assert!(html.contains("<div>SIMULATION</div><div>INCOMPLETE</div>"));
     // A virtual rig states this too, because any single page may be copied without the others.
-    assert!(text(super::made(), "certificate.html").contains("<div>REHEARSAL</div>"));
+    assert!(text(super::made(), "report.html").contains("<div>SIMULATION</div>"));
 }
 
 #[test]
-fn what_went_otherwise_comes_before_the_requirements() {
+fn deviations_are_on_the_first_page_and_inspections_in_an_annex() {
     let mut finished = real();
     let event = |kind, text: &str| Event {
         time: 1.0,
@@ -418,21 +416,21 @@ fn what_went_otherwise_comes_before_the_requirements() {
         .particulars
         .push(("deviations", "The supports were greased".into()));
     finished.record.events = vec![
-        event(EventKind::Note, "gate passed: 0.1 N at rest"),
+        event(EventKind::Note, "pre-test check passed: 0.1 N at rest"),
         event(EventKind::Note, "line: 3 frames sent again"),
         event(EventKind::Resume, "resumed by B. Second: power came back"),
         event(EventKind::Inspection, "look: no crack (A. Tester)"),
     ];
     let files = files(&finished);
-    let html = text(&files, "certificate.html");
+    let html = text(&files, "report.html");
     let at = |words: &str| html.find(words).unwrap_or_else(|| panic!("{words}"));
     let order = [
         "The supports were greased.",
         "Line: 3 frames sent again.",
         "resumed by B. Second",
+        ">Results</h2>",
+        "Pre-test check: results</th><td>0.1 N at rest",
         "no crack (A. Tester)",
-        "<h2>Requirements",
-        "Gate, found</th><td>0.1 N at rest",
     ];
     assert!(order.map(at).is_sorted(), "{:?}", order.map(at));
 }

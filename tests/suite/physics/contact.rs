@@ -2,7 +2,7 @@
 
 use psd::physics::contact::state::{ContactLaw, StepState};
 use psd::physics::impact::ImpactInput;
-use psd::physics::specimen::{Bilinear, Elastic, RestoringForce};
+use psd::physics::specimen::{Bilinear, BilinearCurve, Elastic, RestoringForce};
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -348,13 +348,17 @@ fn a_gap_delays_the_first_contact() {
 /// e = 0 on a bilinear specimen stops when its energy is dissipated: ½(M+Ms)v² = ½Fy²/K + Fy p + ½hKp², X = Fy/K + p.
 #[test]
 fn a_yielding_specimen_stops_where_energy_says() {
-    let (yield_force, hardening): (f64, f64) = (20.0, 0.1);
+    let (yield_force, post_yield_ratio): (f64, f64) = (20.0, 0.1);
     let at = |time_step| {
-        let mut specimen = Bilinear::new(K, yield_force, hardening);
+        let mut specimen = Bilinear::new(BilinearCurve {
+            stiffness: K,
+            yield_force,
+            post_yield_ratio,
+        });
         run_on(&impact(1.0, K, restitution(0.0), time_step), &mut specimen)
     };
     let energy = 0.5 * 100.0 / 11.0 - 0.5 * yield_force * yield_force / K;
-    let slope = hardening * K;
+    let slope = post_yield_ratio * K;
     let plastic = ((yield_force * yield_force + 2.0 * slope * energy).sqrt() - yield_force) / slope;
     near(
         "largest X",
@@ -430,7 +434,11 @@ fn the_tangent_follows_a_specimen_that_yields_under_noise() {
             force_noise: 5.0,
             ..impact(20.0, 3e5, ContactLaw::Rigid, 2e-5)
         };
-        let specimen = Bilinear::new(3e5, 600.0, 0.1);
+        let specimen = Bilinear::new(BilinearCurve {
+            stiffness: 3e5,
+            yield_force: 600.0,
+            post_yield_ratio: 0.1,
+        });
         let run = run_on(
             &input,
             &mut Noisy {

@@ -4,6 +4,7 @@ use psd::physics::contact::state::ContactLaw;
 use psd::physics::impact::{ImpactInput, ImpactSolver};
 use psd::physics::integrator::stability::{Met, longest_stable_step};
 use psd::physics::specimen::{RestoringForce, SpecimenModel};
+use psd::physics::structure::Matrices;
 use psd::plan::{Behaviour, Integrator};
 
 use super::support::{impact, run};
@@ -190,7 +191,17 @@ fn the_stability_limits_are_where_they_are_said_to_be() {
             farthest.max(solver.state().displacement.abs())
         })
     };
-    let explicit = longest_stable_step(Integrator::Explicit, &Met::one(mass, 0.0, stiffness, 0.0));
+    let explicit = longest_stable_step(
+        Integrator::Explicit,
+        &Met::one(
+            &Matrices {
+                mass,
+                damping: 0.0,
+                stiffness,
+            },
+            0.0,
+        ),
+    );
     assert!(
         (explicit - 2.0 * std::f64::consts::PI / 20.0 / std::f64::consts::PI).abs() < 1e-15,
         "T/π"
@@ -200,7 +211,17 @@ fn the_stability_limits_are_where_they_are_said_to_be() {
 
     let soft = 300.0;
     let split = Integrator::AlphaOs { alpha: 0.0 };
-    let limit = longest_stable_step(split, &Met::one(mass, 0.0, stiffness, soft));
+    let limit = longest_stable_step(
+        split,
+        &Met::one(
+            &Matrices {
+                mass,
+                damping: 0.0,
+                stiffness,
+            },
+            soft,
+        ),
+    );
     assert!(farthest(split, soft, 0.99 * limit) < 20.0);
     assert!(farthest(split, soft, 1.01 * limit) > 1e20);
     for alpha in [0.0, -0.05, -0.3] {
@@ -235,7 +256,17 @@ fn splitting_with_too_little_grows_where_its_amplification_factors_say() {
     ] {
         let integrator = Integrator::AlphaOs { alpha };
         let (damping, soft) = (2.0 * ratio * omega * mass, (1.0 - share) * stiffness);
-        let limit = longest_stable_step(integrator, &Met::one(mass, damping, stiffness, soft));
+        let limit = longest_stable_step(
+            integrator,
+            &Met::one(
+                &Matrices {
+                    mass,
+                    damping,
+                    stiffness,
+                },
+                soft,
+            ),
+        );
         // ln|z| of the fastest of its motions, by the size of the state over many steps.
         let growth = |time_step: f64| {
             let input = ImpactInput {
@@ -292,7 +323,7 @@ fn the_tangent_form_errs_by_what_its_slope_is_late() {
     let behaviour = Behaviour::Bilinear {
         stiffness,
         yield_force: 20.0,
-        hardening: 0.05,
+        post_yield_ratio: 0.05,
     };
     let off = |time_step: f64| {
         let input = ImpactInput {

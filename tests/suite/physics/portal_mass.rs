@@ -3,7 +3,8 @@
 //! point. Both are compared with published factors of beams. The finite elements and the rigid bodies share no code with the product.
 
 use nalgebra::{DMatrix, DVector};
-use psd::physics::structure::portal::mass::{EquivalentMasses, equivalent_masses};
+use psd::physics::structure::beam::EquivalentMasses;
+use psd::physics::structure::portal::mass::equivalent_masses;
 use psd::plan::{FrameMasses, Loads, Mechanism, Portal, Sections};
 
 const SPAN: f64 = 4.0;

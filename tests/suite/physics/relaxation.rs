@@ -207,7 +207,7 @@ fn a_yielding_specimen_relaxes_by_what_it_reached_in_every_step() {
     let of = Behaviour::Bilinear {
         stiffness: 1e6,
         yield_force: 3000.0,
-        hardening: 0.0,
+        post_yield_ratio: 0.0,
     };
     let (share, pause, v) = (0.01, 7.0, 2e-3);
     let mut rig = rig_of(logarithmic(of, share), VirtualLink::default(), AT_ONCE);
@@ -226,7 +226,10 @@ fn a_yielding_specimen_relaxes_by_what_it_reached_in_every_step() {
         increments.push((reached - before, time, took));
         let felt = |now: f64| {
             let lost = |(force, ended, took): &(f64, f64, f64)| {
-                force * RelaxationLaw::Logarithmic.lost(now - ended, *took, 0.4)
+                force
+                    * RelaxationLaw::Logarithmic
+                        .timed(0.4)
+                        .lost(now - ended, *took)
             };
             reached - share * increments.iter().map(lost).sum::<f64>()
         };
@@ -285,12 +288,12 @@ fn what_relaxes_gives_back_no_more_than_it_took() {
         Behaviour::Bilinear {
             stiffness: 1e6,
             yield_force: 1500.0,
-            hardening: 0.05,
+            post_yield_ratio: 0.05,
         },
         Behaviour::BoucWen {
             stiffness: 1e6,
             yield_force: 1500.0,
-            hardening: 0.0,
+            post_yield_ratio: 0.0,
             sharpness: 2.0,
             beta: 0.5,
         },
@@ -345,7 +348,7 @@ fn a_kink_within_a_move_is_followed_however_many_looks_there_are() {
     let of = Behaviour::Bilinear {
         stiffness: 1e6,
         yield_force: 1000.0,
-        hardening: 0.0,
+        post_yield_ratio: 0.0,
     };
     let lost = |looks: u32| {
         let mut rig = rig_of(
@@ -359,7 +362,10 @@ fn a_kink_within_a_move_is_followed_however_many_looks_there_are() {
         }
         1000.0 - last
     };
-    let exact = 10.0 * RelaxationLaw::Logarithmic.lost(2.0 / 3.0, 1.0 / 3.0, 0.4);
+    let exact = 10.0
+        * RelaxationLaw::Logarithmic
+            .timed(0.4)
+            .lost(2.0 / 3.0, 1.0 / 3.0);
     for looks in [1, 4, 10, 1000] {
         assert!(
             (lost(looks) - exact).abs() < 2e-5 * exact,

@@ -9,7 +9,7 @@ use psd::plan::{Behaviour, Bolted, Breaks, Capping, Deterioration, Pinching, Tab
 fn simple() -> impl Strategy<Value = Behaviour> {
     let stiffness = || 1.0..3.0_f64;
     let force = || 0.5..2.0_f64;
-    let hardening = || prop_oneof![Just(0.0), 0.0..0.5_f64];
+    let post_yield_ratio = || prop_oneof![Just(0.0), 0.0..0.5_f64];
     let capacity = || prop_oneof![Just(f64::INFINITY), 1.0..60.0_f64];
     let tires = (
         prop::array::uniform4(capacity()),
@@ -40,19 +40,21 @@ fn simple() -> impl Strategy<Value = Behaviour> {
     let capped = capped.boxed();
     let falls = (prop::option::of(tires.clone()), prop::option::of(capped));
     let shape = (0.0..=1.0_f64, 0.0..=1.0_f64, 0.0..=1.0_f64);
-    let wearing = (stiffness(), force(), hardening(), tires.clone()).prop_map(
-        |(stiffness, yield_force, hardening, deterioration)| Behaviour::DeterioratingBilinear {
-            stiffness,
-            yield_force,
-            hardening,
-            deterioration,
+    let wearing = (stiffness(), force(), post_yield_ratio(), tires.clone()).prop_map(
+        |(stiffness, yield_force, post_yield_ratio, deterioration)| {
+            Behaviour::DeterioratingBilinear {
+                stiffness,
+                yield_force,
+                post_yield_ratio,
+                deterioration,
+            }
         },
     );
-    let pinching = (stiffness(), force(), hardening(), shape, falls).prop_map(
+    let pinching = (stiffness(), force(), post_yield_ratio(), shape, falls).prop_map(
         |(
             stiffness,
             yield_force,
-            hardening,
+            post_yield_ratio,
             (force_factor, displacement_factor, unloading_exponent),
             (tires, capping),
         )| {
@@ -64,7 +66,7 @@ fn simple() -> impl Strategy<Value = Behaviour> {
             Behaviour::Pinching(Pinching {
                 stiffness,
                 yield_force,
-                hardening,
+                post_yield_ratio,
                 force_factor,
                 displacement_factor,
                 unloading_exponent,
@@ -76,13 +78,15 @@ fn simple() -> impl Strategy<Value = Behaviour> {
     let pinching = pinching.boxed();
     prop_oneof![
         stiffness().prop_map(|stiffness| Behaviour::Elastic { stiffness }),
-        (stiffness(), force(), hardening()).prop_map(|(stiffness, yield_force, hardening)| {
-            Behaviour::Bilinear {
-                stiffness,
-                yield_force,
-                hardening,
+        (stiffness(), force(), post_yield_ratio()).prop_map(
+            |(stiffness, yield_force, post_yield_ratio)| {
+                Behaviour::Bilinear {
+                    stiffness,
+                    yield_force,
+                    post_yield_ratio,
+                }
             }
-        }),
+        ),
         (0.2..1.0_f64, 0.1..2.0_f64, 0.0..0.9_f64, 0.0..0.9_f64).prop_map(
             |(x, more, soft, softer)| {
                 let corners = vec![[x, 2.0 * x], [x + more, 2.0 * x + 2.0 * soft * more]];
@@ -95,28 +99,32 @@ fn simple() -> impl Strategy<Value = Behaviour> {
         (
             stiffness(),
             force(),
-            hardening(),
+            post_yield_ratio(),
             1.0..12.0_f64,
             0.5..=1.0_f64
         )
-            .prop_map(|(stiffness, yield_force, hardening, sharpness, beta)| {
-                Behaviour::BoucWen {
-                    stiffness,
-                    yield_force,
-                    hardening,
-                    sharpness,
-                    beta,
+            .prop_map(
+                |(stiffness, yield_force, post_yield_ratio, sharpness, beta)| {
+                    Behaviour::BoucWen {
+                        stiffness,
+                        yield_force,
+                        post_yield_ratio,
+                        sharpness,
+                        beta,
+                    }
                 }
-            }),
+            ),
         pinching,
         wearing,
-        (stiffness(), force(), hardening()).prop_map(|(stiffness, half_displacement, residual)| {
-            Behaviour::Degrading {
-                stiffness,
-                half_displacement,
-                residual,
+        (stiffness(), force(), post_yield_ratio()).prop_map(
+            |(stiffness, half_displacement, residual)| {
+                Behaviour::Degrading {
+                    stiffness,
+                    half_displacement,
+                    residual,
+                }
             }
-        }),
+        ),
         (
             stiffness(),
             force(),
@@ -310,7 +318,7 @@ fn parts_that_give_way_at_one_force_share_a_large_move_as_small_ones() {
     let pinching = Behaviour::Pinching(Pinching {
         stiffness: 1.948_780_769_769_375_6,
         yield_force: 0.5,
-        hardening: 0.0,
+        post_yield_ratio: 0.0,
         force_factor: 0.0,
         displacement_factor: 0.0,
         unloading_exponent: 0.0,
@@ -320,7 +328,7 @@ fn parts_that_give_way_at_one_force_share_a_large_move_as_small_ones() {
     let yields = || Behaviour::Bilinear {
         stiffness: 2.0,
         yield_force: 0.5,
-        hardening: 0.0,
+        post_yield_ratio: 0.0,
     };
     let turns = [-3.988_847_520_979_166_3, 0.0, -0.633_495_342_963_283];
     for (first, second) in [
@@ -364,7 +372,7 @@ fn a_stiffest_slope_is_reached() {
     let bouc_wen = Behaviour::BoucWen {
         stiffness: 1e6,
         yield_force: 1e3,
-        hardening: 0.0,
+        post_yield_ratio: 0.0,
         sharpness: 1.0,
         beta: 1.0,
     };

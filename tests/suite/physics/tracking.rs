@@ -2,7 +2,7 @@
 //! I-modification, and the energy that the monitor sees.
 
 use psd::physics::impact::{ImpactInput, ImpactSolver};
-use psd::physics::tracking::monitor::{Monitor, Tracking};
+use psd::physics::tracking::monitor::{Monitor, TrackedStep, Tracking};
 use psd::plan::Integrator;
 
 use super::methods::vibration;
@@ -32,14 +32,20 @@ fn amplitude(integrator: Integrator, i_modification: bool, actuator: Actuator) -
         ..vibration(integrator, 1.0, 0.0, stiffness, TIME_STEP)
     };
     let mut solver = ImpactSolver::new(&input, 1.0, stiffness).expect("an impact");
-    let mut monitor = Monitor::new(1.0, 1.0, stiffness);
+    let reached = |commanded: f64, measured: f64| TrackedStep {
+        commanded,
+        measured,
+        force: stiffness * measured,
+        effective_force: stiffness * measured,
+    };
+    let mut monitor = Monitor::new(&reached(1.0, 1.0));
     let (mut last_target, mut place, mut largest) = (1.0, 1.0, 0.0_f64);
     for step in 1..=CYCLES * STEPS_A_CYCLE {
         let target = solver.predict();
         place = actuator(target, last_target, place);
         last_target = target;
         let displacement = solver.complete(place, stiffness * place).displacement;
-        monitor.take(target, place, stiffness * place);
+        monitor.take(&reached(target, place));
         if step >= (CYCLES - 1) * STEPS_A_CYCLE {
             largest = largest.max(displacement.abs());
         }

@@ -1,7 +1,7 @@
 //! Rows of `psd check --explain` for a frame: its modes, its time step, and the peaks of the dry run. In: the steps of a ground-motion
 //! test, or of an impact on a storey. Out: rows of text.
 
-use crate::record::{Floors, Modes, ShakeHistory, ShakeStep, StruckFrame};
+use crate::record::{Floors, Modes, ShakeHistory};
 use crate::units::Dimension;
 use crate::units::display::{digits, join, readable, significant, unit};
 
@@ -96,7 +96,7 @@ pub fn steps(history: &ShakeHistory) -> Vec<Vec<String>> {
     };
     let ends = history.steps.last().map_or(0.0, |step| step.time);
     let row = |name: &str, value: String| vec![name.to_owned(), value];
-    vec![
+    let mut rows = vec![
         row(
             "critical time step",
             readable(history.critical_time_step, Dimension::TIME),
@@ -110,59 +110,41 @@ pub fn steps(history: &ShakeHistory) -> Vec<Vec<String>> {
             ),
         ),
         row(
-            "virtual time",
+            "simulated time",
             format!(
                 "{} in {} steps",
                 readable(ends, Dimension::TIME),
                 history.steps.len() - 1
             ),
         ),
-        row(
-            "largest displacement, floor by floor",
-            peaks(
-                &history.steps,
-                |step| step.computed.clone(),
-                Dimension::LENGTH,
-            ),
+    ];
+    rows.extend(floor_peaks(&history.steps));
+    rows.push(row(
+        "largest ground acceleration",
+        peaks(
+            &history.steps,
+            |step| vec![step.ground_acceleration],
+            Dimension::ACCELERATION,
         ),
-        row(
-            "largest drift, storey by storey",
-            peaks(&history.steps, ShakeStep::drift, Dimension::LENGTH),
-        ),
-        row(
-            "largest shear, storey by storey",
-            peaks(&history.steps, ShakeStep::shear, Dimension::FORCE),
-        ),
-        row(
-            "largest ground acceleration",
-            peaks(
-                &history.steps,
-                |step| vec![step.ground_acceleration],
-                Dimension::ACCELERATION,
-            ),
-        ),
-    ]
+    ));
+    rows
 }
 
-/// The predicted peaks of all floors and storeys in an impact on a storey.
-pub fn floors(history: &StruckFrame) -> Vec<Vec<String>> {
+/// The predicted peaks of all floors and storeys.
+pub fn floor_peaks<F: Floors>(steps: &[F]) -> Vec<Vec<String>> {
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     vec![
         row(
             "largest displacement, floor by floor",
-            peaks(
-                &history.floors,
-                |step| step.computed.clone(),
-                Dimension::LENGTH,
-            ),
+            peaks(steps, |step| step.computed().to_vec(), Dimension::LENGTH),
         ),
         row(
             "largest drift, storey by storey",
-            peaks(&history.floors, Floors::drift, Dimension::LENGTH),
+            peaks(steps, Floors::drift, Dimension::LENGTH),
         ),
         row(
             "largest shear, storey by storey",
-            peaks(&history.floors, Floors::shear, Dimension::FORCE),
+            peaks(steps, Floors::shear, Dimension::FORCE),
         ),
     ]
 }

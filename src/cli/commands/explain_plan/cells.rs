@@ -1,6 +1,7 @@
 //! Cells of the tables of `check --explain`. In: SI values. Out: strings.
 
 use crate::plan::Interval;
+use crate::schema::limits::NAMES;
 use crate::units::Dimension;
 use crate::units::display::{digits, join, readable, unit};
 
@@ -32,7 +33,7 @@ pub(super) fn margin(
 ) -> String {
     let above = allowed.high - reached.high;
     let below = reached.low - allowed.low;
-    let is_size = !["displacement", "force"].contains(&name);
+    let is_size = ![NAMES.displacement, NAMES.force].contains(&name);
     let rests = |allowed: f64, reached: f64| allowed == 0.0 && reached == 0.0;
     let (low, high) = (
         !is_size && rests(allowed.low, reached.low),
@@ -40,10 +41,10 @@ pub(super) fn margin(
     );
     match (low, high) {
         // Without a lower command the rig moves at its maximum speed.
-        _ if name == "speed" && above == 0.0 => "none: as fast as allowed".to_owned(),
-        (true, true) => "none, and it rests there".to_owned(),
-        (true, false) => format!("{}; it begins at 0", readable(above, dimension)),
-        (false, true) if !is_size => format!("{}; it begins at 0", readable(below, dimension)),
+        _ if name == NAMES.speed && above == 0.0 => "none: at the speed limit".to_owned(),
+        (true, true) => "none: at rest at the limit".to_owned(),
+        (true, false) => format!("{}; starts at 0", readable(above, dimension)),
+        (false, true) if !is_size => format!("{}; starts at 0", readable(below, dimension)),
         _ if is_size => readable(above, dimension),
         _ => readable(above.min(below), dimension),
     }
@@ -52,7 +53,7 @@ pub(super) fn margin(
 /// The distance to the nearer end as a number, negative beyond it. An absolute value has an upper end only.
 pub(super) fn distance(name: &str, allowed: Interval, reached: Interval) -> f64 {
     let above = allowed.high - reached.high;
-    if ["displacement", "force"].contains(&name) {
+    if [NAMES.displacement, NAMES.force].contains(&name) {
         above.min(reached.low - allowed.low)
     } else {
         above
@@ -114,16 +115,16 @@ mod tests {
         );
         assert_eq!(
             margin_of("displacement", (0.0, 0.1), (0.0, 0.04)),
-            "60.00 mm; it begins at 0"
+            "60.00 mm; starts at 0"
         );
         assert_eq!(
             margin_of("displacement", (-0.1, 0.0), (-0.04, 0.0)),
-            "60.00 mm; it begins at 0"
+            "60.00 mm; starts at 0"
         );
         assert_eq!(margin_of("increment", (0.0, 5e-3), (0.0, 4e-3)), "1.000 mm");
         assert_eq!(
             margin_of("speed", (0.0, 0.02), (0.0, 0.02)),
-            "none: as fast as allowed"
+            "none: at the speed limit"
         );
     }
 }

@@ -42,7 +42,7 @@ pub(super) fn rows(history: &ImpactHistory) -> Vec<Vec<String>> {
             ),
         ]),
         row([
-            "virtual time",
+            "simulated time",
             &format!(
                 "{} in {} steps",
                 readable(ends, Dimension::TIME),

@@ -6,6 +6,7 @@ use super::dry_rig::Reach;
 use crate::plan::formula::ResultValue;
 use crate::plan::{Interval, Limits};
 use crate::report::PredictedLimit;
+use crate::schema::limits::NAMES;
 use crate::units::Dimension;
 use crate::units::display::si_unit;
 
@@ -40,11 +41,12 @@ impl DryRun<'_> {
         };
         limits.named().map(|(name, allowed, dimension)| {
             let reached = match name {
-                "displacement" => range(|reach| reach.displacement),
-                "force" => range(|reach| reach.force),
-                "speed" => absolute(|reach| reach.speed),
-                "increment" => absolute(|reach| reach.increment),
-                "tracking_error" => absolute(|reach| reach.tracking_error),
+                _ if name == NAMES.displacement => range(|reach| reach.displacement),
+                _ if name == NAMES.force => range(|reach| reach.force),
+                _ if name == NAMES.speed => absolute(|reach| reach.speed),
+                _ if name == NAMES.increment => absolute(|reach| reach.increment),
+                _ if name == NAMES.tracking_error => absolute(|reach| reach.tracking_error),
+                // The name of such a limit is that of the result that it bounds.
                 error => self.largest(error),
             };
             LimitRange {
@@ -91,7 +93,7 @@ impl DryRun<'_> {
                 reached,
             } = limit;
             if allowed.is_bounded() {
-                let name = if name == "nrms_error" {
+                let name = if name == NAMES.nrms_error {
                     "NRMS tracking error".to_owned()
                 } else {
                     name.replace('_', " ")
@@ -109,7 +111,7 @@ impl DryRun<'_> {
             }
         }
         if rows.len() == 1 {
-            vec![row(["none: only a virtual rig may run this plan"])]
+            vec![row(["none: only a virtual rig can run this plan"])]
         } else {
             rows
         }

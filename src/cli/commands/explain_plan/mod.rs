@@ -64,8 +64,7 @@ impl<'a> Explained<'a> {
         match self {
             Self::Dry(dry) => dry.text(settings),
             Self::Unknown { specimen, rig } => format!(
-                "no dry run: specimen `{specimen}` has no `behaviour`, and only rig `{rig}` knows how it bends. A `behaviour` as it is \
-                 expected gives one.\n"
+                "no dry run: specimen `{specimen}` has no `behaviour`, and only rig `{rig}` has its stiffness. Add the expected `behaviour` for a dry run.\n"
             ),
         }
     }
@@ -148,7 +147,7 @@ impl<'a> DryRun<'a> {
         }
         let lagging = tracking::lagging(self.plan);
         section("Start", start::rows(self.plan));
-        section("What moves", self.motions());
+        section("Motion", self.motions());
         for (index, (procedure, planned)) in self
             .record
             .procedures
@@ -188,7 +187,7 @@ impl<'a> DryRun<'a> {
                     &heading,
                     [
                         impact::rows(history),
-                        base_excitation::floors(frame),
+                        base_excitation::floor_peaks(&frame.floors),
                         predicted,
                         energy,
                     ]
@@ -197,7 +196,7 @@ impl<'a> DryRun<'a> {
             }
             if matches!(procedure.history, History::Escalate(_)) {
                 section(
-                    &format!("{}, worst blow", procedure.name),
+                    &format!("{}, worst impact", procedure.name),
                     tracking::energy(lagging.as_ref(), index),
                 );
             }
@@ -232,7 +231,7 @@ impl<'a> DryRun<'a> {
         {
             let _ = writeln!(
                 text,
-                "Not in u, for the plan does not declare it: {}\n",
+                "Not included in u (not declared in the plan): {}\n",
                 undeclared.join(", ")
             );
         }
@@ -343,7 +342,7 @@ impl<'a> DryRun<'a> {
                 escape(reason)
             )),
             Outcome::Blocked { reason } => {
-                Some(format!("The run could not go on: {}", escape(reason)))
+                Some(format!("The run could not continue: {}", escape(reason)))
             }
             Outcome::Faulted { reason } => Some(format!("The rig would fail: {}", escape(reason))),
         }
@@ -383,7 +382,7 @@ impl<'a> DryRun<'a> {
 
     /// The declared uncertainty of a condition, and whether the guard band leaves it conclusive.
     fn known(&self, condition: &Condition, outcome: &ConditionOutcome) -> [String; 2] {
-        let unknown = || ["u not known".to_owned(), String::new()];
+        let unknown = || ["u unknown".to_owned(), String::new()];
         let band =
             verdict::assess_condition(condition, DecisionRule::Guarded, &self.record).guard_band;
         let (Some(band), Some(margin)) = (band, outcome.margin) else {
@@ -393,9 +392,9 @@ impl<'a> DryRun<'a> {
             .uncertainty
             .map_or_else(|| "–".to_owned(), |u| readable(u, outcome.dimension));
         let conclusion = match (margin.abs() >= band, self.plan.decision_rule) {
-            (true, _) => "is decided",
-            (false, DecisionRule::Guarded) => "NOT decided: the limit is nearer",
-            (false, DecisionRule::Simple) => "decided by the value alone: the limit is nearer",
+            (true, _) => "conclusive",
+            (false, DecisionRule::Guarded) => "INCONCLUSIVE: the limit is within U",
+            (false, DecisionRule::Simple) => "value alone compared: the limit is within U",
         };
         [
             format!("u {uncertain}"),

@@ -25,23 +25,23 @@ pub fn rows(plan: &Plan) -> Vec<Vec<String>> {
         Datum::Machine => (
             "the rig's own zero",
             format!(
-                "within {band} of the rig's own zero, or the run is refused before anything moves"
+                "within {band} of the rig's own zero; otherwise the run is refused before any motion"
             ),
         ),
         Datum::Here | Datum::At(_) => (
-            "where the rig stands when the run begins; it is told and recorded",
+            "the position of the rig at the start of the run; it is shown and logged",
             format!("anywhere, at rest within {band}, its specimen without load"),
         ),
     };
-    let probe = each(&|axis| link.gate_of(axis).probe);
+    let probe = each(&|axis| link.pretest_check_of(axis).probe);
     let speed = plain(link.own_speed, Dimension::VELOCITY, 4);
     let row = |name: &str, text: String| vec![name.to_owned(), text];
     vec![
         row("zero of the displacements", zero.to_owned()),
-        row("where the rig must stand", stands),
+        row("required position of the rig", stands),
         row(
             "first move",
-            format!("{probe} at {speed}, and back: the gate"),
+            format!("MOVES {probe} at {speed}, and back (pre-test check)"),
         ),
     ]
 }
@@ -75,7 +75,7 @@ mod tests {
               link       = serial(port: \"/dev/none\", dialect: native)
               settle     = within(0.005 mm, 50 N/s, for: 0.3 s)
               safe_state = hold
-              gate       = probe(0.02 mm, stiffness: 250 kN/m .. 350 kN/m, zero: 20 N)
+              pretest_check       = probe(0.02 mm, stiffness: 250 kN/m .. 350 kN/m, zero: 20 N)
               resolution = 1 um
               {line}
             }}
@@ -100,17 +100,17 @@ mod tests {
     fn it_is_told_where_the_rig_must_stand_and_what_moves_first() {
         let machine = told("");
         assert!(
-            machine.contains("within 5 µm of the rig's own zero, or the run is refused"),
+            machine.contains("within 5 µm of the rig's own zero; otherwise the run is refused"),
             "{machine}"
         );
         assert!(
-            machine.contains("first move: 20 µm at 1 mm/s, and back"),
+            machine.contains("first move: MOVES 20 µm at 1 mm/s, and back"),
             "{machine}"
         );
         assert_eq!(told("datum = machine"), machine);
         let here = told("datum = here");
         assert!(
-            here.contains("where the rig stands when the run begins")
+            here.contains("the position of the rig at the start of the run")
                 && here.contains("without load"),
             "{here}"
         );

@@ -7,12 +7,14 @@
 
 use crate::plan::formula::ResultValue;
 use crate::plan::{Impact, Link, Mode, Plan, Shake, Stepping, VirtualLink};
-use crate::procedures::stepping::delay::late;
+use crate::procedures::stepping::tracking::delay::late;
 use crate::record::{
     Floors, ImpactHistory, Modes, Outcome, ProcedureRecord, Record, ShakeHistory, StruckFrame,
 };
 use crate::rig::virtual_rig;
 use crate::run::{self, Settings, Unwatched};
+use crate::schema::procedures::tracking::TRACKING_ENERGY_ERROR;
+use crate::schema::procedures::{STIFFNESS, impact::MASS};
 use crate::units::Dimension;
 use crate::units::display::{minus, readable, significant};
 
@@ -34,7 +36,7 @@ pub(crate) fn rows(
             .find(|(field, ..)| *field == name)
             .map(|(_, estimate, _)| estimate.value)
     };
-    let (Some(mass), Some(stiffness)) = (input("mass"), input("stiffness")) else {
+    let (Some(mass), Some(stiffness)) = (input(MASS.name), input(STIFFNESS.name)) else {
         return Vec::new();
     };
     let amplitude = history
@@ -50,14 +52,17 @@ pub(crate) fn rows(
         return vec![vec!["growth by tracking".to_owned(), CORRECTED.to_owned()]];
     }
     let omega = (stiffness / mass).sqrt();
-    let growth = Growth::of(late, omega, unsettled / amplitude);
+    let growth = Growth {
+        a_cycle: a_cycle(omega, late),
+        relative: unsettled / amplitude,
+    };
     let cycles = last * omega / std::f64::consts::TAU;
     vec![
         late_by(late, unsettled),
         vec![
             "growth by tracking".to_owned(),
             format!(
-                "amplitude ×{} a cycle, ×{} in the {} cycles of the run, at worst",
+                "amplitude ×{} per cycle, ×{} in the {} cycles of the run (worst case)",
                 significant(growth.over(1.0), 4),
                 significant(growth.over(cycles), 4),
                 significant(cycles, 2)
@@ -76,14 +81,6 @@ struct Growth {
 }
 
 impl Growth {
-    /// Growth of a mode of circular frequency `omega` \[rad/s\] with the delay `late` \[s\], to first order.
-    fn of(late: f64, omega: f64, relative: f64) -> Self {
-        Self {
-            a_cycle: std::f64::consts::PI * omega * late,
-            relative,
-        }
-    }
-
     /// Factor over n cycles, from A' = ln g·A + 4δ per cycle: gⁿ + 4δ(gⁿ − 1)/ln g.
     fn over(self, cycles: f64) -> f64 {
         let exponent = self.a_cycle * cycles;
@@ -96,14 +93,19 @@ impl Growth {
     }
 }
 
+/// Growth of a mode of circular frequency `omega` \[rad/s\] in a cycle with the delay `late` \[s\], to first order.
+fn a_cycle(omega: f64, late: f64) -> f64 {
+    std::f64::consts::PI * omega * late
+}
+
 /// The same for a frame in a ground-motion test.
 pub(crate) fn shake_rows(plan: &Plan, shake: &Shake, history: &ShakeHistory) -> Vec<Vec<String>> {
-    let modes = (history.modes.as_ref(), history.damping_ratios.as_slice());
     frame_rows(
         plan,
         &shake.stepping,
         history.time_step,
-        modes,
+        history.modes.as_ref(),
+        &history.damping_ratios,
         &history.steps,
     )
 }
@@ -115,8 +117,14 @@ pub(crate) fn storey_rows(
     time_step: f64,
     history: &StruckFrame,
 ) -> Vec<Vec<String>> {
-    let modes = (history.modes.as_ref(), history.damping_ratios.as_slice());
-    frame_rows(plan, &impact.stepping, time_step, modes, &history.floors)
+    frame_rows(
+        plan,
+        &impact.stepping,
+        time_step,
+        history.modes.as_ref(),
+        &history.damping_ratios,
+        &history.floors,
+    )
 }
 
 /// The effect of a delay on each mode, and the possible growth of its largest displacement. The damping of the mode, which reduces the
@@ -125,7 +133,8 @@ fn frame_rows<S: Floors>(
     plan: &Plan,
     stepping: &Stepping,
     time_step: f64,
-    (modes, ratios): (Option<&Modes>, &[f64]),
+    modes: Option<&Modes>,
+    ratios: &[f64],
     steps: &[S],
 ) -> Vec<Vec<String>> {
     let (late, unsettled) = (
@@ -147,12 +156,15 @@ fn frame_rows<S: Floors>(
     for (mode, period) in modes.periods.iter().enumerate() {
         let omega = modes.angular_frequency(mode);
         let damping = ratios.get(mode).copied().unwrap_or(0.0);
-        let growth = Growth::of(late, omega, unsettled / amplitude);
+        let growth = Growth {
+            a_cycle: a_cycle(omega, late),
+            relative: unsettled / amplitude,
+        };
         let percent = |ratio: f64| format!("{} %", minus(&significant(100.0 * ratio, 3)));
         rows.push(vec![
             if mode == 0 { "growth by tracking".to_owned() } else { String::new() },
             format!(
-                "mode {}, {}: amplitude ×{} a cycle at worst, as a damping ratio of {}; its own is {}",
+                "mode {}, {}: amplitude ×{} per cycle (worst case), equivalent damping ratio {}; its own ratio is {}",
                 mode + 1,
                 readable(*period, Dimension::TIME),
                 significant(growth.over(1.0), 4),
@@ -201,7 +213,7 @@ pub(crate) fn energy(lagging: Option<&Record>, procedure: usize) -> Vec<Vec<Stri
         return Vec::new();
     };
     let share = found
-        .result("tracking_energy_error")
+        .result(TRACKING_ENERGY_ERROR.name)
         .map(|result| &result.value);
     let Some(ResultValue::Number {
         value: Some(share), ..
@@ -213,7 +225,7 @@ pub(crate) fn energy(lagging: Option<&Record>, procedure: usize) -> Vec<Vec<Stri
     let held = match &lagging.outcome {
         Outcome::Completed => String::new(),
         _ if found.complete => String::new(),
-        _ => "; the run is held".to_owned(),
+        _ => "; the run is stopped".to_owned(),
     };
     let share = significant(100.0 * share.abs(), 2);
     vec![vec![
@@ -231,9 +243,9 @@ fn late_by(late: f64, unsettled: f64) -> Vec<String> {
         String::new()
     };
     vec![
-        "late by".to_owned(),
+        "delay".to_owned(),
         format!(
-            "{} of virtual time{either_way}",
+            "{} of simulated time{either_way}",
             readable(late, Dimension::TIME)
         ),
     ]

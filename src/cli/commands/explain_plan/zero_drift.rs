@@ -29,16 +29,16 @@ pub fn rows(plan: &Plan, record: &Record) -> Vec<Vec<String>> {
     )];
     rows.push(row(
         "before the test",
-        format!("read over {over_told} at rest, before anything is loaded"),
+        format!("read over {over_told} at rest, before any load"),
     ));
     let holds = match found.held.count {
-        0 => format!("none is as long as {over_told}: nothing is seen in between"),
+        0 => format!("none lasts {over_told}: no drift is visible between the zeros"),
         1 => format!(
-            "one is as long as {over_told}, {}",
+            "one lasts {over_told} or more: {}",
             readable(found.held.longest, Dimension::TIME)
         ),
         count => format!(
-            "{count} are as long as {over_told}, the longest {}",
+            "{count} last {over_told} or more, the longest {}",
             readable(found.held.longest, Dimension::TIME)
         ),
     };
@@ -46,23 +46,25 @@ pub fn rows(plan: &Plan, record: &Record) -> Vec<Vec<String>> {
     let between = time_between(found);
     let later = between.map_or_else(String::new, |seconds| {
         format!(
-            ", {} after those before",
+            ", {} after the first zeros",
             readable(seconds, Dimension::TIME)
         )
     });
     let read = match after {
-        ZeroAfter::Start => format!("back to where it began, and read over {over_told}{later}"),
+        ZeroAfter::Start => format!("back at its start position, read over {over_told}{later}"),
         ZeroAfter::Free => {
-            format!("a person takes the specimen off the load cell; read over {over_told}{later}")
+            format!(
+                "the operator removes the specimen from the load cell; read over {over_told}{later}"
+            )
         }
-        ZeroAfter::Nowhere => "not read again: only rest and holds are judged".to_owned(),
+        ZeroAfter::Nowhere => "not read again: only rest and dwells are assessed".to_owned(),
     };
     rows.push(row("after the test", read));
     let judged = judged_over(found);
     let steady = readable(force / judged, Dimension::FORCE);
     rows.push(row(
         "a steady drift",
-        format!("of up to {steady}/s is within what is allowed"),
+        format!("of up to {steady}/s is within the limit"),
     ));
     if let Some(drift) = plan
         .rig
@@ -75,14 +77,14 @@ pub fn rows(plan: &Plan, record: &Record) -> Vec<Vec<String>> {
         let told = if comes_to <= force {
             "within"
         } else {
-            "BEYOND what is allowed: whatever reads the force stays undecided"
+            "EXCEEDS the limit: every requirement that reads the force is inconclusive"
         };
         let text = format!(
-            "{}/s comes to {}: {told}",
+            "{}/s results in {}: {told}",
             readable(drift, Dimension::FORCE),
             readable(comes_to, Dimension::FORCE)
         );
-        rows.push(row("declared of this rig", text));
+        rows.push(row("declared for this rig", text));
     }
     rows
 }
@@ -154,39 +156,42 @@ mod tests {
     #[test]
     fn what_is_declared_is_held_against_the_time_between_the_zeros() {
         let within = told(
-            "drift: 0.02 N/s",
-            "  drift = within(5 N, 10 um, over: 4 s)\n",
+            "zero_drift: 0.02 N/s",
+            "  zero_drift = within(5 N, 10 um, over: 4 s)\n",
         );
         assert!(
             within.contains("allowed: 5 N of force, 10 µm of displacement"),
             "{within}"
         );
         assert!(
-            within.contains("holds: 10 are as long as 4 s, the longest 5.000 s"),
+            within.contains("holds: 10 last 4 s or more, the longest 5.000 s"),
             "{within}"
         );
         assert!(
-            within.contains("back to where it began, and read over 4 s, 5"),
+            within.contains("back at its start position, read over 4 s, 5"),
             "between 50 s and 60 s: {within}"
         );
         assert!(
-            within.contains("comes to 1.") && within.contains(": within\n"),
+            within.contains("results in 1.") && within.contains(": within\n"),
             "0.02 N/s over almost a minute: {within}"
         );
-        let beyond = told("drift: 0.2 N/s", "  drift = within(5 N, over: 4 s)\n");
-        assert!(beyond.contains("BEYOND what is allowed"), "{beyond}");
+        let beyond = told(
+            "zero_drift: 0.2 N/s",
+            "  zero_drift = within(5 N, over: 4 s)\n",
+        );
+        assert!(beyond.contains("EXCEEDS the limit"), "{beyond}");
         let nowhere = told(
-            "drift: -0.2 N/s",
-            "  drift = within(5 N, over: 4 s, after: nowhere)\n",
+            "zero_drift: -0.2 N/s",
+            "  zero_drift = within(5 N, over: 4 s, after: nowhere)\n",
         );
         assert!(
-            nowhere.contains("not read again") && nowhere.contains("comes to 0.8000 N: within"),
+            nowhere.contains("not read again") && nowhere.contains("results in 0.8000 N: within"),
             "{nowhere}"
         );
     }
 
     #[test]
     fn a_rig_that_does_not_say_is_not_told_of() {
-        assert_eq!(told("drift: 0.2 N/s", ""), "");
+        assert_eq!(told("zero_drift: 0.2 N/s", ""), "");
     }
 }

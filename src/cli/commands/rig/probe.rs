@@ -159,7 +159,7 @@ fn advice(axes: &[Axis], plan: &Plan) -> Option<String> {
     let more = noise > 1.5 * said;
     more.then(|| {
         format!(
-            "  the rig block says too little: noise = {}\n",
+            "  the declared noise is too low: write noise = {}\n",
             plain(noise, Dimension::FORCE, 2)
         )
     })
@@ -191,7 +191,7 @@ fn report(identity: &Identity, axes: &[Axis], plan: &Plan, datum: Option<&[f64]>
             .collect();
         let _ = writeln!(
             text,
-            "  stands at {} of its own: a run would begin there, at 0",
+            "  at {} in its own coordinate: a run would start there, at 0",
             places.join(", ")
         );
     }
@@ -246,7 +246,7 @@ fn channel(
             let past = if margin >= 0.0 {
                 "margin"
             } else {
-                "PAST THE LIMIT by"
+                "LIMIT EXCEEDED by"
             };
             let _ = writeln!(
                 text,

@@ -26,7 +26,7 @@ use crate::report::Provenance;
 use crate::rig::{Rig, StopRequest, VirtualRig, virtual_rig};
 use crate::run::client_run::Driver;
 use crate::run::replay;
-use crate::run::replay::{Recorded, Wall};
+use crate::run::replay::{OpenLog, Recorded, Wall};
 use crate::text::diagnostic::excerpt::escape;
 use crate::units::Dimension;
 use crate::units::display::readable;
@@ -49,6 +49,13 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
     let attendance = real_rig::named(attendance, plan)?;
     let door = Door::open(arguments)?;
     let stop_request = StopRequest::default();
+    let service = Service {
+        arguments,
+        door,
+        protocol,
+        stop_request: &stop_request,
+        settings,
+    };
     // The connection to the rig ends with this arm: psd does not communicate with the rig while it writes the results.
     let served = match plan.rig.link {
         Link::Virtual(_) => {
@@ -66,16 +73,7 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
                 circumstances,
                 wall: Box::new(|| None),
             };
-            on_record(
-                arguments,
-                stage,
-                rig.as_mut(),
-                &mut watcher,
-                &door,
-                &protocol,
-                &stop_request,
-                settings,
-            )?
+            on_record(&service, stage, rig.as_mut(), &mut watcher)?
         }
         Link::Real(_) => {
             let mut opened = real_rig::open_for_client(plan, &attendance, settings, &stop_request)
@@ -101,14 +99,10 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
                 wall: real_rig::wall_clock(),
             };
             on_record(
-                arguments,
+                &service,
                 stage,
                 &mut opened.connected.rig,
                 &mut opened.watcher,
-                &door,
-                &protocol,
-                &stop_request,
-                settings,
             )?
         }
     };
@@ -119,8 +113,7 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
 fn named(arguments: &ServeArguments, plan: &Plan) -> Result<(), Failure> {
     if plan.rig.link.as_real().is_some() && arguments.plan_settings.rig.is_none() {
         let name = &plan.rig.name;
-        let message =
-            format!("the rig `{name}` is a real one, and is served only where it is named");
+        let message = format!("the rig `{name}` is a real rig, and is served only if it is named");
         return Err(Failure::command_line(message).help(format!("name it: --rig {name}")));
     }
     Ok(())
@@ -145,7 +138,16 @@ impl Door {
 
 fn listening(arguments: &ServeArguments, error: &std::io::Error) -> Failure {
     Failure::file(arguments.listen.to_string(), error.to_string())
-        .help("another port: --listen 127.0.0.1:0 takes a free one")
+        .help("use another port: --listen 127.0.0.1:0 takes a free one")
+}
+
+/// What is offered to clients, and where.
+struct Service<'a> {
+    arguments: &'a ServeArguments,
+    door: Door,
+    protocol: Protocol,
+    stop_request: &'a StopRequest,
+    settings: Settings,
 }
 
 /// The origin of a run log.
@@ -191,7 +193,7 @@ impl Served {
         for beyond in drift.iter().flat_map(|drift| drift.all_beyond()) {
             let note = settings.paint_note("  note:");
             print_message(&format!(
-                "{note} {}: what was read decides nothing\n",
+                "{note} {}: the readings are inconclusive\n",
                 escape(&beyond.reason)
             ));
         }
@@ -200,7 +202,7 @@ impl Served {
         told?;
         if let Some(fault) = &recorded.fault {
             print_message(&format!(
-                "  the record could not be kept to its end: {fault}\n"
+                "  the run log could not be written to its end: {fault}\n"
             ));
             exit = exit.max(Exit::Fault);
         }
@@ -214,20 +216,19 @@ impl Served {
 }
 
 /// Serves. Every request and every answer of the rig is recorded in a run folder.
-#[expect(
-    clippy::too_many_arguments,
-    reason = "what is served, where, to whom, and who watches"
-)]
 fn on_record(
-    arguments: &ServeArguments,
+    service: &Service<'_>,
     stage: Stage<'_>,
     rig: &mut dyn Rig,
     watcher: &mut Watcher,
-    door: &Door,
-    protocol: &Protocol,
-    stop_request: &StopRequest,
-    settings: Settings,
 ) -> Result<Served, Failure> {
+    let Service {
+        arguments,
+        door,
+        protocol,
+        stop_request,
+        settings,
+    } = service;
     let Stage {
         plan,
         provenance,
@@ -250,12 +251,11 @@ fn on_record(
         plan,
         rig,
         watcher,
-        journal,
-        wall,
+        OpenLog { journal, wall },
         Driver::Client,
         &mut |specimen| {
             if !door.address.ip().is_loopback() {
-                print_message(&open_door(door.address, settings));
+                print_message(&open_door(door.address, *settings));
             }
             // The program that started this one waits for the line.
             told = print_result(&format!(
@@ -297,7 +297,7 @@ fn protocol(arguments: &ServeArguments, plan: &Plan) -> Result<Protocol, Failure
     let given = arguments.stiffness.as_deref().map(stiffness).transpose()?;
     match arguments.protocol {
         ServedProtocol::Nees if given.is_some() => Err(Failure::command_line(
-            "NEES has no question for a stiffness: `--stiffness` is for generic-client",
+            "NEES has no request for a stiffness: `--stiffness` is for generic-client",
         )),
         ServedProtocol::Nees => Ok(Protocol::Nees {
             control_points: control_points(arguments, plan)?,
@@ -312,7 +312,7 @@ fn protocol(arguments: &ServeArguments, plan: &Plan) -> Result<Protocol, Failure
             if let Some(frame) = specimen.and_then(|specimen| specimen.frame.as_ref()) {
                 if given.is_some() {
                     return Err(Failure::command_line(
-                        "a frame has a stiffness matrix of its own: leave `--stiffness` out",
+                        "a frame has its own stiffness matrix: remove `--stiffness`",
                     ));
                 }
                 return Ok(Protocol::GenericClient {
@@ -323,7 +323,7 @@ fn protocol(arguments: &ServeArguments, plan: &Plan) -> Result<Protocol, Failure
             let known = given.or_else(|| behaviour.map(crate::plan::Behaviour::initial_stiffness));
             let stiffness = known.ok_or_else(|| {
                 Failure::command_line(
-                    "the stiffness that a generic client may ask for is not known: the specimen has no behaviour",
+                    "the stiffness for the client is not known: the specimen has no behaviour",
                 )
                 .help("give it: --stiffness \"300 kN/m\"")
             })?;
@@ -354,7 +354,7 @@ fn control_points(arguments: &ServeArguments, plan: &Plan) -> Result<Vec<String>
     if names.len() != axes || twice || !names.iter().all(is_name) {
         let example: Vec<String> = (1..=axes).map(|axis| format!("MDL-00-{axis:02}")).collect();
         return Err(Failure::command_line(format!(
-            "--control-points {given}: {axes} names that begin with MDL-, none twice"
+            "--control-points {given}: write {axes} different names that begin with MDL-"
         ))
         .help(format!(
             "write them as \"{}\", the lowest storey first",
@@ -373,24 +373,24 @@ fn stiffness(text: &str) -> Result<f64, Failure> {
     };
     let (number, token) = text
         .split_once(' ')
-        .ok_or_else(|| wrong("a number and its unit"))?;
-    let number: f64 = number.parse().map_err(|_| wrong("no number"))?;
+        .ok_or_else(|| wrong("the number or its unit is missing"))?;
+    let number: f64 = number.parse().map_err(|_| wrong("not a number"))?;
     let unit = unit::parse(token.trim()).map_err(|error| wrong(&error.to_string()))?;
     if Dimension::FORCE.over(Dimension::LENGTH) != Some(unit.dimension) {
-        return Err(wrong("no unit of stiffness"));
+        return Err(wrong("not a unit of stiffness"));
     }
     let stiffness = number * unit.factor;
     if stiffness >= 0.0 && stiffness.is_finite() {
         Ok(stiffness)
     } else {
-        Err(wrong("a stiffness is 0 or more"))
+        Err(wrong("a stiffness must be at least 0"))
     }
 }
 
 fn open_door(address: SocketAddr, settings: Settings) -> String {
     let note = settings.paint_note("  note:");
     format!(
-        "{note} {address} can be reached from other machines, and the protocol has no password:\n        whoever reaches it moves the specimen, within the plan's limits\n"
+        "{note} {address} can be reached from other machines, and the protocol has no password:\n        every client MOVES the specimen, within the plan's limits\n"
     )
 }
 

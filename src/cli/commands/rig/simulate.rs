@@ -53,7 +53,7 @@ pub fn simulate(arguments: &SimulateArguments, settings: Settings) -> Result<Exi
             device.port
         )));
     }
-    print_message("  stands in until Ctrl-C\n");
+    print_message("  emulates the rig until Ctrl-C\n");
     let until = Until {
         last_host_left: arguments.once,
         stopped: &|| stopped.load(Ordering::Relaxed),
@@ -78,8 +78,9 @@ fn carrier(device: &DeviceLink) -> Result<Box<dyn Carrier>, Failure> {
     match &device.port {
         PortPlan::Serial { path, .. } => match PseudoTerminal::linked(Path::new(path)) {
             Ok(line) => Ok(Box::new(line)),
-            Err(error) => Err(Failure::file(path.as_str(), error.to_string())
-                .help("a stand-in takes the place of the plan's own port: give a path that is free, such as /tmp/rig")),
+            Err(error) => Err(Failure::file(path.as_str(), error.to_string()).help(
+                "the rig emulator uses the plan's own port: name a free path, such as /tmp/rig",
+            )),
         },
         PortPlan::Tcp { address } => match TcpLine::at(address) {
             Ok(line) => Ok(Box::new(line)),

@@ -15,7 +15,7 @@ pub fn positions(text: &str, axes: usize, what: &str) -> Result<Vec<f64>, Failur
         return Ok(positions);
     }
     Err(Failure::command_line(format!(
-        "{what}: {} places for {axes} axes",
+        "{what}: {} positions for {axes} axes",
         positions.len()
     ))
     .help(format!("write it as {example}")))
@@ -28,14 +28,14 @@ pub fn every(text: &str) -> Result<f64, Failure> {
         return Ok(every);
     }
     Err(Failure::command_line(format!(
-        "--every is from 10 ms to 1 min, not {text}"
+        "--every must be 10 ms to 1 min, not {text}"
     )))
 }
 
 /// A number with its unit, as the language writes it: `1 mm`, `-2.5e-1 mm`. In SI.
 pub fn number(text: &str, dimension: Dimension, what: &str, example: &str) -> Result<f64, Failure> {
     let wrong = || {
-        Failure::command_line(format!("{what} is not understood: {text}"))
+        Failure::command_line(format!("cannot read {what}: {text}"))
             .help(format!("write it as {example}"))
     };
     let (digits, symbol) = text

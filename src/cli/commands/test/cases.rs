@@ -181,10 +181,10 @@ fn unused(
                 .unwrap_or_default()
                 .to_string_lossy()
                 .into_owned();
-            let blessed = [SUMMARY, DIAGNOSTICS]
+            let accepted = [SUMMARY, DIAGNOSTICS]
                 .iter()
                 .any(|file| path.join(file).is_file());
-            if blessed && !name.starts_with('.') && !used.contains(&name) {
+            if accepted && !name.starts_with('.') && !used.contains(&name) {
                 found.push(path.strip_prefix("./").map(Path::to_owned).unwrap_or(path));
             }
         }

@@ -35,14 +35,14 @@ pub fn clear(out: &Path, case: &Case) -> Result<(), Failure> {
 pub fn write(
     out: &Path,
     case: &Case,
-    blessed: &Truth,
+    accepted: &Truth,
     files: &[OutputFile],
     found: &[Finding],
 ) -> Result<(), Failure> {
     let folder = folder(out, case);
     if folder.symlink_metadata().is_ok() {
         return Err(
-            Failure::file(folder, "is in the way of what a failed test leaves")
+            Failure::file(folder, "exists, and is not a folder of failed tests")
                 .help("name another folder with `--out`"),
         );
     }
@@ -60,7 +60,7 @@ pub fn write(
         .filter(|file| is_page(&file.path) || Truth::holds(&file.path))
         .try_for_each(|file| write_new(&new, file))?;
     overlay::all(
-        blessed,
+        accepted,
         &crate::cli::files::accepted::truth_of(files),
         found,
     )?

@@ -13,7 +13,9 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::files::failure::plain;
-use crate::golden::{self, Report, console};
+use crate::golden;
+use crate::golden::Report;
+use crate::golden::print::console;
 use cases::Case;
 use trials::Trials;
 
@@ -48,7 +50,7 @@ pub fn test(arguments: &TestArguments, settings: Settings) -> Result<Exit, Failu
     if arguments.tap {
         print_result(&golden::tap(&report))?;
     } else if arguments.format == Format::Json {
-        print_result(&golden::json::text(&report))?;
+        print_result(&golden::print::json::text(&report))?;
     }
     Ok(if report.good() == report.tested.len() {
         Exit::Met
@@ -61,7 +63,7 @@ pub fn test(arguments: &TestArguments, settings: Settings) -> Result<Exit, Failu
 fn list(cases: &[Case]) -> Result<Exit, Failure> {
     for case in cases {
         let note = if case.golden.truth()?.is_empty() {
-            "  (not blessed)"
+            "  (not accepted)"
         } else {
             ""
         };

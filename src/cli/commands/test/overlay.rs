@@ -1,6 +1,7 @@
 //! Accepted and new results on one chart: the figure curves that differ, and columns of tables that are in no such figure. In: both
 //! results and the differences. Out: images. If a difference is too small to see, it is drawn as a separate curve.
 
+use crate::schema::columns;
 use std::collections::BTreeSet;
 
 use crate::cli::exit::Failure;
@@ -70,7 +71,7 @@ fn figures(was: &Truth, is: &Truth) -> Vec<(String, Curves)> {
                 run: Some(2 * place),
             });
             curves.push(Curve {
-                label: label("blessed", old),
+                label: label("accepted", old),
                 points: old.line(),
                 dots: new.dots,
                 run: Some(2 * place + 1),
@@ -134,7 +135,7 @@ fn columns(was: &Truth, is: &Truth, found: &[Finding]) -> Vec<(String, Curves)> 
                 .zip(&new)
                 .map(|(old, new)| (new.0, new.1 - old.1))
                 .collect();
-            let label = "this run less the blessed".to_owned();
+            let label = "this run minus accepted".to_owned();
             let y = PlainAxis {
                 name: format!("Difference of {column}"),
                 ..y.clone()
@@ -162,7 +163,7 @@ fn columns(was: &Truth, is: &Truth, found: &[Finding]) -> Vec<(String, Curves)> 
                 run: Some(0),
             },
             Curve {
-                label: "blessed".to_owned(),
+                label: "accepted".to_owned(),
                 points: old,
                 dots: false,
                 run: Some(1),
@@ -179,7 +180,8 @@ const SEEN: f64 = 0.01;
 /// A column over the time of the test, of the rig, or over its rows.
 fn line(table: &Table, column: &str) -> Option<(PlainAxis, Vec<(f64, f64)>)> {
     let ys = table.numbers(column)?;
-    let mut along = ["time_s", "wall_time_s", "step"]
+    let mut along = [columns::TIME, columns::WALL_TIME, columns::STEP]
+        .map(|column| column.name)
         .into_iter()
         .filter(|name| *name != column);
     let (name, xs) = along.find_map(|name| Some((name, table.numbers(name)?)))?;
@@ -189,8 +191,8 @@ fn line(table: &Table, column: &str) -> Option<(PlainAxis, Vec<(f64, f64)>)> {
         .filter_map(|(x, y)| Some((x?, y?)))
         .collect();
     let shown = match name {
-        "time_s" => "Virtual time",
-        "wall_time_s" => "Rig time",
+        _ if name == columns::TIME.name => "Virtual time",
+        _ if name == columns::WALL_TIME.name => "Rig time",
         _ => "Step",
     };
     Some((

@@ -16,7 +16,8 @@ use crate::cli::files::golden_run;
 use crate::cli::files::golden_run::Extent;
 use crate::cli::output::print_message;
 use crate::cli::settings::Settings;
-use crate::golden::{Outcome, Tested, compare, console};
+use crate::golden::print::console;
+use crate::golden::{Outcome, Tested, compare};
 
 /// The settings of the test run.
 pub struct Trials<'a> {
@@ -83,7 +84,7 @@ impl Trials<'_> {
     }
 
     fn outcome(&self, case: &Case) -> Result<Outcome, Failure> {
-        if self.arguments.bless {
+        if self.arguments.accept {
             let trial = golden_run::of(&case.plan, Extent::All)?;
             return Ok(Outcome::Accepted(case.golden.accept(
                 &trial.files,
@@ -93,14 +94,14 @@ impl Trials<'_> {
             )?));
         }
         let trial = golden_run::of(&case.plan, Extent::Compared)?;
-        let blessed = case.golden.truth()?;
+        let accepted = case.golden.truth()?;
         failures::clear(&self.arguments.out, case)?;
-        if blessed.is_empty() {
+        if accepted.is_empty() {
             return Ok(Outcome::NotAccepted {
                 folder: case.golden.path().display().to_string(),
             });
         }
-        let found = compare(&blessed, &truth_of(&trial.files), &trial.tolerances);
+        let found = compare(&accepted, &truth_of(&trial.files), &trial.tolerances);
         if found.is_empty() {
             return Ok(Outcome::Same {
                 verdict: trial.verdict,
@@ -108,7 +109,7 @@ impl Trials<'_> {
         }
         // Images and report are made only for a case with differences.
         let files = golden_run::of(&case.plan, Extent::All)?.files;
-        failures::write(&self.arguments.out, case, &blessed, &files, &found)?;
+        failures::write(&self.arguments.out, case, &accepted, &files, &found)?;
         Ok(Outcome::Differs(found))
     }
 }

@@ -305,9 +305,10 @@ impl Dialogue {
     }
 
     fn signature(&self) -> String {
-        self.operator
-            .as_ref()
-            .map_or_else(|| " by a person".to_owned(), |name| format!(" ({name})"))
+        self.operator.as_ref().map_or_else(
+            || " by the operator".to_owned(),
+            |name| format!(" ({name})"),
+        )
     }
 
     fn settle(&mut self, yes: bool, name: String) {
@@ -377,7 +378,8 @@ impl Dialogue {
     pub fn ask(&mut self, question: &Question) -> Inspection {
         if self.lost {
             return Inspection::Stop {
-                reason: "nobody to ask at an inspection: the terminal is gone".to_owned(),
+                reason: "no operator can be asked at an inspection: the terminal was closed"
+                    .to_owned(),
                 by: None,
             };
         }

@@ -197,7 +197,7 @@ fn prompt(kind: Kind) -> String {
     let remark = if kind == Kind::Jog {
         ""
     } else {
-        ", i and a remark for the record"
+        ", or i and an observation for the run log"
     };
     format!(
         "  type {}, or n: {}{remark} > ",

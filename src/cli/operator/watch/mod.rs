@@ -8,6 +8,7 @@ mod signals;
 mod typed;
 
 pub use super::stay::Stay;
+use crate::schema::plan_block::OPERATOR;
 use std::cell::RefCell;
 
 use super::question::{self, After, Kind, Question};
@@ -121,7 +122,7 @@ impl Watcher {
         let named = plan
             .particulars
             .iter()
-            .find(|(field, _)| *field == "operator")
+            .find(|(field, _)| *field == OPERATOR.name)
             .map(|(_, name)| name.clone());
         let operator = attendance
             .operator
@@ -341,11 +342,12 @@ impl Watcher {
                 by,
             },
             Asking::NobodyNeeded => Inspection::GoOn {
-                note: Some("nobody was asked: simulated rig, no terminal".to_owned()),
+                note: Some("no operator was asked: simulated rig, no terminal".to_owned()),
                 by: None,
             },
             Asking::Nobody => Inspection::Stop {
-                reason: "nobody to ask at an inspection: no terminal, and no --yes".to_owned(),
+                reason: "no operator can be asked at an inspection: no terminal, and no --yes"
+                    .to_owned(),
                 by: None,
             },
             Asking::Screen => match &mut self.face {

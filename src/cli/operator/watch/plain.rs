@@ -80,7 +80,7 @@ impl Observer for Bar {
 
     fn studying(&mut self, done: usize, of: usize) {
         if let Some(bar) = &self.shown {
-            bar.set_message(format!("uncertainty: {done} of {of} runs taken again"));
+            bar.set_message(format!("uncertainty: {done} of {of} runs re-integrated"));
         }
     }
 

@@ -5,6 +5,7 @@ use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::expressions::fields::whole;
 use crate::language::check::messages::specimens as message;
 use crate::plan::BreakCount;
+use crate::schema::curves::{BREAK_COUNT, LARGEST_BREAK_COUNT};
 
 /// `breaks`, else the number up to `most` that the criterion chooses.
 pub fn breaks<'a>(
@@ -12,11 +13,15 @@ pub fn breaks<'a>(
     chosen: &Chosen<'a>,
     context: Context,
 ) -> Option<BreakCount> {
-    let breaks = checker.optional_argument(chosen, "breaks", context)?;
+    let breaks = checker.optional_argument(chosen, BREAK_COUNT.name, context)?;
     let most = checker
-        .constant_argument(chosen, "most", context)
+        .constant_argument(chosen, LARGEST_BREAK_COUNT.name, context)
         .and_then(whole)?;
-    match (breaks, chosen.span("most"), chosen.span("breaks")) {
+    match (
+        breaks,
+        chosen.span(LARGEST_BREAK_COUNT.name),
+        chosen.span(BREAK_COUNT.name),
+    ) {
         (Some(_), Some(most), Some(breaks)) => {
             checker.fail(message::breaks_counted_twice(breaks, most))
         }

@@ -7,8 +7,9 @@ use crate::language::check::messages::{golden as message, names};
 use crate::language::check::scope::Meaning;
 use crate::language::syntax::ast::{Expr, ExprKind};
 use crate::plan::formula::{Part, ProcedureId};
-use crate::plan::{Golden, NearColumn, NearResult, Tolerance};
+use crate::plan::{ColumnTolerance, Golden, ResultTolerance, Tolerance};
 use crate::procedures;
+use crate::schema::golden as schema;
 use crate::schema::{Column, Kind};
 use crate::text::source::Span;
 use crate::units::Dimension;
@@ -36,8 +37,9 @@ pub fn golden(checker: &mut Checker) -> Option<Golden> {
     else {
         return Some(Golden::default());
     };
-    let tolerance = checker.constant(block, "tolerance");
-    if let (Some(tolerance), Some((_, entry))) = (tolerance, checker.field(block, "tolerance"))
+    let tolerance = checker.constant(block, schema::TOLERANCE.name);
+    if let (Some(tolerance), Some((_, entry))) =
+        (tolerance, checker.field(block, schema::TOLERANCE.name))
         && tolerance > WIDE
     {
         checker
@@ -45,12 +47,12 @@ pub fn golden(checker: &mut Checker) -> Option<Golden> {
             .push(message::wide(tolerance, entry.value.span));
     }
     let mut named = Vec::new();
-    let results = each(checker, block, "results", |checker, chosen| {
-        near_result(checker, chosen, &mut named)
+    let results = each(checker, block, schema::RESULTS.name, |checker, chosen| {
+        result_tolerance(checker, chosen, &mut named)
     });
     let mut named = Vec::new();
-    let columns = each(checker, block, "columns", |checker, chosen| {
-        near_column(checker, chosen, &mut named)
+    let columns = each(checker, block, schema::COLUMNS.name, |checker, chosen| {
+        column_tolerance(checker, chosen, &mut named)
     });
     Some(Golden {
         tolerance: tolerance?,
@@ -76,13 +78,13 @@ fn each<'a, T>(
 
 type Named<T> = Vec<(T, Span)>;
 
-/// `near(hit.stop_time, 1 us)`
-fn near_result<'a>(
+/// `tolerance(hit.stop_time, 1 us)`
+fn result_tolerance<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
     named: &mut Named<(ProcedureId, &'static str)>,
-) -> Option<NearResult> {
-    let of = chosen.find("result")?.1?;
+) -> Option<ResultTolerance> {
+    let of = chosen.find(schema::RESULT.name)?.1?;
     let typed = checker.value(of, RESULTS)?;
     let Some(reference) = typed
         .formula
@@ -98,7 +100,7 @@ fn near_result<'a>(
         of.span,
     )?;
     let tolerance = tolerance(checker, chosen, typed.dimension)?;
-    Some(NearResult {
+    Some(ResultTolerance {
         procedure: reference.procedure,
         name: reference.name,
         dimension: typed.dimension,
@@ -106,17 +108,17 @@ fn near_result<'a>(
     })
 }
 
-/// `near(hit.restoring_force_n, 0.1 N)`, `near(wall_time_s, 1 ms)`
-fn near_column<'a>(
+/// `tolerance(hit.restoring_force_n, 0.1 N)`, `tolerance(wall_time_s, 1 ms)`
+fn column_tolerance<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
     named: &mut Named<(Option<ProcedureId>, &'static str)>,
-) -> Option<NearColumn> {
-    let of = chosen.find("column")?.1?;
+) -> Option<ColumnTolerance> {
+    let of = chosen.find(schema::COLUMN.name)?.1?;
     let (procedure, column) = column(checker, of)?;
     once(checker, named, (procedure, column.name), of.span)?;
     let tolerance = tolerance(checker, chosen, column.dimension)?;
-    Some(NearColumn {
+    Some(ColumnTolerance {
         procedure,
         name: column.name,
         dimension: column.dimension,
@@ -170,11 +172,7 @@ fn column(checker: &mut Checker, of: &Expr) -> Option<(Option<ProcedureId>, Colu
         ExprKind::Faulty => return None,
         _ => return checker.fail(message::column_wanted(of.span, checker.text(of.span))),
     };
-    let known: Vec<Column> = kinds
-        .into_iter()
-        .flat_map(procedures::columns)
-        .copied()
-        .collect();
+    let known: Vec<Column> = kinds.into_iter().flat_map(procedures::columns).collect();
     match known.iter().find(|column| column.name == name) {
         Some(column) => Some((procedure, *column)),
         None => checker.fail(message::unknown_column(
@@ -193,7 +191,7 @@ fn once<T: PartialEq>(
     span: Span,
 ) -> Option<()> {
     if let Some((_, first)) = named.iter().find(|(before, _)| *before == name) {
-        let diagnostic = message::near_twice(checker.text(span), span, *first);
+        let diagnostic = message::tolerance_twice(checker.text(span), span, *first);
         return checker.fail(diagnostic);
     }
     named.push((name, span));
@@ -206,14 +204,14 @@ fn tolerance<'a>(
     chosen: &Chosen<'a>,
     dimension: Dimension,
 ) -> Option<Tolerance> {
-    let written = chosen.find("within")?.1?;
+    let written = chosen.find(schema::WITHIN.name)?.1?;
     let typed = checker.single(written, CONSTANT)?;
     let relative = typed.percent
         || (typed.dimension == Dimension::NUMBER && dimension != Dimension::NUMBER && !typed.bare);
     let typed = if relative {
         typed
     } else {
-        checker.expect(typed, dimension, "within", written)?
+        checker.expect(typed, dimension, schema::WITHIN.name, written)?
     };
     let value = typed.constant()?;
     if value < 0.0 {

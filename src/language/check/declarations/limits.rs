@@ -2,10 +2,15 @@
 
 use crate::language::check::checker::{Checker, Context, Typed};
 use crate::language::check::expressions::choice::Chosen;
+use crate::language::check::expressions::read_field::ReadField;
 use crate::language::check::messages::{types, values, whole};
 use crate::language::syntax::ast::{Expr, ExprKind};
+use crate::plan::declaration::reader;
 use crate::plan::formula::Formula;
+use crate::plan::rig::limits::limits_fields;
 use crate::plan::{Interval, Limits};
+use crate::schema::limits::NAMES;
+use crate::schema::procedures::{SPEED, damping_sweep, move_to, stiffness_ramp};
 use crate::schema::{Field, FieldType, Kind};
 use crate::text::source::Span;
 use crate::units::Dimension;
@@ -122,32 +127,10 @@ impl<'a> Checker<'a> {
 
     /// An actuator with a speed limit of zero never arrives.
     fn moves_at_all(&mut self, field: &str, interval: Interval, span: Span) -> Option<Interval> {
-        if field == "speed" && interval.high <= 0.0 {
+        if field == NAMES.speed && interval.high <= 0.0 {
             return self.fail(values::no_speed(span));
         }
         Some(interval)
-    }
-
-    /// One `limits` block.
-    pub fn limits_block(&mut self, block: usize) -> Option<Limits> {
-        let displacement = self.bounds(block, "displacement");
-        let force = self.bounds(block, "force");
-        let speed = self.bounds(block, "speed");
-        let increment = self.bounds(block, "increment");
-        let tracking_error = self.bounds(block, "tracking_error");
-        let energy_error = self.bounds(block, "energy_error");
-        let tracking_energy_error = self.bounds(block, "tracking_energy_error");
-        let nrms_error = self.bounds(block, "nrms_error");
-        Some(Limits {
-            displacement: displacement?,
-            force: force?,
-            speed: speed?,
-            increment: increment?,
-            tracking_error: tracking_error?,
-            energy_error: energy_error?,
-            tracking_energy_error: tracking_energy_error?,
-            nrms_error: nrms_error?,
-        })
     }
 
     /// Every `limits` block; the intersection of those without a name and the one that the rig names. A plan that asks for
@@ -160,7 +143,7 @@ impl<'a> Checker<'a> {
             .collect();
         let checked: Vec<Option<(usize, Limits)>> = blocks
             .into_iter()
-            .map(|index| self.limits_block(index).map(|limits| (index, limits)))
+            .map(|index| read(self, index).map(|limits| (index, limits)))
             .collect();
         let checked: Vec<(usize, Limits)> = checked.into_iter().collect::<Option<_>>()?;
         let rig = rig_limits
@@ -178,15 +161,15 @@ impl<'a> Checker<'a> {
             }
             all = intersection(&all, limits);
             displacement_at = self
-                .field(*index, "displacement")
+                .field(*index, NAMES.displacement)
                 .map(|(_, entry)| entry.span)
                 .or(displacement_at);
             force_at = self
-                .field(*index, "force")
+                .field(*index, NAMES.force)
                 .map(|(_, entry)| entry.span)
                 .or(force_at);
             speed_at = self
-                .field(*index, "speed")
+                .field(*index, NAMES.speed)
                 .map(|(_, entry)| entry.span)
                 .or(speed_at);
         }
@@ -199,7 +182,8 @@ impl<'a> Checker<'a> {
     }
 
     fn compare_limits(&mut self, plan: usize, wanted: &Limits, rig: usize, allowed: &Limits) {
-        for ((field, wanted), (_, allowed)) in by_field(wanted).into_iter().zip(by_field(allowed)) {
+        for ((field, wanted, _), (_, allowed, _)) in wanted.named().into_iter().zip(allowed.named())
+        {
             let wider = wanted.is_bounded()
                 && allowed.is_bounded()
                 && (wanted.low < allowed.low || wanted.high > allowed.high);
@@ -219,18 +203,12 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// Each limit by the name of its field.
-fn by_field(limits: &Limits) -> [(&'static str, Interval); 8] {
-    [
-        ("displacement", limits.displacement),
-        ("force", limits.force),
-        ("speed", limits.speed),
-        ("increment", limits.increment),
-        ("tracking_error", limits.tracking_error),
-        ("energy_error", limits.energy_error),
-        ("tracking_energy_error", limits.tracking_energy_error),
-        ("nrms_error", limits.nrms_error),
-    ]
+limits_fields!(reader);
+
+impl ReadField for Interval {
+    fn read(checker: &mut Checker<'_>, block: usize, field: &'static str) -> Option<Self> {
+        checker.bounds(block, field)
+    }
 }
 
 fn intersection(one: &Limits, other: &Limits) -> Limits {
@@ -256,13 +234,13 @@ pub fn check_start(checker: &mut Checker, limits: &CheckedLimits) {
     }
     for (name, interval, dimension, at) in [
         (
-            "displacement",
+            NAMES.displacement,
             limits.limits.displacement,
             Dimension::LENGTH,
             limits.displacement_at,
         ),
         (
-            "force",
+            NAMES.force,
             limits.limits.force,
             Dimension::FORCE,
             limits.force_at,
@@ -282,14 +260,26 @@ pub fn check_targets(checker: &mut Checker, limits: &CheckedLimits) {
     for block in procedures {
         for (field, interval, at) in [
             (
-                "displacements",
+                stiffness_ramp::NAMES.displacements,
                 limits.limits.displacement,
                 limits.displacement_at,
             ),
-            ("to", limits.limits.displacement, limits.displacement_at),
-            ("stroke", limits.limits.displacement, limits.displacement_at),
-            ("speed", limits.limits.speed, limits.speed_at),
-            ("velocities", limits.limits.speed, limits.speed_at),
+            (
+                move_to::NAMES.to,
+                limits.limits.displacement,
+                limits.displacement_at,
+            ),
+            (
+                damping_sweep::NAMES.stroke,
+                limits.limits.displacement,
+                limits.displacement_at,
+            ),
+            (SPEED.name, limits.limits.speed, limits.speed_at),
+            (
+                damping_sweep::NAMES.velocities,
+                limits.limits.speed,
+                limits.speed_at,
+            ),
         ] {
             let Some((entry, written)) = checker.field(block, field) else {
                 continue;

@@ -4,13 +4,14 @@ use crate::language::check::checker::Checker;
 use crate::language::check::expressions::calendar;
 use crate::language::check::messages::{rigs, values};
 use crate::plan::DecisionRule;
+use crate::schema::plan_block as schema;
 use crate::schema::{FieldType, Kind};
 
 /// The edition that this version reads.
 const EDITION: f64 = 1.0;
 
 /// Fields whose value must be a day of the calendar.
-const DAYS: [&str; 2] = ["date", "issued"];
+const DAYS: [&str; 2] = [schema::DATE.name, schema::ISSUED.name];
 
 /// Title, if given, and the administrative data in the schema's order.
 pub fn plan_block(
@@ -39,7 +40,7 @@ pub fn plan_block(
                 .diagnostics
                 .push(rigs::not_a_day(day, written.value.span));
         }
-        let text = if field.name == "date" {
+        let text = if field.name == schema::DATE.name {
             date.map(str::to_owned).or(given)
         } else {
             given
@@ -50,8 +51,8 @@ pub fn plan_block(
         return (None, particulars);
     };
     if let (Some(edition), Some((_, written))) = (
-        checker.constant(block, "edition"),
-        checker.field(block, "edition"),
+        checker.constant(block, schema::EDITION.name),
+        checker.field(block, schema::EDITION.name),
     ) && edition != EDITION
     {
         checker.diagnostics.push(values::edition(
@@ -71,7 +72,7 @@ pub fn plan_block(
 pub fn decision_rule(particulars: &[(&'static str, String)]) -> DecisionRule {
     let named = particulars
         .iter()
-        .find(|(field, _)| *field == "decision_rule")
+        .find(|(field, _)| *field == schema::DECISION_RULE.name)
         .map(|(_, word)| word.as_str());
     if named == Some(DecisionRule::Guarded.name()) {
         DecisionRule::Guarded

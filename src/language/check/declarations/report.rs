@@ -1,12 +1,19 @@
-//! `report { … }`: figures, formats, signatories. Without it: every table and figure.
+//! `report { … }`: results, annexes, figures, formats, signatories. Without it: the headline results, every table and figure.
 
-use crate::language::check::checker::Checker;
-use crate::language::check::messages::{names, types};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+
+use crate::language::check::checker::{Checker, Context, Reads};
+use crate::language::check::messages::{files, names, types};
 use crate::language::check::scope::Meaning;
 use crate::language::syntax::ast::{Argument, Expr, ExprKind};
-use crate::plan::formula::ProcedureId;
-use crate::plan::{Figure, FigureKind, Format, MOST_TOGETHER, Procedure, Report};
+use crate::plan::formula::{Part, ProcedureId, ResultReference};
+use crate::plan::{
+    Annex, Figure, FigureKind, Format, MOST_PHOTOS, MOST_TOGETHER, Picture, PictureKind, Procedure,
+    Report,
+};
 use crate::schema::Kind;
+use crate::schema::report as schema;
 use crate::text::source::{Span, Spanned};
 
 const EVERY_FORMAT: [Format; 4] = [Format::Html, Format::Pdf, Format::Csv, Format::Parquet];
@@ -24,15 +31,19 @@ pub fn report(checker: &mut Checker, procedures: &[Option<Procedure>]) -> Option
             figures: every_figure(procedures),
             formats: EVERY_FORMAT.to_vec(),
             sign: Vec::new(),
+            annexes: Annex::DEFAULT.to_vec(),
+            results: None,
+            logo: None,
+            photos: Vec::new(),
         });
     };
-    let title = match checker.field(block, "title") {
-        Some(_) => checker.text_field(block, "title").map(Some),
+    let title = match checker.field(block, schema::TITLE.name) {
+        Some(_) => checker.text_field(block, schema::TITLE.name).map(Some),
         None => Some(None),
     };
     let figures = figures(checker, block, procedures);
-    let formats = match checker.field(block, "formats") {
-        Some(_) => checker.choices(block, "formats").map(|chosen| {
+    let formats = match checker.field(block, schema::FORMATS.name) {
+        Some(_) => checker.choices(block, schema::FORMATS.name).map(|chosen| {
             chosen
                 .iter()
                 .map(|chosen| format(chosen.variant.name))
@@ -40,16 +51,126 @@ pub fn report(checker: &mut Checker, procedures: &[Option<Procedure>]) -> Option
         }),
         None => Some(EVERY_FORMAT.to_vec()),
     };
-    let sign = match checker.field(block, "sign") {
-        Some(_) => checker.texts(block, "sign"),
+    let sign = match checker.field(block, schema::SIGN.name) {
+        Some(_) => checker.texts(block, schema::SIGN.name),
         None => Some(Vec::new()),
     };
+    let logo = logo(checker, block);
+    let photos = photos(checker, block);
+    let annexes = annexes(checker, block);
+    let results = results(checker, block);
     Some(Report {
         title: title?,
         figures: figures?,
         formats: formats?,
         sign: sign?,
+        annexes: annexes?,
+        results: results?,
+        logo: logo?,
+        photos: photos?,
     })
+}
+
+fn logo(checker: &mut Checker, block: usize) -> Option<Option<Picture>> {
+    match checker.field(block, schema::LOGO.name) {
+        Some((_, written)) => picture(checker, schema::LOGO.name, &written.value).map(Some),
+        None => Some(None),
+    }
+}
+
+fn photos(checker: &mut Checker, block: usize) -> Option<Vec<Picture>> {
+    let Some((_, written)) = checker.field(block, schema::PHOTOS.name) else {
+        return Some(Vec::new());
+    };
+    let items = match &written.value.kind {
+        ExprKind::List { items, unit: None } => items.as_slice(),
+        _ => std::slice::from_ref(&written.value),
+    };
+    if let Some(one_too_many) = items.get(MOST_PHOTOS) {
+        return checker.fail(files::too_many_photos(MOST_PHOTOS, one_too_many.span));
+    }
+    let read: Vec<Option<Picture>> = items
+        .iter()
+        .map(|item| picture(checker, schema::PHOTOS.name, item))
+        .collect();
+    read.into_iter().collect()
+}
+
+/// A picture file of the plan, with its format verified.
+fn picture(checker: &mut Checker, field: &str, written: &Expr) -> Option<Picture> {
+    let path = checker.text_value(field, written)?;
+    let Some(kind) = PictureKind::of(&path) else {
+        return checker.fail(files::not_a_picture(&path, written.span));
+    };
+    let file = checker.data_file(&path, written.span)?;
+    let bytes = if kind.is_binary() {
+        STANDARD.decode(file.text.as_bytes()).unwrap_or_default()
+    } else {
+        file.text.as_bytes().to_vec()
+    };
+    match kind.verify(&bytes) {
+        Ok(()) => Some(Picture {
+            file: file.name,
+            kind,
+            bytes,
+        }),
+        Err(reason) => checker.fail(files::bad_picture(&file.name, &reason, written.span)),
+    }
+}
+
+/// The annexes, in the order of a report. The same annex twice is one annex.
+fn annexes(checker: &mut Checker, block: usize) -> Option<Vec<Annex>> {
+    if checker.field(block, schema::ANNEXES.name).is_none() {
+        return Some(Annex::DEFAULT.to_vec());
+    }
+    let chosen = checker.choices(block, schema::ANNEXES.name)?;
+    let is_chosen = |annex: &Annex| {
+        chosen
+            .iter()
+            .any(|chosen| chosen.variant.name == annex.name())
+    };
+    Some(Annex::ALL.into_iter().filter(is_chosen).collect())
+}
+
+/// The results of the second page, each once, in the order of the plan. None if the plan names none.
+fn results(checker: &mut Checker, block: usize) -> Option<Option<Vec<ResultReference>>> {
+    let Some((_, written)) = checker.field(block, schema::RESULTS.name) else {
+        return Some(None);
+    };
+    let items = match &written.value.kind {
+        ExprKind::List { items, unit: None } => items.as_slice(),
+        _ => std::slice::from_ref(&written.value),
+    };
+    let checked: Vec<Option<ResultReference>> =
+        items.iter().map(|item| result(checker, item)).collect();
+    let mut results: Vec<ResultReference> = Vec::new();
+    for reference in checked.into_iter().collect::<Option<Vec<_>>>()? {
+        if !results.contains(&reference) {
+            results.push(reference);
+        }
+    }
+    Some(Some(results))
+}
+
+/// `hit.max_displacement`
+fn result<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option<ResultReference> {
+    const RESULTS: Context = Context {
+        entry: None,
+        reads: Reads::All,
+        critical: false,
+    };
+    let typed = checker.value(written, RESULTS)?;
+    let reference = typed
+        .formula
+        .as_result()
+        .filter(|reference| reference.part == Part::Value);
+    match reference {
+        Some(reference) => Some(reference),
+        None => checker.fail(types::result_wanted(
+            written.span,
+            checker.text(written.span),
+        )),
+    }
 }
 
 fn format(name: &str) -> Format {
@@ -80,7 +201,7 @@ fn figures(
     block: usize,
     procedures: &[Option<Procedure>],
 ) -> Option<Vec<Figure>> {
-    let Some((_, written)) = checker.field(block, "figures") else {
+    let Some((_, written)) = checker.field(block, schema::FIGURES.name) else {
         return Some(every_figure(procedures));
     };
     let items = match &written.value.kind {

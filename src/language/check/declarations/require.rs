@@ -5,6 +5,7 @@ use crate::language::check::messages::{types as message, values};
 use crate::language::syntax::ast::{BinaryOperator, Expr, ExprKind};
 use crate::plan::formula::Formula;
 use crate::plan::{Comparison, Condition, Requirement, Test};
+use crate::schema::procedures::impact_series::WHILE;
 use crate::units::Dimension;
 
 const PLACE: Context = Context {
@@ -128,7 +129,7 @@ impl<'a> Checker<'a> {
             }
             _ => {
                 let wanted_by = if matches!(context.reads, Reads::Impact(_)) {
-                    "while"
+                    WHILE.name
                 } else {
                     "require"
                 };

@@ -1,4 +1,4 @@
-//! Data files that a plan names: `record = "ground/quake.csv"`. In: the string and its span. Out: the file's
+//! Data files that a plan names: `file = "ground/quake.csv"`. In: the string and its span. Out: the file's
 //! text, which then belongs to the plan like a used file. The block that names the file interprets it.
 
 use super::data_file::DataFile;

@@ -6,7 +6,10 @@ use crate::language::check::messages::{names as message, types, values};
 use crate::language::check::scope::Meaning;
 use crate::language::syntax::ast::{Entry, Expr, ExprKind};
 use crate::plan::formula::Formula;
+use crate::schema::methods::TIME_STEP;
+use crate::schema::procedures::STIFFNESS;
 use crate::schema::{Field, FieldType, Kind, Need, RigKind};
+use crate::schema::{rig, specimen};
 use crate::text::source::Span;
 use crate::text::suggest;
 
@@ -83,7 +86,8 @@ impl<'a> Checker<'a> {
     /// An example of the field: for a rig with fields of real rigs only, a real link.
     fn example_of(&self, block: usize, field: &Field) -> &'static str {
         const REAL: &str = "link = serial(port: \"/dev/ttyUSB0\", dialect: native)";
-        let is_link = self.scope.blocks[block].kind.kind == Kind::Rig && field.name == "link";
+        let is_link =
+            self.scope.blocks[block].kind.kind == Kind::Rig && field.name == rig::LINK.name;
         let real = is_link && crate::language::check::rig::has_fields_of_real_rigs(self, block);
         if real { REAL } else { field.example }
     }
@@ -100,16 +104,18 @@ impl<'a> Checker<'a> {
         };
         match declared.kind.kind {
             Kind::Specimen => {
-                field == "behaviour"
+                field == specimen::BEHAVIOUR.name
                     && crate::language::check::declarations::specimen::frame::FIELDS
                         .iter()
                         .any(|frame| has(frame))
             }
             // The missing parts of a separate load cell are reported instead.
-            Kind::Rig => field == "link" && (has("actuator") || has("load_cell")),
+            Kind::Rig => {
+                field == rig::LINK.name && (has(rig::ACTUATOR.name) || has(rig::LOAD_CELL.name))
+            }
             // Storeys have their own stiffnesses.
             Kind::Unload => {
-                field == "stiffness"
+                field == STIFFNESS.name
                     && self.tested(block).is_some_and(|tested| {
                         crate::language::check::declarations::specimen::frame::is_frame(
                             self, tested,
@@ -169,7 +175,7 @@ impl<'a> Checker<'a> {
         let critical = matches!(
             declared.kind.kind,
             Kind::Impact | Kind::Escalate | Kind::Shake
-        ) && declared.block.fields[entry].key.node == "time_step";
+        ) && declared.block.fields[entry].key.node == TIME_STEP.name;
         Context {
             entry: Some((block, entry)),
             reads,

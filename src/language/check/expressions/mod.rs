@@ -11,3 +11,4 @@ pub(crate) mod fields;
 pub(crate) mod literal;
 pub(crate) mod names;
 pub(crate) mod parameters;
+pub(crate) mod read_field;

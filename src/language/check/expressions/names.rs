@@ -300,7 +300,7 @@ impl<'a> Checker<'a> {
             if typed.formula.reads_critical_time_step() {
                 return self.fail(values::needs_the_run(
                     span,
-                    "a time step that follows `critical`",
+                    "a time step that depends on `critical`",
                 ));
             }
             return self.reads_allowed(Typed { span, ..typed }, span, context);

@@ -27,13 +27,16 @@ pub fn another_number(
     let help = match storeys {
         1 => "remove `axes`: a rig without it has one axis".to_owned(),
         _ => format!(
-            "list {storeys} of them, the lowest storey first: axes = [{}]",
+            "list {storeys} axes, the lowest storey first: axes = [{}]",
             vec!["axis"; storeys].join(", ")
         ),
     };
     Diagnostic::new(
         Code::AxesDiffer,
-        format!("the rig `{rig}` has {}, and {needs}", axes_of(axes)),
+        format!(
+            "number of axes differs: rig `{rig}` has {}, {needs}",
+            axes_of(axes)
+        ),
     )
     .at(at, axes_of(axes))
     .help(help)
@@ -49,13 +52,13 @@ pub fn control_points(points: usize, axes: usize, at: Span) -> Diagnostic {
         .map(|axis| format!("MDL-00-{axis:02}"))
         .collect();
     let help = format!(
-        "name one an axis, the lowest storey first, with commas between, as in `nees(\"{}\")`, and list as many `axes`",
+        "write one control point per axis, the lowest storey first, separated by commas, as in `nees(\"{}\")`; list as many `axes`",
         names.join(", ")
     );
     Diagnostic::new(
         Code::AxesDiffer,
         format!(
-            "{named} cannot drive {}: every axis has its own",
+            "{named} cannot drive {}: every axis has a separate device",
             axes_of(axes)
         ),
     )
@@ -64,9 +67,12 @@ pub fn control_points(points: usize, axes: usize, at: Span) -> Diagnostic {
 }
 
 pub fn no_axis_left(at: Span) -> Diagnostic {
-    Diagnostic::new(Code::ChannelsDiffer, "no axis is left for this device: each has one of its own")
-        .at(at, "for which axis?")
-        .help("leave it to one axis, which then names none of its own; or remove it, where it is the `load_cell`")
+    Diagnostic::new(
+        Code::ChannelsDiffer,
+        "device without an axis: every axis has a separate one",
+    )
+    .at(at, "no axis left")
+    .help("remove the separate device of one axis, or remove this device if it is the `load_cell`")
 }
 
 pub fn channels(channels: usize, axes: usize, dialect: &Dialect, at: Span) -> Diagnostic {
@@ -77,17 +83,15 @@ pub fn channels(channels: usize, axes: usize, dialect: &Dialect, at: Span) -> Di
     };
     let help = match dialect {
         Dialect::Scpi { .. } => {
-            "write the force of a unit of each channel, the lowest axis first: `scpi([2.5 kN, 1.2 kN])`"
+            "write the force per unit of each channel, the lowest axis first: `scpi([2.5 kN, 1.2 kN])`"
         }
-        Dialect::Native => {
-            "weigh the axes with several devices: an axis may name a `load_cell` of its own"
-        }
+        Dialect::Native => "use several load cells: an axis can name a separate `load_cell`",
         _ => {
-            "give each axis a `load_cell` of its own, on its own port; or use a device of several channels: `scpi` or `native`"
+            "add a `load_cell` to each axis, on a separate port, or use a device with several channels: `scpi` or `native`"
         }
     };
     let text = format!(
-        "a load cell that speaks `{}` has {has} here, and cannot weigh {}",
+        "too few channels: `{}` load cell has {has}, for {}",
         dialect.name(),
         axes_of(axes)
     );
@@ -98,33 +102,35 @@ pub fn channels(channels: usize, axes: usize, dialect: &Dialect, at: Span) -> Di
 
 pub fn not_asked(dialect: &Dialect, at: Span) -> Diagnostic {
     let text = format!(
-        "several devices move the axes, and `{}` cannot be asked before it is told to",
+        "`{}` cannot confirm a move before it starts, so it cannot share a rig of several axes",
         dialect.name()
     );
-    Diagnostic::new(Code::NotAsked, text).at(at, "would move while another refuses").help(
-        "let one controller move them all behind one line, as `native` does; or `nees` sites, which propose before they execute",
+    Diagnostic::new(Code::NotAsked, text).at(at, "moves immediately").help(
+        "use one controller for all axes, such as `native`, or `nees` sites, which confirm before they move",
     )
 }
 
 pub fn too_many(axes: usize, most: usize, dialect: &Dialect, at: Span) -> Diagnostic {
     let text = format!(
-        "a device that speaks `{}` drives at most {}, not {axes}",
+        "too many axes for `{}`: {axes} (at most {})",
         dialect.name(),
         axes_of(most)
     );
     Diagnostic::new(Code::TooManyAxes, text)
         .at(at, axes_of(axes))
-        .help("several axes need one controller behind one `link`, which moves them together: `native` and `nees` do")
+        .help(
+            "use one controller behind one `link` that moves all axes together: `native` or `nees`",
+        )
 }
 
 pub fn frame_on_one_axis(specimen: &str, storeys: usize, rig: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::FrameOnRealRig,
-        format!("the frame `{specimen}` needs {storeys} actuators with their load cells, and the rig `{rig}` has one"),
+        format!("frame `{specimen}` requires {storeys} actuators and load cells, but rig `{rig}` has one"),
     )
-    .at(span, "would move every storey")
+    .at(span, "moves all storeys")
     .help(format!(
-        "list them in the rig, the lowest storey first: axes = [{}]; or run it on a virtual rig: leave `--rig` out",
+        "list them in the rig, the lowest storey first: axes = [{}]; or leave `--rig` out for a virtual rig",
         vec!["axis"; storeys].join(", ")
     ))
 }

@@ -6,31 +6,31 @@ use crate::text::source::{Span, Spanned};
 pub fn amplitudes_twice(span: Span, first: Span) -> Diagnostic {
     Diagnostic::new(
         Code::Duplicate,
-        "the amplitudes are given twice: by `amplitudes` and by `protocol`",
+        "amplitudes given twice: by `amplitudes` and by `protocol`",
     )
-    .at(span, "again here")
-    .at(first, "first here")
+    .at(span, "given again")
+    .at(first, "first given here")
     .help("remove one of them")
 }
 
 pub fn rate_without_speed(rate: Span, head: Span) -> Diagnostic {
     Diagnostic::new(
         Code::RateWithoutSpeed,
-        "`rate` reads while the actuator moves, and nothing says how fast it moves",
+        "`rate` requires `speed`: the actuator is read while it moves",
     )
-    .at(rate, "a rate of readings on the way")
+    .at(rate, "readings during motion")
     .at(head, "`speed` is missing")
-    .help("add a line such as `speed = 1 mm/s`, or leave `rate` out to step and pause")
+    .help("add a line such as `speed = 1 mm/s`, or remove `rate` for ramp-and-hold")
 }
 
 pub fn no_use_with_rate(field: &str, span: Span, rate: Span) -> Diagnostic {
     Diagnostic::new(
         Code::NoUseWithRate,
-        format!("`{field}` has no use beside `rate`: the actuator does not stop on its way"),
+        format!("`{field}` has no effect with `rate`: the actuator does not stop between the ends"),
     )
-    .at(span, "of step and pause")
-    .at(rate, "moved without stopping")
-    .help(format!("leave out `{field}`, or `rate`"))
+    .at(span, "for ramp-and-hold only")
+    .at(rate, "motion without stops")
+    .help(format!("remove `{field}` or `rate`"))
 }
 
 /// `what` begins at the final state of `before`.
@@ -43,11 +43,11 @@ pub fn impact_on_moving_specimen(
     Diagnostic::new(
         Code::BlowOnBlow,
         format!(
-            "this {} begins where `{}` ended: under load, and at rest",
+            "loaded start: this {} begins where `{}` ended, under load and at rest",
             what.node, before.node
         ),
     )
-    .at(what.span, "begins there")
+    .at(what.span, "ends under load")
     .at(before.span, ends.to_owned())
     .help(help)
 }
@@ -55,27 +55,27 @@ pub fn impact_on_moving_specimen(
 pub fn levels_twice(again: &str, span: Span, first_field: &str, first: Span) -> Diagnostic {
     Diagnostic::new(
         Code::Duplicate,
-        format!("the blows are given twice: by `{first_field}` and by `{again}`"),
+        format!("impacts given twice: by `{first_field}` and by `{again}`"),
     )
-    .at(span, "again here")
-    .at(first, "first here")
+    .at(span, "given again")
+    .at(first, "first given here")
     .help("remove one of them")
 }
 
 pub fn levels_do_not_rise(field: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::LevelsDoNotRise,
-        format!("the `{field}` do not rise from each blow to the next"),
+        format!("`{field}` do not increase from impact to impact"),
     )
-    .at(span, "some blow is no harder than the one before")
-    .help("put them in order, so that the first that fails is the least that does")
+    .at(span, "not in increasing order")
+    .help("sort them, so that the first failure has the lowest energy")
 }
 
 pub fn condition_without_result(text: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::ConditionWithoutBlow,
-        format!("`{text}` reads no result of a blow: it is the same after every one"),
+        format!("`{text}` reads no result of an impact: it is the same after every one"),
     )
-    .at(span, "holds always, or never")
-    .help("name a result of the blow, such as `max_displacement < 20 mm`")
+    .at(span, "constant condition")
+    .help("name a result of the impact, such as `max_displacement < 20 mm`")
 }

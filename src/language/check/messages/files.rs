@@ -4,15 +4,15 @@ use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::Span;
 
 pub fn bad_path(path: &str, span: Span, reason: &str) -> Diagnostic {
-    Diagnostic::new(Code::BadPath, format!("`{path}` cannot be used: {reason}"))
-        .at(span, "not a path inside the plan's folder")
-        .help("put the file into the plan's folder, or a folder in it: `use \"lib/frame.psd\"`")
+    Diagnostic::new(Code::BadPath, format!("invalid path `{path}`: {reason}"))
+        .at(span, "not in the plan's folder")
+        .help("move the file into the plan's folder, or a folder in it: `use \"lib/frame.psd\"`")
 }
 
 pub fn not_found(path: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(Code::FileNotFound, format!("there is no file `{path}`"))
+    Diagnostic::new(Code::FileNotFound, format!("file `{path}` does not exist"))
         .at(span, "not found")
-        .help("paths are relative to the file that names them")
+        .help("write a path relative to the file that names it")
 }
 
 pub fn refused(path: &str, reason: &str, span: Span) -> Diagnostic {
@@ -21,7 +21,7 @@ pub fn refused(path: &str, reason: &str, span: Span) -> Diagnostic {
         format!("`{path}` cannot be read: {reason}"),
     )
     .at(span, "cannot be read")
-    .help("name a plan file of UTF-8 text in the plan's folder")
+    .help("name a UTF-8 text file in the plan's folder")
 }
 
 pub fn use_cycle(chain: &[String], path: &str, span: Span) -> Diagnostic {
@@ -31,36 +31,33 @@ pub fn use_cycle(chain: &[String], path: &str, span: Span) -> Diagnostic {
         .chain([path])
         .collect::<Vec<_>>()
         .join(" → ");
-    Diagnostic::new(
-        Code::UseCycle,
-        format!("files use each other in a ring: {cycle}"),
-    )
-    .at(span, "closes the ring")
-    .help("move what both need into a third file")
+    Diagnostic::new(Code::UseCycle, format!("circular `use`: {cycle}"))
+        .at(span, "closes the circle")
+        .help("move the shared declarations into a third file")
 }
 
 pub fn too_deep(deepest: usize, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::TooManyFiles,
-        format!("files use files more than {deepest} deep"),
+        format!("`use` nested more than {deepest} deep"),
     )
-    .at(span, "one too deep")
-    .help("use the file from the plan itself")
+    .at(span, "too deep")
+    .help("use the file from the plan directly")
 }
 
 pub fn too_many_files(most: usize, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::TooManyFiles,
-        format!("a plan may be made of at most {most} files"),
+        format!("too many files: a plan can have at most {most}"),
     )
-    .at(span, "one too many")
-    .help("put declarations that belong together into one file")
+    .at(span, "too many")
+    .help("combine related declarations in one file")
 }
 
 pub fn bad_data_path(path: &str, span: Span, reason: &str) -> Diagnostic {
     Diagnostic::new(Code::BadPath, format!("`{path}` cannot be read: {reason}"))
-        .at(span, "not a path inside the plan's folder")
-        .help("put the file into the plan's folder, or a folder in it")
+        .at(span, "not in the plan's folder")
+        .help("move the file into the plan's folder, or a folder in it")
 }
 
 pub fn data_refused(path: &str, reason: &str, span: Span) -> Diagnostic {
@@ -69,5 +66,29 @@ pub fn data_refused(path: &str, reason: &str, span: Span) -> Diagnostic {
         format!("`{path}` cannot be read: {reason}"),
     )
     .at(span, "cannot be read")
-    .help("name a file of UTF-8 text in the plan's folder")
+    .help("name a UTF-8 text file, or a picture, in the plan's folder")
+}
+
+pub fn not_a_picture(path: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(Code::BadPath, format!("`{path}` is not a picture file"))
+        .at(span, "not a picture file")
+        .help("name a file that ends in `.png`, `.jpg`, `.jpeg` or `.svg`")
+}
+
+pub fn bad_picture(path: &str, reason: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::FileNotFound,
+        format!("`{path}` cannot be used: {reason}"),
+    )
+    .at(span, "not a usable picture")
+    .help("save it as PNG, JPEG or SVG of up to 2 MiB")
+}
+
+pub fn too_many_photos(most: usize, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::TooManyFiles,
+        format!("too many photographs (at most {most})"),
+    )
+    .at(span, "one too many")
+    .help("remove photographs")
 }

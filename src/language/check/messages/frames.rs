@@ -8,57 +8,57 @@ use crate::units::Dimension;
 use crate::units::display::significant;
 
 pub fn bad_record(file: &str, reason: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(Code::GroundRecord, format!("`{file}` is no ground motion: {reason}"))
-        .at(span, "cannot be used")
-        .help("a table begins with `time_s,acceleration_m_per_s2` and then has rising times from 0; a PEER file says NPTS and DT")
+    Diagnostic::new(Code::GroundRecord, format!("cannot read `{file}` as a ground motion: {reason}"))
+        .at(span, "invalid record")
+        .help("write the header `time_s,acceleration_m_per_s2` and times that increase from 0, or use a PEER file with NPTS and DT")
 }
 
 pub fn record_without_unit(file: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::GroundRecord,
-        format!("`{file}` does not say the unit of its accelerations"),
+        format!("`{file}` does not state the unit of its accelerations"),
     )
-    .at(span, "in which unit?")
-    .help("add a line `unit = 1 m/s^2`, or `unit = 1 gn` where they are fractions of gravity")
+    .at(span, "unit missing")
+    .help("add a line `unit = 1 m/s^2`, or `unit = 1 gn` for fractions of gravity")
 }
 
 pub fn unit_twice(file: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::GroundRecord,
-        format!("the header of `{file}` says the unit of its accelerations already"),
+        format!("unit given twice: the header of `{file}` states the unit of its accelerations"),
     )
-    .at(span, "said again")
-    .help("remove `unit`; a factor is `scale = 1.5`")
+    .at(span, "given again")
+    .help("remove `unit`; write a factor as `scale = 1.5`")
 }
 
 pub fn bad_matrix(file: &str, reason: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(Code::BadMatrix, format!("`{file}` is no matrix of a structure: {reason}"))
-        .at(span, "cannot be used")
-        .help("write a row a line, its numbers parted by commas; the matrix is square, symmetric and positive definite")
+    Diagnostic::new(Code::BadMatrix, format!("cannot read `{file}` as a structural matrix: {reason}"))
+        .at(span, "invalid matrix")
+        .help("write one row per line, comma-separated; the matrix must be square, symmetric and positive definite")
 }
 
 pub fn matrices_of_two_sizes(file: &str, stiffness: usize, mass: usize, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::BadMatrix,
-        format!("`{file}` has {stiffness} rows, and the mass matrix has {mass}"),
+        format!("matrix sizes differ: `{file}` has {stiffness} rows, the mass matrix has {mass}"),
     )
-    .at(span, "another size")
-    .help("both matrices have a row and a column for each floor")
+    .at(span, "different size")
+    .help("write both matrices with one row and one column per floor")
 }
 
 pub fn storey_without_stiffness(number: usize, span: Span) -> Diagnostic {
     Diagnostic::new(Code::StoreyStiffness, format!("storey {number} has no stiffness"))
-        .at(span, "how stiff?")
+        .at(span, "stiffness missing")
         .help("add `stiffness: 3 MN/m`, or `column_stiffness: 1.5 MN/m` for one of its two columns, or a `behaviour`")
 }
 
 pub fn storey_stiffness_twice(number: usize, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::StoreyStiffness,
-        format!("storey {number} says its stiffness twice"),
+        format!("storey {number} has two stiffnesses"),
     )
-    .at(span, "the second time")
-    .help("keep `stiffness`, of the whole storey, or `column_stiffness`, of one of its two columns")
+    .at(span, "given again")
+    .help("keep `stiffness` (whole storey) or `column_stiffness` (one of its two columns)")
 }
 
 /// A stiffness \[N/m\], by the name of its field, beside a model with a different initial stiffness \[N/m\].
@@ -73,39 +73,51 @@ pub fn storey_bends_otherwise(
         shown(stated.node, Dimension::STIFFNESS),
         shown(model.node, Dimension::STIFFNESS),
     );
-    Diagnostic::new(Code::StoreyBendsOtherwise, format!("storey {number} is said to have {stated}, and its behaviour begins with {initial}"))
-        .at(stated_at, format!("the run integrates with {stated}"))
-        .at(model_at, format!("and a virtual rig bends {initial}"))
-        .help(format!(
-            "remove `{field}`, so that the behaviour says it; or state how well it is known: `stiffness_uncertainty` of a third of what they are apart by, or more"
-        ))
+    Diagnostic::new(
+        Code::StoreyBendsOtherwise,
+        format!(
+            "storey {number}: stated stiffness {stated} differs from the \
+     model's initial stiffness {initial}"
+        ),
+    )
+    .at(stated_at, format!("stated stiffness: {stated}"))
+    .at(
+        model_at,
+        format!("initial stiffness of the model: {initial}"),
+    )
+    .help(format!(
+        "remove `{field}`, or set `stiffness_uncertainty` to a third of the difference or more"
+    ))
 }
 
 pub fn too_many_storeys(found: usize, most: usize, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::TooMany,
-        format!("a frame has at most {most} storeys, this one {found}"),
+        format!("too many storeys: {found} (at most {most})"),
     )
     .at(span, "too many")
-    .help("each storey needs an actuator of its own; join some")
+    .help("combine storeys; each one requires an actuator")
 }
 
 pub fn specimen_twice(first: &Ident, other: &Ident) -> Diagnostic {
     Diagnostic::new(
         Code::SpecimenTwice,
-        format!("a specimen of `{}` has no `{}`", first.node, other.node),
+        format!(
+            "structure given twice: by `{}` and by `{}`",
+            first.node, other.node
+        ),
     )
-    .at(other.span, "says another structure")
-    .at(first.span, "says the structure")
+    .at(other.span, "given again")
+    .at(first.span, "first given here")
     .help(format!("remove `{}`, or `{}`", other.node, first.node))
 }
 
 pub fn matrix_alone(given: &Ident, missing: &str) -> Diagnostic {
     Diagnostic::new(
         Code::SpecimenTwice,
-        format!("`{}` stands without `{missing}`", given.node),
+        format!("`{}` requires `{missing}`", given.node),
     )
-    .at(given.span, "half a structure")
+    .at(given.span, "one matrix only")
     .help(format!(
         "add a line `{missing} = \"{}.csv\"`",
         &missing[..1]
@@ -115,19 +127,22 @@ pub fn matrix_alone(given: &Ident, missing: &str) -> Diagnostic {
 pub fn matrix_uncertainty_alone(given: &Ident, matrix: &str) -> Diagnostic {
     Diagnostic::new(
         Code::SpecimenTwice,
-        format!("`{}` stands without `{matrix}`", given.node),
+        format!("`{}` requires `{matrix}`", given.node),
     )
-    .at(given.span, "uncertain of what?")
+    .at(given.span, "matrix missing")
     .help(format!(
-        "remove it: it is the uncertainty of a frame's `{matrix}`, read from a file"
+        "remove it, or read the frame's `{matrix}` from a file"
     ))
 }
 
 pub fn no_storeys(specimen: &str, span: Span, declared: Span) -> Diagnostic {
-    Diagnostic::new(Code::NoStoreys, format!("specimen `{specimen}` has no storeys, and `shake` moves the ground under some"))
-        .at(span, "shakes it")
-        .at(declared, "one degree of freedom, without storeys")
-        .help("write `storeys = [storey(mass: 2 t, stiffness: 3 MN/m)]` in place of its mass and behaviour")
+    Diagnostic::new(
+        Code::NoStoreys,
+        format!("specimen `{specimen}` has no storeys; `shake` requires a frame"),
+    )
+    .at(span, "requires storeys")
+    .at(declared, "no storeys")
+    .help("write `storeys = [storey(mass: 2 t, stiffness: 3 MN/m)]` instead of mass and behaviour")
 }
 
 pub fn one_degree_of_freedom(
@@ -139,23 +154,24 @@ pub fn one_degree_of_freedom(
 ) -> Diagnostic {
     let diagnostic = Diagnostic::new(
         Code::OneDegreeOfFreedom,
-        format!("`{keyword}` drives one actuator, and the frame `{specimen}` has {axes}"),
+        format!("`{keyword}` drives one actuator, but the frame `{specimen}` has {axes}"),
     )
     .at(span, "one degree of freedom");
     let diagnostic = match declared {
         Some(declared) => diagnostic.at(declared, format!("{axes} storeys")),
         None => diagnostic,
     };
-    diagnostic.help("test the storeys by `shake`, `impact`, `escalate` or `unload`, or a specimen of one degree of freedom in a plan of its own")
+    diagnostic.help("use `shake`, `impact`, `escalate` or `unload` for a frame, or test a single-degree-of-freedom \
+     specimen in a separate plan")
 }
 
 /// A frame without the floor that the striker hits.
 pub fn which_storey(specimen: &str, storeys: usize, at: Span, declared: Span) -> Diagnostic {
     Diagnostic::new(
         Code::WhichStorey,
-        format!("the frame `{specimen}` has {storeys} storeys: which of them is struck?"),
+        format!("struck storey missing: the frame `{specimen}` has {storeys} storeys"),
     )
-    .at(at, "strikes it")
+    .at(at, "storey missing")
     .at(declared, format!("{storeys} storeys"))
     .help(format!("add a line `storey = {storeys}`; the lowest is 1"))
 }
@@ -168,22 +184,22 @@ pub fn no_such_storey(specimen: &str, storeys: usize, at: Span, declared: Span) 
     };
     Diagnostic::new(
         Code::WhichStorey,
-        format!("the frame `{specimen}` has {has}, counted from the ground up"),
+        format!("storey does not exist: frame `{specimen}` has {has}, counted from the ground up"),
     )
     .at(at, "no such storey")
     .at(declared, has)
-    .help(format!("the top one is `storey = {storeys}`"))
+    .help(format!("write `storey = {storeys}` for the top one"))
 }
 
 pub fn storey_of_none(specimen: &str, at: Span, declared: Span) -> Diagnostic {
     Diagnostic::new(
         Code::WhichStorey,
-        format!("specimen `{specimen}` has no storeys, so that none of them is struck"),
+        format!("specimen `{specimen}` has no storeys, but the impact has `storey`"),
     )
-    .at(at, "which storey?")
-    .at(declared, "one degree of freedom, without storeys")
+    .at(at, "no storeys to strike")
+    .at(declared, "no storeys")
     .help(
-        "remove `storey`, or give the specimen `storeys = [storey(mass: 2 t, stiffness: 3 MN/m)]`",
+        "remove `storey`, or write `storeys = [storey(mass: 2 t, stiffness: 3 MN/m)]` in the specimen",
     )
 }
 
@@ -191,37 +207,37 @@ pub fn storey_of_none(specimen: &str, at: Span, declared: Span) -> Diagnostic {
 pub fn no_use_on_a_frame(field: &str, of: &str, at: Span, help: &str) -> Diagnostic {
     Diagnostic::new(
         Code::NoUseOnAFrame,
-        format!("`{field}` says nothing of {of}"),
+        format!("`{field}` has no effect in {of}"),
     )
-    .at(at, "has no use here")
+    .at(at, "no effect here")
     .help(help)
 }
 
 pub fn of_a_frame_only(field: &str, at: Span, help: &str) -> Diagnostic {
     Diagnostic::new(
         Code::NoUseOnAFrame,
-        format!("`{field}` says something of frames only, and this impact strikes none"),
+        format!("`{field}` requires a frame, but this impact strikes one degree of freedom"),
     )
-    .at(at, "has no use here")
+    .at(at, "no effect here")
     .help(help)
 }
 
 pub fn result_of_a_storey(result: &str, at: Span, head: Span) -> Diagnostic {
     Diagnostic::new(
         Code::NoUseOnAFrame,
-        format!("only an impact on a storey of a frame has `{result}`"),
+        format!("`{result}` exists only for an impact on a frame"),
     )
-    .at(at, "not of this impact")
+    .at(at, "not a result here")
     .at(head, "strikes one degree of freedom")
-    .help("strike a frame: its specimen has `storeys`, and the impact says `storey = 1`")
+    .help("write `storeys` in the specimen and `storey = 1` in the impact")
 }
 
 pub fn result_of_a_frame(result: &str, at: Span, head: Span) -> Diagnostic {
     Diagnostic::new(
         Code::NoUseOnAFrame,
-        format!("only the unloading of a frame has `{result}`"),
+        format!("`{result}` exists only for the unloading of a frame"),
     )
-    .at(at, "not of this unloading")
+    .at(at, "not a result here")
     .at(head, "unloads one degree of freedom")
     .help("read `residual_displacement` and `residual_force`")
 }
@@ -229,19 +245,22 @@ pub fn result_of_a_frame(result: &str, at: Span, head: Span) -> Diagnostic {
 pub fn damping_ratios(found: usize, modes: usize, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::DampingRatios,
-        format!("{found} damping ratios for {modes} modes"),
+        format!("number of damping ratios differs: {found} for {modes} modes"),
     )
-    .at(span, "a list has one for each mode")
-    .help("give one ratio for each mode, the longest period first, or one number: Rayleigh damping")
+    .at(span, "one per mode required")
+    .help("write one ratio per mode, the longest period first, or one number for Rayleigh damping")
 }
 
 /// A damping ratio below 0 within its uncertainty.
 pub fn damping_too_uncertain(uncertainty: f64, least: f64, span: Span) -> Diagnostic {
     let percent = |number: f64| format!("{} %", significant(100.0 * number, 2));
-    let of = format!("the damping ratio of {} would be below 0", percent(least));
-    Diagnostic::new(Code::DampingTooUncertain, format!("less its uncertainty, {of}"))
-        .at(span, format!("{} is one standard uncertainty", percent(uncertainty)))
-        .help("write a standard uncertainty of at most the damping ratio; of a ratio in 0 to ζ, all as likely, it is ζ / (2 √3)")
+    let of = format!(
+        "damping ratio minus its uncertainty is below 0: {}",
+        percent(least)
+    );
+    Diagnostic::new(Code::DampingTooUncertain, format!("minus its uncertainty, {of}"))
+        .at(span, format!("standard uncertainty: {}", percent(uncertainty)))
+        .help("write an uncertainty up to the damping ratio; for a rectangular distribution on 0 .. ζ it is ζ / (2 √3)")
 }
 
 pub fn damping_impossible(reason: &str, span: Span) -> Diagnostic {
@@ -249,28 +268,28 @@ pub fn damping_impossible(reason: &str, span: Span) -> Diagnostic {
         Code::DampingRatios,
         format!("no damping matrix has these ratios: {reason}"),
     )
-    .at(span, "cannot be met")
-    .help("give each mode its own ratio: `damping_ratio = [2, 3] %`")
+    .at(span, "not possible")
+    .help("write one ratio per mode: `damping_ratio = [2, 3] %`")
 }
 
 pub fn no_one_of_its_kind(name: Option<&Ident>, property: &str, span: Span) -> Diagnostic {
     let name = name.map_or("the frame", |name| name.node.as_str());
     Diagnostic::new(
         Code::NoOneStiffness,
-        format!("`{name}` is a frame: no one `{property}` is its own"),
+        format!("`{name}` is a frame: it has no single `{property}`"),
     )
-    .at(span, "which storey's?")
-    .help("declare the storey's own by `let`, and read that")
+    .at(span, "several storeys")
+    .help("declare the value of one storey with `let`, and read that")
 }
 
 pub fn unstable_though(span: Span, step: f64, limit: f64) -> Diagnostic {
     let (step, limit) = (shown(step, Dimension::TIME), shown(limit, Dimension::TIME));
     Diagnostic::new(
         Code::BeyondStability,
-        format!("the time step {step} is beyond the stability limit {limit}, and the plan allows it: the motion will grow"),
+        format!("the motion will grow: time step {step} exceeds the stability limit {limit}"),
     )
     .at(span, "allowed here")
-    .help("remove `allow_unstable` unless the growth is what is to be seen")
+    .help("remove `allow_unstable`, unless the growth itself is to be shown")
 }
 
 pub fn record_finer_than_step(span: Span, step: f64, spacing: f64, ground: &str) -> Diagnostic {
@@ -280,8 +299,8 @@ pub fn record_finer_than_step(span: Span, step: f64, spacing: f64, ground: &str)
     );
     Diagnostic::new(
         Code::RecordFinerThanStep,
-        format!("the time step {step} is longer than the {spacing} between samples of `{ground}`: peaks between are not felt"),
+        format!("ground peaks may be missed: time step {step} exceeds the sample spacing {spacing} of `{ground}`"),
     )
-    .at(span, format!("{step}, the record has {spacing}"))
+    .at(span, format!("{step}, sample spacing is {spacing}"))
     .help(format!("write `time_step = {spacing}` or less"))
 }

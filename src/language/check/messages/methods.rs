@@ -9,51 +9,47 @@ use crate::units::display::{minus, significant};
 
 pub fn law_needs_the_tangent(integrator: &str, named: Span, law: &str, struck: Span) -> Diagnostic {
     let message = format!(
-        "`{law}` finds the instant of a blow inside a step by the tangent stiffness; `{integrator}` has none"
+        "`{law}` requires the tangent stiffness within a step, which `{integrator}` does not have"
     );
     Diagnostic::new(Code::LawNeedsTangent, message)
-        .at(struck, "this law looks inside the step")
+        .at(struck, "requires a tangent")
         .at(
             named,
-            format!("`{integrator}` knows the force only at its end"),
+            format!("`{integrator}` has the force only at the end"),
         )
-        .help(
-            "write `integrator = tangent`, or take `contact = rigid` or `contact = limit(1500 N)`",
-        )
+        .help("write `integrator = tangent`, or `contact = rigid`, or `contact = limit(1500 N)`")
 }
 
 pub fn unstable(span: Span, integrator: Integrator, step: f64, limit: f64) -> Diagnostic {
     let time = |value| shown(value, Dimension::TIME);
     let (step, longest) = (time(step), time(limit));
     let why = match integrator {
-        Integrator::AlphaOs { .. } => {
-            "the specimen is stiffer than the `stiffness` that α-OS splits with"
-        }
+        Integrator::AlphaOs { .. } => "the specimen is stiffer than the `stiffness` of α-OS",
         Integrator::Tangent | Integrator::Explicit => {
             "explicit Newmark is stable up to the period over π"
         }
     };
     Diagnostic::new(
         Code::Unstable,
-        format!("the time step {step} is beyond the stability limit {longest}: {why}"),
+        format!("time step {step} exceeds the stability limit {longest}: {why}"),
     )
     .at(span, format!("{step}, stable up to {longest}"))
-    .help("write `time_step = critical / 20`; `allow_unstable = true` runs it all the same")
+    .help("write `time_step = critical / 20`; `allow_unstable = true` permits the step")
 }
 
 /// α-OS with a `K_I` \[N/m\] below the specimen's stiffness, within the limit \[s\] that follows.
-pub fn stiffer_than_operator(span: Span, specimen: f64, operator: f64, limit: f64) -> Diagnostic {
+pub fn stiffer_than_operator(specimen: f64, operator: f64, span: Span, limit: f64) -> Diagnostic {
     let (specimen, operator) = (
         shown(specimen, Dimension::STIFFNESS),
         shown(operator, Dimension::STIFFNESS),
     );
     let limit = shown(limit, Dimension::TIME);
     let message = format!(
-        "the specimen has {specimen}, more than the {operator} that α-OS splits with: it is stable up to {limit} only"
+        "motion may grow: specimen stiffness {specimen} exceeds the {operator} of α-OS, which is then stable up to {limit} only"
     );
     Diagnostic::new(Code::StifferThanOperator, message)
         .at(span, format!("K_I = {operator}"))
-        .help("take the high end of what the ramp finds: a `stiffness` above the specimen's is stable for every step")
+        .help("write the high end of the ramp's interval: a `stiffness` above the specimen's is stable at every step")
 }
 
 /// The tangent form with a bound on its tangent \[N/m\] below the specimen's stiffness.
@@ -63,48 +59,47 @@ pub fn stiffer_than_tangent(span: Span, specimen: f64, bound: f64) -> Diagnostic
         shown(bound, Dimension::STIFFNESS),
     );
     let message = format!(
-        "the specimen reaches {specimen}, and the tangent is taken for no more than {bound}: it may be unstable"
+        "motion may grow: specimen stiffness {specimen} exceeds the upper bound {bound} of the tangent"
     );
     Diagnostic::new(Code::StifferThanOperator, message)
-        .at(span, "`max_tangent_ratio` times this is the most that is believed")
-        .help("write the stiffness of the specimen where it is stiff, or a larger `max_tangent_ratio`")
+        .at(span, "tangent limited to `max_tangent_ratio` times this")
+        .help(
+            "write the stiffness of the specimen at its stiffest, or a larger `max_tangent_ratio`",
+        )
 }
 
 pub fn continuous_on_a_real_rig(dialect: &str, span: Span) -> Diagnostic {
-    let message = format!(
-        "continuous mode needs a rig that follows a path without stopping, and `{dialect}` cannot say one"
-    );
+    let message =
+        format!("continuous mode requires a rig that follows a path; `{dialect}` does not");
     Diagnostic::new(Code::NoPathToFollow, message)
-        .at(span, format!("`{dialect}` says one target at a time, and stops there"))
-        .help("write `mode = step_and_pause`; or use a rig that speaks `native`, which has `GLIDE`, or a virtual rig")
+        .at(span, format!("`{dialect}` stops at every target"))
+        .help("write `mode = ramp_and_hold`; or use a `native` controller with `GLIDE`, or a virtual rig")
 }
 
 pub fn read_apart(sweep: Span, link: Span, label: String) -> Diagnostic {
-    let message = "a damping sweep reads on the way, and this rig reads displacement and force one after the other";
+    let message = "a damping sweep requires simultaneous readings of displacement and force";
     Diagnostic::new(Code::ReadApart, message)
-        .at(sweep, "the way between the two would be taken for damping")
+        .at(sweep, "read one after the other")
         .at(link, label)
-        .help("give the damping instead, as in `damping = 6 N*s/m`; or use one device that speaks `native`, for both")
+        .help("write a damping value, as in `damping = 6 N*s/m`, or use one `native` device for both readings")
 }
 
 pub fn stops_on_the_way(field: &str, span: Span, mode: Span) -> Diagnostic {
     Diagnostic::new(
         Code::StopsOnTheWay,
-        format!("`{field}` stops the actuator, and `continuous` never does"),
+        format!("`{field}` has no effect in continuous mode: the actuator never stops"),
     )
-    .at(span, "would stop it")
+    .at(span, "requires a stop")
     .at(mode, "does not stop")
-    .help(format!(
-        "leave `{field}` out, or write `mode = step_and_pause`"
-    ))
+    .help(format!("remove `{field}`, or write `mode = ramp_and_hold`"))
 }
 
 pub fn damping_twice(computed: Span, measured: Span) -> Diagnostic {
-    let message = "damping counts twice: in continuous mode the damper of the specimen is in the force that is read";
+    let message = "damping is counted twice: in continuous mode the measured force already contains the specimen's damping";
     Diagnostic::new(Code::DampingTwice, message)
         .at(computed, "computed here")
-        .at(measured, "and felt here, at the speed of the actuator")
-        .help("leave the procedure's damping out, or make it what the specimen's does not show: its damping is felt divided by the time scale")
+        .at(measured, "already measured here")
+        .help("remove the procedure's damping, or write only what is not measured: measured damping is divided by the time scale")
 }
 
 /// An actuator with a delay.
@@ -148,34 +143,36 @@ pub fn tracking_is_late(late: &Late, head: Span, link: Span) -> Diagnostic {
         ..
     } = late;
     let message = format!(
-        "tracking may stop `{name}`: the delay of the actuator adds {} to the energy of a vibration in each cycle, and a run is held at {} of \
-         the input energy",
+        "tracking may stop `{name}`: actuator delay adds {} to the energy of a vibration per cycle (limit {} of the input energy)",
         percent(*energy),
         percent(*bound)
     );
     let correct = "write `i_modification = true`, which corrects the force to the target";
     let help = match late.remedy {
         Remedy::Shorter(step) => {
-            format!("{correct}; or take a `time_step` of at most {}", time(step))
+            format!(
+                "{correct}; or write a `time_step` of at most {}",
+                time(step)
+            )
         }
         Remedy::Slower(scale) => format!(
-            "{correct}; or take a `time_scale` of at least {}",
+            "{correct}; or write a `time_scale` of at least {}",
             significant(scale, 3)
         ),
         Remedy::Longer(pause) => {
             format!(
-                "{correct}; or let it arrive, by a `pause` that is {} longer or a band in `settle`",
+                "{correct}; or add {} to `pause`, or a tolerance in `settle`",
                 time(pause)
             )
         }
     };
     let misses = [
-        (*short != 0.0).then(|| format!("misses {} of each increment", percent(short.abs()))),
+        (*short != 0.0).then(|| format!("undershoots increments by {}", percent(short.abs()))),
         (*lag > 0.0).then(|| format!("lags by {}", time(*lag))),
     ];
     let misses: Vec<String> = misses.into_iter().flatten().collect();
     let amounts = format!(
-        "{}: late by {} of virtual time, as a damping ratio of {}",
+        "{}: delay {} of simulated time, damping ratio {}",
         misses.join(" and "),
         minus(&time(late.delay)),
         minus(&percent(*damping_ratio))

@@ -50,7 +50,7 @@ pub fn cap(diagnostics: &mut Vec<Diagnostic>) {
         Severity::Warning
     };
     let message = format!(
-        "{} more faults are not listed: a list has at most {ERRORS}",
+        "{} more errors are not listed (at most {ERRORS})",
         out.len()
     );
     let more = Diagnostic {
@@ -60,8 +60,8 @@ pub fn cap(diagnostics: &mut Vec<Diagnostic>) {
     let more = first
         .span()
         .into_iter()
-        .fold(more, |more, span| more.at(span, "the first of them"));
-    diagnostics.push(more.help("mend those that are listed first"));
+        .fold(more, |more, span| more.at(span, "first unlisted error"));
+    diagnostics.push(more.help("correct the listed errors first"));
 }
 
 /// The name of a block in a message: ``specimen `beam` ``.

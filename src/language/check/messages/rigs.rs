@@ -2,14 +2,15 @@
 
 use super::shown;
 use crate::language::syntax::ast::Ident;
-use crate::plan::{Dialect, Gate, PortPlan};
+use crate::plan::{Dialect, PortPlan, PretestCheck};
 use crate::schema::Field;
+use crate::schema::{limits, rig as schema};
 use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::Span;
 use crate::units::Dimension;
 
 /// Least ratio of the force of a probe to the noise of a reading.
-pub const GATE_OVER_NOISE: f64 = 10.0;
+pub const CHECK_OVER_NOISE: f64 = 10.0;
 
 /// `a`, `b` and `c`
 fn all_of(words: &[&str]) -> String {
@@ -39,9 +40,9 @@ pub fn incomplete(
         lacks.push(format!("limits on {}", all_of(unbounded)));
         help.push(
             if unbounded.len() > 1 {
-                "give them in `limits`, as in"
+                "write them in `limits`, as in"
             } else {
-                "give it in `limits`, as in"
+                "write it in `limits`, as in"
             }
             .to_owned(),
         );
@@ -54,66 +55,66 @@ pub fn incomplete(
     Diagnostic::new(
         Code::RealRigIncomplete,
         format!(
-            "rig `{name}` moves a real specimen and lacks {}",
+            "real rig `{name}` is incomplete: it lacks {}",
             lacks.join(", and ")
         ),
     )
-    .at(head, "a real rig")
+    .at(head, "real rig")
     .help(help.join("\n"))
 }
 
 pub fn no_operator_named(rig: Span) -> Diagnostic {
-    Diagnostic::new(Code::NobodyNamed, "a real rig moves for somebody with a name, and nobody is named")
-        .at(rig, "moves a real specimen")
-        .help("who runs the test is named by `--operator \"A. Tester\"`, or by `operator` in the `plan` block")
+    Diagnostic::new(
+        Code::NobodyNamed,
+        "no operator is named: a real rig requires one",
+    )
+    .at(rig, "moves a real specimen")
+    .help("add `--operator \"A. Tester\"`, or `operator` in the `plan` block")
 }
 
 fn example_of_limit(field: &str) -> &'static str {
     match field {
-        "displacement" => "displacement = -2 mm .. 25 mm",
-        "force" => "force = -2 kN .. 12 kN",
+        _ if field == limits::NAMES.displacement => "displacement = -2 mm .. 25 mm",
+        _ if field == limits::NAMES.force => "force = -2 kN .. 12 kN",
         _ => "speed = 10 mm/s",
     }
 }
 
 pub fn link_and_device(link: Span, field: &str, other: Span) -> Diagnostic {
-    let help = if field == "load_cell" {
-        "write `actuator` for the device that moves, in place of `link`"
+    let help = if field == schema::LOAD_CELL.name {
+        "write `actuator` instead of `link` for the device that moves"
     } else {
-        "one device that moves and weighs is the `link`; two are an `actuator` and a `load_cell`"
+        "write `link` for one device that moves and measures force; write `actuator` and `load_cell` for two"
     };
     Diagnostic::new(
         Code::RigLinks,
         format!(
-            "a rig has a `link`, or an `actuator` and a `load_cell`: here are `link` and `{field}`"
+            "a rig has a `link`, or an `actuator` and a `load_cell`, but not `link` and `{field}`"
         ),
     )
-    .at(other, "and this")
+    .at(other, "conflicts with `link`")
     .at(link, "this")
     .help(help)
 }
 
 pub fn load_cell_alone(at: Span) -> Diagnostic {
-    Diagnostic::new(
-        Code::RigLinks,
-        "a `load_cell` without an `actuator` moves nothing",
-    )
-    .at(at, "nothing moves")
-    .help("add a line such as\nactuator = serial(port: \"/dev/ttyUSB0\", dialect: grbl)")
+    Diagnostic::new(Code::RigLinks, "`load_cell` requires an `actuator`")
+        .at(at, "no actuator")
+        .help("add a line such as\nactuator = serial(port: \"/dev/ttyUSB0\", dialect: grbl)")
 }
 
 pub fn cannot_move(field: &str, dialect: &Dialect, at: Span) -> Diagnostic {
     let name = dialect.name();
     let help = match dialect {
-        Dialect::Modbus(_) => "give the `target` register, and `position` with its `length_unit`",
-        _ if field == "link" => "make this the `load_cell`, and name an `actuator` that moves",
-        _ => {
-            "name a device that moves, with the dialect `native`, `grbl`, `instron`, `mark10`, `modbus` or `nees`"
+        Dialect::Modbus(_) => "add the `target` register, and `position` with its `length_unit`",
+        _ if field == schema::LINK.name => {
+            "make this the `load_cell`, and name an `actuator` that moves"
         }
+        _ => "name a device that moves: `native`, `grbl`, `instron`, `mark10`, `modbus` or `nees`",
     };
     Diagnostic::new(
         Code::WrongDevice,
-        format!("`{field}` must move the specimen, and a device that speaks `{name}` cannot"),
+        format!("`{field}` must move the specimen, but a `{name}` device cannot"),
     )
     .at(at, "cannot move")
     .help(help)
@@ -124,20 +125,20 @@ pub fn cannot_measure_force(own: bool, field: &str, dialect: &Dialect, at: Span)
     let name = dialect.name();
     let help = match dialect {
         Dialect::Modbus(_) => {
-            "give the `force` register with its `force_unit`, or another device that reads the force"
+            "add the `force` register with its `force_unit`, or another device that reads the force"
         }
         _ if own => {
             "name a device that reads the force, as in\nload_cell = serial(port: \"/dev/ttyUSB1\", dialect: indicator)"
         }
-        _ if field == "link" => {
+        _ if field == schema::LINK.name => {
             "make this the `actuator`, and add\nload_cell = serial(port: \"/dev/ttyUSB1\", dialect: indicator)"
         }
         _ => "add a line such as\nload_cell = serial(port: \"/dev/ttyUSB1\", dialect: indicator)",
     };
     let message = if own {
-        format!("`load_cell` must read the force, and a device that speaks `{name}` cannot")
+        format!("`load_cell` must read the force, but a `{name}` device cannot")
     } else {
-        format!("nothing reads the force: a device that speaks `{name}` only moves")
+        format!("no device reads the force: a `{name}` device only moves")
     };
     Diagnostic::new(Code::WrongDevice, message)
         .at(at, "reads no force")
@@ -148,69 +149,66 @@ pub fn counts_without_force(dialect: &Dialect, at: Span) -> Diagnostic {
     Diagnostic::new(
         Code::CountsWithoutForce,
         format!(
-            "`{}` gives raw counts, and the rig does not say what a count is worth",
+            "`{}` gives raw counts, but the rig has no scale factor for them",
             dialect.name()
         ),
     )
     .at(at, "counts, not newtons")
-    .help("add to the rig, from its calibration,\nforce_per_count = 0.0123 N\nzero_count = 8123")
+    .help("add to the rig, from its calibration,\nforce_per_count = 0.0123 N\nzero_offset = 8123")
 }
 
 pub fn nothing_counts(key: &Ident, dialect: &Dialect) -> Diagnostic {
     let (field, name) = (&key.node, dialect.name());
     Diagnostic::new(
         Code::FieldWithoutUse,
-        format!("`{field}` has no use: `{name}` gives the force in newtons"),
+        format!("`{field}` has no effect: `{name}` gives the force in newtons"),
     )
-    .at(key.span, "not read")
+    .at(key.span, "not used")
     .help(format!("remove `{field}`"))
 }
 
 pub fn day_of_no_calibration(field: &str, at: Span) -> Diagnostic {
-    Diagnostic::new(Code::FieldWithoutUse, format!("`{field}` has no use: no calibration of the displacement is named"))
-        .at(at, "of which calibration?")
-        .help("add `displacement_calibration = \"UKAS 4712\"`, or remove the day: `calibration_due` holds for both")
+    Diagnostic::new(Code::FieldWithoutUse, format!("`{field}` requires `displacement_calibration`"))
+        .at(at, "no displacement calibration")
+        .help("add `displacement_calibration = \"UKAS 4712\"`, or remove the date: `calibration_due` applies to both")
 }
 
 pub fn displacement_without_day(rig: &str, at: Span) -> Diagnostic {
     Diagnostic::new(
         Code::CalibrationWithoutDay,
-        format!("rig `{rig}` does not say `displacement_calibration_due`: its certificate will not be certifiable"),
+        format!("test reports of rig `{rig}` cannot be issued: `displacement_calibration_due` is missing"),
     )
-    .at(at, "calibrated until when?")
+    .at(at, "due date missing")
     .help("add to the rig\ndisplacement_calibration_due = \"2027-03-01\"")
 }
 
 pub fn field_of_real_rigs(key: &Ident) -> Diagnostic {
     let field = &key.node;
     let help = match field.as_str() {
-        "noise" | "resolution" => {
+        name if [schema::NOISE.name, schema::RESOLUTION.name].contains(&name) => {
             format!("write it inside the link, as in `link = virtual({field}: …)`, or remove it")
         }
         _ => format!("remove `{field}`"),
     };
     Diagnostic::new(
         Code::FieldWithoutUse,
-        format!("`{field}` says something of real rigs, and this rig is virtual"),
+        format!("`{field}` applies to real rigs only, but this rig is virtual"),
     )
-    .at(key.span, "not read")
+    .at(key.span, "not used")
     .help(help)
 }
 
 pub fn bad_port(span: Span, why: &str) -> Diagnostic {
-    Diagnostic::new(
-        Code::BadPort,
-        format!("this cannot be the name of a port: {why}"),
-    )
-    .at(span, "no name of a port")
-    .help("write it as the system names it, such as `\"/dev/ttyUSB0\"`")
+    Diagnostic::new(Code::BadPort, format!("invalid port name: {why}"))
+        .at(span, "invalid port name")
+        .help("write the name that the system uses, such as `\"/dev/ttyUSB0\"`")
 }
 
 pub fn bad_address(address: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::BadPort,
         format!(
-            "`{}` is not an address: a host, a colon and a port from 1 to 65535",
+            "invalid address `{}`: a host, a colon and a port from 1 to 65535 are required",
             address.escape_debug()
         ),
     )
@@ -221,31 +219,33 @@ pub fn bad_address(address: &str, span: Span) -> Diagnostic {
 pub fn bad_line_text(field: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::BadPort,
-        format!("`{field}` is sent or read on a line of plain text, and this cannot stand on one"),
+        format!("invalid `{field}`: the protocol requires a nonempty line of plain text"),
     )
-    .at(span, "empty, or with other than plain characters")
-    .help("write the letters and digits that the device itself uses")
+    .at(span, "empty, or invalid characters")
+    .help("write the letters and digits that the device uses")
 }
 
 pub fn port_twice(port: &PortPlan, second: Span, first: Span) -> Diagnostic {
     Diagnostic::new(
         Code::PortTwice,
         format!(
-            "two devices are on one port, `{}`",
+            "two devices on one port, `{}`",
             port.to_string().escape_debug()
         ),
     )
-    .at(second, "again here")
-    .at(first, "first here")
-    .help("name the port of each; one device that moves and weighs is the `link`")
+    .at(second, "named again")
+    .at(first, "first named here")
+    .help(
+        "write a port for each device, or use `link` for one device that moves and measures force",
+    )
 }
 
 pub fn not_a_day(day: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::NotADay,
-        format!("`{}` is not a day of the calendar", day.escape_debug()),
+        format!("`{}` is not a calendar date", day.escape_debug()),
     )
-    .at(span, "no such day")
+    .at(span, "invalid date")
     .help("write year, month and day, as in `\"2027-03-01\"`")
 }
 
@@ -256,9 +256,9 @@ pub fn watchdog_too_short(watchdog: f64, silence: f64, given: bool, at: Span) ->
     let shorter = (watchdog / 7.0 * 1e3).floor() / 1e3;
     let (watchdog, silence) = (time(watchdog), time(silence));
     let label = if given {
-        format!("{watchdog}, a request waits {silence}")
+        format!("{watchdog}, one request takes up to {silence}")
     } else {
-        format!("a request to it waits {silence}")
+        format!("a request takes up to {silence}")
     };
     let other = if shorter > 0.0 {
         format!(", or a `reply_timeout` of at most {}", time(shorter))
@@ -267,7 +267,7 @@ pub fn watchdog_too_short(watchdog: f64, silence: f64, given: bool, at: Span) ->
     };
     Diagnostic::new(
         Code::WatchdogTooShort,
-        format!("the watchdog of {watchdog} ends before a request is given up, after {silence}: seven times its `reply_timeout`"),
+        format!("the watchdog of {watchdog} is shorter than one request: {silence} (7 × `reply_timeout`)"),
     )
     .at(at, label)
     .help(format!("write `watchdog = {silence}` or more{other}"))
@@ -276,19 +276,20 @@ pub fn watchdog_too_short(watchdog: f64, silence: f64, given: bool, at: Span) ->
 pub fn never_settles(field: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::OutOfRange,
-        format!(
-            "`{field}` of a real rig must be greater than 0: no real reading ever stands still"
-        ),
+        format!("`{field}` of a real rig must be greater than 0: readings always vary"),
     )
     .at(span, "too small")
-    .help("write what the rig can keep, a few times its noise")
+    .help("write a tolerance of a few times the noise of the rig")
 }
 
 pub fn not_certifiable(rig: &str, head: Span, reference: bool, due: bool) -> Diagnostic {
     let (field, line) = if reference {
-        ("calibration", "calibration = \"UKAS 4711\"")
+        (schema::CALIBRATION.name, "calibration = \"UKAS 4711\"")
     } else {
-        ("calibration_due", "calibration_due = \"2027-03-01\"")
+        (
+            schema::CALIBRATION_DUE.name,
+            "calibration_due = \"2027-03-01\"",
+        )
     };
     let lacks = if reference && due {
         "`calibration` or `calibration_due`".to_owned()
@@ -302,9 +303,9 @@ pub fn not_certifiable(rig: &str, head: Span, reference: bool, due: bool) -> Dia
     };
     Diagnostic::new(
         Code::CalibrationWithoutDay,
-        format!("rig `{rig}` does not say {lacks}: its certificate will not be certifiable"),
+        format!("test reports of rig `{rig}` cannot be issued: {lacks} missing"),
     )
-    .at(head, "calibrated until when?")
+    .at(head, "calibration data missing")
     .help(format!("add to the rig\n{lines}"))
 }
 
@@ -313,21 +314,21 @@ pub fn device_not_pinned(field: &str, of: &str, port: &PortPlan, span: Span) -> 
     Diagnostic::new(
         Code::DeviceNotPinned,
         format!(
-            "`{field}`{of} takes whatever device answers on `{}`",
+            "`{field}`{of} accepts any device on `{}`",
             port.to_string().escape_debug()
         ),
     )
     .at(span, "no `serial_number`")
-    .help("write the serial number that must answer, as in\nserial_number: \"PSD-0001\"")
+    .help("write the serial number of the device, as in\nserial_number: \"PSD-0001\"")
 }
 
 pub fn no_operator_to_free_it(at: Span) -> Diagnostic {
     Diagnostic::new(
         Code::NobodyToFreeIt,
-        "nobody can take the specimen of a virtual rig off its load cell".to_owned(),
+        "the specimen of a virtual rig cannot be taken off its load cell".to_owned(),
     )
-    .at(at, "a zero that needs a person")
-    .help("write `after: start`: the rig goes back to where it began, and reads its zero there")
+    .at(at, "requires an operator")
+    .help("write `after: start`: the rig returns to its start position and reads the zero there")
 }
 
 /// A source of random changes of a reading.
@@ -355,49 +356,48 @@ pub fn drift_within_noise(
     );
     Diagnostic::new(
         Code::DriftWithinNoise,
-        format!(
-            "a drift of the {what} of {allowed} cannot be told from what a reading does by itself"
-        ),
+        format!("{what} drift tolerance {allowed} is within the scatter of the readings"),
     )
-    .at(at, format!("the {name} of one reading is {size}"))
-    .help(format!(
-        "allow at least {reach}, or measure with less {name}"
-    ))
+    .at(at, format!("{name} of one reading: {size}"))
+    .help(format!("write at least {reach}, or reduce the {name}"))
 }
 
 /// A probe whose force on the softest acceptable specimen is too small compared with the noise of a reading \[N\].
-pub fn gate_within_noise(gate: &Gate, noise: f64, at: Span) -> Diagnostic {
-    let (probe, softest) = (gate.probe.abs(), gate.stiffness.low);
+pub fn check_within_noise(pretest_check: &PretestCheck, noise: f64, at: Span) -> Diagnostic {
+    let (probe, softest) = (pretest_check.probe.abs(), pretest_check.stiffness.low);
     // Two digits, rounded up.
-    let least = GATE_OVER_NOISE * noise / softest;
+    let least = CHECK_OVER_NOISE * noise / softest;
     let digit = 10f64.powf(least.log10().floor() - 1.0);
     let least = (least / digit * (1.0 - 1e-9)).ceil() * digit;
     Diagnostic::new(
-        Code::GateWithinNoise,
+        Code::CheckWithinNoise,
         format!(
-            "a probe of {} does not stand out of the noise: a sound rig may fail its gate by chance",
+            "pre-test check may fail by chance: a probe of {} is too small for the noise",
             shown(probe, Dimension::LENGTH)
         ),
     )
     .at(
         at,
         format!(
-            "{} at {}, and the noise of one reading is {}",
+            "{} at {}, noise of one reading is {}",
             shown(probe * softest, Dimension::FORCE),
             shown(softest, Dimension::STIFFNESS),
             shown(noise, Dimension::FORCE)
         ),
     )
-    .help(format!("move at least {}: ten times the noise", shown(least, Dimension::LENGTH)))
+    .help(format!(
+        "write at least {}: ten times the noise",
+        shown(least, Dimension::LENGTH)
+    ))
 }
 
 pub fn resolution_unknown(rig: &str, at: Span) -> Diagnostic {
     Diagnostic::new(
         Code::ResolutionUnknown,
         format!(
-            "rig `{rig}` does not say the resolution of its displacement reading: a quiet load cell may be taken for a dead one"
+            "a quiet load cell may be reported as frozen: rig `{rig}` has no displacement resolution"
         ),
     )
-    .at(at, "0 mm, as far as is known")
+    .at(at, "0 mm by default")
     .help("add to the rig, from the transducer's data sheet\nresolution = 1 um")
 }

@@ -14,18 +14,18 @@ pub fn backbone_lists_differ(
 ) -> Diagnostic {
     Diagnostic::new(
         Code::CornersDoNotFit,
-        "every corner has a displacement and a force",
+        "number of displacements and forces differs",
     )
     .at(displacements, format!("{} displacements", counts.0))
     .at(forces, format!("{} forces", counts.1))
-    .help("give both lists as many entries")
+    .help("write both lists with the same length")
 }
 
 /// `index` counts from 0.
 pub fn backbone_point(index: usize, span: Span, label: &str, help: &str) -> Diagnostic {
     Diagnostic::new(
         Code::CornersDoNotFit,
-        format!("corner {} does not follow from the one before", index + 1),
+        format!("backbone point {} is invalid", index + 1),
     )
     .at(span, label)
     .help(help)
@@ -50,11 +50,11 @@ pub fn table_file(
 pub fn breaks_counted_twice(breaks: Span, most: Span) -> Diagnostic {
     Diagnostic::new(
         Code::BreaksTwice,
-        "`breaks` says how many breaks there are: `most` has nothing to bound",
+        "`breaks` states the number of breakpoints: `most` has no effect",
     )
-    .at(most, "bounds a choice")
-    .at(breaks, "that is made here")
-    .help("remove `most`, or remove `breaks` and let the criterion choose")
+    .at(most, "bounds an automatic choice")
+    .at(breaks, "number stated here")
+    .help("remove `most`, or remove `breaks` for an automatic choice")
 }
 
 /// A backbone that descends before it yields.
@@ -63,10 +63,10 @@ pub fn capped_before_yield(displacement: f64, yielded: f64, span: Span) -> Diagn
         [displacement, yielded].map(|place| shown(place, Dimension::LENGTH));
     Diagnostic::new(
         Code::CornersDoNotFit,
-        format!("a strength capped at {displacement} falls before it is reached"),
+        format!("capping at {displacement} is before yield"),
     )
-    .at(span, format!("it yields at {yielded}"))
-    .help(format!("a `capping_displacement` beyond {yielded}"))
+    .at(span, format!("yields at {yielded}"))
+    .help(format!("write a `capping_displacement` above {yielded}"))
 }
 
 /// The loss of force of a logarithmic relaxation.
@@ -84,18 +84,12 @@ pub fn relaxes_away(loss: RelaxationLoss, span: Span) -> Diagnostic {
     let RelaxationLoss { share, lost, .. } = loss;
     let longest = shown(loss.longest, Dimension::TIME);
     let percent = |number: f64| crate::units::display::significant(100.0 * number, 3);
-    Diagnostic::new(
-        Code::OutOfRange,
-        "a force that relaxes cannot lose more than itself",
-    )
-    .at(
-        span,
-        format!("loses {} % of it until {longest}", percent(lost)),
-    )
-    .help(format!(
-        "a `share` below {} %, or a shorter `longest`",
-        percent(0.99 * share / lost)
-    ))
+    Diagnostic::new(Code::OutOfRange, "relaxation would exceed the force itself")
+        .at(span, format!("loses {} % until {longest}", percent(lost)))
+        .help(format!(
+            "write a `share` below {} %, or a shorter `longest`",
+            percent(0.99 * share / lost)
+        ))
 }
 
 /// The law ends before it begins.
@@ -104,13 +98,13 @@ pub fn relaxes_too_short(longest: f64, reference_time: f64, span: Span) -> Diagn
     Diagnostic::new(
         Code::OutOfRange,
         format!(
-            "relaxation that ends after {} is none with the logarithm of time",
+            "relaxation that ends after {} is too short for the logarithmic law",
             times[0]
         ),
     )
-    .at(span, format!("its `reference_time` is {}", times[1]))
+    .at(span, format!("`reference_time` is {}", times[1]))
     .help(format!(
-        "a `longest` of {} or more",
+        "write a `longest` of {} or more",
         shown(10.0 * reference_time, Dimension::TIME)
     ))
 }
@@ -118,29 +112,26 @@ pub fn relaxes_too_short(longest: f64, reference_time: f64, span: Span) -> Diagn
 /// The time range of the readings of a dwell, last over first.
 pub fn few_decades(readings: u32, span: Span) -> Diagnostic {
     let spanned = u64::from(readings) * u64::from(readings);
-    let message = format!("{readings} readings in a pause tell no law of relaxation from another");
+    let message = format!("{readings} readings per pause cannot distinguish relaxation laws");
     Diagnostic::new(Code::FewDecades, message)
-        .at(
-            span,
-            format!("the last reading comes at {spanned} times the time of the first"),
-        )
-        .help("take ten `readings` or more: they then span two decades of time")
+        .at(span, format!("last reading at {spanned} × the first time"))
+        .help("write ten `readings` or more, which span two decades of time")
 }
 
 pub fn relaxation_without_hold(relaxation: Span) -> Diagnostic {
     Diagnostic::new(
         Code::RelaxationWithoutHold,
-        "relaxation is read while the actuator holds, and this ramp has no `pause`",
+        "`relaxation` requires a `pause`",
     )
-    .at(relaxation, "nothing to read")
-    .help("add `pause = 5 s`, for instance")
+    .at(relaxation, "no readings without a pause")
+    .help("add a line such as `pause = 5 s`")
 }
 
 /// Two arguments, one of which has no meaning without the other.
 pub fn missing_partner(given: &str, missing: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::BehaviourIncomplete,
-        format!("`{given}` means nothing without `{missing}`"),
+        format!("`{given}` requires `{missing}`"),
     )
     .at(span, format!("`{missing}` is missing"))
     .help(format!("add `{missing}`, or remove `{given}`"))
@@ -153,12 +144,9 @@ pub fn one_way_only(takes: &str, example: &str, span: Span, given: usize) -> Dia
     } else {
         ("both are given", "remove one of them".to_owned())
     };
-    Diagnostic::new(
-        Code::BehaviourIncomplete,
-        format!("{takes}, one of the two"),
-    )
-    .at(span, label)
-    .help(help)
+    Diagnostic::new(Code::BehaviourIncomplete, format!("{takes}, but not both"))
+        .at(span, label)
+        .help(help)
 }
 
 /// Neither a mass nor a weight that moves with the load.
@@ -166,30 +154,30 @@ pub fn portal_without_mass(name: Option<&Ident>, head: Span) -> Diagnostic {
     let name = name.map_or("", |name| name.node.as_str());
     Diagnostic::new(
         Code::MissingField,
-        format!("specimen `{name}` lacks the field `mass`, and nothing of its portal that moves has one"),
+        format!("specimen `{name}` has no mass: no moving part of its portal has one"),
     )
     .at(head, "`mass` is missing")
-    .help("say what the frame weighs, such as `mass_per_length: 12 kg/m` in `portal(…)`, or add a line such as `mass = 25 kg`")
+    .help("add the mass of the members, such as `mass_per_length: 12 kg/m` in `portal(…)`, or a line such as `mass = 25 kg`")
 }
 
 /// `half` is q·A·L/2, `elastic` the mass from its own ends \[kg\]; None where the beam is only a part of its model.
 pub fn beam_without_mass(name: &str, head: Span, half: f64, elastic: Option<f64>) -> Diagnostic {
     let kg = |mass| shown(mass, Dimension::MASS);
     let half = format!(
-        "`mass = density * area * length / 2`, {}, which is made for a beam on two supports",
+        "`mass = density * area * length / 2`, {}, which is for a beam on two supports",
         kg(half)
     );
     let help = match elastic {
         Some(elastic) => format!(
-            "write `mass = {name}.elastic_mass`, {}, which its ends give, or {half}",
+            "write `mass = {name}.elastic_mass`, {}, from its ends, or {half}",
             kg(elastic)
         ),
-        None => format!("write what moves with it, as in `mass = 0.9 kg`, or {half}"),
+        None => format!("write the moving mass, as in `mass = 0.9 kg`, or {half}"),
     };
     Diagnostic::new(
         Code::MissingField,
         format!(
-            "specimen `{name}` lacks the field `mass`, which depends on the ends of its `beam`"
+            "specimen `{name}` requires the field `mass`, which depends on the ends of its `beam`"
         ),
     )
     .at(head, "`mass` is missing")
@@ -199,32 +187,30 @@ pub fn beam_without_mass(name: &str, head: Span, half: f64, elastic: Option<f64>
 pub fn too_few_parts(variant: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::BehaviourIncomplete,
-        format!("`{variant}` joins two behaviours or more"),
+        format!("`{variant}` requires two models or more"),
     )
     .at(span, "only one")
-    .help(format!("add another, or write the one without `{variant}`"))
+    .help(format!("add another model, or remove `{variant}`"))
 }
 
 pub fn too_many_parts(most: usize, what: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::UnfitInside,
-        format!("a behaviour has at most {most} {what}"),
+        format!("a behaviour can have at most {most} {what}"),
     )
     .at(span, "too many")
-    .help("put springs that stand together into one")
+    .help("combine springs into one")
 }
 
 /// `variant` is `rate` or `maxwell`.
 pub fn must_be_outermost(variant: &str, span: Span) -> Diagnostic {
-    let message = format!(
-        "`{variant}` acts on the load cell, and there is one: it cannot stand inside another behaviour"
-    );
+    let message = format!("`{variant}` acts on the load cell: it must be the outermost model");
     let help = match variant {
-        "rate" => "write it around the whole: `rate(of: series(…), reference_velocity: …)`",
+        "rate" => "move it outside: `rate(of: series(…), reference_velocity: …)`",
         "logarithmic" => {
-            "write it around the whole: `logarithmic(of: series(…), share: …, reference_time: …)`"
+            "move it outside: `logarithmic(of: series(…), share: …, reference_time: …)`"
         }
-        _ => "write it around the whole: `maxwell(of: series(…), stiffness: …, time_constant: …)`",
+        _ => "move it outside: `maxwell(of: series(…), stiffness: …, time_constant: …)`",
     };
     Diagnostic::new(Code::UnfitInside, message)
         .at(span, "inside")
@@ -234,11 +220,11 @@ pub fn must_be_outermost(variant: &str, span: Span) -> Diagnostic {
 pub fn falls_in_series(span: Span, series: Span) -> Diagnostic {
     Diagnostic::new(
         Code::UnfitInside,
-        "in series a force that falls leaves the displacement of the parts open: no rig could follow it",
+        "a model that softens to a falling force is not allowed in `series`: its displacement is undetermined",
     )
-    .at(span, "its force may fall while its displacement grows")
-    .at(series, "one of these")
-    .help("put what falls around the series: `fracture(of: series(…), force: …)`")
+    .at(span, "force may fall")
+    .at(series, "in this series")
+    .help("move it outside: `fracture(of: series(…), force: …)`")
 }
 
 pub fn no_such_property(
@@ -252,8 +238,8 @@ pub fn no_such_property(
         Code::NoSuchProperty,
         format!("specimen `{name}` has no `{property}`: {reason}"),
     )
-    .at(span, "not known of it")
-    .help("read it of a behaviour that has one, such as `portal` or `bilinear` without hardening")
+    .at(span, "not available")
+    .help("remove it, or use a behaviour that has it, such as `portal` or `bilinear` without hardening")
 }
 
 /// Limits that let the specimen exceed its table.
@@ -273,11 +259,11 @@ pub fn table_too_short(
     };
     Diagnostic::new(
         Code::TableTooShort,
-        format!("the limits reach beyond the points of `{file}`: there its last force holds"),
+        format!("the limits exceed the points of `{file}`: the last force is used beyond them"),
     )
     .at(named_at, format!("points over {}", range(table)))
     .at(limit_at, format!("allows {}", range(limit)))
-    .help("narrow the limits to what was measured, or measure further")
+    .help("narrow the limits to the measured range, or measure further")
 }
 
 /// A contact force \[N\] that may exceed the largest force of a mechanism \[N\].
@@ -286,10 +272,10 @@ pub fn beyond_mechanism(mechanism: Mechanism, force: f64, most: f64, span: Span)
     let name = mechanism.name();
     Diagnostic::new(
         Code::BeyondMechanism,
-        format!("a contact force above {most} makes other hinges than those of the {name} mechanism"),
+        format!("a contact force above {most} forms other hinges than the {name} mechanism"),
     )
-    .at(span, format!("may come to {force}"))
+    .at(span, format!("can reach {force}"))
     .help(
-        "bound the force by what the mechanism follows, or expect hinges nearer to the blow, which one degree of freedom has not",
+        "reduce the force to the mechanism's limit, or expect hinges nearer to the impact than the model has",
     )
 }

@@ -69,7 +69,7 @@ pub fn missing_unit(
     Diagnostic::new(
         Code::MissingUnit,
         format!(
-            "`{wanted_by}` wants {}, found a number without a unit",
+            "`{wanted_by}` requires {}, found a number without a unit",
             article(wanted)
         ),
     )
@@ -88,12 +88,9 @@ pub fn angle_without_unit(text: &str, span: Span) -> Diagnostic {
     } else {
         "write `deg` or `rad`, as in `40 deg`".to_owned()
     };
-    Diagnostic::new(
-        Code::MissingUnit,
-        format!("`{text}` is an angle without a unit"),
-    )
-    .at(span, "degrees or radians?")
-    .help(help)
+    Diagnostic::new(Code::MissingUnit, format!("angle `{text}` has no unit"))
+        .at(span, "`deg` or `rad` missing")
+        .help(help)
 }
 
 /// `entries`: a list or range, whose unit is written once, at its end.
@@ -113,11 +110,11 @@ pub fn missing_unit_of_entries(
     Diagnostic::new(
         Code::MissingUnit,
         format!(
-            "`{wanted_by}` wants {}, found numbers without a unit",
+            "`{wanted_by}` requires {}, found numbers without a unit",
             article(wanted)
         ),
     )
-    .at(span, "these have no unit")
+    .at(span, "no unit")
     .help(help)
 }
 
@@ -144,7 +141,7 @@ pub fn wrong_dimension(
     let help = match (number, wanted) {
         (Some(number), Dimension::ACCELERATION) if text == format!("{number} g") => {
             format!(
-                "`g` is the gram; write `{number} gn`, as many times the standard gravity of 9.80665 m/s^2"
+                "write `{number} gn` for a multiple of standard gravity (9.80665 m/s^2); `g` is the gram"
             )
         }
         (Some(number), _) => {
@@ -158,12 +155,12 @@ pub fn wrong_dimension(
             )
         }
         (None, Dimension::NUMBER) => format!(
-            "divide `{text}` by {}, so that a number is left",
+            "divide `{text}` by {}, so that a number remains",
             article(found)
         ),
         (None, _) => {
             format!(
-                "change `{text}` so that it gives {}, which has the unit `{}`",
+                "change `{text}` so that it gives {}, with the unit `{}`",
                 article(wanted),
                 wanted.usual_unit()
             )
@@ -172,7 +169,7 @@ pub fn wrong_dimension(
     Diagnostic::new(
         Code::WrongDimension,
         format!(
-            "`{wanted_by}` wants {}, found {}",
+            "`{wanted_by}` requires {}, found {}",
             article(wanted),
             article(found)
         ),
@@ -191,14 +188,14 @@ pub fn wrong_dimension_of_quantity(
     Diagnostic::new(
         Code::WrongDimension,
         format!(
-            "`{parameter}` wants {}, found {}",
+            "`{parameter}` requires {}, found {}",
             article(wanted),
             article(bound.dimension)
         ),
     )
     .at(declared_at, format!("this is {}", article(wanted)))
     .help(format!(
-        "bind `{parameter}` to {}, not to {}",
+        "write {} for `{parameter}`, not {}",
         article(wanted),
         bound.in_plan_syntax()
     ))
@@ -214,24 +211,20 @@ pub fn mismatched(operator: &str, left: &Typed, right: &Typed) -> Diagnostic {
     };
     let is = |side: &Typed, name: &str| {
         if side.bare && forgotten {
-            "this number has no unit".to_owned()
+            "no unit".to_owned()
         } else {
             format!("this is {name}")
         }
     };
-    let how = format!(
-        "{} is written as in `{}`",
-        article(wanted),
-        example(None, wanted)
-    );
+    let how = format!("{}, as in `{}`", article(wanted), example(None, wanted));
     let help = if forgotten {
-        format!("give the number its unit: {how}")
+        format!("add a unit to make the number {how}")
     } else {
-        format!("both sides must be of one kind; {how}")
+        format!("write both sides as the same kind of quantity: {how}")
     };
     Diagnostic::new(
         Code::MismatchedDimensions,
-        format!("`{operator}` joins {one} and {other}"),
+        format!("`{operator}` cannot combine {one} and {other}"),
     )
     .at(left.span, is(left, &one))
     .at(right.span, is(right, &other))
@@ -239,14 +232,14 @@ pub fn mismatched(operator: &str, left: &Typed, right: &Typed) -> Diagnostic {
 }
 
 pub fn list_for_number(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::WrongType, "found a list where one number is wanted")
+    Diagnostic::new(Code::WrongType, "expected one number, found a list")
         .at(span, "a list")
-        .help("take one entry, as in `list[0]`, or a function of them, as in `max(list)`")
+        .help("write one entry, as in `list[0]`, or a function, as in `max(list)`")
 }
 
 pub fn text_for_number(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::WrongType, "found a text where a number is wanted")
-        .at(span, "a text")
+    Diagnostic::new(Code::WrongType, "expected a number, found a string")
+        .at(span, "a string")
         .help("write the number without quotes")
 }
 
@@ -266,32 +259,41 @@ pub fn block_for_number(name: &str, kind: &BlockKind, span: Span) -> Diagnostic 
         format!("`{name}` is {article} {words}, not a number"),
     )
     .at(span, format!("{article} {words}"))
-    .help(format!("read a value of it, such as {member}"))
+    .help(format!("read one of its values, such as {member}"))
 }
 
 pub fn condition_for_number(span: Span, operator: &str) -> Diagnostic {
-    Diagnostic::new(Code::WrongType, format!("`{operator}` gives no number"))
-        .at(span, "a condition")
-        .help("conditions stand only in `require`; two of them are joined with `and`")
+    Diagnostic::new(
+        Code::WrongType,
+        format!("`{operator}` does not give a number"),
+    )
+    .at(span, "a condition")
+    .help("write conditions in `require` only; join two of them with `and`")
 }
 
 pub fn condition_wanted(wanted_by: &str, span: Span, text: &str) -> Diagnostic {
-    Diagnostic::new(Code::WrongType, format!("`{wanted_by}` wants a condition"))
-        .at(span, "a value, not a condition")
-        .help(format!("compare it, as in `{text} < …`"))
+    Diagnostic::new(
+        Code::WrongType,
+        format!("`{wanted_by}` requires a condition"),
+    )
+    .at(span, "a value, not a condition")
+    .help(format!("compare it, as in `{text} < …`"))
 }
 
 pub fn text_wanted(field: &str, span: Span, text: &str) -> Diagnostic {
-    Diagnostic::new(Code::WrongType, format!("`{field}` wants a text in quotes"))
-        .at(span, "not a text")
-        .help(format!("write `\"{text}\"`"))
+    Diagnostic::new(
+        Code::WrongType,
+        format!("`{field}` requires a string in quotes"),
+    )
+    .at(span, "not a string")
+    .help(format!("write `\"{text}\"`"))
 }
 
 pub fn block_wanted(kind: Kind, span: Span, text: &str) -> Diagnostic {
     let words = crate::schema::block(kind).words();
     Diagnostic::new(
         Code::WrongType,
-        format!("found `{text}` where the name of a {words} is wanted"),
+        format!("expected the name of a {words}, found `{text}`"),
     )
     .at(span, format!("not a {words}"))
     .help(format!("write the name of a `{words}` block"))
@@ -306,29 +308,38 @@ pub fn procedure_wanted(name: &str, span: Span) -> Diagnostic {
 pub fn figure_wanted(span: Span, text: &str) -> Diagnostic {
     Diagnostic::new(Code::WrongType, format!("`{text}` is not a figure of a procedure"))
         .at(span, "not a figure")
-        .help("a figure names its procedure, as in `energy(hit)`, or several, as in `displacement(first, second)`")
+        .help("write a figure with its procedure, as in `energy(hit)`, or several, as in `displacement(first, second)`")
+}
+
+pub fn result_wanted(span: Span, text: &str) -> Diagnostic {
+    Diagnostic::new(
+        Code::WrongType,
+        format!("`{text}` is not a result of a procedure"),
+    )
+    .at(span, "not a result")
+    .help("name a procedure and its result, as in `hit.max_displacement`")
 }
 
 pub fn choice_wanted(field: &str, variants: &[Variant], span: Span, text: &str) -> Diagnostic {
     let known = one_of(variants.iter().map(|variant| variant.name));
     Diagnostic::new(
         Code::WrongType,
-        format!("`{field}` wants one of its words, found `{text}`"),
+        format!("`{field}` requires one of its options, found `{text}`"),
     )
-    .at(span, "not one of its words")
+    .at(span, "unknown option")
     .help(
         match variants
             .iter()
             .find(|variant| variant.name == text.trim_matches('"'))
         {
             Some(meant) => format!("write it without quotes: `{}`", meant.name),
-            None => format!("it takes {known}"),
+            None => format!("write one of its options: {known}"),
         },
     )
 }
 
 pub fn range_wanted(span: Span, text: &str) -> Diagnostic {
-    Diagnostic::new(Code::WrongType, "found one value where a range is wanted")
+    Diagnostic::new(Code::WrongType, "expected a range, found one value")
         .at(span, "not a range")
         .help(format!("write both ends, as in `0 .. {text}`"))
 }
@@ -336,14 +347,14 @@ pub fn range_wanted(span: Span, text: &str) -> Diagnostic {
 pub fn range_wanted_by(field: &Field, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::WrongType,
-        format!("`{}` wants a range, found one value", field.name),
+        format!("`{}` requires a range, found one value", field.name),
     )
     .at(span, "not a range")
     .help(format!("write both ends, as in `{}`", field.example))
 }
 
 pub fn index_of_number(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::WrongType, "only a list has entries")
+    Diagnostic::new(Code::WrongType, "a number has no entries")
         .at(span, "one number")
         .help("remove the index")
 }
@@ -351,9 +362,9 @@ pub fn index_of_number(span: Span) -> Diagnostic {
 pub fn index_not_whole(span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::WrongType,
-        "the place in a list is a whole number from 0",
+        "a list index must be a whole number from 0",
     )
-    .at(span, "not a place in a list")
+    .at(span, "invalid index")
     .help("write it as in `list[0]`")
 }
 
@@ -361,17 +372,17 @@ pub fn angle_with_unit(function: &str, argument: &Typed) -> Diagnostic {
     let found = article(argument.dimension);
     Diagnostic::new(
         Code::WrongDimension,
-        format!("`{function}` wants an angle in radians, found {found}"),
+        format!("`{function}` requires an angle in radians, found {found}"),
     )
     .at(argument.span, format!("this is {found}"))
-    .help("divide by a value of the same kind, so that a number is left")
+    .help("divide by a value of the same kind, so that a number remains")
 }
 
 pub fn exponent_with_unit(exponent: &Typed) -> Diagnostic {
     let found = article(exponent.dimension);
     Diagnostic::new(
         Code::BadExponent,
-        format!("an exponent is a number, found {found}"),
+        format!("an exponent must be a number, found {found}"),
     )
     .at(exponent.span, format!("this is {found}"))
     .help("write a number without a unit, as in `x^2`")
@@ -394,23 +405,20 @@ pub fn exponent_not_rational(span: Span) -> Diagnostic {
         Code::BadExponent,
         "the exponent of a quantity must be a simple fraction",
     )
-    .at(span, "no fraction with a denominator up to 12")
+    .at(span, "not a fraction with a denominator up to 12")
     .help("write it as in `x^1.5` or `x^(1 / 3)`")
 }
 
 pub fn exponent_too_large(span: Span) -> Diagnostic {
-    Diagnostic::new(
-        Code::BadExponent,
-        "the exponents of this unit leave their range",
-    )
-    .at(span, "too large")
-    .help("use smaller powers")
+    Diagnostic::new(Code::BadExponent, "exponents of this unit are too large")
+        .at(span, "too large")
+        .help("write smaller powers")
 }
 
 pub fn unit_exponent(text: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::BadExponent,
-        format!("`{text}` is not the exponent of a unit"),
+        format!("invalid exponent `{text}` in a unit"),
     )
     .at(span, "not a simple fraction")
     .help("write it as in `mm^2` or `N/m^1.5`")

@@ -50,8 +50,8 @@ pub fn out_of_range(
         .map(str::trim_start)
         .filter(|_| -value > field.range.low && -value <= field.range.high);
     let help = mirrored.map_or_else(
-        || format!("give a value that is {allowed}"),
-        |size| format!("write the size, `{size}`"),
+        || format!("write a value that is {allowed}"),
+        |size| format!("write its absolute value, `{size}`"),
     );
     // A literal is not repeated: "`-10 kg` is -10 kg".
     let side = if value > field.range.high {
@@ -82,18 +82,18 @@ pub fn too_uncertain(
 ) -> Diagnostic {
     let (uncertainty, value) = (shown(uncertainty, dimension), shown(value, dimension));
     let of = field.trim_end_matches("_uncertainty");
-    Diagnostic::new(Code::TooUncertain, format!("`{field}` is more than a fifth of the `{of}`, {value}"))
-        .at(span, format!("{uncertainty} is one standard uncertainty"))
+    Diagnostic::new(Code::TooUncertain, format!("`{field}` exceeds a fifth of the `{of}`, {value}"))
+        .at(span, format!("standard uncertainty: {uncertainty}"))
         .help(
-            "write the standard uncertainty: half of a bound that holds in 95 of 100 cases, or the half-width of a range over √3",
+            "write the standard uncertainty: half of a 95 % coverage interval ±a, or a/√3 for a rectangular distribution",
         )
 }
 
 /// A mass whose uncertainty is not used.
 pub fn uncertainty_unused(specimen: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(Code::UncertaintyUnused, format!("the uncertainty of the mass of `{specimen}` reaches no result"))
-        .at(span, "no impact takes the mass of this specimen")
-        .help("leave `mass` out of the impact, so that it is the specimen's with its uncertainty; or remove `mass_uncertainty`")
+    Diagnostic::new(Code::UncertaintyUnused, format!("the uncertainty of the mass of `{specimen}` has no effect on any result"))
+        .at(span, "mass not used by any impact")
+        .help("remove `mass` from the impact, so that the specimen's mass is used; or remove `mass_uncertainty`")
 }
 
 pub fn few_degrees_of_freedom(
@@ -111,30 +111,27 @@ pub fn few_degrees_of_freedom(
         format!("{degrees} degrees of freedom")
     };
     let text = format!(
-        "{points} steps leave the fit of `{ramp}` {freedom}: U is {factor} times its standard error"
+        "uncertainty is large: {points} steps leave {freedom} in the fit of `{ramp}`, U = {factor} × standard error"
     );
     Diagnostic::new(Code::FewDegreesOfFreedom, text)
-        .at(
-            displacements,
-            format!("{points} steps tell a scatter badly"),
-        )
-        .at(required, "what is fitted to them is read here")
+        .at(displacements, format!("{points} steps"))
+        .at(required, "fitted result read here")
         .help(format!(
-            "take {} or more",
+            "write {} steps or more",
             points + usize::from(FEW) - degrees
         ))
 }
 
 pub fn zero(field: &str, span: Span) -> Diagnostic {
     Diagnostic::new(Code::OutOfRange, format!("`{field}` must not be 0"))
-        .at(span, "gives no force or length for any reading")
-        .help("write what one count or unit is worth, with its sign")
+        .at(span, "scale factor is zero")
+        .help("write the scale factor with its sign")
 }
 
 pub fn even(field: &str, span: Span, value: u32) -> Diagnostic {
     Diagnostic::new(
         Code::OutOfRange,
-        format!("`{field}` must be odd, so that one of them is the median"),
+        format!("`{field}` must be odd, so that one reading is the median"),
     )
     .at(span, "even")
     .help(format!(
@@ -155,9 +152,9 @@ pub fn not_whole(field: &str, span: Span, text: &str) -> Diagnostic {
 
 pub fn negative_bound(field: &str, span: Span, text: &str, symmetric: bool) -> Diagnostic {
     let help = if symmetric {
-        "write both ends, as in `-2 mm .. 25 mm`, or the size alone"
+        "write both ends, as in `-2 mm .. 25 mm`, or one positive bound"
     } else {
-        "write the size, without a sign"
+        "write the absolute value"
     };
     Diagnostic::new(
         Code::OutOfRange,
@@ -173,16 +170,16 @@ pub fn negative_tolerance(span: Span, text: &str) -> Diagnostic {
         Code::OutOfRange,
         "the tolerance of `within` must be at least 0",
     )
-    .at(span, format!("`{text}` is negative: no value is so near"))
-    .help("write the size, without a sign")
+    .at(span, format!("`{text}` is negative"))
+    .help("write the absolute value")
 }
 
 pub fn bounds_reversed(span: Span, low: &str, high: &str) -> Diagnostic {
     Diagnostic::new(
         Code::OutOfRange,
-        format!("the range runs backwards: `{low}` is more than `{high}`"),
+        format!("range in reverse order: `{low}` is more than `{high}`"),
     )
-    .at(span, "the lower end stands first")
+    .at(span, "lower end must be first")
     .help(format!("write `{high} .. {low}`"))
 }
 
@@ -196,7 +193,7 @@ pub fn parameter_out_of_bounds(
     let (low, high) = (shown(bounds.low, dimension), shown(bounds.high, dimension));
     Diagnostic::new(
         Code::OutOfRange,
-        format!("`{name}` is outside its own range {low} .. {high}"),
+        format!("`{name}` is outside its range {low} .. {high}"),
     )
     .at(span, format!("`{text}` is outside"))
     .help("widen the range or change the value")
@@ -216,34 +213,37 @@ pub fn setting_out_of_range(
         format!("`--set {name}` is outside {low} .. {high}"),
     )
     .at(span, format!("`{text}` is outside"))
-    .at(bounds_at, "the range it must stay in")
-    .help(format!("set a value between {low} and {high}"))
+    .at(bounds_at, "allowed range")
+    .help(format!("write a value between {low} and {high}"))
 }
 
 pub fn no_such_entry(span: Span, place: usize, length: usize) -> Diagnostic {
     Diagnostic::new(
         Code::OutOfRange,
-        format!("the list has no entry {place}: it has {length}"),
+        format!("the list has no entry {place}: its length is {length}"),
     )
     .at(span, "past the end")
-    .help(format!("the last entry is {}", length.saturating_sub(1)))
+    .help(format!(
+        "write at most {}, the index of the last entry",
+        length.saturating_sub(1)
+    ))
 }
 
 pub fn empty_list(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::OutOfRange, "a list has at least one entry")
-        .at(span, "nothing in it")
+    Diagnostic::new(Code::OutOfRange, "a list must have at least one entry")
+        .at(span, "empty list")
         .help("write the entries, as in `[1, 2, 5] mm`")
 }
 
 pub fn range_without_step(span: Span, text: &str) -> Diagnostic {
-    Diagnostic::new(Code::BadRange, "this range has no step")
-        .at(span, "a list is wanted")
+    Diagnostic::new(Code::BadRange, "this range requires a step")
+        .at(span, "list required")
         .help(format!("add one, as in `{text} step …`"))
 }
 
 pub fn step_in_bounds(span: Span) -> Diagnostic {
     Diagnostic::new(Code::BadRange, "a range of allowed values has no step")
-        .at(span, "not here")
+        .at(span, "not allowed here")
         .help("remove `step`")
 }
 
@@ -252,21 +252,21 @@ pub fn range_not_constant(span: Span) -> Diagnostic {
         Code::UsedBeforeItRan,
         "both ends and the step of a range must be known before the run",
     )
-    .at(span, "known only after a procedure ran")
+    .at(span, "known only after the run")
     .help("write numbers, or a `let` or `param` of numbers")
 }
 
 pub fn step_leads_away(span: Span, text: &str, zero: bool) -> Diagnostic {
     let help = match text.strip_prefix('-') {
-        _ if zero => "a step is not zero".to_owned(),
-        Some(size) => format!("this range rises: write `step {}`", size.trim_start()),
-        None => format!("this range falls: write `step -{text}`"),
+        _ if zero => "a step must not be zero".to_owned(),
+        Some(size) => format!("write `step {}`: this range increases", size.trim_start()),
+        None => format!("write `step -{text}`: this range decreases"),
     };
     Diagnostic::new(
         Code::BadRange,
         "the step does not lead from the start to the end",
     )
-    .at(span, format!("`{text}` never arrives"))
+    .at(span, format!("`{text}` never reaches the end"))
     .help(help)
 }
 
@@ -290,13 +290,15 @@ pub fn step_does_not_divide(
         .find_map(|it| size(&it));
     let smaller = (1..1000).map(whole).find_map(|it| size(&it));
     let nearest = match (smaller, larger) {
-        (Some(smaller), Some(larger)) => format!("`step {smaller}` and `step {larger}` do"),
-        (Some(one), None) | (None, Some(one)) => format!("`step {one}` does"),
-        (None, None) => "move an end of the range by the rest, or take another step".to_owned(),
+        (Some(smaller), Some(larger)) => format!("write `step {smaller}` or `step {larger}`"),
+        (Some(one), None) | (None, Some(one)) => format!("write `step {one}`"),
+        (None, None) => {
+            "change an end of the range by the remainder, or write another step".to_owned()
+        }
     };
     Diagnostic::new(Code::BadRange, "the step does not divide the range")
-        .at(step, "leaves a rest at the end")
-        .at(range, "both ends belong to the range")
+        .at(step, "remainder at the end")
+        .at(range, "both ends are part of the range")
         .help(nearest)
 }
 
@@ -308,10 +310,10 @@ pub fn too_many_entries(span: Span, found: f64, most: usize) -> Diagnostic {
     };
     Diagnostic::new(
         Code::TooMany,
-        format!("a list has at most {most} entries, this one {found}"),
+        format!("too many entries in a list: {found} (at most {most})"),
     )
     .at(span, "too many")
-    .help("take a larger step")
+    .help("write a larger step")
 }
 
 pub fn too_many(what: &str, found: f64, most: f64, span: Span, help: &str) -> Diagnostic {
@@ -323,7 +325,7 @@ pub fn too_many(what: &str, found: f64, most: f64, span: Span, help: &str) -> Di
     };
     Diagnostic::new(
         Code::TooMany,
-        format!("a procedure has at most {most} {what}, this one {found}"),
+        format!("too many {what} in a procedure: {found} (at most {most})"),
     )
     .at(span, "too many")
     .help(help)
@@ -335,7 +337,7 @@ pub fn no_speed(span: Span) -> Diagnostic {
         Code::OutOfRange,
         "the bound on `speed` must be greater than 0",
     )
-    .at(span, "nothing moves")
+    .at(span, "no motion possible")
     .help("write the largest speed of the actuator, as in `10 mm/s`")
 }
 
@@ -343,29 +345,26 @@ pub fn no_speed(span: Span) -> Diagnostic {
 pub fn too_deep(span: Span, most: usize) -> Diagnostic {
     Diagnostic::new(
         Code::TooMany,
-        format!("values need one another more than {most} deep"),
+        format!("values are nested more than {most} deep"),
     )
-    .at(span, "one too many")
-    .help("declare a value before those that use it, or write fewer steps between them")
+    .at(span, "too deep")
+    .help("declare a value before the values that use it, or use fewer intermediate values")
 }
 
 /// A value that is copied wherever it is named.
 pub fn too_many_terms(span: Span, most: usize) -> Diagnostic {
     Diagnostic::new(
         Code::TooMany,
-        format!("a value of results has at most {most} results and operators, those of the values it names counted in"),
+        format!("a value can use at most {most} results and operators, including those of the values it names"),
     )
     .at(span, "too many")
-    .help("name each result once, and calculate with fewer of them")
+    .help("name each result once, or simplify the calculation")
 }
 
 pub fn not_finite(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::NotFinite, "this is not a finite number")
-        .at(
-            span,
-            "a division by zero, a root of a negative number, or too large",
-        )
-        .help("change the expression so that it has a value")
+    Diagnostic::new(Code::NotFinite, "the value is not a finite number")
+        .at(span, "zero divisor, negative root, or too large")
+        .help("change the expression so that its value is finite")
 }
 
 pub fn energy_not_finite(span: Span) -> Diagnostic {
@@ -373,8 +372,8 @@ pub fn energy_not_finite(span: Span) -> Diagnostic {
         Code::NotFinite,
         "the energy of the striker, ½ m v², is not a finite number",
     )
-    .at(span, "too fast for its mass")
-    .help("lower its velocity or its mass")
+    .at(span, "velocity or mass too large")
+    .help("reduce its velocity or its mass")
 }
 
 pub fn edition(span: Span, text: &str) -> Diagnostic {
@@ -382,8 +381,8 @@ pub fn edition(span: Span, text: &str) -> Diagnostic {
         Code::Edition,
         format!("this version reads edition 1 of the language, not {text}"),
     )
-    .at(span, "another edition")
-    .help("write `edition = 1`, or use the version of psd that the plan was written for")
+    .at(span, "unknown edition")
+    .help("write `edition = 1`, or use the version of psd for which the plan was written")
 }
 
 pub fn needs_the_run(span: Span, text: &str) -> Diagnostic {
@@ -395,17 +394,17 @@ pub fn needs_the_run(span: Span, text: &str) -> Diagnostic {
 pub fn result_before_the_run(text: &str, span: Span, what: &str, procedure: Span) -> Diagnostic {
     Diagnostic::new(
         Code::UsedBeforeItRan,
-        format!("`{text}` is a result, and {what} is fixed before the run"),
+        format!("`{text}` is a result, but {what} is fixed before the run"),
     )
     .at(span, "known only after the run")
-    .at(procedure, "the procedure it comes from")
-    .help("read results in the fields of later procedures and in `require`")
+    .at(procedure, "its procedure")
+    .help("read results only in fields of later procedures and in `require`")
 }
 
 pub fn own_result(text: &str, span: Span, procedure: Span) -> Diagnostic {
     Diagnostic::new(
         Code::UsedBeforeItRan,
-        format!("`{text}` is a result of the very procedure that needs it"),
+        format!("`{text}` is a result of the procedure that uses it"),
     )
     .at(span, "known only after this procedure")
     .at(procedure, "this procedure")
@@ -415,11 +414,11 @@ pub fn own_result(text: &str, span: Span, procedure: Span) -> Diagnostic {
 pub fn result_of_later_procedure(text: &str, span: Span, procedure: Span) -> Diagnostic {
     Diagnostic::new(
         Code::UsedBeforeItRan,
-        format!("`{text}` is used before its procedure ran"),
+        format!("`{text}` is used before its procedure runs"),
     )
     .at(span, "used here")
-    .at(procedure, "runs only later")
-    .help("procedures run in the order written: move that one up")
+    .at(procedure, "runs later")
+    .help("move that procedure up: procedures run in the order written")
 }
 
 /// `read` is a ramp result that an expression reads, `lacks` why it never exists, `way_out` the remedy.
@@ -432,10 +431,10 @@ pub fn never_given(
 ) -> Diagnostic {
     Diagnostic::new(
         Code::NeverGiven,
-        format!("the ramp `{}` never gives `{read}`: {lacks}", ramp.0),
+        format!("ramp `{}` never gives `{read}`: {lacks}", ramp.0),
     )
     .at(span, "read here")
-    .at(ramp.1, "of this ramp")
+    .at(ramp.1, "from this ramp")
     .help(way_out.to_owned())
 }
 
@@ -443,10 +442,10 @@ pub fn never_given(
 pub fn nothing_to_guard(result: &str, required: Span) -> Diagnostic {
     Diagnostic::new(
         Code::NothingToGuard,
-        format!("`{result}` never has an uncertainty: the guarded rule keeps no band for it"),
+        format!("`{result}` never has an uncertainty: guarded acceptance has no guard band for it"),
     )
-    .at(required, "decided as by the simple rule")
-    .help("leave room in the limit itself, or require what is measured")
+    .at(required, "simple acceptance is used")
+    .help("write a limit that includes a margin, or require a measured result")
 }
 
 /// `read` is a position at the last step of a run; `row`: of an impact series.
@@ -458,12 +457,12 @@ pub fn final_is_not_residual(read: &str, row: bool, required: Span, head: Span) 
     };
     Diagnostic::new(
         Code::FinalIsNotResidual,
-        format!("`{read}` is read under load: it is not what stays when the load is off"),
+        format!("`{read}` is read under load: it is not a residual value"),
     )
-    .at(required, "required of the last step")
-    .at(head, "nothing unloads the specimen after it")
+    .at(required, "value at the last step")
+    .at(head, "not unloaded afterwards")
     .help(format!(
-        "unload the specimen with `unload rest {{ }}`, and require its `residual_…`{or_row}"
+        "add `unload rest {{ }}`, and require its `residual_…`{or_row}"
     ))
 }
 
@@ -471,13 +470,13 @@ pub fn final_is_not_residual(read: &str, row: bool, required: Span, head: Span) 
 pub fn step_beyond_duration(at: Span, step: f64, duration_at: Span, duration: f64) -> Diagnostic {
     let stated = |time| display::stated(time, Dimension::TIME);
     let message = format!(
-        "the time step {} is longer than the run, {}",
+        "time step {} is longer than the run, {}",
         stated(step),
         stated(duration)
     );
     Diagnostic::new(Code::OutOfRange, message)
-        .at(at, "not one whole step")
-        .at(duration_at, "all the time there is")
+        .at(at, "less than one step")
+        .at(duration_at, "length of the run")
         .help("write `time_step = critical / 20`")
 }
 

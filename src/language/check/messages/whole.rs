@@ -13,9 +13,9 @@ pub const SHOWN: usize = 20;
 pub fn several_specimens(head: Span, declared: &[(String, Span)], several: usize) -> Diagnostic {
     let diagnostic = Diagnostic::new(
         Code::AmbiguousSpecimen,
-        "several specimens are declared, and this procedure names none",
+        "specimen not specified: the plan declares several",
     )
-    .at(head, "on which specimen?");
+    .at(head, "specimen missing");
     let lines: Vec<String> = declared
         .iter()
         .map(|(name, _)| format!("specimen = {name}"))
@@ -38,10 +38,15 @@ pub fn several_specimens(head: Span, declared: &[(String, Span)], several: usize
 }
 
 pub fn another_specimen(name: &str, span: Span, on_rig: &str, first: Span) -> Diagnostic {
-    Diagnostic::new(Code::SeveralSpecimens, format!("the rig holds `{on_rig}`, and this procedure tests `{name}`"))
-        .at(span, format!("tests `{name}`"))
-        .at(first, format!("`{on_rig}` is on the rig from here"))
-        .help(format!("one run tests one specimen: write `specimen = {on_rig}`, or give `{name}` a plan of its own"))
+    Diagnostic::new(
+        Code::SeveralSpecimens,
+        format!("specimen `{on_rig}` is on the rig, but this procedure tests `{name}`"),
+    )
+    .at(span, format!("tests `{name}`"))
+    .at(first, format!("`{on_rig}` is on the rig from here"))
+    .help(format!(
+        "write `specimen = {on_rig}`, or move `{name}` to a separate plan"
+    ))
 }
 
 pub fn beyond_limits(
@@ -56,11 +61,11 @@ pub fn beyond_limits(
     let (low, high) = (shown(limit.low, dimension), shown(limit.high, dimension));
     Diagnostic::new(
         Code::BeyondLimits,
-        format!("`{field}` asks for {value}, outside the limits {low} .. {high}"),
+        format!("`{field}` has {value}, outside the limits {low} .. {high}"),
     )
     .at(span, format!("reaches {value}"))
-    .at(limit_at, "the limit")
-    .help("stay inside the limits, or widen them if the rig and the specimen allow it")
+    .at(limit_at, "limit")
+    .help("stay within the limits, or widen them if the rig and the specimen allow it")
 }
 
 /// Limits that stop a run before it begins.
@@ -78,47 +83,41 @@ pub fn start_beyond_limits(
     };
     Diagnostic::new(
         Code::BeyondLimits,
-        format!("the run begins at {name} {zero}, outside the limits {low} .. {high}"),
+        format!("the start is outside the limits: {name} {zero}, limits {low} .. {high}"),
     )
-    .at(at, "leaves out the start")
-    .help(format!(
-        "let the limits hold the start too, as in `{name} = {wider}`"
-    ))
+    .at(at, "excludes the start")
+    .help(format!("include the start: write `{name} = {wider}`"))
 }
 
 /// `gap` and `velocity` as text, `arrives` and `duration` in \[s\].
 pub fn never_arrives(
     striker: &str,
     gap: f64,
+    gap_at: Span,
     arrives: f64,
     duration: f64,
-    gap_at: Span,
     duration_at: Span,
 ) -> Diagnostic {
     let gap = shown(gap, Dimension::LENGTH);
     Diagnostic::new(
         Code::NeverArrives,
         format!(
-            "`{striker}` never arrives: it needs {} for its gap of {gap}",
+            "`{striker}` never arrives: it takes {} for its gap of {gap}",
             time(arrives)
         ),
     )
-    .at(duration_at, format!("over after {}", time(duration)))
+    .at(duration_at, format!("ends after {}", time(duration)))
     .at(gap_at, format!("{gap} before the specimen"))
-    .help("make the `gap` smaller, or the `duration` longer")
+    .help("reduce the `gap`, or increase the `duration`")
 }
 
 pub fn unknown_rig(name: &str, known: &[&str]) -> Diagnostic {
     let help = if known.is_empty() {
-        "the plan declares no rig; leave `--rig` out for an ideal one".to_owned()
+        "remove `--rig`: the plan declares no rig and runs on an ideal one".to_owned()
     } else {
         suggestion(name, known.iter().copied())
     };
-    Diagnostic::new(
-        Code::UnknownRig,
-        format!("`--rig {name}`: no rig is called `{name}`"),
-    )
-    .help(help)
+    Diagnostic::new(Code::UnknownRig, format!("`--rig {name}`: unknown rig")).help(help)
 }
 
 pub fn limits_wider(
@@ -130,11 +129,11 @@ pub fn limits_wider(
 ) -> Diagnostic {
     Diagnostic::new(
         Code::LimitsWider,
-        format!("the plan's limit on `{field}` is wider than its rig's"),
+        format!("the plan's limit on `{field}` exceeds that of the rig"),
     )
-    .at(plan, format!("`{plan_text}` asks for more"))
-    .at(rig, format!("the rig allows `{rig_text}`"))
-    .help("narrow the plan's limit to the rig's, or leave it out")
+    .at(plan, format!("plan: `{plan_text}`"))
+    .at(rig, format!("rig: `{rig_text}`"))
+    .help("write the limit of the rig, or remove it")
 }
 
 fn time(value: f64) -> String {
@@ -143,12 +142,11 @@ fn time(value: f64) -> String {
 
 /// `all` steps up to the end of this procedure, which has `steps` of them; the procedures before it leave `remaining`.
 pub fn too_many_recorded_steps(span: Span, all: u64, steps: u64, remaining: u64) -> Diagnostic {
-    let message =
-        format!("this run has {all} steps, and one run has at most {MOST_RECORDED_STEPS} steps");
+    let message = format!("too many steps in the run: {all} (at most {MOST_RECORDED_STEPS})");
     Diagnostic::new(Code::TooManyRecordedSteps, message)
         .at(span, format!("{steps} steps"))
         .help(format!(
-            "shorten `duration` or take a longer `time_step`: {remaining} steps fit here"
+            "reduce `duration` or increase `time_step`: {remaining} steps remain here"
         ))
 }
 
@@ -156,7 +154,7 @@ pub fn step_above_critical(span: Span, step: f64, critical: f64) -> Diagnostic {
     let (step, critical) = (time(step), time(critical));
     Diagnostic::new(
         Code::StepAboveCritical,
-        format!("the time step {step} is above the critical time step {critical}"),
+        format!("peaks may be wrong: time step {step} exceeds the critical step {critical}"),
     )
     .at(span, format!("{step}, critical is {critical}"))
     .help("write `time_step = critical / 20`")
@@ -166,7 +164,7 @@ pub fn step_above_critical(span: Span, step: f64, critical: f64) -> Diagnostic {
 pub fn step_above_predicted(span: Span, step: f64, critical: f64) -> Diagnostic {
     let (step, critical) = (time(step), time(critical));
     let message = format!(
-        "the time step {step} is above the critical time step, about {critical} by the declared behaviour"
+        "peaks may be wrong: time step {step} exceeds the critical step, about {critical} by the declared behaviour"
     );
     Diagnostic::new(Code::StepAboveCritical, message)
         .at(span, format!("{step}, critical is about {critical}"))
@@ -179,27 +177,27 @@ pub fn peak_force_follows_the_step(span: Span, impact: Span, law: &str) -> Diagn
         "rigid" => ("the rigid law", "`contact = rigid`"),
         _ => ("`restitution`", "`contact = restitution(…)`"),
     };
-    let message = format!(
-        "the peak contact force under {of} grows as 1/Δt: it says more of the time step than of the blow"
-    );
+    let message = format!("peak contact force depends on the time step under {of}, as 1/Δt");
     Diagnostic::new(Code::PeakForceUnderRigidLaw, message)
-        .at(span, "this figure follows the time step")
-        .at(impact, format!("{holds} holds here"))
-        .help("require the `impulse`, or give a law that converges: `contact = hertz(…)`")
+        .at(span, "depends on the time step")
+        .at(impact, format!("{holds} applies here"))
+        .help("require the `impulse`, or use a law that converges: `contact = hertz(…)`")
 }
 
 /// `first`: the longest step at which the limit acts at the first impact; `resolved`: the longest step that resolves the displacement.
-pub fn limit_force_not_resolved(span: Span, step: f64, first: f64, resolved: f64) -> Diagnostic {
+pub fn limit_force_not_resolved(step: f64, span: Span, first: f64, resolved: f64) -> Diagnostic {
     let (now, first_text, resolved_text) = (time(step), time(first), time(resolved));
     let message = if step >= first {
         format!(
-            "with the time step {now} the limit force does not act at the first blow; it does below {first_text}"
+            "the limit force has no effect on the first impact: time step {now} must be below {first_text}"
         )
     } else {
-        format!("the time step {now} does not resolve the limit force; {resolved_text} does")
+        format!(
+            "indentation may be wrong: time step {now} does not resolve the limit force (at most {resolved_text})"
+        )
     };
     Diagnostic::new(Code::LimitForceNotResolved, message)
-        .at(span, format!("the step is {now}"))
+        .at(span, format!("time step {now}"))
         .help(format!("write `time_step = {resolved_text}` or less"))
 }
 
@@ -207,36 +205,36 @@ pub fn limit_force_not_resolved(span: Span, step: f64, first: f64, resolved: f64
 pub fn not_printed(letters: &str, printed: &str, others: usize, span: Span) -> Diagnostic {
     let also = match others {
         0 => String::new(),
-        1 => ", here and in one more text".to_owned(),
-        more => format!(", here and in {more} more texts"),
+        1 => ", here and in one other string".to_owned(),
+        more => format!(", here and in {more} other strings"),
     };
-    Diagnostic::new(Code::NotPrinted, format!("on paper `{letters}` stands as `{printed}`{also}"))
-        .at(span, "holds letters that the fonts of the PDF certificate lack")
-        .help(
-            "they have Latin, Greek and Cyrillic letters: write the name in one of those as well; the HTML certificate shows all",
-        )
+    Diagnostic::new(
+        Code::NotPrinted,
+        format!("the PDF report shows `{letters}` as `{printed}`{also}"),
+    )
+    .at(span, "characters without a glyph")
+    .help(
+        "add a Latin, Greek or Cyrillic spelling for the PDF; the HTML report shows all characters",
+    )
 }
 
 pub fn nothing_required(span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::NothingRequired,
-        "the plan requires nothing: its verdict says only that it ran",
+        "the plan has no requirement: its verdict is only `completed`",
     )
-    .at(span, "the last procedure")
+    .at(span, "last procedure")
     .help("add a line such as `require \"stays in travel\" hit.max_displacement <= 8.5 mm`")
 }
 
 pub fn nothing_runs(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::NothingRuns, "the plan runs nothing")
+    Diagnostic::new(Code::NothingRuns, "the plan has no procedure")
         .at(span, "no procedure follows")
         .help("add a procedure, such as\nstiffness ramp k0 { displacements = 0.1 mm .. 1 mm step 0.1 mm }")
 }
 
 pub fn unused(keyword: &str, name: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(
-        Code::Unused,
-        format!("the `{keyword}` `{name}` is never used"),
-    )
-    .at(span, "not used")
-    .help("remove it, or use it")
+    Diagnostic::new(Code::Unused, format!("`{keyword}` `{name}` is never used"))
+        .at(span, "not used")
+        .help("remove it, or use it")
 }

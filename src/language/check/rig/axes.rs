@@ -9,6 +9,8 @@ use crate::language::check::expressions::calendar;
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::messages::{axes as message, rigs, values};
 use crate::plan::{AxisCalibration, AxisPlan, Specimen};
+use crate::schema::limits;
+use crate::schema::rig as schema;
 use crate::text::source::Span;
 
 /// One axis, with the spans of its separate devices.
@@ -20,11 +22,14 @@ pub struct CheckedAxis {
 
 /// The axes that a rig lists; empty if it lists none.
 pub fn axes(checker: &mut Checker, block: usize) -> Option<Vec<CheckedAxis>> {
-    let Some((_, written)) = checker.field(block, "axes") else {
+    let Some((_, written)) = checker.field(block, schema::AXES.name) else {
         return Some(Vec::new());
     };
-    let (at, context) = (written.value.span, context_of(checker, block, "axes")?);
-    let chosen = checker.choices(block, "axes")?;
+    let (at, context) = (
+        written.value.span,
+        context_of(checker, block, schema::AXES.name)?,
+    );
+    let chosen = checker.choices(block, schema::AXES.name)?;
     if chosen.is_empty() {
         return checker.fail(values::empty_list(at));
     }
@@ -41,42 +46,44 @@ fn axis<'a>(
     chosen: &Chosen<'a>,
     context: Context,
 ) -> Option<CheckedAxis> {
-    let sign = match chosen.span("sign") {
-        Some(_) => checker.chosen_argument(chosen, "sign").map(|word| {
-            Some(if word.variant.name == "negative" {
-                -1.0
-            } else {
-                1.0
-            })
-        }),
+    let polarity = match chosen.span(schema::POLARITY.name) {
+        Some(_) => checker
+            .chosen_argument(chosen, schema::POLARITY.name)
+            .map(|word| {
+                Some(if word.variant.name == "negative" {
+                    -1.0
+                } else {
+                    1.0
+                })
+            }),
         None => Some(None),
     };
-    let gate = match chosen.span("gate") {
+    let pretest_check = match chosen.span(schema::PRETEST_CHECK.name) {
         Some(_) => checker
-            .chosen_argument(chosen, "gate")
-            .and_then(|gate| probe(checker, &gate, context))
+            .chosen_argument(chosen, schema::PRETEST_CHECK.name)
+            .and_then(|pretest_check| probe(checker, &pretest_check, context))
             .map(Some),
         None => Some(None),
     };
     let (displacement, force) = (
-        checker.bounds_argument(chosen, "displacement", context),
-        checker.bounds_argument(chosen, "force", context),
+        checker.bounds_argument(chosen, limits::NAMES.displacement, context),
+        checker.bounds_argument(chosen, limits::NAMES.force, context),
     );
     let (resolution, noise) = (
-        checker.optional_argument(chosen, "resolution", context),
-        checker.optional_argument(chosen, "noise", context),
+        checker.optional_argument(chosen, schema::RESOLUTION.name, context),
+        checker.optional_argument(chosen, schema::NOISE.name, context),
     );
-    let force_range = checker.bounds_argument(chosen, "force_range", context);
+    let force_range = checker.bounds_argument(chosen, schema::FORCE_RANGE.name, context);
     let calibration = calibration(checker, block, chosen, context);
     let (actuator, load_cell) = (
-        own_device(checker, chosen, "actuator", context),
-        own_device(checker, chosen, "load_cell", context),
+        own_device(checker, chosen, schema::ACTUATOR.name, context),
+        own_device(checker, chosen, schema::LOAD_CELL.name, context),
     );
     let (actuator, load_cell) = (actuator?, load_cell?);
     let link = |device: &Option<Device>| device.as_ref().map(|device| device.link.clone());
     let plan = AxisPlan {
-        sign: sign?,
-        gate: gate?,
+        polarity: polarity?,
+        pretest_check: pretest_check?,
         displacement: displacement?,
         force: force?,
         resolution: resolution?,
@@ -122,34 +129,46 @@ fn calibration<'a>(
         Some((day, at)) if !calendar::is_day(&day) => checker.fail(rigs::not_a_day(&day, at)),
         day => Some(day),
     };
-    let (due, displacement_due) = (day("calibration_due"), day("displacement_calibration_due"));
+    let (due, displacement_due) = (
+        day(schema::CALIBRATION_DUE.name),
+        day(schema::DISPLACEMENT_CALIBRATION_DUE.name),
+    );
     let mut text = |name: &str| {
         checker
             .text_argument(chosen, name)
             .map(|given| given.map(|(text, _)| text))
     };
-    let (reference, displacement) = (text("calibration"), text("displacement_calibration"));
-    let (force_class, displacement_class) = (text("force_class"), text("displacement_class"));
+    let (reference, displacement) = (
+        text(schema::CALIBRATION.name),
+        text(schema::DISPLACEMENT_CALIBRATION.name),
+    );
+    let (force_class, displacement_class) = (
+        text(schema::FORCE_CLASS.name),
+        text(schema::DISPLACEMENT_CLASS.name),
+    );
     let mut number = |name: &str| checker.optional_argument(chosen, name, context);
     let (force, length) = (
-        number("force_uncertainty"),
-        number("displacement_uncertainty"),
+        number(schema::FORCE_UNCERTAINTY.name),
+        number(schema::DISPLACEMENT_UNCERTAINTY.name),
     );
-    let zero = number("zero_uncertainty");
-    let (newtons_per_count, zero_count) = (number("force_per_count"), number("zero_count"));
+    let zero = number(schema::ZERO_UNCERTAINTY.name);
+    let (newtons_per_count, zero_offset) = (
+        number(schema::FORCE_PER_COUNT.name),
+        number(schema::ZERO_OFFSET.name),
+    );
     let mut range = |name: &str| checker.bounds_argument(chosen, name, context);
     let (force_calibrated, displacement_calibrated) = (
-        range("force_calibration_range"),
-        range("displacement_calibration_range"),
+        range(schema::FORCE_CALIBRATION_RANGE.name),
+        range(schema::DISPLACEMENT_CALIBRATION_RANGE.name),
     );
     let (displacement, displacement_due) = (displacement?, displacement_due?);
     if let (None, None, Some((_, at))) = (
         &displacement,
-        checker.field(block, "displacement_calibration"),
+        checker.field(block, schema::DISPLACEMENT_CALIBRATION.name),
         &displacement_due,
     ) {
         return checker.fail(rigs::day_of_no_calibration(
-            "displacement_calibration_due",
+            schema::DISPLACEMENT_CALIBRATION_DUE.name,
             *at,
         ));
     }
@@ -164,7 +183,7 @@ fn calibration<'a>(
         displacement_class: displacement_class?,
         displacement_calibrated: displacement_calibrated?,
         newtons_per_count: newtons_per_count?,
-        zero_count: zero_count?,
+        zero_offset: zero_offset?,
         force_uncertainty: force?,
         displacement_uncertainty: length?,
         zero_uncertainty: zero?,
@@ -181,7 +200,8 @@ pub fn check_specimen(checker: &mut Checker, rig: Option<&CheckedRig>, specimen:
     else {
         return;
     };
-    let (Some(axes), Some((_, written))) = (plan.axes(), checker.field(*block, "axes")) else {
+    let (Some(axes), Some((_, written))) = (plan.axes(), checker.field(*block, schema::AXES.name))
+    else {
         return;
     };
     let storeys = specimen.degrees_of_freedom();

@@ -6,6 +6,7 @@ use super::device::Device;
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::{axes as message, rigs};
 use crate::plan::Dialect;
+use crate::schema::rig as schema;
 
 /// Checks that one device moves every axis and one device measures its force. No device is without an axis, and none has more axes than
 /// it supports.
@@ -32,7 +33,7 @@ pub fn check(
     };
     if let Some(device) = unfit(|axis| axis.actuator.as_ref(), Dialect::moves) {
         return checker.fail(rigs::cannot_move(
-            "actuator",
+            schema::ACTUATOR.name,
             &device.link.dialect,
             device.dialect_at,
         ));
@@ -40,7 +41,7 @@ pub fn check(
     if let Some(device) = unfit(|axis| axis.load_cell.as_ref(), Dialect::weighs) {
         return checker.fail(rigs::cannot_measure_force(
             true,
-            "load_cell",
+            schema::LOAD_CELL.name,
             &device.link.dialect,
             device.dialect_at,
         ));
@@ -59,7 +60,7 @@ pub fn check(
         return checker.fail(message::not_asked(&device.link.dialect, device.dialect_at));
     }
     if let Some((_, written)) = checker
-        .field(block, "axes")
+        .field(block, schema::AXES.name)
         .filter(|_| moved > actuator.link.dialect.most_axes())
     {
         return checker.fail(message::too_many(

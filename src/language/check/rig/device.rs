@@ -8,6 +8,7 @@ use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::expressions::fields::whole;
 use crate::language::check::messages::rigs as message;
 use crate::plan::{DeviceLink, PortPlan};
+use crate::schema::devices as schema;
 use crate::text::source::Span;
 
 /// A device, with the spans of its parts.
@@ -33,13 +34,17 @@ pub fn device<'a>(
         tcp_address(checker, chosen)
     };
     let dialect = checker
-        .chosen_argument(chosen, "dialect")
+        .chosen_argument(chosen, schema::DIALECT.name)
         .and_then(|chosen| dialect::dialect(checker, &chosen, context));
-    let reply_timeout = checker.constant_argument(chosen, "reply_timeout", context);
-    let serial_number = line_text(checker, chosen, "serial_number");
+    let reply_timeout = checker.constant_argument(chosen, schema::REPLY_TIMEOUT.name, context);
+    let serial_number = line_text(checker, chosen, schema::SERIAL_NUMBER.name);
     let (port_at, dialect_at) = (
-        chosen.span(if serial { "port" } else { "address" })?,
-        chosen.span("dialect")?,
+        chosen.span(if serial {
+            schema::PORT.name
+        } else {
+            schema::ADDRESS.name
+        })?,
+        chosen.span(schema::DIALECT.name)?,
     );
     let link = DeviceLink {
         port: port?,
@@ -60,9 +65,9 @@ fn serial_port<'a>(
     chosen: &Chosen<'a>,
     context: Context,
 ) -> Option<PortPlan> {
-    let path = checker.text_argument(chosen, "port").flatten();
+    let path = checker.text_argument(chosen, schema::PORT.name).flatten();
     let baud = checker
-        .constant_argument(chosen, "baud", context)
+        .constant_argument(chosen, schema::BAUD.name, context)
         .and_then(whole);
     let (path, span) = path?;
     match error_of_port(&path) {
@@ -78,14 +83,16 @@ fn error_of_port(path: &str) -> Option<&'static str> {
     } else if path.starts_with('-') {
         Some("it begins like an option")
     } else if path.chars().any(|c| c.is_whitespace() || c.is_control()) {
-        Some("it has blanks or control characters")
+        Some("it contains spaces or control characters")
     } else {
         None
     }
 }
 
 fn tcp_address<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>) -> Option<PortPlan> {
-    let (address, span) = checker.text_argument(chosen, "address").flatten()?;
+    let (address, span) = checker
+        .text_argument(chosen, schema::ADDRESS.name)
+        .flatten()?;
     if is_host_and_port(&address) {
         return Some(PortPlan::Tcp { address });
     }

@@ -5,6 +5,7 @@ use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::messages::{names, rigs, values};
 use crate::plan::{Dialect, ModbusMap, ModbusNumber};
+use crate::schema::devices as schema;
 
 pub fn dialect<'a>(
     checker: &mut Checker<'a>,
@@ -13,9 +14,10 @@ pub fn dialect<'a>(
 ) -> Option<Dialect> {
     Some(match chosen.variant.name {
         "scpi" => {
-            let newtons_per_unit = checker.list_argument(chosen, "newtons_per_unit", context)?;
+            let newtons_per_unit =
+                checker.list_argument(chosen, schema::NEWTONS_PER_UNIT.name, context)?;
             for newtons in &newtons_per_unit {
-                not_zero(checker, chosen, "newtons_per_unit", *newtons)?;
+                not_zero(checker, chosen, schema::NEWTONS_PER_UNIT.name, *newtons)?;
             }
             Dialect::Scpi { newtons_per_unit }
         }
@@ -29,7 +31,7 @@ pub fn dialect<'a>(
 
 /// Names separated by commas, each once: a reply refers to them by name.
 fn control_points<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>) -> Option<Vec<String>> {
-    let text = line_text(checker, chosen, "control_point")??;
+    let text = line_text(checker, chosen, schema::CONTROL_POINT.name)??;
     let names: Vec<String> = text.split(',').map(|name| name.trim().to_owned()).collect();
     let is_name =
         |name: &String| !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_graphic());
@@ -37,9 +39,9 @@ fn control_points<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>) -> Option<
         .iter()
         .enumerate()
         .any(|(at, name)| names[..at].contains(name));
-    match chosen.span("control_point") {
+    match chosen.span(schema::CONTROL_POINT.name) {
         Some(span) if twice || !names.iter().all(is_name) => {
-            checker.fail(rigs::bad_line_text("control_point", span))
+            checker.fail(rigs::bad_line_text(schema::CONTROL_POINT.name, span))
         }
         _ => Some(names),
     }
@@ -54,14 +56,14 @@ fn not_zero(checker: &mut Checker, chosen: &Chosen, name: &str, value: f64) -> O
 
 /// Arguments that require one another: a register, and the register or scale without which its number has no meaning or effect.
 const TOGETHER: &[(&str, &str)] = &[
-    ("force", "force_unit"),
-    ("position", "length_unit"),
-    ("target", "position"),
-    ("target", "length_unit"),
-    ("speed", "speed_unit"),
-    ("status", "moving_mask"),
-    ("command", "start_word"),
-    ("command", "stop_word"),
+    (schema::FORCE.name, schema::FORCE_UNIT.name),
+    (schema::POSITION.name, schema::LENGTH_UNIT.name),
+    (schema::TARGET.name, schema::POSITION.name),
+    (schema::TARGET.name, schema::LENGTH_UNIT.name),
+    (schema::SPEED.name, schema::SPEED_UNIT.name),
+    (schema::STATUS.name, schema::MOVING_MASK.name),
+    (schema::COMMAND.name, schema::START_WORD.name),
+    (schema::COMMAND.name, schema::STOP_WORD.name),
 ];
 
 fn modbus<'a>(
@@ -70,10 +72,10 @@ fn modbus<'a>(
     context: Context,
 ) -> Option<ModbusMap> {
     let number = checker
-        .chosen_argument(chosen, "number")
+        .chosen_argument(chosen, schema::NUMBER.name)
         .and_then(|number| modbus_number(checker, &number));
     let unit = checker
-        .constant_argument(chosen, "unit", context)
+        .constant_argument(chosen, schema::UNIT.name, context)
         .and_then(crate::language::check::expressions::fields::whole);
     let mut register = |name: &str| -> Option<Option<u16>> {
         let value = checker.optional_argument(chosen, name, context)?;
@@ -83,20 +85,24 @@ fn modbus<'a>(
                 .and_then(|value| u16::try_from(value).ok()),
         )
     };
-    let (target, speed, position) = (register("target"), register("speed"), register("position"));
+    let (target, speed, position) = (
+        register(schema::TARGET.name),
+        register(schema::SPEED.name),
+        register(schema::POSITION.name),
+    );
     let (force, status, moving_mask) = (
-        register("force"),
-        register("status"),
-        register("moving_mask"),
+        register(schema::FORCE.name),
+        register(schema::STATUS.name),
+        register(schema::MOVING_MASK.name),
     );
     let (command, start_word, stop_word) = (
-        register("command"),
-        register("start_word"),
-        register("stop_word"),
+        register(schema::COMMAND.name),
+        register(schema::START_WORD.name),
+        register(schema::STOP_WORD.name),
     );
-    let length_unit = checker.optional_argument(chosen, "length_unit", context);
-    let speed_unit = checker.optional_argument(chosen, "speed_unit", context);
-    let force_unit = checker.optional_argument(chosen, "force_unit", context);
+    let length_unit = checker.optional_argument(chosen, schema::LENGTH_UNIT.name, context);
+    let speed_unit = checker.optional_argument(chosen, schema::SPEED_UNIT.name, context);
+    let force_unit = checker.optional_argument(chosen, schema::FORCE_UNIT.name, context);
     let lacking = TOGETHER
         .iter()
         .find(|(one, other)| chosen.span(one).is_some() && chosen.span(other).is_none());
@@ -106,7 +112,7 @@ fn modbus<'a>(
         return checker.fail(names::argument_needs(chosen.variant.name, one, other, span));
     }
     if let Some(force_unit) = force_unit? {
-        not_zero(checker, chosen, "force_unit", force_unit)?;
+        not_zero(checker, chosen, schema::FORCE_UNIT.name, force_unit)?;
     }
     Some(ModbusMap {
         unit: u8::try_from(unit?).ok()?,
@@ -130,8 +136,11 @@ fn modbus_number<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>) -> Option<M
     if chosen.variant.name == "int16" {
         return Some(ModbusNumber::Int16);
     }
-    let high_word_first =
-        checker.chosen_argument(chosen, "order")?.variant.name == "high_word_first";
+    let high_word_first = checker
+        .chosen_argument(chosen, schema::WORD_ORDER.name)?
+        .variant
+        .name
+        == "high_word_first";
     Some(match chosen.variant.name {
         "int32" => ModbusNumber::Int32 { high_word_first },
         _ => ModbusNumber::Float32 { high_word_first },

@@ -5,11 +5,11 @@ pub(crate) mod axes;
 pub(crate) mod axis_devices;
 pub(crate) mod device;
 pub(crate) mod dialect;
-pub(crate) mod drift;
 pub(crate) mod line_text;
 pub(crate) mod probe;
 pub(crate) mod real;
 pub(crate) mod real_warnings;
+pub(crate) mod zero_drift;
 
 use super::checker::{Checker, Context};
 use super::expressions::calendar;
@@ -18,6 +18,7 @@ use super::messages::rigs;
 use super::messages::whole as message;
 use crate::language::syntax::ast::{Expr, ExprKind};
 use crate::plan::{Calibration, Link, RigPlan, Settle, VirtualLink};
+use crate::schema::rig as schema;
 use crate::schema::{Kind, RigKind};
 use crate::text::source::{FileId, Span};
 
@@ -80,10 +81,10 @@ pub fn links_of_run(checker: &Checker, requested: Option<&str>) -> Vec<Span> {
     };
     let entries = &checker.scope.blocks[block].block.fields;
     let reach = |key: &str| {
-        key == "link"
-            || key == "axes"
-            || key.starts_with("actuator")
-            || key.starts_with("load_cell")
+        key == schema::LINK.name
+            || key == schema::AXES.name
+            || key.starts_with(schema::ACTUATOR.name)
+            || key.starts_with(schema::LOAD_CELL.name)
     };
     entries
         .iter()
@@ -137,9 +138,9 @@ fn ideal() -> CheckedRig {
         name: IDEAL.to_owned(),
         link: Link::Virtual(VirtualLink::default()),
         settle: IMMEDIATE,
-        sign: 1.0,
+        polarity: 1.0,
         calibration: Calibration::default(),
-        drift: None,
+        zero_drift: None,
     };
     CheckedRig {
         plan,
@@ -150,10 +151,12 @@ fn ideal() -> CheckedRig {
 
 /// The kind of a rig, by its link; None if the link is invalid.
 pub fn kind(checker: &Checker, block: usize) -> Option<RigKind> {
-    if checker.field(block, "actuator").is_some() || checker.field(block, "load_cell").is_some() {
+    if checker.field(block, schema::ACTUATOR.name).is_some()
+        || checker.field(block, schema::LOAD_CELL.name).is_some()
+    {
         return Some(RigKind::Real);
     }
-    match word(&checker.field(block, "link")?.1.value)? {
+    match word(&checker.field(block, schema::LINK.name)?.1.value)? {
         "virtual" => Some(RigKind::Virtual),
         "serial" | "tcp" => Some(RigKind::Real),
         _ => None,
@@ -177,33 +180,39 @@ fn rig(checker: &mut Checker, block: usize) -> Option<CheckedRig> {
         Some(RigKind::Real) => real::real_link(checker, block).map(Link::Real),
         Some(RigKind::Virtual) => {
             without_use(checker, block);
-            let chosen = checker.choice(block, "link");
+            let chosen = checker.choice(block, schema::LINK.name);
             chosen
                 .and_then(|chosen| {
-                    virtual_link(checker, &chosen, context_of(checker, block, "link")?)
+                    virtual_link(
+                        checker,
+                        &chosen,
+                        context_of(checker, block, schema::LINK.name)?,
+                    )
                 })
                 .map(Link::Virtual)
         }
         // Reports its error.
-        None => checker.choice(block, "link").and(None),
+        None => checker.choice(block, schema::LINK.name).and(None),
     };
-    let settle = match checker.field(block, "settle") {
+    let settle = match checker.field(block, schema::SETTLE.name) {
         Some((entry, _)) => {
             let context = checker.context_of(block, entry);
             checker
-                .choice(block, "settle")
+                .choice(block, schema::SETTLE.name)
                 .and_then(|chosen| settle(checker, &chosen, context, kind))
         }
         None => Some(IMMEDIATE),
     };
-    let sign = checker
-        .word(block, "sign", "positive")
+    let polarity = checker
+        .word(block, schema::POLARITY.name, "positive")
         .map(|word| if word == "negative" { -1.0 } else { 1.0 });
-    let limits = match checker.field(block, "limits") {
-        Some(_) => checker.reference(block, "limits", Kind::Limits).map(Some),
+    let limits = match checker.field(block, schema::LIMITS.name) {
+        Some(_) => checker
+            .reference(block, schema::LIMITS.name, Kind::Limits)
+            .map(Some),
         None => Some(None),
     };
-    let drift = drift::drift(checker, block, kind);
+    let drift = zero_drift::zero_drift(checker, block, kind);
     let name = checker.scope.blocks[block].name?.node.clone();
     let (mut calibration, drift) = (calibration?, drift?);
     // Rectangular distribution of the zero drift within its bound (JCGM 100:2008, 4.3.7).
@@ -212,9 +221,9 @@ fn rig(checker: &mut Checker, block: usize) -> Option<CheckedRig> {
         name,
         link: link?,
         settle: settle?,
-        sign: sign?,
+        polarity: polarity?,
         calibration,
-        drift,
+        zero_drift: drift,
     };
     Some(CheckedRig {
         plan,
@@ -253,15 +262,15 @@ fn virtual_link<'a>(
 ) -> Option<VirtualLink> {
     let mut number = |name: &str| checker.constant_argument(chosen, name, context);
     let (noise, resolution, force_resolution) = (
-        number("noise"),
-        number("resolution"),
-        number("force_resolution"),
+        number(schema::NOISE.name),
+        number(schema::RESOLUTION.name),
+        number(schema::FORCE_RESOLUTION.name),
     );
     let (lag, tracking, drift, seed) = (
-        number("lag"),
-        number("tracking"),
-        number("drift"),
-        number("seed"),
+        number(schema::LAG.name),
+        number(schema::TRACKING.name),
+        number(schema::ZERO_DRIFT.name),
+        number(schema::SEED.name),
     );
     #[expect(
         clippy::cast_possible_truncation,
@@ -289,10 +298,10 @@ fn settle<'a>(
 ) -> Option<Settle> {
     let mut number = |name: &str| checker.constant_argument(chosen, name, context);
     let (band, force_rate, dwell, timeout) = (
-        number("displacement"),
-        number("force_rate"),
-        number("for"),
-        number("timeout"),
+        number(schema::SETTLED_WITHIN.name),
+        number(schema::FORCE_RATE.name),
+        number(schema::SETTLED_FOR.name),
+        number(schema::TIMEOUT.name),
     );
     let settle = Settle {
         band: band?,
@@ -301,8 +310,8 @@ fn settle<'a>(
         timeout: timeout?,
     };
     for (name, bound) in [
-        ("displacement", settle.band),
-        ("force_rate", settle.force_rate),
+        (schema::SETTLED_WITHIN.name, settle.band),
+        (schema::FORCE_RATE.name, settle.force_rate),
     ] {
         if let (Some(RigKind::Real), Some(span)) = (kind, chosen.span(name))
             && bound == 0.0
@@ -320,18 +329,18 @@ fn calibration(checker: &mut Checker, block: usize) -> Option<Calibration> {
         None => Some(None),
     };
     let (reference, due, force_class) = (
-        text("calibration"),
-        text("calibration_due"),
-        text("force_class"),
+        text(schema::CALIBRATION.name),
+        text(schema::CALIBRATION_DUE.name),
+        text(schema::FORCE_CLASS.name),
     );
     let (own, own_due) = (
-        text("displacement_calibration"),
-        text("displacement_calibration_due"),
+        text(schema::DISPLACEMENT_CALIBRATION.name),
+        text(schema::DISPLACEMENT_CALIBRATION_DUE.name),
     );
-    let displacement_class = text("displacement_class");
+    let displacement_class = text(schema::DISPLACEMENT_CLASS.name);
     for (field, due) in [
-        ("calibration_due", &due),
-        ("displacement_calibration_due", &own_due),
+        (schema::CALIBRATION_DUE.name, &due),
+        (schema::DISPLACEMENT_CALIBRATION_DUE.name, &own_due),
     ] {
         if let (Some(Some(day)), Some((_, entry))) = (due, checker.field(block, field))
             && !calendar::is_day(day)
@@ -339,30 +348,32 @@ fn calibration(checker: &mut Checker, block: usize) -> Option<Calibration> {
             return checker.fail(rigs::not_a_day(day, entry.value.span));
         }
     }
-    let newtons_per_count = match checker.field(block, "force_per_count") {
-        Some(_) => checker.constant(block, "force_per_count").map(Some),
+    let newtons_per_count = match checker.field(block, schema::FORCE_PER_COUNT.name) {
+        Some(_) => checker
+            .constant(block, schema::FORCE_PER_COUNT.name)
+            .map(Some),
         None => Some(None),
     };
-    let zero_count = checker.constant(block, "zero_count");
+    let zero_offset = checker.constant(block, schema::ZERO_OFFSET.name);
     let (own, own_due) = (own?, own_due?);
     if own.is_none()
-        && let Some((_, entry)) = checker.field(block, "displacement_calibration_due")
+        && let Some((_, entry)) = checker.field(block, schema::DISPLACEMENT_CALIBRATION_DUE.name)
     {
         return checker.fail(rigs::day_of_no_calibration(&entry.key.node, entry.key.span));
     }
     let (force, displacement) = (
-        checker.constant(block, "force_uncertainty"),
-        checker.constant(block, "displacement_uncertainty"),
+        checker.constant(block, schema::FORCE_UNCERTAINTY.name),
+        checker.constant(block, schema::DISPLACEMENT_UNCERTAINTY.name),
     );
-    let zero = checker.constant(block, "zero_uncertainty");
+    let zero = checker.constant(block, schema::ZERO_UNCERTAINTY.name);
     let mut range = |field| {
         checker
             .bounds(block, field)
             .map(|range| range.is_bounded().then_some(range))
     };
     let (force_calibrated, displacement_calibrated) = (
-        range("force_calibration_range"),
-        range("displacement_calibration_range"),
+        range(schema::FORCE_CALIBRATION_RANGE.name),
+        range(schema::DISPLACEMENT_CALIBRATION_RANGE.name),
     );
     Some(Calibration {
         reference: reference?,
@@ -373,7 +384,7 @@ fn calibration(checker: &mut Checker, block: usize) -> Option<Calibration> {
         displacement_class: displacement_class?,
         displacement_calibrated: displacement_calibrated?,
         newtons_per_count: newtons_per_count?,
-        zero_count: zero_count?,
+        zero_offset: zero_offset?,
         force_uncertainty: force?,
         displacement_uncertainty: displacement?,
         zero_uncertainty: zero?,

@@ -2,14 +2,19 @@
 
 use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::choice::Chosen;
-use crate::plan::Gate;
+use crate::plan::PretestCheck;
+use crate::schema::rig as schema;
 
 /// `probe(…)`, of a rig or of one of its axes.
-pub fn probe<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>, context: Context) -> Option<Gate> {
-    let probe = checker.constant_argument(chosen, "displacement", context);
-    let stiffness = checker.interval_argument(chosen, "stiffness", context);
-    let zero = checker.constant_argument(chosen, "zero", context);
-    Some(Gate {
+pub fn probe<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    context: Context,
+) -> Option<PretestCheck> {
+    let probe = checker.constant_argument(chosen, schema::PROBE.name, context);
+    let stiffness = checker.interval_argument(chosen, schema::PROBED_STIFFNESS.name, context);
+    let zero = checker.constant_argument(chosen, schema::ZERO_FORCE.name, context);
+    Some(PretestCheck {
         zero: zero?,
         probe: probe?,
         stiffness: stiffness?,

@@ -12,8 +12,12 @@ use crate::language::check::expressions::fields::whole as whole_number;
 use crate::language::check::messages::rigs as message;
 use crate::language::check::messages::{values, whole};
 use crate::language::syntax::ast::{Argument, Expr, ExprKind};
-use crate::plan::{Datum, Dialect, Gate, Interval, Link, ReadingRules, RealLink, SafeState};
+use crate::plan::{
+    Datum, Dialect, Interval, Link, PretestCheck, ReadingRules, RealLink, SafeState,
+};
+use crate::schema::rig as schema;
 use crate::schema::{Field, Kind, Need, RigKind};
+use crate::schema::{limits as limits_block, plan_block};
 use crate::units::Dimension;
 
 /// A request is sent after 0, T and 3T, and abandoned after 7T.
@@ -23,7 +27,7 @@ const PATIENCE: f64 = 7.0;
 pub fn check_operator(checker: &mut Checker, particulars: &[(&'static str, String)]) {
     let named = particulars
         .iter()
-        .any(|(field, name)| *field == "operator" && !name.trim().is_empty());
+        .any(|(field, name)| *field == plan_block::OPERATOR.name && !name.trim().is_empty());
     if let Some(block) = checker.real_rig.filter(|_| !named) {
         let declared = &checker.scope.blocks[block];
         let at = declared.name.map_or(declared.block.head, |name| name.span);
@@ -34,15 +38,15 @@ pub fn check_operator(checker: &mut Checker, particulars: &[(&'static str, Strin
 /// The link of a real rig; None if it has an error or is incomplete, which [`complete`] reports.
 pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
     let safe_state = checker
-        .choice(block, "safe_state")
+        .choice(block, schema::SAFE_STATE.name)
         .map(|chosen| chosen.variant.name);
-    let datum = checker.word(block, "datum", "machine");
+    let datum = checker.word(block, schema::DATUM.name, "machine");
     let axes = axes::axes(checker, block);
     let devices = devices(checker, block, axes.as_deref().unwrap_or_default());
-    let gate = gate(checker, block, axes.as_deref().unwrap_or_default());
+    let pretest_check = pretest_check(checker, block, axes.as_deref().unwrap_or_default());
     let readings = readings(checker, block);
-    let watchdog = checker.constant(block, "watchdog");
-    let own_speed = checker.constant(block, "speed");
+    let watchdog = checker.constant(block, schema::WATCHDOG.name);
+    let own_speed = checker.constant(block, schema::SPEED.name);
     let (actuator, load_cell) = devices?;
     if let Some(watchdog) = watchdog {
         let own = axes
@@ -74,7 +78,7 @@ pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
         } else {
             Datum::Machine
         },
-        gate: gate?,
+        pretest_check: pretest_check?,
         readings: readings?,
         watchdog: watchdog?,
         own_speed: own_speed?,
@@ -92,27 +96,31 @@ fn devices(
         checker.field(block, field).map(|(_, entry)| entry.key.span)
     };
     let (link, actuator, load_cell) = (
-        key(checker, "link"),
-        key(checker, "actuator"),
-        key(checker, "load_cell"),
+        key(checker, schema::LINK.name),
+        key(checker, schema::ACTUATOR.name),
+        key(checker, schema::LOAD_CELL.name),
     );
     if let (Some(link), Some((field, other))) = (
         link,
         actuator
-            .map(|at| ("actuator", at))
-            .or(load_cell.map(|at| ("load_cell", at))),
+            .map(|at| (schema::ACTUATOR.name, at))
+            .or(load_cell.map(|at| (schema::LOAD_CELL.name, at))),
     ) {
         return checker.fail(message::link_and_device(link, field, other));
     }
     if let (None, Some(at)) = (actuator, load_cell)
-        && !checker.misspelt(block, &["actuator"])
+        && !checker.misspelt(block, &[schema::ACTUATOR.name])
     {
         return checker.fail(message::load_cell_alone(at));
     }
-    let field = if link.is_some() { "link" } else { "actuator" };
+    let field = if link.is_some() {
+        schema::LINK.name
+    } else {
+        schema::ACTUATOR.name
+    };
     let moving = device_of(checker, block, field);
     let weighing = match load_cell {
-        Some(_) => device_of(checker, block, "load_cell").map(Some),
+        Some(_) => device_of(checker, block, schema::LOAD_CELL.name).map(Some),
         None => Some(None),
     };
     let (moving, weighing) = (moving?, weighing?);
@@ -185,7 +193,7 @@ fn fit(
 /// Raw counts need a scale factor; a force in newtons must have none.
 fn counts(checker: &mut Checker, block: usize, dialect: &Dialect, cell: &Device) -> Option<()> {
     if !dialect.counts() {
-        let given = ["force_per_count", "zero_count"]
+        let given = [schema::FORCE_PER_COUNT.name, schema::ZERO_OFFSET.name]
             .into_iter()
             .find_map(|field| checker.field(block, field));
         return match given {
@@ -193,11 +201,11 @@ fn counts(checker: &mut Checker, block: usize, dialect: &Dialect, cell: &Device)
             None => Some(()),
         };
     }
-    match checker.field(block, "force_per_count") {
-        None if checker.misspelt(block, &["force_per_count"]) => None,
+    match checker.field(block, schema::FORCE_PER_COUNT.name) {
+        None if checker.misspelt(block, &[schema::FORCE_PER_COUNT.name]) => None,
         None => checker.fail(message::counts_without_force(dialect, cell.dialect_at)),
-        Some((_, entry)) => match checker.constant(block, "force_per_count")? {
-            0.0 => checker.fail(values::zero("force_per_count", entry.value.span)),
+        Some((_, entry)) => match checker.constant(block, schema::FORCE_PER_COUNT.name)? {
+            0.0 => checker.fail(values::zero(schema::FORCE_PER_COUNT.name, entry.value.span)),
             _ => Some(()),
         },
     }
@@ -218,7 +226,7 @@ fn check_watchdog<'d>(
         return Some(());
     }
     let given = checker
-        .field(block, "watchdog")
+        .field(block, schema::WATCHDOG.name)
         .map(|(_, entry)| entry.value.span);
     checker.fail(message::watchdog_too_short(
         watchdog,
@@ -229,30 +237,40 @@ fn check_watchdog<'d>(
 }
 
 /// The pre-test check of the rig; not needed if each axis has a separate one.
-fn gate(checker: &mut Checker, block: usize, axes: &[CheckedAxis]) -> Option<Gate> {
-    if checker.field(block, "gate").is_none() && axes.iter().all(|axis| axis.plan.gate.is_some()) {
-        return axes.first()?.plan.gate;
+fn pretest_check(
+    checker: &mut Checker,
+    block: usize,
+    axes: &[CheckedAxis],
+) -> Option<PretestCheck> {
+    if checker.field(block, schema::PRETEST_CHECK.name).is_none()
+        && axes.iter().all(|axis| axis.plan.pretest_check.is_some())
+    {
+        return axes.first()?.plan.pretest_check;
     }
-    let context = context_of(checker, block, "gate")?;
-    let chosen = checker.choice(block, "gate")?;
+    let context = context_of(checker, block, schema::PRETEST_CHECK.name)?;
+    let chosen = checker.choice(block, schema::PRETEST_CHECK.name)?;
     probe(checker, &chosen, context)
 }
 
 fn readings(checker: &mut Checker, block: usize) -> Option<ReadingRules> {
-    let samples = checker.count(block, "samples");
-    if let (Some(samples), Some((_, entry))) = (samples, checker.field(block, "samples"))
+    let samples = checker.count(block, schema::SAMPLES.name);
+    if let (Some(samples), Some((_, entry))) = (samples, checker.field(block, schema::SAMPLES.name))
         && samples.is_multiple_of(2)
     {
-        return checker.fail(values::even("samples", entry.value.span, samples));
+        return checker.fail(values::even(
+            schema::SAMPLES.name,
+            entry.value.span,
+            samples,
+        ));
     }
     let (rate, resolution, noise) = (
-        checker.constant(block, "rate"),
-        checker.constant(block, "resolution"),
-        checker.constant(block, "noise"),
+        checker.constant(block, schema::RATE.name),
+        checker.constant(block, schema::RESOLUTION.name),
+        checker.constant(block, schema::NOISE.name),
     );
-    let force_range = checker.bounds(block, "force_range");
+    let force_range = checker.bounds(block, schema::FORCE_RANGE.name);
     let frozen_after = checker
-        .constant(block, "frozen_after")
+        .constant(block, schema::FROZEN_AFTER.name)
         .and_then(whole_number);
     Some(ReadingRules {
         samples: samples?,
@@ -271,7 +289,8 @@ pub fn complete(
     limits: Option<&CheckedLimits>,
 ) {
     // The limits that the rig names are unknown if the rig has an error itself.
-    let knows_limits = |block: usize| rig.is_some() || checker.field(block, "limits").is_none();
+    let knows_limits =
+        |block: usize| rig.is_some() || checker.field(block, schema::LIMITS.name).is_none();
     let of_run = checker.real_rig.filter(|block| knows_limits(*block));
     let rigs = checker.scope.of_kind(Kind::Rig).map(|(index, _)| index);
     let real: Vec<usize> = rigs
@@ -285,7 +304,8 @@ pub fn complete(
             .iter()
             .filter(|field| matches!(field.need, Need::RequiredOn(RigKind::Real, _)));
         let absent = |field: &&Field| {
-            let elsewhere = field.name == "gate" && every_axis_has_a_gate(checker, block);
+            let elsewhere =
+                field.name == schema::PRETEST_CHECK.name && every_axis_has_a_check(checker, block);
             checker.field(block, field.name).is_none()
                 && !elsewhere
                 && !checker.misspelt(block, &[field.name])
@@ -317,17 +337,17 @@ pub fn complete(
     }
 }
 
-fn every_axis_has_a_gate(checker: &Checker, block: usize) -> bool {
-    let Some((_, written)) = checker.field(block, "axes") else {
+fn every_axis_has_a_check(checker: &Checker, block: usize) -> bool {
+    let Some((_, written)) = checker.field(block, schema::AXES.name) else {
         return false;
     };
     // By its name, or as the second limits block without a name.
-    let is_gate = |(index, argument): (usize, &Argument)| match &argument.name {
-        Some(name) => name.node == "gate",
+    let is_check = |(index, argument): (usize, &Argument)| match &argument.name {
+        Some(name) => name.node == schema::PRETEST_CHECK.name,
         None => index == 1,
     };
     let has = |axis: &Expr| match &axis.kind {
-        ExprKind::Call { arguments, .. } => arguments.iter().enumerate().any(is_gate),
+        ExprKind::Call { arguments, .. } => arguments.iter().enumerate().any(is_check),
         _ => false,
     };
     match &written.value.kind {
@@ -344,9 +364,9 @@ fn unbounded(checker: &Checker, limits: &CheckedLimits) -> Vec<&'static str> {
     };
     let finite = |interval: Interval| interval.low.is_finite() && interval.high.is_finite();
     let all = [
-        ("displacement", limits.limits.displacement),
-        ("force", limits.limits.force),
-        ("speed", limits.limits.speed),
+        (limits_block::NAMES.displacement, limits.limits.displacement),
+        (limits_block::NAMES.force, limits.limits.force),
+        (limits_block::NAMES.speed, limits.limits.speed),
     ];
     all.into_iter()
         .filter(|(field, interval)| !finite(*interval) && !has_error(field))
@@ -363,27 +383,29 @@ fn check_own_moves(
 ) {
     let axes = link.axes.len().max(1);
     let beyond = (0..axes)
-        .map(|axis| link.gate_of(axis).probe)
+        .map(|axis| link.pretest_check_of(axis).probe)
         .find(|probe| !limits.limits.displacement.contains(*probe));
     let given = checker
-        .field(block, "gate")
-        .or_else(|| checker.field(block, "axes"));
-    if let (Some((_, gate)), Some(at), Some(probe)) = (given, limits.displacement_at, beyond) {
+        .field(block, schema::PRETEST_CHECK.name)
+        .or_else(|| checker.field(block, schema::AXES.name));
+    if let (Some((_, pretest_check)), Some(at), Some(probe)) =
+        (given, limits.displacement_at, beyond)
+    {
         let interval = limits.limits.displacement;
         checker.diagnostics.push(whole::beyond_limits(
-            "gate",
+            schema::PRETEST_CHECK.name,
             probe,
             Dimension::LENGTH,
-            gate.value.span,
+            pretest_check.value.span,
             interval,
             at,
         ));
     }
     let interval = limits.limits.speed;
-    match (checker.field(block, "speed"), limits.speed_at) {
+    match (checker.field(block, schema::SPEED.name), limits.speed_at) {
         (Some((_, speed)), Some(at)) if !interval.contains(link.own_speed) => {
             let diagnostic = whole::beyond_limits(
-                "speed",
+                schema::SPEED.name,
                 link.own_speed,
                 Dimension::VELOCITY,
                 speed.value.span,

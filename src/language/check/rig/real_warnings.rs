@@ -6,6 +6,7 @@ use crate::language::check::checker::Checker;
 use crate::language::check::messages::rigs as message;
 use crate::language::syntax::ast::{Expr, ExprKind};
 use crate::plan::{Calibration, DeviceLink, Dialect};
+use crate::schema::rig as schema;
 use crate::text::source::Span;
 
 /// Warnings for the real rig of a run whose results would not be reliable.
@@ -38,8 +39,8 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
     }
     let no_day = |calibration: &Calibration| matches!(calibration.displacement, Some((_, None)));
     let of_rig = checker
-        .field(block, "displacement_calibration")
-        .or_else(|| checker.field(block, "axes"));
+        .field(block, schema::DISPLACEMENT_CALIBRATION.name)
+        .or_else(|| checker.field(block, schema::AXES.name));
     if let (true, Some((_, entry))) = (calibrations.iter().any(no_day), of_rig) {
         checker.diagnostics.push(message::displacement_without_day(
             &rig.plan.name,
@@ -51,7 +52,7 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
         .any(|axis| link.readings_of(axis).resolution == 0.0)
     {
         let at = checker
-            .field(block, "resolution")
+            .field(block, schema::RESOLUTION.name)
             .map_or(head, |(_, entry)| entry.value.span);
         checker
             .diagnostics
@@ -59,25 +60,28 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
     }
     let drowned = axes
         .clone()
-        .map(|axis| (link.gate_of(axis), link.readings_of(axis).noise))
-        .find(|(gate, noise)| {
+        .map(|axis| (link.pretest_check_of(axis), link.readings_of(axis).noise))
+        .find(|(pretest_check, noise)| {
             // A value that is ten times as large in the plan must be ten times as large here.
-            gate.probe.abs() * gate.stiffness.low < message::GATE_OVER_NOISE * noise * (1.0 - 1e-9)
+            pretest_check.probe.abs() * pretest_check.stiffness.low
+                < message::CHECK_OVER_NOISE * noise * (1.0 - 1e-9)
         });
     let given = checker
-        .field(block, "gate")
-        .or_else(|| checker.field(block, "axes"));
-    if let (Some((gate, noise)), Some((_, entry))) = (drowned, given) {
-        checker
-            .diagnostics
-            .push(message::gate_within_noise(&gate, noise, entry.value.span));
+        .field(block, schema::PRETEST_CHECK.name)
+        .or_else(|| checker.field(block, schema::AXES.name));
+    if let (Some((pretest_check, noise)), Some((_, entry))) = (drowned, given) {
+        checker.diagnostics.push(message::check_within_noise(
+            &pretest_check,
+            noise,
+            entry.value.span,
+        ));
     }
     let unpinned =
         |device: &DeviceLink| device.dialect == Dialect::Native && device.serial_number.is_none();
-    let fields = if checker.field(block, "link").is_some() {
-        ["link", "load_cell"]
+    let fields = if checker.field(block, schema::LINK.name).is_some() {
+        [schema::LINK.name, schema::LOAD_CELL.name]
     } else {
-        ["actuator", "load_cell"]
+        [schema::ACTUATOR.name, schema::LOAD_CELL.name]
     };
     for (field, device) in fields
         .into_iter()
@@ -94,11 +98,14 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
             ));
         }
     }
-    let Some((_, written)) = checker.field(block, "axes") else {
+    let Some((_, written)) = checker.field(block, schema::AXES.name) else {
         return;
     };
     for (axis, own) in link.axes.iter().enumerate() {
-        for (field, device) in [("actuator", &own.actuator), ("load_cell", &own.load_cell)] {
+        for (field, device) in [
+            (schema::ACTUATOR.name, &own.actuator),
+            (schema::LOAD_CELL.name, &own.load_cell),
+        ] {
             if let Some(device) = device.as_ref().filter(|device| unpinned(device)) {
                 let at = own_device_at(&written.value, axis, field);
                 checker.diagnostics.push(message::device_not_pinned(

@@ -20,7 +20,7 @@ fn text(mass: &str, velocity: &str, scale: &str) -> String {
          let energy = mass * velocity^2 / 2\n\
          specimen beam {{\n  mass = 2 * mass\n  behaviour = elastic(stiffness: 300 kN/m * scale)\n}}\n\
          striker hammer {{\n  mass = mass\n  velocity = velocity\n}}\n\
-         ground quake {{\n  record = \"quake.csv\"\n  scale = scale\n}}\n\
+         ground quake {{\n  file = \"quake.csv\"\n  scale = scale\n}}\n\
          impact hit {{\n  striker = hammer\n  duration = 1 s\n  time_step = 1 ms\n}}\n\
          require \"absorbs\" hit.max_displacement * 1 N < energy\n"
     )

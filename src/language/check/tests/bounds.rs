@@ -101,7 +101,7 @@ fn faults_are_counted_and_their_places_are_bounded() {
             .map(|diagnostic| diagnostic.message.as_str());
         assert_eq!(
             last,
-            Some(format!("{left} more faults are not listed: a list has at most 1000").as_str())
+            Some(format!("{left} more errors are not listed (at most 1000)").as_str())
         );
     }
 }

@@ -7,6 +7,7 @@ mod diagnostics;
 mod plan;
 mod real_rig;
 mod recorded;
+mod renamed;
 
 use super::{Checked, LoadError, Loader, Options, check};
 

@@ -19,7 +19,7 @@ specimen beam {
   mass      = density * section * length / 2
   behaviour = elastic(stiffness: 300 kN/m)
 }
-rig rehearsal {
+rig simulated {
   link   = virtual(noise: 2 N, resolution: 1 um, lag: 2 ms, seed: 7)
   settle = within(0.01 mm, 5 N/s, for: 0.3 s, timeout: 10 s)
 }
@@ -69,7 +69,7 @@ fn the_whole_plan_of_the_reference_checks_to_si() {
     assert_eq!(plan.title, "Pultruded GFRP beam, midspan impact");
     assert!((plan.specimens[0].mass - 1850.0 * 564e-6 * 0.7).abs() < 1e-12);
     assert_eq!(plan.strikers[0].velocity, 1.0);
-    assert_eq!(plan.rig.name, "rehearsal");
+    assert_eq!(plan.rig.name, "simulated");
     assert_eq!(plan.rig.settle.dwell, 0.3);
     assert_eq!(
         plan.limits.displacement,

@@ -2,8 +2,8 @@
 
 use super::{Files, Options, check};
 use crate::plan::{
-    DeviceLink, Dialect, Gate, Interval, Link, ModbusMap, ModbusNumber, Plan, PortPlan, RealLink,
-    SafeState,
+    DeviceLink, Dialect, Interval, Link, ModbusMap, ModbusNumber, Plan, PortPlan, PretestCheck,
+    RealLink, SafeState,
 };
 use crate::record::equipment::{Device, Equipment};
 use crate::rig::DeclaredNoise;
@@ -13,7 +13,7 @@ fn text(rig: &str) -> String {
     format!(
         "specimen beam {{ mass = 1 kg }}\nlimits frame_limits {{ force = -2 kN .. 10 kN }}\n\
          limits {{ displacement = -2 mm .. 25 mm\n speed = 0.5 mm/s }}\nrig frame {{\n{rig}\n\
-         settle = within(0.01 mm, 50 N/s, for: 0.3 s)\ngate = probe(0.02 mm, stiffness: 250 .. 350 kN/m, zero: 20 N)\n\
+         settle = within(0.01 mm, 50 N/s, for: 0.3 s)\npretest_check = probe(0.02 mm, stiffness: 250 .. 350 kN/m, zero: 20 N)\n\
          limits = frame_limits\ncalibration = \"UKAS 4711\"\ncalibration_due = \"2027-03-01\"\n}}\n\
          move out {{ to = 1 mm }}\nrequire \"light\" beam.mass < 2 kg\n"
     )
@@ -57,8 +57,8 @@ fn one_device_with_all_defaults() {
         (device, None, SafeState::Unload)
     );
     assert_eq!(
-        link.gate,
-        Gate {
+        link.pretest_check,
+        PretestCheck {
             zero: 20.0,
             probe: 2e-5,
             stiffness: Interval {
@@ -84,7 +84,7 @@ fn one_device_with_all_defaults() {
 fn two_devices_with_everything_said() {
     let rig = "actuator = serial(port: \"/dev/ttyUSB0\", dialect: grbl)\n\
         load_cell = serial(port: \"/dev/ttyUSB1\", baud: 9600, dialect: hx711, reply_timeout: 0.2 s, serial_number: \"A7\")\n\
-        force_per_count = -0.0123 N\nzero_count = -8123\nsign = negative\nsafe_state = hold\nresolution = 1 um\nnoise = 2 N\n\
+        force_per_count = -0.0123 N\nzero_offset = -8123\npolarity = negative\nsafe_state = hold\nresolution = 1 um\nnoise = 2 N\n\
         rate = 10 Hz\nsamples = 5\nforce_range = -15 kN .. 10 kN\nfrozen_after = 20\nwatchdog = 4 s\nspeed = 0.2 mm/s";
     let plan = plan(&text(rig), Some("frame"));
     let link = plan.rig.link.as_real().expect("a real rig");
@@ -100,7 +100,7 @@ fn two_devices_with_everything_said() {
     assert_eq!(cell.serial_number.as_deref(), Some("A7"));
     let calibration = &plan.rig.calibration;
     assert_eq!(
-        (calibration.newtons_per_count, calibration.zero_count),
+        (calibration.newtons_per_count, calibration.zero_offset),
         (Some(-0.0123), -8123.0)
     );
     assert_eq!(
@@ -109,7 +109,7 @@ fn two_devices_with_everything_said() {
     );
     assert_eq!(
         (
-            plan.rig.sign,
+            plan.rig.polarity,
             plan.rig.settle.dwell,
             plan.rig.settle.timeout
         ),
@@ -193,12 +193,12 @@ fn dialects_with_arguments() {
 #[test]
 fn a_real_rig_moves_only_when_named() {
     let frame = "rig frame {\n link = serial(\"/dev/ttyUSB0\", native)\n safe_state = hold\n\
-        settle = within(0.01 mm, 50 N/s)\n gate = probe(0.02 mm, stiffness: 250 .. 350 kN/m, zero: 20 N)\n}\n";
+        settle = within(0.01 mm, 50 N/s)\n pretest_check = probe(0.02 mm, stiffness: 250 .. 350 kN/m, zero: 20 N)\n}\n";
     let rest = "specimen beam { mass = 1 kg\n behaviour = elastic(300 kN/m) }\n\
         limits { displacement = 25 mm\n force = 12 kN\n speed = 10 mm/s }\nmove out { to = 1 mm }\n";
-    let rehearsal = "rig rehearsal { link = virtual(noise: 1 N) }\n";
-    let both = format!("{frame}{rehearsal}{rest}");
-    assert_eq!(plan(&both, None).rig.name, "rehearsal");
+    let simulated = "rig simulated { link = virtual(noise: 1 N) }\n";
+    let both = format!("{frame}{simulated}{rest}");
+    assert_eq!(plan(&both, None).rig.name, "simulated");
     assert_eq!(plan(&both, Some("frame")).rig.name, "frame");
     let alone = format!("{frame}{rest}");
     assert_eq!(plan(&alone, None).rig.name, "ideal");
@@ -245,7 +245,7 @@ fn an_axis_states_its_own_certificates_and_uncertainties_and_leaves_the_rest_to_
         .replace("rig frame {", "rig press {")
         .replace(
             "move out { to = 1 mm }",
-            "ground motion { record = \"g.csv\" }\nshake quake { ground = motion\n time_step = 10 ms }",
+            "ground motion { file = \"g.csv\" }\nshake quake { ground = motion\n time_step = 10 ms }",
         )
         .replace("\"light\" beam.mass < 2 kg", "\"drift\" max(quake.max_drift) < 30 mm");
     let ground = [("g.csv", "time_s,acceleration_m_per_s2\n0,0\n0.1,1\n")];

@@ -1,6 +1,7 @@
 //! Requirements to which the guarded rule cannot apply, because they read a result that never has an uncertainty (W729). In: procedures,
 //! requirements, the rule. Out: warnings. It knows no run.
 
+use crate::schema::procedures::{impact, impact_series};
 use std::collections::BTreeSet;
 
 use crate::language::check::checker::Checker;
@@ -9,7 +10,11 @@ use crate::plan::formula::Part;
 use crate::plan::{DecisionRule, Procedure, Requirement};
 
 /// Exact results that are not measured: those from the plan, and the closure of the energy balance.
-const EXACT: [&str; 3] = ["time_step", "energy_error", "energy_errors"];
+const EXACT: [&str; 3] = [
+    impact::TIME_STEP.name,
+    impact::ENERGY_ERROR.name,
+    impact_series::ENERGY_ERRORS.name,
+];
 
 pub fn warn(
     checker: &mut Checker,

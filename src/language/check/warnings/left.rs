@@ -1,6 +1,7 @@
 //! The state of a specimen after a run: `final_…` at its last step, `residual_…` after unloading. In: the name that a plan
 //! reads, the procedures, the requirements. Out: the result, E206, or a warning (W730). It knows no run.
 
+use crate::schema::procedures::impact_series as series;
 use std::collections::BTreeSet;
 
 use crate::language::check::checker::Checker;
@@ -12,9 +13,15 @@ use crate::schema::{self, Kind, ResultKind};
 
 /// Results after unloading, and the same at the last step.
 const LEFT: [(&str, &str); 3] = [
-    ("residual_displacement", "final_displacement"),
-    ("residual_displacements", "final_displacements"),
-    ("residual_drift", "final_drift"),
+    (
+        series::RESIDUAL_DISPLACEMENT.name,
+        series::FINAL_DISPLACEMENT.name,
+    ),
+    (
+        series::RESIDUAL_DISPLACEMENTS.name,
+        series::FINAL_DISPLACEMENTS.name,
+    ),
+    (series::RESIDUAL_DRIFT.name, series::FINAL_DRIFT.name),
 ];
 
 impl Checker<'_> {
@@ -47,7 +54,7 @@ impl Checker<'_> {
     /// Whether a procedure ends with the specimen unloaded.
     fn unloads(&self, block: usize) -> bool {
         let between = || {
-            self.field(block, "between")
+            self.field(block, series::BETWEEN.name)
                 .map(|(_, entry)| &entry.value.kind)
         };
         match self.scope.blocks[block].kind.kind {

@@ -11,6 +11,9 @@ use super::messages::{cyclic, values, whole as message};
 use crate::plan::{Condition, Contact, Ground, Procedure, Requirement};
 use crate::procedures::facts::{Leaves, Motion};
 use crate::schema::Kind;
+use crate::schema::procedures::impact::MAX_CONTACT_FORCE;
+use crate::schema::procedures::impact_series::WHILE;
+use crate::schema::specimen::MASS_UNCERTAINTY;
 use crate::text::source::{FileId, Span, Spanned};
 use crate::uncertainty::Source;
 
@@ -119,11 +122,11 @@ fn unused_uncertainties(
         .map(|(_, block)| block)
     {
         let stated = checker
-            .field(block, "mass_uncertainty")
+            .field(block, MASS_UNCERTAINTY.name)
             .map(|(_, entry)| entry.value.span);
         let some = stated.is_some()
             && checker
-                .constant(block, "mass_uncertainty")
+                .constant(block, MASS_UNCERTAINTY.name)
                 .is_some_and(|stated| stated > 0.0);
         if let (true, Some(span)) = (some, stated) {
             let name = checker.scope.blocks[block]
@@ -151,9 +154,10 @@ fn peak_forces(
         for condition in conditions {
             condition.collect_references(&mut references);
         }
-        for reference in references.iter().filter(|reference| {
-            matches!(reference.name, "max_contact_force" | "max_contact_forces")
-        }) {
+        for reference in references
+            .iter()
+            .filter(|reference| reference.name == MAX_CONTACT_FORCE.name)
+        {
             if let Some((block, Some(procedure))) = procedures.get(reference.procedure.0)
                 && let Some(law) = law(procedure)
             {
@@ -174,7 +178,7 @@ fn peak_forces(
         {
             let head = checker.scope.blocks[*block].block.head;
             let span = checker
-                .field(*block, "while")
+                .field(*block, WHILE.name)
                 .map_or(head, |(_, entry)| entry.value.span);
             read(checker, conditions, span);
         }

@@ -5,6 +5,7 @@ use crate::language::check::checker::Checker;
 use crate::language::check::messages::whole;
 use crate::plan::{MOST_RECORDED_STEPS, Plan};
 use crate::procedures;
+use crate::schema::methods::DURATION;
 
 /// Compares the steps of all procedures that integrate, summed in their order, with [`MOST_RECORDED_STEPS`].
 pub fn check(checker: &mut Checker, plan: &Plan, blocks: &[usize]) {
@@ -17,7 +18,7 @@ pub fn check(checker: &mut Checker, plan: &Plan, blocks: &[usize]) {
         if after > MOST_RECORDED_STEPS {
             let head = checker.scope.blocks[block].block.head;
             let at = checker
-                .field(block, "duration")
+                .field(block, DURATION.name)
                 .map_or(head, |(_, entry)| entry.value.span);
             let remaining = MOST_RECORDED_STEPS - before;
             checker

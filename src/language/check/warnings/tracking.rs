@@ -7,6 +7,7 @@ use crate::physics::tracking::monitor;
 use crate::plan::{Link, Mode, Plan, Stepping, VirtualLink};
 use crate::procedures;
 use crate::procedures::facts::Delay;
+use crate::schema::rig::LINK;
 
 /// Warns of every procedure in which one cycle absorbs the energy that the limit on tracking allows. `blocks` are those of the plan's
 /// procedures, `rig` is that of its rig.
@@ -15,7 +16,7 @@ pub fn warn(checker: &mut Checker, plan: &Plan, blocks: &[usize], rig: Option<us
         return;
     };
     let Some(errs) = rig
-        .and_then(|rig| checker.field(rig, "link"))
+        .and_then(|rig| checker.field(rig, LINK.name))
         .map(|(_, entry)| entry.value.span)
     else {
         return;

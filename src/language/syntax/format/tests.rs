@@ -55,7 +55,7 @@ fn the_sample_plans_stand_in_columns() {
     assert!(quake.starts_with(
         "specimen frame {\n  storeys = [  # from the ground up\n    storey(mass: 2 t, stiffness: 3 MN/m, height: 3 m),\n"
     ));
-    assert!(quake.contains("\n  ]\n}\nground sine { record = \"ground.csv\" }  # header"));
+    assert!(quake.contains("\n  ]\n}\nground sine { file = \"ground.csv\" }  # header"));
 }
 
 #[test]

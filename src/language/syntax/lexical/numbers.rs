@@ -112,12 +112,9 @@ fn commas(written: &str) -> NumberError {
             .is_some_and(|group| group.len() == 3);
     let many = rest.contains(',') || rest.contains('.');
     let (why, write) = match (thousands, many, whole.contains('.')) {
-        (true, true, false) => ("digits are not grouped", vec![none]),
-        (true, false, _) => (
-            "a comma neither groups digits nor parts decimals",
-            vec![none, point],
-        ),
-        _ => ("the decimal sign is a point", vec![point]),
+        (true, true, false) => ("digits in groups", vec![none]),
+        (true, false, _) => ("comma in the number", vec![none, point]),
+        _ => ("comma instead of a decimal point", vec![point]),
     };
     NumberError {
         why,
@@ -141,24 +138,24 @@ pub fn error_of(written: &str) -> Option<NumberError> {
         })
     };
     if written.len() > limits::NUMBER_CHARS {
-        return error("a number has at most 40 characters", None);
+        return error("more than 40 characters", None);
     }
     if let Some(body) = written
         .strip_prefix("0x")
         .or_else(|| written.strip_prefix("0X"))
     {
         let value = u64::from_str_radix(&body.replace('_', ""), 16).ok();
-        return error("numbers are decimal", value.map(|value| value.to_string()));
+        return error("not a decimal number", value.map(|value| value.to_string()));
     }
     if let Some((mantissa, power)) = written.split_once(TIMES_TEN) {
         return error(
-            "a power of ten is written with `e`",
+            "power of ten without `e`",
             Some(format!("{mantissa}e{power}")),
         );
     }
     if written.contains(['_', ' ', '\'', '’']) {
         return error(
-            "digits are not grouped",
+            "digits in groups",
             Some(written.replace(['_', ' ', '\'', '’'], "")),
         );
     }
@@ -177,33 +174,28 @@ pub fn error_of(written: &str) -> Option<NumberError> {
     };
     if mantissa.starts_with('.') {
         return error(
-            "a digit stands before the point",
+            "no digit before the point",
             Some(scaled(&format!("0{mantissa}"))),
         );
     }
     if mantissa.ends_with('.') {
         return error(
-            "a digit stands after the point",
+            "no digit after the point",
             Some(scaled(mantissa.trim_end_matches('.'))),
         );
     }
     if mantissa.matches('.').count() > 1 {
-        return error("a number has one point", None);
+        return error("more than one point", None);
     }
     if power.is_some_and(|power| digits(power.trim_start_matches(['+', '-'])) == 0) {
-        return error("the exponent has no digits", Some(mantissa.to_owned()));
+        return error("exponent without digits", Some(mantissa.to_owned()));
     }
     match written.parse::<f64>() {
-        Ok(value) if !value.is_finite() => {
-            error("this is beyond the largest number, 1.8e308", None)
-        }
+        Ok(value) if !value.is_finite() => error("beyond the largest number, 1.8e308", None),
         Ok(value) if value == 0.0 && mantissa.contains(|digit| matches!(digit, '1'..='9')) => {
-            error(
-                "this is too small to be told from zero",
-                Some("0".to_owned()),
-            )
+            error("too small to differ from zero", Some("0".to_owned()))
         }
         Ok(_) => None,
-        Err(_) => error("this is not a number", None),
+        Err(_) => error("not a number", None),
     }
 }

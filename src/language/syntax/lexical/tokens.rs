@@ -141,7 +141,7 @@ impl<'a> Reader<'a> {
                     self.span(first.len_utf8()),
                     "this file",
                     limits::TOKENS,
-                    "words and signs",
+                    "words and characters",
                 ));
                 return;
             }
@@ -149,9 +149,9 @@ impl<'a> Reader<'a> {
                 self.tokens.cut_short = true;
                 self.error(messages::too_large(
                     self.span(first.len_utf8()),
-                    "the list of faults",
+                    "the list of errors",
                     limits::ERRORS,
-                    "faults",
+                    "errors",
                 ));
                 return;
             }
@@ -250,7 +250,7 @@ impl<'a> Reader<'a> {
         } else if length - 2 > limits::TEXT_BYTES {
             self.error(messages::too_large(
                 self.span(1),
-                "this text",
+                "this string",
                 limits::TEXT_BYTES,
                 "bytes",
             ));

@@ -224,7 +224,7 @@ fn what_only_looks_like_the_language_is_read_as_it_was_meant() {
     let (_, found, _) = read("let a = 1\u{a0}m\nlet b = 2\u{a0}m\nlet c = 3\u{a0}m\n");
     assert_eq!(found.len(), 1, "told once, however often");
     assert!(
-        found[0].message.ends_with("here and in 2 more places"),
+        found[0].message.ends_with("here and in 2 other lines"),
         "{}",
         found[0].message
     );
@@ -278,11 +278,11 @@ fn helps_are_written_for_the_error() {
         ),
         (
             "b {\n  x = 1 kg y\n}",
-            "found `y`, expected an operator or the end of the line | one field or item stands on one line",
+            "found `y`, expected an operator or the end of the line | write one field or item per line",
         ),
         (
             "striker p\n",
-            "`striker p` stands alone on its line and opens no block | a block opens with `{` on this same line, as in `striker hammer { … }`; a remark stands behind `#`",
+            "`striker p` is neither a block nor an item | write `{` on this line for a block, as in `striker hammer {`; write `#` before a comment",
         ),
         (
             "plan \"a\" x {\n}\n",
@@ -290,19 +290,19 @@ fn helps_are_written_for_the_error() {
         ),
         (
             "foo = 3\n",
-            "found the field `foo` outside a block, expected an item | move it into its block, or name a value with `let foo = …`",
+            "field `foo` outside a block, expected an item | move it into its block, or name a value with `let foo = …`",
         ),
         (
             "}\n",
-            "found `}`, expected an item | each `}` closes one `{`: take this one away, or open the block it should close",
+            "found `}`, expected an item | remove this `}`, or open the block that it closes",
         ),
         (
             "let step = 3\n",
-            "found `step`, expected a name | `step` is a word of the language: names are other words",
+            "found `step`, expected a name | choose another name: `step` is a keyword",
         ),
         (
             "use lib\n",
-            "found `lib`, expected a text in quotes | write a text in quotes here",
+            "found `lib`, expected a string in quotes | write a string in quotes here",
         ),
         (
             "b {\n x = (1 + a y)\n}",
@@ -314,7 +314,7 @@ fn helps_are_written_for_the_error() {
         ),
         (
             "let x = 1 and\n",
-            "found the end of the line, expected a value | a value is a number with its unit, a text, a name, a list or a range",
+            "found the end of the line, expected a value | write a number with its unit, a string, a name, a list or a range",
         ),
     ] {
         assert_eq!(found(text), expected);

@@ -21,7 +21,7 @@ specimen beam
   density = 1850 kg/m^3
   mass = (((density * section) * length) / 2)
   behaviour = elastic(stiffness: 300 kN/m)
-rig rehearsal
+rig simulated
   link = virtual(noise: 2 N, resolution: 1 um, lag: 2 ms, seed: 7)
   settle = within(0.01 mm, 5 N/s, for: 0.3 s, timeout: 10 s)
 striker pendulum
@@ -78,7 +78,7 @@ fn lists_may_span_lines_and_end_with_a_comma() {
         r#"specimen frame
   storeys = [storey(mass: 2 t, stiffness: 3 MN/m, height: 3 m), storey(mass: 1.5 t, stiffness: 2 MN/m, height: 3 m)]
 ground sine
-  record = "ground.csv"
+  file = "ground.csv"
 shake quake
   specimen = frame
   ground = sine

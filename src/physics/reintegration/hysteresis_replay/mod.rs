@@ -9,6 +9,7 @@
 //! the recorded targets the recorded readings come back bit-identical.
 
 mod masing;
+mod monotonic;
 mod pieces;
 mod rate_correction;
 mod reintegrated;
@@ -17,9 +18,10 @@ pub(crate) use rate_correction::lag;
 pub use reintegrated::Retrace;
 pub(crate) use reintegrated::nearest;
 
-use self::pieces::{Branch, Piece};
+use self::pieces::{Branch, Piece, Slopes};
 use crate::integrator::tangent::NOISE_MULTIPLE;
 use crate::reintegration::hysteresis_replay::rate_correction::ContinuousReadings;
+use crate::statistics::ReadingNoise;
 
 /// One step of the record.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +32,15 @@ pub struct Reading {
     pub displacement: f64,
     /// Measured \[N\].
     pub force: f64,
+}
+
+/// The motion of a run whose actuators do not stop at their targets.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContinuousMotion<V> {
+    /// Predicted for the targets \[m/s\].
+    pub velocities: V,
+    /// From one reading to the next, in the same time \[s\].
+    pub time_step: f64,
 }
 
 /// A re-run that reverses where nothing is recorded departs from the record beyond this fraction of the farthest recorded position.
@@ -56,70 +67,44 @@ pub struct RecordedPath {
 }
 
 impl RecordedPath {
-    /// `stiffness` \[N/m\] applies where no branch determines one; `force_noise` \[N\] and `resolution` \[m\] give the least length of a
-    /// piece that determines a slope. None without readings.
+    /// `motion` is that of a continuous run; without it the specimen rested at each reading. `stiffness` \[N/m\] applies where no branch
+    /// determines one. None without readings.
     #[must_use]
     pub fn new(
         readings: Vec<Reading>,
+        motion: Option<ContinuousMotion<&[f64]>>,
         stiffness: f64,
-        force_noise: f64,
-        resolution: f64,
+        noise: ReadingNoise,
     ) -> Option<Self> {
-        if readings.is_empty() {
-            return None;
-        }
-        Some(Self::of(
-            readings,
-            None,
-            stiffness,
-            (force_noise, resolution),
-        ))
-    }
-
-    /// The same for readings of a continuous motion, `time_step` \[s\] apart, with the velocities predicted for their targets \[m/s\].
-    #[must_use]
-    pub fn continuous(
-        readings: Vec<Reading>,
-        (velocities, time_step): (&[f64], f64),
-        stiffness: f64,
-        force_noise: f64,
-        resolution: f64,
-    ) -> Option<Self> {
-        if readings.is_empty() {
-            return None;
-        }
-        let found = ContinuousReadings::of(readings, velocities, time_step, resolution);
-        Some(Self::of(
-            found.at_rest(),
-            Some(found),
-            stiffness,
-            (force_noise, resolution),
-        ))
-    }
-
-    fn of(
-        readings: Vec<Reading>,
-        continuous: Option<ContinuousReadings>,
-        stiffness: f64,
-        (force_noise, resolution): (f64, f64),
-    ) -> Self {
-        let least = resolution.max(NOISE_MULTIPLE * force_noise / stiffness);
+        readings.first()?;
+        let continuous =
+            motion.map(|motion| ContinuousReadings::of(&readings, motion, noise.resolution));
+        let readings = continuous
+            .as_ref()
+            .map_or(readings, ContinuousReadings::at_rest);
+        let least = noise
+            .resolution
+            .max(NOISE_MULTIPLE * noise.force / stiffness);
         let force_uncertainty = continuous.as_ref().map_or(0.0, |continuous| {
-            continuous.force_uncertainty(stiffness, resolution)
+            continuous.force_uncertainty(stiffness, noise.resolution)
         });
-        let slopes = (stiffness, force_noise.hypot(force_uncertainty), least);
+        let slopes = Slopes {
+            stiffness,
+            force_noise: noise.force.hypot(force_uncertainty),
+            least,
+        };
         let (branches, pieces) = pieces::cut(&readings, slopes, continuous.as_ref());
         let keeps_masing = masing::is_kept(
             &readings,
             &branches,
             &pieces,
-            force_noise,
+            noise.force,
             continuous.is_some(),
         );
         let farthest = readings.iter().fold(0.0, |farthest: f64, reading| {
             farthest.max(reading.target.abs())
         });
-        Self {
+        Some(Self {
             readings,
             branches,
             pieces,
@@ -127,7 +112,7 @@ impl RecordedPath {
             farthest,
             keeps_masing,
             continuous,
-        }
+        })
     }
 
     /// The recorded reading of a step; past the end of the record, of its last.

@@ -6,6 +6,7 @@
 //! pieces of several curves, and one curve pieces on several branches.
 
 use super::Reading;
+use super::monotonic::{branches_of, monotonic_branches};
 use super::rate_correction::ContinuousReadings;
 
 /// A loop thinner than this fraction of its force range is not a loop: unloading follows the loading branch.
@@ -56,13 +57,28 @@ pub(super) struct Branch {
     pub drifts: Option<usize>,
 }
 
-/// Divides a record into branches and the pieces of their curves. `least` \[m\] is the length of a piece that determines a tangent,
-/// `stiffness` \[N/m\] applies where none does. A continuous motion reverses between two readings.
+/// The slopes that readings can determine.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slopes {
+    /// The slope where no piece determines one \[N/m\].
+    pub stiffness: f64,
+    /// Standard deviation of a force \[N\].
+    pub force_noise: f64,
+    /// Length of a piece that determines a tangent \[m\].
+    pub least: f64,
+}
+
+/// Divides a record into branches and the pieces of their curves. A continuous motion reverses between two readings.
 pub(super) fn cut(
     readings: &[Reading],
-    (stiffness, force_noise, least): (f64, f64, f64),
+    slopes: Slopes,
     continuous: Option<&ContinuousReadings>,
 ) -> (Vec<Branch>, Vec<Piece>) {
+    let Slopes {
+        stiffness,
+        force_noise,
+        least,
+    } = slopes;
     let mut branches: Vec<Branch> = Vec::new();
     let mut pieces: Vec<Piece> = Vec::new();
     // Branches that ended in a reversal whose loop is not closed.
@@ -183,30 +199,6 @@ pub(super) fn cut(
         );
     }
     (branches, pieces)
-}
-
-/// Readings at the ends of each segment without a reversal, and its direction.
-fn monotonic_branches(readings: &[Reading]) -> Vec<(usize, usize, f64)> {
-    let moved = readings.windows(2).map(|two| two[1].target - two[0].target);
-    branches_of(std::iter::once(0.0).chain(moved))
-}
-
-/// The same from the move to each reading: a displacement change, or a velocity.
-pub(super) fn branches_of(went: impl Iterator<Item = f64>) -> Vec<(usize, usize, f64)> {
-    let mut found = Vec::new();
-    let (mut begin, mut last, mut direction) = (0, 0, 0.0);
-    for (step, moved) in went.enumerate() {
-        last = step;
-        if moved * direction < 0.0 {
-            found.push((begin, step - 1, direction));
-            begin = step - 1;
-        }
-        if moved != 0.0 {
-            direction = moved.signum();
-        }
-    }
-    found.push((begin, last, direction));
-    found
 }
 
 /// Whether the branch follows the curve from which it reversed, as far as both reach.

@@ -40,8 +40,8 @@
 //! that Δr = f'Δx + cΔv, and the part of Δv orthogonal to Δx determines c. It is largest where a/v changes most, near the reversals. Each
 //! group has its own c; the weighted median of all is not affected by the groups in which the specimen yields.
 
-use super::Reading;
-use super::pieces::branches_of;
+use super::monotonic::branches_of;
+use super::{ContinuousMotion, Reading};
 
 /// Increments of a group: few enough for one tangent, more than the two unknowns.
 const TOGETHER: usize = 4;
@@ -65,6 +65,15 @@ pub(super) struct ContinuousReadings {
     passed: Vec<(Reading, f64)>,
 }
 
+/// The specimen at an instant.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Passage {
+    /// \[m\]
+    pub position: f64,
+    /// \[m/s\]
+    pub velocity: f64,
+}
+
 /// Velocities of an actuator and of the specimen on it \[m/s\].
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Speed {
@@ -74,22 +83,24 @@ pub(super) struct Speed {
 }
 
 impl ContinuousReadings {
-    /// `velocities` are those predicted for the targets \[m/s\], in the same time as `time_step` \[s\]; `resolution` in \[m\].
-    pub fn of(readings: Vec<Reading>, velocities: &[f64], time_step: f64, resolution: f64) -> Self {
-        let predicted: Vec<f64> = velocities
+    /// `resolution` in \[m\].
+    pub fn of(readings: &[Reading], motion: ContinuousMotion<&[f64]>, resolution: f64) -> Self {
+        let predicted: Vec<f64> = motion
+            .velocities
             .iter()
             .copied()
             .chain(std::iter::repeat(0.0))
             .take(readings.len())
             .collect();
         let passed = readings
-            .into_iter()
+            .iter()
+            .copied()
             .zip(predicted.iter().copied())
             .collect();
         let mut found = Self {
             lag: 0.0,
             damping: 0.0,
-            time_step,
+            time_step: motion.time_step,
             passed,
         };
         // The velocity of the specimen depends on its lag.
@@ -160,27 +171,24 @@ impl ContinuousReadings {
     /// Position of a reversal between the reading at `step` and the next \[m\]; None without one.
     pub fn turned(&self, step: usize) -> Option<f64> {
         let at = |step: usize| {
-            self.passed
-                .get(step)
-                .map(|(reading, velocity)| (self.position(reading.target, *velocity), *velocity))
+            let (reading, velocity) = self.passed.get(step)?;
+            Some(Passage {
+                position: self.position(reading.target, *velocity),
+                velocity: *velocity,
+            })
         };
         self.turn_between(at(step)?, at(step + 1)?, 1)
     }
 
-    /// Position of a reversal between two positions \[m\] with their velocities \[m/s\], a step apart, of which there are `finer` for each
-    /// of the record. The nearer end has the larger weight.
-    pub fn turn_between(
-        &self,
-        (from, before): (f64, f64),
-        (to, after): (f64, f64),
-        finer: u8,
-    ) -> Option<f64> {
+    /// Position of a reversal between two passages \[m\] that are a step apart, of which there are `finer` for each of the record. The
+    /// nearer end has the larger weight.
+    pub fn turn_between(&self, from: Passage, to: Passage, finer: u8) -> Option<f64> {
         let time_step = self.time_step / f64::from(finer);
-        (before * after < 0.0).then(|| {
-            let share = before / (before - after);
+        (from.velocity * to.velocity < 0.0).then(|| {
+            let share = from.velocity / (from.velocity - to.velocity);
             let rest = 1.0 - share;
-            let onwards = from + 0.5 * before * share * time_step;
-            let backwards = to - 0.5 * after * rest * time_step;
+            let onwards = from.position + 0.5 * from.velocity * share * time_step;
+            let backwards = to.position - 0.5 * to.velocity * rest * time_step;
             let (near, far) = (rest * rest, share * share);
             (near * onwards + far * backwards) / (near + far)
         })
@@ -191,11 +199,11 @@ impl ContinuousReadings {
         target - self.lag * velocity
     }
 
-    /// Force in motion \[N\], for `force` at rest here and `recorded` at rest at the position of the reading of `step`. At the recorded
+    /// Force in motion \[N\], for a force at rest that is `more` \[N\] than at the position of the reading of `step`. At the recorded
     /// position and velocity it is the recorded force, bit-identical.
-    pub fn force(&self, step: usize, (force, recorded): (f64, f64), velocity: f64) -> f64 {
+    pub fn force(&self, step: usize, more: f64, velocity: f64) -> f64 {
         let (reading, passed_with) = self.passed[step];
-        reading.force + (force - recorded) + self.damping * (velocity - passed_with)
+        reading.force + more + self.damping * (velocity - passed_with)
     }
 
     /// The recorded reading of a step.
@@ -292,7 +300,7 @@ fn weighted_median(weighed: &mut [(f64, f64)]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::specimen::{Bilinear, RestoringForce};
+    use crate::specimen::{Bilinear, BilinearCurve, RestoringForce};
 
     const STIFFNESS: f64 = 1000.0;
     const DAMPING: f64 = 9.0;
@@ -336,12 +344,16 @@ mod tests {
                 force,
             }
         };
-        let readings = motion.iter().enumerate().map(reading).collect();
+        let readings: Vec<Reading> = motion.iter().enumerate().map(reading).collect();
         let predicted: Vec<f64> = motion
             .iter()
             .map(|[_, velocity, acceleration]| velocity + LAG * acceleration)
             .collect();
-        ContinuousReadings::of(readings, &predicted, TIME_STEP, 1e-6)
+        let motion = ContinuousMotion {
+            velocities: predicted.as_slice(),
+            time_step: TIME_STEP,
+        };
+        ContinuousReadings::of(&readings, motion, 1e-6)
     }
 
     /// An elastic and a yielding specimen, exact and with noise: τ with a resolution of 1 µm, c in closed form.
@@ -354,7 +366,11 @@ mod tests {
             (20.0, 0.01, 0.05),
         ] {
             let found = read(
-                &mut Bilinear::new(STIFFNESS, yield_force, 0.1),
+                &mut Bilinear::new(BilinearCurve {
+                    stiffness: STIFFNESS,
+                    yield_force,
+                    post_yield_ratio: 0.1,
+                }),
                 DAMPING,
                 noise,
             );
@@ -370,24 +386,38 @@ mod tests {
     #[test]
     fn noise_is_not_taken_for_damping() {
         assert_eq!(
-            read(&mut Bilinear::new(STIFFNESS, 20.0, 0.1), 0.0, 0.5).damping,
+            read(
+                &mut Bilinear::new(BilinearCurve {
+                    stiffness: STIFFNESS,
+                    yield_force: 20.0,
+                    post_yield_ratio: 0.1
+                }),
+                0.0,
+                0.5
+            )
+            .damping,
             0.0
         );
     }
 
     #[test]
     fn readings_at_rest_are_those_of_the_specimen_and_in_motion_the_recorded_ones() {
-        let found = read(&mut Bilinear::new(STIFFNESS, 1e9, 0.1), DAMPING, 0.0);
+        let found = read(
+            &mut Bilinear::new(BilinearCurve {
+                stiffness: STIFFNESS,
+                yield_force: 1e9,
+                post_yield_ratio: 0.1,
+            }),
+            DAMPING,
+            0.0,
+        );
         let mut largest = 0.0_f64;
         for (step, (at_rest, (reading, velocity))) in
             found.at_rest().iter().zip(&found.passed).enumerate()
         {
             largest = largest.max((at_rest.force - STIFFNESS * at_rest.target).abs());
             assert_eq!(found.position(reading.target, *velocity), at_rest.target);
-            assert_eq!(
-                found.force(step, (at_rest.force, at_rest.force), *velocity),
-                reading.force
-            );
+            assert_eq!(found.force(step, 0.0, *velocity), reading.force);
         }
         // 120 N at most, 6 N of them the damper's.
         assert!(largest < 0.1, "{largest} N");
@@ -396,13 +426,28 @@ mod tests {
     /// ½·a·t² of an even velocity, from either side; where it keeps its direction, none.
     #[test]
     fn a_reversal_between_two_readings_is_where_the_velocity_is_zero() {
-        let motion = read(&mut Bilinear::new(STIFFNESS, 1e9, 0.1), 0.0, 0.0);
+        let motion = read(
+            &mut Bilinear::new(BilinearCurve {
+                stiffness: STIFFNESS,
+                yield_force: 1e9,
+                post_yield_ratio: 0.1,
+            }),
+            0.0,
+            0.0,
+        );
         for turn in [1e-4, 1e-3, 1.9e-3] {
             let position = |time: f64| 0.5 * -3.0 * (time - turn).powi(2);
-            let at = |time: f64| (position(time), -3.0 * (time - turn));
+            let at = |time: f64| Passage {
+                position: position(time),
+                velocity: -3.0 * (time - turn),
+            };
             let found = motion.turn_between(at(0.0), at(TIME_STEP), 1).unwrap();
             assert!(found.abs() < 1e-15, "{found} m");
         }
-        assert_eq!(motion.turn_between((0.0, 1.0), (1e-3, 2.0), 1), None);
+        let passes = |position: f64, velocity: f64| Passage { position, velocity };
+        assert_eq!(
+            motion.turn_between(passes(0.0, 1.0), passes(1e-3, 2.0), 1),
+            None
+        );
     }
 }

@@ -4,8 +4,8 @@
 //! of the specimen. It reports a departure from the record in two cases: it unloads where nothing is recorded, or, if the record does not
 //! keep Masing's rule, it follows a curve that begins at a different point.
 
-use super::rate_correction::Speed;
-use super::{ROUNDING, RecordedPath, SETTLED, UNSEEN};
+use super::rate_correction::{Passage, Speed};
+use super::{ROUNDING, Reading, RecordedPath, SETTLED, UNSEEN};
 
 /// The step of the record nearest to `step` of a path with `finer` steps for each recorded step.
 pub const fn nearest(step: usize, finer: u8) -> usize {
@@ -81,11 +81,15 @@ impl<'a> Retrace<'a> {
         }
     }
 
-    /// The first position \[m\], and the displacement \[m\] and force \[N\] read there.
+    /// The reading at the first position.
     #[must_use]
-    pub fn start(&self) -> (f64, f64, f64) {
+    pub fn start(&self) -> Reading {
         let (displacement, force) = self.read();
-        (self.position, displacement, force)
+        Reading {
+            target: self.position,
+            displacement,
+            force,
+        }
     }
 
     /// Displacement \[m\] and force \[N\] read at the target \[m\] of the next step.
@@ -157,11 +161,11 @@ impl<'a> Retrace<'a> {
             let against = moved * path.branches[self.branch()].direction < 0.0;
             if against {
                 let between = continuous.and_then(|it| {
-                    it.turn_between(
-                        (self.position, self.speed.actual),
-                        (position, velocity),
-                        self.finer,
-                    )
+                    let before = Passage {
+                        position: self.position,
+                        velocity: self.speed.actual,
+                    };
+                    it.turn_between(before, Passage { position, velocity }, self.finer)
                 });
                 let from = between.unwrap_or(self.position);
                 if self.matched(before) {
@@ -331,7 +335,7 @@ impl<'a> Retrace<'a> {
             .path
             .continuous
             .as_ref()
-            .map(|continuous| continuous.force(step, (force, recorded), self.speed.actual));
+            .map(|continuous| continuous.force(step, force - recorded, self.speed.actual));
         (displacement, actual.unwrap_or(force))
     }
 }

@@ -2,7 +2,10 @@
 
 use super::*;
 use crate::specimen::{Behaviour, Pinching};
-use crate::specimen::{Bilinear, BoucWen, Degrading, Multilinear, RestoringForce, SpecimenModel};
+use crate::specimen::{
+    Bilinear, BilinearCurve, BoucWen, Degrading, DegradingCurve, Multilinear, RestoringForce,
+    SpecimenModel,
+};
 
 fn path(force: impl Fn(f64) -> f64, targets: &[f64]) -> RecordedPath {
     let reading = |target: &f64| Reading {
@@ -10,7 +13,13 @@ fn path(force: impl Fn(f64) -> f64, targets: &[f64]) -> RecordedPath {
         displacement: target + 1e-4,
         force: force(*target),
     };
-    RecordedPath::new(targets.iter().map(reading).collect(), 1000.0, 0.0, 0.0).unwrap()
+    RecordedPath::new(
+        targets.iter().map(reading).collect(),
+        None,
+        1000.0,
+        ReadingNoise::default(),
+    )
+    .unwrap()
 }
 
 /// Out, back and out again, with a pause at the start.
@@ -22,11 +31,10 @@ fn at_the_recorded_targets_the_recorded_readings_come_back_to_the_bit() {
     let mut retrace = path.retrace(1);
     assert_eq!(
         retrace.start(),
-        (
-            TARGETS[0],
-            path.readings[0].displacement,
-            path.readings[0].force
-        )
+        Reading {
+            target: TARGETS[0],
+            ..path.readings[0]
+        }
     );
     for (target, reading) in TARGETS.iter().zip(&path.readings).skip(1) {
         assert_eq!(
@@ -76,7 +84,7 @@ fn turned_elsewhere_a_yielding_specimen_comes_back_on_its_own_line() {
             force,
         })
         .to_vec();
-    let path = RecordedPath::new(readings, 1000.0, 0.0, 0.0).unwrap();
+    let path = RecordedPath::new(readings, None, 1000.0, ReadingNoise::default()).unwrap();
     for turned in [0.49, 0.5, 0.51, 0.53] {
         let mut retrace = path.retrace(1);
         for target in [0.21, 0.41, turned] {
@@ -108,7 +116,16 @@ fn noise_makes_no_tangent() {
             force: 1000.0 * target + noise,
         }
     };
-    let path = RecordedPath::new((0..200).map(readings).collect(), 1000.0, 1.0, 0.0).unwrap();
+    let path = RecordedPath::new(
+        (0..200).map(readings).collect(),
+        None,
+        1000.0,
+        ReadingNoise {
+            force: 1.0,
+            resolution: 0.0,
+        },
+    )
+    .unwrap();
     let mut retrace = path.retrace(1);
     for step in 1..200 {
         retrace.move_to(1e-3 * f64::from(step));
@@ -137,7 +154,13 @@ fn recorded(mut model: impl RestoringForce, targets: &[f64]) -> RecordedPath {
         displacement: *target,
         force: model.move_to(*target),
     };
-    RecordedPath::new(targets.iter().map(reading).collect(), 1000.0, 0.0, 0.0).unwrap()
+    RecordedPath::new(
+        targets.iter().map(reading).collect(),
+        None,
+        1000.0,
+        ReadingNoise::default(),
+    )
+    .unwrap()
 }
 
 /// The largest force error of the re-run.
@@ -160,7 +183,13 @@ const STEP: f64 = 2e-3;
 /// yield point is cut by K·step/4 at most. Where a loop closes, two curves may each have such a cut.
 #[test]
 fn elements_side_by_side_are_told_wherever_they_are_turned() {
-    let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
+    let bilinear = || {
+        Bilinear::new(BilinearCurve {
+            stiffness: 1000.0,
+            yield_force: 200.0,
+            post_yield_ratio: 0.1,
+        })
+    };
     let cut = 0.5 * 1000.0 * STEP;
     let path = recorded(bilinear(), &motion(&LOOPS, STEP));
     assert!(path.keeps_masing);
@@ -175,7 +204,13 @@ fn elements_side_by_side_are_told_wherever_they_are_turned() {
 /// The cut is proportional to the step.
 #[test]
 fn finer_steps_cut_less() {
-    let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
+    let bilinear = || {
+        Bilinear::new(BilinearCurve {
+            stiffness: 1000.0,
+            yield_force: 200.0,
+            post_yield_ratio: 0.1,
+        })
+    };
     for step in [7e-3, 1.9e-3, 5.3e-4] {
         let off = worst(
             &recorded(bilinear(), &motion(&LOOPS, step)),
@@ -192,7 +227,13 @@ fn finer_steps_cut_less() {
 /// A loop that is not made is left out. A loop that is made a few steps early or late is matched to the recorded one.
 #[test]
 fn turns_are_its_own() {
-    let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
+    let bilinear = || {
+        Bilinear::new(BilinearCurve {
+            stiffness: 1000.0,
+            yield_force: 200.0,
+            post_yield_ratio: 0.1,
+        })
+    };
     let path = recorded(bilinear(), &motion(&[0.0, 0.4, 0.38, 0.6, 0.5], STEP));
     let straight = motion(&[0.0, 0.61, 0.5], STEP);
     let off = worst(&path, bilinear(), &straight);
@@ -210,7 +251,13 @@ fn turns_are_its_own() {
 /// Unloading where the record never unloaded: with the initial stiffness, and the departure is reported.
 #[test]
 fn a_turn_that_was_not_recorded_is_told() {
-    let bilinear = || Bilinear::new(1000.0, 200.0, 0.1);
+    let bilinear = || {
+        Bilinear::new(BilinearCurve {
+            stiffness: 1000.0,
+            yield_force: 200.0,
+            post_yield_ratio: 0.1,
+        })
+    };
     let path = recorded(bilinear(), &motion(&[0.0, 0.6], STEP));
     let targets = motion(&[0.0, 0.4, 0.35, 0.6], STEP);
     let off = worst(&path, bilinear(), &targets);
@@ -241,7 +288,7 @@ fn a_record_says_whether_it_keeps_masings_rule() {
     let pinching = SpecimenModel::new(&Behaviour::Pinching(Pinching {
         stiffness: 1000.0,
         yield_force: 200.0,
-        hardening: 0.05,
+        post_yield_ratio: 0.05,
         force_factor: 0.4,
         displacement_factor: 0.5,
         unloading_exponent: 0.0,
@@ -249,7 +296,15 @@ fn a_record_says_whether_it_keeps_masings_rule() {
         deterioration: None,
     }));
     let bouc_wen = |sharpness, beta| {
-        SpecimenModel::BoucWen(Box::new(BoucWen::new(1000.0, 200.0, 0.1, sharpness, beta)))
+        SpecimenModel::BoucWen(Box::new(BoucWen::new(
+            BilinearCurve {
+                stiffness: 1000.0,
+                yield_force: 200.0,
+                post_yield_ratio: 0.1,
+            },
+            sharpness,
+            beta,
+        )))
     };
     let specimens = [
         (
@@ -257,7 +312,11 @@ fn a_record_says_whether_it_keeps_masings_rule() {
             true,
         ),
         (
-            SpecimenModel::Bilinear(Bilinear::new(1000.0, 200.0, 0.1)),
+            SpecimenModel::Bilinear(Bilinear::new(BilinearCurve {
+                stiffness: 1000.0,
+                yield_force: 200.0,
+                post_yield_ratio: 0.1,
+            })),
             true,
         ),
         (
@@ -269,7 +328,11 @@ fn a_record_says_whether_it_keeps_masings_rule() {
             true,
         ),
         (
-            SpecimenModel::Degrading(Box::new(Degrading::new(1000.0, 0.2, 0.0))),
+            SpecimenModel::Degrading(Box::new(Degrading::new(DegradingCurve {
+                stiffness: 1000.0,
+                half_displacement: 0.2,
+                residual: 0.0,
+            }))),
             false,
         ),
         (bouc_wen(1.0, 0.5), false),

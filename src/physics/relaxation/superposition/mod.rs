@@ -21,7 +21,7 @@ mod tests;
 use super::hold::{Hold, Unrelaxed};
 use super::law::RelaxationLaw;
 use crate::identification::StatedVariance;
-use crate::statistics::least_squares::corrected_bic;
+use crate::statistics::least_squares::FitSize;
 use history::{ForceHistory, Move};
 use model::Superposition;
 
@@ -65,16 +65,6 @@ pub struct SuperpositionFit {
 }
 
 impl SuperpositionFit {
-    /// Results whose uncertainty has the degrees of freedom of its scatter.
-    pub const RESULTS: [&str; 6] = [
-        "time_constant",
-        "remaining_relaxation",
-        "needed_pause",
-        "relaxation_share",
-        "reference_time",
-        "relaxation_rate",
-    ];
-
     /// The law with the smallest criterion.
     #[must_use]
     pub fn best(&self) -> &LawFit {
@@ -105,7 +95,7 @@ impl LawFit {
             moves: &self.moves,
             before: self.before,
         };
-        let lost = |since, moved_for| self.law.lost(since, moved_for, self.time.0);
+        let lost = |since, moved_for| self.law.timed(self.time.0).lost(since, moved_for);
         self.reached
             .get(hold)
             .map(|reached| reached - self.share.0 * history.superposed(hold, seconds, lost))
@@ -164,7 +154,13 @@ pub fn fit_superposition_stated(
     fits.sort_by(|a, b| a.criterion.total_cmp(&b.criterion));
     let best = fits.first().ok_or(Unrelaxed::Steady)?;
     let steady = problem.floored(holds[..used].iter().map(Hold::squares_about_mean).sum());
-    if best.criterion >= corrected_bic(steady, problem.count, steady_parameters) {
+    let of_steady = FitSize {
+        squares: steady,
+        count: problem.count,
+        parameters: steady_parameters,
+    }
+    .corrected_bic();
+    if best.criterion >= of_steady {
         return Err(Unrelaxed::Steady);
     }
     if !best.resolved {

@@ -9,7 +9,7 @@ use crate::identification::StatedVariance;
 use crate::relaxation::hold::{Extent, Hold, geometric};
 use crate::relaxation::law::RelaxationLaw;
 use crate::statistics::least_squares::{
-    Covariance, Residuals, central_jacobian, corrected_bic, minimize,
+    Covariance, FitSize, Residuals, central_jacobian, minimize,
 };
 
 /// Times tried first, over the range that the readings resolve.
@@ -145,9 +145,10 @@ impl<'a> Superposition<'a> {
                 read_from,
             } = self.moves[index];
             let row = |(seconds, force): &(f64, f64)| {
-                let lost = law.lost(read_from - ended + seconds, took, time);
-                let earlier =
-                    history.superposed(index, *seconds, |since, took| law.lost(since, took, time));
+                let lost = law.timed(time).lost(read_from - ended + seconds, took);
+                let earlier = history.superposed(index, *seconds, |since, took| {
+                    law.timed(time).lost(since, took)
+                });
                 (1.0 - share * lost, force + share * (earlier - lost * last))
             };
             let rows: Vec<(f64, f64)> = hold.readings.iter().map(row).collect();
@@ -187,7 +188,7 @@ impl<'a> Superposition<'a> {
     /// Least squares over share and time; None if the readings do not determine them separately.
     pub fn fit(&self, law: RelaxationLaw) -> Option<LawFit> {
         let (low, high) = self.extent.resolvable();
-        let (start, _) = geometric((low, high), TRIED)
+        let (start, _) = geometric(low, high, TRIED)
             .map(|time| self.share_at(law, time))
             .min_by(|a, b| a.1.total_cmp(&b.1))?;
         let model = LawModel { problem: self, law };
@@ -244,7 +245,7 @@ impl<'a> Superposition<'a> {
         };
         let remaining = |relaxation: Relaxation| {
             let reached = self.solve(law, relaxation).reached;
-            let left = |since, took| 1.0 - law.lost(since, took, relaxation.time);
+            let left = |since, took| 1.0 - law.timed(relaxation.time).lost(since, took);
             let history = self.history(&reached);
             (relaxation.share * history.superposed(worst, duration, left)).abs()
         };
@@ -259,7 +260,12 @@ impl<'a> Superposition<'a> {
             required_pause: known(&required_pause),
             scatter: variance.sqrt(),
             degrees,
-            criterion: corrected_bic(self.floored(squares), self.count, parameters),
+            criterion: FitSize {
+                squares: self.floored(squares),
+                count: self.count,
+                parameters,
+            }
+            .corrected_bic(),
             resolved,
             shown,
             moves: self.moves.clone(),
@@ -277,7 +283,7 @@ impl<'a> Superposition<'a> {
         hold: usize,
         seconds: f64,
     ) -> f64 {
-        let rate = |since, took| law.rate(since, took, time);
+        let rate = |since, took| law.timed(time).rate(since, took);
         (share * self.history(reached).superposed(hold, seconds, rate)).abs()
     }
 }

@@ -5,7 +5,7 @@ use super::{LawFit, SuperpositionFit, fit_superposition};
 use crate::relaxation::hold::{Hold, Unrelaxed};
 use crate::relaxation::law::RelaxationLaw;
 use crate::relaxation::law::RelaxationLaw::{Exponential, Logarithmic};
-use crate::statistics::least_squares::corrected_bic;
+use crate::statistics::least_squares::FitSize;
 use crate::statistics::testing::normal;
 
 /// N/s, at the end of a pause.
@@ -327,6 +327,24 @@ fn a_steady_force_has_no_law() {
 #[test]
 fn the_criterion_is_the_closed_form() {
     let by_hand = 20.0 * f64::ln(5.0 / 20.0) + 3.0 * f64::ln(20.0) * 20.0 / 15.0;
-    assert!((corrected_bic(5.0, 20.0, 3.0) - by_hand).abs() < 1e-12);
-    assert_eq!(corrected_bic(5.0, 5.0, 3.0), f64::INFINITY);
+    assert!(
+        (FitSize {
+            squares: 5.0,
+            count: 20.0,
+            parameters: 3.0
+        }
+        .corrected_bic()
+            - by_hand)
+            .abs()
+            < 1e-12
+    );
+    assert_eq!(
+        FitSize {
+            squares: 5.0,
+            count: 5.0,
+            parameters: 3.0
+        }
+        .corrected_bic(),
+        f64::INFINITY
+    );
 }

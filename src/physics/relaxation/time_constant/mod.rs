@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::hold::{Extent, Hold, Unrelaxed, geometric};
 use crate::identification::StatedVariance;
-use crate::statistics::least_squares::{Residuals, bic, minimize};
+use crate::statistics::least_squares::{FitSize, Residuals, minimize};
 use exponential::Exponential;
 use standard_linear_solid::StandardLinearSolid;
 
@@ -266,7 +266,7 @@ fn fit<M: TimeConstantModel>(
         forces: &forces,
     };
     let (low, high) = extent.resolvable();
-    let (tau, squares) = geometric((low, high), TRIED)
+    let (tau, squares) = geometric(low, high, TRIED)
         .map(|tau| (tau, over_tau.squares(tau)))
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .ok_or(Unrelaxed::TooFew)?;
@@ -276,9 +276,15 @@ fn fit<M: TimeConstantModel>(
             .max(count * (ROUNDING * extent.largest_force).powi(2))
             .max(count * f64::MIN_POSITIVE)
     };
-    if bic(floored(steady.squares), count, steady.parameters)
-        <= bic(floored(squares), count, parameters)
-    {
+    let criterion = |squares, parameters| {
+        FitSize {
+            squares: floored(squares),
+            count,
+            parameters,
+        }
+        .bic()
+    };
+    if criterion(steady.squares, steady.parameters) <= criterion(squares, parameters) {
         return Err(Unrelaxed::Steady);
     }
     let tau = minimize(&over_tau, DVector::from_element(1, tau.ln()))
@@ -333,7 +339,8 @@ fn described<M: TimeConstantModel>(
 }
 
 /// |A| e^(−t/τ) after `seconds` \[N\], with its standard error by those of A and τ and their covariance.
-fn remaining(amplitude: Amplitude, (tau, tau_error): (f64, f64), seconds: f64) -> (f64, f64) {
+fn remaining(amplitude: Amplitude, time_constant: (f64, f64), seconds: f64) -> (f64, f64) {
+    let (tau, tau_error) = time_constant;
     let fall = (-seconds / tau).exp();
     let by_tau = amplitude.force * fall * seconds / (tau * tau);
     let variance = (fall * amplitude.error).powi(2)

@@ -4,14 +4,12 @@
 
 mod band;
 mod factor;
+mod tridiagonal;
 
 use std::fmt::Debug;
 
 pub use band::{RowsError, SymmetricBand};
 pub use factor::{BandFactor, NotPositiveDefinite};
-
-use crate::integrator::tangents::{FollowedTangents, StoreyTangent, StoreyTangents};
-use crate::integrator::tridiagonal;
 
 /// One quantity of every degree of freedom.
 pub trait Vector: Clone + Debug + Default + PartialEq {
@@ -20,7 +18,6 @@ pub trait Vector: Clone + Debug + Default + PartialEq {
     type View<'a>: Copy + Debug
     where
         Self: 'a;
-    type Tangents: FollowedTangents<Vector = Self>;
 
     #[must_use]
     fn zero(order: usize) -> Self;
@@ -170,7 +167,6 @@ pub struct Pivot(f64);
 impl Vector for f64 {
     type Matrix = f64;
     type View<'a> = f64;
-    type Tangents = StoreyTangent;
 
     #[inline]
     fn zero(_: usize) -> Self {
@@ -330,7 +326,6 @@ impl Factor for Pivot {
 impl Vector for Vec<f64> {
     type Matrix = SymmetricBand;
     type View<'a> = &'a [f64];
-    type Tangents = StoreyTangents;
 
     fn zero(order: usize) -> Self {
         vec![0.0; order]

@@ -1,24 +1,8 @@
 //! The mass that moves with a portal: its members and their masses, reduced to the displacement on which the load does work. In: a portal
 //! with stated masses. Out: its equivalent masses, from its deflected shapes. It does not determine the load or the yielding.
 
-use super::super::beam::partly_built_in_mass_factor;
+use crate::structure::beam::{EquivalentMasses, partly_built_in_mass_factor};
 use crate::structure::portal::{Mechanism, Portal, Sections, elastic_stiffnesses};
-
-/// Masses of the equivalent single degree of freedom of a beam or portal \[kg\]. They have the same kinetic energy: M = ∫m φ² ds, with a
-/// shape φ that is 1 where the load does work. The load then needs no factor.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EquivalentMasses {
-    /// φ is the elastic deflection under the static load: before any hinge forms.
-    pub elastic: f64,
-    /// φ is the shape of the governing mechanism with rigid links between the hinges: after the last hinge formed. None without a
-    /// mechanism.
-    pub plastic: Option<f64>,
-    /// Half of each member at either end (for the beam: half at midspan and half at the corners), moved elastically: Melo et al. 2006,
-    /// Fig. 5. There a swaying frame has the mass of its beam and of one column, and a beam half its own.
-    pub lumped: f64,
-    /// The total mass that moves or bends.
-    pub whole: f64,
-}
 
 /// Displacements of midspan (δ) and of the beam's level (Δ) for a unit displacement of the load.
 #[derive(Clone, Copy, Debug, PartialEq)]

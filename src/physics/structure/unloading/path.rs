@@ -9,6 +9,7 @@
 use super::super::shear_building::{drifts, shears};
 use super::{BELIEVED, Loaded, Unloading};
 use crate::integrator::tangent::NOISE_MULTIPLE;
+use crate::statistics::ReadingNoise;
 
 /// Part of the load that the first move removes, by the expected slope: the unloading branch may be this much stiffer.
 const FIRST: f64 = 1.0 / BELIEVED;
@@ -52,7 +53,11 @@ struct Part {
 impl UnloadingPath {
     /// `force` \[N\] and `displacement` \[m\]: standard deviations of a reading of one floor.
     #[must_use]
-    pub fn new(unloading: Unloading, (force, displacement): (f64, f64), at: Loaded<'_>) -> Self {
+    pub fn new(unloading: Unloading, noise: ReadingNoise, at: Loaded<'_>) -> Self {
+        let ReadingNoise {
+            force,
+            resolution: displacement,
+        } = noise;
         let part = |expected: f64, told_from: (f64, f64), noise: (f64, f64)| Part {
             expected,
             slope: expected,
@@ -249,7 +254,7 @@ mod tests {
         let (x, r) = read(&at);
         let mut path = UnloadingPath::new(
             Unloading::of_one(expected),
-            (0.0, 0.0),
+            ReadingNoise::default(),
             Loaded {
                 displacement: &x,
                 force: &r,
@@ -344,7 +349,11 @@ mod tests {
                 displacement: &displacements,
                 force: &start,
             };
-            let mut path = UnloadingPath::new(Unloading::of(&expected).unwrap(), (0.0, 0.0), at);
+            let mut path = UnloadingPath::new(
+                Unloading::of(&expected).unwrap(),
+                ReadingNoise::default(),
+                at,
+            );
             for _ in 0..12 {
                 let force = force_at(&displacements);
                 if largest(&force) < 1e-9 {
@@ -379,11 +388,21 @@ mod tests {
             displacement: &[0.02],
             force: &[15.0],
         };
-        let path = UnloadingPath::new(Unloading::of_one(1000.0), (1.0, 0.0), at);
+        let path = UnloadingPath::new(
+            Unloading::of_one(1000.0),
+            ReadingNoise {
+                force: 1.0,
+                resolution: 0.0,
+            },
+            at,
+        );
         assert_eq!(path.moves(&[15.0]), [-0.015]);
         let mut loaded = UnloadingPath::new(
             Unloading::of_one(1000.0),
-            (1.0, 0.0),
+            ReadingNoise {
+                force: 1.0,
+                resolution: 0.0,
+            },
             Loaded {
                 force: &[400.0],
                 ..at

@@ -41,7 +41,7 @@ fn a_calibration_reaches_the_loops_by_its_powers() {
     let behaviour = Behaviour::Bilinear {
         stiffness: STIFFNESS,
         yield_force: 10.0,
-        hardening: 0.1,
+        post_yield_ratio: 0.1,
     };
     let calibration = Calibration {
         force_uncertainty: 0.01,
@@ -88,7 +88,7 @@ fn the_lists_are_as_uncertain_as_the_numbers() {
     let behaviour = Behaviour::Bilinear {
         stiffness: STIFFNESS,
         yield_force: 10.0,
-        hardening: 0.1,
+        post_yield_ratio: 0.1,
     };
     let calibration = Calibration {
         force_uncertainty: 0.01,
@@ -275,7 +275,7 @@ fn largest_and_smallest_of_noisy_cycles_are_those_of_the_force() {
         let behaviour = Behaviour::Bilinear {
             stiffness: STIFFNESS,
             yield_force: 10.0,
-            hardening: 0.0,
+            post_yield_ratio: 0.0,
         };
         let link = VirtualLink {
             noise: 0.3,

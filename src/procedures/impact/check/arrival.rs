@@ -5,6 +5,8 @@ use crate::language::check::checker::Checker;
 use crate::language::check::messages::whole as fault;
 use crate::plan::Striker;
 use crate::schema::Kind;
+use crate::schema::methods;
+use crate::schema::striker;
 
 /// The time in which a striker crosses its gap, s: t of gap = v t + g t²/2.
 fn time_to_arrive(striker: &Striker) -> f64 {
@@ -19,21 +21,21 @@ pub(crate) fn check(checker: &mut Checker, block: usize, striker: &Striker, dura
     let Some(duration) = duration.filter(|duration| arrives >= *duration) else {
         return;
     };
-    let Some((_, at)) = checker.field(block, "duration") else {
+    let Some((_, at)) = checker.field(block, methods::DURATION.name) else {
         return;
     };
     let declared = checker
         .scope
         .of_kind(Kind::Striker)
         .find(|(_, it)| it.name.is_some_and(|name| name.node == striker.name));
-    let gap = declared.and_then(|(declared, _)| checker.field(declared, "gap"));
+    let gap = declared.and_then(|(declared, _)| checker.field(declared, striker::GAP.name));
     let Some((_, gap)) = gap else { return };
     checker.diagnostics.push(fault::never_arrives(
         &striker.name,
         striker.gap,
+        gap.span,
         arrives,
         duration,
-        gap.span,
         at.span,
     ));
 }

@@ -12,9 +12,12 @@ use crate::plan::{
     Contact, Frame, Impact, ImpactTarget, MOST_STEPS, PointTarget, Specimen, StoreyTarget, Striker,
     Until, steps_in,
 };
-use crate::procedures::stepping;
-use crate::procedures::stepping::check::{FrameSteps, beyond_duration};
-use crate::procedures::stepping::{integrator_check, mode_check};
+use crate::procedures::stepping::check::beyond_duration;
+use crate::procedures::stepping::check::frame_check;
+use crate::procedures::stepping::check::frame_check::FrameSteps;
+use crate::procedures::stepping::check::{integrator_check, mode_check};
+use crate::schema::methods;
+use crate::schema::procedures::impact as schema;
 use crate::text::diagnostic::Code;
 
 /// The slowest striker must arrive, the time step must follow the fastest.
@@ -69,10 +72,10 @@ fn on_point(
     {
         let head = checker.scope.blocks[block].block.head;
         let at = checker
-            .field(block, "duration")
+            .field(block, methods::DURATION.name)
             .map_or(head, |(_, entry)| entry.value.span);
         let steps = steps_in(duration, time_step);
-        let help = "shorten `duration` or take a longer `time_step`";
+        let help = "reduce `duration` or increase `time_step`";
         checker
             .diagnostics
             .push(values::too_many("steps", steps, MOST_STEPS, at, help));
@@ -112,7 +115,7 @@ fn on_storey(
         let approach = impact.contact.approach(striker, Formula::constant);
         approach.map(|approach| properties.critical_on_impact(target.storey, &approach))
     };
-    let Some((properties, step)) = stepping::check::judge(checker, block, &steps, critical) else {
+    let Some((properties, step)) = frame_check::judge(checker, block, &steps, critical) else {
         return;
     };
     if let Contact::Limit { force } = &impact.contact
@@ -120,12 +123,12 @@ fn on_storey(
     {
         let head = checker.scope.blocks[block].block.head;
         let at = checker
-            .field(block, "time_step")
+            .field(block, methods::TIME_STEP.name)
             .map_or(head, |(_, entry)| entry.value.span);
         warnings::limit_force(
             checker,
-            at,
             step,
+            at,
             properties.struck_mass(target.storey),
             force,
             striker,
@@ -135,16 +138,17 @@ fn on_storey(
 
 /// Warns of a run that waits until the striker has finally separated: a falling striker always returns.
 fn returns(checker: &mut Checker, block: usize, until: Until, striker: &Striker) {
-    if let (Until::Rebound, true, Some((_, entry))) =
-        (until, striker.gravity > 0.0, checker.field(block, "until"))
-    {
-        let message =
-            "a striker that falls always comes back: `rebound` never ends this run".to_owned();
-        let help = "write `until = striker_stop` or `until = duration`, or leave `gravity` out";
+    if let (Until::Rebound, true, Some((_, entry))) = (
+        until,
+        striker.gravity > 0.0,
+        checker.field(block, schema::UNTIL.name),
+    ) {
+        let message = "`rebound` never ends this run: a falling striker always returns".to_owned();
+        let help = "write `until = striker_stop` or `until = duration`, or remove `gravity`";
         checker.diagnostics.push(values::no_effect(
             message,
             entry.value.span,
-            "goes on to its `duration`",
+            "continues to its `duration`",
             help,
         ));
     }

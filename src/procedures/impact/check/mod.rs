@@ -10,8 +10,10 @@ use crate::language::check::checker::Checker;
 use crate::language::check::declarations::specimen::frame;
 use crate::plan::{Contact, Impact, ProcedureKind, Until};
 use crate::procedures::stepping;
-use crate::procedures::stepping::integrator_check;
+use crate::procedures::stepping::check::integrator_check;
 use crate::schema::Kind;
+use crate::schema::methods;
+use crate::schema::procedures::impact as schema;
 
 /// The time step of an impact that names none: the critical one over this.
 const FINER: f64 = 20.0;
@@ -23,7 +25,7 @@ pub(crate) fn impact(checker: &mut Checker, block: usize) -> Option<ProcedureKin
 /// The impact that the fields of a block specify.
 pub(crate) fn fields(checker: &mut Checker, block: usize) -> Option<Impact> {
     let struck_frame = frame::struck_frame(checker, block);
-    let striker = checker.reference(block, "striker", Kind::Striker);
+    let striker = checker.reference(block, schema::STRIKER.name, Kind::Striker);
     let specimen = checker.specimen_block(block);
     let target = match &struck_frame {
         Some((frame_block, frame)) => target::storey(checker, block, *frame_block, frame.as_ref()),
@@ -31,7 +33,7 @@ pub(crate) fn fields(checker: &mut Checker, block: usize) -> Option<Impact> {
     };
     let contact = contact(checker, block);
     let stepping = stepping::check::stepping(checker, block, contact.as_ref(), FINER);
-    let duration = checker.quantity(block, "duration");
+    let duration = checker.quantity(block, methods::DURATION.name);
     let until = until(checker, block);
     let impact = Impact {
         specimen: checker.scope.index_in_kind(specimen?),
@@ -52,31 +54,35 @@ pub(crate) fn fields(checker: &mut Checker, block: usize) -> Option<Impact> {
 }
 
 fn until(checker: &mut Checker, block: usize) -> Option<Until> {
-    Some(match checker.word(block, "until", "striker_stop")? {
-        "duration" => Until::Duration,
-        "rebound" => Until::Rebound,
-        _ => Until::StrikerStop,
-    })
+    Some(
+        match checker.word(block, schema::UNTIL.name, "striker_stop")? {
+            "duration" => Until::Duration,
+            "rebound" => Until::Rebound,
+            _ => Until::StrikerStop,
+        },
+    )
 }
 
 fn contact(checker: &mut Checker, block: usize) -> Option<Contact> {
-    let Some((entry, _)) = checker.field(block, "contact") else {
+    let Some((entry, _)) = checker.field(block, schema::CONTACT.name) else {
         return Some(Contact::Rigid);
     };
     let place = checker.context_of(block, entry);
-    let chosen = checker.choice(block, "contact")?;
+    let chosen = checker.choice(block, schema::CONTACT.name)?;
     Some(match chosen.variant.name {
         "limit" => Contact::Limit {
-            force: checker.argument(&chosen, "force", place)?,
+            force: checker.argument(&chosen, schema::LIMIT_FORCE.name, place)?,
         },
         "restitution" => Contact::Restitution {
-            coefficient: checker.argument(&chosen, "coefficient", place)?,
+            coefficient: checker.argument(&chosen, schema::COEFFICIENT.name, place)?,
         },
         "hertz" => {
-            let stiffness = checker.argument(&chosen, "stiffness", place);
-            let loss = checker.argument(&chosen, "loss", place);
-            let force_limit = match chosen.find("force_limit") {
-                Some((_, Some(_))) => checker.argument(&chosen, "force_limit", place).map(Some),
+            let stiffness = checker.argument(&chosen, schema::HERTZ_STIFFNESS.name, place);
+            let loss = checker.argument(&chosen, schema::LOSS.name, place);
+            let force_limit = match chosen.find(schema::FORCE_LIMIT.name) {
+                Some((_, Some(_))) => checker
+                    .argument(&chosen, schema::FORCE_LIMIT.name, place)
+                    .map(Some),
                 _ => Some(None),
             };
             Contact::Hertz {

@@ -1,6 +1,8 @@
 //! The structure that a striker hits: the fields of one degree of freedom, or of one floor of a frame. In: a block. Out: the target, or
 //! errors if a field belongs to the other one.
 
+use crate::schema::frames;
+use crate::schema::procedures::{STIFFNESS, impact};
 use std::rc::Rc;
 
 use crate::language::check::checker::Checker;
@@ -19,18 +21,18 @@ pub(crate) fn point(
 ) -> Option<ImpactTarget> {
     let head = checker.scope.blocks[block].block.head;
     let fields_of_a_frame = no_frame(checker, block, tested);
-    let mass = match checker.field(block, "mass") {
-        Some(_) => checker.quantity(block, "mass"),
+    let mass = match checker.field(block, impact::MASS.name) {
+        Some(_) => checker.quantity(block, impact::MASS.name),
         None => tested
-            .and_then(|tested| specimen::export(checker, tested, "mass", head))
+            .and_then(|tested| specimen::export(checker, tested, impact::MASS.name, head))
             .map(Formula::Constant),
     };
-    let mass_uncertainty = match checker.field(block, "mass") {
+    let mass_uncertainty = match checker.field(block, impact::MASS.name) {
         Some(_) => Some(0.0),
         None => tested.and_then(|tested| specimen::mass_uncertainty(checker, tested)),
     };
     let stiffness = checker.stiffness_or_specimens(block, tested);
-    let damping = checker.quantity(block, "damping");
+    let damping = checker.quantity(block, impact::DAMPING.name);
     fields_of_a_frame?;
     Some(ImpactTarget::Point(PointTarget {
         mass: mass?,
@@ -50,16 +52,16 @@ pub(crate) fn storey(
     let storey = struck_storey(checker, block, tested, frame);
     let own = [
         (
-            "mass",
-            "remove it: the storeys of the frame have masses of their own",
+            impact::MASS.name,
+            "remove it: the storeys of the frame have masses",
         ),
         (
-            "stiffness",
-            "remove it: the storeys of the frame have stiffnesses of their own",
+            STIFFNESS.name,
+            "remove it: the storeys of the frame have stiffnesses",
         ),
         (
-            "damping",
-            "write `damping_ratio = 2 %`: damping of the frame's modes",
+            impact::DAMPING.name,
+            "write `damping_ratio = 2 %`: modal damping of the frame",
         ),
     ];
     let mut foreign = false;
@@ -104,11 +106,11 @@ fn struck_storey(
         tested.block.head,
     );
     let storeys = frame.map(|frame| frame.degrees_of_freedom());
-    let Some((_, entry)) = checker.field(block, "storey") else {
+    let Some((_, entry)) = checker.field(block, impact::STOREY.name) else {
         return checker.fail(fault::which_storey(name, storeys?, head, declared));
     };
     let at = entry.value.span;
-    let storey = whole(checker.constant(block, "storey")?)?;
+    let storey = whole(checker.constant(block, impact::STOREY.name)?)?;
     let storey = usize::try_from(storey).ok()?;
     if storey > storeys? {
         return checker.fail(fault::no_such_storey(name, storeys?, at, declared));
@@ -120,9 +122,9 @@ fn struck_storey(
 fn no_frame(checker: &mut Checker, block: usize, specimen: Option<usize>) -> Option<()> {
     let mut sound = Some(());
     let hints = [
-        ("damping_ratio", "write `damping = 50 N*s/m`"),
+        (frames::DAMPING_RATIO.name, "write `damping = 50 N*s/m`"),
         (
-            "damping_ratio_uncertainty",
+            frames::DAMPING_UNCERTAINTY.name,
             "remove it: the modes of a frame have damping ratios",
         ),
     ];
@@ -132,7 +134,9 @@ fn no_frame(checker: &mut Checker, block: usize, specimen: Option<usize>) -> Opt
             sound = checker.fail(fault::of_a_frame_only(field, at, hint));
         }
     }
-    if let (Some((_, entry)), Some(specimen)) = (checker.field(block, "storey"), specimen) {
+    if let (Some((_, entry)), Some(specimen)) =
+        (checker.field(block, impact::STOREY.name), specimen)
+    {
         let (at, tested) = (entry.key.span, &checker.scope.blocks[specimen]);
         let (name, declared) = (
             tested.name.map_or("", |name| name.node.as_str()),

@@ -7,6 +7,8 @@ use crate::language::check::messages::{specimens, whole as fault};
 use crate::physics::structure::portal::limit::mechanism_limit;
 use crate::plan::formula::NoResults;
 use crate::plan::{Behaviour, Contact, Impact, Specimen, Striker};
+use crate::schema::methods;
+use crate::schema::procedures::impact as schema;
 use crate::text::source::Span;
 
 /// Warns of a time step above eq. 7, unless it is beyond the stability limit already, and above the one that a limit force needs.
@@ -20,7 +22,7 @@ pub(crate) fn time_step(
 ) {
     let head = checker.scope.blocks[block].block.head;
     let at = checker
-        .field(block, "time_step")
+        .field(block, methods::TIME_STEP.name)
         .map_or(head, |(_, entry)| entry.value.span);
     let critical = predicted_critical(checker, impact, striker, specimen);
     if let Some((critical, predicted)) = critical
@@ -45,7 +47,7 @@ pub(crate) fn time_step(
     if let (Contact::Limit { force }, Some(mass)) = (&impact.contact, mass)
         && let Some(force) = force.constant()
     {
-        limit_force(checker, at, step, mass, force, striker);
+        limit_force(checker, step, at, mass, force, striker);
     }
 }
 
@@ -68,7 +70,7 @@ pub(crate) fn mechanism(
         .and_then(|specimen| specimen.behaviour.as_ref())
         .and_then(Behaviour::portal);
     if let (Some(force), Some(portal), Some((_, entry))) =
-        (bound, portal, checker.field(block, "contact"))
+        (bound, portal, checker.field(block, schema::CONTACT.name))
         && let Some(most) = mechanism_limit(portal).filter(|most| force > *most)
     {
         checker.diagnostics.push(specimens::beyond_mechanism(
@@ -84,8 +86,8 @@ pub(crate) fn mechanism(
 /// Δt ≤ μV0/(5F_lim) with μ = M·Ms/(M + Ms).
 pub(crate) fn limit_force(
     checker: &mut Checker,
-    at: Span,
     step: f64,
+    at: Span,
     mass: f64,
     force: f64,
     striker: &Striker,
@@ -96,6 +98,6 @@ pub(crate) fn limit_force(
     if step > resolved {
         checker
             .diagnostics
-            .push(fault::limit_force_not_resolved(at, step, first, resolved));
+            .push(fault::limit_force_not_resolved(step, at, first, resolved));
     }
 }

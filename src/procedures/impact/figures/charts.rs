@@ -6,7 +6,7 @@ use crate::procedures::stepping::energy::{EnergyCurve, nonzero_curves};
 use crate::record::{ImpactHistory, ImpactStep, StepState};
 use crate::report::Run;
 use crate::report::figures::chart::{
-    Band, Chart, DASH_DOT, DASHED, DOTTED, LONG, Quantity, Reference, SOLID, Series, Style, palette,
+    Band, Chart, DASHED, DOTTED, Quantity, Reference, SOLID, Series, Style, palette,
 };
 use crate::units::Dimension;
 
@@ -154,7 +154,7 @@ pub(crate) fn energy_of_contact(run: &Run<'_>, procedure: ProcedureId) -> &'stat
         .get(procedure.0)
         .map(|procedure| &procedure.kind)
     else {
-        return "taken by the contact";
+        return "transferred in contact";
     };
     match &impact.contact {
         Contact::Hertz {
@@ -171,31 +171,22 @@ pub(crate) fn energy_of_contact(run: &Run<'_>, procedure: ProcedureId) -> &'stat
 
 /// The parts of the balance and their total; a part that is 0 throughout is not drawn.
 pub(crate) fn energy(history: &ImpactHistory, contact: &'static str) -> Chart {
-    let curve = |label, read: fn(&ImpactStep) -> f64, style| EnergyCurve { label, read, style };
     let parts = [
-        curve(
+        EnergyCurve::new(
             "striker",
-            |step| step.energies.striker,
+            |step: &ImpactStep| step.energies.striker,
             Style::line(palette::VERMILION, 2.0, DASHED),
         ),
-        curve(
+        EnergyCurve::new(
             "structure",
-            |step| step.energies.structure,
+            |step: &ImpactStep| step.energies.structure,
             Style::line(palette::SKY, 1.6, SOLID),
         ),
-        curve(
-            "restoring",
-            |step| step.energies.restoring,
-            Style::line(palette::BLUE, 2.0, LONG),
-        ),
-        curve(
-            "damping",
-            |step| step.energies.damping,
-            Style::line(palette::PURPLE, 2.0, DASH_DOT),
-        ),
-        curve(
+        EnergyCurve::restoring(|step: &ImpactStep| step.energies.restoring),
+        EnergyCurve::damping(|step: &ImpactStep| step.energies.damping),
+        EnergyCurve::new(
             contact,
-            |step| step.energies.contact_loss,
+            |step: &ImpactStep| step.energies.contact_loss,
             Style::line(palette::GREEN, 2.2, DOTTED),
         ),
     ];

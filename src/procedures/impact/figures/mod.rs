@@ -4,7 +4,7 @@ pub(crate) mod charts;
 pub(crate) mod storey;
 
 use crate::plan::{Figure, FigureKind};
-use crate::procedures::limit_lines::limits_on;
+use crate::procedures::common::limit_lines::limits_on;
 use crate::record::ImpactHistory;
 use crate::report::Run;
 use crate::report::figures::chart::{Chart, Quantity, SharedCurve};
@@ -66,23 +66,25 @@ pub(crate) fn chart(
                 &limits_on(run, figure.procedure, schema::MAX_DISPLACEMENT),
             ),
             format!(
-                "{name}: displacement of the structure and of the striker against virtual time."
+                "{name}: displacement of the structure and of the striker against simulated time."
             ),
         ),
         FigureKind::Velocity => (
             charts::velocity(history),
-            format!("{name}: velocity of the structure and of the striker against virtual time."),
+            format!("{name}: velocity of the structure and of the striker against simulated time."),
         ),
         FigureKind::StrikerVelocity => (
             charts::striker_velocity(history),
-            format!("{name}: velocity of the striker against virtual time; each fall is a blow."),
+            format!(
+                "{name}: velocity of the striker against simulated time; each drop is a contact event."
+            ),
         ),
         FigureKind::ContactForce => (
             charts::contact_force(
                 history,
                 &limits_on(run, figure.procedure, schema::MAX_CONTACT_FORCE),
             ),
-            format!("{name}: contact force, mean over each step, against virtual time."),
+            format!("{name}: contact force, mean over each step, against simulated time."),
         ),
         FigureKind::ForceDisplacement => (
             charts::force_displacement(history),
@@ -93,7 +95,7 @@ pub(crate) fn chart(
         FigureKind::Energy => (
             charts::energy(history, charts::energy_of_contact(run, figure.procedure)),
             format!(
-                "{name}: where the energy of the striker went; the total of the parts stays level where the balance closes."
+                "{name}: parts of the striker's energy; their total stays level if the energy balance closes."
             ),
         ),
         FigureKind::Tracking => (
@@ -103,10 +105,11 @@ pub(crate) fn chart(
                 .iter()
                 .all(|step| step.displacement == step.command)
             {
-                format!("{name}: what the actuator missed of its commands: nothing.")
+                format!("{name}: tracking error of the actuator: zero.")
             } else {
                 format!(
-                    "{name}: what the actuator missed of its commands, and the tracking indicator over the largest command; an indicator that falls says that the lag feeds energy into the test."
+                    "{name}: tracking error of the actuator, and the tracking indicator over the largest command; a \
+                     falling indicator shows that lag adds energy to the test."
                 )
             },
         ),
@@ -125,19 +128,19 @@ pub(crate) fn shared(kind: FigureKind, history: &ImpactHistory) -> Option<Shared
     let ((x, y), caption) = match kind {
         FigureKind::Displacement => (
             over_time("Displacement X", length),
-            "displacement of the structure against virtual time",
+            "displacement of the structure against simulated time",
         ),
         FigureKind::Velocity => (
             over_time("Velocity of the structure", velocity),
-            "velocity of the structure against virtual time",
+            "velocity of the structure against simulated time",
         ),
         FigureKind::StrikerVelocity => (
             over_time("Striker velocity", velocity),
-            "velocity of the striker against virtual time",
+            "velocity of the striker against simulated time",
         ),
         FigureKind::ContactForce => (
             over_time("Contact force", force),
-            "contact force, mean over each step, against virtual time",
+            "contact force, mean over each step, against simulated time",
         ),
         FigureKind::ForceDisplacement => (
             (

@@ -4,7 +4,7 @@
 use super::charts;
 use crate::plan::{Figure, FigureKind};
 use crate::procedures::base_excitation;
-use crate::procedures::limit_lines::limits_on;
+use crate::procedures::common::limit_lines::limits_on;
 use crate::record::{ImpactHistory, StruckFrame};
 use crate::report::Run;
 use crate::report::figures::chart::{Chart, DASHED, Quantity, SOLID, Series, Style, palette};
@@ -25,7 +25,7 @@ pub(crate) fn chart(
     }
     let limits = |result: ResultKind| limits_on(run, figure.procedure, result);
     let chosen = if base_excitation::figures::is_chosen(&frame.floors) {
-        "; not every one is drawn"
+        "; not all are drawn"
     } else {
         ""
     };
@@ -33,9 +33,7 @@ pub(crate) fn chart(
     Some(match figure.kind {
         FigureKind::Modes => (
             base_excitation::figures::modes(frame.modes.as_ref()?),
-            format!(
-                "{name}: shapes of the natural modes and their periods, floor by floor from the ground up."
-            ),
+            format!("{name}: natural mode shapes and periods, floor by floor from the ground up."),
         ),
         FigureKind::Displacement => {
             let mut chart = shaded(
@@ -45,8 +43,7 @@ pub(crate) fn chart(
             chart.series.push(striker(history, frame));
             chart.references = limits(schema::MAX_DISPLACEMENT);
             let caption = format!(
-                "{name}: displacement of each floor, and of the striker on floor {struck} while it is near, against virtual \
-                 time{chosen}."
+                "{name}: displacement of each floor, and of the striker while near floor {struck}, against simulated time{chosen}."
             );
             (chart, caption)
         }
@@ -55,12 +52,12 @@ pub(crate) fn chart(
                 history,
                 base_excitation::figures::drift(&frame.floors, &limits(schema::MAX_DRIFT)),
             ),
-            format!("{name}: drift of each storey against virtual time{chosen}."),
+            format!("{name}: drift of each storey against simulated time{chosen}."),
         ),
         FigureKind::Hysteresis => (
             base_excitation::figures::hysteresis(&frame.floors),
             format!(
-                "{name}: measured storey shear against drift; the area of a loop is the energy that the storey took{chosen}."
+                "{name}: measured storey shear against drift; the area of a loop is the energy absorbed by the storey{chosen}."
             ),
         ),
         FigureKind::BaseShear => (
@@ -72,7 +69,7 @@ pub(crate) fn chart(
                 ),
             ),
             format!(
-                "{name}: base shear, the sum of the measured restoring forces, against virtual time."
+                "{name}: base shear, the sum of the measured restoring forces, against simulated time."
             ),
         ),
         FigureKind::Velocity => {
@@ -92,23 +89,24 @@ pub(crate) fn chart(
             (
                 chart,
                 format!(
-                    "{name}: velocity of the struck floor and of the striker against virtual time."
+                    "{name}: velocity of the struck floor and of the striker against simulated time."
                 ),
             )
         }
         FigureKind::StrikerVelocity => (
             charts::striker_velocity(history),
-            format!("{name}: velocity of the striker against virtual time; each fall is a blow."),
+            format!(
+                "{name}: velocity of the striker against simulated time; each drop is a contact event."
+            ),
         ),
         FigureKind::ContactForce => (
             charts::contact_force(history, &limits(schema::MAX_CONTACT_FORCE)),
-            format!("{name}: contact force, mean over each step, against virtual time."),
+            format!("{name}: contact force, mean over each step, against simulated time."),
         ),
         FigureKind::Energy => (
             charts::energy(history, charts::energy_of_contact(run, figure.procedure)),
             format!(
-                "{name}: where the energy of the striker went, all storeys together; the total of the parts stays level where \
-                 the balance closes."
+                "{name}: parts of the striker's energy, all storeys together; their total stays level if the energy balance closes."
             ),
         ),
         FigureKind::Tracking => (

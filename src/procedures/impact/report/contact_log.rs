@@ -35,7 +35,7 @@ pub(crate) fn table(history: &ImpactHistory, body: &mut Vec<Block>) {
         };
         vec![
             format!(
-                "blow {} at {}{limited}",
+                "contact {} at {}{limited}",
                 index + 1,
                 number::text_beside(contact.start, end, Dimension::TIME)
             )
@@ -57,7 +57,7 @@ pub(crate) fn table(history: &ImpactHistory, body: &mut Vec<Block>) {
     }));
     if contacts.len() > PRINTED {
         body.push(Block::note(format!(
-            "{} more blows are in the table of this procedure.",
+            "{} more contact events are in the table of this procedure.",
             contacts.len() - PRINTED
         )));
     }

@@ -6,7 +6,7 @@ pub(crate) mod storey;
 
 use crate::plan::{Contact, Impact, Integrator, PointTarget, ProcedureKind};
 use crate::procedures;
-use crate::procedures::stepping::energy;
+use crate::procedures::stepping::{self, energy};
 use crate::record::{ImpactHistory, ProcedureRecord};
 use crate::report::document::Block;
 use crate::report::sections::results::actuators;
@@ -16,6 +16,44 @@ use crate::units::Dimension;
 
 /// Results that have a budget even if no requirement reads any.
 pub(crate) const BUDGET: &[&str] = &[schema::MAX_DISPLACEMENT.name, schema::ABSORBED_ENERGY.name];
+
+/// The results that a reader looks for first. The largest contact force is one of them where a law bounds it.
+pub(crate) fn headline(contact: &Contact) -> Vec<&'static str> {
+    let of_contact: &[&str] = match contact {
+        Contact::Rigid | Contact::Restitution { .. } => &[],
+        Contact::Limit { .. } => &[schema::MAX_CONTACT_FORCE.name],
+        Contact::Hertz { .. } => &[schema::MAX_CONTACT_FORCE.name, schema::INDENTATION.name],
+    };
+    let first = [schema::MAX_DISPLACEMENT.name, schema::ABSORBED_ENERGY.name];
+    let last = [
+        schema::STOP_TIME.name,
+        schema::RESTITUTION.name,
+        schema::MAX_VELOCITY.name,
+    ];
+    [&first[..], of_contact, &last].concat()
+}
+
+/// Inputs, settings and counts of the method, and the tracking, which the text below the results states; a peak force that
+/// depends on the time step; an indentation that the law does not have.
+pub(crate) fn unprinted(contact: &Contact) -> Vec<&'static str> {
+    let of_contact: &[&str] = match contact {
+        Contact::Rigid | Contact::Restitution { .. } => &[
+            schema::MAX_CONTACT_FORCE.name,
+            schema::INDENTATION.name,
+            schema::INDENTATION_ENERGY.name,
+        ],
+        Contact::Limit { .. } => &[schema::INDENTATION.name, schema::INDENTATION_ENERGY.name],
+        Contact::Hertz { .. } => &[],
+    };
+    let of_method = [
+        schema::CONTACTS.name,
+        schema::STRIKER_ENERGY.name,
+        schema::TIME_STEP.name,
+        schema::CRITICAL_TIME_STEP.name,
+        schema::STEPS.name,
+    ];
+    [of_contact, &of_method[..], stepping::report::TRACKING].concat()
+}
 
 /// The blocks below its results.
 pub(crate) fn report(
@@ -65,8 +103,8 @@ fn force_note(
     ];
     if matches!(impact.contact, Contact::Rigid) {
         sentences.push(
-            "Under the rigid law the contact force grows as the inverse of the time step: only the impulse is a property of the \
-             blow, the peak is not."
+            "Under the rigid law the contact force is inversely proportional to the time step. Only the impulse is a \
+             property of the impact."
                 .to_owned(),
         );
         sentences.extend(implied_restitution(run, procedure, impact, point));
@@ -95,7 +133,7 @@ fn damping_range(run: &Run<'_>, procedure: &ProcedureRecord, point: &PointTarget
             number::text(measured, Dimension::VELOCITY),
             number::text(100.0 * measured / used, Dimension::NUMBER),
             number::text(used, Dimension::VELOCITY),
-            if used > measured { ": it is an extrapolation." } else { "." }
+            if used > measured { ": this is an extrapolation." } else { "." }
         )
     });
     sentences.collect()
@@ -121,7 +159,7 @@ fn implied_restitution(
     let mass = procedure
         .inputs
         .iter()
-        .find(|(name, ..)| *name == "mass")
+        .find(|(name, ..)| *name == schema::MASS.name)
         .map(|(_, estimate, _)| estimate.value);
     let striker = run
         .plan
@@ -154,7 +192,7 @@ fn method_note(run: &Run<'_>, index: usize, history: &ImpactHistory, body: &mut 
 
 fn integrator(impact: &Impact) -> String {
     let unstable = if impact.stepping.allow_unstable {
-        " The plan allows a time step beyond its stability limit."
+        " The plan allows a time step beyond the stability limit."
     } else {
         ""
     };
@@ -215,13 +253,13 @@ pub(crate) fn energy_balance(
     let name = if e.weight == 0.0 {
         "input, ½MsV₀²"
     } else {
-        "input, ½MsV₀² and the work of the weight"
+        "input, ½MsV₀² plus work of gravity"
     };
     body.push(energy::balance_table((name, input), &parts));
     if e.indentation > 0.0 {
         body.push(Block::note(format!(
-            "Indentation energy F·Δδp, an indicator and no part of the balance: {}. It equals the work lost in the contact only as the time \
-             step goes to zero.",
+            "Indentation energy F·Δδp = {}: an indicator, not part of the balance. It converges to the work lost in \
+             the contact as the time step decreases.",
             number::text(e.indentation, Dimension::ENERGY)
         )));
     }

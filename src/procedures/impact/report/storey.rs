@@ -13,6 +13,16 @@ use crate::report::{Run, number};
 use crate::schema::procedures::impact as schema;
 use crate::units::Dimension;
 
+/// The results that a reader looks for first.
+pub(crate) const HEADLINE: &[&str] = &[
+    schema::MAX_DRIFT.name,
+    schema::MAX_BASE_SHEAR.name,
+    schema::MAX_DISPLACEMENT.name,
+    schema::ABSORBED_ENERGY.name,
+    schema::STOP_TIME.name,
+    schema::FINAL_DRIFT.name,
+];
+
 /// The blocks below its results.
 pub(crate) fn report(
     run: &Run<'_>,
@@ -72,8 +82,7 @@ fn method(
     let step = time(history.time_step);
     let critical = match impact.contact {
         Contact::Hertz { .. } => {
-            "a tenth of the shortest period of the frame with the striker on it, by the contact's tangent at \
-                                  its deepest, is"
+            "a tenth of the shortest period of the frame with the striker in contact (tangent at the largest indentation) is"
         }
         _ => "a tenth of the frame's shortest period is",
     };
@@ -96,15 +105,15 @@ fn method(
     ];
     if impact.stepping.i_modification {
         sentences.push(
-            "The forces were corrected to where the floors were to be, r* = r − K(d measured − d commanded), with the initial \
-             stiffness (I-modification)."
+            "The forces were corrected to the target displacements, r* = r − K(d measured − d commanded), with the \
+             initial stiffness (I-modification)."
                 .to_owned(),
         );
     }
     if let Mode::Continuous { time_scale } = impact.stepping.mode {
         sentences.push(format!(
-            "The actuators did not stop at the steps: they moved together at {} times the virtual time, and what dampers of the \
-             storeys do at that speed is in the restoring forces.",
+            "The actuators moved together without stops, with a time scale of {}; the restoring forces include the \
+             damping of the storeys at that speed.",
             number::text(time_scale, Dimension::NUMBER)
         ));
     }
@@ -126,8 +135,8 @@ fn peak_force(impact: &Impact, procedure: &ProcedureRecord) -> Vec<String> {
     }
     if matches!(impact.contact, Contact::Rigid) {
         sentences.push(
-            "Under the rigid law the contact force grows as the inverse of the time step: only the impulse is a property of the \
-             blow, the peak is not."
+            "Under the rigid law the contact force is inversely proportional to the time step. Only the impulse is a \
+             property of the impact."
                 .to_owned(),
         );
     }
@@ -145,7 +154,7 @@ fn struck_mass(run: &Run<'_>, impact: &Impact, target: &StoreyTarget) -> Option<
         format!("; the rigid law then implies a coefficient of restitution e = Ms/(Ms + 2M) = {restitution}")
     });
     Some(format!(
-        "A blow of no duration meets the mass of that floor alone, {mass}{}.",
+        "The effective mass of an instantaneous impact is that of the floor alone, {mass}{}.",
         implied.unwrap_or_default()
     ))
 }
@@ -170,7 +179,7 @@ fn storey_energies(procedure: &ProcedureRecord) -> Block {
     let columns = vec![
         Column::words("Energy in each storey at the end of the run, ∫V dδ", 1),
         Column::numbers("Energy"),
-        Column::numbers("Of the striker's"),
+        Column::numbers("Over striker energy"),
     ];
     Block::Table(Table {
         columns,

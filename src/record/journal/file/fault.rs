@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 /// The file cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum FileFault {
-    #[error("the journal {} is in use by another psd", path.display())]
+    #[error("another psd uses the run log {}", path.display())]
     InUse { path: PathBuf },
-    #[error("the journal {} is no regular file", path.display())]
+    #[error("the run log {} is not a regular file", path.display())]
     NotAFile { path: PathBuf },
-    #[error("the journal {} has more than {most} bytes", path.display())]
+    #[error("the run log {} has more than {most} bytes", path.display())]
     TooLarge { path: PathBuf, most: u64 },
-    #[error("the journal {} cannot be {doing}: {error}", path.display())]
+    #[error("the run log {} cannot be {doing}: {error}", path.display())]
     System {
         doing: &'static str,
         path: PathBuf,

@@ -139,7 +139,7 @@ impl FileStorage {
                 }
                 Ok(aside)
             })
-            .map_err(FileFault::of("cut back", &self.path))
+            .map_err(FileFault::of("truncated", &self.path))
     }
 
     /// Free space of the disk, bytes.
@@ -149,7 +149,7 @@ impl FileStorage {
     pub fn free_space(&self) -> Result<u64, FileFault> {
         let statistics = rustix::fs::fstatvfs(&self.file).map_err(io::Error::from);
         let statistics = statistics.map_err(FileFault::of(
-            "asked for the free space of its disk",
+            "asked about the free space of its disk",
             &self.path,
         ))?;
         Ok(statistics.f_bavail.saturating_mul(statistics.f_frsize))
@@ -191,7 +191,7 @@ impl Storage for FileStorage {
         if self.file.metadata()?.nlink() == 0 {
             return Err(io::Error::new(
                 io::ErrorKind::NotFound,
-                "somebody has removed it",
+                "its file was deleted",
             ));
         }
         Ok(())
@@ -201,7 +201,7 @@ impl Storage for FileStorage {
         if self.file.metadata()?.len() < length {
             return Err(io::Error::new(
                 io::ErrorKind::InvalidData,
-                "bytes that were written are not there",
+                "bytes that were written are missing",
             ));
         }
         self.file.set_len(length)

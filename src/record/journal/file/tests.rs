@@ -63,7 +63,7 @@ fn the_second_on_one_path_is_refused() {
     let refused = FileStorage::open_existing(&path).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        format!("the journal {} is in use by another psd", path.display())
+        format!("another psd uses the run log {}", path.display())
     );
     assert!(
         without(Guarding::Lock, || FileStorage::open_existing(&path)).is_ok(),

@@ -34,6 +34,6 @@ fn first_free(journal: &Path) -> io::Result<(File, PathBuf)> {
     }
     Err(io::Error::new(
         io::ErrorKind::AlreadyExists,
-        "too many torn ends lie beside it",
+        "too many incomplete entries are kept beside it",
     ))
 }

@@ -182,7 +182,7 @@ fn places_are_kept_also_when_the_check_words_are_right() {
     assert_eq!(
         second.to_string(),
         format!(
-            "the journal is damaged at line 3 (byte {}, after step 7): a second HEADER",
+            "the run log is damaged at line 3 (byte {}, after step 7): a second HEADER",
             second.offset
         )
     );

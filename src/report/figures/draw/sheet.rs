@@ -19,7 +19,8 @@ pub(super) struct Sheet<'a> {
 
 impl Sheet<'_> {
     /// The point of an SI value in reference pixels.
-    pub fn point(&self, (x, y): (f64, f64)) -> Point {
+    pub fn point(&self, data: (f64, f64)) -> Point {
+        let (x, y) = data;
         (
             LEFT + self.x.fraction(x) * (RIGHT - LEFT),
             BOTTOM - self.y.fraction(y) * (BOTTOM - self.top),

@@ -16,13 +16,14 @@ use crate::report::run::Run;
 use crate::report::status::days::last_day;
 use crate::report::status::particulars;
 use crate::report::wording::equipment as wording;
+use crate::schema::plan_block::EQUIPMENT;
 use crate::units::Dimension;
 use crate::units::display::significant;
 
 /// The rig of the run.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     let run = source.run;
-    body.push(Block::section(wording::TITLE));
+    body.push(Block::part(wording::TITLE));
     match run.plan.rig.link.as_real() {
         Some(link) => {
             body.push(calibration(run));
@@ -145,7 +146,7 @@ fn real(run: &Run<'_>, link: &RealLink) -> Block {
         .filter(|channel| channel.zero != 0.0)
     {
         rows.push((
-            wording::ZERO_COUNT,
+            wording::ZERO_OFFSET,
             number::stated(channel.zero, Dimension::NUMBER).into(),
         ));
     }
@@ -164,15 +165,15 @@ fn real(run: &Run<'_>, link: &RealLink) -> Block {
     rows.push((wording::SAFE_STATE, link.safe_state.name().into()));
     if one_axis {
         rows.push((
-            wording::GATE_DEMANDED,
-            pretest_check::required(&link.gate_of(0)).into(),
+            wording::PRETEST_CHECK_LIMITS,
+            pretest_check::required(&link.pretest_check_of(0)).into(),
         ));
         rows.push((
-            wording::GATE_FOUND,
+            wording::PRETEST_CHECK_RESULT,
             Text::given(pretest_check::outcome(run)),
         ));
     } else if let Some(reason) = pretest_check::refusal(run) {
-        rows.push((wording::GATE_FOUND, reason.into()));
+        rows.push((wording::PRETEST_CHECK_RESULT, reason.into()));
     }
     pairs(rows)
 }
@@ -187,7 +188,7 @@ fn axes(run: &Run<'_>, link: &RealLink) -> Block {
     let any_uncertainty = uncertainties.iter().any(Option::is_some);
     let row = |axis: usize| {
         let (readings, number) = (link.readings_of(axis), axis + 1);
-        let polarity = if run.plan.rig.sign_of(axis) < 0.0 {
+        let polarity = if run.plan.rig.polarity_of(axis) < 0.0 {
             wording::NEGATIVE
         } else {
             wording::POSITIVE
@@ -196,7 +197,7 @@ fn axes(run: &Run<'_>, link: &RealLink) -> Block {
             Text::from(number.to_string()),
             polarity.into(),
             declared(readings.resolution, readings.noise, &readings).into(),
-            pretest_check::required(&link.gate_of(axis)).into(),
+            pretest_check::required(&link.pretest_check_of(axis)).into(),
             Text::given(pretest_check::passed_by_axis(run, number)),
         ];
         if any_uncertainty {
@@ -208,8 +209,8 @@ fn axes(run: &Run<'_>, link: &RealLink) -> Block {
         Column::short(wording::AXIS),
         Column::short(wording::POLARITY),
         Column::words(wording::DECLARED, 3),
-        Column::words(wording::GATE_DEMANDED, 3),
-        Column::words(wording::GATE_FOUND, 4),
+        Column::words(wording::PRETEST_CHECK_LIMITS, 3),
+        Column::words(wording::PRETEST_CHECK_RESULT, 4),
     ];
     if any_uncertainty {
         columns.insert(3, Column::words(wording::CALIBRATION_UNCERTAINTY, 2));
@@ -240,7 +241,7 @@ fn simulated(run: &Run<'_>) -> Block {
 }
 
 fn other_equipment(run: &Run<'_>) -> Option<(&'static str, Text)> {
-    let text = particulars::stated(run, "equipment")?;
+    let text = particulars::stated(run, EQUIPMENT.name)?;
     Some((wording::OTHER_EQUIPMENT, text.into()))
 }
 

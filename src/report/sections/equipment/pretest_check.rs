@@ -2,7 +2,7 @@
 //! strings.
 
 use super::super::conditions::range;
-use crate::plan::Gate;
+use crate::plan::PretestCheck;
 use crate::record::EventKind;
 use crate::report::number;
 use crate::report::run::Run;
@@ -10,22 +10,25 @@ use crate::report::wording::equipment as wording;
 use crate::units::Dimension;
 
 /// The limits of the check.
-pub(super) fn required(gate: &Gate) -> String {
-    wording::gate(
-        number::stated(gate.zero, Dimension::FORCE),
-        range(gate.stiffness, Dimension::STIFFNESS),
-        number::stated(gate.probe, Dimension::LENGTH),
+pub(super) fn required(pretest_check: &PretestCheck) -> String {
+    wording::pretest_check(
+        number::stated(pretest_check.zero, Dimension::FORCE),
+        range(pretest_check.stiffness, Dimension::STIFFNESS),
+        number::stated(pretest_check.probe, Dimension::LENGTH),
     )
 }
 
 /// The measured values of a check that passed, or the reason of one that did not.
 pub(super) fn outcome<'a>(run: &Run<'a>) -> Option<&'a str> {
-    logged(run).find_map(|text| text.strip_prefix("gate passed: ").or_else(|| refused(text)))
+    logged(run).find_map(|text| {
+        text.strip_prefix("pre-test check passed: ")
+            .or_else(|| refused(text))
+    })
 }
 
 /// The measured values of one axis of several that passed.
 pub(super) fn passed_by_axis<'a>(run: &Run<'a>, axis: usize) -> Option<&'a str> {
-    let prefix = format!("gate passed by axis {axis}: ");
+    let prefix = format!("pre-test check passed by axis {axis}: ");
     logged(run).find_map(|text| text.strip_prefix(prefix.as_str()))
 }
 
@@ -47,5 +50,5 @@ fn logged<'a>(run: &Run<'a>) -> impl Iterator<Item = &'a str> {
 }
 
 fn refused(text: &str) -> Option<&str> {
-    text.strip_prefix("the rig did not pass the gate: ")
+    text.strip_prefix("the rig did not pass the pre-test check: ")
 }

@@ -13,7 +13,7 @@ use crate::units::Dimension;
 /// The zero readings of a rig with a declared allowed zero drift; for a real rig without it, a note.
 pub(super) fn append(run: &Run<'_>, body: &mut Vec<Block>) {
     let Some(drift) = &run.record.drift else {
-        if run.plan.rig.drift.is_none() && run.plan.rig.link.as_real().is_some() {
+        if run.plan.rig.zero_drift.is_none() && run.plan.rig.link.as_real().is_some() {
             body.push(Block::note(wording::NOT_READ_AGAIN));
         }
         return;

@@ -1,9 +1,9 @@
 //! The uncertainty budgets of a procedure: the contribution of each input to the uncertainty of the results that the
 //! requirements read. In: a run. Out: tables, and the results that are marked †. `summary.json` has the budget of every result.
 
+use super::read::{ReadResult, read_by_requirements};
 use super::with_spaces;
-use crate::plan::Condition;
-use crate::plan::formula::{Formula, ProcedureId, ResultReference, ResultValue};
+use crate::plan::formula::{Part, ProcedureId, ResultReference, ResultValue};
 use crate::procedures;
 use crate::record::{History, NamedResult, ProcedureRecord};
 use crate::report::budget::{Budget, Line, Origin, budgets, coverage_factor};
@@ -11,6 +11,7 @@ use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::{self, percent};
 use crate::report::run::Run;
 use crate::report::wording::budget as wording;
+use crate::schema::procedures::{impact, unload};
 use crate::uncertainty::MOST_DRAWS;
 use crate::units::Dimension;
 use crate::units::display::{minus, significant, typeset, unit};
@@ -21,7 +22,7 @@ const SMALL: f64 = 1e-3;
 /// The mark of an uncertainty that is an estimate.
 pub(crate) const MARK: &str = " †";
 
-/// The budgets of the results that a requirement reads, with a note.
+/// The budgets of the results that a requirement reads, with a note on their method.
 pub(super) fn append(
     run: &Run<'_>,
     index: usize,
@@ -33,6 +34,9 @@ pub(super) fn append(
     budgets.retain(|budget| is_printed(budget, &requested));
     if !budgets.is_empty() {
         let scope = Scope::of(run);
+        body.push(Block::part(
+            Text::from(procedure.name.as_str()).soft(format!(" · {}", procedure.kind)),
+        ));
         body.extend(budgets.iter().map(|budget| table(budget, procedure, scope)));
         body.push(Block::note(note(run, index, &procedure.history, &budgets)));
     }
@@ -40,7 +44,7 @@ pub(super) fn append(
 
 /// Whether the plan declares the uncertainty of the calibrations of force and displacement.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Scope {
+pub(in crate::report::sections) enum Scope {
     Complete,
     /// Not declared, on a simulated rig.
     PartialSimulated,
@@ -64,17 +68,13 @@ impl Scope {
     }
 }
 
-/// The note on the mark, if a result of the procedure has one.
-pub(super) fn mark_note(procedure: &ProcedureRecord) -> Option<Block> {
+/// Whether a result of the procedure has the mark.
+pub(crate) fn is_marked(procedure: &ProcedureRecord) -> bool {
     let is_marked = |result: &NamedResult| match &result.value {
         ResultValue::Number { .. } => !is_reliable(result, 0),
         ResultValue::List(values) => (0..values.len()).any(|entry| !is_reliable(result, entry)),
     };
-    procedure
-        .results
-        .iter()
-        .any(is_marked)
-        .then(|| Block::note(wording::MARKED))
+    procedure.results.iter().any(is_marked)
 }
 
 /// Whether nearly all of the uncertainty of a result, or of an entry of a list, comes from contributions that are smooth.
@@ -93,70 +93,38 @@ pub(crate) fn is_reliable(result: &NamedResult, entry: usize) -> bool {
     estimated <= SMALL * all
 }
 
-/// The results of this procedure that a requirement reads, and the entry of a list if the requirement names one. If no requirement reads
-/// a result of the procedure: the results that its slice names for a budget.
-fn requested(run: &Run<'_>, index: usize, history: &History) -> Vec<(&'static str, Option<usize>)> {
-    let mut read: Vec<(ResultReference, Option<usize>)> = Vec::new();
-    let conditions = run
-        .plan
-        .requirements
-        .iter()
-        .flat_map(|requirement| &requirement.conditions);
-    conditions
-        .flat_map(Condition::formulas)
-        .for_each(|formula| collect(formula, None, &mut read));
-    let own: Vec<(&str, Option<usize>)> = read
-        .into_iter()
-        .filter(|(reference, _)| reference.procedure == ProcedureId(index))
-        .map(|(reference, entry)| (reference.name, entry))
-        .collect();
+/// The results of this procedure that a requirement reads. If no requirement reads a result of the procedure: the results that its
+/// slice names for a budget.
+fn requested(run: &Run<'_>, index: usize, history: &History) -> Vec<ReadResult> {
+    let mut own = read_by_requirements(run.plan);
+    own.retain(|read| read.reference.procedure == ProcedureId(index));
     if !own.is_empty() {
         return own;
     }
-    procedures::recorded(history)
-        .budgeted
-        .iter()
-        .map(|name| (*name, None))
+    let named = procedures::recorded(history).budgeted.iter();
+    named
+        .map(|&name| ReadResult {
+            reference: ResultReference {
+                procedure: ProcedureId(index),
+                name,
+                part: Part::Value,
+            },
+            entry: None,
+        })
         .collect()
 }
 
-/// Every result that a formula reads, with the entry that it reads.
-fn collect(
-    formula: &Formula,
-    entry: Option<usize>,
-    into: &mut Vec<(ResultReference, Option<usize>)>,
-) {
-    match formula {
-        Formula::Constant(_) | Formula::Stated(_) | Formula::CriticalTimeStep => {}
-        Formula::Result(reference) => into.push((*reference, entry)),
-        Formula::Index(inner, index) => collect(inner, Some(*index), into),
-        Formula::Negate(inner) => collect(inner, entry, into),
-        Formula::Binary(_, left, right) => [left, right]
-            .into_iter()
-            .for_each(|side| collect(side, entry, into)),
-        Formula::List(parts) | Formula::Call(_, parts) => {
-            for part in parts {
-                collect(part, None, into);
-            }
-        }
-    }
-}
-
 /// Whether the budget of a result is printed. If no entry of a list is named, that of its largest number is printed.
-fn is_printed(budget: &Budget<'_>, requested: &[(&'static str, Option<usize>)]) -> bool {
+fn is_printed(budget: &Budget<'_>, requested: &[ReadResult]) -> bool {
     let mut requested = requested
         .iter()
-        .filter(|(name, _)| *name == budget.result.name)
-        .map(|(_, entry)| *entry);
-    let (Some(entry), ResultValue::List(values)) = (budget.entry, &budget.result.value) else {
-        return requested.next().is_some();
-    };
-    let largest = values
-        .iter()
-        .enumerate()
-        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
-        .map(|(index, _)| index);
-    requested.any(|named| named.or(largest) == Some(entry))
+        .filter(|read| read.reference.name == budget.result.name);
+    match (budget.entry, &budget.result.value) {
+        (Some(entry), ResultValue::List(values)) => {
+            requested.any(|read| read.entry_in(values) == Some(entry))
+        }
+        _ => requested.next().is_some(),
+    }
 }
 
 fn table(budget: &Budget<'_>, procedure: &ProcedureRecord, scope: Scope) -> Block {
@@ -166,7 +134,11 @@ fn table(budget: &Budget<'_>, procedure: &ProcedureRecord, scope: Scope) -> Bloc
         wording::PARTIAL_BUDGET
     };
     let entry = budget.entry.map_or_else(String::new, |entry| {
-        format!(", {} {}", entry_kind(budget, procedure), entry + 1)
+        format!(
+            ", {} {}",
+            entry_kind(budget.result.name, procedure),
+            entry + 1
+        )
     });
     let result = with_spaces(budget.result.name);
     let [input, sensitivity, contribution, fraction] = wording::COLUMNS;
@@ -183,13 +155,13 @@ fn table(budget: &Budget<'_>, procedure: &ProcedureRecord, scope: Scope) -> Bloc
     })
 }
 
-/// The noun for one entry of the list.
-fn entry_kind(budget: &Budget<'_>, procedure: &ProcedureRecord) -> &'static str {
-    match budget.result.name {
-        "periods" => "mode",
+/// The noun for one entry of the list of this name.
+pub(crate) fn entry_kind(result: &str, procedure: &ProcedureRecord) -> &'static str {
+    match result {
+        name if name == impact::PERIODS.name => "mode",
         name if name.contains("drift") || name.starts_with("storey") => "storey",
-        "residual_shear" => "storey",
-        "floor_displacement" => "floor",
+        name if name == unload::RESIDUAL_SHEAR.name => "storey",
+        name if name == impact::FLOOR_DISPLACEMENT.name => "floor",
         _ => procedures::recorded(&procedure.history).entries,
     }
 }
@@ -364,16 +336,6 @@ fn note(run: &Run<'_>, index: usize, history: &History, budgets: &[Budget<'_>]) 
             let accuracy = 1.0 / (2.0 * trials as f64).sqrt();
             text += &wording::few_trials(trials, percent(accuracy));
         }
-    }
-    let large = budgets.iter().flat_map(|budget| {
-        budget
-            .lines
-            .iter()
-            .filter(|line| budget.fraction(line) >= SMALL)
-    });
-    if large.into_iter().any(|line| !line.smooth) {
-        text += " ";
-        text += wording::MARKED;
     }
     text
 }

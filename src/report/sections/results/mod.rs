@@ -1,9 +1,10 @@
-//! Results of each procedure with unit and uncertainty, then the procedure's own report, then its uncertainty budgets. In: a
-//! run. Out: blocks, procedure by procedure.
+//! Every result of each procedure with its uncertainty and the text of its method; the uncertainty budgets. In: a run. Out:
+//! blocks, procedure by procedure.
 
 pub(crate) mod actuators;
 pub(crate) mod budget_table;
 pub(crate) mod line_fit;
+pub(super) mod read;
 pub(crate) mod tracking;
 
 use super::{Source, with_spaces};
@@ -14,17 +15,14 @@ use crate::report::budget::coverage_factor;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::report::run::Run;
-use crate::report::wording::results as wording;
+use crate::report::wording::{common, results as wording};
+use crate::schema::procedures::stiffness_ramp::R_SQUARED;
 use crate::uncertainty::{Known, known};
 use crate::units::Dimension;
 
-/// Every procedure that was run, in order.
+/// Every procedure that was run, in order, with the text of its method.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     let run = source.run;
-    body.push(Block::section(wording::TITLE));
-    if run.record.procedures.is_empty() {
-        body.push(Block::paragraph(wording::NO_PROCEDURE));
-    }
     for (index, procedure) in run.record.procedures.iter().enumerate() {
         let state = if procedure.complete {
             ""
@@ -37,7 +35,13 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
         inputs(procedure, body);
         results(run, index, procedure, body);
         procedures::report(run, index, procedure, body);
-        budget_table::append(run, index, procedure, body);
+    }
+}
+
+/// The uncertainty budgets of every procedure.
+pub(super) fn budgets(source: &Source<'_>, body: &mut Vec<Block>) {
+    for (index, procedure) in source.run.record.procedures.iter().enumerate() {
+        budget_table::append(source.run, index, procedure, body);
     }
 }
 
@@ -65,37 +69,28 @@ fn inputs(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
     }
 }
 
-/// The table of results, without lists that have a separate table. Results without a value are named below it.
+/// The table of the results that exist, without those that a separate table or a sentence states.
 fn results(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, body: &mut Vec<Block>) {
     let tabled = procedures::recorded(&procedure.history).lists_are_tabled;
-    let printed = procedure
+    let unprinted = run
+        .plan
+        .procedures
+        .get(index)
+        .map_or_else(Vec::new, |planned| {
+            procedures::facts_of(&planned.kind).unprinted
+        });
+    let printed: Vec<&NamedResult> = procedure
         .results
         .iter()
-        .filter(|result| !(tabled && matches!(result.value, ResultValue::List(_))));
-    let (found, none): (Vec<&NamedResult>, Vec<&NamedResult>) =
-        printed.partition(|result| match &result.value {
-            ResultValue::Number { value, .. } => value.is_some(),
-            ResultValue::List(values) => !values.is_empty(),
-        });
-    if !found.is_empty() {
-        body.push(table(run, index, &found));
+        .filter(|result| !(tabled && matches!(result.value, ResultValue::List(_))))
+        .filter(|result| read::exists(result) && !unprinted.contains(&result.name))
+        .collect();
+    if !printed.is_empty() {
+        body.push(table(run, index, &printed));
     }
-    if !none.is_empty() {
-        let named = none.iter().enumerate().fold(
-            Text::from(wording::NONE_IN_THIS_RUN_OF),
-            |text, (index, result)| {
-                if index == 0 {
-                    text.code(result.name)
-                } else {
-                    text.and(", ").code(result.name)
-                }
-            },
-        );
-        body.push(Block::note(named.and(".")));
-    }
-    body.extend(budget_table::mark_note(procedure));
 }
 
+/// Name, value, U, k where it differs from 2, and unit.
 fn table(run: &Run<'_>, index: usize, results: &[&NamedResult]) -> Block {
     let known = |result: &NamedResult| {
         let reference = ResultReference {
@@ -104,48 +99,42 @@ fn table(run: &Run<'_>, index: usize, results: &[&NamedResult]) -> Block {
             part: Part::Value,
         };
         known(&result.contributions_of(reference), run.record)
+            .filter(|known| known.standard > 0.0)
+            .filter(|_| matches!(result.value, ResultValue::Number { .. }))
     };
     let all: Vec<Option<Known>> = results.iter().map(|result| known(result)).collect();
-    // The column of k is omitted if k is 2 throughout.
+    // On a real rig, a partial budget gives no U.
     let partial = budget_table::Scope::of(run) == budget_table::Scope::PartialReal;
-    let factors = !partial
-        && all
-            .iter()
-            .flatten()
-            .any(|known| coverage_factor::differs_from_two(*known));
+    let differs = |known: &Known| coverage_factor::differs_from_two(*known);
+    let factors = !partial && all.iter().flatten().any(differs);
     let mut columns = vec![
         Column::words(wording::RESULT, 1),
         Column::numbers(wording::VALUE),
-        Column::numbers("u"),
-        Column::numbers(if factors { "U = k·u" } else { "U (k = 2)" }),
-        Column::short(wording::UNIT),
-        Column::short(wording::IN_THE_PLAN),
     ];
-    // On a real rig, a partial budget gives no U.
-    if partial {
-        columns[3] = Column::numbers(wording::NO_U_PARTIAL);
+    match (partial, all.iter().any(Option::is_some)) {
+        (_, false) => {}
+        (true, true) => columns.push(Column::numbers(wording::STANDARD)),
+        (false, true) => columns.push(Column::numbers(if factors {
+            wording::EXPANDED
+        } else {
+            wording::EXPANDED_BY_TWO
+        })),
     }
+    let with_uncertainty = columns.len() > 2;
     if factors {
-        columns.insert(3, Column::numbers("k (ν)"));
+        columns.push(Column::numbers(wording::FACTOR));
     }
+    columns.push(Column::short(wording::UNIT));
     let rows = results.iter().zip(&all).map(|(result, known)| {
-        let mut row = row(result, *known);
-        if partial {
-            row[3] = "—".into();
+        let [name, value, standard, expanded, unit] = row(result, *known);
+        let mut row = vec![name, value];
+        if with_uncertainty {
+            row.push(if partial { standard } else { expanded });
         }
         if factors {
-            let text = known.filter(|known| {
-                known.standard > 0.0 && matches!(result.value, ResultValue::Number { .. })
-            });
-            let text = text.map(|known| {
-                format!(
-                    "{} ({})",
-                    coverage_factor::factor(known),
-                    coverage_factor::degrees_text(known)
-                )
-            });
-            row.insert(3, text.map_or_else(|| "—".into(), Text::from));
+            row.push(known.map_or_else(|| "".into(), factor));
         }
+        row.push(unit);
         row
     });
     Block::Table(Table {
@@ -154,47 +143,36 @@ fn table(run: &Run<'_>, index: usize, results: &[&NamedResult]) -> Block {
     })
 }
 
-fn row(result: &NamedResult, known: Option<Known>) -> Vec<Text> {
-    let dash = || Text::from("—");
+/// `2.37 (8)`
+fn factor(known: Known) -> Text {
+    let degrees = coverage_factor::degrees_text(known);
+    format!("{} ({degrees})", coverage_factor::factor(known)).into()
+}
+
+/// Name, value, u, U and unit. A cell without a content is empty.
+fn row(result: &NamedResult, known: Option<Known>) -> [Text; 5] {
+    let none = || Text::from("");
     let [value, standard, expanded, unit] = match &result.value {
         // The number of digits of R² depends on the number of nines.
         ResultValue::Number {
             value: Some(value), ..
-        } if result.name == "r_squared" => [format!("{value:.6}").into(), dash(), dash(), dash()],
+        } if result.name == R_SQUARED.name => {
+            [format!("{value:.6}").into(), none(), none(), none()]
+        }
         ResultValue::Number {
-            value: Some(value),
-            uncertainty,
+            value: Some(value), ..
         } => {
-            let uncertainty = uncertainty.filter(|standard| *standard > 0.0);
-            let known = uncertainty.map(|standard| Known {
-                standard,
-                ..known.unwrap_or(Known::surely(standard))
-            });
             let parts = number::parts(*value, known, result.dimension);
-            let unit = if parts.unit.is_empty() {
-                dash()
-            } else {
-                parts.unit.into()
-            };
             [
                 parts.value.into(),
-                parts.standard.map_or_else(dash, Text::from),
-                parts.expanded.map_or_else(dash, Text::from),
-                unit,
+                parts.standard.map_or_else(none, Text::from),
+                parts.expanded.map_or_else(none, Text::from),
+                parts.unit.into(),
             ]
         }
-        ResultValue::Number { value: None, .. } => [
-            Text::missing(wording::NONE_IN_THIS_RUN),
-            dash(),
-            dash(),
-            dash(),
-        ],
-        ResultValue::List(values) if values.is_empty() => [
-            Text::missing(wording::NONE_IN_THIS_RUN),
-            dash(),
-            dash(),
-            dash(),
-        ],
+        ResultValue::Number { value: None, .. } => {
+            [Text::missing(common::NO_VALUE), none(), none(), none()]
+        }
         ResultValue::List(values) => {
             let text = |value: &f64| {
                 if value.is_finite() {
@@ -204,19 +182,12 @@ fn row(result: &NamedResult, known: Option<Known>) -> Vec<Text> {
                 }
             };
             let texts: Vec<String> = values.iter().map(text).collect();
-            [texts.join(", ").into(), dash(), dash(), dash()]
+            [texts.join(", ").into(), none(), none(), none()]
         }
     };
     let reliable =
         !matches!(result.value, ResultValue::Number { .. }) || budget_table::is_reliable(result, 0);
     let mark = if reliable { "" } else { budget_table::MARK };
     let name = Text::from(with_spaces(result.name)).and(mark);
-    vec![
-        name,
-        value,
-        standard,
-        expanded,
-        unit,
-        Text::new().code(result.name),
-    ]
+    [name, value, standard, expanded, unit]
 }

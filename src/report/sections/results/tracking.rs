@@ -8,6 +8,7 @@ use crate::record::ProcedureRecord;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::{self, percent};
 use crate::report::wording::actuators as wording;
+use crate::schema::procedures::tracking;
 use crate::units::Dimension;
 
 /// All actuators over a run; the energy is that of the actuator with the largest one.
@@ -15,12 +16,12 @@ pub(crate) fn sentence(procedure: &ProcedureRecord) -> Option<String> {
     let all = Tracking {
         energy_error: 0.0,
         indicator: 0.0,
-        nrms_error: procedure.number("nrms_error")?,
-        peak_error: procedure.number("peak_error")?,
+        nrms_error: procedure.number(tracking::NRMS_ERROR.name)?,
+        peak_error: procedure.number(tracking::PEAK_ERROR.name)?,
     };
     Some(actuators::tracking_error(
         all,
-        procedure.number("tracking_energy_error"),
+        procedure.number(tracking::TRACKING_ENERGY_ERROR.name),
         wording::THE_ACTUATORS,
     ))
 }
@@ -32,10 +33,13 @@ pub(crate) fn table(procedure: &ProcedureRecord) -> Option<Block> {
         _ => &[],
     };
     let (energy, indicator) = (
-        list("floor_tracking_energy_error"),
-        list("floor_tracking_indicator"),
+        list(tracking::FLOOR_TRACKING_ENERGY_ERROR.name),
+        list(tracking::FLOOR_TRACKING_INDICATOR.name),
     );
-    let (nrms, peak) = (list("floor_nrms_error"), list("floor_peak_error"));
+    let (nrms, peak) = (
+        list(tracking::FLOOR_NRMS_ERROR.name),
+        list(tracking::FLOOR_PEAK_ERROR.name),
+    );
     let largest = |values: &[f64]| {
         values
             .iter()

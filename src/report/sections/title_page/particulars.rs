@@ -6,6 +6,7 @@ use crate::report::run::Run;
 use crate::report::status::particulars::{FRONT, Wanted, missing_names, stated};
 use crate::report::status::report_status;
 use crate::report::wording::particulars as wording;
+use crate::schema::plan_block::REVISION;
 
 /// Names and values that are stated; the plan with its digest last.
 pub(in super::super) fn rows(run: &Run<'_>) -> Vec<(Text, Text)> {
@@ -18,8 +19,11 @@ pub(in super::super) fn rows(run: &Run<'_>) -> Vec<(Text, Text)> {
     rows.chain([(wording::PLAN.into(), plan(run))]).collect()
 }
 
-/// Names of particulars that are not stated. Those that a notice below the verdict lists are omitted.
+/// Names of particulars that are not stated. Those that a notice below the verdict lists are omitted. A simulation lacks none.
 pub(in super::super) fn missing(run: &Run<'_>) -> Vec<&'static str> {
+    if run.record.rig.simulated {
+        return Vec::new();
+    }
     let in_notice = !report_status::missing_particulars(run).is_empty();
     let wanted: &[Wanted] = if in_notice {
         &[Wanted::WhereItMatters]
@@ -32,7 +36,7 @@ pub(in super::super) fn missing(run: &Run<'_>) -> Vec<&'static str> {
 /// The plan as it was run: file, revision, and the first digits of its digest.
 fn plan(run: &Run<'_>) -> Text {
     let file = run.plan.files.first().map_or("", |file| file.name.as_str());
-    let revision = stated(run, "revision").map_or_else(String::new, wording::revision);
+    let revision = stated(run, REVISION.name).map_or_else(String::new, wording::revision);
     let digest = run
         .provenance
         .plan_sha256

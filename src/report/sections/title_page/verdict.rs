@@ -1,13 +1,14 @@
-//! The verdict in one sentence. In: a run. Out: the verdict of the document.
+//! The statement on the whole run. In: a run. Out: heading and sentence of the document.
 
 use crate::record::Outcome;
-use crate::report::document::Verdict as Stated;
+use crate::report::document::{Tone, Verdict as Stated};
 use crate::report::run::Run;
 use crate::report::wording::verdict as wording;
-use crate::run::rehearsal;
+use crate::run::check_run;
 use crate::verdict::Verdict;
 
-/// The verdict, and the reason if the run was not completed.
+/// The statement, and the reason if the run was not completed. A simulation is headed as such, and so is a check run: neither is
+/// the test of the plan.
 pub(in super::super) fn verdict(run: &Run<'_>) -> Stated {
     let reason = match &run.record.outcome {
         Outcome::Completed => String::new(),
@@ -16,35 +17,93 @@ pub(in super::super) fn verdict(run: &Run<'_>) -> Stated {
         | Outcome::Blocked { reason }
         | Outcome::Faulted { reason } => wording::reason(reason.trim_end_matches('.')),
     };
+    let (simulated, checked) = (
+        run.record.rig.simulated,
+        check_run::performed_part(run.plan).is_some(),
+    );
+    let name = run.assessment.verdict.name().to_uppercase();
+    let (heading, sentence) = match (simulated, checked) {
+        (true, _) => (
+            wording::simulation(outcome(run)),
+            if run.plan.rig.link.as_real().is_some() {
+                wording::EMULATED_RIG
+            } else {
+                wording::SIMULATED_RIG
+            }
+            .to_owned(),
+        ),
+        (false, true) => (
+            wording::check_run(outcome(run)),
+            wording::CHECK_RUN.to_owned(),
+        ),
+        (false, false) => (name, sentence(run)),
+    };
     Stated {
-        name: run.assessment.verdict.name(),
-        text: (sentence(run) + &reason).into(),
+        tone: tone(run, simulated || checked),
+        heading,
+        text: (sentence + &reason).into(),
+    }
+}
+
+/// Only the test of a specimen is green.
+fn tone(run: &Run<'_>, not_the_test: bool) -> Tone {
+    match run.assessment.verdict {
+        Verdict::Completed => Tone::Neutral,
+        Verdict::Pass if not_the_test => Tone::Neutral,
+        Verdict::Pass => Tone::Pass,
+        Verdict::Inconclusive => Tone::Inconclusive,
+        Verdict::Fail | Verdict::Aborted | Verdict::Error => Tone::Fail,
+    }
+}
+
+/// The number of requirements with this verdict, and of all.
+fn count(run: &Run<'_>, verdict: Verdict) -> (usize, usize) {
+    let requirements = &run.assessment.requirements;
+    let found = requirements
+        .iter()
+        .filter(|requirement| requirement.verdict == verdict)
+        .count();
+    (found, requirements.len())
+}
+
+/// The outcome in a few words, for a heading.
+fn outcome(run: &Run<'_>) -> String {
+    match run.assessment.verdict {
+        Verdict::Completed => wording::COMPLETED.to_owned(),
+        Verdict::Pass => match count(run, Verdict::Pass) {
+            (_, 1) => wording::REQUIREMENT_MET.to_owned(),
+            (_, total) => wording::requirements_met(total),
+        },
+        Verdict::Fail => {
+            let (found, total) = count(run, Verdict::Fail);
+            wording::requirements_not_met(found, total)
+        }
+        Verdict::Inconclusive => match count(run, Verdict::Inconclusive) {
+            (0, _) => wording::INCONCLUSIVE.to_owned(),
+            (found, total) => wording::requirements_inconclusive(found, total),
+        },
+        Verdict::Aborted => wording::STOPPED.to_owned(),
+        Verdict::Error => wording::FAULT.to_owned(),
     }
 }
 
 fn sentence(run: &Run<'_>) -> String {
-    let requirements = &run.assessment.requirements;
-    let total = requirements.len();
-    let count = |verdict: Verdict| {
-        requirements
-            .iter()
-            .filter(|requirement| requirement.verdict == verdict)
-            .count()
-    };
     let blocked = matches!(run.record.outcome, Outcome::Blocked { .. });
     match run.assessment.verdict {
-        Verdict::Completed if rehearsal::rehearsed_plan(run.plan).is_some() => {
-            wording::REHEARSAL.to_owned()
-        }
         Verdict::Completed => wording::NO_REQUIREMENT.to_owned(),
-        Verdict::Pass if total == 1 => wording::THE_REQUIREMENT_IS_MET.to_owned(),
-        Verdict::Pass => wording::all_met(total),
+        Verdict::Pass => match count(run, Verdict::Pass) {
+            (_, 1) => wording::THE_REQUIREMENT_IS_MET.to_owned(),
+            (_, total) => wording::all_met(total),
+        },
         Verdict::Inconclusive if blocked => wording::BLOCKED.to_owned(),
-        Verdict::Inconclusive if count(Verdict::Inconclusive) == 0 => {
-            wording::ZERO_DRIFT.to_owned()
+        Verdict::Inconclusive => match count(run, Verdict::Inconclusive) {
+            (0, _) => wording::ZERO_DRIFT.to_owned(),
+            (found, total) => wording::undecided(found, total),
+        },
+        Verdict::Fail => {
+            let (found, total) = count(run, Verdict::Fail);
+            wording::not_met(found, total)
         }
-        Verdict::Inconclusive => wording::undecided(count(Verdict::Inconclusive), total),
-        Verdict::Fail => wording::not_met(count(Verdict::Fail), total),
         Verdict::Aborted => wording::ABORTED.to_owned(),
         Verdict::Error => wording::RIG_FAILED.to_owned(),
     }

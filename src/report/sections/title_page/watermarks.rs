@@ -6,25 +6,15 @@ use crate::report::run::Run;
 use crate::report::status::ReportStatus;
 use crate::report::wording::status as wording;
 
-/// The boxes, one for each reason.
+/// The boxes, one for each reason that the heading does not state.
 pub(in super::super) fn notices(run: &Run<'_>) -> Vec<Notice> {
-    let simulated = run.record.rig.simulated;
     let notice = |reason| match reason {
-        ReportStatus::Certifiable => None,
-        ReportStatus::Rehearsal => Some((
-            vec![wording::REHEARSAL, wording::NOT_CERTIFIABLE],
-            if simulated {
-                wording::ON_A_SIMULATED_RIG.to_owned()
-            } else {
-                wording::ONLY_THE_GATE.to_owned()
-            },
-        )),
-        ReportStatus::Incomplete => Some((
-            vec![wording::INCOMPLETE],
-            wording::NOT_TO_ITS_END.to_owned(),
-        )),
+        ReportStatus::Certifiable
+        | ReportStatus::Simulation
+        | ReportStatus::CheckRun
+        | ReportStatus::Incomplete => None,
         ReportStatus::NotCertifiable { missing } => Some((
-            vec![wording::NOT_CERTIFIABLE],
+            vec![wording::NOT_ISSUABLE],
             wording::lacks(missing.join("; ")),
         )),
         ReportStatus::ParticularsMissing { missing } => Some((
@@ -32,7 +22,7 @@ pub(in super::super) fn notices(run: &Run<'_>) -> Vec<Notice> {
             wording::lacks_particulars(missing.join("; ")),
         )),
     };
-    ReportStatus::reasons(run)
+    reasons(run)
         .into_iter()
         .filter_map(notice)
         .map(|(words, text)| Notice {
@@ -44,18 +34,27 @@ pub(in super::super) fn notices(run: &Run<'_>) -> Vec<Notice> {
 
 /// The watermarks, on every page: any page may be passed on alone.
 pub(in super::super) fn watermarks(run: &Run<'_>) -> Vec<&'static str> {
-    let real_line = run.plan.rig.link.as_real().is_some();
-    let words = ReportStatus::reasons(run)
-        .into_iter()
-        .filter_map(|reason| match reason {
-            ReportStatus::Rehearsal if real_line && run.record.rig.simulated => {
-                Some(wording::REHEARSAL_ON_A_SIMULATED_RIG)
-            }
-            ReportStatus::Rehearsal => Some(wording::REHEARSAL),
-            ReportStatus::Incomplete => Some(wording::INCOMPLETE),
-            ReportStatus::NotCertifiable { .. } => Some(wording::NOT_CERTIFIABLE),
-            ReportStatus::ParticularsMissing { .. } => Some(wording::PARTICULARS_MISSING),
-            ReportStatus::Certifiable => None,
-        });
+    let words = reasons(run).into_iter().filter_map(|reason| match reason {
+        ReportStatus::Simulation => Some(wording::SIMULATION),
+        ReportStatus::CheckRun => Some(wording::CHECK_RUN),
+        ReportStatus::Incomplete => Some(wording::INCOMPLETE),
+        ReportStatus::NotCertifiable { .. } => Some(wording::NOT_ISSUABLE),
+        ReportStatus::ParticularsMissing { .. } => Some(wording::PARTICULARS_MISSING),
+        ReportStatus::Certifiable => None,
+    });
     words.collect()
+}
+
+/// A simulation has neither operator nor calibration: none is missing.
+fn reasons(run: &Run<'_>) -> Vec<ReportStatus> {
+    let mut reasons = ReportStatus::reasons(run);
+    if run.record.rig.simulated {
+        reasons.retain(|reason| {
+            matches!(
+                reason,
+                ReportStatus::Simulation | ReportStatus::CheckRun | ReportStatus::Incomplete
+            )
+        });
+    }
+    reasons
 }

@@ -93,16 +93,16 @@ pub struct Jog {
 pub fn jog(target: f64, speed: f64) -> Result<Jog, String> {
     // Numbers have no exponent; 0.1 µm is far finer than a step.
     let place = written(target * 1e3, 4)
-        .ok_or_else(|| format!("{target} m is no place Grbl can be sent to"))?;
-    let feed =
-        written(speed * 6e4, 3).ok_or_else(|| format!("{speed} m/s is no speed for Grbl"))?;
+        .ok_or_else(|| format!("{target} m is not a valid position for Grbl"))?;
+    let feed = written(speed * 6e4, 3)
+        .ok_or_else(|| format!("{speed} m/s is not a valid speed for Grbl"))?;
     let heard = |text: &str, scale, meant| {
-        number::read_back(text, scale, meant).ok_or_else(|| format!("`{text}` is no number"))
+        number::read_back(text, scale, meant).ok_or_else(|| format!("`{text}` is not a number"))
     };
     let (target, speed) = (heard(&place, 1e3, target)?, heard(&feed, 6e4, speed)?);
     if speed.is_nan() || speed * 6e4 < SLOWEST * (1.0 - 1e-12) {
         return Err(format!(
-            "Grbl goes no slower than {SLOWEST} mm/min: {feed} mm/min was asked for"
+            "{SLOWEST} mm/min is the lowest speed of Grbl; requested: {feed} mm/min"
         ));
     }
     Ok(Jog {
@@ -234,9 +234,9 @@ pub const fn error(code: u64) -> &'static str {
 #[must_use]
 pub const fn alarm(code: u64) -> &'static str {
     match code {
-        1 => "an end switch was hit, its position is likely lost",
+        1 => "a limit switch was hit; its position is probably lost",
         2 => "the target is outside its travel",
-        3 => "it was reset in motion, its position is likely lost",
+        3 => "it was reset during a motion; its position is probably lost",
         6..=9 => "homing failed",
         _ => "see Grbl's list of alarm codes",
     }

@@ -17,8 +17,8 @@ const REQUIRED: [(u64, &str, &str); 6] = [
     (10, "1", "it must report machine positions"),
     (13, "0", "it must report millimetres"),
     (20, "1", "targets outside its travel must be refused"),
-    (21, "1", "end switches must stop it"),
-    (22, "1", "it must know where it is"),
+    (21, "1", "limit switches must stop it"),
+    (22, "1", "it must know its position"),
 ];
 
 /// Highest speed of X \[mm/min\].
@@ -77,10 +77,10 @@ impl GrblDevice {
     fn fit_status(&mut self) -> Result<(Status, Vec<u8>), DeviceFault> {
         let (status, raw) = self.status()?;
         let reason = match status.state {
-            State::Alarm => "it is in alarm and does not know where it is: home it (`$H`)",
+            State::Alarm => "it is in alarm and does not know its position: home it (`$H`)",
             State::Door => "its safety door is open",
-            State::Check => "it only checks what it is told (`$C`)",
-            State::Sleep => "it is asleep and its motor holds nothing",
+            State::Check => "it is in check mode and executes no command (`$C`)",
+            State::Sleep => "it is asleep and its motor does not hold",
             _ => return Ok((status, raw)),
         };
         Err(DeviceFault::Refused {
@@ -151,10 +151,10 @@ impl GrblDevice {
         match self.fit_status()?.0.state {
             State::Idle => Ok(()),
             State::Held if self.unanswered => refused(
-                "a move that was never answered may wait in it: look at it, then begin again with `--let-go`",
+                "an unanswered move may be pending in it: inspect it, then start again with `--let-go`",
             ),
             State::Held if self.held => self.resume_at_rest(),
-            State::Held => refused("it is held by somebody else"),
+            State::Held => refused("it is on hold, and not by psd"),
             _ => refused("it is still moving"),
         }
     }
@@ -173,7 +173,7 @@ impl GrblDevice {
         let unfit = |reason: &str| Err(DeviceFault::Unfit(reason.to_owned()));
         // Queried again: a reset in motion would lose the position.
         if self.status()?.0 != held {
-            return unfit("it is held and does not rest: it is not let go of");
+            return unfit("on hold, but not at rest: its hold is not cleared");
         }
         self.client.drain()?;
         self.client
@@ -198,7 +198,7 @@ impl GrblDevice {
         {
             return Ok(());
         }
-        unfit("let go of, it is not idle where it was held: home it (`$H`)")
+        unfit("it is not idle at the held position after its hold was cleared: home it (`$H`)")
     }
 
     /// The length of one step \[m\].
@@ -310,8 +310,8 @@ impl Device for GrblDevice {
             State::Idle => {}
             State::Held if self.client.release_allowed() => self.let_go(status)?,
             State::Held => {
-                let help = "it is held: look at it, then let go of it with `--let-go` (of `psd resume`, or of `psd rig jog` before a \
-                            new run); it stays where it is, and forgets what was interrupted";
+                let help = "the rig is HELD: inspect it, then clear its hold with `--let-go` (`psd resume`, or `psd rig jog` \
+                            before a new run); it does not move, and discards the interrupted move";
                 return Err(DeviceFault::Unfit(help.to_owned()));
             }
             state if state.is_moving() => {
@@ -319,12 +319,12 @@ impl Device for GrblDevice {
                 self.client.send(grbl::codec::HOLD)?;
                 self.until(|state| !state.is_moving())?;
                 return Err(DeviceFault::Unfit(
-                    "it was moving before it was told to: held".to_owned(),
+                    "it was already moving before any command: rig put on hold".to_owned(),
                 ));
             }
             state => {
                 return Err(DeviceFault::Unfit(format!(
-                    "it is in the state {state:?}, and not ready to be moved"
+                    "it is in the state {state:?}, and not ready to move"
                 )));
             }
         }
@@ -349,7 +349,7 @@ impl Device for GrblDevice {
         check(&settings)?;
         self.settings = settings;
         (self.known, self.unanswered, self.held) = (true, false, false);
-        who.ok_or_else(|| DeviceFault::Unfit("it does not say what version it is".to_owned()))
+        who.ok_or_else(|| DeviceFault::Unfit("it does not report its version".to_owned()))
     }
 
     fn encode(&mut self, targets: &[f64], speed: f64) -> Result<DeviceMove, DeviceFault> {
@@ -398,7 +398,7 @@ impl Device for GrblDevice {
         self.unanswered = true;
         Err(DeviceFault::Refused {
             reason: format!(
-                "it said `ok` and did not move: it is in the state {:?}",
+                "it answered `ok` and did not move: it is in the state {:?}",
                 status.state
             ),
         })

@@ -33,7 +33,7 @@ pub(crate) fn decoded(line: Vec<u8>) -> Result<Sample, DeviceFault> {
     let Some(count) = hx711::codec::count(&line) else {
         return Err(DeviceFault::NoReading {
             raw: line,
-            reason: "it is no count of 24 bits".to_owned(),
+            reason: "it is not a 24-bit count".to_owned(),
         });
     };
     let (low, high) = RAILS;

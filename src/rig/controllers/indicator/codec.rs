@@ -50,7 +50,7 @@ pub fn weight(line: &[u8]) -> Result<Weight, &'static str> {
         b"OL" => Status::Overload,
         b"UL" => Status::Underload,
         b"TL" => return Err("the scale is not level"),
-        _ => return Err("no status of a weight"),
+        _ => return Err("unknown weight status"),
     };
     if !matches!(what, b"GS" | b"NT") {
         return Err("neither gross nor net");
@@ -58,11 +58,11 @@ pub fn weight(line: &[u8]) -> Result<Weight, &'static str> {
     let newtons = newtons_per(trimmed(unit)).ok_or("not in kg, g, t, lb, N or kN")?;
     // A line that has lost a digit has the wrong length for a weight.
     if value.len() != PLACES && !status.is_out_of_range() {
-        return Err("its value has not the 8 places of a weight");
+        return Err("its value does not have the 8 characters of a weight");
     }
     let force = number::fixed(without_blanks_before(value)).map(|value| value * newtons);
     if force.is_none() && !status.is_out_of_range() {
-        return Err("its value is no number");
+        return Err("its value is not a number");
     }
     Ok(Weight { status, force })
 }

@@ -169,9 +169,9 @@ pub fn status(answer: &[u8]) -> Option<Status> {
         10 => Some(Trouble::Hydraulics("oil pressure too high")),
         11 => Some(Trouble::Hydraulics("oil pressure too low")),
         12 => Some(Trouble::Hydraulics("manifold or pump blocked")),
-        13 => Some(Trouble::Hydraulics("oil level going too low")),
+        13 => Some(Trouble::Hydraulics("oil level falling too low")),
         14 => Some(Trouble::Hydraulics("manifold pressure low")),
-        _ => Some(Trouble::Hydraulics("a status that has no meaning")),
+        _ => Some(Trouble::Hydraulics("an unknown status")),
     };
     Some(Status {
         actuator_off: word >> 3 & 1 == 1,

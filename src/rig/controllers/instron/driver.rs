@@ -62,7 +62,7 @@ impl Instron {
 
     fn number(&mut self, question: Question, raw: &mut Vec<Vec<u8>>) -> Result<f64, DeviceFault> {
         let answer = self.ask(question, raw)?;
-        instron::codec::number(&answer).ok_or_else(|| no_reading(answer, "no number"))
+        instron::codec::number(&answer).ok_or_else(|| no_reading(answer, "not a number"))
     }
 
     /// Readings sometimes drop to zero: an exact zero is requested again.
@@ -120,7 +120,7 @@ impl Instron {
 
     fn ask_movement_once(&mut self, raw: &mut Vec<Vec<u8>>) -> Result<Movement, DeviceFault> {
         let answer = self.ask(Question::Movement, raw)?;
-        instron::codec::movement(&answer).ok_or_else(|| no_reading(answer, "no movement"))
+        instron::codec::movement(&answer).ok_or_else(|| no_reading(answer, "no movement status"))
     }
 
     /// The emergency stop is a flag; any other trip makes the rig unsuitable.
@@ -167,7 +167,7 @@ impl Instron {
     /// Prepares the ramp until it is read back as it was sent. Nothing moves yet.
     fn make_ready(&mut self, frames: &[Vec<u8>]) -> Result<(), DeviceFault> {
         let (target, seconds) = instron::codec::decoded_ramp(frames)
-            .ok_or_else(|| DeviceFault::Unfit("this is no ramp".to_owned()))?;
+            .ok_or_else(|| DeviceFault::Unfit("this is not a ramp".to_owned()))?;
         let mut raw = Vec::new();
         for _ in 0..TRIES {
             self.client.send(&frames.concat())?;
@@ -194,7 +194,7 @@ impl Instron {
             }
         }
         Err(DeviceFault::Refused {
-            reason: "its ramp is not the one that was sent".to_owned(),
+            reason: "its ramp differs from the ramp that was sent".to_owned(),
         })
     }
 
@@ -240,10 +240,13 @@ impl Device for Instron {
     fn encode(&mut self, targets: &[f64], speed: f64) -> Result<DeviceMove, DeviceFault> {
         let target = one_axis(targets)?;
         let from = self.last.ok_or_else(|| {
-            DeviceFault::Unfit("where it stands is not known: read first".to_owned())
+            DeviceFault::Unfit("its position is not known: read it first".to_owned())
         })?;
-        let unsayable =
-            || DeviceFault::Unfit(format!("the console cannot say {target} m at {speed} m/s"));
+        let unsayable = || {
+            DeviceFault::Unfit(format!(
+                "the console cannot express {target} m at {speed} m/s"
+            ))
+        };
         let full_scale = self.position.full_scale;
         let rounded = instron::codec::ramp(target / full_scale, 0.0).ok_or_else(unsayable)?;
         let (fraction, _) = instron::codec::decoded_ramp(&rounded).ok_or_else(unsayable)?;
@@ -277,7 +280,7 @@ impl Device for Instron {
             self.client.line_statistics_mut().resent += 1;
         }
         Err(DeviceFault::Refused {
-            reason: "it does not set off".to_owned(),
+            reason: "it does not start to move".to_owned(),
         })
     }
 

@@ -151,7 +151,7 @@ impl LineClient {
             .write(bytes, Duration::from_secs_f64(self.reply_timeout))
             .map_err(|error| match error.kind() {
                 ErrorKind::TimedOut | ErrorKind::WouldBlock => DeviceFault::Lost {
-                    reason: format!("it took nothing for {} s", self.reply_timeout),
+                    reason: format!("it accepted no bytes for {} s", self.reply_timeout),
                 },
                 _ => lost(&error),
             })
@@ -238,7 +238,7 @@ impl LineClient {
             let now = self.clock.now();
             match self.more(now + quiet) {
                 Ok(()) if now < give_up => {}
-                Ok(()) => return Err(DeviceFault::Unfit("the line is never quiet".to_owned())),
+                Ok(()) => return Err(DeviceFault::Unfit("the line is never idle".to_owned())),
                 Err(Missed::TimedOut | Missed::TooLong) => return Ok(()),
                 Err(Missed::Gone(reason)) => return Err(DeviceFault::Lost { reason }),
                 Err(Missed::Interrupted) => return Err(DeviceFault::Interrupted),
@@ -336,7 +336,7 @@ impl LineClient {
                 &mut buffer[..room],
                 Duration::from_secs_f64(left.min(SLICE)),
             ) {
-                Ok(0) => return Err(Missed::Gone("the other side hung up".to_owned())),
+                Ok(0) => return Err(Missed::Gone("the other side closed it".to_owned())),
                 Ok(count) => {
                     self.waiting.extend_from_slice(&buffer[..count]);
                     return Ok(());
@@ -368,7 +368,7 @@ fn lost(error: &std::io::Error) -> DeviceFault {
 
 fn reason(error: &std::io::Error) -> String {
     if error.kind() == ErrorKind::BrokenPipe {
-        "the other side hung up".to_owned()
+        "the other side closed it".to_owned()
     } else {
         error.to_string()
     }

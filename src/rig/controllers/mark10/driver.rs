@@ -85,7 +85,7 @@ impl Mark10 {
         self.stop()?;
         Err(DeviceFault::Rebooted {
             was: "limit mode".to_owned(),
-            is: "another mode, in which no target stops it".to_owned(),
+            is: "another mode, in which it does not stop at a target".to_owned(),
         })
     }
 
@@ -107,7 +107,7 @@ impl Mark10 {
             }
         }
         Err(DeviceFault::Refused {
-            reason: "its travel limit is not the one that was sent".to_owned(),
+            reason: "its travel limit differs from the limit that was sent".to_owned(),
         })
     }
 
@@ -131,7 +131,7 @@ impl Device for Mark10 {
         self.client.send(mark10::codec::READY)?;
         if !self.status()?.limit_mode {
             return Err(DeviceFault::Unfit(
-                "the stand does not go into limit mode: does it have PC control?".to_owned(),
+                "the stand does not enter limit mode: does it have PC control?".to_owned(),
             ));
         }
         self.patiently(Self::sample)?;
@@ -141,10 +141,13 @@ impl Device for Mark10 {
     fn encode(&mut self, targets: &[f64], speed: f64) -> Result<DeviceMove, DeviceFault> {
         let target = one_axis(targets)?;
         let from = self.last.ok_or_else(|| {
-            DeviceFault::Unfit("where it stands is not known: read first".to_owned())
+            DeviceFault::Unfit("its position is not known: read it first".to_owned())
         })?;
-        let unsayable =
-            || DeviceFault::Unfit(format!("the stand cannot say {target} m at {speed} m/s"));
+        let unsayable = || {
+            DeviceFault::Unfit(format!(
+                "the stand cannot express {target} m at {speed} m/s"
+            ))
+        };
         let side = if target < from {
             Side::Lower
         } else {
@@ -161,7 +164,7 @@ impl Device for Mark10 {
     fn start(&mut self, going: &DeviceMove) -> Result<(), DeviceFault> {
         let [speed, limit, direction @ ..] = going.frames.as_slice() else {
             return Err(DeviceFault::Unfit(
-                "this is no move of the stand".to_owned(),
+                "this is not a move of the stand".to_owned(),
             ));
         };
         let side = if limit.starts_with(b"g") {
@@ -193,13 +196,13 @@ impl Device for Mark10 {
             if !there(self.patiently(|stand| stand.ask_travel(ask_limit(side)))?.0) {
                 self.stop()?;
                 return Err(DeviceFault::Refused {
-                    reason: "its travel limit is not the one that was read back".to_owned(),
+                    reason: "its travel limit differs from the limit that was read back".to_owned(),
                 });
             }
             self.client.line_statistics_mut().resent += 1;
         }
         Err(DeviceFault::Refused {
-            reason: "it does not set off".to_owned(),
+            reason: "it does not start to move".to_owned(),
         })
     }
 
@@ -215,7 +218,7 @@ impl Device for Mark10 {
         if past {
             self.stop()?;
             return Err(DeviceFault::Unfit(
-                "the stand went past its travel limit".to_owned(),
+                "the stand passed its travel limit".to_owned(),
             ));
         }
         let said_force = self.ask(mark10::codec::ASK_FORCE_THROUGH_STAND)?;
@@ -285,10 +288,7 @@ pub(crate) fn newtons(answer: &[u8]) -> Result<Force, DeviceFault> {
         Some(mark10::codec::Force::Unknown) => {
             Err(no_reading(answer.to_vec(), "the gauge did not understand"))
         }
-        None => Err(no_reading(
-            answer.to_vec(),
-            "no force with a unit that is known",
-        )),
+        None => Err(no_reading(answer.to_vec(), "no force with a known unit")),
     }
 }
 

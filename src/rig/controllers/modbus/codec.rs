@@ -104,9 +104,9 @@ pub fn answer_length(question: &[u8], received: &[u8]) -> Result<Option<usize>, 
         [_, said, ..] if *said != function => Err(Fault::Broken("another function was answered")),
         _ if writes(question) => Ok(Some(ECHO_LENGTH)),
         [_, _] => Ok(None),
-        [_, _, bytes, ..] if usize::from(*bytes) != asked_bytes(question) => {
-            Err(Fault::Broken("another number of registers was answered"))
-        }
+        [_, _, bytes, ..] if usize::from(*bytes) != asked_bytes(question) => Err(Fault::Broken(
+            "the answer has a different number of registers",
+        )),
         _ => Ok(Some(EXCEPTION_LENGTH + asked_bytes(question))),
     }
 }
@@ -141,14 +141,14 @@ pub fn answer(question: &[u8], received: &[u8]) -> Result<Vec<u16>, Fault> {
 #[must_use]
 pub const fn exception(code: u8) -> &'static str {
     match code {
-        1 => "it knows no such function",
+        1 => "it has no such function",
         2 => "it has no such register",
         3 => "the value is not allowed",
         4 => "the device failed",
         5 => "it needs more time",
         6 => "it is busy",
         8 => "its memory has a parity error",
-        _ => "an exception without a name",
+        _ => "an unknown exception",
     }
 }
 

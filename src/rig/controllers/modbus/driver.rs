@@ -131,10 +131,14 @@ impl Modbus {
 impl Device for Modbus {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         if self.position.is_none() && self.force.is_none() {
-            return Err(unfit("its map has neither a position nor a force to read"));
+            return Err(unfit(
+                "its map has no register for the position or the force",
+            ));
         }
         if self.map.target.is_some() && self.position.is_none() {
-            return Err(unfit("its map has a target, but no position to read"));
+            return Err(unfit(
+                "its map has a target, but no register for the position",
+            ));
         }
         let width = modbus::codec::width(self.map.number);
         self.position = self.find(self.position, width)?;
@@ -189,7 +193,7 @@ impl Device for Modbus {
         } else {
             let register = self
                 .position
-                .ok_or_else(|| unfit("it has nothing to stop it with"))?;
+                .ok_or_else(|| unfit("its map has no register to stop it"))?;
             let here = self
                 .read(register, self.map.length_unit, IMPLAUSIBLE_POSITION)?
                 .value;
@@ -211,9 +215,9 @@ impl Device for Modbus {
 const fn no_number(number: ModbusNumber) -> &'static str {
     match number {
         ModbusNumber::Int16 => {
-            "it holds no number that can be: look for another register or kind of number"
+            "it holds an impossible number: check the register and the kind of number"
         }
-        _ => "it holds no number that can be: try the other word order, or another kind of number",
+        _ => "it holds an impossible number: check the register order and the kind of number",
     }
 }
 
@@ -299,7 +303,7 @@ fn say_speed(map: &ModbusMap, speed: f64) -> Result<(Vec<u16>, f64), DeviceFault
         return if said > 0.0 {
             Ok((words, said))
         } else {
-            Err(unfit("its registers cannot hold so low a speed"))
+            Err(unfit("its registers cannot hold a speed so low"))
         };
     }
     // A short float may exceed it by half its last bit.

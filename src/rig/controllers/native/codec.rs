@@ -371,19 +371,19 @@ pub fn state(word: &str) -> Option<State> {
 pub fn refusal(words: &[&str]) -> String {
     let code = words.first().copied().unwrap_or_default();
     let meaning = match code {
-        "SEQ" => "the rig is at another sequence number",
+        "SEQ" => "the rig expects a different sequence number",
         "VERB" => "the rig does not know this request",
-        "ARG" => "the rig does not take this argument",
+        "ARG" => "the rig rejects this argument",
         "LIMIT" => "outside the limits of the rig",
-        "RATE" => "faster than the rig may go",
-        "ID" => "this number of a move was given to another target",
+        "RATE" => "faster than the speed limit of the rig",
+        "ID" => "this move number has a different target already",
         "BUSY" => "the rig is still moving",
-        "LATE" => "the way would have ended before it came",
+        "LATE" => "the segment came after its own end",
         "HELD" => "the rig is held",
         "STOP" => "the emergency stop is pressed",
         "REF" => "the rig is not referenced",
-        "FAULT" => "the rig has a fault of its own",
-        _ => "for a reason psd does not know",
+        "FAULT" => "the rig reports an internal fault",
+        _ => "for a reason unknown to psd",
     };
     format!("{meaning} (`ERR {}`)", words.join(" "))
 }

@@ -164,7 +164,8 @@ impl Device for Nees {
             .all(|name| nees::codec::is_field(name))
         {
             return Err(DeviceFault::Unfit(
-                "the name of a control point has no blanks and no control characters".to_owned(),
+                "the name of a control point must not contain spaces or control characters"
+                    .to_owned(),
             ));
         }
         self.prefix = self
@@ -186,7 +187,8 @@ impl Device for Nees {
             wait,
         )?;
         self.sample()?;
-        let strange = || DeviceFault::Unfit("it does not say that the session is open".to_owned());
+        let strange =
+            || DeviceFault::Unfit("it does not confirm that the session is open".to_owned());
         introduced(&self.control_points, &welcome).ok_or_else(strange)
     }
 
@@ -202,7 +204,7 @@ impl Device for Nees {
             )));
         }
         if !(speed > 0.0 && speed.is_finite()) {
-            return Err(DeviceFault::Unfit(format!("nothing moves at {speed} m/s")));
+            return Err(DeviceFault::Unfit(format!("invalid speed: {speed} m/s")));
         }
         let transaction = self.next_transaction();
         let points: Vec<(&str, f64)> = self
@@ -212,7 +214,7 @@ impl Device for Nees {
             .zip(targets.iter().copied())
             .collect();
         let (proposal, targets) = nees::codec::propose(&transaction, &points)
-            .ok_or_else(|| DeviceFault::Unfit(format!("{targets:?} m are no targets")))?;
+            .ok_or_else(|| DeviceFault::Unfit(format!("invalid targets: {targets:?} m")))?;
         Ok(DeviceMove {
             frames: vec![proposal, nees::codec::execute(&transaction)],
             targets,
@@ -353,7 +355,7 @@ fn proposed(going: &DeviceMove) -> Result<(&[u8], &[u8], String), DeviceFault> {
         going.frames.first().and_then(|frame| ours(frame)),
     ) {
         ([proposal, execution], Some(transaction)) => Ok((proposal, execution, transaction)),
-        _ => Err(DeviceFault::Unfit("this is no proposal".to_owned())),
+        _ => Err(DeviceFault::Unfit("this is not a proposal".to_owned())),
     }
 }
 

@@ -53,7 +53,7 @@ pub fn identification(line: &[u8]) -> Option<Identification> {
 /// # Errors
 /// The reason why it is invalid.
 pub fn answer(line: &[u8]) -> Result<Answer, &'static str> {
-    let value = number::scientific(line).ok_or("it is no number")?;
+    let value = number::scientific(line).ok_or("it is not a number")?;
     if value.abs() < INFINITY {
         Ok(Answer::Number(value))
     } else if value.abs() == INFINITY {
@@ -61,7 +61,7 @@ pub fn answer(line: &[u8]) -> Result<Answer, &'static str> {
             negative: value < 0.0,
         })
     } else {
-        Err("it says itself that it is no number")
+        Err("the meter reports that it has no valid number")
     }
 }
 

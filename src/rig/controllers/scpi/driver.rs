@@ -122,7 +122,7 @@ pub(crate) fn decoded(line: Vec<u8>, newtons_per_unit: &[f64]) -> Result<Sample,
     let words: Vec<&[u8]> = line.split(|byte| *byte == b',').collect();
     if words.len() != newtons_per_unit.len() {
         let reason = format!(
-            "it has {} numbers, and the meter {} channels",
+            "it has {} numbers, but the meter has {} channels",
             words.len(),
             newtons_per_unit.len()
         );
@@ -183,7 +183,7 @@ impl LoadCell for ScpiDevice {
         self.name = Vec::new();
         self.catch_up()?;
         introduced(&self.name)
-            .ok_or_else(|| DeviceFault::Unfit("it does not say who it is".to_owned()))
+            .ok_or_else(|| DeviceFault::Unfit("it does not report its identity".to_owned()))
     }
 
     fn axes(&self) -> usize {
@@ -321,9 +321,9 @@ mod tests {
         );
         assert_eq!(device.axes(), 2);
         for (said, why) in [
-            ("+1.5E+00", "it has 1 numbers, and the meter 2 channels"),
-            ("1.0,OVL", "channel 2: it is no number"),
-            ("1,5,2,5", "it has 4 numbers, and the meter 2 channels"),
+            ("+1.5E+00", "it has 1 numbers, but the meter has 2 channels"),
+            ("1.0,OVL", "channel 2: it is not a number"),
+            ("1,5,2,5", "it has 4 numbers, but the meter has 2 channels"),
         ] {
             reply(&port, 0.1, said);
             assert!(

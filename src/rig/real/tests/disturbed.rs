@@ -4,7 +4,8 @@
 
 use super::*;
 use crate::plan::{
-    AxisPlan, Datum, DeviceLink, Dialect, Gate, Interval, Link, PortPlan, RigPlan, SafeState,
+    AxisPlan, Datum, DeviceLink, Dialect, Interval, Link, PortPlan, PretestCheck, RigPlan,
+    SafeState,
 };
 use crate::rig::controllers::{Channel, DeviceIdentity, Force, Sample};
 use crate::rig::safety::failpoint::without;
@@ -118,7 +119,7 @@ fn plan() -> RigPlan {
         load_cell: None,
         safe_state: SafeState::Hold,
         datum: Datum::Machine,
-        gate: Gate {
+        pretest_check: PretestCheck {
             zero: 10.0,
             probe: 1e-4,
             stiffness: Interval::ALL,
@@ -146,9 +147,9 @@ fn plan() -> RigPlan {
         name,
         link: Link::Real(link),
         settle,
-        sign: 1.0,
+        polarity: 1.0,
         calibration,
-        drift: None,
+        zero_drift: None,
     }
 }
 

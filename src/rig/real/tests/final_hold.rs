@@ -51,7 +51,7 @@ fn a_hold_that_found_no_ear_is_called_none() {
         told.starts_with("NOT CONFIRMED HELD (actuator on rig:1: no usable answer within 2.81 s)"),
         "{told}"
     );
-    assert!(told.ends_with("use the emergency stop"), "{told}");
+    assert!(told.ends_with("Press the emergency stop"), "{told}");
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn a_rig_that_goes_on_is_not_called_held_and_is_not_waited_for_for_ever() {
     });
     let began = stand.rig.time();
     let halted = stand.rig.halt().unwrap();
-    assert_eq!(halted.unconfirmed.as_deref(), Some("it still moves"));
+    assert_eq!(halted.unconfirmed.as_deref(), Some("it is still moving"));
     assert!(
         (5.0..6.5).contains(&(halted.time - began)),
         "{}",
@@ -76,7 +76,7 @@ fn a_rig_that_goes_on_is_not_called_held_and_is_not_waited_for_for_ever() {
     });
     let halted = stand.rig.halt().unwrap();
     assert!(
-        halted.to_string().contains("the line is gone: unplugged"),
+        halted.to_string().contains("connection lost: unplugged"),
         "{halted}"
     );
 }

@@ -9,8 +9,8 @@ mod strokes;
 
 use super::*;
 use crate::plan::{
-    Calibration, Datum, DeviceLink, Dialect, Gate, Interval, Limits, Link, PortPlan, ReadingRules,
-    RigPlan, SafeState,
+    Calibration, Datum, DeviceLink, Dialect, Interval, Limits, Link, PortPlan, PretestCheck,
+    ReadingRules, RigPlan, SafeState,
 };
 use crate::rig::LimitedQuantity;
 use crate::rig::controllers::{Force, Sample};
@@ -59,7 +59,7 @@ fn plan() -> RigPlan {
         load_cell: None,
         safe_state: SafeState::Hold,
         datum: Datum::Machine,
-        gate: Gate {
+        pretest_check: PretestCheck {
             zero: 10.0,
             probe: 1e-4,
             stiffness: Interval {
@@ -83,9 +83,9 @@ fn plan() -> RigPlan {
         name,
         link: Link::Real(link),
         settle,
-        sign: 1.0,
+        polarity: 1.0,
         calibration,
-        drift: None,
+        zero_drift: None,
     }
 }
 
@@ -212,7 +212,7 @@ fn a_device_that_cannot_say_whether_it_moves_is_given_the_time_of_the_way() {
 #[test]
 fn a_negative_sign_turns_targets_readings_limits_and_the_remembered_move() {
     let turned = RigPlan {
-        sign: -1.0,
+        polarity: -1.0,
         ..plan()
     };
     let remember = |device: &FakeDevice| {
@@ -254,7 +254,7 @@ fn another_device_than_the_plan_s_is_refused() {
     let refused = opened(&plan(), another).err().unwrap();
     assert_eq!(
         refused.to_string(),
-        "actuator on rig:1: the plan wants serial number `F-1`, this one is `F-2`"
+        "actuator on rig:1: the plan requires serial number `F-1`; this device has `F-2`"
     );
 }
 
@@ -416,7 +416,7 @@ fn a_rig_that_moves_before_it_is_told_to_is_held() {
     let refused = opened(&plan(), moving).err().unwrap();
     assert_eq!(
         refused.to_string(),
-        "it was moving before it was told to: held"
+        "it was already moving before any command: rig put on hold"
     );
 }
 

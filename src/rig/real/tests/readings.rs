@@ -7,7 +7,7 @@ fn counts_become_newtons_by_the_calibration_and_without_one_are_refused() {
     let counting = |device: &FakeDevice| device.inside().newtons_per_count = Some(-0.5);
     let calibration = Calibration {
         newtons_per_count: Some(-0.5),
-        zero_count: -40.0,
+        zero_offset: -40.0,
         ..Calibration::default()
     };
     let mut stand = opened(
@@ -65,7 +65,7 @@ fn no_reading_is_asked_for_again_three_times_and_its_bytes_are_kept() {
     let fault = lost.rig.read().unwrap_err();
     assert_eq!(
         fault.to_string(),
-        "actuator on rig:1: `9.91E37` is no reading: overload"
+        "actuator on rig:1: `9.91E37` is not a reading: overload"
     );
     assert_eq!(lost.device.inside().holds, 1);
 }
@@ -86,8 +86,9 @@ fn a_frozen_a_saturated_and_a_flagged_reading_hold_the_rig() {
         }
     });
     assert!(
-        saturated
-            .starts_with("the force reading is saturated: the device says so; nothing has moved"),
+        saturated.starts_with(
+            "the force reading is saturated: reported by the device; nothing has moved"
+        ),
         "{saturated}"
     );
     let stopped = caught_by(Guarding::Flags, || {
@@ -103,7 +104,7 @@ fn a_frozen_a_saturated_and_a_flagged_reading_hold_the_rig() {
             Ok(())
         }
     });
-    assert_eq!(stale, "the reading is an old one");
+    assert_eq!(stale, "the reading is out of date");
 }
 
 #[test]
@@ -114,7 +115,7 @@ fn a_rig_that_started_anew_is_not_moved_any_more() {
             Ok(())
         }
     });
-    assert!(went_back.contains("started anew"), "{went_back}");
+    assert!(went_back.contains("restarted"), "{went_back}");
     let mut stand = stand();
     stand.device.alter(|_, _| {
         Err(DeviceFault::Rebooted {
@@ -143,7 +144,7 @@ fn a_program_that_was_away_does_not_go_on_by_itself() {
     let (read, holds) = away();
     assert!(
         read.unwrap_err()
-            .starts_with("the program was away for 30.0 s")
+            .starts_with("psd did not poll the rig for 30.0 s")
             && holds == 1
     );
     assert_eq!(without(Guarding::Away, away), (Ok(()), 0));

@@ -24,7 +24,7 @@ fn an_axis_that_goes_past_its_target_is_held_on_the_way() {
     let (stood, fault) = sent(5.0);
     let fault = fault.expect("held");
     assert!(
-        fault.starts_with("the rig went off its way: it is at 2.5"),
+        fault.starts_with("the rig deviated from the commanded path: it is at 2.5"),
         "{fault}"
     );
     // Two readings, 50 ms apart at 1 mm/s.
@@ -40,7 +40,7 @@ fn an_axis_that_goes_past_its_target_is_held_on_the_way() {
 fn an_axis_that_goes_the_other_way_is_held() {
     let (stood, fault) = sent(-0.4);
     assert!(
-        fault.is_some_and(|fault| fault.contains("off its way"))
+        fault.is_some_and(|fault| fault.contains("deviated"))
             && (-7.2e-4..=-5.2e-4).contains(&stood),
         "{stood}"
     );

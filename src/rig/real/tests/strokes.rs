@@ -101,7 +101,7 @@ fn a_stroke_reads_as_often_as_the_line_carries_and_waits_until_it_rests() {
         .unwrap_err();
     assert!(
         late.to_string()
-            .starts_with("the readings cannot keep up: 1 in a stroke of 0.080 s"),
+            .starts_with("the readings are too slow: 1 in a stroke of 0.080 s"),
         "{late}"
     );
 }

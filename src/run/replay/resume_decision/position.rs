@@ -25,11 +25,11 @@ impl Bands {
     #[must_use]
     pub fn of(rig: &RigPlan, link: &RealLink) -> Self {
         let axes = 0..rig.axes().unwrap_or(1);
-        let readings = axes.map(|axis| (link.readings_of(axis), link.gate_of(axis)));
-        let bands = readings.map(|(read, gate)| {
+        let readings = axes.map(|axis| (link.readings_of(axis), link.pretest_check_of(axis)));
+        let bands = readings.map(|(read, pretest_check)| {
             (
                 rig.settle.band.max(4.0 * read.resolution),
-                gate.zero.max(6.0 * read.noise),
+                pretest_check.zero.max(6.0 * read.noise),
             )
         });
         let (displacement, force) = bands.unzip();

@@ -2,39 +2,41 @@
 
 use crate::rig::{of_axis, who};
 use crate::run::replay::logged_run::{Mismatch, UnreadableLog};
+use crate::units::Dimension;
+use crate::units::display::plain;
 
 /// Why a run must not be resumed automatically.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ResumeRefusal {
-    #[error("the run came to its end: there is nothing to go on with")]
+    #[error("the run is complete: nothing is left to resume")]
     Ended,
-    #[error("nothing was recorded of the rig: start the run anew")]
+    #[error("the run log has no rig: start a new run")]
     NothingRecorded,
     #[error("the specimen was unloaded when the run stopped: its history cannot be continued")]
     Unloaded,
-    #[error("this is another rig: {found} answered, the record is of {recorded}")]
+    #[error("this is a different rig: {found} answered, the run log has {recorded}")]
     OtherRig { recorded: String, found: String },
     #[error(
-        "the rig started anew since ({recorded} became {found}): reference it, then say so with --re-referenced"
+        "the rig was restarted since ({recorded} became {found}): reference it, then confirm with --re-referenced"
     )]
     Rebooted { recorded: String, found: String },
     #[error(
-        "this rig cannot say whether it was switched off since: if you know that it was not, say so with --same-power-up; else \
-         reference it, then say so with --re-referenced"
+        "this rig cannot report whether it was power-cycled since. If it was not, confirm with --same-power-up; otherwise \
+         reference it, then confirm with --re-referenced"
     )]
     PowerUpUnknown,
     #[error(
-        "the record says that it started anew in the run ({told}): reference it, then say so with --re-referenced"
+        "the run log shows that the rig restarted during the run ({told}): reference it, then confirm with --re-referenced"
     )]
     Restarted { told: String },
     #[error(
-        "the rig's firmware is no longer the one of the record ({recorded} became {found}): see that it means the same, reference \
-         the rig, then say so with --re-referenced"
+        "the firmware of the rig differs from the run log ({recorded} became {found}): check that its meaning is the same, \
+         reference the rig, then confirm with --re-referenced"
     )]
     OtherFirmware { recorded: String, found: String },
     #[error(
-        "{} stands at {found} m; the record left it at {recorded} m, {band} m is allowed: bring it back by hand, then resume",
-        who(*.axis)
+        "{} is at {}, but its last logged position is {} (limit ±{}). Move it back with `psd rig jog`, then resume",
+        who(*.axis), position(*.found), position(*.recorded), position(*.band)
     )]
     Elsewhere {
         recorded: f64,
@@ -42,7 +44,10 @@ pub enum ResumeRefusal {
         band: f64,
         axis: Option<usize>,
     },
-    #[error("{} stands at {found} m, between nothing the record knows: from {from} m to {to} m it was to go", who(*.axis))]
+    #[error(
+        "{} is at {}, outside its last commanded move ({} → {}). Move it back with `psd rig jog`, then resume",
+        who(*.axis), position(*.found), position(*.from), position(*.to)
+    )]
     Lost {
         from: f64,
         to: f64,
@@ -50,8 +55,8 @@ pub enum ResumeRefusal {
         axis: Option<usize>,
     },
     #[error(
-        "the force{} is {found} N, the record left it at {recorded} N, {band} N is allowed: look at the specimen, then say so with --accept-relaxation",
-        of_axis(*.axis)
+        "the force{} is {}, but its last logged value is {} (limit ±{}): inspect the specimen, then confirm with --accept-relaxation",
+        of_axis(*.axis), force(*.found), force(*.recorded), force(*.band)
     )]
     Relaxed {
         recorded: f64,
@@ -59,14 +64,24 @@ pub enum ResumeRefusal {
         band: f64,
         axis: Option<usize>,
     },
-    #[error("the plan is not the one of the record: {0}")]
+    #[error("the plan differs from the plan of the run log: {0}")]
     Otherwise(#[from] Mismatch),
-    #[error("done again from its record, the run ends where it ended: {reason}")]
+    #[error("the recorded run already ended with: {reason}. Nothing is left to resume")]
     EndsAgain { reason: String },
     #[error(
-        "`{what}` of the rig is no longer the one of the record: what was measured would mean something else"
+        "`{what}` of the rig differs from the run log: earlier readings would have a different meaning"
     )]
     OtherMeasure { what: &'static str },
     #[error(transparent)]
     UnreadableLog(#[from] UnreadableLog),
+}
+
+/// A position in m, as text with its unit.
+fn position(position: f64) -> String {
+    plain(position, Dimension::LENGTH, 6)
+}
+
+/// A force in N, as text with its unit.
+fn force(force: f64) -> String {
+    plain(force, Dimension::FORCE, 6)
 }

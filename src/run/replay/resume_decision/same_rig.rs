@@ -121,7 +121,7 @@ pub fn same_measure(recorded: &RigPlan, now: &RigPlan) -> Result<(), ResumeRefus
         axes.map(|all| {
             (
                 all.newtons_per_count.map(f64::to_bits),
-                all.zero_count.to_bits(),
+                all.zero_offset.to_bits(),
             )
         })
         .collect::<Vec<_>>()
@@ -132,11 +132,11 @@ pub fn same_measure(recorded: &RigPlan, now: &RigPlan) -> Result<(), ResumeRefus
     }
     let signs = |rig: &RigPlan| {
         (0..rig.axes().unwrap_or(1))
-            .map(|axis| rig.sign_of(axis).to_bits())
+            .map(|axis| rig.polarity_of(axis).to_bits())
             .collect::<Vec<_>>()
     };
     if signs(recorded) != signs(now) {
-        return differs("sign");
+        return differs("polarity");
     }
     if scale(recorded) != scale(now) {
         return differs("calibration");

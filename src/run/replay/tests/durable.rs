@@ -125,7 +125,7 @@ fn a_disk_that_fails_holds_the_rig_and_nothing_more_is_sent() {
         begin(&mut journal, &header(), &[]).unwrap();
         let recorded = record(&plan, &mut rig, &mut Witness, journal, no_wall());
         assert!(
-            matches!(&recorded.record.outcome, Outcome::Faulted { reason } if reason.contains("cannot be kept"))
+            matches!(&recorded.record.outcome, Outcome::Faulted { reason } if reason.contains("cannot be written"))
         );
         assert!(recorded.fault.is_some());
         let carried_out = rig.0.borrow().carried_out.len();

@@ -84,7 +84,7 @@ impl Rig for HeldOnTheWay {
         self.rig.hold();
     }
     fn halt(&mut self) -> Option<FinalHold> {
-        let unconfirmed = (!self.heard).then(|| "the line is gone".to_owned());
+        let unconfirmed = (!self.heard).then(|| "connection lost".to_owned());
         let found = self.heard.then(|| (vec![place()], vec![force()]));
         Some(FinalHold {
             time: self.time() + 0.25,
@@ -130,11 +130,11 @@ fn held(heard: bool) -> (Recorded, Vec<u8>) {
 #[test]
 fn what_became_of_the_rig_plays_back() {
     for (heard, kind, told) in [
-        (true, EventKind::Held, "held at 0.2400 mm, 0.07200 N"),
+        (true, EventKind::Held, "HELD at 0.2400 mm, 0.07200 N"),
         (
             false,
             EventKind::NotHeld,
-            "NOT CONFIRMED HELD (the line is gone): it may still be moving; use the emergency stop",
+            "NOT CONFIRMED HELD (connection lost): IT MAY STILL BE MOVING. Press the emergency stop",
         ),
     ] {
         let (recorded, bytes) = held(heard);

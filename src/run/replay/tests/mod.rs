@@ -418,7 +418,7 @@ fn what_cannot_be_gone_on_with_is_known_without_a_rig() {
         .unwrap();
     recovered.lines.truncate(steps);
     let cut_off = LoggedRun::of(&recovered).unwrap();
-    let rehearse = |plan: &Plan| {
+    let check_run = |plan: &Plan| {
         let mut opened = false;
         let open = || {
             opened = true;
@@ -428,7 +428,7 @@ fn what_cannot_be_gone_on_with_is_known_without_a_rig() {
         (refused.unwrap(), opened)
     };
     assert_eq!(
-        rehearse(&plan),
+        check_run(&plan),
         (ResumeRefusal::NothingRecorded, true),
         "what the rig's opening says"
     );
@@ -438,20 +438,20 @@ fn what_cannot_be_gone_on_with_is_known_without_a_rig() {
         ramp.displacements[0] = crate::plan::formula::Formula::Constant(5e-5);
     }
     assert!(
-        matches!(rehearse(&other), (ResumeRefusal::Otherwise(_), false)),
+        matches!(check_run(&other), (ResumeRefusal::Otherwise(_), false)),
         "another target than the recorded one"
     );
     let mut shorter = plan.clone();
     shorter.procedures.truncate(1);
     assert!(
-        matches!(rehearse(&shorter), (ResumeRefusal::Otherwise(_), false)),
+        matches!(check_run(&shorter), (ResumeRefusal::Otherwise(_), false)),
         "the record goes on beyond the plan"
     );
     let mut narrow = plan.clone();
     narrow.limits.displacement.high = 1e-6;
     assert!(
         matches!(
-            rehearse(&narrow),
+            check_run(&narrow),
             (
                 ResumeRefusal::EndsAgain { .. } | ResumeRefusal::Otherwise(_),
                 false
@@ -462,10 +462,10 @@ fn what_cannot_be_gone_on_with_is_known_without_a_rig() {
 
     let mut turned = plan.rig.clone();
     same_measure(&plan.rig, &turned).unwrap();
-    turned.sign = -turned.sign;
+    turned.polarity = -turned.polarity;
     assert_eq!(
         same_measure(&plan.rig, &turned),
-        Err(ResumeRefusal::OtherMeasure { what: "sign" })
+        Err(ResumeRefusal::OtherMeasure { what: "polarity" })
     );
 
     let fine = DeclaredNoise {

@@ -26,7 +26,7 @@ pub(super) fn yielding(procedures: Vec<ProcedureKind>) -> Plan {
     plan.specimens[0].behaviour = Some(Behaviour::Bilinear {
         stiffness: 300.0,
         yield_force: 3.0,
-        hardening: 0.1,
+        post_yield_ratio: 0.1,
     });
     plan
 }
@@ -70,7 +70,7 @@ pub(super) fn shaken(mode: Mode) -> Plan {
     let behaviour = |stiffness| Behaviour::Bilinear {
         stiffness,
         yield_force: stiffness * 0.0002,
-        hardening: 0.1,
+        post_yield_ratio: 0.1,
     };
     let storey = |mass, stiffness| Storey::new(mass, stiffness, behaviour(stiffness));
     let mut plan = elastic_plan(300.0, Vec::new());
@@ -190,7 +190,7 @@ pub(super) fn drifting() -> Plan {
         note: "look".to_owned(),
     };
     let mut plan = elastic_plan(300.0, vec![ProcedureKind::StiffnessRamp(ramped), looked]);
-    plan.rig.drift = Some(DriftCheck {
+    plan.rig.zero_drift = Some(DriftCheck {
         force: 1.0,
         displacement: Some(1e-6),
         over: 0.4,

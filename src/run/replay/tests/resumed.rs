@@ -206,7 +206,7 @@ fn a_restart_on_record_needs_a_reference_whatever_else_is_said() {
         Ok(())
     );
     assert_eq!(
-        not_restarted(&of("the line is gone: unplugged"), &[]),
+        not_restarted(&of("connection lost: unplugged"), &[]),
         Ok(())
     );
 }

@@ -1,6 +1,6 @@
 //! `shake`: its block and its results.
 
-use super::{INSPECT_TRIGGERS, SPECIMEN, tracking};
+use super::{SPECIMEN, tracking};
 use crate::schema::blocks::{frames, methods};
 use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind};
 use crate::units::Dimension;
@@ -8,19 +8,19 @@ use crate::units::Dimension;
 pub(crate) const MAX_DISPLACEMENT: ResultKind = ResultKind::measured_list(
     "max_displacement",
     Dimension::LENGTH,
-    "largest size of each floor's displacement, relative to the ground",
+    "peak absolute displacement of each floor, relative to the ground",
 );
 
 pub(crate) const MAX_DRIFT: ResultKind = ResultKind::measured_list(
     "max_drift",
     Dimension::LENGTH,
-    "largest size of each storey's drift",
+    "peak absolute drift of each storey",
 );
 
 pub(crate) const FINAL_DRIFT: ResultKind = ResultKind::measured_list(
     "final_drift",
     Dimension::LENGTH,
-    "each storey's drift at the last step of the run",
+    "drift of each storey at the last step of the run",
 );
 
 pub(crate) const PERIODS: ResultKind =
@@ -29,13 +29,13 @@ pub(crate) const PERIODS: ResultKind =
 pub(crate) const MAX_BASE_SHEAR: ResultKind = ResultKind::measured(
     "max_base_shear",
     Dimension::FORCE,
-    "largest size of the restoring force of the lowest storey, less what noise adds to it",
+    "peak absolute base shear, minus the part due to noise",
 );
 
 pub(crate) const ENERGY_ERROR: ResultKind = ResultKind::new(
     "energy_error",
     Dimension::NUMBER,
-    "what the energy balance misses, over the input energy",
+    "residual of the energy balance relative to the input energy",
 );
 
 pub(crate) const STEPS: ResultKind = ResultKind::count("steps", "number of steps");
@@ -59,41 +59,39 @@ pub(crate) const RESULTS: &[ResultKind] = &[
     tracking::FLOOR_PEAK_ERROR,
 ];
 
+pub(crate) const GROUND: Field =
+    Field::reference("ground", Kind::Ground, "ground motion").required("ground = sine");
+
+pub(crate) const SCALE: Field =
+    Field::quantity("scale", Dimension::NUMBER, "factor on the record").or(1.0, "");
+
 pub(crate) const BLOCK: BlockKind = BlockKind {
     kind: Kind::Shake,
     keyword: &["shake"],
     naming: Naming::Named,
     procedure: true,
     fields: &[
-        Field::reference("ground", Kind::Ground, "what moves below").required("ground = sine"),
+        GROUND,
         SPECIMEN,
-        Field::quantities(
-            "damping_ratio",
-            Dimension::NUMBER,
-            "one: Rayleigh damping with this ratio in the first two modes; a list: each mode its own",
-        )
-        .within(0.0, 1.0)
-        .or(0.0, ""),
+        frames::DAMPING_RATIO,
         frames::DAMPING_UNCERTAINTY,
         methods::INTEGRATOR,
         methods::ALLOW_UNSTABLE,
         methods::I_MODIFICATION,
         methods::MODE,
-        Field::quantity("time_step", Dimension::TIME, "Δt; may read `critical`, a tenth of the shortest period")
-            .above_zero()
+        methods::TIME_STEP
+            .described("Δt; can use `critical`, a tenth of the shortest period")
             .or_said("critical / 5"),
-        Field::quantity("scale", Dimension::NUMBER, "factor on the record").or(1.0, ""),
-        Field::quantity("duration", Dimension::TIME, "virtual time; past its record the ground rests")
-            .above_zero()
+        SCALE,
+        methods::DURATION
+            .described("simulated time; after the record the ground is at rest")
             .or_said("to the end of the record"),
-        Field::quantity("pause", Dimension::TIME, "wait at every step").or(0.0, "s").at_least_zero(),
-        Field::quantity("max_tangent_ratio", Dimension::NUMBER, "the tangent stiffness stays in 0 .. this times K")
-            .or(2.0, "")
-            .above_zero(),
-        Field::choices("inspect", INSPECT_TRIGGERS, "when a person is asked to look"),
+        methods::PAUSE,
+        methods::MAX_TANGENT_RATIO,
+        methods::INSPECT,
     ],
     exports: &[],
     results: RESULTS,
     example: "shake quake {\n  ground = sine\n  damping_ratio = 2 %\n}",
-    doc: "A frame on moving ground: an actuator and a load cell for each storey",
+    doc: "Ground-motion test of a frame, with one actuator and load cell per storey",
 };

@@ -1,80 +1,81 @@
 //! `cycle`: cycles of displacement, their protocols and results.
 
+use super::{SPECIMEN, SPEED};
 use crate::schema::blocks::curves;
 use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
 use crate::units::Dimension;
+
+pub(crate) const FIRST: Field = Field::quantity("first", Dimension::LENGTH, "smallest amplitude")
+    .required("first: 1 mm")
+    .above_zero();
+
+pub(crate) const LAST: Field = Field::quantity("last", Dimension::LENGTH, "largest amplitude")
+    .required("last: 10 mm")
+    .above_zero();
+
+pub(crate) const RATIO: Field =
+    Field::quantity("ratio", Dimension::NUMBER, "ratio of successive amplitudes")
+        .required("ratio: 1.4")
+        .above_zero();
+
+pub(crate) const LARGEST: Field =
+    Field::quantity("largest", Dimension::LENGTH, "amplitude of the last level")
+        .required("largest: 40 mm")
+        .above_zero();
+
+pub(crate) const LEVELS: Field = Field::count("levels", 1.0, 1000.0, "number of amplitudes");
 
 const PROTOCOLS: &[Variant] = &[
     Variant::with(
         "ramped",
         &[
-            Field::quantity("first", Dimension::LENGTH, "smallest amplitude")
-                .required("first: 1 mm")
-                .above_zero(),
-            Field::quantity("last", Dimension::LENGTH, "largest amplitude")
-                .required("last: 10 mm")
-                .above_zero(),
-            Field::count(
-                "levels",
-                1.0,
-                1000.0,
-                "amplitudes from the first to the last",
-            )
-            .required("levels: 10"),
+            FIRST,
+            LAST,
+            LEVELS
+                .described("amplitudes from the first to the last")
+                .required("levels: 10"),
         ],
         "amplitudes that grow by equal steps, one cycle each",
     ),
     Variant::with(
         "geometric",
-        &[
-            Field::quantity("first", Dimension::LENGTH, "smallest amplitude")
-                .required("first: 1 mm")
-                .above_zero(),
-            Field::quantity(
-                "ratio",
-                Dimension::NUMBER,
-                "of one amplitude to the one before",
-            )
-            .required("ratio: 1.4")
-            .above_zero(),
-            Field::count("levels", 1.0, 1000.0, "how many amplitudes").required("levels: 10"),
-        ],
-        "amplitudes that grow by one ratio, one cycle each",
+        &[FIRST, RATIO, LEVELS.required("levels: 10")],
+        "amplitudes that grow by a constant ratio, one cycle each",
     ),
     Variant::with(
         "fema_461",
         &[
-            Field::quantity("largest", Dimension::LENGTH, "amplitude of the last level")
-                .required("largest: 40 mm")
-                .above_zero(),
-            Field::count("levels", 1.0, 1000.0, "amplitudes up to the largest").or(10.0, ""),
+            LARGEST,
+            LEVELS
+                .described("amplitudes up to the largest")
+                .or(10.0, ""),
         ],
-        "like FEMA 461 (2007): two cycles at each amplitude, each amplitude 1.4 times the one before, the largest last",
+        "similar to FEMA 461 (2007): two cycles at each amplitude; amplitudes grow by 1.4 up to the largest",
     ),
 ];
 
 pub(crate) const DISSIPATED_ENERGY: ResultKind = ResultKind::measured(
     "dissipated_energy",
     Dimension::ENERGY,
-    "work done on the specimen over all cycles, ∫R dX",
+    "work done on the specimen in all cycles, ∫R dX",
 );
 
 pub(crate) const MAX_FORCE: ResultKind = ResultKind::measured(
     "max_force",
     Dimension::FORCE,
-    "largest restoring force, less what noise adds to the largest of many readings",
+    "largest restoring force, minus the part due to noise",
 );
 
 pub(crate) const MIN_FORCE: ResultKind = ResultKind::measured(
     "min_force",
     Dimension::FORCE,
-    "smallest restoring force: the largest pull, less what noise adds to it",
+    "smallest (most negative) restoring force, corrected for noise",
 );
 
 pub(crate) const EQUIVALENT_DAMPING_RATIO: ResultKind = ResultKind::measured(
     "equivalent_damping_ratio",
     Dimension::NUMBER,
-    "of the last cycle: E_D / (4π E_S0) with E_S0 = ½ K_sec a², a half its width",
+    "of the last cycle: E_D / (4π E_S0) with E_S0 = ½ K_sec a², a = half its width",
 );
 
 pub(crate) const STIFFNESS: ResultKind = ResultKind::measured(
@@ -89,12 +90,12 @@ pub(crate) const LAST_STIFFNESS: ResultKind = ResultKind::measured(
     "secant stiffness of the last cycle",
 );
 
-pub(crate) const CYCLES: ResultKind = ResultKind::count("cycles", "number of whole cycles");
+pub(crate) const CYCLES: ResultKind = ResultKind::count("cycles", "number of complete cycles");
 
 pub(crate) const AMPLITUDES: ResultKind = ResultKind::measured_list(
     "amplitudes",
     Dimension::LENGTH,
-    "half the width of each cycle as measured",
+    "measured amplitude of each cycle (half its width)",
 );
 
 pub(crate) const ENERGIES: ResultKind =
@@ -115,25 +116,25 @@ pub(crate) const STIFFNESSES: ResultKind = ResultKind::measured_list(
 pub(crate) const YIELD_FORCE: ResultKind = ResultKind::measured(
     "yield_force",
     Dimension::FORCE,
-    "force where the curve of the backbone first softens",
+    "force at which the backbone first softens (yield point)",
 );
 
 pub(crate) const YIELD_DISPLACEMENT: ResultKind = ResultKind::measured(
     "yield_displacement",
     Dimension::LENGTH,
-    "displacement there, from the middle of the cycles",
+    "displacement at the yield point, from the centre of the cycles",
 );
 
-pub(crate) const HARDENED_STIFFNESS: ResultKind = ResultKind::measured(
-    "hardened_stiffness",
+pub(crate) const POST_YIELD_STIFFNESS: ResultKind = ResultKind::measured(
+    "post_yield_stiffness",
     Dimension::STIFFNESS,
-    "slope of the last stretch of the backbone",
+    "slope of the last segment of the backbone",
 );
 
-pub(crate) const HARDENING: ResultKind = ResultKind::measured(
-    "hardening",
+pub(crate) const POST_YIELD_RATIO: ResultKind = ResultKind::measured(
+    "post_yield_ratio",
     Dimension::NUMBER,
-    "that slope over the first one",
+    "post-yield over initial slope of the backbone",
 );
 
 /// What it leaves, in the order of the tables and of `summary.json`.
@@ -151,15 +152,101 @@ pub(crate) const RESULTS: &[ResultKind] = &[
     STIFFNESSES,
     YIELD_FORCE,
     YIELD_DISPLACEMENT,
-    HARDENED_STIFFNESS,
-    HARDENING,
+    POST_YIELD_STIFFNESS,
+    POST_YIELD_RATIO,
     curves::BREAKS,
-    curves::BREAK_UNCERTAINTIES,
     curves::BREAK_FORCES,
-    curves::BREAK_FORCE_UNCERTAINTIES,
     curves::CURVE_STIFFNESSES,
-    curves::CURVE_STIFFNESS_UNCERTAINTIES,
 ];
+
+pub(crate) const GIVEN_AMPLITUDES: Field = Field::quantities(
+    "amplitudes",
+    Dimension::LENGTH,
+    "amplitudes of the cycles, in order; or `protocol`",
+)
+.above_zero()
+.or_said("the protocol's");
+
+pub(crate) const PROTOCOL: Field = Field::choice("protocol", PROTOCOLS, "rule for the amplitudes");
+
+pub(crate) const REPEATS: Field =
+    Field::count("repeats", 1.0, 1e5, "cycles at each amplitude").or_said("1, or the protocol's");
+
+pub(crate) const SIDES: Field = Field::choice(
+    "sides",
+    &[
+        Variant::word("both", "reversed: to + the amplitude, to −, and back"),
+        Variant::word("push", "to + the amplitude and back"),
+        Variant::word("pull", "to − the amplitude and back"),
+    ],
+    "direction of the cycles",
+)
+.or_said("both");
+
+pub(crate) const ABOUT: Field =
+    Field::quantity("about", Dimension::LENGTH, "centre of the cycles").or(0.0, "mm");
+
+pub(crate) const POINTS: Field = Field::count(
+    "points",
+    1.0,
+    1e5,
+    "targets between the centre and an amplitude",
+)
+.or(25.0, "");
+
+pub(crate) const PAUSE: Field = Field::quantity(
+    "pause",
+    Dimension::TIME,
+    "dwell at each target before the samples; with `rate`, at the ends only",
+)
+.or(0.0, "s")
+.at_least_zero();
+
+pub(crate) const SAMPLES: Field =
+    Field::count("samples", 1.0, 1e5, "readings averaged at each target").or(1.0, "");
+
+pub(crate) const RATE: Field = Field::quantity(
+    "rate",
+    Dimension::FREQUENCY,
+    "sampling rate of cycles without stops; requires `speed`",
+)
+.above_zero()
+.or_said("ramp-and-hold");
+
+pub(crate) const AMPLITUDES_BETWEEN: Field =
+    Field::count("amplitudes", 1.0, 1e5, "amplitudes between inspections").required("1");
+
+pub(crate) const FRACTION: Field = Field::quantity(
+    "fraction",
+    Dimension::NUMBER,
+    "fraction of the largest force so far",
+)
+.required("20 %")
+.within(0.0, 1.0);
+
+pub(crate) const INSPECT: Field = Field::choices(
+    "inspect",
+    &[
+        Variant::with(
+            "every",
+            &[AMPLITUDES_BETWEEN],
+            "after every so many amplitudes",
+        ),
+        Variant::with(
+            "force_drop",
+            &[FRACTION],
+            "when the largest force of an amplitude has fallen by this fraction",
+        ),
+    ],
+    "when the operator inspects the specimen, between two amplitudes",
+);
+
+pub(crate) const FIT: Field = Field::choice(
+    "fit",
+    &[curves::MULTILINEAR],
+    "curve fitted to the backbone: the ends of the first cycles, both directions together",
+)
+.or_said("nothing");
 
 pub(crate) const BLOCK: BlockKind = BlockKind {
     kind: Kind::Cycle,
@@ -167,88 +254,22 @@ pub(crate) const BLOCK: BlockKind = BlockKind {
     naming: Naming::Named,
     procedure: true,
     fields: &[
-        Field::reference("specimen", Kind::Specimen, "what is tested")
-            .or_said("the only one declared"),
-        Field::quantities(
-            "amplitudes",
-            Dimension::LENGTH,
-            "largest displacements of the cycles, in order; or `protocol`",
-        )
-        .above_zero()
-        .or_said("the protocol's"),
-        Field::choice("protocol", PROTOCOLS, "amplitudes by rule"),
-        Field::count("repeats", 1.0, 1e5, "cycles at each amplitude")
-            .or_said("1, or the protocol's"),
-        Field::choice(
-            "sides",
-            &[
-                Variant::word("both", "reversed: to + the amplitude, to −, and back"),
-                Variant::word("push", "to + the amplitude and back"),
-                Variant::word("pull", "to − the amplitude and back"),
-            ],
-            "to which sides of the middle the cycles go",
-        )
-        .or_said("both"),
-        Field::quantity("about", Dimension::LENGTH, "the middle of the cycles").or(0.0, "mm"),
-        Field::count(
-            "points",
-            1.0,
-            1e5,
-            "targets between the middle and an amplitude",
-        )
-        .or(25.0, ""),
-        Field::quantity(
-            "pause",
-            Dimension::TIME,
-            "wait at each target before the samples; with `rate` at each end of a way",
-        )
-        .or(0.0, "s")
-        .at_least_zero(),
-        Field::count("samples", 1.0, 1e5, "readings averaged at each target").or(1.0, ""),
-        Field::quantity("speed", Dimension::VELOCITY, "actuator speed")
-            .above_zero()
-            .or_said("the rig's own"),
-        Field::quantity(
-            "rate",
-            Dimension::FREQUENCY,
-            "sampling rate of cycles that are moved without stopping, at `speed`",
-        )
-        .above_zero()
-        .or_said("step and pause"),
-        Field::choices(
-            "inspect",
-            &[
-                Variant::with(
-                    "every",
-                    &[
-                        Field::count("amplitudes", 1.0, 1e5, "amplitudes between looks")
-                            .required("1"),
-                    ],
-                    "after every so many amplitudes",
-                ),
-                Variant::with(
-                    "force_drop",
-                    &[Field::quantity(
-                        "fraction",
-                        Dimension::NUMBER,
-                        "of the largest force so far",
-                    )
-                    .required("20 %")
-                    .within(0.0, 1.0)],
-                    "when the largest force of an amplitude has fallen",
-                ),
-            ],
-            "when a person is asked to look, between two amplitudes",
-        ),
-        Field::choice(
-            "fit",
-            &[curves::MULTILINEAR],
-            "what is fitted to the backbone: the ends of the first cycles, both sides on one",
-        )
-        .or_said("nothing"),
+        SPECIMEN,
+        GIVEN_AMPLITUDES,
+        PROTOCOL,
+        REPEATS,
+        SIDES,
+        ABOUT,
+        POINTS,
+        PAUSE,
+        SAMPLES,
+        SPEED,
+        RATE,
+        INSPECT,
+        FIT,
     ],
     exports: &[],
     results: RESULTS,
     example: "cycle fatigue { amplitudes = [1, 2, 5] mm }",
-    doc: "Reversed cycles of displacement at given amplitudes: energy, damping and stiffness of each loop",
+    doc: "Reversed displacement cycles at given amplitudes: energy, damping and stiffness of each loop",
 };

@@ -1,20 +1,20 @@
 //! `damping sweep`: its block and its results.
 
+use crate::plan::declaration::{fields, names};
 use crate::plan::procedure::damping_sweep::damping_sweep_fields;
-use crate::plan::procedure::declaration::fields;
 use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind};
 use crate::units::Dimension;
 
 pub(crate) const DAMPING: ResultKind = ResultKind::measured(
     "damping",
     Dimension::DAMPING,
-    "slope of damping force on velocity",
+    "slope of damping force against velocity",
 );
 
 pub(crate) const COULOMB_FORCE: ResultKind = ResultKind::measured(
     "coulomb_force",
     Dimension::FORCE,
-    "friction: damping force of the fit at no velocity",
+    "Coulomb friction: fitted damping force at zero velocity",
 );
 
 pub(crate) const R_SQUARED: ResultKind = ResultKind::new(
@@ -26,7 +26,7 @@ pub(crate) const R_SQUARED: ResultKind = ResultKind::new(
 pub(crate) const DAMPING_RATIO: ResultKind = ResultKind::measured(
     "damping_ratio",
     Dimension::NUMBER,
-    "damping over critical damping, c / (2 sqrt(K M))",
+    "fraction of critical damping, c / (2 sqrt(K M))",
 );
 
 pub(crate) const MAX_VELOCITY: ResultKind = ResultKind::new(
@@ -44,6 +44,8 @@ pub(crate) const RESULTS: &[ResultKind] = &[
     MAX_VELOCITY,
 ];
 
+damping_sweep_fields!(names);
+
 pub(crate) const BLOCK: BlockKind = BlockKind {
     kind: Kind::DampingSweep,
     keyword: &["damping", "sweep"],
@@ -53,5 +55,5 @@ pub(crate) const BLOCK: BlockKind = BlockKind {
     exports: &[],
     results: RESULTS,
     example: "damping sweep c {\n  velocities = [1, 2, 5] mm/s\n  stroke = 1 mm\n  stiffness = 300 kN/m\n}",
-    doc: "Ramps at rising constant velocity: the damping by least squares",
+    doc: "Strokes at increasing constant velocity: damping by least squares",
 };

@@ -1,54 +1,61 @@
 //! `impact`: its block and its results.
 
-use super::{INSPECT_TRIGGERS, SPECIMEN, tracking};
+use super::{SPECIMEN, STIFFNESS, tracking};
 use crate::schema::blocks::{frames, methods};
-use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind, RigKind, Variant};
+use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
 use crate::units::Dimension;
+
+pub(crate) const LIMIT_FORCE: Field =
+    Field::quantity("force", Dimension::FORCE, "largest contact force")
+        .required("1500 N")
+        .above_zero();
+
+pub(crate) const COEFFICIENT: Field = Field::quantity(
+    "coefficient",
+    Dimension::NUMBER,
+    "separation speed over closing speed",
+)
+.required("0.6")
+.within(0.0, 1.0);
+
+pub(crate) const HERTZ_STIFFNESS: Field =
+    Field::quantity("stiffness", Dimension::HERTZ_STIFFNESS, "k of F = k δ^1.5")
+        .required("stiffness: 1e8 N/m^1.5")
+        .above_zero();
+
+pub(crate) const LOSS: Field = Field::quantity(
+    "loss",
+    Dimension {
+        length: crate::units::Exponent::whole(-1),
+        mass: crate::units::Exponent::ZERO,
+        time: crate::units::Exponent::whole(1),
+    },
+    "factor of Hunt and Crossley, F = k δ^1.5 (1 + loss·dδ/dt)",
+)
+.or(0.0, "s/m")
+.at_least_zero();
+
+pub(crate) const FORCE_LIMIT: Field =
+    Field::quantity("force_limit", Dimension::FORCE, "largest contact force").above_zero();
 
 const CONTACT_LAWS: &[Variant] = &[
     Variant::word(
         "rigid",
-        "the paper's: the contact force of a step has no bound and grows as 1/Δt",
+        "rigid impact (Melo et al. 2006): the contact force of a step is unbounded and grows as 1/Δt",
     ),
     Variant::with(
         "limit",
-        &[
-            Field::quantity("force", Dimension::FORCE, "largest contact force")
-                .required("1500 N")
-                .above_zero(),
-        ],
-        "the paper's: rigid–perfectly plastic",
+        &[LIMIT_FORCE],
+        "rigid–perfectly plastic contact (Melo et al. 2006)",
     ),
     Variant::with(
         "restitution",
-        &[Field::quantity(
-            "coefficient",
-            Dimension::NUMBER,
-            "separation over closing speed",
-        )
-        .required("0.6")
-        .within(0.0, 1.0)],
-        "an impulse at the instant of impact",
+        &[COEFFICIENT],
+        "impulse at the instant of impact",
     ),
     Variant::with(
         "hertz",
-        &[
-            Field::quantity("stiffness", Dimension::HERTZ_STIFFNESS, "k of F = k δ^1.5")
-                .required("stiffness: 1e8 N/m^1.5")
-                .above_zero(),
-            Field::quantity(
-                "loss",
-                Dimension {
-                    length: crate::units::Exponent::whole(-1),
-                    mass: crate::units::Exponent::ZERO,
-                    time: crate::units::Exponent::whole(1),
-                },
-                "factor of Hunt and Crossley, F = k δ^1.5 (1 + loss·dδ/dt)",
-            )
-            .or(0.0, "s/m")
-            .at_least_zero(),
-            Field::quantity("force_limit", Dimension::FORCE, "largest contact force").above_zero(),
-        ],
+        &[HERTZ_STIFFNESS, LOSS, FORCE_LIMIT],
         "finite contact stiffness: the peak force converges",
     ),
 ];
@@ -56,37 +63,37 @@ const CONTACT_LAWS: &[Variant] = &[
 pub(crate) const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
     "max_displacement",
     Dimension::LENGTH,
-    "largest displacement of the structure over the run",
+    "largest displacement of the structure",
 );
 
 pub(crate) const TIME_OF_MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
     "time_of_max_displacement",
     Dimension::TIME,
-    "virtual time of the largest displacement",
+    "simulated time of the largest displacement",
 );
 
 pub(crate) const STOP_TIME: ResultKind = ResultKind::measured(
     "stop_time",
     Dimension::TIME,
-    "virtual time at which the striker first stood still",
+    "simulated time at which the striker first stops",
 );
 
 pub(crate) const FINAL_DISPLACEMENT: ResultKind = ResultKind::measured(
     "final_displacement",
     Dimension::LENGTH,
-    "displacement at the last step of the run, under whatever load it then carries",
+    "displacement at the last step of the run, possibly under load",
 );
 
 pub(crate) const MAX_VELOCITY: ResultKind = ResultKind::measured(
     "max_velocity",
     Dimension::VELOCITY,
-    "largest size of the structure's velocity",
+    "peak absolute velocity of the structure",
 );
 
 pub(crate) const MAX_CONTACT_FORCE: ResultKind = ResultKind::measured(
     "max_contact_force",
     Dimension::FORCE,
-    "largest mean contact force of a step; grows as 1/Δt under `rigid`, `restitution` and a `limit` that is not reached",
+    "largest step-mean contact force; grows as 1/Δt under `rigid`, `restitution` and an unreached `limit`",
 );
 
 pub(crate) const IMPULSE: ResultKind = ResultKind::measured(
@@ -97,13 +104,13 @@ pub(crate) const IMPULSE: ResultKind = ResultKind::measured(
 
 pub(crate) const CONTACTS: ResultKind = ResultKind::count(
     "contacts",
-    "number of blows: contacts that began, also those inside a step",
+    "number of contact events, including those within a step",
 );
 
 pub(crate) const RESTITUTION: ResultKind = ResultKind::measured(
     "restitution",
     Dimension::NUMBER,
-    "separation over closing speed of the first blow",
+    "separation speed over closing speed of the first impact",
 );
 
 pub(crate) const INDENTATION: ResultKind = ResultKind::measured(
@@ -127,13 +134,13 @@ pub(crate) const ABSORBED_ENERGY: ResultKind = ResultKind::measured(
 pub(crate) const RESTORING_ENERGY: ResultKind = ResultKind::measured(
     "restoring_energy",
     Dimension::ENERGY,
-    "restoring force integrated over the run, with what a damper adds to it in continuous mode",
+    "restoring force integrated over the run, including damping force in continuous mode",
 );
 
 pub(crate) const DAMPING_ENERGY: ResultKind = ResultKind::measured(
     "damping_energy",
     Dimension::ENERGY,
-    "energy that the computed `damping` took over the run",
+    "energy dissipated by the computed `damping`",
 );
 
 pub(crate) const STRIKER_ENERGY: ResultKind = ResultKind::measured(
@@ -145,7 +152,7 @@ pub(crate) const STRIKER_ENERGY: ResultKind = ResultKind::measured(
 pub(crate) const ENERGY_ERROR: ResultKind = ResultKind::new(
     "energy_error",
     Dimension::NUMBER,
-    "what the energy balance misses, over the input energy",
+    "residual of the energy balance relative to the input energy",
 );
 
 pub(crate) const TIME_STEP: ResultKind =
@@ -154,7 +161,7 @@ pub(crate) const TIME_STEP: ResultKind =
 pub(crate) const CRITICAL_TIME_STEP: ResultKind = ResultKind::measured(
     "critical_time_step",
     Dimension::TIME,
-    "critical time step (Melo et al. 2006, eq. 7; under `hertz` of the closed contact)",
+    "critical time step (Melo et al. 2006, eq. 7); under `hertz`, with the contact closed",
 );
 
 pub(crate) const STEPS: ResultKind = ResultKind::count("steps", "number of steps");
@@ -162,49 +169,49 @@ pub(crate) const STEPS: ResultKind = ResultKind::count("steps", "number of steps
 pub(crate) const CONTACT_DURATION: ResultKind = ResultKind::measured(
     "contact_duration",
     Dimension::TIME,
-    "virtual time of the first blow, in whole steps",
+    "simulated time of the first contact, in whole steps",
 )
 .of_storey();
 
 pub(crate) const REBOUND_VELOCITY: ResultKind = ResultKind::measured(
     "rebound_velocity",
     Dimension::VELOCITY,
-    "speed of the striker on its way back at the end of the run",
+    "rebound speed of the striker at the end of the run",
 )
 .of_storey();
 
 pub(crate) const FLOOR_DISPLACEMENT: ResultKind = ResultKind::measured_list(
     "floor_displacement",
     Dimension::LENGTH,
-    "largest size of each floor's displacement",
+    "peak absolute displacement of each floor",
 )
 .of_storey();
 
 pub(crate) const MAX_DRIFT: ResultKind = ResultKind::measured_list(
     "max_drift",
     Dimension::LENGTH,
-    "largest size of each storey's drift",
+    "peak absolute drift of each storey",
 )
 .of_storey();
 
 pub(crate) const FINAL_DRIFT: ResultKind = ResultKind::measured_list(
     "final_drift",
     Dimension::LENGTH,
-    "each storey's drift at the last step of the run",
+    "drift of each storey at the last step of the run",
 )
 .of_storey();
 
 pub(crate) const STOREY_ENERGY: ResultKind = ResultKind::measured_list(
     "storey_energy",
     Dimension::ENERGY,
-    "shear of each storey integrated over its drift, over the run",
+    "work of each storey shear over its drift, in the run",
 )
 .of_storey();
 
 pub(crate) const MAX_BASE_SHEAR: ResultKind = ResultKind::measured(
     "max_base_shear",
     Dimension::FORCE,
-    "largest size of the restoring force of the lowest storey, less what noise adds to it",
+    "peak absolute base shear, minus the part due to noise",
 )
 .of_storey();
 
@@ -251,62 +258,78 @@ pub(crate) const RESULTS: &[ResultKind] = &[
     tracking::FLOOR_PEAK_ERROR.of_storey(),
 ];
 
+pub(crate) const STRIKER: Field =
+    Field::reference("striker", Kind::Striker, "striker").required("striker = pendulum");
+
+pub(crate) const STOREY: Field = Field::count(
+    "storey",
+    1.0,
+    64.0,
+    "struck floor, from the ground up; required for a frame",
+)
+.of_frames();
+
+pub(crate) const MASS: Field = Field::quantity("mass", Dimension::MASS, "M of eqs. 4 and 5")
+    .above_zero()
+    .or_said("the specimen's");
+
+pub(crate) const DAMPING: Field =
+    Field::quantity("damping", Dimension::DAMPING, "C of eqs. 4 and 5")
+        .or(0.0, "N*s/m")
+        .at_least_zero();
+
+pub(crate) const CONTACT: Field =
+    Field::choice("contact", CONTACT_LAWS, "contact law").or_said("rigid");
+
+pub(crate) const UNTIL: Field = Field::choice(
+    "until",
+    &[
+        Variant::word(
+            "striker_stop",
+            "striker and structure have both stopped or reversed",
+        ),
+        Variant::word("rebound", "striker and structure have separated for good"),
+        Variant::word("duration", "the whole `duration`"),
+    ],
+    "end condition",
+)
+.or_said("striker_stop");
+
 pub(crate) const BLOCK: BlockKind = BlockKind {
     kind: Kind::Impact,
     keyword: &["impact"],
     naming: Naming::Named,
     procedure: true,
     fields: &[
-        Field::reference("striker", Kind::Striker, "what strikes").required("striker = pendulum"),
+        STRIKER,
         SPECIMEN,
-        Field::count("storey", 1.0, 64.0, "the floor that is struck, from the ground up; a frame needs it").of_frames(),
-        Field::quantity("mass", Dimension::MASS, "M of eqs. 4 and 5").above_zero().or_said("the specimen's"),
-        Field::quantity("stiffness", Dimension::STIFFNESS, "K0, before the first tangent").above_zero().required_on(
-            RigKind::Real,
-            "stiffness = k0.stiffness",
-            "the behaviour's initial stiffness",
-        ),
-        Field::quantity("damping", Dimension::DAMPING, "C of eqs. 4 and 5").or(0.0, "N*s/m").at_least_zero(),
-        Field::quantities(
-            "damping_ratio",
-            Dimension::NUMBER,
-            "one: Rayleigh damping with this ratio in the first two modes; a list: each mode its own",
-        )
-        .within(0.0, 1.0)
-        .or(0.0, "")
-        .of_frames(),
+        STOREY,
+        MASS,
+        STIFFNESS,
+        DAMPING,
+        frames::DAMPING_RATIO.of_frames(),
         frames::DAMPING_UNCERTAINTY.of_frames(),
-        Field::choice("contact", CONTACT_LAWS, "contact law").or_said("rigid"),
+        CONTACT,
         methods::INTEGRATOR,
         methods::ALLOW_UNSTABLE,
         methods::I_MODIFICATION,
         methods::MODE,
-        Field::quantity(
-            "time_step",
-            Dimension::TIME,
-            "Δt; may read `critical`, Δt of eq. 7, under `hertz` a tenth of the shortest period with the contact closed",
-        )
-        .above_zero()
-        .or_said("critical / 20"),
-        Field::quantity("duration", Dimension::TIME, "upper bound of virtual time").required("duration = 50 ms").above_zero(),
-        Field::choice(
-            "until",
-            &[
-                Variant::word("striker_stop", "neither striker nor structure moves on"),
-                Variant::word("rebound", "striker and structure are apart for good"),
-                Variant::word("duration", "the whole `duration`"),
-            ],
-            "when the run ends",
-        )
-        .or_said("striker_stop"),
-        Field::quantity("pause", Dimension::TIME, "wait at every step").or(0.0, "s").at_least_zero(),
-        Field::quantity("max_tangent_ratio", Dimension::NUMBER, "the tangent stiffness stays in 0 .. this times K0")
-            .or(2.0, "")
-            .above_zero(),
-        Field::choices("inspect", INSPECT_TRIGGERS, "when a person is asked to look"),
+        methods::TIME_STEP
+            .described(
+                "Δt; can use `critical`: Δt of eq. 7; under `hertz`, a tenth of the shortest \
+                 period in contact",
+            )
+            .or_said("critical / 20"),
+        methods::DURATION
+            .described("upper bound of simulated time")
+            .required("duration = 50 ms"),
+        UNTIL,
+        methods::PAUSE,
+        methods::MAX_TANGENT_RATIO,
+        methods::INSPECT,
     ],
     exports: &[],
     results: RESULTS,
     example: "impact hit {\n  striker = pendulum\n  duration = 50 ms\n}",
-    doc: "The pseudo-dynamic impact of a striker, step by step",
+    doc: "Pseudo-dynamic impact of a striker",
 };

@@ -5,46 +5,59 @@ use crate::schema::blocks::methods::TRUTH;
 use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
 use crate::units::Dimension;
 
+pub(crate) const SPEEDS: Field = Field::quantities(
+    "speeds",
+    Dimension::VELOCITY,
+    "striker velocity of each impact; or `drop_heights`, or `energies`",
+)
+.above_zero()
+.or_said("from heights or energies");
+
+pub(crate) const DROP_HEIGHTS: Field = Field::quantities(
+    "drop_heights",
+    Dimension::LENGTH,
+    "drop height of each impact",
+)
+.above_zero();
+
+pub(crate) const ENERGIES: Field =
+    Field::quantities("energies", Dimension::ENERGY, "energy of each impact").above_zero();
+
+pub(crate) const WHILE: Field = Field::condition(
+    "while",
+    "condition on the results of each impact, by their names, for the next impact to follow",
+)
+.required("while = max_displacement < 20 mm");
+
+pub(crate) const BETWEEN: Field = Field::choice(
+    "between",
+    &[
+        Variant::word("unload", "to zero restoring force"),
+        Variant::word("home", "back to the start of the first impact"),
+        Variant::word(
+            "stay",
+            "no repositioning; the next impact starts from the loaded position",
+        ),
+    ],
+    "position of the specimen between impacts, and after the last",
+)
+.or_said("unload");
+
+pub(crate) const INSPECT_BETWEEN: Field = Field::choice(
+    "inspect_between",
+    TRUTH,
+    "asks the operator to inspect the specimen between impacts",
+)
+.or_said("false");
+
 /// What an `escalate` has besides the fields of an impact.
 const OWN: [Field; 6] = [
-    Field::quantities(
-        "speeds",
-        Dimension::VELOCITY,
-        "velocity of the striker in each blow; or `drop_heights`, or `energies`",
-    )
-    .above_zero()
-    .or_said("what the heights or energies give"),
-    Field::quantities(
-        "drop_heights",
-        Dimension::LENGTH,
-        "height of fall of each blow",
-    )
-    .above_zero(),
-    Field::quantities("energies", Dimension::ENERGY, "energy of each blow").above_zero(),
-    Field::condition(
-        "while",
-        "what must hold of the results of a blow, by their own names, for the next to follow",
-    )
-    .required("while = max_displacement < 20 mm"),
-    Field::choice(
-        "between",
-        &[
-            Variant::word("unload", "to where the restoring force is none"),
-            Variant::word("home", "back to where the first blow began"),
-            Variant::word(
-                "stay",
-                "nowhere: the next blow begins where this one ended, under its load",
-            ),
-        ],
-        "where the specimen is brought between two blows, and after the last",
-    )
-    .or_said("unload"),
-    Field::choice(
-        "inspect_between",
-        TRUTH,
-        "whether a person looks at the specimen between two blows",
-    )
-    .or_said("false"),
+    SPEEDS,
+    DROP_HEIGHTS,
+    ENERGIES,
+    WHILE,
+    BETWEEN,
+    INSPECT_BETWEEN,
 ];
 
 const FIELDS: [Field; OWN.len() + impact::BLOCK.fields.len()] = {
@@ -63,118 +76,120 @@ const FIELDS: [Field; OWN.len() + impact::BLOCK.fields.len()] = {
 
 pub(crate) const BLOWS: ResultKind = ResultKind::count(
     "blows",
-    "number of blows, the one that failed, or that decided nothing, among them",
+    "number of impacts, including one that failed or was inconclusive",
 );
 
-pub(crate) const PASSED: ResultKind =
-    ResultKind::count("passed", "number of blows after which the condition held");
+pub(crate) const PASSED: ResultKind = ResultKind::count(
+    "passed",
+    "number of impacts after which the condition was true",
+);
 
 pub(crate) const LAST_PASSED_ENERGY: ResultKind = ResultKind::measured(
     "last_passed_energy",
     Dimension::ENERGY,
-    "energy of the last blow after which it held; 0 where it did not hold after the first",
+    "energy of the last impact after which the condition was true; 0 if false after the first",
 );
 
 pub(crate) const FIRST_FAILED_ENERGY: ResultKind = ResultKind::measured(
     "first_failed_energy",
     Dimension::ENERGY,
-    "energy of the blow after which it no longer held",
+    "energy of the first impact after which the condition was false",
 );
 
 pub(crate) const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
     "max_displacement",
     Dimension::LENGTH,
-    "largest displacement over all blows",
+    "largest displacement in all impacts",
 );
 
 pub(crate) const RESIDUAL_DISPLACEMENT: ResultKind = ResultKind::measured(
     "residual_displacement",
     Dimension::LENGTH,
-    "where the specimen rests after the last blow, if unloaded",
+    "unloaded position after the last impact, with `between = unload`",
 );
 
 pub(crate) const FINAL_DISPLACEMENT: ResultKind = ResultKind::measured(
     "final_displacement",
     Dimension::LENGTH,
-    "where the specimen was left after the last blow, with `between = home` or `stay`",
+    "position after the last impact, with `between = home` or `stay`",
 );
 
 pub(crate) const ABSORBED_ENERGY: ResultKind = ResultKind::measured(
     "absorbed_energy",
     Dimension::ENERGY,
-    "sum over the blows of what each absorbed up to its largest displacement",
+    "sum of the energies absorbed up to the largest displacement of each impact",
 );
 
 pub(crate) const VELOCITIES: ResultKind = ResultKind::measured_list(
     "velocities",
     Dimension::VELOCITY,
-    "velocity of the striker in each blow",
+    "striker velocity of each impact",
 );
 
 pub(crate) const BLOW_ENERGIES: ResultKind = ResultKind::measured_list(
     "blow_energies",
     Dimension::ENERGY,
-    "energy of the striker in each blow",
+    "striker energy of each impact",
 );
 
 pub(crate) const MAX_DISPLACEMENTS: ResultKind = ResultKind::measured_list(
     "max_displacements",
     Dimension::LENGTH,
-    "largest displacement of each blow",
+    "largest displacement of each impact",
 );
 
 pub(crate) const RESIDUAL_DISPLACEMENTS: ResultKind = ResultKind::measured_list(
     "residual_displacements",
     Dimension::LENGTH,
-    "where the specimen rests after each blow, if unloaded",
+    "unloaded position after each impact, with `between = unload`",
 );
 
 pub(crate) const FINAL_DISPLACEMENTS: ResultKind = ResultKind::measured_list(
     "final_displacements",
     Dimension::LENGTH,
-    "where the specimen was left after each blow, with `between = home` or `stay`",
+    "position after each impact, with `between = home` or `stay`",
 );
 
 pub(crate) const ABSORBED_ENERGIES: ResultKind = ResultKind::measured_list(
     "absorbed_energies",
     Dimension::ENERGY,
-    "what each blow put into the specimen up to its largest displacement",
+    "energy absorbed in each impact up to its largest displacement",
 );
 
 pub(crate) const IMPULSES: ResultKind =
-    ResultKind::measured_list("impulses", Dimension::IMPULSE, "impulse of each blow");
+    ResultKind::measured_list("impulses", Dimension::IMPULSE, "impulse of each impact");
 
 pub(crate) const ENERGY_ERRORS: ResultKind = ResultKind::list(
     "energy_errors",
     Dimension::NUMBER,
-    "what the energy balance of each blow misses, over its input",
+    "residual of the energy balance of each impact relative to its input energy",
 );
 
 pub(crate) const MAX_DRIFT: ResultKind = ResultKind::measured_list(
     "max_drift",
     Dimension::LENGTH,
-    "largest size of each storey's drift over all blows",
+    "peak absolute drift of each storey in all impacts",
 )
 .of_storey();
 
 pub(crate) const RESIDUAL_DRIFT: ResultKind = ResultKind::measured_list(
     "residual_drift",
     Dimension::LENGTH,
-    "each storey's drift where it rests after the last blow, if unloaded",
+    "drift of each unloaded storey after the last impact, with `between = unload`",
 )
 .of_storey();
 
 pub(crate) const FINAL_DRIFT: ResultKind = ResultKind::measured_list(
     "final_drift",
     Dimension::LENGTH,
-    "each storey's drift where it was left after the last blow, with `between = home` or `stay`",
+    "drift of each storey after the last impact, with `between = home` or `stay`",
 )
 .of_storey();
 
 pub(crate) const STOREY_ENERGY: ResultKind = ResultKind::measured_list(
     "storey_energy",
     Dimension::ENERGY,
-    "what each storey took in all blows, its shear over its drift",
+    "energy absorbed by each storey in all impacts",
 )
 .of_storey();
 
@@ -211,5 +226,5 @@ pub(crate) const BLOCK: BlockKind = BlockKind {
     exports: &[],
     results: RESULTS,
     example: "escalate rising {\n  striker  = pendulum\n  speeds   = [0.5, 1, 1.5] m/s\n  while    = max_displacement < 20 mm\n  duration = 50 ms\n}",
-    doc: "Blows of rising energy on one specimen, or on one storey of a frame, until a condition on the last blow no longer holds or the list ends",
+    doc: "Impacts of increasing energy on one specimen or one storey of a frame, until `while` is false or the list ends",
 };

@@ -11,17 +11,31 @@ pub(crate) mod stiffness_ramp;
 pub(crate) mod tracking;
 pub(crate) mod unload;
 
-use crate::schema::types::{Field, Kind, Variant};
+use crate::schema::types::{Field, Kind, RigKind};
 use crate::units::Dimension;
 
 pub(crate) const SPECIMEN: Field = Field::specimen("specimen");
 
 pub(crate) const SPEED: Field = Field::speed("speed");
 
+/// The initial stiffness of the specimen, of a procedure that needs it.
+pub(crate) const STIFFNESS: Field = Field::quantity(
+    "stiffness",
+    Dimension::STIFFNESS,
+    "initial stiffness K0, before the first tangent",
+)
+.above_zero()
+.required_on(
+    RigKind::Real,
+    "stiffness = k0.stiffness",
+    "the behaviour's initial stiffness",
+);
+
 impl Field {
     /// The specimen that a procedure tests.
     pub(crate) const fn specimen(name: &'static str) -> Self {
-        Self::reference(name, Kind::Specimen, "what is tested").or_said("the only one declared")
+        Self::reference(name, Kind::Specimen, "specimen under test")
+            .or_said("the only one declared")
     }
 
     /// The speed of the actuators.
@@ -31,29 +45,3 @@ impl Field {
             .or_said("the rig's own")
     }
 }
-
-pub(crate) const INSPECT_TRIGGERS: &[Variant] = &[
-    Variant::with(
-        "every",
-        &[Field::count("steps", 1.0, 1e7, "steps between looks").required("20")],
-        "every so many steps",
-    ),
-    Variant::with(
-        "force_drop",
-        &[Field::quantity(
-            "fraction",
-            Dimension::NUMBER,
-            "of the largest restoring force so far",
-        )
-        .required("10 %")
-        .within(0.0, 1.0)],
-        "when the restoring force has fallen",
-    ),
-    Variant::with(
-        "at",
-        &[Field::quantity("time", Dimension::TIME, "virtual time")
-            .required("5 ms")
-            .at_least_zero()],
-        "at a virtual time",
-    ),
-];

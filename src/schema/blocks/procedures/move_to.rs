@@ -1,9 +1,11 @@
 //! `move`: its block.
 
-use crate::plan::procedure::declaration::fields;
+use crate::plan::declaration::{fields, names};
 use crate::plan::procedure::move_to::move_fields;
 use crate::schema::types::{BlockKind, Field, Kind, Naming};
 use crate::units::Dimension;
+
+move_fields!(names);
 
 pub(crate) const BLOCK: BlockKind = BlockKind {
     kind: Kind::Move,
@@ -14,5 +16,5 @@ pub(crate) const BLOCK: BlockKind = BlockKind {
     exports: &[],
     results: &[],
     example: "move home { to = 0 mm }",
-    doc: "Moves the actuator to a displacement",
+    doc: "Move of the actuator to a displacement",
 };

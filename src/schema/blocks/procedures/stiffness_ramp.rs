@@ -1,39 +1,78 @@
 //! `stiffness ramp`: its block and its results.
 
-use super::{SPECIMEN, SPEED};
-use crate::schema::blocks::{curves, methods};
+use crate::plan::declaration::{fields, names};
+use crate::plan::procedure::identification::stiffness_ramp_fields;
+use crate::schema::blocks::curves;
+use crate::schema::blocks::methods::TRUTH;
 use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
 use crate::units::Dimension;
 
-const WATCHED: &[Field] = &[
-    READINGS,
-    Field::quantity(
-        "accuracy",
-        Dimension::FORCE,
-        "to which the force is to be known: how long a pause must be",
-    )
-    .above_zero()
-    .or_said("the declared noise of the load cell"),
+pub(crate) const ACCURACY: Field = Field::quantity(
+    "accuracy",
+    Dimension::FORCE,
+    "force accuracy wanted; determines the required dwell time",
+)
+.above_zero()
+.or_said("`noise` of the load cell");
+
+pub(crate) const ALLOWED_RATE: Field = Field::quantity(
+    "rate",
+    Dimension::FORCE_RATE,
+    "force rate allowed at the end of a pause; determines the required dwell time",
+)
+.required("rate: 1 N/s")
+.above_zero();
+
+const WATCHED: &[Field] = &[READINGS, ACCURACY];
+
+pub(crate) const READINGS: Field = Field::count(
+    "readings",
+    3.0,
+    10_000.0,
+    "readings in each pause, denser at the start",
+)
+.or(20.0, "");
+
+const SLOW_ENOUGH: &[Field] = &[READINGS, ALLOWED_RATE];
+
+const FITS: &[Variant] = &[
+    Variant::word("linear", "one straight line through all outward steps"),
+    Variant::word(
+        "bilinear",
+        "two lines that meet at a yield point, through the outward steps of the first repeat",
+    ),
+    curves::MULTILINEAR,
 ];
 
-const READINGS: Field =
-    Field::count("readings", 3.0, 10_000.0, "in each pause, closer at first").or(20.0, "");
-
-const SLOW_ENOUGH: &[Field] = &[
-    READINGS,
-    Field::quantity(
-        "rate",
-        Dimension::FORCE_RATE,
-        "how fast a pause may still lose force at its end: how long it must be",
-    )
-    .required("rate: 1 N/s")
-    .above_zero(),
+const RELAXATION_MODELS: &[Variant] = &[
+    Variant::with(
+        "exponential",
+        WATCHED,
+        "R∞ + A e^(−t/τ) in every pause, with a common τ",
+    ),
+    Variant::with(
+        "standard_linear_solid",
+        WATCHED,
+        "spring in parallel with spring and dashpot, through all moves and pauses; constant velocity in \
+         moves, dwell while settling",
+    ),
+    Variant::with(
+        "logarithmic",
+        SLOW_ENOUGH,
+        "R falls by a ln(1 + t/t₀) of the unrelaxed force, through all moves and pauses; constant \
+         velocity in moves, dwell while settling",
+    ),
+    Variant::with(
+        "either",
+        SLOW_ENOUGH,
+        "logarithmic, or g (1 − e^(−t/τ)) of the unrelaxed force, whichever BIC prefers",
+    ),
 ];
 
 pub(crate) const STIFFNESS: ResultKind = ResultKind::measured(
     "stiffness",
     Dimension::STIFFNESS,
-    "slope of the straight line fitted to force on displacement; of a bilinear or multilinear fit that of the first stretch",
+    "slope of the line fitted to force against displacement; of the first segment in other fits",
 );
 
 pub(crate) const SECANT_STIFFNESS: ResultKind = ResultKind::measured(
@@ -45,7 +84,7 @@ pub(crate) const SECANT_STIFFNESS: ResultKind = ResultKind::measured(
 pub(crate) const INTERCEPT_FORCE: ResultKind = ResultKind::measured(
     "intercept_force",
     Dimension::FORCE,
-    "force of the fitted line at no displacement",
+    "fitted force at zero displacement",
 );
 
 pub(crate) const R_SQUARED: ResultKind = ResultKind::new(
@@ -57,13 +96,13 @@ pub(crate) const R_SQUARED: ResultKind = ResultKind::new(
 pub(crate) const MAX_FORCE: ResultKind = ResultKind::measured(
     "max_force",
     Dimension::FORCE,
-    "largest size of the restoring force, less what noise adds to the largest of many readings",
+    "peak absolute restoring force, minus the part due to noise",
 );
 
 pub(crate) const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
     "max_displacement",
     Dimension::LENGTH,
-    "largest size of the measured displacement",
+    "peak absolute measured displacement",
 );
 
 pub(crate) const LOOP_ENERGY: ResultKind = ResultKind::measured(
@@ -75,37 +114,37 @@ pub(crate) const LOOP_ENERGY: ResultKind = ResultKind::measured(
 pub(crate) const RELAXATION: ResultKind = ResultKind::measured(
     "relaxation",
     Dimension::FORCE,
-    "mean loss of force during a pause",
+    "mean force lost during a pause",
 );
 
 pub(crate) const TANGENT_STIFFNESS: ResultKind = ResultKind::measured(
     "tangent_stiffness",
     Dimension::STIFFNESS,
-    "secant of the last outward step: the tangent where the ramp ended",
+    "secant of the last outward step: tangent at the end of the ramp",
 );
 
 pub(crate) const YIELD_FORCE: ResultKind = ResultKind::measured(
     "yield_force",
     Dimension::FORCE,
-    "force at the knee of a bilinear fit, or where a multilinear one first softens",
+    "force at the yield point of a bilinear or multilinear fit",
 );
 
 pub(crate) const YIELD_DISPLACEMENT: ResultKind = ResultKind::measured(
     "yield_displacement",
     Dimension::LENGTH,
-    "displacement there",
+    "displacement at the yield point",
 );
 
-pub(crate) const HARDENED_STIFFNESS: ResultKind = ResultKind::measured(
-    "hardened_stiffness",
+pub(crate) const POST_YIELD_STIFFNESS: ResultKind = ResultKind::measured(
+    "post_yield_stiffness",
     Dimension::STIFFNESS,
-    "slope past the knee, or of the last stretch",
+    "post-yield slope, or slope of the last segment",
 );
 
-pub(crate) const HARDENING: ResultKind = ResultKind::measured(
-    "hardening",
+pub(crate) const POST_YIELD_RATIO: ResultKind = ResultKind::measured(
+    "post_yield_ratio",
     Dimension::NUMBER,
-    "that slope over the first one",
+    "post-yield over initial slope",
 );
 
 pub(crate) const TIME_CONSTANT: ResultKind = ResultKind::measured(
@@ -117,49 +156,49 @@ pub(crate) const TIME_CONSTANT: ResultKind = ResultKind::measured(
 pub(crate) const RELAXED_STIFFNESS: ResultKind = ResultKind::measured(
     "relaxed_stiffness",
     Dimension::STIFFNESS,
-    "slope of the forces when all has relaxed",
+    "slope of the fully relaxed forces",
 );
 
 pub(crate) const BRANCH_STIFFNESS: ResultKind = ResultKind::measured(
     "branch_stiffness",
     Dimension::STIFFNESS,
-    "what relaxes of a standard linear solid",
+    "stiffness of the relaxing part of a standard linear solid",
 );
 
 pub(crate) const REMAINING_RELAXATION: ResultKind = ResultKind::measured(
     "remaining_relaxation",
     Dimension::FORCE,
-    "largest force that a pause left to relax",
+    "largest remaining relaxation at the end of a pause",
 );
 
-pub(crate) const NEEDED_PAUSE: ResultKind = ResultKind::measured(
-    "needed_pause",
+pub(crate) const REQUIRED_PAUSE: ResultKind = ResultKind::measured(
+    "required_pause",
     Dimension::TIME,
-    "pause that leaves no more to relax than the accuracy asked for, or ends at the rate asked for",
+    "required dwell time for the requested `accuracy` or `rate`",
 );
 
 pub(crate) const RELAXATION_SHARE: ResultKind = ResultKind::measured(
     "relaxation_share",
     Dimension::NUMBER,
-    "a or g: what the law takes of a reached force, with a law of it",
+    "a or g: relaxed fraction of the unrelaxed force, for a law with a fraction",
 );
 
 pub(crate) const REFERENCE_TIME: ResultKind = ResultKind::measured(
     "reference_time",
     Dimension::TIME,
-    "t₀ of the logarithm of time",
+    "t₀ of the logarithmic law",
 );
 
 pub(crate) const RELAXATION_RATE: ResultKind = ResultKind::measured(
     "relaxation_rate",
     Dimension::FORCE_RATE,
-    "how fast the worst pause was losing force at its end",
+    "largest force rate at the end of a pause",
 );
 
 pub(crate) const BIC_MARGIN: ResultKind = ResultKind::new(
     "bic_margin",
     Dimension::NUMBER,
-    "BIC of the exponential less that of the logarithm, with `either`: above zero it is the logarithm",
+    "BIC of the exponential minus that of the logarithm, with `either`; positive: the logarithm fits better",
 );
 
 /// What it leaves, in the order of the tables and of `summary.json`.
@@ -175,75 +214,32 @@ pub(crate) const RESULTS: &[ResultKind] = &[
     TANGENT_STIFFNESS,
     YIELD_FORCE,
     YIELD_DISPLACEMENT,
-    HARDENED_STIFFNESS,
-    HARDENING,
+    POST_YIELD_STIFFNESS,
+    POST_YIELD_RATIO,
     curves::BREAKS,
-    curves::BREAK_UNCERTAINTIES,
     curves::BREAK_FORCES,
-    curves::BREAK_FORCE_UNCERTAINTIES,
     curves::CURVE_STIFFNESSES,
-    curves::CURVE_STIFFNESS_UNCERTAINTIES,
     TIME_CONSTANT,
     RELAXED_STIFFNESS,
     BRANCH_STIFFNESS,
     REMAINING_RELAXATION,
-    NEEDED_PAUSE,
+    REQUIRED_PAUSE,
     RELAXATION_SHARE,
     REFERENCE_TIME,
     RELAXATION_RATE,
     BIC_MARGIN,
 ];
 
+stiffness_ramp_fields!(names);
+
 pub(crate) const BLOCK: BlockKind = BlockKind {
     kind: Kind::StiffnessRamp,
     keyword: &["stiffness", "ramp"],
     naming: Naming::Named,
     procedure: true,
-    fields: &[
-        SPECIMEN,
-        Field::quantities("displacements", Dimension::LENGTH, "targets in order")
-            .required("displacements = 0.1 mm .. 1 mm step 0.1 mm"),
-        Field::quantity("pause", Dimension::TIME, "wait at each target before the samples").or(0.0, "s").at_least_zero(),
-        Field::count("samples", 1.0, 1e5, "readings averaged at each target").or(1.0, ""),
-        Field::count("repeats", 1.0, 1e5, "times the ramp is run").or(1.0, ""),
-        Field::choice("return", methods::TRUTH, "whether it also goes back through the same targets").or_said("false"),
-        Field::choice(
-            "fit",
-            &[
-                Variant::word("linear", "one straight line through all outward steps"),
-                Variant::word("bilinear", "two lines that meet at a knee, through the outward steps of the first repeat"),
-                curves::MULTILINEAR,
-            ],
-            "what is fitted to force on displacement",
-        )
-        .or_said("linear"),
-        Field::choice(
-            "relaxation",
-            &[
-                Variant::with("exponential", WATCHED, "R∞ + A e^(−t/τ) in every pause, one τ for all"),
-                Variant::with(
-                    "standard_linear_solid",
-                    WATCHED,
-                    "a spring beside a spring and a dashpot, through all moves and pauses; a move is taken as even, and the settling after it as held",
-                ),
-                Variant::with(
-                    "logarithmic",
-                    SLOW_ENOUGH,
-                    "R falls by a ln(1 + t/t₀) of the reached force, through all moves and pauses; a move is taken as even, and the settling after it as held",
-                ),
-                Variant::with(
-                    "either",
-                    SLOW_ENOUGH,
-                    "that, or by g (1 − e^(−t/τ)) of the reached force: the law that the readings prefer by BIC",
-                ),
-            ],
-            "what is fitted to the force while it is held, in the pauses of the first repeat",
-        )
-        .or_said("nothing"),
-        SPEED,
-    ],
+    fields: stiffness_ramp_fields!(fields),
     exports: &[],
     results: RESULTS,
     example: "stiffness ramp k0 { displacements = 0.1 mm .. 1 mm step 0.1 mm }",
-    doc: "Prescribed displacements, a pause at each: the stiffness by least squares",
+    doc: "Displacement steps with a pause at each: stiffness by least squares",
 };

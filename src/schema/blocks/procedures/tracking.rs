@@ -7,31 +7,31 @@ use crate::units::Dimension;
 pub(crate) const TRACKING_ENERGY_ERROR: ResultKind = ResultKind::new(
     "tracking_energy_error",
     Dimension::NUMBER,
-    "energy that following wrongly took out of the test (put in: negative), over the input energy, at its largest",
+    "peak energy error due to actuator tracking, relative to the input energy; negative = energy added (destabilising)",
 );
 
 pub(crate) const TRACKING_INDICATOR: ResultKind = ResultKind::new(
     "tracking_indicator",
     Dimension::AREA,
-    "area that command against measurement encloses; falling: the actuator lags",
+    "area enclosed by command against measurement; falling: the actuator lags",
 );
 
 pub(crate) const NRMS_ERROR: ResultKind = ResultKind::new(
     "nrms_error",
     Dimension::NUMBER,
-    "tracking error over command, root mean squares",
+    "rms tracking error relative to rms command",
 );
 
 pub(crate) const PEAK_ERROR: ResultKind = ResultKind::new(
     "peak_error",
     Dimension::LENGTH,
-    "largest measured less commanded displacement, by size",
+    "peak absolute tracking error",
 );
 
 pub(crate) const FLOOR_TRACKING_ENERGY_ERROR: ResultKind = ResultKind::list(
     "floor_tracking_energy_error",
     Dimension::NUMBER,
-    "of each floor's actuator: energy that following wrongly took out (put in: negative), over the input energy, at its largest",
+    "of each floor's actuator: peak tracking-error energy relative to the input energy; negative = energy added",
 );
 
 pub(crate) const FLOOR_TRACKING_INDICATOR: ResultKind = ResultKind::list(
@@ -43,11 +43,11 @@ pub(crate) const FLOOR_TRACKING_INDICATOR: ResultKind = ResultKind::list(
 pub(crate) const FLOOR_NRMS_ERROR: ResultKind = ResultKind::list(
     "floor_nrms_error",
     Dimension::NUMBER,
-    "of each floor's actuator: tracking error over command",
+    "of each floor's actuator: rms tracking error relative to rms command",
 );
 
 pub(crate) const FLOOR_PEAK_ERROR: ResultKind = ResultKind::list(
     "floor_peak_error",
     Dimension::LENGTH,
-    "of each floor's actuator: largest tracking error, by size",
+    "of each floor's actuator: peak absolute tracking error",
 );

@@ -1,38 +1,39 @@
 //! `unload`: its block and results.
 
-use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind, RigKind};
+use super::{SPECIMEN, SPEED, STIFFNESS};
+use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind};
 use crate::units::Dimension;
 
 pub(crate) const RESIDUAL_DISPLACEMENT: ResultKind = ResultKind::measured(
     "residual_displacement",
     Dimension::LENGTH,
-    "where the specimen rests; of a frame, the floor that rests farthest out",
+    "unloaded position; of a frame, that of the floor with the largest",
 );
 
 pub(crate) const RESIDUAL_FORCE: ResultKind = ResultKind::measured(
     "residual_force",
     Dimension::FORCE,
-    "what it still carries there; of a frame, the floor that carries most",
+    "remaining force there; of a frame, the largest of a floor",
 );
 
 pub(crate) const FLOOR_DISPLACEMENT: ResultKind = ResultKind::measured_list(
     "floor_displacement",
     Dimension::LENGTH,
-    "where each floor rests",
+    "unloaded position of each floor",
 )
 .of_storey();
 
 pub(crate) const RESIDUAL_DRIFT: ResultKind = ResultKind::measured_list(
     "residual_drift",
     Dimension::LENGTH,
-    "each storey's drift there",
+    "drift of each unloaded storey",
 )
 .of_storey();
 
 pub(crate) const RESIDUAL_SHEAR: ResultKind = ResultKind::measured_list(
     "residual_shear",
     Dimension::FORCE,
-    "what each storey still carries there",
+    "remaining shear of each storey",
 )
 .of_storey();
 
@@ -45,38 +46,27 @@ pub(crate) const RESULTS: &[ResultKind] = &[
     RESIDUAL_SHEAR,
 ];
 
+pub(crate) const WITHIN: Field = Field::quantity(
+    "within",
+    Dimension::FORCE,
+    "largest force that counts as zero; of a frame, on a floor",
+)
+.above_zero()
+.or_said("0.1 % of the initial force, or the smallest detectable force if larger");
+
 pub(crate) const BLOCK: BlockKind = BlockKind {
     kind: Kind::Unload,
     keyword: &["unload"],
     naming: Naming::Named,
     procedure: true,
     fields: &[
-        Field::reference("specimen", Kind::Specimen, "what is unloaded")
-            .or_said("the only one declared"),
-        Field::quantity(
-            "stiffness",
-            Dimension::STIFFNESS,
-            "with which the force is expected to fall; the storeys of a frame have their own",
-        )
-        .above_zero()
-        .required_on(
-            RigKind::Real,
-            "stiffness = k0.stiffness",
-            "the behaviour's initial stiffness",
-        ),
-        Field::quantity(
-            "within",
-            Dimension::FORCE,
-            "largest force, of a frame that of a floor, that counts as none",
-        )
-        .above_zero()
-        .or_said("a thousandth of the force at the start, or what noise and resolution can tell"),
-        Field::quantity("speed", Dimension::VELOCITY, "actuator speed")
-            .above_zero()
-            .or_said("the rig's own"),
+        SPECIMEN.described("specimen to unload"),
+        STIFFNESS.described("expected unloading stiffness; the storeys of a frame have their own"),
+        WITHIN,
+        SPEED,
     ],
     exports: &[],
     results: RESULTS,
     example: "unload rest { }",
-    doc: "Takes the load off: moves to where the restoring force is none, of a frame all floors together",
+    doc: "Move to zero restoring force; of a frame, all floors together",
 };

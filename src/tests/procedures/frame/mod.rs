@@ -15,7 +15,7 @@ use crate::tests::testing::elastic_plan;
 pub(super) const STIFFNESS: [f64; 3] = [4e6, 2e6, 1e6];
 pub(super) const YIELD: [f64; 3] = [40e3, 20e3, 10e3];
 
-pub(super) fn storey(index: usize, hardening: f64) -> Storey {
+pub(super) fn storey(index: usize, post_yield_ratio: f64) -> Storey {
     let (stiffness, yield_force) = (STIFFNESS[index], YIELD[index]);
     Storey {
         mass: 1000.0,
@@ -26,7 +26,7 @@ pub(super) fn storey(index: usize, hardening: f64) -> Storey {
         behaviour: Behaviour::Bilinear {
             stiffness,
             yield_force,
-            hardening,
+            post_yield_ratio,
         },
         damping: 0.0,
         coulomb: 0.0,
@@ -34,10 +34,12 @@ pub(super) fn storey(index: usize, hardening: f64) -> Storey {
 }
 
 /// Three storeys that each yield at a drift of 10 mm.
-pub(crate) fn three(hardening: f64) -> Plan {
+pub(crate) fn three(post_yield_ratio: f64) -> Plan {
     let mut plan = elastic_plan(1.0, vec![rest(None)]);
     plan.specimens[0].frame = Some(Frame::of_storeys(
-        (0..3).map(|index| storey(index, hardening)).collect(),
+        (0..3)
+            .map(|index| storey(index, post_yield_ratio))
+            .collect(),
     ));
     plan.specimens[0].behaviour = None;
     plan

@@ -16,9 +16,13 @@ use crate::tests::testing::{elastic_plan, number, run_unwatched};
 /// drift (1 − h)(δ − δy), independent of the other storeys. Three moves are sufficient: a short one, most of the path, the rest.
 #[test]
 fn the_residual_drift_of_a_bilinear_storey_is_plastic() {
-    for hardening in [0.0, 0.05, 0.2] {
-        let (rest, steps) = unloaded(&three(hardening), [0.025, -0.03, 0.004], None);
-        let stays = [(1.0 - hardening) * 0.015, -(1.0 - hardening) * 0.02, 0.0];
+    for post_yield_ratio in [0.0, 0.05, 0.2] {
+        let (rest, steps) = unloaded(&three(post_yield_ratio), [0.025, -0.03, 0.004], None);
+        let stays = [
+            (1.0 - post_yield_ratio) * 0.015,
+            -(1.0 - post_yield_ratio) * 0.02,
+            0.0,
+        ];
         close(&rest.drift(), &stays, 1e-15);
         close(&rest.shear(), &[0.0; 3], 1e-9);
         assert_eq!(steps.len(), 4);
@@ -38,12 +42,12 @@ fn the_residual_drift_of_a_bilinear_storey_is_plastic() {
 /// position, but each move is nearer.
 #[test]
 fn a_storey_that_yields_in_unloading_is_followed() {
-    let hardening = 0.5;
+    let post_yield_ratio = 0.5;
     // V = Fy + hk(δ − δy) at δ = 5δy is 3Fy. Unloading by 2δy gives Fy, and Fy/(hk) = 2δy more gives zero.
-    let (rest, steps) = unloaded(&three(hardening), [0.05, 0.05, 0.012], Some(1e-3));
+    let (rest, steps) = unloaded(&three(post_yield_ratio), [0.05, 0.05, 0.012], Some(1e-3));
     close(
         &rest.drift(),
-        &[0.01, 0.01, (1.0 - hardening) * 0.002],
+        &[0.01, 0.01, (1.0 - post_yield_ratio) * 0.002],
         1e-9,
     );
     assert!(steps.len() > 2 && steps.len() < 10, "{}", steps.len());
@@ -158,7 +162,7 @@ fn one_storey_is_unloaded_as_one_degree_of_freedom() {
     let behaviour = Behaviour::Bilinear {
         stiffness: 500.0,
         yield_force: 5.0,
-        hardening: 0.3,
+        post_yield_ratio: 0.3,
     };
     let mut frame = elastic_plan(1.0, vec![rest(None)]);
     let floor = Storey {

@@ -58,7 +58,7 @@ fn yielding(procedures: Vec<ProcedureKind>) -> Plan {
     plan.specimens[0].behaviour = Some(Behaviour::Bilinear {
         stiffness: 2e4,
         yield_force: 200.0,
-        hardening: 0.05,
+        post_yield_ratio: 0.05,
     });
     plan
 }
@@ -92,19 +92,19 @@ fn what_is_so_of_every_blow_is_said_once() {
             .events
             .into_iter()
             .map(|event| event.text)
-            .filter(|text| text.contains("not a peak"));
+            .filter(|text| text.contains("not reached within the run"));
         told.collect::<Vec<String>>()
     };
     let text =
-        "the structure was still moving on at the end: its largest displacement is not a peak";
+        "maximum displacement not reached within the run: the structure was still moving outward";
     assert_eq!(of(&[0.1]), [text]);
     assert_eq!(
         of(&[0.1, 0.2]),
-        [text.to_owned(), format!("after one more blow: {text}")]
+        [text.to_owned(), format!("after 1 more impact: {text}")]
     );
     assert_eq!(
         of(&[0.1, 0.2, 0.3, 0.4]),
-        [text.to_owned(), format!("after 3 more blows: {text}")]
+        [text.to_owned(), format!("after 3 more impacts: {text}")]
     );
 }
 
@@ -188,7 +188,7 @@ fn it_ends_with_the_first_blow_that_fails() {
         record
             .events
             .iter()
-            .any(|event| event.text == "blow 4 of 3.200 J: the condition no longer holds")
+            .any(|event| event.text == "impact 4 of 3.200 J: the condition is false")
     );
 }
 
@@ -214,7 +214,7 @@ fn the_list_bounds_it() {
         record
             .events
             .iter()
-            .any(|event| event.text == "the condition held after every blow of the list")
+            .any(|event| event.text == "the condition was true after every impact of the series")
     );
     assert!(number(&record, 0, "final_displacement").0.unwrap().abs() < 1e-15);
     assert!(
@@ -239,7 +239,7 @@ fn a_person_looks_between_two_blows() {
     let looks: Vec<&str> = looks.map(|event| event.text.as_str()).collect();
     assert_eq!(
         looks,
-        ["after blow 1 of 50.00 mJ", "after blow 2 of 200.0 mJ"]
+        ["after impact 1 of 50.00 mJ", "after impact 2 of 200.0 mJ"]
     );
 }
 

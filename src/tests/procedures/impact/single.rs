@@ -177,7 +177,7 @@ fn a_run_that_ends_early_says_that_its_peak_is_none() {
             .fold(0.0, f64::max);
         // A run that continues past its largest X contains the peak.
         let moving_on = last.velocity > 0.0 && last.displacement >= largest;
-        assert_eq!(says("not a peak"), moving_on, "{duration}");
+        assert_eq!(says("not reached within the run"), moving_on, "{duration}");
         still_moving_on += u32::from(moving_on);
     }
     assert!((1..4).contains(&still_moving_on), "both ends are tried");
@@ -403,7 +403,7 @@ fn a_specimen_that_stiffens_past_the_operator_is_remarked_once() {
     // The first secant across the breakpoint, or after it; 2/√(590) s = 82 ms is left.
     assert!(
         remarks[0].text.contains("K_I = 310.0 N/m")
-            && remarks[0].text.contains("is within (2.000 ms)"),
+            && remarks[0].text.contains("not exceeded here (2.000 ms)"),
         "{}",
         remarks[0].text
     );

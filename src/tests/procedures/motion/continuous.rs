@@ -62,7 +62,7 @@ fn lost(plan: &Plan) -> f64 {
 
 /// A damper of c on the cell acts as C = c/scale: E(t) of d'' + (C/M)d' + (K/M)d = 0 in closed form, M = 1 kg.
 #[test]
-fn a_damper_takes_what_the_closed_form_says_and_step_and_pause_shows_none_of_it() {
+fn a_damper_takes_what_the_closed_form_says_and_ramp_and_hold_shows_none_of_it() {
     let (damper, end) = (50.0, 0.5);
     let rate = damper / SCALE / 2.0;
     let damped = f64::sqrt(STIFFNESS - rate * rate);

@@ -83,7 +83,7 @@ fn a_stiffer_spring_is_told_in_both_modes() {
     let measured = of(CONTINUOUS, 250.0, VirtualLink::default());
     assert!(
         measured[0].contains(", 300.0 N/m measured")
-            && measured[0].contains("is within (2.000 ms)"),
+            && measured[0].contains("not exceeded here (2.000 ms)"),
         "{measured:?}"
     );
 }
@@ -141,7 +141,7 @@ fn a_response_that_turns_at_every_step_is_told() {
         (Integrator::Explicit, "stable up to 0.1155 s"),
         (
             Integrator::AlphaOs { alpha: 0.0 },
-            "stable up to 0.1414 s only, which it is beyond",
+            "stable up to 0.1414 s only, exceeded here",
         ),
     ] {
         let of = |stated: f64| {

@@ -23,7 +23,7 @@ fn plan(force: f64, after: ZeroAfter) -> Plan {
         drift: 0.1,
         ..VirtualLink::default()
     });
-    plan.rig.drift = Some(DriftCheck {
+    plan.rig.zero_drift = Some(DriftCheck {
         force,
         displacement: None,
         over: 2.0,
@@ -101,8 +101,7 @@ fn recorded(plan: &Plan, wants: bool) -> (PowerLoss, Record, Vec<DrivenStep>) {
         plan,
         rig.as_mut(),
         &mut person,
-        journal,
-        wall,
+        replay::OpenLog { journal, wall },
         Driver::Client,
         &mut |specimen| client(specimen),
     );
@@ -155,7 +154,7 @@ fn who_ends_the_serving_has_the_rig_held_where_it_is() {
 fn a_rig_that_does_not_say_is_not_asked() {
     let mut plan = plan(5.0, ZeroAfter::Nowhere);
     assert!(served(&plan, false).drift.unwrap().axes[0].after.is_none());
-    plan.rig.drift = None;
+    plan.rig.zero_drift = None;
     assert_eq!(served(&plan, false).drift, None);
 }
 
@@ -164,7 +163,7 @@ fn a_rig_that_does_not_say_is_not_asked() {
 fn a_record_without_the_zeros_that_its_plan_asks_for_is_played_back_without_them() {
     let asking = plan(5.0, ZeroAfter::Start);
     let mut unread = asking.clone();
-    unread.rig.drift = None;
+    unread.rig.zero_drift = None;
     let (disk, record, steps) = recorded(&unread, false);
     let again = played(&asking, &disk);
     assert_eq!(

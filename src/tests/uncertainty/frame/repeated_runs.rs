@@ -50,7 +50,7 @@ fn yielding(mass: f64, stiffness: f64, yield_force: f64) -> Storey {
         behaviour: Behaviour::Bilinear {
             stiffness,
             yield_force,
-            hardening: 0.1,
+            post_yield_ratio: 0.1,
         },
         ..storey(mass, stiffness)
     }

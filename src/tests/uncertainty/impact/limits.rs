@@ -97,7 +97,7 @@ fn a_record_that_does_not_reproduce_its_results_reports_no_uncertainty() {
     };
     assert_eq!(
         reason,
-        "the recorded way, taken again, does not lead to the recorded results"
+        "re-integration along the recorded path does not reproduce the recorded results"
     );
     assert_eq!(results, before);
 }

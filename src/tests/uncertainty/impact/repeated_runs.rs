@@ -23,7 +23,7 @@ fn repeated_runs_scatter_as_predicted() {
         plan.specimens[0].behaviour = Some(Behaviour::Bilinear {
             stiffness: force * STIFFNESS,
             yield_force: force * 25.0,
-            hardening: 0.1,
+            post_yield_ratio: 0.1,
         });
         plan
     };

@@ -4,7 +4,7 @@
 use psd::physics::integrator::input::FrameInput;
 use psd::physics::integrator::solver::FrameSolver;
 use psd::physics::integrator::tangents::Tangents;
-use psd::physics::specimen::{Bilinear, RestoringForce};
+use psd::physics::specimen::{Bilinear, BilinearCurve, RestoringForce};
 use psd::physics::structure::{
     Damping, FrameMatrices, SymmetricBand, damping_matrix, drifts, floor_forces, modes,
     storey_stiffness,
@@ -82,7 +82,7 @@ fn a_harmonic_ground_motion_ends_in_the_exact_steady_state() {
 const MASSES: [f64; 2] = [2000.0, 1500.0];
 const STIFFNESSES: [f64; 2] = [3e6, 2e6];
 const YIELDS: [f64; 2] = [12e3, 8e3];
-const HARDENING: [f64; 2] = [0.05, 0.1];
+const POST_YIELD_RATIO: [f64; 2] = [0.05, 0.1];
 /// Between samples of the record \[s\].
 const SAMPLE: f64 = 0.02;
 const SAMPLES: u32 = 300;
@@ -147,8 +147,8 @@ impl Branch {
                 (STIFFNESSES[storey], shear - STIFFNESSES[storey] * drift)
             }
             Self::Yielding(side) => (
-                HARDENING[storey] * STIFFNESSES[storey],
-                side * (1.0 - HARDENING[storey]) * YIELDS[storey],
+                POST_YIELD_RATIO[storey] * STIFFNESSES[storey],
+                side * (1.0 - POST_YIELD_RATIO[storey]) * YIELDS[storey],
             ),
         }
     }
@@ -208,9 +208,10 @@ impl Exact {
         [0, 1].map(|storey| match self.branches[storey] {
             Branch::Elastic { .. } => {
                 let (slope, constant) = self.branches[storey].line(storey);
-                let middle = HARDENING[storey] * STIFFNESSES[storey] * drift(state, storey);
+                let middle = POST_YIELD_RATIO[storey] * STIFFNESSES[storey] * drift(state, storey);
                 let shear = slope * drift(state, storey) + constant;
-                (shear - middle).abs() > (1.0 - HARDENING[storey]) * YIELDS[storey] * (1.0 + 1e-13)
+                (shear - middle).abs()
+                    > (1.0 - POST_YIELD_RATIO[storey]) * YIELDS[storey] * (1.0 + 1e-13)
             }
             Branch::Yielding(side) => side * drift_rate(state, storey) < 0.0,
         })
@@ -293,7 +294,13 @@ fn worst(integrator: Integrator, tangents: Tangents, steps: u32, exact: &[[f64; 
         ..at(&frame, integrator, time_step, &[0.0; 2])
     };
     let mut solver = FrameSolver::new(&input).expect("a frame");
-    let mut storeys = [0, 1].map(|i| Bilinear::new(STIFFNESSES[i], YIELDS[i], HARDENING[i]));
+    let mut storeys = [0, 1].map(|i| {
+        Bilinear::new(BilinearCurve {
+            stiffness: STIFFNESSES[i],
+            yield_force: YIELDS[i],
+            post_yield_ratio: POST_YIELD_RATIO[i],
+        })
+    });
     let (mut drift, mut force, mut shear) = ([0.0; 2], [0.0; 2], [0.0; 2]);
     let mut largest = 0.0_f64;
     for step in 1..=SAMPLES * steps {

@@ -19,13 +19,15 @@ use crate::cli::output::print_message;
 use crate::cli::settings::Settings;
 use crate::evidence::Folder;
 use crate::plan::{Datum, Link, Plan};
+use crate::record::remote::DrivenStep;
 use crate::report;
+use crate::report::Provenance;
 use crate::rig::{Connected, Rig, StopRequest, connect, virtual_rig};
 use crate::run::Unwatched;
 use crate::run::client_run::Driver;
 use crate::run::remote_control::Specimen;
 use crate::run::replay;
-use crate::run::replay::BY_HAND;
+use crate::run::replay::{BY_HAND, Header, OpenLog, Recorded};
 use crate::units::Dimension;
 use crate::units::display::readable;
 use session::{JogSession, Person};
@@ -43,10 +45,10 @@ pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure
         return Ok(Exit::Wrong);
     };
     if !settings.can_ask && (!arguments.yes || arguments.to.is_none()) {
-        return Err(
-            Failure::command_line("a move needs a yes, and nobody can be asked")
-                .help("give `--to` and `--yes`, or start it from a terminal"),
-        );
+        return Err(Failure::command_line(
+            "a move requires a confirmation, and no operator can be asked",
+        )
+        .help("give `--to` and `--yes`, or start it from a terminal"));
     }
     let wanted = Wanted {
         to: arguments
@@ -70,8 +72,15 @@ pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure
         yes: arguments.yes,
         by,
     };
+    let jog = Jog {
+        arguments,
+        plan,
+        wanted: &wanted,
+        person,
+        settings,
+    };
     match plan.rig.link {
-        Link::Virtual(_) => on_a_virtual_rig(arguments, plan, &wanted, person, settings),
+        Link::Virtual(_) => jog.on_a_virtual_rig(),
         Link::Real(_) => {
             let recorded = arguments
                 .datum
@@ -84,22 +93,14 @@ pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure
             let mut connected = connected.map_err(|failure| failure.in_the_plan(place))?;
             if !settings.can_ask && !connected.rig.identity().simulated {
                 return Err(Failure::command_line(
-                    "a real rig is not moved by hand without a person at a terminal",
+                    "a real rig is not moved by hand without an operator at a terminal",
                 )
                 .help("start it from a terminal"));
             }
             if recorded.is_none() {
                 without_load(plan, &mut connected.rig)?;
             }
-            on_a_real_rig(
-                arguments,
-                plan,
-                &attendance,
-                connected,
-                &wanted,
-                person,
-                settings,
-            )
+            jog.on_a_real_rig(&attendance, connected)
         }
     }
 }
@@ -115,7 +116,7 @@ fn datum_of(run: &Path, plan: &Plan) -> Result<Vec<f64>, Failure> {
         .and_then(|rig| rig.datum);
     datum.ok_or_else(|| {
         Failure::command_line(format!(
-            "{}: its record says of no datum of rig `{}`",
+            "{}: its run log has no datum of rig `{}`",
             run.display(),
             plan.rig.name
         ))
@@ -133,16 +134,15 @@ fn without_load(plan: &Plan, rig: &mut dyn Rig) -> Result<(), Failure> {
         return Ok(());
     };
     let found = rig.read().map_err(Failure::Rig)?;
-    let loaded = found
-        .force
-        .iter()
-        .enumerate()
-        .find(|(axis, force)| force.is_nan() || force.abs() > link.gate_of(*axis).zero);
+    let loaded =
+        found.force.iter().enumerate().find(|(axis, force)| {
+            force.is_nan() || force.abs() > link.pretest_check_of(*axis).zero
+        });
     let Some((_, force)) = loaded else {
         return Ok(());
     };
     Err(Failure::command_line(format!(
-        "the specimen carries {}: where it stands is no zero to count from, and nothing moved",
+        "the specimen carries {}: the present position cannot be the zero. Nothing moved",
         readable(*force, Dimension::FORCE)
     ))
     .help("`--datum RUN` counts from the zero of the run that loaded it"))
@@ -155,115 +155,113 @@ struct Wanted {
     speed: Option<f64>,
 }
 
-/// On a simulated rig no run log is kept.
-fn on_a_virtual_rig(
-    arguments: &JogArguments,
-    plan: &Plan,
-    wanted: &Wanted,
-    person: Person<'_>,
+/// Moves of a plan's rig by hand.
+struct Jog<'a> {
+    arguments: &'a JogArguments,
+    plan: &'a Plan,
+    wanted: &'a Wanted,
+    person: Person<'a>,
     settings: Settings,
-) -> Result<Exit, Failure> {
-    let circumstances = Circumstances {
-        served: Some(BY_HAND.to_owned()),
-        ..Circumstances::default()
-    };
-    let mut rig = virtual_rig(plan);
-    let device = record_file::device(rig.as_ref());
-    let header = record_file::header(
-        plan,
-        device,
-        &arguments.plan_settings,
-        &provenance::of(plan, arguments.plan_settings.date.as_deref()),
-        circumstances,
-    );
-    let journal = record_file::begin_nowhere(plan, &header)?;
-    let mut session = JogSession {
-        wanted,
-        plan,
-        identity: rig.identity(),
-        own_speed: rig.own_speed(),
-        person,
-        settings,
-        ended: None,
-    };
-    let mut drive = |specimen: &mut Specimen<'_, '_>| session.drive(specimen);
-    let wall = Box::new(|| None);
-    let (recorded, _) = replay::record_driven(
-        plan,
-        rig.as_mut(),
-        &mut Unwatched,
-        journal,
-        wall,
-        Driver::ByHand,
-        &mut drive,
-    );
-    session.end(&recorded.record.outcome)
 }
 
-/// On a real rig the moves are recorded: the history of a specimen before its test is evidence.
-fn on_a_real_rig(
-    arguments: &JogArguments,
-    plan: &Plan,
-    attendance: &Attendance,
-    mut connected: Connected,
-    wanted: &Wanted,
-    person: Person<'_>,
-    settings: Settings,
-) -> Result<Exit, Failure> {
-    let rig = &mut connected.rig;
-    let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
-    let circumstances = Circumstances {
-        served: Some(BY_HAND.to_owned()),
-        ..real_rig::circumstances(plan, attendance)
-    };
-    let provenance = provenance::of_real_run(
-        plan,
-        arguments.plan_settings.date.as_deref(),
-        &circumstances,
-    );
-    let header = record_file::header(
-        plan,
-        record_file::device(rig),
-        &arguments.plan_settings,
-        &provenance,
-        circumstances,
-    );
-    let journal = record_file::begin(folder.path(), plan, &header)?;
-    let mut session = JogSession {
-        wanted,
-        plan,
-        identity: rig.identity(),
-        own_speed: rig.own_speed(),
-        person,
-        settings,
-        ended: None,
-    };
-    let mut drive = |specimen: &mut Specimen<'_, '_>| session.drive(specimen);
-    let wall = real_rig::wall_clock();
-    let (recorded, steps) = replay::record_driven(
-        plan,
-        rig,
-        &mut Unwatched,
-        journal,
-        wall,
-        Driver::ByHand,
-        &mut drive,
-    );
-    drop(connected);
-    let kept = Folder::digests(folder.path())?.kept();
-    write_made(FolderSink::new(folder.path()), &kept, |sink| {
-        report::put_driven(&steps, None, sink)
-    })?;
-    print_message(&format!("  on record: {}\n", folder.path().display()));
-    if let Some(fault) = &recorded.fault {
-        print_message(&format!(
-            "  the record could not be kept to its end: {fault}\n"
-        ));
+impl<'a> Jog<'a> {
+    /// On a simulated rig no run log is kept.
+    fn on_a_virtual_rig(self) -> Result<Exit, Failure> {
+        let plan = self.plan;
+        let mut rig = virtual_rig(plan);
+        let provenance = provenance::of(plan, self.arguments.plan_settings.date.as_deref());
+        let circumstances = Circumstances {
+            served: Some(BY_HAND.to_owned()),
+            ..Circumstances::default()
+        };
+        let header = self.header(rig.as_ref(), &provenance, circumstances);
+        let log = OpenLog {
+            journal: record_file::begin_nowhere(plan, &header)?,
+            wall: Box::new(|| None),
+        };
+        let (recorded, _, session) = self.drive(rig.as_mut(), log);
+        session.end(&recorded.record.outcome)
     }
-    let exit = session.end(&recorded.record.outcome)?;
-    Ok(if recorded.fault.is_some() {
-        exit.max(Exit::Fault)
-    } else {
-        exit
-    })
+
+    /// On a real rig the moves are recorded: the history of a specimen before its test is evidence.
+    fn on_a_real_rig(
+        self,
+        attendance: &Attendance,
+        mut connected: Connected,
+    ) -> Result<Exit, Failure> {
+        let (plan, arguments) = (self.plan, self.arguments);
+        let rig = &mut connected.rig;
+        let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
+        let circumstances = Circumstances {
+            served: Some(BY_HAND.to_owned()),
+            ..real_rig::circumstances(plan, attendance)
+        };
+        let provenance = provenance::of_real_run(
+            plan,
+            arguments.plan_settings.date.as_deref(),
+            &circumstances,
+        );
+        let header = self.header(rig, &provenance, circumstances);
+        let log = OpenLog {
+            journal: record_file::begin(folder.path(), plan, &header)?,
+            wall: real_rig::wall_clock(),
+        };
+        let (recorded, steps, session) = self.drive(rig, log);
+        drop(connected);
+        let kept = Folder::digests(folder.path())?.kept();
+        write_made(FolderSink::new(folder.path()), &kept, |sink| {
+            report::put_driven(&steps, None, sink)
+        })?;
+        print_message(&format!("  logged in: {}\n", folder.path().display()));
+        if let Some(fault) = &recorded.fault {
+            print_message(&format!(
+                "  the run log could not be written to its end: {fault}\n"
+            ));
+        }
+        let exit = session.end(&recorded.record.outcome)?;
+        Ok(if recorded.fault.is_some() {
+            exit.max(Exit::Fault)
+        } else {
+            exit
+        })
+    }
+
+    /// The header of the run log.
+    fn header(
+        &self,
+        rig: &dyn Rig,
+        provenance: &Provenance,
+        circumstances: Circumstances,
+    ) -> Header {
+        record_file::header(
+            self.plan,
+            record_file::device(rig),
+            &self.arguments.plan_settings,
+            provenance,
+            circumstances,
+        )
+    }
+
+    /// Lets the operator move the rig.
+    fn drive(self, rig: &mut dyn Rig, log: OpenLog) -> (Recorded, Vec<DrivenStep>, JogSession<'a>) {
+        let mut session = JogSession {
+            wanted: self.wanted,
+            plan: self.plan,
+            identity: rig.identity(),
+            own_speed: rig.own_speed(),
+            person: self.person,
+            settings: self.settings,
+            ended: None,
+        };
+        let mut drive = |specimen: &mut Specimen<'_, '_>| session.drive(specimen);
+        let (recorded, steps) = replay::record_driven(
+            self.plan,
+            rig,
+            &mut Unwatched,
+            log,
+            Driver::ByHand,
+            &mut drive,
+        );
+        (recorded, steps, session)
+    }
 }

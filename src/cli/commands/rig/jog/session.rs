@@ -38,7 +38,7 @@ impl JogSession<'_> {
         let ended = come.and_then(|()| {
             if self.person.stop_request.release_allowed() {
                 specimen.remark(format!(
-                    "what was found held was let go of where it stands ({})",
+                    "the hold was cleared, and the rig did not move ({})",
                     self.person.by
                 ));
             }
@@ -48,7 +48,7 @@ impl JogSession<'_> {
             Ok(Exit::Met) => (Disconnect::Closed, "done".to_owned()),
             Ok(_) => (
                 Disconnect::Stopped,
-                "a limit or a person stood in the way".to_owned(),
+                "stopped by a limit or by the operator".to_owned(),
             ),
             Err(failure) if failure.exit() == Exit::Stopped => {
                 (Disconnect::Stopped, failure.to_string())
@@ -83,7 +83,7 @@ impl JogSession<'_> {
         let mut refused = false;
         loop {
             print_message(&format!(
-                "  at {}; where to? [a place such as 1 mm, or q] ",
+                "  at {}; target? [a position such as 1 mm, or q] ",
                 positions_text(specimen.commanded())
             ));
             let Some(line) = self.person.line(specimen)? else {
@@ -97,7 +97,7 @@ impl JogSession<'_> {
             match line.trim() {
                 "" => {}
                 "q" | "quit" => return Ok(if refused { Exit::Stopped } else { Exit::Met }),
-                typed => match positions(typed, specimen.degrees_of_freedom(), "the place") {
+                typed => match positions(typed, specimen.degrees_of_freedom(), "the position") {
                     Ok(to) => refused |= self.move_to(&to, specimen)? != Exit::Met,
                     Err(failure) => print_message(&failure.report(self.settings)),
                 },
@@ -130,7 +130,7 @@ impl JogSession<'_> {
             duration: Some(distance / speed),
         };
         let does = format!(
-            "it moves from {} to {}",
+            "it MOVES from {} to {}",
             positions_text(from),
             positions_text(to)
         );
@@ -147,7 +147,7 @@ impl JogSession<'_> {
             format!(" at {}", plain(speed, Dimension::VELOCITY, 4))
         });
         let question = format!(
-            "move from {} to {}{at_speed}?",
+            "MOVE from {} to {}{at_speed}?",
             positions_text(specimen.commanded()),
             positions_text(to)
         );

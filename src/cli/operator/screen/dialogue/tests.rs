@@ -92,7 +92,7 @@ fn only_yes_with_a_name_goes_on() {
     );
     assert!(matches!(look(None, "y\u{4}"), Inspection::Stop { .. }));
     let stop = look(Some("C"), "icrack\u{202e}\nn\n");
-    let reason = "stopped by a person at an inspection: crack\\u{202e}".to_owned();
+    let reason = "stopped by the operator at an inspection: crack\\u{202e}".to_owned();
     assert_eq!(
         stop,
         Inspection::Stop {
@@ -215,7 +215,7 @@ fn a_paused_run_goes_on_step_by_step() {
     type_in(&mut dialogue, "p");
     assert_eq!(
         dialogue.next(),
-        Next::Record("paused by a person".to_owned())
+        Next::Record("paused by the operator".to_owned())
     );
     assert_eq!(dialogue.next(), Next::Wait);
     type_in(&mut dialogue, "s ");
@@ -226,7 +226,7 @@ fn a_paused_run_goes_on_step_by_step() {
     type_in(&mut dialogue, "p");
     assert_eq!(
         dialogue.next(),
-        Next::Record("went on by a person".to_owned())
+        Next::Record("went on by the operator".to_owned())
     );
     assert_eq!(dialogue.next(), Next::GoOn);
 }

@@ -73,7 +73,7 @@ fn state_line<'a>(view: &View<'_>) -> Line<'a> {
         }
     }
     if let Some((done, of)) = view.model.study {
-        words = format!("{words}   uncertainty: {done} of {of} runs taken again");
+        words = format!("{words}   uncertainty: {done} of {of} runs re-integrated");
         return Line::from(vec![Span::raw(" "), badge, Span::raw(words)]);
     }
     let moving = view
@@ -93,7 +93,7 @@ fn state(view: &View<'_>) -> (&'static str, Color) {
         match ended {
             Ended::Held => ("HELD", Color::Yellow),
             Ended::NotHeld => ("NOT CONFIRMED HELD: EMERGENCY STOP", Color::Red),
-            Ended::Unloading => ("UNLOADING, THE RIG MOVES", Color::Red),
+            Ended::Unloading => ("UNLOADING: THE RIG MOVES", Color::Red),
         }
     } else if view.stop_request.hold_requested() {
         ("HOLDING", Color::Red)
@@ -208,7 +208,7 @@ pub fn keys<'a>(view: &View<'_>) -> Line<'a> {
     let text = if view.model.ended == Some(Ended::Unloading) {
         " h or Ctrl-C: hold now"
     } else if dialogue.after.is_some() && !dialogue.hears(view.now) {
-        " the rig is held"
+        " the rig is HELD"
     } else if answering && !dialogue.hears(view.now) {
         " Ctrl-C stop, twice: hold now   other keys do not count yet"
     } else if let Some(question) = dialogue.question.as_ref().filter(|_| answering) {
@@ -218,7 +218,7 @@ pub fn keys<'a>(view: &View<'_>) -> Line<'a> {
         } else {
             "q stop   h hold now   ? help"
         };
-        &format!(" type {word}   n no   i remark   {stop}")
+        &format!(" type {word}   n no   i observation   {stop}")
     } else if let Some(Typing { what, .. }) = &dialogue.typing {
         match what {
             What::Reason => " Enter resume   Esc back   Ctrl-U clear",
@@ -231,7 +231,7 @@ pub fn keys<'a>(view: &View<'_>) -> Line<'a> {
             (false, _) => " x leave",
         }
     } else if view.model.ended == Some(Ended::Held) {
-        " the rig is held"
+        " the rig is HELD"
     } else if view.stop_request.hold_requested() {
         " the rig holds now"
     } else if view.stop_request.end_requested() {
@@ -239,7 +239,7 @@ pub fn keys<'a>(view: &View<'_>) -> Line<'a> {
     } else if dialogue.monitor {
         " q end   ? help"
     } else if dialogue.paused {
-        " p go on   s step   i note   q stop   h hold now   ? help"
+        " p continue   s step   i note   q stop   h hold now   ? help"
     } else {
         " p pause   i note   q stop   h hold now   ? help"
     };

@@ -43,7 +43,7 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, rows: &[LimitRow], all: usiz
     let width = usize::from(inside.width).saturating_sub(1 + NAME + END + 1 + 1 + END + 1 + MARGIN);
     if rows.is_empty() {
         frame.render_widget(
-            Line::styled(" this plan limits nothing that a step shows", view.quiet()),
+            Line::styled(" no limit of this plan applies to a step", view.quiet()),
             inside,
         );
     }
@@ -60,8 +60,8 @@ fn line<'a>(view: &View<'_>, row: &LimitRow, width: usize) -> Line<'a> {
         _ => Color::Green,
     };
     let margin = match row.margin() {
-        Some(0.0) if row.kept => "as fast as allowed".to_owned(),
-        Some(margin) if margin < 0.0 => format!("past by {}", number(-margin, row.dimension)),
+        Some(0.0) if row.kept => "at the limit".to_owned(),
+        Some(margin) if margin < 0.0 => format!("exceeded by {}", number(-margin, row.dimension)),
         Some(margin) => format!("margin {}", number(margin, row.dimension)),
         None => String::new(),
     };

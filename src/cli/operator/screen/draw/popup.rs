@@ -14,17 +14,17 @@ use crate::record::EventKind;
 const WIDEST: u16 = 72;
 
 const HELP: &[&str] = &[
-    "p        pause at the end of this step; p again goes on",
+    "p        pause at the end of this step; p again continues",
     "s space  one single step while paused",
-    "i        a note for the record, with your name; at a question a remark",
+    "i        a note for the run log, with your name; at a question an observation",
     "q        stop at the end of this step; the rig holds",
-    "h        hold the rig now, in the middle of a step too",
+    "h        hold the rig now, even during a step",
     "Ctrl-C   once as q, twice as h",
     "",
     "A rig is released by a typed word, never by a key.",
-    "After a stop by a person the rig holds: nothing moves unasked.",
+    "After a stop by the operator the rig holds. It moves only if asked.",
     "",
-    "any key closes this; h, q and Ctrl-C do what they say too",
+    "any key closes this help; h, q and Ctrl-C also act",
 ];
 
 /// Draws it in the middle of `charts`; if that is too low, of `whole`, and otherwise of the full screen.
@@ -95,7 +95,7 @@ fn content(view: &View<'_>, width: usize) -> Option<(&'static str, Vec<String>)>
             What::NoteName { note } => ("Note", vec![shown(note), "Your name:".to_owned(), typed]),
             _ => {
                 let rest = [
-                    "A note for the record; Enter keeps it, Esc does not:".to_owned(),
+                    "A note for the run log. Enter keeps it, Esc discards it:".to_owned(),
                     typed,
                 ];
                 ("Note", waits.into_iter().chain(rest).collect())
@@ -112,7 +112,7 @@ fn content(view: &View<'_>, width: usize) -> Option<(&'static str, Vec<String>)>
     );
     lines.extend(match what {
         What::Remark => vec![
-            "A remark for the record; Enter keeps it, Esc back:".to_owned(),
+            "An observation for the run log. Enter keeps it, Esc back:".to_owned(),
             typed,
         ],
         What::AnswerName { .. } => vec!["Your name; Esc back:".to_owned(), typed],
@@ -128,12 +128,12 @@ fn content(view: &View<'_>, width: usize) -> Option<(&'static str, Vec<String>)>
 fn asked(view: &View<'_>, kind: Kind) -> String {
     let (word, declined) = (kind.word(), kind.declined());
     let unclear = if view.dialogue.unclear {
-        "That was no answer. "
+        "Not an answer. "
     } else {
         ""
     };
     let unloads = if view.model.unloads && kind != Kind::Unload {
-        " After a limit on the way the rig unloads by itself; after a stop by you it holds."
+        " After a stop by a limit the rig MOVES back and unloads automatically; after a stop by you it holds."
     } else {
         ""
     };

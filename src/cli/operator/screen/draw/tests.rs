@@ -190,7 +190,8 @@ fn motion() -> Motion {
         speed: Some(2e-3),
         duration: Some(93.0),
     };
-    let does = "it moves by 0.1 mm to check itself, then as the plan says".to_owned();
+    let does =
+        "it MOVES by 0.1 mm and back (pre-test check), then MOVES as the plan specifies".to_owned();
     Motion {
         expected,
         ..Motion::of(&plan, identity, does)
@@ -268,7 +269,7 @@ fn a_held_rig_stays_on_the_screen_with_what_may_be_done() {
 #[test]
 fn nothing_stands_beside_a_rig_that_may_still_move() {
     let mut lost = model();
-    let text = "NOT CONFIRMED HELD (rig bench, actuator: the line is gone): it may still be moving; use the emergency stop";
+    let text = "NOT CONFIRMED HELD (rig bench, actuator: connection lost): IT MAY STILL BE MOVING. Press the emergency stop";
     lost.event(&Event {
         time: 400.0,
         procedure: None,

@@ -5,7 +5,7 @@ pub mod record;
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::frames as message;
 use crate::plan::Ground;
-use crate::schema::ground::{RECORD, SCALE, SCALE_UNCERTAINTY, UNIT};
+use crate::schema::ground::{FILE, SCALE, SCALE_UNCERTAINTY, UNIT};
 
 /// A ground motion with a valid record; None if an error was reported.
 pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {
@@ -17,9 +17,9 @@ pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {
         Some(_) => checker.constant(block, UNIT.name).map(Some),
         None => Some(None),
     };
-    let (_, written) = checker.field(block, RECORD.name)?;
+    let (_, written) = checker.field(block, FILE.name)?;
     let at = written.value.span;
-    let record = checker.text_field(block, RECORD.name)?;
+    let record = checker.text_field(block, FILE.name)?;
     let file = checker.data_file(&record, at)?;
     let record = match record::read(&file.name, &file.text) {
         Ok(record) => record,
@@ -43,7 +43,7 @@ pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {
         .position(|acceleration| !acceleration.is_finite())
     {
         let reason = format!(
-            "sample {} is no finite acceleration in its unit and scale",
+            "sample {} is not finite after unit and scale are applied",
             sample + 1
         );
         return checker.fail(message::bad_record(&file.name, &reason, at));

@@ -30,7 +30,7 @@ pub fn read(name: &str, text: &str) -> Result<GroundRecord, String> {
         table(text)?
     };
     match record.times.len() {
-        0 | 1 => Err("it has fewer than two samples".to_owned()),
+        0 | 1 => Err("fewer than two samples".to_owned()),
         _ => Ok(record),
     }
 }
@@ -47,7 +47,7 @@ fn table(text: &str) -> Result<GroundRecord, String> {
         ["time_s", "acceleration"] => None,
         _ => {
             return Err(format!(
-                "line 1 is `{}`, and must be `time_s,acceleration_m_per_s2`",
+                "line 1 is `{}`, expected `time_s,acceleration_m_per_s2`",
                 shortened(header)
             ));
         }
@@ -57,20 +57,18 @@ fn table(text: &str) -> Result<GroundRecord, String> {
         let cells: Vec<&str> = row.split(',').map(str::trim).collect();
         let [time, value] = cells.as_slice() else {
             return Err(format!(
-                "line {line} has {} columns, and must have 2",
+                "line {line} has {} columns, expected 2",
                 cells.len()
             ));
         };
         let (time, value) = (finite(line, time)?, finite(line, value)?);
         match times.last() {
             None if time != 0.0 => {
-                return Err(format!(
-                    "line {line}: the record begins at {time} s, and must begin at 0"
-                ));
+                return Err(format!("line {line}: first time is {time} s, expected 0"));
             }
             Some(before) if time <= *before => {
                 return Err(format!(
-                    "line {line}: the time {time} s does not come after {before} s"
+                    "line {line}: time {time} s does not increase (previous: {before} s)"
                 ));
             }
             _ => {}
@@ -91,21 +89,19 @@ fn peer(text: &str) -> Result<GroundRecord, String> {
     let head = || (1..).zip(text.lines()).take(AT2_HEAD);
     let upper = |line: &str| line.to_ascii_uppercase();
     let Some((at, counts)) = head().find(|(_, line)| upper(line).contains("NPTS")) else {
-        return Err(format!(
-            "none of its first {AT2_HEAD} lines holds NPTS and DT"
-        ));
+        return Err(format!("NPTS and DT missing in the first {AT2_HEAD} lines"));
     };
     if let Some((line, what)) = head()
         .take_while(|(line, _)| *line <= at)
         .find(|(_, line)| is_no_acceleration(&upper(line)))
     {
         return Err(format!(
-            "line {line} says `{}`, and a record of accelerations is wanted",
+            "line {line}: quantity is `{}`, expected accelerations",
             shortened(what)
         ));
     }
     let (points, step) = counts_of(&upper(counts))
-        .ok_or_else(|| format!("line {at} does not say NPTS and DT as numbers"))?;
+        .ok_or_else(|| format!("line {at}: NPTS and DT are not numbers"))?;
     not_too_long(points)?;
     let unit = head()
         .take_while(|(line, _)| *line <= at)
@@ -116,14 +112,14 @@ fn peer(text: &str) -> Result<GroundRecord, String> {
             values.push(finite(line, cell)?);
             if values.len() > points {
                 return Err(format!(
-                    "line {line}: more than the {points} samples that its header says"
+                    "line {line}: more samples than the {points} stated in the header"
                 ));
             }
         }
     }
     if values.len() < points {
         return Err(format!(
-            "it has {} samples, and its header says {points}",
+            "{} samples, but the header states {points}",
             values.len()
         ));
     }
@@ -186,7 +182,7 @@ fn finite(line: usize, cell: &str) -> Result<f64, String> {
 
 fn not_too_long(samples: usize) -> Result<(), String> {
     if samples > MOST_SAMPLES {
-        Err(format!("it has more than {MOST_SAMPLES} samples"))
+        Err(format!("more than {MOST_SAMPLES} samples"))
     } else {
         Ok(())
     }
@@ -246,11 +242,11 @@ mod tests {
         let refused = |text: &str| read("a.at2", text).unwrap_err();
         assert!(
             refused(&format!("{head}NPTS= 5, DT= .005\n1 2 3 4"))
-                .contains("has 4 samples, and its header says 5")
+                .contains("4 samples, but the header states 5")
         );
         assert!(
             refused(&format!("{head}NPTS= 3, DT= .005\n1 2\n3 4"))
-                .contains("line 6: more than the 3")
+                .contains("line 6: more samples than the 3")
         );
         assert!(refused(&format!("{head}NPTS= 3, DT= 0\n1 2 3")).contains("line 4"));
         assert!(refused(&format!("{head}NPTS= 3, DT= 1\n1 x 3")).contains("line 5: `x`"));
@@ -264,7 +260,7 @@ mod tests {
             let reason = refused(&format!("{other}NPTS= 2, DT= .005\n1 2"));
             assert_eq!(
                 reason,
-                format!("line 3 says `{what}`, and a record of accelerations is wanted")
+                format!("line 3: quantity is `{what}`, expected accelerations")
             );
         }
     }
@@ -295,12 +291,12 @@ mod tests {
         for (rows, reason) in [
             (
                 "0,0\n0.02,1\n0.02,2\n",
-                "line 4: the time 0.02 s does not come after 0.02 s",
+                "line 4: time 0.02 s does not increase (previous: 0.02 s)",
             ),
             ("0,0\n0.02,1\n0.01,2\n", "line 4"),
             ("0,0\n0.02,inf\n", "line 3: `inf`"),
             ("0,0\n0.02\n", "line 3 has 1 columns"),
-            ("0.1,0\n0.2,1\n", "begins at 0.1 s"),
+            ("0.1,0\n0.2,1\n", "line 2: first time is 0.1 s, expected 0"),
             ("0,0\n", "fewer than two"),
         ] {
             let refused = read("a.csv", &format!("{head}{rows}")).unwrap_err();
@@ -311,6 +307,6 @@ mod tests {
                 .unwrap_err()
                 .contains("`t,a`")
         );
-        assert!(read("a.csv", "").unwrap_err().contains("must be"));
+        assert!(read("a.csv", "").unwrap_err().contains("expected `time_s"));
     }
 }

@@ -116,30 +116,31 @@ pub fn multilinear<'a>(
     for (index, corner) in corners.iter().enumerate() {
         let [moved, gained] = [corner[0] - before[0], corner[1] - before[1]];
         if moved <= 0.0 {
-            let help = "displacements rise from 0: the same holds backwards";
+            let help = "write displacements that increase from 0; the curve is symmetric";
             return checker.fail(message::backbone_point(
                 index,
                 displacements_at,
-                "a displacement does not rise",
+                "a displacement does not increase",
                 help,
             ));
         }
         if gained < 0.0 || (index == 0 && gained == 0.0) {
-            let help = "forces rise from 0; write `table` for a curve that falls";
+            let help = "write forces that increase from 0, or use `table` for a curve that falls";
             return checker.fail(message::backbone_point(
                 index,
                 forces_at,
-                "a force does not rise",
+                "a force does not increase",
                 help,
             ));
         }
         // Equal slopes may differ in their last digits.
         if gained > softest * moved * (1.0 + 1e-9) {
-            let help = "each stretch is softer than the one before; write `table` for a curve that stiffens";
+            let help =
+                "write segments of decreasing stiffness, or use `table` for a curve that stiffens";
             return checker.fail(message::backbone_point(
                 index,
                 forces_at,
-                "the stretch to it is stiffer",
+                "its segment is stiffer than the one before",
                 help,
             ));
         }

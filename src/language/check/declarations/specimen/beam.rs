@@ -3,7 +3,7 @@
 use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::messages::specimens as message;
-use crate::physics::structure::beam;
+use crate::physics::structure::beam::{self, Span};
 use crate::plan::{Beam, Behaviour, Ends};
 
 /// Stiffness of a beam at midspan or at its tip; the formulas are in `physics/structure/beam.rs`.
@@ -48,18 +48,20 @@ pub fn beam<'a>(
             ));
         }
     };
+    let span = Span {
+        length,
+        bending: youngs_modulus * second_moment,
+    };
     let ends = match (ends.variant.name, rotational_stiffness, fixity) {
         (_, Some(rotational_stiffness), _) => Ends::PartlyBuiltIn {
             rotational_stiffness,
         },
-        (_, _, Some(factor)) => {
-            beam::ends_of_fixity(factor, length, youngs_modulus * second_moment)
-        }
+        (_, _, Some(factor)) => beam::ends_of_fixity(factor, span),
         ("cantilever", ..) => Ends::Cantilever,
         ("simply_supported", ..) => Ends::SimplySupported,
         _ => Ends::BuiltIn,
     };
-    let stiffness = beam::stiffness(length, youngs_modulus, second_moment, ends, shear);
+    let stiffness = beam::stiffness(span, ends, shear);
     Some(Behaviour::Beam(Beam {
         stiffness,
         length,

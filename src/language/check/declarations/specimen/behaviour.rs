@@ -6,7 +6,7 @@ use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::messages::{shown, specimens as message, values};
 use crate::language::syntax::ast::{Expr, ExprKind};
-use crate::physics::relaxation::logarithmic::lost_after_long;
+use crate::physics::relaxation::logarithmic::LogarithmicRelaxation;
 use crate::plan::{Behaviour, Bolted, Breaks, Pinching};
 use crate::schema::Variant;
 use crate::text::source::Span;
@@ -96,53 +96,55 @@ fn part<'a>(
             stiffness: number("stiffness")?,
         }),
         "bilinear" => {
-            let (stiffness, yield_force, hardening) = (
+            let (stiffness, yield_force, post_yield_ratio) = (
                 number("stiffness"),
                 number("yield_force"),
-                number("hardening"),
+                number("post_yield_ratio"),
             );
             let (exponent, residual) = (
                 number("deterioration_exponent"),
                 number("residual_strength"),
             );
-            let (stiffness, yield_force, hardening) = (stiffness?, yield_force?, hardening?);
+            let (stiffness, yield_force, post_yield_ratio) =
+                (stiffness?, yield_force?, post_yield_ratio?);
             Some(
                 match deterioration(checker, &chosen, context, exponent?, residual?)? {
                     None => Behaviour::Bilinear {
                         stiffness,
                         yield_force,
-                        hardening,
+                        post_yield_ratio,
                     },
                     Some(deterioration) => Behaviour::DeterioratingBilinear {
                         stiffness,
                         yield_force,
-                        hardening,
+                        post_yield_ratio,
                         deterioration,
                     },
                 },
             )
         }
         "bouc_wen" => {
-            let (stiffness, yield_force, hardening) = (
+            let (stiffness, yield_force, post_yield_ratio) = (
                 number("stiffness"),
                 number("yield_force"),
-                number("hardening"),
+                number("post_yield_ratio"),
             );
             let (sharpness, beta) = (number("n"), number("beta"));
-            let (stiffness, yield_force, hardening) = (stiffness?, yield_force?, hardening?);
+            let (stiffness, yield_force, post_yield_ratio) =
+                (stiffness?, yield_force?, post_yield_ratio?);
             Some(Behaviour::BoucWen {
                 stiffness,
                 yield_force,
-                hardening,
+                post_yield_ratio,
                 sharpness: sharpness?,
                 beta: beta?,
             })
         }
         "pinching" => {
-            let (stiffness, yield_force, hardening) = (
+            let (stiffness, yield_force, post_yield_ratio) = (
                 number("stiffness"),
                 number("yield_force"),
-                number("hardening"),
+                number("post_yield_ratio"),
             );
             let (force, displacement) = (number("force_factor"), number("displacement_factor"));
             let exponent = number("unloading_exponent");
@@ -154,7 +156,7 @@ fn part<'a>(
             let pinching = Pinching {
                 stiffness: stiffness?,
                 yield_force: yield_force?,
-                hardening: hardening?,
+                post_yield_ratio: post_yield_ratio?,
                 force_factor: force?,
                 displacement_factor: displacement?,
                 unloading_exponent: exponent?,
@@ -257,7 +259,12 @@ fn logarithmic<'a>(
     if longest < LEAST_OF_REFERENCE * reference_time {
         return checker.fail(message::relaxes_too_short(longest, reference_time, span));
     }
-    let lost = lost_after_long(share, reference_time, longest);
+    let law = LogarithmicRelaxation {
+        share,
+        reference_time,
+        longest,
+    };
+    let lost = law.lost_after_long();
     if lost >= 1.0 {
         return checker.fail(message::relaxes_away(
             message::RelaxationLoss {
@@ -336,7 +343,7 @@ fn fracture<'a>(
         (None, Some(force)) => Breaks::Force(force),
         (displacement, _) => {
             let given = if displacement.is_some() { 2 } else { 0 };
-            let takes = "a `fracture` comes at a `displacement` or at a `force`";
+            let takes = "a `fracture` requires a `displacement` or a `force`";
             return checker.fail(message::one_way_only(takes, "force: 5 kN", span, given));
         }
     };
@@ -348,14 +355,13 @@ fn fracture<'a>(
             shown(force, Dimension::FORCE),
             shown(of.capacity(), Dimension::FORCE),
         );
-        let message = format!(
-            "the fracture at {force} never comes: what is to break carries no more than {most}"
-        );
+        let message =
+            format!("fracture at {force} is never reached: the force of `of` is at most {most}");
         checker.diagnostics.push(values::no_effect(
             message,
             span,
-            "is never reached",
-            "let it break at a `displacement`, or at less",
+            "never reached",
+            "write a `displacement`, or a lower force",
         ));
     }
     Some(Behaviour::Fracture {

@@ -1,6 +1,7 @@
 //! The frame of a specimen: `storeys = [storey(…), …]`, or the files of its matrices. In: a `specimen` block. Out: a
 //! [`Frame`], evaluated once.
 
+use crate::schema::procedures::impact;
 use std::rc::Rc;
 
 use super::behaviour::{self, Material, Written};
@@ -288,5 +289,5 @@ pub fn struck_frame(checker: &mut Checker, block: usize) -> Option<(usize, Optio
     let several = frame
         .as_ref()
         .is_none_or(|frame| frame.degrees_of_freedom() > 1);
-    (several || checker.field(block, "storey").is_some()).then_some((specimen, frame))
+    (several || checker.field(block, impact::STOREY.name).is_some()).then_some((specimen, frame))
 }

@@ -14,7 +14,7 @@ pub fn read(text: &str) -> Result<Vec<Vec<f64>>, String> {
     let mut matrix = Vec::new();
     for (line, row) in written {
         if matrix.len() == MOST_STOREYS {
-            return Err(format!("it has more than {MOST_STOREYS} rows"));
+            return Err(format!("more than {MOST_STOREYS} rows"));
         }
         matrix.push(numbers(line, row)?);
     }
@@ -22,7 +22,7 @@ pub fn read(text: &str) -> Result<Vec<Vec<f64>>, String> {
     symmetric(&mut matrix)?;
     match first_pivot_that_is_not_positive(&matrix) {
         Some(row) => Err(format!(
-            "it is not positive definite: the first {} rows and columns give no positive determinant",
+            "not positive definite: the determinant of the first {} rows and columns is not positive",
             row + 1
         )),
         None => Ok(matrix),
@@ -43,11 +43,11 @@ fn numbers(line: usize, row: &str) -> Result<Vec<f64>, String> {
 fn square(matrix: &[Vec<f64>]) -> Result<(), String> {
     let rows = matrix.len();
     if rows == 0 {
-        return Err("it holds no numbers".to_owned());
+        return Err("the file has no numbers".to_owned());
     }
     match (1..).zip(matrix).find(|(_, row)| row.len() != rows) {
         Some((number, row)) => Err(format!(
-            "it is not square: {rows} rows, and row {number} has {} columns",
+            "not square: {rows} rows, but row {number} has {} columns",
             row.len()
         )),
         None => Ok(()),
@@ -62,7 +62,7 @@ fn symmetric(matrix: &mut [Vec<f64>]) -> Result<(), String> {
         if (below - above).abs() > SYMMETRIC * below.abs().max(above.abs()) {
             let (row, column) = (row + 1, column + 1);
             return Err(format!(
-                "it is not symmetric: row {row}, column {column} is {below}, row {column}, column {row} is {above}"
+                "not symmetric: row {row}, column {column} is {below}, but row {column}, column {row} is {above}"
             ));
         }
         matrix[row][column] = above;
@@ -105,14 +105,14 @@ mod tests {
     #[test]
     fn every_other_is_refused_with_its_row_and_column() {
         for (text, reason) in [
-            ("", "holds no numbers"),
+            ("", "the file has no numbers"),
             ("1, 2\n2", "row 2 has 1 columns"),
-            ("1, 2, 3\n2, 1, 3", "2 rows, and row 1 has 3 columns"),
+            ("1, 2, 3\n2, 1, 3", "2 rows, but row 1 has 3 columns"),
             ("2, -1\n-1, x", "line 2, column 2: `x`"),
             ("2, nan\n-1, 1", "line 1, column 2: `nan`"),
             (
                 "2, -1\n-1.1, 2",
-                "row 2, column 1 is -1.1, row 1, column 2 is -1",
+                "row 2, column 1 is -1.1, but row 1, column 2 is -1",
             ),
             ("1, -1\n-1, 1", "the first 2 rows"),
             ("-1", "the first 1 rows"),

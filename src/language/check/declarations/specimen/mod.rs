@@ -297,7 +297,7 @@ pub fn export(checker: &mut Checker, block: usize, name: &str, requested_at: Spa
     let behaviour = behaviour(checker, block, requested_at)?;
     let (value, reason) = match (name, &behaviour) {
         ("stiffness", _) => (behaviour.initial_stiffness(), ""),
-        ("capacity", _) => (behaviour.capacity(), "its force has no bound"),
+        ("capacity", _) => (behaviour.capacity(), "its force is unbounded"),
         ("elastic_mass" | "plastic_mass" | "lumped_mass", _) => {
             let masses = behaviour.equivalent_masses();
             let value = masses.and_then(|masses| match name {
@@ -307,14 +307,14 @@ pub fn export(checker: &mut Checker, block: usize, name: &str, requested_at: Spa
             });
             (
                 value.unwrap_or(f64::INFINITY),
-                "its geometry does not give it",
+                "its geometry does not determine it",
             )
         }
         ("mechanism_limit", _) => {
             let limit = behaviour.portal().and_then(mechanism_limit);
             (
                 limit.unwrap_or(f64::INFINITY),
-                "it is no `portal` under one load whose members have a mass",
+                "it is not a `portal` under one load with member masses",
             )
         }
         (_, Behaviour::Portal(portal)) => {
@@ -323,10 +323,10 @@ pub fn export(checker: &mut Checker, block: usize, name: &str, requested_at: Spa
                 .find(|mechanism| name.starts_with(mechanism.name()))?;
             (
                 portal.collapse_load(mechanism),
-                "its loads do no work on that mechanism",
+                "its loads do no work on this mechanism",
             )
         }
-        _ => (f64::INFINITY, "it is no `portal`"),
+        _ => (f64::INFINITY, "it is not a `portal`"),
     };
     if value.is_finite() {
         Some(value)

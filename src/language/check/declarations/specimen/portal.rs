@@ -84,7 +84,7 @@ pub fn portal<'a>(
         (modulus, second_moment, _) => {
             let given = usize::from(modulus.is_some() || second_moment.is_some()) * 2;
             let takes =
-                "a `portal` takes `youngs_modulus` with `second_moment`, or its `stiffness`";
+                "a `portal` requires either `youngs_modulus` with `second_moment`, or `stiffness`";
             return checker.fail(message::one_way_only(
                 takes,
                 "stiffness: 2 kN/mm",

@@ -25,7 +25,7 @@ pub fn points(text: &str) -> Result<Vec<[f64; 2]>, BadTable> {
     let Some(header) = lines.next() else {
         return Err(BadTable {
             row: None,
-            reason: "it has no rows".to_owned(),
+            reason: "the file has no rows".to_owned(),
             help: HEADER,
         });
     };
@@ -34,8 +34,8 @@ pub fn points(text: &str) -> Result<Vec<[f64; 2]>, BadTable> {
     for row in lines {
         if points.len() >= MOST_ROWS {
             return Err(row.bad(
-                &format!("a table has at most {MOST_ROWS} rows"),
-                "leave out rows that the others say already",
+                &format!("more than {MOST_ROWS} rows"),
+                "remove redundant rows",
             ));
         }
         let [displacement, force] = row.numbers()?;
@@ -46,7 +46,7 @@ pub fn points(text: &str) -> Result<Vec<[f64; 2]>, BadTable> {
     whole(points)
 }
 
-const HEADER: &str = "begin with the line `displacement_m,force_n`, then a row a point";
+const HEADER: &str = "write `displacement_m,force_n` in the first line, then one point per row";
 
 struct Row<'t> {
     /// Line number from 1.
@@ -69,8 +69,8 @@ impl Row<'_> {
         let cells: Vec<&str> = self.text.split(',').map(str::trim).collect();
         <[&str; 2]>::try_from(cells).map_err(|cells| {
             self.bad(
-                &format!("a row has two columns, this one {}", cells.len()),
-                "part them by a comma",
+                &format!("a row must have two columns, this one has {}", cells.len()),
+                "write a comma between the two numbers",
             )
         })
     }
@@ -96,7 +96,7 @@ impl Row<'_> {
             let help = "write a plain number, such as 0.0012 or 1.2e-3";
             value
                 .filter(|value| value.is_finite())
-                .ok_or_else(|| self.bad(&format!("`{cell}` is no number"), help))
+                .ok_or_else(|| self.bad(&format!("`{cell}` is not a number"), help))
         };
         Ok([number(displacement)?, number(force)?])
     }
@@ -109,20 +109,20 @@ impl Row<'_> {
     ) -> Result<(), BadTable> {
         if before.is_some_and(|[before, _]| displacement <= *before) {
             return Err(self.bad(
-                "the displacement does not rise",
-                "leave one row for a displacement, and sort them",
+                "the displacement does not increase",
+                "sort the rows, with one row per displacement",
             ));
         }
         if displacement == 0.0 && force != 0.0 {
             return Err(self.bad(
-                "there is a force at no displacement",
-                "take the zero of the cell off every force",
+                "nonzero force at zero displacement",
+                "subtract the zero reading of the load cell from every force",
             ));
         }
         if displacement * force < 0.0 {
             return Err(self.bad(
-                "the force is against the displacement",
-                "turn the sign of one of the columns",
+                "force and displacement have opposite signs",
+                "reverse the sign of one column",
             ));
         }
         Ok(())
@@ -131,11 +131,11 @@ impl Row<'_> {
 
 fn whole(mut points: Vec<[f64; 2]>) -> Result<Vec<[f64; 2]>, BadTable> {
     if points.iter().all(|[_, force]| *force == 0.0) {
-        let reason = "no row has a force".to_owned();
+        let reason = "all forces are zero".to_owned();
         return Err(BadTable {
             row: None,
             reason,
-            help: "a table has at least one point besides the origin",
+            help: "add at least one point besides the origin",
         });
     }
     if points.iter().all(|[displacement, _]| *displacement != 0.0) {
@@ -192,16 +192,24 @@ mod tests {
     fn a_bad_row_is_named_with_its_place_and_reason() {
         for (text, line, reason) in [
             ("0,0\n1,2\n", 1, "name the columns"),
-            ("displacement_m,force_n\n0.1,1\n0.1,2\n", 3, "does not rise"),
+            (
+                "displacement_m,force_n\n0.1,1\n0.1,2\n",
+                3,
+                "does not increase",
+            ),
             (
                 "displacement_m,force_n\n0.1;1\n",
                 2,
-                "two columns, this one 1",
+                "two columns, this one has 1",
             ),
-            ("displacement_m,force_n\n0.1,nan\n", 2, "`nan` is no number"),
-            ("displacement_m,force_n\n0.1,1e999\n", 2, "is no number"),
-            ("displacement_m,force_n\n0,3\n", 2, "at no displacement"),
-            ("displacement_m,force_n\n0.1,-3\n", 2, "against"),
+            (
+                "displacement_m,force_n\n0.1,nan\n",
+                2,
+                "`nan` is not a number",
+            ),
+            ("displacement_m,force_n\n0.1,1e999\n", 2, "is not a number"),
+            ("displacement_m,force_n\n0,3\n", 2, "at zero displacement"),
+            ("displacement_m,force_n\n0.1,-3\n", 2, "opposite signs"),
         ] {
             let bad = points(text).unwrap_err();
             let (at, row) = bad.row.clone().expect("a row is to blame");

@@ -8,21 +8,21 @@ use crate::text::source::Span;
 
 pub fn unknown_variant(field: &str, name: &str, span: Span, variants: &[Variant]) -> Diagnostic {
     let known = variants.iter().map(|variant| variant.name);
-    Diagnostic::new(Code::UnknownVariant, format!("`{field}` knows no `{name}`"))
-        .at(span, "unknown word")
-        .help(suggestion(name, known))
+    Diagnostic::new(
+        Code::UnknownVariant,
+        format!("`{field}` has no option `{name}`"),
+    )
+    .at(span, "unknown option")
+    .help(suggestion(name, known))
 }
 
 pub fn unknown_function(name: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(
-        Code::UnknownFunction,
-        format!("no function is called `{name}`"),
-    )
-    .at(span, "unknown function")
-    .help(suggestion(
-        name,
-        FUNCTIONS.iter().map(|function| function.name),
-    ))
+    Diagnostic::new(Code::UnknownFunction, format!("unknown function `{name}`"))
+        .at(span, "unknown function")
+        .help(suggestion(
+            name,
+            FUNCTIONS.iter().map(|function| function.name),
+        ))
 }
 
 pub fn function_argument_with_name(function: &str, name: &Ident) -> Diagnostic {
@@ -30,7 +30,7 @@ pub fn function_argument_with_name(function: &str, name: &Ident) -> Diagnostic {
         Code::BadArgument,
         format!("the arguments of `{function}` have no names"),
     )
-    .at(name.span, "a name")
+    .at(name.span, "named argument")
     .help(format!("remove `{}:`", name.node))
 }
 
@@ -42,7 +42,7 @@ pub fn function_arguments(kind: &FunctionKind, found: usize, span: Span) -> Diag
     };
     Diagnostic::new(
         Code::BadArgument,
-        format!("`{}` takes {wanted}, found {found}", kind.name),
+        format!("`{}` requires {wanted}, found {found}", kind.name),
     )
     .at(span, format!("{found} values"))
     .help(format!("write it as in `{}(x)`", kind.name))
@@ -76,7 +76,7 @@ pub fn unknown_argument(variant: &Variant, name: Option<&str>, span: Span) -> Di
         }
     };
     Diagnostic::new(Code::BadArgument, message)
-        .at(span, "not an argument of it")
+        .at(span, "unknown argument")
         .help(help)
 }
 
@@ -97,7 +97,7 @@ fn argument_help(variant: &Variant, missing: &Field) -> String {
         }
     };
     if required.len() > 2 {
-        return format!("add it between the brackets, as in `{}`", written(missing));
+        return format!("add it in the parentheses, as in `{}`", written(missing));
     }
     let arguments: Vec<String> = required.iter().map(|argument| written(argument)).collect();
     format!(
@@ -110,7 +110,7 @@ fn argument_help(variant: &Variant, missing: &Field) -> String {
 pub fn missing_argument(variant: &Variant, field: &Field, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::BadArgument,
-        format!("`{}` lacks its argument `{}`", variant.name, field.name),
+        format!("`{}` requires the argument `{}`", variant.name, field.name),
     )
     .at(span, format!("`{}` is missing", field.name))
     .help(argument_help(variant, field))
@@ -119,8 +119,8 @@ pub fn missing_argument(variant: &Variant, field: &Field, span: Span) -> Diagnos
 pub fn argument_needs(variant: &str, argument: &str, other: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::BadArgument,
-        format!("`{argument}` of `{variant}` needs `{other}` beside it"),
+        format!("`{argument}` of `{variant}` requires `{other}`"),
     )
     .at(span, format!("`{other}` is missing"))
-    .help(format!("give `{other}: …` too, or remove `{argument}`"))
+    .help(format!("add `{other}: …`, or remove `{argument}`"))
 }

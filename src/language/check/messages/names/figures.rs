@@ -9,12 +9,9 @@ pub fn unknown_figure(
     span: Span,
     known: impl IntoIterator<Item = &'static str>,
 ) -> Diagnostic {
-    Diagnostic::new(
-        Code::UnknownVariant,
-        format!("no figure is called `{name}`"),
-    )
-    .at(span, "unknown figure")
-    .help(suggestion(name, known))
+    Diagnostic::new(Code::UnknownVariant, format!("unknown figure `{name}`"))
+        .at(span, "unknown figure")
+        .help(suggestion(name, known))
 }
 
 /// E651 from here on: procedures that cannot share a chart.
@@ -26,45 +23,45 @@ pub fn figure_of_one<'n>(
 ) -> Diagnostic {
     let shared: Vec<&str> = shared.collect();
     let message = format!(
-        "`{figure}` draws several curves of one `{procedure}`: it is a figure of one procedure"
+        "`{figure}` has several curves of one `{procedure}`, so it cannot combine procedures"
     );
     let help = if shared.is_empty() {
-        format!("write a figure for each: `{figure}(one), {figure}(other)`")
+        format!("write one figure each: `{figure}(one), {figure}(other)`")
     } else {
         format!(
-            "write a figure for each; on one chart can stand {}",
+            "write one figure each; these can be combined: {}",
             one_of(shared)
         )
     };
     Diagnostic::new(Code::NotTogether, message)
-        .at(span, "a second procedure")
+        .at(span, "second procedure")
         .help(help)
 }
 
 pub fn figure_of_two_kinds(figure: &str, first: Spanned<&str>, other: Spanned<&str>) -> Diagnostic {
     let message = format!(
-        "`{figure}` shows another thing of `{}` than of `{}`",
+        "`{figure}` shows different quantities for `{}` and `{}`",
         other.node, first.node
     );
     Diagnostic::new(Code::NotTogether, message)
         .at(other.span, format!("`{}`", other.node))
         .at(first.span, format!("`{}`", first.node))
-        .help("one chart shows procedures of one kind: write a figure for each kind")
+        .help("write a figure for each kind of procedure")
 }
 
 pub fn figure_drawn_twice(first: Span, again: Span) -> Diagnostic {
-    Diagnostic::new(Code::NotTogether, "the same procedure twice on one chart")
-        .at(again, "drawn a second time")
-        .at(first, "drawn here already")
+    Diagnostic::new(Code::NotTogether, "procedure named twice in one chart")
+        .at(again, "named again")
+        .at(first, "first named here")
         .help("name each procedure once")
 }
 
 pub fn too_many_together(found: usize, most: usize, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::NotTogether,
-        format!("{found} procedures on one chart; more than {most} cannot be told apart"),
+        format!("too many procedures in one chart: {found} (at most {most})"),
     )
-    .at(span, "one too many")
+    .at(span, "too many")
     .help("write two figures")
 }
 
@@ -78,12 +75,12 @@ pub fn figure_of_other_procedure<'n>(
     let help = if drawn.is_empty() {
         "remove it; such a procedure has no figures".to_owned()
     } else {
-        format!("it draws {}", one_of(drawn))
+        format!("known figures: {}", one_of(drawn))
     };
     Diagnostic::new(
         Code::UnknownVariant,
         format!("a `{procedure}` has no figure `{figure}`"),
     )
-    .at(span, "not drawn by this procedure")
+    .at(span, "unknown for this procedure")
     .help(help)
 }

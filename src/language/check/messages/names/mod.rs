@@ -13,7 +13,7 @@ pub use units::*;
 use super::{one_of, owner, suggestion};
 use crate::language::syntax::ast::{Block, Ident};
 use crate::language::syntax::control;
-use crate::schema::{BLOCKS, BlockKind, Field, ITEM_WORDS, Kind, Naming, RigKind};
+use crate::schema::{BLOCKS, BlockKind, Field, ITEM_WORDS, Kind, Naming, Renamed, RigKind};
 use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::{FileId, Span};
 
@@ -24,7 +24,7 @@ pub fn unknown_block(block: &Block) -> Diagnostic {
         .and_then(|word| control::of_another_language(word))
     {
         return Diagnostic::new(Code::UnknownBlock, message)
-            .at(block.words[0].span, "begins no item")
+            .at(block.words[0].span, "not an item")
             .help(help);
     }
     let keywords: Vec<String> = BLOCKS
@@ -48,13 +48,10 @@ pub fn unknown_block(block: &Block) -> Diagnostic {
         });
     let turned = words.len() == 2 && keywords.iter().any(|keyword| keyword == words[1]);
     if turned {
-        let help = format!("its kind stands first: write `{} {}`", words[1], words[0]);
-        return Diagnostic::new(
-            Code::UnknownBlock,
-            format!("no block is called `{}`", words[0]),
-        )
-        .at(block.head, "unknown block")
-        .help(help);
+        let help = format!("write the kind first: `{} {}`", words[1], words[0]);
+        return Diagnostic::new(Code::UnknownBlock, format!("unknown block `{}`", words[0]))
+            .at(block.head, "unknown block")
+            .help(help);
     }
     let begun = keywords
         .iter()
@@ -72,12 +69,9 @@ pub fn unknown_block(block: &Block) -> Diagnostic {
     };
     let written = words[..count].join(" ");
     let span = block.words[0].span.to(block.words[count - 1].span);
-    Diagnostic::new(
-        Code::UnknownBlock,
-        format!("no block is called `{written}`"),
-    )
-    .at(span, "unknown block")
-    .help(help)
+    Diagnostic::new(Code::UnknownBlock, format!("unknown block `{written}`"))
+        .at(span, "unknown block")
+        .help(help)
 }
 
 pub fn block_of_later_version(kind: &BlockKind, block: &Block) -> Diagnostic {
@@ -85,9 +79,9 @@ pub fn block_of_later_version(kind: &BlockKind, block: &Block) -> Diagnostic {
     let span = block.words[0].span.to(block.words[last].span);
     Diagnostic::new(
         Code::NotInThisVersion,
-        format!("`{}` is not in this version", kind.words()),
+        format!("`{}` is not available in this version", kind.words()),
     )
-    .at(span, "a block of a later version")
+    .at(span, "block of a later version")
     .help(format!("remove this `{}` block", kind.words()))
 }
 
@@ -95,12 +89,12 @@ pub fn field_of_later_version(kind: &BlockKind, field: &Field, key: &Ident) -> D
     Diagnostic::new(
         Code::NotInThisVersion,
         format!(
-            "the field `{}` of `{}` is not in this version",
+            "field `{}` of `{}` is not available in this version",
             field.name,
             kind.words()
         ),
     )
-    .at(key.span, "a field of a later version")
+    .at(key.span, "field of a later version")
     .help(format!("remove `{}`", field.name))
 }
 
@@ -115,26 +109,26 @@ pub fn block_name(kind: &BlockKind, block: &Block, rest: &[Ident]) -> Option<Dia
     };
     if let (Some(title), true) = (&block.title, kind.naming != Naming::Titled) {
         return Some(wrong(
-            format!("a `{words}` block has no title"),
+            format!("a `{words}` block requires a title"),
             title.span,
-            "a text in quotes",
+            "title in quotes",
         ));
     }
     match (kind.naming, rest) {
         (Naming::Named, []) => Some(wrong(
-            format!("this `{words}` block has no name"),
+            format!("a `{words}` block requires a name"),
             block.head,
-            "a name is missing",
+            "name missing",
         )),
         (Naming::Unnamed | Naming::Titled, [name, ..]) => Some(wrong(
-            format!("a `{words}` block takes no name"),
+            format!("a `{words}` block has no name"),
             name.span,
-            "one word too many",
+            "extra word",
         )),
         (_, [_, second, ..]) => Some(wrong(
-            format!("a `{words}` block has one name of one word"),
+            format!("the name of a `{words}` block is one word"),
             second.span,
-            "one word too many",
+            "extra word",
         )),
         _ => None,
     }
@@ -143,61 +137,59 @@ pub fn block_name(kind: &BlockKind, block: &Block, rest: &[Ident]) -> Option<Dia
 pub fn not_in_library(what: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::BlockName,
-        format!("`{what}` stands in a used file, where only declarations may stand"),
+        format!("`{what}` is not allowed in a shared file"),
     )
-    .at(span, "belongs into the plan itself")
-    .help("a used file holds `specimen`, `striker`, `rig`, `limits`, `let`, `param` and `use`")
+    .at(span, "not a declaration")
+    .help("move it into the plan; a shared file can have `specimen`, `striker`, `rig`, `limits`, `let`, `param` and `use`")
 }
 
 pub fn declared_twice(name: &str, span: Span, first: Span) -> Diagnostic {
-    Diagnostic::new(
-        Code::Duplicate,
-        format!("the name `{name}` is declared twice"),
-    )
-    .at(span, "again here")
-    .at(first, "first here")
-    .help("give one of them another name")
+    Diagnostic::new(Code::Duplicate, format!("name `{name}` declared twice"))
+        .at(span, "declared again")
+        .at(first, "first declared here")
+        .help("rename one of them")
 }
 
 pub fn block_twice(kind: &BlockKind, span: Span, first: Span) -> Diagnostic {
-    Diagnostic::new(
-        Code::Duplicate,
-        format!("there are two `{}` blocks", kind.words()),
-    )
-    .at(span, "again here")
-    .at(first, "first here")
-    .help("put their fields into one block")
+    Diagnostic::new(Code::Duplicate, format!("two `{}` blocks", kind.words()))
+        .at(span, "second block")
+        .at(first, "first block")
+        .help("combine their fields in one block")
 }
 
 pub fn field_twice(key: &Ident, first: Span) -> Diagnostic {
-    Diagnostic::new(
-        Code::Duplicate,
-        format!("the field `{}` is given twice", key.node),
-    )
-    .at(key.span, "again here")
-    .at(first, "first here")
-    .help("remove one of them")
+    Diagnostic::new(Code::Duplicate, format!("field `{}` given twice", key.node))
+        .at(key.span, "given again")
+        .at(first, "first given here")
+        .help("remove one of them")
 }
 
 pub fn argument_twice(name: &str, span: Span, first: Span) -> Diagnostic {
-    Diagnostic::new(
-        Code::Duplicate,
-        format!("the argument `{name}` is given twice"),
-    )
-    .at(span, "again here")
-    .at(first, "first here")
-    .help("remove one of them")
+    Diagnostic::new(Code::Duplicate, format!("argument `{name}` given twice"))
+        .at(span, "given again")
+        .at(first, "first given here")
+        .help("remove one of them")
 }
 
 /// Both, by the fields that give them, as written.
 pub fn velocity_twice(again: &str, span: Span, first_field: &str, first: Span) -> Diagnostic {
     Diagnostic::new(
         Code::Duplicate,
-        format!("the velocity is given twice: by `{first_field}` and by `{again}`"),
+        format!("velocity given twice: by `{first_field}` and by `{again}`"),
     )
-    .at(span, "again here")
-    .at(first, "first here")
+    .at(span, "given again")
+    .at(first, "first given here")
     .help("remove one of them")
+}
+
+/// A name of an older version.
+pub fn renamed(row: &Renamed, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::OldName,
+        format!("`{}` is now called `{}`", row.old, row.new),
+    )
+    .at(span, "old name")
+    .help(format!("write `{}`", row.new))
 }
 
 pub fn unknown_field(kind: &BlockKind, key: &Ident) -> Diagnostic {
@@ -223,7 +215,7 @@ pub fn missing_field(
 ) -> Diagnostic {
     Diagnostic::new(
         Code::MissingField,
-        format!("{} lacks the field `{field}`", owner(kind, name)),
+        format!("{} requires the field `{field}`", owner(kind, name)),
     )
     .at(head, format!("`{field}` is missing"))
     .help(format!("add a line such as `{example}`"))
@@ -240,7 +232,7 @@ pub fn missing_field_on(
     Diagnostic::new(
         Code::MissingField,
         format!(
-            "{} lacks the field `{}`, which a {} rig needs",
+            "{} requires the field `{}` on a {} rig",
             owner(kind, name),
             field.name,
             rig.name()
@@ -254,11 +246,11 @@ pub fn mass_incomplete(name: Option<&Ident>, head: Span, missing: &str) -> Diagn
     let name = name.map_or("", |name| name.node.as_str());
     Diagnostic::new(
         Code::MissingField,
-        format!("specimen `{name}` lacks `{missing}` to work out its mass"),
+        format!("mass of specimen `{name}` unknown: {missing} missing"),
     )
     .at(head, format!("`{missing}` is missing"))
     .help(format!(
-        "give `{missing}`, or the `mass` itself: density * area * length / 2 is the mass"
+        "add `{missing}`, or the `mass` itself: density * area * length / 2 is the mass"
     ))
 }
 
@@ -267,8 +259,8 @@ pub fn missing_block(kind: &BlockKind, span: Span) -> Diagnostic {
         Code::MissingBlock,
         format!("the plan has no `{}` block", kind.words()),
     )
-    .at(span, format!("this needs a `{}`", kind.words()))
-    .help(format!("add one such as\n{}", kind.example))
+    .at(span, format!("requires a `{}`", kind.words()))
+    .help(format!("add one, such as\n{}", kind.example))
 }
 
 /// `before`: the text before the name on its line. The name of a unit may be separated from its number.
@@ -279,20 +271,19 @@ pub fn unknown_name<'n>(
     known: impl Iterator<Item = &'n str>,
 ) -> Diagnostic {
     let help = if name == "g" {
-        "`g` is the gram; gravity is `1 gn`, as in `sqrt(2 * 1 gn * height)`".to_owned()
+        "write `1 gn` for gravity, as in `sqrt(2 * 1 gn * height)`; `g` is the gram".to_owned()
     } else if let Some(quantity) = quantity_apart(name, before) {
         format!(
-            "`{name}` is a unit, and a unit is one word without blanks behind its number: write `{quantity}`"
+            "write `{quantity}`: `{name}` is a unit, and a unit follows its number without spaces inside"
         )
     } else if name == "critical" {
-        "`critical` stands only in `time_step`; after the run it is the result `critical_time_step`"
-            .to_owned()
+        "write `critical` in `time_step` only; after the run, read `critical_time_step`".to_owned()
     } else if let Some(near) = crate::text::suggest::nearest(name, known) {
         format!("did you mean `{near}`?")
     } else {
         format!("declare it, as in `let {name} = …`, or correct the name")
     };
-    Diagnostic::new(Code::UnknownName, format!("nothing is called `{name}`"))
+    Diagnostic::new(Code::UnknownName, format!("unknown name `{name}`"))
         .at(span, "unknown name")
         .help(help)
 }
@@ -325,11 +316,11 @@ fn quantity_apart(name: &str, before: &str) -> Option<String> {
 pub fn requirement_twice(label: &str, span: Span, first: Span) -> Diagnostic {
     Diagnostic::new(
         Code::Duplicate,
-        format!("two requirements are called \"{label}\""),
+        format!("two requirements are named \"{label}\""),
     )
-    .at(span, "again here")
-    .at(first, "first here")
-    .help("give each a name of its own, or join their conditions with `and`")
+    .at(span, "named again")
+    .at(first, "first named here")
+    .help("rename one, or join their conditions with `and`")
 }
 
 pub fn unknown_block_name(kind: Kind, name: &str, span: Span, known: &[&str]) -> Diagnostic {
@@ -341,36 +332,33 @@ pub fn unknown_block_name(kind: Kind, name: &str, span: Span, known: &[&str]) ->
     };
     Diagnostic::new(
         Code::UnknownName,
-        format!("no {} is called `{name}`", block.words()),
+        format!("unknown {} `{name}`", block.words()),
     )
     .at(span, "unknown name")
     .help(help)
 }
 
 pub fn unknown_procedure(name: &str, span: Span, known: &[&str]) -> Diagnostic {
-    Diagnostic::new(
-        Code::UnknownName,
-        format!("no procedure is called `{name}`"),
-    )
-    .at(span, "unknown name")
-    .help(suggestion(name, known.iter().copied()))
+    Diagnostic::new(Code::UnknownName, format!("unknown procedure `{name}`"))
+        .at(span, "unknown name")
+        .help(suggestion(name, known.iter().copied()))
 }
 
 pub fn unknown_parameter(name: &str, known: &[&str]) -> Diagnostic {
     let help = if known.is_empty() {
-        "the plan has no `param`".to_owned()
+        "remove `--set`; the plan has no `param`".to_owned()
     } else {
         suggestion(name, known.iter().copied())
     };
     Diagnostic::new(
         Code::UnknownParameter,
-        format!("`--set {name}`: no parameter is called `{name}`"),
+        format!("`--set {name}`: unknown parameter `{name}`"),
     )
     .help(help)
 }
 
 pub fn setting_is_no_value(name: &str, file: FileId, length: usize) -> Diagnostic {
-    Diagnostic::new(Code::Syntax, format!("`--set {name}` wants one value"))
+    Diagnostic::new(Code::Syntax, format!("`--set {name}` requires one value"))
         .at(Span::new(file, 0, length), "more than a value")
         .help(format!("write it as in `--set {name}=\"1.5 m/s\"`"))
 }
@@ -384,15 +372,12 @@ pub fn cycle(cycle: &[(String, Span)], requested_at: Span) -> Diagnostic {
         .chain([first])
         .collect::<Vec<_>>()
         .join(" → ");
-    let diagnostic = Diagnostic::new(
-        Code::Cycle,
-        format!("these values need each other in a ring: {names}"),
-    )
-    .at(requested_at, "closes the ring");
+    let diagnostic = Diagnostic::new(Code::Cycle, format!("circular definition: {names}"))
+        .at(requested_at, "closes the circle");
     cycle
         .iter()
         .fold(diagnostic, |diagnostic, (name, span)| {
-            diagnostic.at(*span, format!("`{name}` is in the ring"))
+            diagnostic.at(*span, format!("`{name}` is part of it"))
         })
-        .help("give one of them a value of its own")
+        .help("write a value for one of them")
 }

@@ -8,10 +8,10 @@ use crate::text::source::Span;
 
 /// A result without its procedure.
 pub fn result_without_procedure(name: &str, procedure: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(Code::UnknownName, format!("nothing is called `{name}`"))
+    Diagnostic::new(Code::UnknownName, format!("unknown name `{name}`"))
         .at(span, "unknown name")
         .help(format!(
-            "a result is read from its procedure: did you mean `{procedure}.{name}`?"
+            "write the procedure before the result: did you mean `{procedure}.{name}`?"
         ))
 }
 
@@ -19,7 +19,7 @@ pub fn result_without_procedure(name: &str, procedure: &str, span: Span) -> Diag
 pub fn left_under_another_name(kind: &BlockKind, name: &str, now: &str, span: Span) -> Diagnostic {
     let unloads = now.starts_with("residual");
     let message = if unloads {
-        "takes the load off"
+        "unloads the specimen"
     } else {
         "ends under load"
     };
@@ -32,10 +32,7 @@ pub fn left_under_another_name(kind: &BlockKind, name: &str, now: &str, span: Sp
     };
     Diagnostic::new(
         Code::UnknownResult,
-        format!(
-            "`{name}` is called `{now}` here, where the `{}` {message}",
-            kind.words()
-        ),
+        format!("`{name}` is `{now}` here: the `{}` {message}", kind.words()),
     )
     .at(span, format!("the `{}` has `{now}`", kind.words()))
     .help(help)
@@ -65,9 +62,9 @@ pub fn unknown_result(
 pub fn minus_in_name(written: &str, meant: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::UnknownResult,
-        format!("`{written}` is read as a difference: a `-` is a minus sign"),
+        format!("`{written}` is a difference: `-` is a minus sign"),
     )
-    .at(span, "no name has a `-`")
+    .at(span, "`-` is not allowed in names")
     .help(format!("did you mean `{meant}`?"))
 }
 
@@ -79,27 +76,27 @@ pub fn field_not_given(
 ) -> Diagnostic {
     Diagnostic::new(
         Code::UnknownResult,
-        format!("{} does not give `{field}`", owner(kind, name)),
+        format!("{} has no `{field}`", owner(kind, name)),
     )
-    .at(span, "not given there")
+    .at(span, "field not given")
     .help(format!("add the field `{field}` to it"))
 }
 
 pub fn property_without_behaviour(name: Option<&Ident>, property: &str, span: Span) -> Diagnostic {
     let name = name.map_or("", |name| name.node.as_str());
-    Diagnostic::new(Code::UnknownResult, format!("specimen `{name}` has no `{property}`: no `behaviour` gives it"))
-        .at(span, "not known before it is measured")
-        .help("read the result of a `stiffness ramp`, as in `k0.stiffness`, or give the `behaviour` that is expected")
+    Diagnostic::new(Code::UnknownResult, format!("specimen `{name}` has no `{property}` without a `behaviour`"))
+        .at(span, "unknown before the run")
+        .help("read the result of a `stiffness ramp`, such as `k0.stiffness`, or add the expected `behaviour`")
 }
 
 pub fn no_uncertainty(text: &str, span: Span) -> Diagnostic {
     Diagnostic::new(Code::UnknownResult, format!("`{text}` has no uncertainty"))
-        .at(span, "only a measured result has `.u`")
-        .help("`.u` follows a result that was fitted, such as `k0.stiffness.u`")
+        .at(span, "not a measured result")
+        .help("write `.u` only after a measured result, such as `k0.stiffness.u`")
 }
 
 pub fn no_member_of_number(member: &str, span: Span) -> Diagnostic {
     Diagnostic::new(Code::UnknownResult, format!("a number has no `{member}`"))
         .at(span, "unknown here")
-        .help("only `.u`, the standard uncertainty, may follow a result")
+        .help("write only `.u`, the standard uncertainty, after a result")
 }

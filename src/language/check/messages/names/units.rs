@@ -73,13 +73,13 @@ pub fn unknown_unit(name: &str, span: Span) -> Diagnostic {
     let help = near.map_or_else(
         || {
             format!(
-                "known units: {}; SI prefixes may stand before the SI ones",
+                "known units: {}; SI units can have prefixes",
                 one_of(UNITS.iter().map(|unit| unit.symbol))
             )
         },
         |near| format!("did you mean `{near}`?"),
     );
-    Diagnostic::new(Code::UnknownUnit, format!("no unit is called `{name}`"))
+    Diagnostic::new(Code::UnknownUnit, format!("unknown unit `{name}`"))
         .at(span, "unknown unit")
         .help(help)
 }
@@ -90,5 +90,5 @@ pub fn name_glued_to_unit(name: &str, span: Span, corrected: &str) -> Diagnostic
         format!("`{name}` is a name of the plan, not a unit"),
     )
     .at(span, "read as part of the unit")
-    .help(format!("put blanks around the operator: `{corrected}`"))
+    .help(format!("write spaces around the operator: `{corrected}`"))
 }

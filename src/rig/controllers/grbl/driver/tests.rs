@@ -137,7 +137,7 @@ fn a_frame_that_is_found_moving_is_held() {
         status(&port, state, 0.0);
     }
     let reason = reason(device.identify());
-    assert!(reason.ends_with("held"), "{reason}");
+    assert!(reason.ends_with("rig put on hold"), "{reason}");
     assert_eq!(sent(&port).iter().filter(|bytes| *bytes == "!").count(), 1);
 }
 
@@ -210,7 +210,7 @@ fn what_it_refuses_is_said_in_words() {
     for (answer, expected) in [
         ("error:15\r\n", "outside its travel"),
         ("error:9\r\n", "alarm"),
-        ("ALARM:1\r\n", "end switch"),
+        ("ALARM:1\r\n", "limit switch"),
     ] {
         let (mut device, port) = identified();
         let going = device.encode(&[0.5], 1e-3).unwrap();
@@ -227,7 +227,7 @@ fn what_it_refuses_is_said_in_words() {
         reason(device.encode(&[0.001], 0.009)).contains("$110"),
         "it would go slower and say nothing"
     );
-    assert!(reason(device.encode(&[0.001], 1e-5)).contains("slower"));
+    assert!(reason(device.encode(&[0.001], 1e-5)).contains("lowest speed"));
 }
 
 #[test]
@@ -251,7 +251,7 @@ fn an_axis_held_at_rest_is_let_go_of_by_who_held_it_and_by_nobody_else() {
     let (mut device, port) = identified();
     let going = device.encode(&[0.001], 1e-3).unwrap();
     status(&port, "Hold:0", 0.0);
-    assert!(reason(device.start(&going)).contains("somebody else"));
+    assert!(reason(device.start(&going)).contains("not by psd"));
     port.reply(&[]);
     status(&port, "Hold:0", 0.0);
     port.reply(&[]);
@@ -281,7 +281,7 @@ fn a_jog_without_answer_is_never_let_loose() {
     status(&port, "Hold:0", 0.0);
     device.hold().unwrap();
     status(&port, "Hold:0", 0.0);
-    assert!(reason(device.start(&going)).contains("may wait in it"));
+    assert!(reason(device.start(&going)).contains("may be pending in it"));
     assert!(!sent(&port).contains(&"~".to_owned()));
 }
 
@@ -352,7 +352,7 @@ fn an_axis_that_lost_its_place_or_is_elsewhere_is_not_taken_for_let_go() {
     for x in [1.0, 1.0, 1.0, 1.001] {
         status(&port, "Hold:0", x);
     }
-    assert!(reason(GrblDevice::new(client).identify()).contains("does not rest"));
+    assert!(reason(GrblDevice::new(client).identify()).contains("not at rest"));
     assert!(!sent(&port).contains(&"\u{18}".to_owned()));
 }
 

@@ -287,7 +287,7 @@ fn swapped_words_are_noticed_when_it_is_opened() {
         let DeviceFault::Impossible { reason, .. } = device.identify().unwrap_err() else {
             panic!()
         };
-        assert!(reason.contains("other word order"), "{reason}");
+        assert!(reason.contains("register order"), "{reason}");
     }
 }
 

@@ -256,11 +256,11 @@ fn each_flag_has_its_bit_and_each_code_its_words() {
     assert!(refusal(&["LIMIT"]).contains("outside the limits"));
     assert_eq!(
         refusal(&["WHAT"]),
-        "for a reason psd does not know (`ERR WHAT`)"
+        "for a reason unknown to psd (`ERR WHAT`)"
     );
 }
 
-/// A rig of two axes, as in `docs/rigs.md`.
+/// A rig of two axes, as in `docs/reference/native-protocol.md`.
 #[test]
 fn the_vectors_of_several_axes() {
     let (targets, speed) = (

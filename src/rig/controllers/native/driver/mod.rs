@@ -76,7 +76,7 @@ impl NativeDevice {
     fn hello(&self) -> Result<&Hello, DeviceFault> {
         self.hello
             .as_ref()
-            .ok_or_else(|| DeviceFault::Unfit("the rig has not been asked who it is".to_owned()))
+            .ok_or_else(|| DeviceFault::Unfit("the rig has not been identified yet".to_owned()))
     }
 
     /// Sends a request and waits for the reply of this kind, after resynchronising an interrupted conversation.
@@ -116,7 +116,7 @@ impl NativeDevice {
             native::codec::hello(&reply.words()).filter(|hello| hello.bounds.allow_something());
         let strange = || {
             DeviceFault::Unfit(format!(
-                "`{}` does not say what rig it is",
+                "`{}` does not identify the rig",
                 reply.line.escape_ascii()
             ))
         };
@@ -144,7 +144,7 @@ impl NativeDevice {
                 != Some(next)
         {
             return Err(DeviceFault::Unfit(
-                "the rig was asked something else since this move was made".to_owned(),
+                "the rig received another request after this move was proposed".to_owned(),
             ));
         }
         if let Some(proposed) = &mut self.proposed {
@@ -184,7 +184,7 @@ impl NativeDevice {
 
 fn framed(sequence: u32, request: &Request<'_>) -> Result<Vec<u8>, DeviceFault> {
     native::codec::frame(sequence, request)
-        .ok_or_else(|| DeviceFault::Unfit(format!("{request:?} cannot be said in a frame")))
+        .ok_or_else(|| DeviceFault::Unfit(format!("{request:?} cannot be expressed in a frame")))
 }
 
 /// The identity of a rig from its reply to HELLO.
@@ -211,8 +211,8 @@ pub(crate) fn decoded(reply: Reply, axes: usize) -> Result<Sample, DeviceFault> 
     let words = reply.words();
     let Some(data) = native::codec::data(&words).filter(|data| data.axes.len() == axes) else {
         let reason = match native::codec::axis_without_number(&words) {
-            Some(axis) => format!("axis {axis} has no number where one belongs"),
-            None => "a field is missing, too many or no number".to_owned(),
+            Some(axis) => format!("axis {axis} has no number at a required position"),
+            None => "a field is missing, superfluous or not a number".to_owned(),
         };
         return Err(DeviceFault::Impossible {
             raw: reply.line,
@@ -270,7 +270,7 @@ fn state(reply: &Reply) -> Result<State, DeviceFault> {
         .and_then(|word| native::codec::state(word));
     word.ok_or_else(|| DeviceFault::NoReading {
         raw: reply.line.clone(),
-        reason: "it names no state".to_owned(),
+        reason: "it states no state".to_owned(),
     })
 }
 
@@ -329,7 +329,7 @@ impl Device for NativeDevice {
         }
         let unsaid = || {
             DeviceFault::Unfit(format!(
-                "a move to {targets:?} m at {speed} m/s cannot be said"
+                "a move to {targets:?} m at {speed} m/s cannot be expressed"
             ))
         };
         let (written, rate) = native::codec::lengths(targets)
@@ -349,13 +349,13 @@ impl Device for NativeDevice {
             .all(|(axis, target)| axis.displacement.contains(*target))
         {
             return Err(DeviceFault::Refused {
-                reason: format!("{written} mm is outside the limits the rig says it has"),
+                reason: format!("{written} mm is outside the limits that the rig reports"),
             });
         }
         // A speed that rounds to zero would never arrive.
         if !(0.0 < speed && speed <= bounds.top_speed) {
             return Err(DeviceFault::Refused {
-                reason: format!("{} mm/s is no speed of this rig", speed * 1e3),
+                reason: format!("{} mm/s is not a valid speed of this rig", speed * 1e3),
             });
         }
         let id = match &self.proposed {
@@ -396,7 +396,7 @@ impl Device for NativeDevice {
         };
         let strange = || DeviceFault::NoReading {
             raw: reply.line.clone(),
-            reason: "it does not say how long the way is".to_owned(),
+            reason: "it does not report the length of the path".to_owned(),
         };
         native::codec::left(&reply.words()).ok_or_else(strange)
     }
@@ -416,7 +416,7 @@ impl Device for NativeDevice {
         match self.command(&Request::Stop)? {
             State::Held => Ok(()),
             other => Err(DeviceFault::Unfit(format!(
-                "told to stop, the rig says it is {other:?}"
+                "after the hold command the rig reports {other:?}"
             ))),
         }
     }
@@ -447,7 +447,7 @@ impl Device for NativeDevice {
         };
         if !bounds.allow_something() {
             return Err(DeviceFault::Unfit(
-                "the limits of the plan and those of the rig have nothing in common".to_owned(),
+                "the limits of the plan and the limits of the rig do not overlap".to_owned(),
             ));
         }
         self.command(&Request::Limits(&bounds))?;

@@ -34,8 +34,11 @@ impl NativeDevice {
         let seconds = paths.first().map_or(0.0, |path| path.seconds);
         let heard = native::codec::time(seconds)
             .and_then(|written| number::read_back(&written, 1e3, seconds));
-        let unsaid =
-            || DeviceFault::Unfit(format!("a way of {seconds} s to {paths:?} cannot be said"));
+        let unsaid = || {
+            DeviceFault::Unfit(format!(
+                "a path of {seconds} s to {paths:?} cannot be expressed"
+            ))
+        };
         let (ends, seconds) = ends
             .zip(heard.filter(|seconds| *seconds > 0.0))
             .ok_or_else(unsaid)?;
@@ -45,13 +48,13 @@ impl NativeDevice {
         };
         if !bounds.axes.iter().zip(paths).all(inside) {
             return Err(DeviceFault::Refused {
-                reason: "a way leads outside the limits the rig says it has".to_owned(),
+                reason: "a path leaves the limits that the rig reports".to_owned(),
             });
         }
         let speed = paths.iter().map(Path::fastest).fold(0.0, f64::max);
         if !(speed.is_finite() && speed <= bounds.top_speed) {
             return Err(DeviceFault::Refused {
-                reason: format!("{} mm/s is no speed of this rig", speed * 1e3),
+                reason: format!("{} mm/s is not a valid speed of this rig", speed * 1e3),
             });
         }
         let id = match &self.proposed {

@@ -1,0 +1,263 @@
+//! `psd issue RUN` and `psd report RUN --amend`: a report that states particulars known only after the test, or that replaces another
+//! report. In: a run folder that verifies, the particulars, the day, the issuer and the reason. Out: a new folder beside it with the same
+//! run log. The original folder and all measured numbers are not changed.
+
+use crate::schema::plan_block::{AUTHORISED_BY, ISSUED};
+use std::path::{Path, PathBuf};
+
+use super::replayed::finish_replayed;
+use super::verify::refuse_unproven;
+use crate::cli::args::{IssueArguments, ReportArguments};
+use crate::cli::commands::prediction::prediction;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::record_file;
+use crate::cli::files::run_folder::{RunFolder, write_new};
+use crate::cli::output::{print_message, print_result};
+use crate::cli::settings::Settings;
+use crate::evidence::{
+    Folder, ISSUE, IssueFile, MANIFEST, One, OneKind, PlayedBack, Rebuilt, examine, may_be_stated,
+};
+use crate::files::failure::plain;
+use crate::files::recorded_run::JOURNAL;
+use crate::report::OutputFile;
+use crate::text::diagnostic::excerpt::one_line;
+
+/// The largest file of particulars \[bytes\].
+const PARTICULARS_BYTES: u64 = 1 << 20;
+
+/// The issue of a report.
+struct Wanted<'a> {
+    run: &'a Path,
+    out: Option<&'a Path>,
+    kind: OneKind,
+    date: &'a str,
+    by: String,
+    reason: Option<String>,
+    particulars: Vec<(String, String)>,
+}
+
+/// Issues a report: issuer, day, and particulars that are known only after the test.
+pub fn issue(arguments: &IssueArguments, settings: Settings) -> Result<Exit, Failure> {
+    let mut particulars = particulars(&arguments.set_particular, arguments.particulars.as_deref())?;
+    if let Some((field, _)) = particulars
+        .iter()
+        .find(|(field, _)| field == AUTHORISED_BY.name)
+    {
+        return Err(
+            Failure::command_line(format!("`{field}` is the issuer of the report"))
+                .help("write `--authorised-by NAME`"),
+        );
+    }
+    particulars.insert(
+        0,
+        (
+            AUTHORISED_BY.name.to_owned(),
+            arguments.authorised_by.clone(),
+        ),
+    );
+    make(
+        Wanted {
+            run: &arguments.run,
+            out: arguments.out.as_deref(),
+            kind: OneKind::Issue,
+            date: &arguments.date,
+            by: arguments.authorised_by.clone(),
+            reason: None,
+            particulars,
+        },
+        settings,
+    )
+}
+
+/// Makes one amendment report.
+pub fn amend(arguments: &ReportArguments, settings: Settings) -> Result<Exit, Failure> {
+    let (Some(by), Some(reason), Some(date)) = (&arguments.by, &arguments.reason, &arguments.date)
+    else {
+        return Err(Failure::command_line(
+            "an amendment requires `--by`, `--date` and `--reason`",
+        ));
+    };
+    let particulars = particulars(&arguments.set_particular, arguments.particulars.as_deref())?;
+    if particulars.is_empty() {
+        return Err(Failure::command_line("the amendment changes nothing")
+            .help("state the change: `--set-particular customer=\"Other Ltd\"`"));
+    }
+    make(
+        Wanted {
+            run: &arguments.run,
+            out: arguments.out.as_deref(),
+            kind: OneKind::Amendment,
+            date,
+            by: by.clone(),
+            reason: Some(reason.clone()),
+            particulars,
+        },
+        settings,
+    )
+}
+
+fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
+    let run = wanted.run;
+    let folder = Folder::read(run)?;
+    let rebuilt = Rebuilt::of(&folder, &prediction);
+    refuse_unproven(run, &examine(&folder, &rebuilt, &[]))?;
+    let (Some(report), Some(manifest), Some(journal)) = (
+        &rebuilt.report,
+        folder.files.get(MANIFEST),
+        folder.bytes(JOURNAL),
+    ) else {
+        return Err(Failure::file(run, "has no results yet").help("create them with `psd report`"));
+    };
+    refuse_rival(run, &report.id, &manifest.digest)?;
+    let before = IssueFile::of(&folder).map_err(|fault| Failure::file(run, fault))?;
+    // The day of the issue is the day of the report.
+    let particulars = [
+        wanted.particulars,
+        vec![(ISSUED.name.to_owned(), wanted.date.to_owned())],
+    ]
+    .concat();
+    let one = One {
+        kind: wanted.kind,
+        replaces: report.id.clone(),
+        manifest_sha256: manifest.digest.clone(),
+        date: Some(wanted.date.to_owned()),
+        by: wanted.by,
+        reason: wanted.reason,
+        particulars,
+    };
+    let file = IssueFile::after(before.as_ref(), one);
+    let read = record_file::from_bytes(&run.join(JOURNAL), journal)?;
+    let played = PlayedBack::of(read, Some(&file), &prediction).map_err(Failure::command_line)?;
+
+    let beside = beside(run, wanted.kind);
+    let place = RunFolder::create(Some(wanted.out.unwrap_or(&beside)), run)?;
+    let kept = OutputFile {
+        path: JOURNAL.to_owned(),
+        bytes: journal.to_vec(),
+    };
+    let own = OutputFile {
+        path: ISSUE.to_owned(),
+        bytes: file.json().into_bytes(),
+    };
+    [&kept, &own]
+        .into_iter()
+        .try_for_each(|file| write_new(place.path(), file))?;
+    let made = Folder::read(place.path())?;
+    let beside: Vec<(String, String)> = made
+        .listed()
+        .map(|(name, held)| (name.clone(), held.digest.clone()))
+        .collect();
+    finish_replayed(place.path(), &played, &beside, settings)?;
+    let does = match wanted.kind {
+        OneKind::Issue => "issues",
+        OneKind::Amendment => "replaces",
+    };
+    print_message(&format!(
+        "  report {} {does} report {}\n",
+        played.provenance.report_id(),
+        report.id
+    ));
+    print_result(&format!("{}\n", place.path().display()))?;
+    // The exit does not depend on the verdict of the run.
+    Ok(Exit::Met)
+}
+
+/// A report can be replaced only once. With two replacements, neither would be the valid one.
+fn refuse_rival(run: &Path, report: &str, manifest_sha256: &str) -> Result<(), Failure> {
+    let run = run
+        .canonicalize()
+        .map_err(|error| Failure::file(run, plain(&error)))?;
+    let Some(shelf) = run.parent() else {
+        return Ok(());
+    };
+    let failed = |error: std::io::Error| Failure::file(shelf, plain(&error));
+    for entry in std::fs::read_dir(shelf).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        // A file that is not an issue is ignored.
+        let Ok(bytes) = std::fs::read(path.join(ISSUE)) else {
+            continue;
+        };
+        if IssueFile::read(&bytes).is_ok_and(|file| file.replaces(manifest_sha256)) {
+            return Err(Failure::file(
+                &run,
+                format!(
+                    "report {report} has already been replaced by the report in {}",
+                    path.display()
+                ),
+            )
+            .help("amend that report"));
+        }
+    }
+    Ok(())
+}
+
+/// `RUN-issued`; for an amendment `RUN-amended-1`, or the next free number.
+fn beside(run: &Path, kind: OneKind) -> PathBuf {
+    let run = run.canonicalize().unwrap_or_else(|_| run.to_owned());
+    let name = run
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy()
+        .into_owned();
+    let stem = name
+        .rsplit_once("-amended-")
+        .map_or(name.as_str(), |(stem, _)| stem);
+    let stem = stem.strip_suffix("-issued").unwrap_or(stem);
+    if kind == OneKind::Issue {
+        return run.with_file_name(format!("{stem}-issued"));
+    }
+    let named = |number: u32| run.with_file_name(format!("{stem}-amended-{number}"));
+    (1..u32::MAX)
+        .map(named)
+        .find(|path| path.symlink_metadata().is_err())
+        .unwrap_or_else(|| named(u32::MAX))
+}
+
+/// The particulars of the command line and of the file, in this order, each once.
+fn particulars(
+    given: &[(String, String)],
+    file: Option<&Path>,
+) -> Result<Vec<(String, String)>, Failure> {
+    let mut all = given.to_vec();
+    if let Some(path) = file {
+        all.extend(of_file(path)?);
+    }
+    for (at, (field, text)) in all.iter().enumerate() {
+        may_be_stated(field).map_err(Failure::command_line)?;
+        if field == ISSUED.name {
+            return Err(Failure::command_line("`issued` is the date of this report")
+                .help("write `--date YYYY-MM-DD`"));
+        }
+        if all[..at].iter().any(|(before, _)| before == field) {
+            return Err(Failure::command_line(format!("`{field}` is given twice")));
+        }
+        if *text != one_line(text) {
+            return Err(Failure::command_line(format!(
+                "the text of `{field}` has invisible characters"
+            )));
+        }
+    }
+    Ok(all)
+}
+
+/// A file of particulars: `field = text`, one per line; empty lines and lines that begin with `#` are ignored.
+fn of_file(path: &Path) -> Result<Vec<(String, String)>, Failure> {
+    let failed = |error: std::io::Error| Failure::file(path, plain(&error));
+    if path.metadata().map_err(failed)?.len() > PARTICULARS_BYTES {
+        return Err(Failure::file(path, "is not a list of particulars"));
+    }
+    let text = std::fs::read_to_string(path).map_err(failed)?;
+    let lines = text
+        .lines()
+        .map(str::trim)
+        .filter(|line| !line.is_empty() && !line.starts_with('#'));
+    lines
+        .map(|line| {
+            let (field, text) = line.split_once('=').ok_or_else(|| {
+                Failure::file(path, format!("`{line}` is not a particular"))
+                    .help("write each as `customer = Other Ltd`")
+            })?;
+            Ok((field.trim().to_owned(), text.trim().to_owned()))
+        })
+        .collect()
+}

@@ -1,0 +1,56 @@
+//! The results of a replayed run, written to a folder. In: the replayed run. Out: its files, the verdict on the console.
+
+use std::path::Path;
+
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::finish_run::{folder_message, write_made};
+use crate::cli::files::run_folder::FolderSink;
+use crate::cli::files::writing::ProgressSink;
+use crate::cli::output::{print_message, print_wrapped};
+use crate::cli::settings::Settings;
+use crate::evidence::PlayedBack;
+use crate::report;
+use crate::report::Run;
+
+/// Prints the verdict of a replayed run, and writes its results.
+pub fn finish_replayed(
+    folder: &Path,
+    played: &PlayedBack,
+    beside: &[(String, String)],
+    settings: Settings,
+) -> Result<Exit, Failure> {
+    let PlayedBack {
+        plan,
+        provenance,
+        record,
+        assessment,
+        mismatch,
+        steps,
+    } = played;
+    if steps.is_none() {
+        print_wrapped(
+            &report::console::verdict_text(
+                &Run {
+                    plan,
+                    record,
+                    assessment,
+                    provenance,
+                },
+                settings.color,
+            ),
+            settings,
+        );
+    }
+    print_message(&folder_message(folder));
+    write_made(FolderSink::replacing(folder), beside, |sink| {
+        played.results(&mut ProgressSink::new(sink, settings))
+    })?;
+    let exit = Exit::from(assessment.verdict);
+    let Some(mismatch) = mismatch else {
+        return Ok(exit);
+    };
+    print_message(&format!(
+        "  the run log does not match the plan: {mismatch}\n"
+    ));
+    Ok(exit.max(Exit::Fault))
+}

@@ -1,0 +1,77 @@
+//! `psd report RUN`: regenerates the results from the run log alone. In: the folder of a run. Out: every file of the run, bit-identical,
+//! in a folder that has no results or incomplete ones. A different folder also gets a copy of the run log. An amendment gives a separate
+//! report beside the one it replaces. It opens no rig, changes no run log and overwrites nothing. It makes no results of a run that is
+//! still in progress.
+
+use std::path::{Path, PathBuf};
+
+use super::issue::amend;
+use super::replayed::finish_replayed;
+use crate::cli::args::ReportArguments;
+use crate::cli::commands::prediction::prediction;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::record_file;
+use crate::cli::files::record_file::journal_of;
+use crate::cli::files::run_folder::RunFolder;
+use crate::cli::output::print_result;
+use crate::cli::settings::Settings;
+use crate::evidence::{Folder, IssueFile, MANIFEST, PlayedBack, check_consistency, held_issue};
+use crate::files::failure::plain;
+use crate::record::journal::FileStorage;
+
+/// Regenerates the results of one run.
+pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, Failure> {
+    if arguments.amend {
+        return amend(arguments, settings);
+    }
+    let run = &arguments.run;
+    let journal = journal_of(run);
+    let _still = journal
+        .exists()
+        .then(|| FileStorage::keep_still(&journal))
+        .transpose()?;
+    let kept = Folder::read(run)?;
+    let issues = IssueFile::of(&kept).map_err(|fault| Failure::file(run, fault))?;
+    let read = record_file::read(run)?;
+    check_consistency(&read).map_err(|fault| {
+        Failure::file(journal, fault)
+            .help("no report is created from a run log that does not verify")
+    })?;
+    let played = PlayedBack::of(read, issues.as_ref(), &prediction)
+        .map_err(|fault| Failure::file(run, fault))?;
+    let folder = match &arguments.out {
+        Some(out) => RunFolder::create(Some(out), run)?.path().to_owned(),
+        None => without_results(run)?,
+    };
+    let beside = held_issue(&kept).map(|(name, held)| (name.to_owned(), held.digest.clone()));
+    let beside: Vec<(String, String)> = kept.kept().into_iter().chain(beside).collect();
+    // The files of the manifest are copied: the new folder is a complete run folder and verifies.
+    if folder != *run {
+        beside
+            .iter()
+            .try_for_each(|(name, _)| copy(run, &folder, name))?;
+    }
+    let exit = finish_replayed(&folder, &played, &beside, settings)?;
+    print_result(&format!("{}\n", folder.display()))?;
+    Ok(exit)
+}
+
+/// Copies one file of a run, by its name in the folder.
+fn copy(run: &Path, folder: &Path, name: &str) -> Result<(), Failure> {
+    let to = folder.join(name);
+    let failed = |error: std::io::Error| Failure::file(&to, plain(&error));
+    if let Some(above) = to.parent() {
+        std::fs::create_dir_all(above).map_err(failed)?;
+    }
+    std::fs::copy(run.join(name), &to).map(drop).map_err(failed)
+}
+
+/// The run folder itself, if its results are incomplete: the manifest is written last.
+fn without_results(run: &Path) -> Result<PathBuf, Failure> {
+    if run.join(MANIFEST).exists() {
+        return Err(
+            Failure::file(run, "has results already").help("name a new folder with `--out`")
+        );
+    }
+    Ok(run.to_owned())
+}

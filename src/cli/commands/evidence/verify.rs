@@ -1,0 +1,68 @@
+//! `psd verify RUN`. The checks: the run log is complete and in order; its replay gives the same targets and the same results; every file
+//! of the folder matches the manifest; and the signatures. It moves nothing and writes nothing.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use crate::cli::args::VerifyArguments;
+use crate::cli::commands::prediction::prediction;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::record_file::{JOURNAL, journal_of};
+use crate::cli::output::print_result;
+use crate::cli::settings::Settings;
+use crate::evidence::{Finding, Folder, Rebuilt, examine, keys};
+use crate::record::journal::{FileFault, FileStorage};
+use crate::text::diagnostic::excerpt::one_line;
+
+/// Verifies a run folder. A run that is still in progress cannot be verified.
+pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, Failure> {
+    let _still = match FileStorage::keep_still(&journal_of(&arguments.run)) {
+        Err(fault @ FileFault::InUse { .. }) => return Err(fault.into()),
+        // Other errors are reported below; some file systems have no locks.
+        still => still.ok(),
+    };
+    let mut folder = Folder::read(&arguments.run)?;
+    if !folder.files.contains_key(JOURNAL) {
+        return Err(Failure::file(journal_of(&arguments.run), "no such file")
+            .help("a run folder has a run log"));
+    }
+    let keys = arguments
+        .key
+        .iter()
+        .map(|path| keys::public(path))
+        .collect::<Result<Vec<_>, _>>()?;
+    let rebuilt = Rebuilt::taking(&mut folder, &prediction);
+    let findings = examine(&folder, &rebuilt, &keys);
+    let mut text = String::new();
+    for finding in &findings {
+        let word = if finding.sound {
+            "ok".to_owned()
+        } else {
+            settings.paint_bad("WRONG")
+        };
+        let _ = writeln!(
+            text,
+            "  {:<11}  {word}  {}",
+            finding.part,
+            one_line(&finding.told)
+        );
+    }
+    print_result(&text)?;
+    Ok(if findings.iter().all(|finding| finding.sound) {
+        Exit::Met
+    } else {
+        Exit::Fault
+    })
+}
+
+/// An error if the run does not verify: it can be neither signed nor amended.
+pub fn refuse_unproven(run: &Path, findings: &[Finding]) -> Result<(), Failure> {
+    match findings.iter().find(|finding| !finding.sound) {
+        Some(finding) => Err(Failure::file(
+            run,
+            format!("does not verify: {}: {}", finding.part, finding.told),
+        )
+        .help("see `psd verify`")),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,54 @@
+//! `psd run --check-run`: the low-level check run. It makes the pre-test check and the leading stiffness ramps on the rig, with a run log.
+//! The rest runs on a simulated specimen with the measured stiffness. In: a checked plan. Out: a run folder marked as a check run, and
+//! the predicted margin of the whole run to each limit.
+
+use super::on_rig::{Ran, on_its_rig};
+use crate::cli::args::{Format, RunArguments};
+use crate::cli::commands::explain_plan::DryRun;
+use crate::cli::commands::prediction::told;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::finish_run::{finish_run, summary};
+use crate::cli::operator::watch::Attendance;
+use crate::cli::output::{print_message, print_result};
+use crate::cli::settings::Settings;
+use crate::plan::Plan;
+use crate::run::check_run;
+
+/// Measures and predicts; the exit code states whether every limit is predicted to be satisfied.
+pub fn check_run(
+    plan: &Plan,
+    arguments: &RunArguments,
+    attendance: &Attendance,
+    settings: Settings,
+) -> Result<Exit, Failure> {
+    let part = check_run::measured_part(plan)?;
+    let ran = on_its_rig(&part, arguments, attendance, settings)?;
+    if let Some(exit) = ran.goes_on(&part, attendance, settings)? {
+        return Ok(exit);
+    }
+    let Ran {
+        folder,
+        provenance,
+        recorded,
+        ..
+    } = ran;
+    let exit = finish_run(folder.path(), &part, &provenance, &recorded, settings)?;
+    let predicted = if exit <= Exit::Missed {
+        let stand_in = check_run::prediction(plan, &recorded.record)?;
+        let dry = DryRun::on(plan, &stand_in, told(plan, &stand_in));
+        let text = dry.text(settings);
+        match arguments.format {
+            Format::Human => print_result(&text)?,
+            Format::Json => print_message(&text),
+        }
+        dry.exit()
+    } else {
+        print_message("  no prediction: the check run was not completed\n");
+        exit
+    };
+    match arguments.format {
+        Format::Human => print_result(&format!("{}\n", folder.path().display()))?,
+        Format::Json => print_result(&summary(folder.path(), &recorded.record)?)?,
+    }
+    Ok(exit.max(predicted))
+}

@@ -1,0 +1,103 @@
+//! `psd run`: check → run → verdict → files. Nothing moves while the plan has an error, and nothing moves before the run log is open.
+
+pub(crate) mod check_run;
+pub(crate) mod on_rig;
+pub(crate) mod resume;
+
+use crate::cli::args::{Format, RunArguments};
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::accepted::AcceptedFolder;
+use crate::cli::files::finish_run::{finish_run, summary};
+use crate::cli::files::golden_run;
+use crate::cli::files::golden_run::Extent;
+use crate::cli::files::plan_file;
+use crate::cli::operator::real_rig;
+use crate::cli::operator::watch::Attendance;
+use crate::cli::output::{print_message, print_result};
+use crate::cli::settings::Settings;
+use crate::golden::print::console;
+use crate::golden::{Outcome, Tested};
+use crate::text::diagnostic::json;
+use check_run::check_run;
+use on_rig::{Ran, on_its_rig};
+
+/// Runs one plan.
+pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure> {
+    let attendance = Attendance {
+        yes: arguments.yes,
+        operator: arguments.operator.clone(),
+    };
+    let unattended = real_rig::unattended(&attendance, settings);
+    let checked = plan_file::open_to_run(&arguments.plan, &arguments.plan_settings, unattended)?;
+    plan_file::show(&checked, &arguments.plan, settings);
+    let Some(plan) = &checked.plan else {
+        if arguments.format == Format::Json {
+            print_result(&json::text(&plan_file::diagnostics(
+                &checked,
+                &arguments.plan,
+            )))?;
+        }
+        return Ok(Exit::Wrong);
+    };
+    if plan.procedures.is_empty() {
+        return Err(
+            Failure::command_line("the plan has no procedure: nothing would run")
+                .help("check declarations that other plans `use` with `psd check`"),
+        );
+    }
+    let attendance = real_rig::named(attendance, plan)?;
+    let in_the_plan = |failure: Failure| {
+        failure.in_the_plan(|fault| plan_file::place_of_link(&checked, &arguments.plan, fault))
+    };
+    if arguments.check_run {
+        return check_run(plan, arguments, &attendance, settings).map_err(in_the_plan);
+    }
+    let accepted = arguments
+        .accept
+        .then(|| AcceptedFolder::of(&arguments.plan))
+        .transpose()?;
+    if accepted.is_some() && !golden_run::is_as_written(plan, &arguments.plan_settings) {
+        return Err(Failure::command_line(
+            "`--accept` requires the plan as it is written, on its virtual rig",
+        )
+        .help("remove `--set`, `--rig` and `--date`, or write them into the plan"));
+    }
+    let ran = on_its_rig(plan, arguments, &attendance, settings).map_err(in_the_plan)?;
+    if let Some(exit) = ran.goes_on(plan, &attendance, settings)? {
+        return Ok(exit);
+    }
+    let Ran {
+        folder,
+        provenance,
+        recorded,
+        ..
+    } = ran;
+    let exit = finish_run(folder.path(), plan, &provenance, &recorded, settings)?;
+    if let Some(accepted) = accepted {
+        let trial = golden_run::of(&arguments.plan, Extent::All)?;
+        if trial.ended.as_ref() == Some(&recorded.record.outcome) {
+            let outcome = Outcome::Accepted(accepted.accept(
+                &trial.files,
+                &trial.tolerances,
+                false,
+                false,
+            )?);
+            print_message(&console::told(
+                &Tested {
+                    name: accepted.path().display().to_string(),
+                    outcome,
+                },
+                settings.color,
+            ));
+        } else {
+            print_message(
+                "  not accepted: the run was stopped, but the plan as it is written continues\n",
+            );
+        }
+    }
+    match arguments.format {
+        Format::Human => print_result(&format!("{}\n", folder.path().display()))?,
+        Format::Json => print_result(&summary(folder.path(), &recorded.record)?)?,
+    }
+    Ok(exit)
+}

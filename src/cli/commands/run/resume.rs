@@ -1,0 +1,477 @@
+//! `psd resume RUN`: resumes a run on a real rig. In: the folder of a run that was stopped or interrupted, and the operator who is
+//! responsible. Out: the same run, complete. The run log is replayed before a port is opened. Nothing moves until run log, plan, program
+//! and rig are confirmed as those of the run. The rig must also have reported whether it reached the last target.
+
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+
+use crate::cli::args::ResumeArguments;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::finish_run::finish_run;
+use crate::cli::files::record_file;
+use crate::cli::files::record_file::{ReadRecord, journal_of};
+use crate::cli::files::{plan_file, provenance};
+use crate::cli::operator::watch::{Attendance, Shared, Signals, Watcher};
+use crate::cli::operator::{confirm_release, expected, held, real_rig};
+use crate::cli::output::{print_message, print_result};
+use crate::cli::settings::Settings;
+use crate::evidence::MANIFEST;
+use crate::files::failure::plain;
+use crate::files::provenance::{BUILD, TOOLCHAIN};
+use crate::plan::{Plan, RealLink};
+use crate::record::equipment::{Device, Equipment};
+use crate::record::journal::{Durability, EntryKind, FileStorage, Journal};
+use crate::report::Provenance;
+use crate::rig::real::RealRig;
+use crate::rig::{Rig as _, StopRequest, connect};
+use crate::run::replay;
+use crate::run::replay::{
+    AmendBody, Assurance, Bands, Continuation, Header, LoggedRun, Recorded, RecoverBody,
+    ResumeBody, RigBody,
+};
+
+/// Resumes one run.
+pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, Failure> {
+    for (what, text) in [
+        ("operator", &arguments.operator),
+        ("reason", &arguments.reason),
+    ] {
+        if text.trim().is_empty() || text.len() > 1024 {
+            return Err(Failure::command_line(format!(
+                "`--{what}` is empty or too long"
+            )));
+        }
+    }
+    let path = journal_of(&arguments.run);
+    let mut storage = FileStorage::open_existing(&path)?;
+    let read = record_file::from_bytes(&path, &storage.contents()?)?;
+    if read.played.ended {
+        let run = arguments.run.display();
+        let failure = Failure::file(&arguments.run, replay::ResumeRefusal::Ended.to_string());
+        // The manifest is written last.
+        return Err(if arguments.run.join(MANIFEST).exists() {
+            failure
+        } else {
+            failure.help(format!(
+                "its results are incomplete: `psd report {run}` creates them from the run log"
+            ))
+        });
+    }
+    if read.played.header.served.as_deref() == Some(replay::BY_HAND) {
+        return Err(Failure::command_line(
+            "the rig was driven by hand: there is nothing to resume",
+        )
+        .help("`psd rig jog` starts at the present position of the rig"));
+    }
+    if read.played.header.served.is_some() {
+        return Err(
+            Failure::command_line("a client drove this run: psd cannot continue it")
+                .help("start a new run with `psd rig serve`"),
+        );
+    }
+    let Some(link) = read.plan.rig.link.as_real().cloned() else {
+        return Err(Failure::command_line(
+            "a run on a virtual rig moved nothing: there is nothing to resume",
+        )
+        .help("start a new run with `psd run`"));
+    };
+    let (plan, provenance, amendment) = what_holds(arguments, &read)?;
+
+    replay::same_measure(&read.plan.rig, &plan.rig)?;
+    replay::not_restarted(&read.played, &assured(arguments))?;
+    record_file::check_disk_space(&arguments.run, &storage)?;
+
+    let steps = read
+        .played
+        .lines
+        .iter()
+        .filter(|line| line.kind == EntryKind::Step)
+        .count() as u64;
+    let (extent, planned) = expected::of(&plan);
+    let expected = expected::rest(extent, planned, steps);
+    let attendance = Attendance {
+        yes: arguments.yes,
+        operator: Some(arguments.operator.clone()),
+    };
+    let stop_request = StopRequest::default().with_release_allowed(arguments.let_go);
+    // The zero is that of the start of the run; the present position of the rig does not change it.
+    let datum = read
+        .played
+        .rig
+        .as_ref()
+        .and_then(|rig| rig.datum.as_deref());
+    let at_its_datum = plan.rig.with_recorded_datum(datum);
+    let signals = Signals::caught(&stop_request).map_err(Failure::Signals)?;
+    let simulated = read
+        .played
+        .last_rig
+        .as_ref()
+        .is_some_and(|rig| rig.identity.simulated);
+    let watcher = RefCell::new(Watcher::new(
+        settings,
+        &attendance,
+        &plan,
+        simulated,
+        signals,
+    ));
+    let (mut connected, mut torn) = (None, None);
+    let (opened, put_aside) = (&mut connected, &mut torn);
+    let begin = || {
+        if stop_request.end_requested() {
+            return Err(Failure::NotReleased {
+                reason: "stopped on request".to_owned(),
+            });
+        }
+        let rig = &mut opened
+            .insert(connect(&at_its_datum, &plan.limits, &stop_request)?)
+            .rig;
+        watcher.borrow_mut().watch(rig.live());
+        watcher.borrow_mut().expect(expected);
+        let resumption = settle(
+            arguments,
+            &plan,
+            &link,
+            &read.played,
+            rig,
+            &mut watcher.borrow_mut(),
+        )?;
+
+        // The run resumes here: until now the run log has not changed.
+        *put_aside = storage.truncate_to(read.recovered.whole)?;
+        let mut journal = Journal::reopen(
+            Box::new(storage),
+            Durability::EverySyncPoint,
+            &read.recovered,
+        );
+        let mut played = read.played.clone();
+        if let Some(torn) = put_aside {
+            let name = torn
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned();
+            journal.append(
+                EntryKind::Recover,
+                &RecoverBody {
+                    t: played.time,
+                    put_aside: name,
+                },
+            )?;
+            played.recovered();
+        }
+        if let Some((amendment, texts)) = amendment {
+            replay::amend(&mut journal, &amendment, &texts)?;
+            played.amended(amendment);
+        }
+        journal.append(
+            EntryKind::Rig,
+            &RigBody {
+                t: played.time,
+                ..RigBody::of(rig)
+            },
+        )?;
+        journal.append(EntryKind::Resume, &resumption)?;
+        journal.sync()?;
+        played.resumed(resumption);
+        put_results_aside(&arguments.run)?;
+        Ok(Continuation {
+            rig,
+            journal,
+            logged: played,
+        })
+    };
+    let recorded = replay::resume(
+        &plan,
+        &read.played,
+        &mut Shared(&watcher),
+        real_rig::wall_clock(),
+        begin,
+    );
+    let mut watcher = watcher.into_inner();
+    let wanted = match (&recorded, &mut connected) {
+        (Ok(recorded), Some(connected)) => {
+            held::stay(&mut connected.rig, &mut watcher, &recorded.record)
+        }
+        _ => None,
+    };
+    watcher.finish();
+    // psd does not communicate with the rig while it writes the results: the rig keeps its state.
+    drop((connected, watcher));
+    let recorded = recorded?;
+    if let Some(torn) = torn {
+        print_message(&format!(
+            "  an incomplete last entry was moved aside: {}\n",
+            torn.display()
+        ));
+    }
+    if let Some(reason) = wanted
+        && let Some(exit) = go_on(
+            &arguments.run,
+            &arguments.operator,
+            reason,
+            &recorded,
+            settings,
+        )?
+    {
+        return Ok(exit);
+    }
+    let exit = finish_run(&arguments.run, &plan, &provenance, &recorded, settings)?;
+    print_result(&format!("{}\n", arguments.run.display()))?;
+    Ok(exit)
+}
+
+/// The plan and the program that apply from here on. If they differ from those of the run log, an amendment is required.
+type Held = (Plan, Provenance, Option<(AmendBody, Vec<String>)>);
+
+fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Failure> {
+    let recorded = &read.played.header;
+    let mut differences = Vec::new();
+    if recorded.build != BUILD {
+        differences.push(format!(
+            "program: {} build {} became {} build {BUILD}",
+            recorded.psd,
+            recorded.build,
+            env!("CARGO_PKG_VERSION")
+        ));
+    }
+    let was = equipment_of(read)?;
+    let (mut plan, mut header, mut texts) = (
+        read.plan.clone(),
+        recorded.clone(),
+        read.played.texts.clone(),
+    );
+    if let Some(path) = &arguments.plan {
+        let options = real_rig::settings_of(recorded);
+        let checked = plan_file::open(path, &options)?;
+        let Some(given) = checked.plan else {
+            return Err(Failure::command_line(format!(
+                "{} has errors: see `psd check`",
+                path.display()
+            )));
+        };
+        let nobody = record_file::Circumstances::default();
+        let now = record_file::header(
+            &given,
+            was.device.clone(),
+            &options,
+            &provenance::of(&given, options.date.as_deref()),
+            nobody,
+        );
+        differences.extend(changed_files(recorded, &now));
+        header = Header {
+            files: now.files,
+            ..header
+        };
+        texts = record_file::texts(&given);
+        plan = given;
+    }
+    let now = Equipment::of(&plan, was.device.clone());
+    if let Some(what) = was.measures_otherwise(&now) {
+        return Err(replay::ResumeRefusal::OtherMeasure { what }.into());
+    }
+    differences.extend(was.changes(&now));
+    header.equipment = Some(now);
+    if differences.is_empty() {
+        return Ok((plan, read.provenance.clone(), None));
+    }
+    if !arguments.amend {
+        let told = differences.join("\n  ");
+        return Err(
+            Failure::command_line(format!("differs from the start of the run:\n  {told}")).help(
+                "`--amend` accepts it; name and reason are logged and appear in the test report",
+            ),
+        );
+    }
+    header = Header {
+        psd: env!("CARGO_PKG_VERSION").to_owned(),
+        build: BUILD.to_owned(),
+        toolchain: TOOLCHAIN.to_owned(),
+        ..header
+    };
+    let plan_sha256 = header
+        .files
+        .first()
+        .map_or_else(String::new, |file| file.sha256.clone());
+    let (equipment, build) = (header.equipment.clone(), provenance::this_build());
+    let provenance = Provenance {
+        plan_sha256,
+        psd_version: header.psd.clone(),
+        build,
+        equipment,
+        ..read.provenance.clone()
+    };
+    let (by, reason) = (arguments.operator.clone(), arguments.reason.clone());
+    Ok((
+        plan,
+        provenance,
+        Some((
+            AmendBody {
+                by,
+                reason,
+                differences,
+                header,
+            },
+            texts,
+        )),
+    ))
+}
+
+/// The equipment that the run log states; for version 1, the equipment that plan and rig state.
+fn equipment_of(read: &ReadRecord) -> Result<Equipment, Failure> {
+    if let Some(told) = &read.played.header.equipment {
+        return Ok(told.clone());
+    }
+    let rig = read
+        .played
+        .rig
+        .as_ref()
+        .ok_or(replay::ResumeRefusal::NothingRecorded)?;
+    Ok(Equipment::of(
+        &read.plan,
+        Device::of(&rig.identity, rig.noise),
+    ))
+}
+
+/// Files whose digests differ, or that only one of the two has.
+fn changed_files(recorded: &Header, now: &Header) -> Vec<String> {
+    let of = |header: &Header, name: &str| {
+        header
+            .files
+            .iter()
+            .find(|file| file.name == name)
+            .map(|file| file.sha256.clone())
+    };
+    let mut names: Vec<&str> = recorded
+        .files
+        .iter()
+        .chain(&now.files)
+        .map(|file| file.name.as_str())
+        .collect();
+    names.sort_unstable();
+    names.dedup();
+    let told = |digest: Option<String>| digest.unwrap_or_else(|| "nothing".to_owned());
+    let changed = names
+        .into_iter()
+        .filter(|name| of(recorded, name) != of(now, name));
+    changed
+        .map(|name| {
+            format!(
+                "{name}: {} became {}",
+                told(of(recorded, name)),
+                told(of(now, name))
+            )
+        })
+        .collect()
+}
+
+/// Reads from the rig, without a move, whether it reached the last target. Then asks the operator whether it may move.
+fn settle(
+    arguments: &ResumeArguments,
+    plan: &Plan,
+    link: &RealLink,
+    played: &LoggedRun,
+    rig: &mut RealRig,
+    watcher: &mut Watcher,
+) -> Result<ResumeBody, Failure> {
+    let recorded = played
+        .last_rig
+        .as_ref()
+        .ok_or(replay::ResumeRefusal::NothingRecorded)?;
+    let assured = assured(arguments);
+    replay::same_rig(&recorded.identity, &rig.identity(), &assured)?;
+    replay::same_resolution(recorded.noise, rig.declared_noise())?;
+    let found = rig.read()?;
+    let bands = Bands::of(&plan.rig, link);
+    let decision = replay::decide(
+        played,
+        &RigBody::of(rig),
+        &found,
+        &bands,
+        arguments.accept_relaxation,
+    )?;
+    let released = confirm_release::ask(plan, link, &found, &decision, rig, watcher)?;
+    let resumption =
+        decision.resumption(&arguments.operator, &arguments.reason, &found, played.time);
+    let released = Some(released);
+    Ok(ResumeBody {
+        assured,
+        released,
+        wall: real_rig::wall_clock()(),
+        ..resumption
+    })
+}
+
+/// The statements for which the operator who resumes the run is responsible.
+fn assured(arguments: &ResumeArguments) -> Vec<Assurance> {
+    let said = [
+        (arguments.same_power_up, Assurance::SamePowerUp),
+        (arguments.re_referenced, Assurance::ReReferenced),
+        (arguments.accept_relaxation, Assurance::AcceptedRelaxation),
+        (arguments.let_go, Assurance::LetGo),
+    ];
+    said.into_iter()
+        .filter(|(said, _)| *said)
+        .map(|(_, assured)| assured)
+        .collect()
+}
+
+/// Keeps the results of the interrupted run, beside the future ones.
+fn put_results_aside(run: &Path) -> Result<(), Failure> {
+    let failed = |path: PathBuf| move |error: std::io::Error| Failure::file(path, plain(&error));
+    let entries = std::fs::read_dir(run).map_err(failed(run.to_owned()))?;
+    let is_result =
+        |name: &str| !name.starts_with("journal.") && !name.starts_with("before-resume-");
+    let names: Vec<String> = entries
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .filter(|name| is_result(name))
+        .collect();
+    if names.is_empty() {
+        return Ok(());
+    }
+    let aside = (1..u32::MAX)
+        .map(|number| run.join(format!("before-resume-{number}")))
+        .find(|path| !path.exists());
+    let Some(aside) = aside else { return Ok(()) };
+    std::fs::create_dir(&aside).map_err(failed(aside.clone()))?;
+    names.into_iter().try_for_each(|name| {
+        std::fs::rename(run.join(&name), aside.join(&name)).map_err(failed(run.join(name)))
+    })
+}
+
+/// Resumes the run as `psd resume` does, for the operator who observed the rig without a break. None: the operator refused, and the run
+/// log is unchanged.
+pub fn go_on(
+    folder: &Path,
+    operator: &str,
+    reason: String,
+    recorded: &Recorded,
+    settings: Settings,
+) -> Result<Option<Exit>, Failure> {
+    let arguments = ResumeArguments {
+        run: folder.to_owned(),
+        operator: operator.to_owned(),
+        reason,
+        plan: None,
+        amend: false,
+        re_referenced: false,
+        same_power_up: true,
+        let_go: true,
+        accept_relaxation: false,
+        yes: false,
+    };
+    match resume(&arguments, settings) {
+        Ok(exit) => Ok(Some(exit)),
+        Err(failure) => {
+            let head = record_file::read(folder).map(|read| read.recovered.head().to_owned());
+            let unchanged = recorded
+                .sealed
+                .as_ref()
+                .is_some_and(|(_, sealed)| head.is_ok_and(|head| head == *sealed));
+            if !unchanged {
+                return Err(failure);
+            }
+            print_message(&failure.report(settings));
+            Ok(None)
+        }
+    }
+}

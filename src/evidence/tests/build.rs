@@ -1,0 +1,114 @@
+//! The build of psd that made a run, in its run log and its report.
+
+use std::collections::BTreeMap;
+
+use super::{Bytes, folder, run, with};
+use crate::cli::commands::prediction::prediction;
+use crate::evidence::check::examine;
+use crate::evidence::folder::Folder;
+use crate::evidence::names::{MANIFEST, older_name};
+use crate::evidence::rebuilt::{PlayedBack, Rebuilt};
+use crate::files::provenance::{BUILD, TOOLCHAIN};
+use crate::files::recorded_run;
+use crate::files::recorded_run::JOURNAL;
+use crate::record::journal::{Durability, EntryKind, FileStorage, Journal, recover};
+use crate::report::OutputFile;
+
+/// The run log as a different program would have begun it.
+fn of_another_build(journal: &[u8]) -> Vec<u8> {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join(JOURNAL);
+    let mut anew = Journal::create(
+        Box::new(FileStorage::create(&path).unwrap()),
+        Durability::Buffered,
+    );
+    for line in recover(journal).unwrap().lines {
+        let mut body = line.body();
+        // The journal writes these fields itself.
+        for own in ["format", "count", "head"] {
+            body.as_object_mut().unwrap().shift_remove(own);
+        }
+        if line.kind == EntryKind::Header {
+            (body["build"], body["toolchain"]) =
+                ("0".repeat(64).into(), "riscv64, another compiler".into());
+        }
+        match line.kind {
+            EntryKind::End => anew.end(&body).unwrap(),
+            kind => anew.append(kind, &body).unwrap(),
+        }
+    }
+    drop(anew);
+    std::fs::read(path).unwrap()
+}
+
+#[test]
+fn a_report_names_the_build_that_made_the_run_and_not_the_one_that_made_the_report() {
+    let own = folder(run());
+    let journal = of_another_build(&run()[JOURNAL]);
+    let read = recorded_run::from_bytes(JOURNAL.as_ref(), &journal).unwrap();
+    let mut files: Vec<OutputFile> = Vec::new();
+    PlayedBack::of(read, None, &prediction)
+        .unwrap()
+        .results(&mut files)
+        .unwrap();
+    let page = files
+        .iter()
+        .find(|file| file.path == "report.html")
+        .unwrap();
+    let page = String::from_utf8(page.bytes.clone()).unwrap();
+    assert!(page.contains(&"0".repeat(64)) && page.contains("riscv64, another compiler"));
+    assert!(!page.contains(BUILD) && !page.contains(TOOLCHAIN));
+    // No other part of the results depends on it.
+    let others = files
+        .iter()
+        .filter(|file| !file.path.starts_with("report."));
+    let moved: Vec<&str> = others
+        .filter(|file| run()[&file.path] != file.bytes)
+        .map(|file| file.path.as_str())
+        .collect();
+    assert_eq!(moved, [""; 0]);
+    let told = Rebuilt::of(&with(&own, JOURNAL, Some(journal)), &prediction)
+        .report
+        .unwrap()
+        .other_build
+        .unwrap();
+    assert!(told.contains("build 0000"), "{told}");
+    let page = String::from_utf8(run()["report.html"].clone()).unwrap();
+    assert!(
+        page.contains(BUILD) && page.contains(TOOLCHAIN),
+        "a run names the program that makes it"
+    );
+}
+
+/// A folder of version 0.1 has other names for some files.
+#[test]
+fn a_folder_with_older_names_is_verified_under_them() {
+    let older = |name: &str| older_name(name).unwrap_or(name).to_owned();
+    let mut files: Bytes = run()
+        .iter()
+        .map(|(name, bytes)| (older(name), bytes.clone()))
+        .collect();
+    let manifest = String::from_utf8(files[MANIFEST].clone()).unwrap();
+    let renamed = |line: &str| {
+        let (digest, name) = line.split_once("  ").unwrap();
+        (older(name), digest.to_owned())
+    };
+    let lines: BTreeMap<String, String> = manifest.lines().map(renamed).collect();
+    let manifest: String = lines
+        .iter()
+        .map(|(name, digest)| format!("{digest}  {name}\n"))
+        .collect();
+    files.insert(MANIFEST.to_owned(), manifest.into_bytes());
+    let wrong = |folder: &Folder| -> Vec<&'static str> {
+        examine(folder, &Rebuilt::of(folder, &prediction), &[])
+            .into_iter()
+            .filter(|finding| !finding.sound)
+            .map(|finding| finding.part)
+            .collect()
+    };
+    let whole = folder(&files);
+    assert!(whole.files.contains_key("certificate.html"));
+    assert_eq!(wrong(&whole), [""; 0]);
+    let changed = with(&whole, "certificate.html", Some(b"another page".to_vec()));
+    assert_eq!(wrong(&changed), ["report", "manifest"]);
+}

@@ -1,0 +1,164 @@
+//! Many impacts at once, for studies. In: the inputs of the impacts and their specimens. Out: the results of each, bit for bit those of
+//! [`super::simulate`]. It keeps no steps.
+//!
+//! The tangent form under the rigid and the limit law, with elastic and bilinear specimens and exact readings, runs in lanes: one loop steps
+//! sixteen impacts, so that the compiler uses vector instructions. Branches are selections, and no product and sum are fused, so every lane
+//! does the arithmetic of a single impact. An impact that ends gives its lane to the next one. All other impacts run one by one.
+
+mod lanes;
+#[cfg(test)]
+mod tests;
+
+use super::summary::{ImpactSummary, SummaryBuilder};
+use super::{ImpactError, ImpactInput, ImpactSolver, Until};
+use crate::contact::state::ContactLaw;
+use crate::integrator::Integrator;
+use crate::specimen::{Bilinear, Elastic, RestoringForce, SpecimenModel};
+use lanes::{LANES, Lanes};
+
+/// An impact on an ideal rig from rest at X = 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Impact {
+    pub input: ImpactInput,
+    pub specimen: SpecimenModel,
+}
+
+/// The specimen of an impact in a lane: elastic is bilinear without a limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum LaneSpecimen {
+    Elastic(Elastic),
+    Bilinear(Bilinear),
+}
+
+impl Impact {
+    /// Whether it runs in a lane with this end condition.
+    #[must_use]
+    pub fn is_batched(&self, until: Option<Until>) -> bool {
+        self.lane_specimen(until).is_some()
+    }
+
+    fn lane_specimen(&self, until: Option<Until>) -> Option<LaneSpecimen> {
+        let input = &self.input;
+        let exact = input.force_noise == 0.0 && input.resolution == 0.0;
+        let law = matches!(input.law, ContactLaw::Rigid | ContactLaw::Limit { .. });
+        if until == Some(Until::Rebound)
+            || input.integrator != Integrator::Tangent
+            || !(exact && law)
+        {
+            return None;
+        }
+        match &self.specimen {
+            SpecimenModel::Elastic(model) => Some(LaneSpecimen::Elastic(*model)),
+            SpecimenModel::Bilinear(model) if model.is_undisplaced() => {
+                Some(LaneSpecimen::Bilinear(*model))
+            }
+            _ => None,
+        }
+    }
+
+    /// The results of this impact alone.
+    ///
+    /// # Errors
+    /// As [`ImpactSolver::new`].
+    pub fn run(&self, until: Option<Until>, steps: u64) -> Result<ImpactSummary, ImpactError> {
+        let mut specimen = self.specimen.clone();
+        let mut solver = ImpactSolver::new(&self.input, 0.0, specimen.move_to(0.0))?;
+        let mut summary = SummaryBuilder::new(&self.input);
+        summary.push(solver.state());
+        let read = |solver: &mut ImpactSolver| {
+            let target = solver.predict();
+            [target, specimen.move_to(target)]
+        };
+        solver.run(until, steps, read, &mut summary);
+        Ok(summary.finish())
+    }
+}
+
+/// The results of many impacts, in their order: each until its end or for so many steps.
+///
+/// # Errors
+/// Each impact has its own, as [`ImpactSolver::new`].
+#[must_use]
+pub fn run(
+    impacts: &[Impact],
+    until: Option<Until>,
+    steps: u64,
+) -> Vec<Result<ImpactSummary, ImpactError>> {
+    // Lanes differ in what their loop contains: yielding specimens, limited forces.
+    let mut queues: [Vec<usize>; 4] = Default::default();
+    let mut results: Vec<Option<Result<ImpactSummary, ImpactError>>> = Vec::new();
+    for (place, impact) in impacts.iter().enumerate() {
+        let start = ImpactSolver::new(&impact.input, 0.0, 0.0);
+        results.push(match (start, impact.lane_specimen(until)) {
+            (Err(error), _) => Some(Err(error)),
+            (Ok(_), Some(specimen)) if steps > 0 => {
+                let yields = matches!(specimen, LaneSpecimen::Bilinear(_));
+                let limited = impact.input.law != ContactLaw::Rigid;
+                queues[usize::from(yields) + 2 * usize::from(limited)].push(place);
+                None
+            }
+            (Ok(_), _) => Some(impact.run(until, steps)),
+        });
+    }
+    let [plain, yielding, limited, both] = queues;
+    let ends = until.is_some_and(|until| until == Until::StrikerStop);
+    let mut take = |place: usize, summary| results[place] = Some(Ok(summary));
+    in_lanes::<false, false>(impacts, &plain, ends, steps, &mut take);
+    in_lanes::<true, false>(impacts, &yielding, ends, steps, &mut take);
+    in_lanes::<false, true>(impacts, &limited, ends, steps, &mut take);
+    in_lanes::<true, true>(impacts, &both, ends, steps, &mut take);
+    let finished = impacts
+        .iter()
+        .zip(results)
+        .map(|(impact, result)| match result {
+            // Beyond the largest numbers, selections and branches differ in what is not a number.
+            Some(Ok(summary)) if !is_finite(&summary) => impact.run(until, steps),
+            Some(result) => result,
+            None => impact.run(until, steps),
+        });
+    finished.collect()
+}
+
+fn is_finite(summary: &ImpactSummary) -> bool {
+    summary.energy_error.is_finite() && summary.final_displacement.is_finite()
+}
+
+/// Steps the impacts at these places, sixteen at a time.
+fn in_lanes<const YIELDS: bool, const LIMITED: bool>(
+    impacts: &[Impact],
+    places: &[usize],
+    ends_at_stop: bool,
+    steps: u64,
+    take: &mut impl FnMut(usize, ImpactSummary),
+) {
+    let mut lanes = Lanes::new();
+    let mut waiting = places.iter().copied();
+    let mut running: [Option<usize>; LANES] = [None; LANES];
+    let mut begin = |lanes: &mut Lanes, lane: usize| {
+        let place = waiting.next();
+        if let Some(place) = place {
+            lanes.begin(lane, &impacts[place]);
+        } else {
+            lanes.rest(lane);
+        }
+        place
+    };
+    for (lane, running) in running.iter_mut().enumerate() {
+        *running = begin(&mut lanes, lane);
+    }
+    #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]
+    let last = steps as f64;
+    while running.iter().any(Option::is_some) {
+        if !lanes.step::<YIELDS, LIMITED>(ends_at_stop, last) {
+            continue;
+        }
+        for (lane, running) in running.iter_mut().enumerate() {
+            if let Some(place) = *running
+                && lanes.is_over(lane, ends_at_stop, last)
+            {
+                take(place, lanes.summary(lane, &impacts[place].input));
+                *running = begin(&mut lanes, lane);
+            }
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! The names of the results of procedures, and their contributions. A number that is not finite does not exist in the run.
+
+use crate::plan::formula::ResultValue;
+use crate::record::NamedResult;
+use crate::schema::ResultKind;
+use crate::uncertainty::{Contribution, Source, combined};
+use crate::units::Dimension;
+
+impl ResultKind {
+    /// This result without uncertainty; None if it does not exist in this run.
+    pub(crate) fn found(self, value: Option<f64>) -> NamedResult {
+        result(self.name, self.dimension, value)
+    }
+
+    /// This result as a list; None if it does not exist in this run.
+    pub(crate) fn found_list(self, values: Option<Vec<f64>>) -> NamedResult {
+        match values {
+            Some(values) => NamedResult {
+                name: self.name,
+                value: ResultValue::List(values),
+                dimension: self.dimension,
+                contributions: Vec::new(),
+            },
+            None => self.found(None),
+        }
+    }
+
+    /// This result with its standard uncertainty, if it has one.
+    pub(crate) fn found_with(self, value: Option<(f64, Option<f64>)>) -> NamedResult {
+        measured(self.name, self.dimension, value)
+    }
+}
+
+/// A result without uncertainty; None if it does not exist in this run.
+pub(crate) fn result(name: &'static str, dimension: Dimension, value: Option<f64>) -> NamedResult {
+    measured(name, dimension, value.map(|value| (value, None)))
+}
+
+/// A result and its standard uncertainty, if it has one.
+pub(crate) fn measured(
+    name: &'static str,
+    dimension: Dimension,
+    value: Option<(f64, Option<f64>)>,
+) -> NamedResult {
+    let value = value.filter(|(value, _)| value.is_finite());
+    let uncertainty = value
+        .and_then(|(_, uncertainty)| uncertainty)
+        .filter(|uncertainty| uncertainty.is_finite());
+    let value = ResultValue::Number {
+        value: value.map(|(value, _)| value),
+        uncertainty,
+    };
+    NamedResult {
+        name,
+        value,
+        dimension,
+        contributions: Vec::new(),
+    }
+}
+
+/// The largest of some sizes; None of nothing.
+pub(crate) fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
+    values.map(f64::abs).reduce(f64::max)
+}
+
+/// Contributions that count; of a result that nothing moves, not even the time step, that of the step, because its uncertainty is
+/// known to be none. Nothing is known of a result with one that is not finite.
+fn counting(mut parts: Vec<Contribution>) -> Vec<Contribution> {
+    if !parts.iter().all(|part| part.amount.is_finite()) {
+        return Vec::new();
+    }
+    let moves = parts.iter().any(|part| part.amount != 0.0);
+    parts.retain(|part| {
+        if moves {
+            part.amount != 0.0
+        } else {
+            matches!(part.source, Source::TimeStep { .. })
+        }
+    });
+    parts
+}
+
+/// The results of one evaluation, each with its values: one number, or one for each entry of a list.
+pub(crate) type Evaluated = Vec<(ResultKind, Vec<f64>)>;
+
+/// The layout of these results.
+pub(crate) fn layout_of(evaluated: &Evaluated) -> Layout {
+    evaluated
+        .iter()
+        .map(|(kind, values)| (kind.name, values.len()))
+        .collect()
+}
+
+/// Their values after each other.
+pub(crate) fn flat(evaluated: Evaluated) -> Vec<f64> {
+    evaluated
+        .into_iter()
+        .flat_map(|(_, values)| values)
+        .collect()
+}
+
+/// The place of the first value of a result in a layout.
+pub(crate) fn place(layout: &[(&'static str, usize)], kind: ResultKind) -> Option<usize> {
+    let at = layout.iter().position(|(name, _)| *name == kind.name)?;
+    Some(layout[..at].iter().map(|(_, count)| count).sum())
+}
+
+/// Names of results in the order of their values, each with how many values it has.
+pub(crate) type Layout = Vec<(&'static str, usize)>;
+
+/// The values of a layout, as results have them; NaN if one does not exist.
+pub(crate) fn values(layout: &[(&'static str, usize)], results: &[NamedResult]) -> Vec<f64> {
+    let of_result = |(name, count): &(&'static str, usize)| {
+        let values = match results
+            .iter()
+            .find(|result| result.name == *name)
+            .map(|result| &result.value)
+        {
+            Some(ResultValue::List(values)) => values.clone(),
+            Some(ResultValue::Number { value, .. }) => value.iter().copied().collect(),
+            None => Vec::new(),
+        };
+        values
+            .into_iter()
+            .chain(std::iter::repeat(f64::NAN))
+            .take(*count)
+            .collect::<Vec<f64>>()
+    };
+    layout.iter().flat_map(of_result).collect()
+}
+
+/// Gives results the contributions to their values.
+pub(crate) fn give(
+    layout: &[(&'static str, usize)],
+    contributions: Vec<Vec<Contribution>>,
+    results: &mut [NamedResult],
+) {
+    let mut contributions = contributions.into_iter();
+    for (name, count) in layout {
+        let of_result: Vec<Vec<Contribution>> =
+            contributions.by_ref().take(*count).map(counting).collect();
+        let Some(result) = results.iter_mut().find(|result| result.name == *name) else {
+            continue;
+        };
+        let parts = of_result.into_iter().enumerate();
+        result.contributions = parts
+            .flat_map(|(entry, parts)| {
+                parts
+                    .into_iter()
+                    .map(move |part| Contribution { entry, ..part })
+            })
+            .collect();
+        if let ResultValue::Number {
+            value: Some(_),
+            uncertainty,
+        } = &mut result.value
+        {
+            *uncertainty = combined(&result.contributions);
+        }
+    }
+}

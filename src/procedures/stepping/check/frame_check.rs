@@ -1,0 +1,132 @@
+//! The check of the steps of a frame. In: a block, its frame, damping and stepping. Out: errors and warnings, or the properties of the
+//! frame and its time step. It knows no striker and no ground.
+
+use super::beyond_duration;
+use super::mode_check::warn_of_damping_twice;
+use crate::language::check::checker::Checker;
+use crate::language::check::messages::{frames as fault, methods as stability, values, whole};
+use crate::physics::structure::frame_properties::FrameProperties;
+use crate::physics::structure::storeys_of;
+use crate::plan::formula::NoResults;
+use crate::plan::{Frame, Integrator, MOST_STEPS, Mode, ShakeDamping, Stepping, steps_in};
+use crate::schema::{frames, methods, specimen};
+
+/// The steps of a frame, and their duration \[s\], if it is known before the run.
+pub struct FrameSteps<'a> {
+    pub specimen: usize,
+    pub frame: &'a Frame,
+    pub damping: &'a ShakeDamping,
+    pub stepping: &'a Stepping,
+    pub duration: Option<f64>,
+}
+
+/// Checks the time step of a frame as far as it is known before the run: stability, the critical step (of the modes, or `critical`'s),
+/// the number of steps. Gives the properties of the frame and the step \[s\] where further checks are possible.
+pub fn judge(
+    checker: &mut Checker,
+    block: usize,
+    steps: &FrameSteps,
+    critical: impl FnOnce(&FrameProperties) -> Option<f64>,
+) -> Option<(FrameProperties, f64)> {
+    let FrameSteps {
+        frame,
+        damping,
+        stepping,
+        duration,
+        ..
+    } = *steps;
+    storeys_damped_twice(checker, block, steps);
+    let head = checker.scope.blocks[block].block.head;
+    let at = |checker: &Checker, field| {
+        checker
+            .field(block, field)
+            .map_or(head, |(_, entry)| entry.value.span)
+    };
+    let known = damping.known()?;
+    let ratios = at(checker, frames::DAMPING_RATIO.name);
+    if let ShakeDamping::Modal(given) = damping
+        && given.len() != frame.degrees_of_freedom()
+    {
+        return checker.fail(fault::damping_ratios(
+            given.len(),
+            frame.degrees_of_freedom(),
+            ratios,
+        ));
+    }
+    let properties = match FrameProperties::of(frame, &known) {
+        Ok(properties) => properties,
+        Err(reason) => return checker.fail(fault::damping_impossible(&reason.to_string(), ratios)),
+    };
+    if let (Integrator::Tangent, None, Some((_, entry))) = (
+        stepping.integrator,
+        storeys_of(&properties.matrices.stiffness),
+        checker.field(block, methods::MAX_TANGENT_RATIO.name),
+    ) {
+        let message = "`max_tangent_ratio` has no effect: full matrices keep the initial stiffness";
+        checker.diagnostics.push(values::no_effect(
+            message.to_owned(),
+            entry.key.span,
+            "no effect",
+            "remove it",
+        ));
+    }
+    let critical = critical(&properties);
+    let step = stepping
+        .time_step
+        .evaluate(&NoResults, critical)
+        .ok()?
+        .value;
+    let step_at = at(checker, methods::TIME_STEP.name);
+    let behaves = if checker.real_rig.is_some() {
+        None
+    } else {
+        Some(frame)
+    };
+    let limit = properties.longest_stable_step(stepping.integrator, behaves);
+    if step > limit {
+        return checker.fail(if stepping.allow_unstable {
+            fault::unstable_though(step_at, step, limit)
+        } else {
+            stability::unstable(step_at, stepping.integrator, step, limit)
+        });
+    }
+    beyond_duration(checker, block, Some(step), duration);
+    if let Some(critical) = critical.filter(|critical| step > *critical) {
+        checker
+            .diagnostics
+            .push(whole::step_above_critical(step_at, step, critical));
+    }
+    #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
+    let rows =
+        duration.map(|duration| steps_in(duration, step) * frame.degrees_of_freedom() as f64);
+    if let Some(rows) = rows.filter(|rows| *rows > MOST_STEPS) {
+        let help = "reduce `duration` or increase `time_step`";
+        checker.diagnostics.push(values::too_many(
+            "steps of its storeys",
+            rows,
+            MOST_STEPS,
+            at(checker, methods::DURATION.name),
+            help,
+        ));
+    }
+    Some((properties, step))
+}
+
+/// The damping of the storeys is in the measured forces of a continuous run already.
+fn storeys_damped_twice(checker: &mut Checker, block: usize, steps: &FrameSteps<'_>) {
+    let computed = match steps.damping {
+        ShakeDamping::Rayleigh(ratio) => ratio.constant().is_none_or(|ratio| ratio > 0.0),
+        ShakeDamping::Modal(ratios) => ratios
+            .iter()
+            .any(|ratio| ratio.constant().is_none_or(|ratio| ratio > 0.0)),
+    };
+    let felt = steps
+        .frame
+        .storeys
+        .iter()
+        .any(|storey| storey.damping > 0.0);
+    if computed && felt && matches!(steps.stepping.mode, Mode::Continuous { .. }) {
+        let fields = [frames::DAMPING_RATIO.name, specimen::STOREYS.name];
+        warn_of_damping_twice(checker, block, steps.specimen, fields);
+    }
+}

@@ -1,0 +1,141 @@
+//! `integrator = …` of a procedure that integrates, and the stability of its time step. In: a block. Out: the integrator, or an error.
+
+use crate::language::check::checker::Checker;
+use crate::language::check::messages::{frames, methods as fault};
+use crate::physics::integrator::stability::{Met, longest_stable_step};
+use crate::physics::structure::Matrices;
+use crate::plan::{Behaviour, Contact, Impact, Integrator, Mode, PointTarget, Specimen, Striker};
+use crate::procedures::impact::check::time_step::time_step_before_the_run;
+use crate::schema::methods;
+use crate::schema::procedures::{STIFFNESS, impact};
+
+/// The integrator that a block names, else the tangent form. In continuous mode the secant of two readings would include the force of a
+/// damper: there the default is explicit Newmark, if the contact law does not need the tangent.
+pub fn integrator(
+    checker: &mut Checker,
+    block: usize,
+    mode: Option<Mode>,
+    contact: Option<&Contact>,
+) -> Option<Integrator> {
+    let Some((entry, _)) = checker.field(block, methods::INTEGRATOR.name) else {
+        let continuous = matches!(mode, Some(Mode::Continuous { .. }));
+        let whole_steps = matches!(contact, Some(Contact::Rigid | Contact::Limit { .. }));
+        return Some(if continuous && whole_steps {
+            Integrator::Explicit
+        } else {
+            Integrator::Tangent
+        });
+    };
+    let place = checker.context_of(block, entry);
+    let chosen = checker.choice(block, methods::INTEGRATOR.name)?;
+    Some(match chosen.variant.name {
+        "explicit" => Integrator::Explicit,
+        "alpha_os" => Integrator::AlphaOs {
+            alpha: checker.constant_argument(&chosen, methods::ALPHA.name, place)?,
+        },
+        _ => Integrator::Tangent,
+    })
+}
+
+/// Refuses a contact law that finds the instant of contact inside a step by the tangent's prediction of the force, with an integrator
+/// that imposes the displacement before it solves.
+pub fn meets_the_contact(
+    checker: &mut Checker,
+    block: usize,
+    integrator: Integrator,
+    contact: &Contact,
+) -> Option<()> {
+    let law = match contact {
+        Contact::Restitution { .. } => "restitution",
+        Contact::Hertz { .. } => "hertz",
+        Contact::Rigid | Contact::Limit { .. } => return Some(()),
+    };
+    if integrator == Integrator::Tangent {
+        return Some(());
+    }
+    let head = checker.scope.blocks[block].block.head;
+    let at = |field| {
+        checker
+            .field(block, field)
+            .map_or(head, |(_, entry)| entry.value.span)
+    };
+    let (named, struck) = (at(methods::INTEGRATOR.name), at(impact::CONTACT.name));
+    checker.fail(fault::law_needs_the_tangent(
+        integrator.name(),
+        named,
+        law,
+        struck,
+    ))
+}
+
+/// Compares the time step with the longest stable one, as far as both are known before the run: for the initial stiffness of the
+/// procedure, and for the model of a simulated specimen.
+pub fn stable(
+    checker: &mut Checker,
+    block: usize,
+    impact: &Impact,
+    point: &PointTarget,
+    striker: &Striker,
+    specimen: Option<&Specimen>,
+) {
+    let (Some(step), Some(mass)) = (
+        time_step_before_the_run(impact, striker),
+        point.mass.constant(),
+    ) else {
+        return;
+    };
+    let virtual_rig = checker.real_rig.is_none();
+    let specimen = specimen
+        .filter(|_| virtual_rig)
+        .and_then(|specimen| specimen.behaviour.as_ref());
+    let behaves = specimen.map_or(0.0, Behaviour::largest_stiffness);
+    let assumed = point.stiffness.constant();
+    let stiffest = assumed.unwrap_or(0.0).max(behaves);
+    let met = Met::one(
+        &Matrices {
+            mass,
+            damping: point.damping.constant().unwrap_or(0.0),
+            stiffness: stiffest,
+        },
+        assumed.unwrap_or(stiffest),
+    );
+    let limit = longest_stable_step(impact.stepping.integrator, &met);
+    if let (Integrator::AlphaOs { .. }, Some(assumed)) = (impact.stepping.integrator, assumed)
+        && behaves > assumed * (1.0 + 1e-9)
+        && step <= limit
+    {
+        let head = checker.scope.blocks[block].block.head;
+        let at = checker
+            .field(block, STIFFNESS.name)
+            .map_or(head, |(_, entry)| entry.value.span);
+        checker
+            .diagnostics
+            .push(fault::stiffer_than_operator(behaves, assumed, at, limit));
+    }
+    if let (Integrator::Tangent, Some(assumed), Some(ratio)) = (
+        impact.stepping.integrator,
+        assumed,
+        impact.stepping.max_tangent_ratio.constant(),
+    ) && behaves > assumed * ratio * (1.0 + 1e-9)
+    {
+        let head = checker.scope.blocks[block].block.head;
+        let at = checker
+            .field(block, STIFFNESS.name)
+            .map_or(head, |(_, entry)| entry.value.span);
+        checker
+            .diagnostics
+            .push(fault::stiffer_than_tangent(at, behaves, assumed * ratio));
+    }
+    if step <= limit {
+        return;
+    }
+    let head = checker.scope.blocks[block].block.head;
+    let at = checker
+        .field(block, methods::TIME_STEP.name)
+        .map_or(head, |(_, entry)| entry.value.span);
+    checker.diagnostics.push(if impact.stepping.allow_unstable {
+        frames::unstable_though(at, step, limit)
+    } else {
+        fault::unstable(at, impact.stepping.integrator, step, limit)
+    });
+}

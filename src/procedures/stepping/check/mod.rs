@@ -1,0 +1,130 @@
+//! The fields that impacts and shakes share. In: a block. Out: its stepping, or errors. It knows no striker and no ground.
+
+pub(crate) mod frame_check;
+pub(crate) mod integrator_check;
+pub(crate) mod mode_check;
+
+use crate::language::check::checker::{Checker, Context};
+use crate::language::check::expressions::choice::Chosen;
+use crate::language::check::expressions::fields::whole as whole_number;
+use crate::language::check::messages::values;
+use crate::plan::formula::{Formula, Operator};
+use crate::plan::{Contact, InspectTrigger, Integrator, Mode, Stepping};
+use crate::schema::methods;
+
+/// The fields of a block that steps; where it gives no time step, the critical one over `finer`.
+pub fn stepping(
+    checker: &mut Checker,
+    block: usize,
+    contact: Option<&Contact>,
+    finer: f64,
+) -> Option<Stepping> {
+    let mode = mode_check::mode(checker, block);
+    let integrator = integrator_check::integrator(checker, block, mode, contact);
+    let allow_unstable = checker
+        .word(block, methods::ALLOW_UNSTABLE.name, "false")
+        .map(|word| word == "true");
+    let unsaid = if matches!(mode, Some(Mode::Continuous { .. })) {
+        "true"
+    } else {
+        "false"
+    };
+    let i_modification = checker
+        .word(block, methods::I_MODIFICATION.name, unsaid)
+        .map(|word| word == "true");
+    let time_step = match checker.field(block, methods::TIME_STEP.name) {
+        Some(_) => checker.quantity(block, methods::TIME_STEP.name),
+        None => Some(Formula::Binary(
+            Operator::Divide,
+            Box::new(Formula::CriticalTimeStep),
+            Box::new(Formula::Constant(finer)),
+        )),
+    };
+    let pause = checker.quantity(block, methods::PAUSE.name);
+    let max_tangent_ratio = checker.quantity(block, methods::MAX_TANGENT_RATIO.name);
+    if let (Some(Integrator::Explicit | Integrator::AlphaOs { .. }), Some((_, entry))) = (
+        integrator,
+        checker.field(block, methods::MAX_TANGENT_RATIO.name),
+    ) {
+        let name = integrator.map_or("", Integrator::name);
+        let message = format!("`max_tangent_ratio` has no effect: `{name}` measures no tangent");
+        checker.diagnostics.push(values::no_effect(
+            message,
+            entry.key.span,
+            "no effect",
+            "remove it, or write `integrator = tangent`",
+        ));
+    }
+    let inspect = triggers(checker, block);
+    Some(Stepping {
+        integrator: integrator?,
+        allow_unstable: allow_unstable?,
+        i_modification: i_modification?,
+        mode: mode?,
+        time_step: time_step?,
+        pause: pause?,
+        max_tangent_ratio: max_tangent_ratio?,
+        inspect: inspect?,
+    })
+}
+
+/// Refuses a time step that is longer than the run; both times in s.
+pub(crate) fn beyond_duration(
+    checker: &mut Checker,
+    block: usize,
+    step: Option<f64>,
+    duration: Option<f64>,
+) {
+    let Some((step, duration)) = step
+        .zip(duration)
+        .filter(|(step, duration)| step > duration)
+    else {
+        return;
+    };
+    let head = checker.scope.blocks[block].block.head;
+    let at = |field| {
+        checker
+            .field(block, field)
+            .map_or(head, |(_, entry)| entry.value.span)
+    };
+    checker.diagnostics.push(values::step_beyond_duration(
+        at(methods::TIME_STEP.name),
+        step,
+        at(methods::DURATION.name),
+        duration,
+    ));
+}
+
+/// The inspection triggers of a block.
+fn triggers(checker: &mut Checker, block: usize) -> Option<Vec<InspectTrigger>> {
+    let Some((entry, _)) = checker.field(block, methods::INSPECT.name) else {
+        return Some(Vec::new());
+    };
+    let place = checker.context_of(block, entry);
+    let chosen = checker.choices(block, methods::INSPECT.name)?;
+    let triggers: Vec<Option<InspectTrigger>> = chosen
+        .iter()
+        .map(|chosen| trigger(checker, chosen, place))
+        .collect();
+    triggers.into_iter().collect()
+}
+
+fn trigger<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    place: Context,
+) -> Option<InspectTrigger> {
+    Some(match chosen.variant.name {
+        "every" => InspectTrigger::Every(
+            checker
+                .constant_argument(chosen, methods::STEPS_BETWEEN.name, place)
+                .and_then(whole_number)?,
+        ),
+        "force_drop" => InspectTrigger::ForceDrop(checker.constant_argument(
+            chosen,
+            methods::FRACTION.name,
+            place,
+        )?),
+        _ => InspectTrigger::At(checker.constant_argument(chosen, methods::AT_TIME.name, place)?),
+    })
+}

@@ -1,0 +1,99 @@
+//! `mode = …` of a procedure that integrates: whether the actuator stops at every target. In: a block. Out: the mode, or an error, and a
+//! warning where damping would count twice.
+
+use crate::language::check::checker::Checker;
+use crate::language::check::messages::methods as fault;
+use crate::language::syntax::ast::{Argument, ExprKind};
+use crate::plan::{Dialect, Impact, Mode, PointTarget, Specimen};
+use crate::schema::Kind;
+use crate::schema::devices::DIALECT;
+use crate::schema::methods;
+use crate::schema::procedures::impact;
+use crate::schema::{rig, specimen};
+
+/// The mode that a block names, otherwise `ramp_and_hold`.
+pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
+    let Some((entry, written)) = checker.field(block, methods::MODE.name) else {
+        return Some(Mode::StepAndPause);
+    };
+    let (place, at) = (checker.context_of(block, entry), written.value.span);
+    let chosen = checker.choice(block, methods::MODE.name)?;
+    if chosen.variant.name == "ramp_and_hold" {
+        return Some(Mode::StepAndPause);
+    }
+    let time_scale = checker.constant_argument(&chosen, methods::TIME_SCALE.name, place)?;
+    if let Some(dialect) = checker
+        .real_rig
+        .and_then(|rig| stops_at_targets(checker, rig))
+    {
+        return checker.fail(fault::continuous_on_a_real_rig(dialect, at));
+    }
+    let stops = [methods::PAUSE.name, methods::INSPECT.name]
+        .into_iter()
+        .find_map(|field| checker.field(block, field).map(|(_, entry)| (field, entry)));
+    if let Some((field, entry)) = stops {
+        return checker.fail(fault::stops_on_the_way(field, entry.span, at));
+    }
+    Some(Mode::Continuous { time_scale })
+}
+
+/// The protocol of a real rig that follows no path and does not read displacement and force at one instant: any except `native`. An
+/// unknown one is reported elsewhere.
+pub fn stops_at_targets<'a>(checker: &Checker<'a>, rig: usize) -> Option<&'a str> {
+    let (_, written) = checker
+        .field(rig, rig::LINK.name)
+        .or_else(|| checker.field(rig, rig::ACTUATOR.name))?;
+    let ExprKind::Call { arguments, .. } = &written.value.kind else {
+        return None;
+    };
+    let is_dialect = |(place, argument): &(usize, &Argument)| match &argument.name {
+        Some(name) => name.node == DIALECT.name,
+        None => *place == 1,
+    };
+    let (_, dialect) = arguments.iter().enumerate().find(is_dialect)?;
+    let word = match &dialect.value.kind {
+        ExprKind::Name(name) => name.as_str(),
+        ExprKind::Call { name, .. } => name.node.as_str(),
+        _ => return None,
+    };
+    (word != Dialect::Native.name()).then_some(word)
+}
+
+/// The material's damping is in the force of a continuous run already.
+pub fn damping_twice(
+    checker: &mut Checker,
+    block: usize,
+    impact: &Impact,
+    point: &PointTarget,
+    specimen: Option<&Specimen>,
+) {
+    let computed = point.damping.constant().is_none_or(|damping| damping > 0.0);
+    let felt = specimen.is_some_and(|specimen| specimen.damping > 0.0);
+    if computed && felt && matches!(impact.stepping.mode, Mode::Continuous { .. }) {
+        let fields = [impact::DAMPING.name, specimen::DAMPING.name];
+        warn_of_damping_twice(checker, block, impact.specimen, fields);
+    }
+}
+
+/// Warns at the field of the block whose damping is computed, and at the field of the specimen with this index whose damping is measured.
+pub fn warn_of_damping_twice(
+    checker: &mut Checker,
+    block: usize,
+    specimen: usize,
+    [computed, measured]: [&str; 2],
+) {
+    let of_specimen = checker
+        .scope
+        .of_kind(Kind::Specimen)
+        .nth(specimen)
+        .map(|(index, _)| index);
+    let at = |block, field| checker.field(block, field).map(|(_, entry)| entry.span);
+    if let (Some(computed), Some(measured)) = (
+        at(block, computed),
+        of_specimen.and_then(|index| at(index, measured)),
+    ) {
+        checker
+            .diagnostics
+            .push(fault::damping_twice(computed, measured));
+    }
+}

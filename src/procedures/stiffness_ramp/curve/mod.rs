@@ -1,0 +1,118 @@
+//! The multilinear curve that a plan requests: the fit and the observations on it. In: measured points. Out: the fit, results,
+//! observations. It moves nothing.
+
+pub(crate) mod curve_report;
+
+use crate::physics::identification::StatedVariance;
+use crate::physics::identification::multilinear_fit::{
+    BreakCount, MultilinearFit, fit_multilinear, fit_multilinear_stated,
+};
+use crate::plan::formula::ResultValue;
+use crate::record::{LineFit, NamedResult};
+use crate::schema::procedures::stiffness_ramp as schema;
+use crate::schema::{ResultKind, curves};
+use crate::units::Dimension;
+use crate::units::display::readable;
+
+/// The curve through points (m, N); `what` names the points in an observation.
+pub(crate) fn fitted(
+    points: &[(f64, f64)],
+    count: BreakCount,
+    what: &str,
+    stated: StatedVariance,
+) -> (Option<MultilinearFit>, Vec<String>) {
+    let (x, r): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+    let fit = fit_multilinear_stated(&x, &r, count, stated);
+    let remarks = remarks(fit.as_ref(), count, points.len(), what);
+    (fit, remarks)
+}
+
+/// An observation is made if the misfit 1 − R² of a straight line exceeds this.
+const MISSED: f64 = 1e-3;
+
+/// An observation is made if a straight line hides a change of stiffness at a breakpoint above this fraction of the first stiffness.
+const HIDDEN: f64 = 0.1;
+
+/// An observation that a straight line does not fit the points (m, N) because they bend: strong by BIC, and large in size.
+pub(crate) fn bends(points: &[(f64, f64)], line: &LineFit) -> Option<String> {
+    let (x, r): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+    let fit = fit_multilinear(&x, &r, BreakCount::ByCriterion { most: 1 })
+        .filter(|fit| fit.indistinct_breakpoints().is_empty())?;
+    let (place, _) = fit.breakpoints.first()?;
+    let ((first, _), (last, _)) = (fit.stiffnesses.first()?, fit.stiffnesses.last()?);
+    let hidden = (last - first).abs() > HIDDEN * first.abs();
+    (hidden && 1.0 - line.r_squared > MISSED).then(|| {
+        format!(
+            "the outward steps are nonlinear near {}: one straight line is a poor fit; use `fit = bilinear` or `fit = multilinear`",
+            readable(*place, Dimension::LENGTH)
+        )
+    })
+}
+
+fn remarks(
+    fit: Option<&MultilinearFit>,
+    count: BreakCount,
+    points: usize,
+    what: &str,
+) -> Vec<String> {
+    let Some(fit) = fit else {
+        let wanted = match count {
+            BreakCount::Exactly(1) => "with one breakpoint".to_owned(),
+            BreakCount::Exactly(breaks) => format!("with {breaks} breakpoints"),
+            BreakCount::ByCriterion { .. } => "with any number of breakpoints".to_owned(),
+        };
+        return vec![format!(
+            "no multilinear curve: {points} {what} are too few for a curve {wanted} (three points per segment and one more)"
+        )];
+    };
+    let mut told = Vec::new();
+    if fit.breakpoints.is_empty() {
+        told.push(format!(
+            "no breakpoint: by BIC one straight line is the best fit of the {what}"
+        ));
+    }
+    if matches!(count, BreakCount::ByCriterion { most } if most > 1 && fit.breakpoints.len() == most)
+    {
+        told.push(format!(
+            "BIC chose the largest allowed number of breakpoints ({}): the curve may be smooth",
+            fit.breakpoints.len()
+        ));
+    }
+    told.extend(fit.indistinct_breakpoints().into_iter().map(|at| {
+        let place = readable(fit.breakpoints[at].0, Dimension::LENGTH);
+        format!("the breakpoint at {place} is weak in the {what}: its change of stiffness is less than twice its standard error")
+    }));
+    told
+}
+
+/// The lists of a curve, in the order of the reference; empty without one.
+pub(crate) fn lists(fit: Option<&MultilinearFit>) -> Vec<NamedResult> {
+    let list = |kind: ResultKind, values: fn(&MultilinearFit) -> &[(f64, f64)]| NamedResult {
+        name: kind.name,
+        value: ResultValue::List(
+            fit.map(|fit| values(fit).iter().map(|(value, _)| *value).collect())
+                .unwrap_or_default(),
+        ),
+        dimension: kind.dimension,
+        contributions: Vec::new(),
+    };
+    vec![
+        list(curves::BREAKS, |fit| &fit.breakpoints),
+        list(curves::BREAK_FORCES, |fit| &fit.forces),
+        list(curves::CURVE_STIFFNESSES, |fit| &fit.stiffnesses),
+    ]
+}
+
+/// The yield results of a curve, in the order of the reference: force, position, last stiffness, its ratio to the first.
+pub(crate) fn yielding(fit: Option<&MultilinearFit>) -> [NamedResult; 4] {
+    let told = |pair: (f64, f64)| (pair.0, Some(pair.1));
+    let knee = fit.and_then(MultilinearFit::yield_point);
+    let broken = fit.filter(|fit| !fit.breakpoints.is_empty());
+    let last = broken.and_then(|fit| fit.stiffnesses.last()).copied();
+    [
+        schema::YIELD_FORCE.found_with(knee.map(|[_, force]| told(force))),
+        schema::YIELD_DISPLACEMENT.found_with(knee.map(|[place, _]| told(place))),
+        schema::POST_YIELD_STIFFNESS.found_with(last.map(told)),
+        schema::POST_YIELD_RATIO.found_with(broken.map(|fit| told(fit.post_yield_ratio))),
+    ]
+}

@@ -1,0 +1,263 @@
+//! Charts of the identification procedures: a stiffness ramp's line and a damping sweep's. In: their steps and fits.
+//! Out: [`Chart`]s in SI.
+
+pub(crate) mod relaxation_figures;
+
+use crate::record::{MultilinearFit, RampHistory, RampStep, SweepHistory, SweepStep};
+use crate::report::figures::chart::{
+    Chart, DASHED, Marker, Quantity, SOLID, Series, Style, palette,
+};
+use crate::report::figures::points::Points;
+use crate::report::number;
+use crate::units::Dimension;
+
+/// Measured points, with the unloading branch separate, and the line K·X + intercept.
+pub(crate) fn force_displacement(history: &RampHistory) -> Chart {
+    let points = |wanted: bool| -> Points {
+        history
+            .steps
+            .iter()
+            .filter(|step| step.returning == wanted)
+            .map(point)
+            .collect()
+    };
+    let mut series = Vec::new();
+    if let Some(fit) = history.fit {
+        let stiffness =
+            number::with_uncertainty(fit.slope, Some(fit.slope_error), Dimension::STIFFNESS);
+        series.push(Series {
+            label: format!("fit, K = {stiffness}"),
+            points: ends(history.steps.iter().map(|step| step.displacement))
+                .map(|x| (x, fit.intercept + fit.slope * x))
+                .into_iter()
+                .collect(),
+            style: Style::line(palette::VERMILION, 1.8, SOLID),
+        });
+    }
+    if let Some(fit) = history.bilinear {
+        let stiffness = number::with_uncertainty(
+            fit.stiffness,
+            Some(fit.stiffness_error),
+            Dimension::STIFFNESS,
+        );
+        let force = number::with_uncertainty(
+            fit.yield_force,
+            Some(fit.yield_force_error),
+            Dimension::FORCE,
+        );
+        let [low, high] = ends(
+            history
+                .steps
+                .iter()
+                .filter(|step| !step.returning)
+                .map(|step| step.displacement),
+        );
+        series.push(Series {
+            label: format!("fit, K = {stiffness}, Fy = {force}"),
+            points: [low, fit.yield_displacement, high]
+                .map(|x| (x, fit.force(x)))
+                .into_iter()
+                .collect(),
+            style: Style::line(palette::VERMILION, 1.8, SOLID),
+        });
+    }
+    if let Some(fit) = &history.multilinear {
+        series.push(curve(fit, history));
+    }
+    let back = points(true);
+    if !back.is_empty() {
+        series.push(Series {
+            label: "return path".to_owned(),
+            points: back,
+            style: RETURN,
+        });
+    }
+    series.push(Series {
+        label: "measured".to_owned(),
+        points: points(false),
+        style: MEASURED,
+    });
+    Chart {
+        x: Quantity::along("Displacement X", Dimension::LENGTH),
+        y: Quantity::of("Restoring force R", Dimension::FORCE),
+        bands: Vec::new(),
+        series,
+        references: Vec::new(),
+    }
+}
+
+/// The segments of the curve, between the ends of the readings and through the breakpoints.
+fn curve(fit: &MultilinearFit, history: &RampHistory) -> Series {
+    let [low, high] = ends(
+        history
+            .steps
+            .iter()
+            .filter(|step| !step.returning)
+            .map(|step| step.displacement),
+    );
+    let mut places: Vec<f64> = fit
+        .breakpoints
+        .iter()
+        .map(|(place, _)| *place)
+        .chain([low, high])
+        .collect();
+    places.sort_by(f64::total_cmp);
+    let stiffness = number::with_uncertainty(
+        fit.stiffnesses[0].0,
+        Some(fit.stiffnesses[0].1),
+        Dimension::STIFFNESS,
+    );
+    let label = match fit.breakpoints.len() {
+        0 => format!("fit, no breakpoint, K = {stiffness}"),
+        1 => format!("fit, 1 breakpoint, K = {stiffness} at first"),
+        count => format!("fit, {count} breakpoints, K = {stiffness} at first"),
+    };
+    Series {
+        label,
+        points: places.into_iter().map(|x| (x, fit.force(x))).collect(),
+        style: Style {
+            marker: Some(Marker::Ring(5.0)),
+            ..Style::line(palette::VERMILION, 1.8, SOLID)
+        },
+    }
+}
+
+const MEASURED: Style = Style::marker(palette::BLUE, Marker::Disc(4.0));
+const RETURN: Style = Style {
+    marker: Some(Marker::Ring(4.5)),
+    ..Style::line(palette::GREEN, 1.2, DASHED)
+};
+/// Largest number of readings drawn for a sweep: more points show nothing more.
+const CLOUD_POINTS: usize = 3000;
+
+/// Steady readings in a light tone, the fitted means with their standard error at each velocity, and `F_d = c·v + F_c`. The readings of
+/// both directions are drawn on one side, each with the sign of its motion.
+pub(crate) fn damping_fit(history: &SweepHistory) -> Chart {
+    let steady: Vec<&SweepStep> = history.steps.iter().filter(|step| step.steady).collect();
+    let every = steady.len().div_ceil(CLOUD_POINTS).max(1);
+    let cloud = steady
+        .iter()
+        .step_by(every)
+        .map(|step| along(step.velocity, step.damping_force))
+        .collect();
+    let mut series = vec![Series {
+        label: "steady readings".to_owned(),
+        points: cloud,
+        style: Style::marker(palette::CLOUD, Marker::Disc(1.8)),
+    }];
+    let means = means(&history.pairs);
+    if let Some(fit) = history.fit {
+        let c = number::with_uncertainty(fit.slope, Some(fit.slope_error), Dimension::DAMPING);
+        let friction =
+            number::with_uncertainty(fit.intercept, Some(fit.intercept_error), Dimension::FORCE);
+        let fastest = means.iter().map(|mean| mean.velocity).fold(0.0, f64::max);
+        series.push(Series {
+            label: format!("fit, c = {c}, Fc = {friction}"),
+            points: [0.0, fastest]
+                .map(|velocity| (velocity, fit.intercept + fit.slope * velocity))
+                .into_iter()
+                .collect(),
+            style: Style::line(palette::VERMILION, 1.8, SOLID),
+        });
+    }
+    series.extend(means.iter().map(|mean| {
+        Series {
+            label: String::new(),
+            points: [
+                mean.force - mean.standard_error,
+                mean.force + mean.standard_error,
+            ]
+            .map(|force| (mean.velocity, force))
+            .into_iter()
+            .collect(),
+            style: Style::line(palette::BLACK, 1.6, SOLID),
+        }
+    }));
+    series.push(Series {
+        label: "half the difference of out and back, mean ± standard error".to_owned(),
+        points: means
+            .iter()
+            .map(|mean| (mean.velocity, mean.force))
+            .collect(),
+        style: Style::marker(palette::BLUE, Marker::Disc(3.2)),
+    });
+    Chart {
+        x: Quantity::along("Velocity", Dimension::VELOCITY),
+        y: Quantity::of("Damping force", Dimension::FORCE),
+        bands: Vec::new(),
+        series,
+        references: Vec::new(),
+    }
+}
+
+/// Absolute value of the velocity \[m/s\], and the force with the sign of the motion \[N\].
+fn along(velocity: f64, force: f64) -> (f64, f64) {
+    (velocity.abs(), force * velocity.signum())
+}
+
+/// The mean of the pairs of one velocity.
+struct Mean {
+    /// \[m/s\]
+    velocity: f64,
+    /// \[N\]
+    force: f64,
+    /// Standard error of the mean \[N\]; 0 for one pair.
+    standard_error: f64,
+}
+
+/// One mean per velocity, in order.
+fn means(pairs: &[(f64, f64)]) -> Vec<Mean> {
+    let mut sorted: Vec<(f64, f64)> = pairs
+        .iter()
+        .map(|(velocity, force)| along(*velocity, *force))
+        .collect();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mean = |group: &[(f64, f64)]| {
+        #[expect(clippy::cast_precision_loss, reason = "far below 2^52 readings")]
+        let count = group.len() as f64;
+        let force = group.iter().map(|(_, force)| force).sum::<f64>() / count;
+        let spread: f64 = group.iter().map(|(_, other)| (other - force).powi(2)).sum();
+        let standard_error = if count > 1.0 {
+            (spread / (count - 1.0) / count).sqrt()
+        } else {
+            0.0
+        };
+        Mean {
+            velocity: group[0].0,
+            force,
+            standard_error,
+        }
+    };
+    sorted.chunk_by(|a, b| a.0 == b.0).map(mean).collect()
+}
+
+fn point(step: &RampStep) -> (f64, f64) {
+    (step.displacement, step.restoring_force)
+}
+
+/// Smallest and largest.
+fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    [low, high]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::means;
+
+    #[test]
+    fn the_bar_of_a_velocity_is_the_standard_error_of_its_mean() {
+        // 1, 2, 3: standard deviation 1, of the mean 1/√3. The return pass has its own sign.
+        let means = means(&[(0.1, 1.0), (0.02, 5.0), (-0.1, -2.0), (0.1, 3.0)]);
+        assert_eq!(
+            (means.len(), means[0].force, means[0].standard_error),
+            (2, 5.0, 0.0)
+        );
+        assert!(
+            (means[1].force - 2.0).abs() < 1e-12
+                && (means[1].standard_error - 3_f64.sqrt().recip()).abs() < 1e-12
+        );
+    }
+}

@@ -1,0 +1,14 @@
+//! The table of an unloading: that of the moves of one degree of freedom, or of the floors of a frame. In: steps. Out: columns.
+
+use crate::procedures::{base_excitation, stiffness_ramp};
+use crate::report::tables::numeric;
+use crate::schema::Column;
+
+/// The numeric columns of both tables.
+pub(crate) fn columns() -> Vec<Column> {
+    [
+        numeric(stiffness_ramp::tables::STEPS),
+        numeric(&base_excitation::tables::unloaded()),
+    ]
+    .concat()
+}

@@ -1,0 +1,92 @@
+//! The history of an `escalate`: every impact as an impact history.
+
+use crate::plan::formula::ResultValue;
+use crate::record::{ImpactHistory, NamedResult, Rest, StruckFrame};
+use crate::uncertainty::Contribution;
+
+/// One impact.
+#[derive(Clone, Debug)]
+pub struct Blow {
+    /// V0, m/s
+    pub velocity: f64,
+    /// ½ Ms V0², J
+    pub energy: f64,
+    /// The results of an impact, in the order of the schema.
+    pub results: Vec<NamedResult>,
+    pub history: ImpactHistory,
+    /// Whether the condition was satisfied. None if the impact was not completed or was not conclusive.
+    pub held: Option<bool>,
+    /// The position and force of the specimen after it: the next impact begins there.
+    pub rest: Option<Rest>,
+}
+
+impl Blow {
+    /// The striker and the struck point, step by step; for a frame, the struck floor.
+    #[must_use]
+    pub const fn impact(&self) -> &ImpactHistory {
+        &self.history
+    }
+
+    /// All floors, if a frame was struck.
+    #[must_use]
+    pub const fn storey(&self) -> Option<&StruckFrame> {
+        self.history.frame.as_ref()
+    }
+
+    /// A number among its results.
+    #[must_use]
+    pub fn number(&self, name: &str) -> Option<f64> {
+        match self
+            .results
+            .iter()
+            .find(|result| result.name == name)?
+            .value
+        {
+            ResultValue::Number { value, .. } => value,
+            ResultValue::List(_) => None,
+        }
+    }
+
+    /// A list among its results.
+    #[must_use]
+    pub fn list(&self, name: &str) -> Option<&[f64]> {
+        match &self
+            .results
+            .iter()
+            .find(|result| result.name == name)?
+            .value
+        {
+            ResultValue::List(values) => Some(values),
+            ResultValue::Number { .. } => None,
+        }
+    }
+
+    /// Displacement \[m\] and force \[N\] of the struck floor after it.
+    #[must_use]
+    pub fn rest_of_struck(&self) -> Option<(f64, f64)> {
+        let struck = self.storey().map_or(0, |history| history.struck);
+        self.rest.as_ref().map(|rest| rest.of(struck))
+    }
+
+    /// The uncertainty contributions of both.
+    #[must_use]
+    pub fn doubts_of_rest(&self) -> Option<[Vec<Contribution>; 2]> {
+        let struck = self.storey().map_or(0, |history| history.struck);
+        self.rest
+            .as_ref()
+            .map(|rest| rest.contributions_at_floor(struck))
+    }
+}
+
+/// A series of impacts, in their order.
+#[derive(Clone, Debug, Default)]
+pub struct EscalateHistory {
+    pub blows: Vec<Blow>,
+}
+
+impl EscalateHistory {
+    /// The impacts on a frame, one by one; none for one degree of freedom.
+    pub fn storeys(&self) -> impl Iterator<Item = &StruckFrame> {
+        self.blows.iter().filter_map(Blow::storey)
+    }
+}

@@ -1,0 +1,202 @@
+//! The second page's results: those that a requirement reads, and the headline results of the procedures. In: a run. Out: a table.
+
+use super::results::budget_table::{self, Scope};
+use super::results::read::{ReadResult, exists, read_by_requirements};
+use super::{Source, capitalised, with_spaces};
+use crate::plan::formula::{Part, ProcedureId, ResultReference, ResultValue};
+use crate::procedures;
+use crate::report::budget::coverage_factor;
+use crate::report::document::{Block, Column, Table, Text};
+use crate::report::number;
+use crate::report::run::Run;
+use crate::report::wording::{common, headline as wording};
+use crate::schema::procedures::stiffness_ramp::R_SQUARED;
+use crate::uncertainty::{Known, known, known_entries};
+
+/// Headline results of a plan that names none.
+const MOST: usize = 6;
+
+/// Results that requirements read, then headline results, with value and expanded uncertainty.
+pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
+    let run = source.run;
+    body.push(Block::section(wording::TITLE));
+    let rows: Vec<Row> = chosen(run)
+        .iter()
+        .filter_map(|chosen| row(run, chosen))
+        .collect();
+    if rows.is_empty() {
+        body.push(Block::paragraph(if run.record.procedures.is_empty() {
+            wording::NO_PROCEDURE
+        } else {
+            wording::NO_RESULT
+        }));
+        return;
+    }
+    let factors = rows
+        .iter()
+        .filter_map(|row| row.factor.as_deref())
+        .any(|factor| factor != "2");
+    let partial = Scope::of(run) == Scope::PartialReal;
+    let mut columns = vec![
+        Column::words(wording::RESULT, 2),
+        Column::words(wording::PROCEDURE, 2),
+        Column::numbers(if partial {
+            wording::VALUE_WITH_U
+        } else {
+            wording::VALUE
+        }),
+    ];
+    if factors {
+        columns.push(Column::numbers(wording::FACTOR));
+    }
+    let cells = |row: Row| {
+        let mut cells = vec![row.name, row.procedure, row.value];
+        if factors {
+            cells.push(row.factor.map_or_else(|| "".into(), Text::from));
+        }
+        cells
+    };
+    body.push(Block::Table(Table {
+        columns,
+        rows: rows.into_iter().map(cells).collect(),
+    }));
+    body.push(Block::note(if partial {
+        wording::STANDARD
+    } else {
+        wording::EXPANDED
+    }));
+    if super::requirements::prints_mark(run) {
+        return;
+    }
+    if run.record.procedures.iter().any(budget_table::is_marked) {
+        body.push(Block::note(common::MARKED));
+    }
+}
+
+/// A row of the table.
+struct Row {
+    name: Text,
+    procedure: Text,
+    value: Text,
+    /// k; None without U.
+    factor: Option<String>,
+}
+
+/// The results of the second page, in the order of the plan.
+pub(super) fn chosen(run: &Run<'_>) -> Vec<ReadResult> {
+    let mut chosen: Vec<ReadResult> = Vec::new();
+    let add = |chosen: &mut Vec<ReadResult>, result: ReadResult| {
+        if !chosen
+            .iter()
+            .any(|other| other.is_same_entry(result, run.record))
+        {
+            chosen.push(result);
+        }
+    };
+    for read in read_by_requirements(run.plan) {
+        add(&mut chosen, read);
+    }
+    match &run.plan.report.results {
+        Some(named) => {
+            for reference in named {
+                add(
+                    &mut chosen,
+                    ReadResult {
+                        reference: *reference,
+                        entry: None,
+                    },
+                );
+            }
+        }
+        None => {
+            let mut left = MOST;
+            for result in headlines(run) {
+                let known = chosen.len();
+                if left > 0 {
+                    add(&mut chosen, result);
+                }
+                left -= chosen.len() - known;
+            }
+        }
+    }
+    chosen.sort_by_key(|chosen| chosen.reference.procedure.0);
+    chosen
+}
+
+/// The headline results that exist: the first of every procedure, then the second of every procedure, and so on.
+fn headlines(run: &Run<'_>) -> Vec<ReadResult> {
+    let names: Vec<Vec<&'static str>> = run
+        .plan
+        .procedures
+        .iter()
+        .take(run.record.procedures.len())
+        .map(|procedure| procedures::facts_of(&procedure.kind).headline)
+        .collect();
+    let longest = names.iter().map(Vec::len).max().unwrap_or(0);
+    let of_rank = |rank: usize| {
+        names.iter().enumerate().filter_map(move |(index, names)| {
+            let name = *names.get(rank)?;
+            let result = run.record.procedures.get(index)?.result(name)?;
+            exists(result).then_some(ReadResult {
+                reference: ResultReference {
+                    procedure: ProcedureId(index),
+                    name,
+                    part: Part::Value,
+                },
+                entry: None,
+            })
+        })
+    };
+    (0..longest).flat_map(of_rank).collect()
+}
+
+/// None if the procedure was not run.
+fn row(run: &Run<'_>, chosen: &ReadResult) -> Option<Row> {
+    let index = chosen.reference.procedure.0;
+    let procedure = run.record.procedures.get(index)?;
+    let result = procedure.result(chosen.reference.name)?;
+    let mut name = Text::from(capitalised(&with_spaces(result.name)));
+    let (value, known, entry) = match &result.value {
+        ResultValue::Number { value, .. } => {
+            let contributions = result.contributions_of(chosen.reference);
+            (*value, known(&contributions, run.record), 0)
+        }
+        ResultValue::List(values) => {
+            let entry = chosen.entry_in(values).unwrap_or(0);
+            let all = known_entries(&result.contributions, values.len(), run.record);
+            name = name.and(wording::entry(
+                budget_table::entry_kind(result.name, procedure),
+                entry + 1,
+            ));
+            let known = if result.contributions.is_empty() {
+                None
+            } else {
+                all.get(entry).copied().flatten()
+            };
+            (values.get(entry).copied(), known, entry)
+        }
+    };
+    let known = known.filter(|known: &Known| known.standard > 0.0);
+    let partial = Scope::of(run) == Scope::PartialReal;
+    let text = match (value, known) {
+        (None, _) => Text::missing(common::NO_VALUE),
+        (Some(value), _) if result.name == R_SQUARED.name => format!("{value:.6}").into(),
+        (Some(value), Some(known)) if partial => {
+            number::with_uncertainty(value, Some(known.standard), result.dimension).into()
+        }
+        (Some(value), Some(known)) => number::with_expanded(value, known, result.dimension).into(),
+        (Some(value), None) => number::text(value, result.dimension).into(),
+    };
+    let mark = if known.is_some() && !budget_table::is_reliable(result, entry) {
+        budget_table::MARK
+    } else {
+        ""
+    };
+    let factor = known.filter(|_| !partial);
+    Some(Row {
+        name,
+        procedure: Text::from(procedure.name.as_str()).soft(format!(" · {}", procedure.kind)),
+        value: text.and(mark),
+        factor: factor.map(coverage_factor::factor),
+    })
+}

@@ -1,0 +1,109 @@
+//! The schema as text: the generated part of the language reference, in Markdown. In: the tables of blocks, functions, units and
+//! diagnostic codes. Out: one text, in which every field, result and code has an anchor. Knows no plan.
+
+use std::fmt::Write as _;
+
+use super::{BLOCKS, BlockKind, FUNCTIONS, Kind};
+use crate::text::diagnostic::Code;
+use crate::units::Dimension;
+use crate::units::display::si_unit;
+use crate::units::unit::{PREFIXES, UNITS};
+
+mod blocks;
+mod options;
+mod values;
+
+const INTRODUCTION: &str = "## Vocabulary
+
+- Every field and result has an anchor: `#impact.duration`. All codes are in `docs/reference/diagnostics.md`.
+- **Value** shows the usual unit and the limits: `mm` ≥ 0 is a length in any unit, at least 0. A number can be written in `%`.
+- A list is `[a, b, …]`, or a range with a step. A range is `a .. b`; a single number b is −b .. b (marked ±) or 0 .. b.
+- ᴿ: for real rigs only. ᶠ: for frames only.
+- *u*: the result has a standard uncertainty, read as `.u`.
+- Arguments of an option are in the order of its parentheses, else of the lines below it: `limit(force: 1500 N)`.
+";
+
+/// The generated part of `grammar/LANGUAGE.md`: every block, field, option and result, then functions and units.
+#[must_use]
+pub fn reference() -> String {
+    let mut text = INTRODUCTION.to_owned();
+    let mut options = Vec::new();
+    let known: Vec<&'static BlockKind> = BLOCKS
+        .iter()
+        .copied()
+        .filter(|block| block.kind != Kind::Later)
+        .collect();
+    for (index, block) in known.iter().enumerate() {
+        blocks::write(&mut text, block, &known[..index], &mut options);
+    }
+    write_later(&mut text);
+    write_functions(&mut text);
+    write_units(&mut text);
+    text
+}
+
+/// The generated part of `docs/reference/diagnostics.md`: every code with its title.
+#[must_use]
+pub fn codes() -> String {
+    let mut text = "| code | |\n|---|---|\n".to_owned();
+    for code in Code::ALL {
+        let title = code
+            .page()
+            .lines()
+            .next()
+            .and_then(|line| line.split_once(": "))
+            .map_or("", |(_, title)| title);
+        let _ = writeln!(text, "| <b id={code}>{code}</b> | {title} |");
+    }
+    text
+}
+
+// Writing to a string cannot fail, so that the results of `write!` are ignored.
+
+fn write_later(text: &mut String) {
+    let _ = writeln!(
+        text,
+        "\n### Not in this version\n\nKeywords that this version of psd does not implement.\n"
+    );
+    for block in BLOCKS.iter().filter(|block| block.kind == Kind::Later) {
+        let _ = writeln!(text, "- `{}`: {}", block.words(), block.doc);
+    }
+}
+
+fn write_functions(text: &mut String) {
+    let _ = writeln!(text, "\n## Functions\n\n| function | |\n|---|---|");
+    for function in FUNCTIONS {
+        let arguments = if function.many { "a, b, …" } else { "a" };
+        let _ = writeln!(
+            text,
+            "| `{}({arguments})` | {} |",
+            function.name, function.doc
+        );
+    }
+}
+
+fn write_units(text: &mut String) {
+    let _ = writeln!(
+        text,
+        "\n## Units\n\n| unit | name | measures | prefixes | in SI |\n|---|---|---|---|---|"
+    );
+    for unit in UNITS {
+        let prefixes = if unit.prefixes { "yes" } else { "" };
+        let base = if unit.dimension == Dimension::NUMBER {
+            String::new()
+        } else {
+            format!(" `{}`", si_unit(unit.dimension))
+        };
+        let (symbol, doc, measures) = (unit.symbol, unit.doc, unit.dimension.describe());
+        let _ = writeln!(
+            text,
+            "| `{symbol}` | {doc} | {measures} | {prefixes} | {}{base} |",
+            unit.factor
+        );
+    }
+    let prefixes: Vec<String> = PREFIXES
+        .iter()
+        .map(|(prefix, factor)| format!("`{prefix}` {factor:e}"))
+        .collect();
+    let _ = writeln!(text, "\nPrefixes: {}.", prefixes.join(", "));
+}

@@ -1,0 +1,181 @@
+//! The options of a field, each with its arguments below it. An argument or a list of options that was written before is named only.
+
+use std::fmt::Write as _;
+
+use super::values::{default, is_truth, value};
+use crate::schema::types::{BlockKind, Field, FieldType, Need, Variant};
+
+/// The default of an argument that is a field of its block as well.
+const OF_THE_RIG: &str = "the rig's";
+
+/// An option that was written: in all its parts, with its field and block.
+pub(super) struct Listed {
+    form: String,
+    field: &'static str,
+    block: &'static BlockKind,
+}
+
+/// The options that were written, and the arguments of one block.
+pub(super) struct Written<'b> {
+    /// The blocks that a value may name.
+    blocks: &'b [&'b BlockKind],
+    options: &'b mut Vec<Listed>,
+    /// An argument in all its parts, and the option with it.
+    arguments: Vec<(String, &'static str)>,
+}
+
+impl<'b> Written<'b> {
+    /// Nothing is written yet.
+    pub(super) const fn new(
+        blocks: &'b [&'static BlockKind],
+        options: &'b mut Vec<Listed>,
+    ) -> Self {
+        Self {
+            blocks,
+            options,
+            arguments: Vec::new(),
+        }
+    }
+
+    /// Writes the options of the field `field`.
+    pub(super) fn write(
+        &mut self,
+        text: &mut String,
+        block: &'static BlockKind,
+        field: &'static str,
+        variants: &'static [Variant],
+    ) {
+        self.write_at(text, block, field, variants, 1);
+    }
+
+    fn write_at(
+        &mut self,
+        text: &mut String,
+        block: &'static BlockKind,
+        field: &'static str,
+        variants: &'static [Variant],
+        depth: usize,
+    ) {
+        let indent = "  ".repeat(depth);
+        let mut known: Vec<(String, Vec<String>)> = Vec::new();
+        for variant in variants {
+            let form = format!("{variant:?}");
+            if let Some(option) = self.options.iter().find(|it| it.form == form) {
+                push(&mut known, &option.origin(block), variant.name);
+                continue;
+            }
+            self.options.push(Listed { form, field, block });
+            self.write_option(text, block, variant, depth);
+        }
+        for (of, names) in known {
+            let named = if names.len() == variants.len() {
+                "all".to_owned()
+            } else {
+                names.join(", ")
+            };
+            let _ = writeln!(text, "{indent}- {named} as in {of}");
+        }
+    }
+
+    /// An option, its usual arguments, then those that few plans set, then those that are explained elsewhere. The names behind the
+    /// option show the order of the arguments where the lines below do not.
+    fn write_option(
+        &mut self,
+        text: &mut String,
+        block: &'static BlockKind,
+        variant: &'static Variant,
+        depth: usize,
+    ) {
+        let (mut known, mut of_block) = (Vec::new(), Vec::new());
+        let mut new: Vec<&'static Field> = Vec::new();
+        for argument in variant.arguments {
+            let form = format!("{argument:?}");
+            if argument.need == Need::Said(OF_THE_RIG) && block.field(argument.name).is_some() {
+                of_block.push(format!("`{}`", argument.name));
+            } else if let Some((_, of)) = self.arguments.iter().find(|(it, _)| *it == form) {
+                push(&mut known, &format!("`{of}`"), argument.name);
+            } else {
+                self.arguments.push((form, variant.name));
+                new.push(argument);
+            }
+        }
+        let indent = "  ".repeat(depth);
+        new.sort_by_key(|argument| argument.advanced);
+        let in_order = new
+            .iter()
+            .map(|argument| argument.name)
+            .eq(variant.arguments.iter().map(|argument| argument.name));
+        let _ = writeln!(
+            text,
+            "{indent}- `{}`: {}",
+            signature(variant, in_order),
+            variant.doc
+        );
+        let indent = "  ".repeat(depth + 1);
+        for argument in new {
+            let marks = if argument.advanced { " (advanced)" } else { "" };
+            let value = [value(argument, self.blocks), default(argument)]
+                .into_iter()
+                .filter(|part| !part.is_empty())
+                .collect::<Vec<String>>()
+                .join("; ");
+            let _ = writeln!(
+                text,
+                "{indent}- `{}` [{value}]{marks}: {}",
+                argument.name, argument.doc
+            );
+            if let (FieldType::Choice(inner), false) = (argument.ty, is_truth(argument)) {
+                self.write_at(text, block, argument.name, inner, depth + 2);
+            }
+        }
+        for (of, names) in known {
+            let _ = writeln!(text, "{indent}- {} as in {of}", names.join(", "));
+        }
+        if !of_block.is_empty() {
+            let _ = writeln!(
+                text,
+                "{indent}- {} as in the block, whose value is the default",
+                of_block.join(", ")
+            );
+        }
+    }
+}
+
+impl Listed {
+    /// The field with its block, where that is another one than `block`.
+    fn origin(&self, block: &BlockKind) -> String {
+        if self.block.kind == block.kind {
+            return format!("`{}`", self.field);
+        }
+        let anchor = self.block.keyword.join("-");
+        format!("`{}` of [{}](#{anchor})", self.field, self.block.words())
+    }
+}
+
+/// Adds a name to the group of its origin.
+fn push(groups: &mut Vec<(String, Vec<String>)>, of: &str, name: &str) {
+    let name = format!("`{name}`");
+    match groups.iter_mut().find(|(it, _)| *it == of) {
+        Some((_, names)) => names.push(name),
+        None => groups.push((of.to_owned(), vec![name])),
+    }
+}
+
+/// `elastic(stiffness)`; `short`: `elastic(…)`.
+fn signature(variant: &Variant, short: bool) -> String {
+    let many = variant
+        .arguments
+        .iter()
+        .any(|argument| matches!(argument.ty, FieldType::Inners));
+    let names: Vec<&str> = variant
+        .arguments
+        .iter()
+        .map(|argument| argument.name)
+        .collect();
+    match (names.is_empty(), many) {
+        (true, _) => variant.name.to_owned(),
+        (false, true) => format!("{}(a, b, …)", variant.name),
+        (false, false) if short => format!("{}(…)", variant.name),
+        (false, false) => format!("{}({})", variant.name, names.join(", ")),
+    }
+}

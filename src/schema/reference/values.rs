@@ -1,0 +1,112 @@
+//! Values of fields in words: the type with its limits, and the default.
+
+use crate::schema::types::{BlockKind, Field, FieldType, Need, Range};
+use crate::units::Dimension;
+use crate::units::display::{si_unit, significant};
+
+/// The value of a field: `` `kg` > 0 ``, `string`, `option`; `blocks`: those that it may name.
+pub(super) fn value(field: &Field, blocks: &[&BlockKind]) -> String {
+    match field.ty {
+        FieldType::Text => "string".to_owned(),
+        FieldType::Texts => "list of strings".to_owned(),
+        FieldType::Inner => "model".to_owned(),
+        FieldType::Inners => "two or more models".to_owned(),
+        FieldType::Quantity(dimension) if field.angle => {
+            format!("angle in `deg` or `rad`{}", limits(field.range, dimension))
+        }
+        FieldType::Quantity(dimension) => {
+            format!("{}{}", unit(dimension), limits(field.range, dimension))
+        }
+        FieldType::Quantities(dimension) => format!("list, {}", unit(dimension)),
+        FieldType::Bounds {
+            dimension,
+            symmetric,
+        } => format!(
+            "range{}, {}",
+            if symmetric { " or ±b" } else { "" },
+            unit(dimension)
+        ),
+        FieldType::Interval(dimension) => format!(
+            "range, {}{}",
+            unit(dimension),
+            limits(field.range, dimension)
+        ),
+        FieldType::Count => format!("integer{}", limits(field.range, Dimension::NUMBER)),
+        FieldType::Choice(_) if is_truth(field) => "`true` or `false`".to_owned(),
+        FieldType::Choice(_) => "option".to_owned(),
+        FieldType::Choices(_) => "list of options".to_owned(),
+        FieldType::Reference(kind) => {
+            let named = blocks.iter().find(|block| block.kind == kind);
+            format!(
+                "a `{}`",
+                named.map_or_else(String::new, |block| block.words())
+            )
+        }
+        FieldType::Condition => "condition, as in `require`".to_owned(),
+        FieldType::Figures => "list of `figure(PROCEDURE)`".to_owned(),
+        FieldType::ResultNames => "list of results, such as `[hit.stop_time]`".to_owned(),
+        FieldType::ResultName => "result, such as `hit.stop_time`".to_owned(),
+        FieldType::ColumnName => {
+            "numeric column: `hit.displacement_m`, or `displacement_m` of all tables".to_owned()
+        }
+        FieldType::Tolerance => "value in the unit of the number, or `%` of it; ≥ 0".to_owned(),
+    }
+}
+
+/// Whether a field is `true` or `false`, which needs no list of options.
+pub(super) fn is_truth(field: &Field) -> bool {
+    let FieldType::Choice(variants) = field.ty else {
+        return false;
+    };
+    variants
+        .iter()
+        .map(|variant| variant.name)
+        .eq(["true", "false"])
+}
+
+/// The usual unit of a dimension.
+fn unit(dimension: Dimension) -> String {
+    if dimension == Dimension::NUMBER {
+        "number".to_owned()
+    } else {
+        format!("`{}`", dimension.usual_unit())
+    }
+}
+
+/// The range of a value, ` > 0`; a limit with a dimension is in its SI unit.
+fn limits(range: Range, dimension: Dimension) -> String {
+    let shown = |value: f64| {
+        let value = if dimension == Dimension::NUMBER {
+            (value * 1e4).round() / 1e4
+        } else {
+            value
+        };
+        let number = if value.abs() < 1e7 {
+            value.to_string()
+        } else {
+            significant(value, 2)
+        };
+        if value == 0.0 || dimension == Dimension::NUMBER {
+            number
+        } else {
+            format!("{number} {}", si_unit(dimension))
+        }
+    };
+    let (low, high) = (shown(range.low), shown(range.high));
+    match (range.low.is_finite(), range.high.is_finite()) {
+        (false, false) => String::new(),
+        (true, false) if range.above => format!(" > {low}"),
+        (true, false) => format!(" ≥ {low}"),
+        (false, true) => format!(" ≤ {high}"),
+        (true, true) if range.above => format!(" > {low}, ≤ {high}"),
+        (true, true) => format!(" {low} to {high}"),
+    }
+}
+
+/// The default of a field, or that it is required; empty if it has neither.
+pub(super) fn default(field: &Field) -> String {
+    match (field.need, field.default_text()) {
+        (Need::Required, _) => "required".to_owned(),
+        (_, default) => default.unwrap_or_default(),
+    }
+}

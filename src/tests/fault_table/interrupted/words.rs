@@ -1,0 +1,128 @@
+//! psd is killed at every command that it sends to a rig, before it and after it. The run is then resumed. In: a plan, an emulator, the
+//! number of a command. Out: the same end, and no target is sent twice. `run::tape` tests the writes of the run log.
+
+use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+
+use super::cut_off::{GoneOn, gone_on};
+use crate::emulator::{InProcess, Log, SimulatedPort};
+use crate::plan::{Plan, ProcedureKind, StiffnessRamp};
+use crate::record::journal::testing::PowerLoss;
+use crate::record::journal::{Durability, Journal};
+use crate::rig::transport::{Emergency, Port};
+use crate::run::{Unwatched, replay};
+use crate::tests::fault_table::stage::{header, open_through, plan_of, run, stand};
+use crate::tests::testing::ramp;
+
+/// A line on which psd is killed at one command.
+struct Dying {
+    line: SimulatedPort,
+    said: Arc<AtomicUsize>,
+    word: usize,
+    after: bool,
+}
+
+impl Port for Dying {
+    fn write(&mut self, bytes: &[u8], timeout: Duration) -> io::Result<()> {
+        let now = self.said.fetch_add(1, Ordering::SeqCst) == self.word;
+        assert!(!now || self.after, "killed before it");
+        let written = self.line.write(bytes, timeout);
+        assert!(!now, "killed after it");
+        written
+    }
+
+    fn read(&mut self, buffer: &mut [u8], timeout: Duration) -> io::Result<usize> {
+        self.line.read(buffer, timeout)
+    }
+
+    fn discard(&mut self) -> io::Result<()> {
+        self.line.discard()
+    }
+
+    fn emergency(&self) -> io::Result<Box<dyn Emergency>> {
+        self.line.emergency()
+    }
+}
+
+/// Whether psd was killed there.
+fn killed(plan: &Plan, stand: &InProcess, disk: &PowerLoss, word: usize, after: bool) -> bool {
+    let said = Arc::new(AtomicUsize::new(0));
+    let through = |line| -> Box<dyn Port> {
+        Box::new(Dying {
+            line,
+            said: Arc::clone(&said),
+            word,
+            after,
+        })
+    };
+    let ended = catch_unwind(AssertUnwindSafe(|| {
+        let mut rig = open_through(plan, stand, &through).unwrap();
+        let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
+        replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+        replay::record(plan, &mut rig, &mut Unwatched, journal, Box::new(|| None))
+    }));
+    ended.is_err()
+}
+
+/// Three steps out and back.
+fn plan() -> Plan {
+    let ramp = ramp(1e-4);
+    let displacements = ramp.displacements[..3].to_vec();
+    plan_of(vec![ProcedureKind::StiffnessRamp(StiffnessRamp {
+        displacements,
+        return_path: true,
+        ..ramp
+    })])
+}
+
+#[test]
+fn killed_at_every_word_it_goes_on_to_the_same_end_and_no_target_is_carried_out_twice() {
+    let plan = plan();
+    let whole = run(&plan, "");
+    let targets = |stand: &InProcess| {
+        stand
+            .stand()
+            .bench()
+            .moves()
+            .iter()
+            .map(|sent| sent.targets.clone())
+            .collect::<Vec<_>>()
+    };
+    let moves = targets(&whole.stand);
+    for after in [false, true] {
+        let mut kills = 0;
+        loop {
+            let (stand, disk) = (stand(&plan, "", Log::none(), 1), PowerLoss::new());
+            if !killed(&plan, &stand, &disk, kills, after) {
+                break;
+            }
+            kills += 1;
+            // The run log has no entry of a rig before the first contact.
+            if disk.written().is_empty() {
+                continue;
+            }
+            match gone_on(&plan, &stand, &disk, kills) {
+                GoneOn::ToItsEnd(record) => {
+                    assert_eq!(
+                        targets(&stand),
+                        moves,
+                        "word {kills}, {after}: each target once, in order"
+                    );
+                    let results = |record: &crate::record::Record| {
+                        format!("{:?}", record.procedures[0].results)
+                    };
+                    assert_eq!(
+                        results(&record),
+                        results(&whole.record),
+                        "word {kills}, {after}"
+                    );
+                }
+                GoneOn::Ended | GoneOn::NeverBegun => {}
+            }
+        }
+        assert!(kills > 60, "{kills} words");
+    }
+}
