@@ -10,6 +10,7 @@ pub mod results;
 pub(crate) mod rig;
 pub mod source;
 pub mod specimen;
+pub mod study;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -59,6 +60,7 @@ pub use rig::{
     VirtualLink, ZeroAfter,
 };
 pub use specimen::frame::{Ground, MOST_STOREYS, Shake, ShakeDamping, rayleigh};
+pub use study::{Fragility, Studies, Study, StudyEvent, StudyRequirement};
 
 /// Everything that a run needs to know beforehand, in SI units. Names are resolved to indices into its lists.
 #[derive(Clone, Debug)]
@@ -79,6 +81,8 @@ pub struct Plan {
     pub decision_rule: DecisionRule,
     pub report: Report,
     pub golden: Golden,
+    /// Studies of the plan; a run does not read them.
+    pub studies: Studies,
     /// For the part that a low-level check run measures: the plan that it belongs to.
     pub check_run_of: Option<Box<Plan>>,
     /// As in run logs of older versions: an `unload` moves to the estimated position of zero load, move after move.

@@ -4,8 +4,8 @@ use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultVa
 use crate::plan::{
     Annex, Behaviour, Calibration, Contact, DecisionRule, Frame, Impact, ImpactTarget, Integrator,
     Limits, Link, Mode, Plan, PointTarget, Procedure, ProcedureKind, RampFit, Report, RigPlan,
-    Settle, ShakeDamping, Specimen, Stepping, StiffnessRamp, Storey, StoreyTarget, Striker, Until,
-    VirtualLink,
+    Settle, ShakeDamping, Specimen, Stepping, StiffnessRamp, Storey, StoreyTarget, Striker,
+    Studies, Until, VirtualLink,
 };
 use crate::record::{NamedResult, Record};
 use crate::rig::virtual_rig;
@@ -50,6 +50,7 @@ pub(crate) fn empty_plan() -> Plan {
         },
         golden: crate::plan::Golden::default(),
         check_run_of: None,
+        studies: Studies::default(),
         unloads_at_once: false,
         files: Vec::new(),
         settings: Vec::new(),

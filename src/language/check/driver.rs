@@ -4,7 +4,7 @@
 use super::checker::Checker;
 use super::declared::Declared;
 use super::{Options, declarations, procedures, rig, warnings};
-use crate::plan::{Plan, PlanFile, Procedure};
+use crate::plan::{Plan, PlanFile, Procedure, Studies};
 use crate::procedures as slices;
 use crate::schema::Kind;
 use crate::text::diagnostic::{Code, Diagnostic};
@@ -195,6 +195,7 @@ pub fn plan(
         report: report?,
         golden: golden?,
         check_run_of: None,
+        studies: Studies::default(),
         unloads_at_once: false,
         files: [text.files, checker.data_files()].concat(),
         settings: text.settings,

@@ -1,0 +1,152 @@
+//! Studies: many runs of the plan with scattered inputs. In: nothing. Out: the checked parameters of `study` and `fragility` blocks, and
+//! the requirements on their probabilities. A run of the plan itself does not read them.
+
+use super::results::ResultReference;
+use super::{Comparison, Condition};
+use crate::physics::study::Confidence;
+use crate::physics::study::correlation::Pair;
+use crate::physics::study::inputs::Source;
+use crate::units::Dimension;
+
+/// Most runs of a study.
+pub const MOST_RUNS: u64 = 10_000_000_000;
+/// Runs of a study that does not state their number.
+pub const USUAL_RUNS: u64 = 10_000;
+/// Scrambled replicates of a Sobol' study: the scatter of their means gives an interval.
+pub const REPLICATES: u32 = 16;
+
+/// What the studies of a plan vary, and how.
+#[derive(Clone, Debug)]
+pub struct Variation {
+    /// The varied values, in the order of the columns of the data set.
+    pub inputs: Vec<Input>,
+    /// One distribution for one input, one table of rows for one or several inputs; their values in this order are those of `inputs`.
+    pub sources: Vec<Source>,
+    /// Rank correlations of sources.
+    pub correlations: Vec<Pair>,
+    pub sampling: Sampling,
+    pub seed: u64,
+}
+
+/// A value of the plan that differs from run to run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Input {
+    /// As in `--set`: `impact_speed`, or `beam.mass`.
+    pub name: String,
+    pub dimension: Dimension,
+    /// Its distribution as the plan writes it.
+    pub text: String,
+    /// The value of the plan without the study, SI.
+    pub nominal: f64,
+}
+
+/// How the points of a study are chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sampling {
+    #[default]
+    Random,
+    LatinHypercube,
+    Sobol,
+}
+
+impl Sampling {
+    /// The keyword of the language.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Random => "random",
+            Self::LatinHypercube => "latin_hypercube",
+            Self::Sobol => "sobol",
+        }
+    }
+}
+
+/// When a study ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Runs {
+    Fixed(u64),
+    /// Once every requirement on a probability of this study is decided, after `at_most` runs at the latest.
+    Decided {
+        confidence: Confidence,
+        at_most: u64,
+    },
+    /// Once half of the interval of every probability is at most this wide, after `at_most` runs at the latest.
+    HalfWidth {
+        half_width: f64,
+        confidence: Confidence,
+        at_most: u64,
+    },
+}
+
+impl Runs {
+    /// The largest number of runs.
+    #[must_use]
+    pub const fn at_most(self) -> u64 {
+        match self {
+            Self::Fixed(runs)
+            | Self::Decided { at_most: runs, .. }
+            | Self::HalfWidth { at_most: runs, .. } => runs,
+        }
+    }
+}
+
+/// A `study` block.
+#[derive(Clone, Debug)]
+pub struct Study {
+    pub name: String,
+    pub variation: Variation,
+    pub runs: Runs,
+    /// Confidence of its intervals.
+    pub confidence: Confidence,
+    /// Results that are kept for every run, beside those that a requirement reads.
+    pub collect: Vec<ResultReference>,
+}
+
+/// A `fragility` block: the probability of an exceedance by the intensity.
+#[derive(Clone, Debug)]
+pub struct Fragility {
+    pub name: String,
+    /// The input that is stepped; its `text` is empty.
+    pub intensity: Input,
+    /// Its values, SI, rising, above 0.
+    pub stripes: Vec<f64>,
+    /// What counts as an exceedance: the condition holds.
+    pub exceeds: Condition,
+    /// The other inputs, if any; without one, every run at an intensity is the same.
+    pub variation: Option<Variation>,
+    /// Runs at each intensity.
+    pub runs: u64,
+    pub confidence: Confidence,
+}
+
+/// What a probability is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StudyEvent {
+    /// This requirement of the plan is not met.
+    Fails { requirement: usize },
+    /// This requirement of the plan is met.
+    Holds { requirement: usize },
+}
+
+/// `require "label" scatter.probability(fails: "stays in travel") < 2 %`: decided by the study, not by a run.
+#[derive(Clone, Debug)]
+pub struct StudyRequirement {
+    pub label: String,
+    /// The condition as the plan writes it.
+    pub text: String,
+    /// Index into the studies of the plan.
+    pub study: usize,
+    pub event: StudyEvent,
+    /// `<`, `<=`, `>` or `>=`.
+    pub comparison: Comparison,
+    /// Between 0 and 1.
+    pub limit: f64,
+}
+
+/// All studies of a plan.
+#[derive(Clone, Debug, Default)]
+pub struct Studies {
+    pub studies: Vec<Study>,
+    pub fragilities: Vec<Fragility>,
+    pub requirements: Vec<StudyRequirement>,
+}
