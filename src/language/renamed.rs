@@ -21,7 +21,9 @@ pub fn restate(trees: &mut [Ast], recorded: bool, diagnostics: &mut Vec<Diagnost
             ItemKind::Use { .. } => {}
             ItemKind::Param { value, bounds, .. } => {
                 walk.expression(value);
-                bounds.iter_mut().for_each(|bounds| walk.expression(bounds));
+                if let Some(bounds) = bounds {
+                    walk.expression(bounds);
+                }
             }
             ItemKind::Let { value, .. } => walk.expression(value),
             ItemKind::Require { condition, .. } => walk.expression(condition),
@@ -94,7 +96,9 @@ impl Walk<'_> {
                 }
             }
             ExprKind::List { items, .. } => {
-                items.iter_mut().for_each(|item| self.word(field, item));
+                for item in items {
+                    self.word(field, item);
+                }
             }
             ExprKind::Parenthesised(inner) => self.word(field, inner),
             _ => {}
@@ -108,7 +112,9 @@ impl Walk<'_> {
             ExprKind::Range { start, end, step } => {
                 self.expression(start);
                 self.expression(end);
-                step.iter_mut().for_each(|step| self.expression(step));
+                if let Some(step) = step {
+                    self.expression(step);
+                }
             }
             ExprKind::Call { name, arguments } => self.arguments(&name.node, arguments),
             ExprKind::Field { base, name } => {

@@ -215,7 +215,7 @@ fn literal(text: &[char]) -> (String, usize) {
                     at += text[at + 1..]
                         .iter()
                         .take_while(|c| c.is_whitespace())
-                        .count()
+                        .count();
                 }
                 Some('n') => value.push('\n'),
                 Some('t') => value.push(' '),
@@ -321,7 +321,9 @@ fn descriptions(schema: &serde_json::Value, found: &mut Vec<String>) {
             }
         }
         serde_json::Value::Array(values) => {
-            values.iter().for_each(|value| descriptions(value, found))
+            for value in values {
+                descriptions(value, found);
+            }
         }
         _ => {}
     }

@@ -19,6 +19,7 @@ mod named;
 mod needs;
 mod opensees;
 mod person;
+mod quiet;
 mod released;
 mod report;
 mod resumed;

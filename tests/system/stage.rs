@@ -9,6 +9,8 @@ use std::time::{Duration, Instant};
 use rustix::process::{Pid, Signal, kill_process};
 use tempfile::TempDir;
 
+use crate::quiet::{self, Beside};
+
 pub const PSD: &str = env!("CARGO_BIN_EXE_psd");
 
 /// Longest wait for any event, far longer than needed: only a program that hangs reaches it.
@@ -112,6 +114,8 @@ pub struct Stage {
     folder: TempDir,
     simulator: Option<Child>,
     logs: usize,
+    /// After the rig emulator has ended.
+    _beside: Beside,
 }
 
 impl Stage {
@@ -131,6 +135,7 @@ impl Stage {
         script: &str,
         files: impl FnOnce(&Path),
     ) -> Self {
+        let beside = quiet::beside();
         let folder = folder();
         files(folder.path());
         let port = folder.path().join("rig");
@@ -143,6 +148,7 @@ impl Stage {
             folder,
             simulator: None,
             logs: 0,
+            _beside: beside,
         };
         stage.power_up(script);
         stage

@@ -94,10 +94,11 @@ fn a_folder_with_older_names_is_verified_under_them() {
         (older(name), digest.to_owned())
     };
     let lines: BTreeMap<String, String> = manifest.lines().map(renamed).collect();
-    let manifest: String = lines
+    let manifest: Vec<String> = lines
         .iter()
         .map(|(name, digest)| format!("{digest}  {name}\n"))
         .collect();
+    let manifest = manifest.concat();
     files.insert(MANIFEST.to_owned(), manifest.into_bytes());
     let wrong = |folder: &Folder| -> Vec<&'static str> {
         examine(folder, &Rebuilt::of(folder, &prediction), &[])

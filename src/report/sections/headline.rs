@@ -96,27 +96,24 @@ pub(super) fn chosen(run: &Run<'_>) -> Vec<ReadResult> {
     for read in read_by_requirements(run.plan) {
         add(&mut chosen, read);
     }
-    match &run.plan.report.results {
-        Some(named) => {
-            for reference in named {
-                add(
-                    &mut chosen,
-                    ReadResult {
-                        reference: *reference,
-                        entry: None,
-                    },
-                );
-            }
+    if let Some(named) = &run.plan.report.results {
+        for reference in named {
+            add(
+                &mut chosen,
+                ReadResult {
+                    reference: *reference,
+                    entry: None,
+                },
+            );
         }
-        None => {
-            let mut left = MOST;
-            for result in headlines(run) {
-                let known = chosen.len();
-                if left > 0 {
-                    add(&mut chosen, result);
-                }
-                left -= chosen.len() - known;
+    } else {
+        let mut left = MOST;
+        for result in headlines(run) {
+            let known = chosen.len();
+            if left > 0 {
+                add(&mut chosen, result);
             }
+            left -= chosen.len() - known;
         }
     }
     chosen.sort_by_key(|chosen| chosen.reference.procedure.0);

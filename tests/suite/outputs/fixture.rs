@@ -557,6 +557,7 @@ fn plan() -> Plan {
         },
         golden: psd::plan::Golden::default(),
         check_run_of: None,
+        studies: psd::plan::Studies::default(),
         unloads_at_once: false,
         files: vec![
             PlanFile {

@@ -55,10 +55,16 @@ pub fn report(checker: &mut Checker, procedures: &[Option<Procedure>]) -> Option
         Some(_) => checker.texts(block, schema::SIGN.name),
         None => Some(Vec::new()),
     };
-    let logo = logo(checker, block);
+    let logo = match checker.field(block, schema::LOGO.name) {
+        Some((_, written)) => picture(checker, schema::LOGO.name, &written.value).map(Some),
+        None => Some(None),
+    };
     let photos = photos(checker, block);
     let annexes = annexes(checker, block);
-    let results = results(checker, block);
+    let results = match checker.field(block, schema::RESULTS.name) {
+        Some((_, written)) => results(checker, &written.value).map(Some),
+        None => Some(None),
+    };
     Some(Report {
         title: title?,
         figures: figures?,
@@ -69,13 +75,6 @@ pub fn report(checker: &mut Checker, procedures: &[Option<Procedure>]) -> Option
         logo: logo?,
         photos: photos?,
     })
-}
-
-fn logo(checker: &mut Checker, block: usize) -> Option<Option<Picture>> {
-    match checker.field(block, schema::LOGO.name) {
-        Some((_, written)) => picture(checker, schema::LOGO.name, &written.value).map(Some),
-        None => Some(None),
-    }
 }
 
 fn photos(checker: &mut Checker, block: usize) -> Option<Vec<Picture>> {
@@ -132,14 +131,11 @@ fn annexes(checker: &mut Checker, block: usize) -> Option<Vec<Annex>> {
     Some(Annex::ALL.into_iter().filter(is_chosen).collect())
 }
 
-/// The results of the second page, each once, in the order of the plan. None if the plan names none.
-fn results(checker: &mut Checker, block: usize) -> Option<Option<Vec<ResultReference>>> {
-    let Some((_, written)) = checker.field(block, schema::RESULTS.name) else {
-        return Some(None);
-    };
-    let items = match &written.value.kind {
+/// The results of the second page, each once, in the order of the plan.
+fn results<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option<Vec<ResultReference>> {
+    let items = match &written.kind {
         ExprKind::List { items, unit: None } => items.as_slice(),
-        _ => std::slice::from_ref(&written.value),
+        _ => std::slice::from_ref(written),
     };
     let checked: Vec<Option<ResultReference>> =
         items.iter().map(|item| result(checker, item)).collect();
@@ -149,7 +145,7 @@ fn results(checker: &mut Checker, block: usize) -> Option<Option<Vec<ResultRefer
             results.push(reference);
         }
     }
-    Some(Some(results))
+    Some(results)
 }
 
 /// `hit.max_displacement`

@@ -59,12 +59,14 @@ pub(crate) fn exists(result: &NamedResult) -> bool {
 
 fn collect(formula: &Formula, entry: Option<usize>, into: &mut Vec<ReadResult>) {
     match formula {
-        Formula::Constant(_) | Formula::Stated(_) | Formula::CriticalTimeStep => {}
         Formula::Result(reference) if reference.part == Part::Value => into.push(ReadResult {
             reference: *reference,
             entry,
         }),
-        Formula::Result(_) => {}
+        Formula::Constant(_)
+        | Formula::Stated(_)
+        | Formula::CriticalTimeStep
+        | Formula::Result(_) => {}
         Formula::Index(inner, index) => collect(inner, Some(*index), into),
         Formula::Negate(inner) => collect(inner, entry, into),
         Formula::Binary(_, left, right) => [left, right]
