@@ -5,7 +5,7 @@ use std::hint::black_box;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use psd::physics::contact::state::ContactLaw;
+use psd::physics::contact::ContactLaw;
 use psd::physics::impact::batch::{self, Impact};
 use psd::physics::impact::{Columns, ImpactInput, ImpactSolver, Until, simulate};
 use psd::physics::specimen::{Elastic, RestoringForce, SpecimenModel};

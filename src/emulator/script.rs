@@ -26,7 +26,13 @@
 //! Above, REPLIES is `reply`, `replies 3` or `replies for ever`. A fault after a number of moves or readings affects the reply
 //! to the last of them; `after 3 replies` affects the fourth.
 
+mod fault_words;
+#[cfg(test)]
+mod tests;
+mod words;
+
 use super::bench::fault::BenchFault;
+use words::Words;
 
 /// The faults, in the order of their lines.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -142,7 +148,7 @@ impl Script {
     }
 
     fn add(&mut self, line: &str) -> Result<(), String> {
-        let mut words = Words(line.split_whitespace().collect());
+        let mut words = Words::of(line);
         let ram = if words.take(&["axis"]) {
             words.axis()?
         } else {
@@ -161,7 +167,7 @@ fn fault(line: &str) -> Result<Fault, String> {
     let (when, what) = line
         .split_once(':')
         .ok_or("`:` is missing between the time and the fault")?;
-    let mut words = Words(what.split_whitespace().collect());
+    let mut words = Words::of(what);
     let probability = words.probability()?;
     let when = self::when(when, probability)?;
     let on_load_cell = words.take(&["load", "cell"]);
@@ -176,7 +182,7 @@ fn fault(line: &str) -> Result<Fault, String> {
     } else {
         0
     };
-    let what = self::what(&mut words)?;
+    let what = fault_words::what(&mut words)?;
     words.end()?;
     if ram > 0 && !matches!(what, What::Bench(_)) {
         return Err(
@@ -222,7 +228,7 @@ impl Fault {
 }
 
 fn when(text: &str, probability: Option<f64>) -> Result<When, String> {
-    let mut words = Words(text.split_whitespace().collect());
+    let mut words = Words::of(text);
     let when = if words.take(&["at"]) {
         When::At(words.amount("s")?)
     } else if words.take(&["after"]) {
@@ -253,271 +259,3 @@ fn when(text: &str, probability: Option<f64>) -> Result<When, String> {
     }
     Ok(when)
 }
-
-fn what(words: &mut Words<'_>) -> Result<What, String> {
-    let verb = words.next()?;
-    let reply = |words: &mut Words<'_>, fault| Ok(What::Replies(fault, words.replies()?));
-    match verb {
-        "drop" => reply(words, ReplyFault::Drop),
-        "repeat" => reply(words, ReplyFault::Repeat),
-        "replay" => reply(words, ReplyFault::Replay),
-        "split" => {
-            let replies = words.replies()?;
-            let at = words.next()?;
-            let bytes = words.bytes()?;
-            match at {
-                "at" => Ok(What::Replies(ReplyFault::SplitAt(bytes), replies)),
-                "every" if bytes > 0 => Ok(What::Replies(ReplyFault::SplitEvery(bytes), replies)),
-                _ => Err("write `at 5 bytes` or `every 5 bytes`".to_owned()),
-            }
-        }
-        "cut" => {
-            let replies = words.replies()?;
-            words.expect("at")?;
-            Ok(What::Replies(ReplyFault::CutAt(words.bytes()?), replies))
-        }
-        "delay" => {
-            let replies = words.replies()?;
-            let seconds = words.amount("s")?;
-            #[expect(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "bounded, and not negative"
-            )]
-            let milliseconds = (seconds.clamp(0.0, 1e6) * 1e3) as u64;
-            Ok(What::Replies(ReplyFault::Delay(milliseconds), replies))
-        }
-        "flip" => {
-            let bit = if words.take(&["a", "bit"]) {
-                None
-            } else {
-                words.expect("bit")?;
-                Some(words.size()?)
-            };
-            let replies = if words.take(&["of"]) {
-                words.replies()?
-            } else {
-                Some(1)
-            };
-            Ok(What::Replies(ReplyFault::FlipBit(bit), replies))
-        }
-        "garbage" | "fill" => {
-            let count = words.bytes()?;
-            let byte = if verb == "fill" {
-                words.expect("of")?;
-                let word = words.next()?;
-                Some(
-                    u8::from_str_radix(word, 16)
-                        .map_err(|_| format!("`{word}` is not a hexadecimal byte"))?,
-                )
-            } else {
-                None
-            };
-            let place = match words.next()? {
-                "before" => Place::Before,
-                "inside" => Place::Inside,
-                "after" => Place::After,
-                other => {
-                    return Err(format!(
-                        "`{other}` is invalid: write before, inside or after"
-                    ));
-                }
-            };
-            let replies = if words.ended() {
-                Some(1)
-            } else {
-                words.replies()?
-            };
-            Ok(What::Replies(
-                ReplyFault::Garbage { count, byte, place },
-                replies,
-            ))
-        }
-        "hang" => {
-            words.expect("up")?;
-            if words.take(&["before", "reply"]) {
-                Ok(What::Replies(ReplyFault::HangUpBefore, Some(1)))
-            } else if words.take(&["after", "reply"]) {
-                Ok(What::Replies(ReplyFault::HangUpAfter, Some(1)))
-            } else {
-                Ok(What::Line(LineFault::HangUp))
-            }
-        }
-        "reboot" => Ok(What::Line(LineFault::Reboot)),
-        "stop" => {
-            words.expect("reading")?;
-            Ok(What::Line(LineFault::StopReading))
-        }
-        "freeze" if words.take(&["firmware"]) => {
-            Ok(What::Line(LineFault::FreezeFirmware(words.amount("s")?)))
-        }
-        _ => bench_fault(verb, words).map(What::Bench),
-    }
-}
-
-fn bench_fault(verb: &str, words: &mut Words<'_>) -> Result<BenchFault, String> {
-    match verb {
-        "freeze" => match words.next()? {
-            "force" => Ok(BenchFault::FreezeForce),
-            "displacement" => Ok(BenchFault::FreezeDisplacement),
-            other => Err(format!(
-                "`{other}` cannot freeze: write firmware, force or displacement"
-            )),
-        },
-        "scale" => {
-            let of = words.next()?;
-            words.expect("by")?;
-            let factor = words.number()?;
-            match of {
-                "force" => Ok(BenchFault::ScaleForce(factor)),
-                "displacement" => Ok(BenchFault::ScaleDisplacement(factor)),
-                other => Err(format!(
-                    "`{other}` cannot be scaled: write force or displacement"
-                )),
-            }
-        }
-        "clip" => {
-            words.expect("force")?;
-            words.expect("at")?;
-            Ok(BenchFault::ClipForce(words.amount("N")?))
-        }
-        "drift" => {
-            let of = words.next()?;
-            match of {
-                "force" => Ok(BenchFault::Drift(words.amount("N/s")?)),
-                "displacement" => Ok(BenchFault::DriftDisplacement(words.amount("mm/s")? * 1e-3)),
-                other => Err(format!(
-                    "`{other}` cannot drift: write force or displacement"
-                )),
-            }
-        }
-        "spike" => Ok(BenchFault::Spike(words.amount("N")?)),
-        "number" => Ok(BenchFault::Number(
-            words.next()?.trim_matches('"').to_owned(),
-        )),
-        "reach" => Ok(BenchFault::Reach(words.amount("%")? / 100.0)),
-        "stick" => Ok(BenchFault::Reach(0.0)),
-        "lag" => Ok(BenchFault::Lag(words.amount("s")?)),
-        "fracture" => {
-            words.expect("at")?;
-            let displacement = words.amount("mm")? * 1e-3;
-            words.expect("to")?;
-            Ok(BenchFault::Fracture {
-                displacement,
-                left: words.amount("%")? / 100.0,
-            })
-        }
-        other => Err(format!("unknown fault `{other}`")),
-    }
-}
-
-/// The unread words of half a line.
-struct Words<'a>(std::collections::VecDeque<&'a str>);
-
-impl<'a> Words<'a> {
-    fn next(&mut self) -> Result<&'a str, String> {
-        self.0
-            .pop_front()
-            .ok_or_else(|| "the line ends too early".to_owned())
-    }
-
-    fn take(&mut self, words: &[&str]) -> bool {
-        let found = self.0.iter().take(words.len()).eq(words);
-        if found {
-            self.0.drain(..words.len());
-        }
-        found
-    }
-
-    fn expect(&mut self, word: &str) -> Result<(), String> {
-        let found = self.next()?;
-        if found == word {
-            Ok(())
-        } else {
-            Err(format!("found `{found}`, expected `{word}`"))
-        }
-    }
-
-    fn ended(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    fn end(&self) -> Result<(), String> {
-        self.0
-            .front()
-            .map_or(Ok(()), |word| Err(format!("unexpected `{word}`")))
-    }
-
-    fn count(&mut self) -> Result<u64, String> {
-        let word = self.next()?;
-        word.parse().map_err(|_| format!("`{word}` is not a count"))
-    }
-
-    /// The index of an axis, from its number (from 1).
-    fn axis(&mut self) -> Result<usize, String> {
-        let word = self.next()?;
-        word.parse::<usize>()
-            .ok()
-            .and_then(|axis| axis.checked_sub(1))
-            .ok_or_else(|| format!("`{word}` is not an axis: the first is 1"))
-    }
-
-    fn size(&mut self) -> Result<usize, String> {
-        let word = self.next()?;
-        word.parse().map_err(|_| format!("`{word}` is not a count"))
-    }
-
-    fn bytes(&mut self) -> Result<usize, String> {
-        let count = self.size()?;
-        match self.next()? {
-            "byte" | "bytes" if count <= 16 << 20 => Ok(count),
-            "byte" | "bytes" => Err(format!("{count} bytes are too many (limit 16 MiB)")),
-            other => Err(format!("found `{other}`, expected `bytes`")),
-        }
-    }
-
-    fn number(&mut self) -> Result<f64, String> {
-        let word = self.next()?;
-        word.parse()
-            .ok()
-            .filter(|value: &f64| value.is_finite())
-            .ok_or_else(|| format!("`{word}` is not a number"))
-    }
-
-    /// A number with its required unit.
-    fn amount(&mut self, unit: &str) -> Result<f64, String> {
-        let value = self.number()?;
-        self.expect(unit)?;
-        Ok(value)
-    }
-
-    /// `reply`, `replies 3`, `replies for ever`.
-    fn replies(&mut self) -> Result<Option<u64>, String> {
-        match self.next()? {
-            "reply" => Ok(Some(1)),
-            "replies" if self.take(&["for", "ever"]) => Ok(None),
-            "replies" => self.count().map(Some),
-            other => Err(format!("found `{other}`, expected `reply` or `replies`")),
-        }
-    }
-
-    /// `with 0.01` at the end.
-    fn probability(&mut self) -> Result<Option<f64>, String> {
-        let Some(at) = self.0.iter().position(|word| *word == "with") else {
-            return Ok(None);
-        };
-        let mut rest = Words(self.0.split_off(at));
-        rest.expect("with")?;
-        let probability = rest.number()?;
-        rest.end()?;
-        let sound = (0.0..=1.0).contains(&probability);
-        if sound {
-            Ok(Some(probability))
-        } else {
-            Err(format!("{probability} is not a probability"))
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests;

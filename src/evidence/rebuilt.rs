@@ -17,7 +17,7 @@ use crate::record::journal::EntryKind;
 use crate::record::remote::DrivenStep;
 use crate::record::{Outcome, Record};
 use crate::report::{
-    FileDigest, Issue, IssueKind, NullSink, OutputError, OutputSink, Prediction, Provenance,
+    FileDigest, Issue, IssueKind, NullSink, OutputError, OutputSink, Prediction, Provenance, Run,
 };
 use crate::run::replay;
 use crate::run::replay::{CUT_OFF, Mismatch, Replayed};
@@ -77,6 +77,17 @@ impl PlayedBack {
             mismatch,
             steps,
         })
+    }
+
+    /// The run as its report reads it.
+    #[must_use]
+    pub const fn run(&self) -> Run<'_> {
+        Run {
+            plan: &self.plan,
+            record: &self.record,
+            assessment: &self.assessment,
+            provenance: &self.provenance,
+        }
     }
 
     /// Puts every file of the results into a sink, except the manifest.

@@ -32,6 +32,7 @@ pub use crate::physics::structure::portal::{
     ElasticStiffnesses, FrameMasses, Loads, Mechanism, Portal, Sections, elastic_stiffnesses,
 };
 
+pub use procedure::ProcedureKind;
 pub use procedure::cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use procedure::damping_sweep::DampingSweep;
 pub use procedure::identification::{
@@ -242,58 +243,6 @@ impl Striker {
 pub struct Procedure {
     pub name: String,
     pub kind: ProcedureKind,
-}
-
-/// The parameters of a procedure.
-#[derive(Clone, Debug)]
-pub enum ProcedureKind {
-    StiffnessRamp(StiffnessRamp),
-    DampingSweep(DampingSweep),
-    Impact(Impact),
-    Shake(Shake),
-    Cycle(Cycle),
-    Unload(Unload),
-    FrameUnload(FrameUnload),
-    Escalate(Escalate),
-    Move(Move),
-    /// The operator inspects the specimen.
-    Inspect {
-        note: String,
-    },
-}
-
-impl ProcedureKind {
-    /// The block's keyword, as in `summary.json`.
-    #[must_use]
-    pub const fn keyword(&self) -> &'static str {
-        match self {
-            Self::StiffnessRamp(_) => "stiffness ramp",
-            Self::DampingSweep(_) => "damping sweep",
-            Self::Impact(_) => "impact",
-            Self::Shake(_) => "shake",
-            Self::Cycle(_) => "cycle",
-            Self::Unload(_) | Self::FrameUnload(_) => "unload",
-            Self::Escalate(_) => "escalate",
-            Self::Move(_) => "move",
-            Self::Inspect { .. } => "inspect",
-        }
-    }
-
-    /// The tested specimen, as an index into `Plan::specimens`; None of a procedure that only moves or inspects.
-    #[must_use]
-    pub const fn specimen(&self) -> Option<usize> {
-        match self {
-            Self::StiffnessRamp(ramp) => Some(ramp.specimen),
-            Self::DampingSweep(sweep) => Some(sweep.specimen),
-            Self::Impact(impact) => Some(impact.specimen),
-            Self::Shake(shake) => Some(shake.specimen),
-            Self::Cycle(cycle) => Some(cycle.specimen),
-            Self::Unload(unload) => Some(unload.specimen),
-            Self::FrameUnload(unload) => Some(unload.specimen),
-            Self::Escalate(series) => Some(series.impact.specimen),
-            Self::Move(_) | Self::Inspect { .. } => None,
-        }
-    }
 }
 
 /// When the operator is asked to inspect.

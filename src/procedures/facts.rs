@@ -3,6 +3,7 @@
 
 use super::unload;
 use crate::plan::{Condition, Contact, Dependence, FigureKind, ShakeDamping, Stepping};
+use crate::record::BroughtTogether;
 
 /// The structure that a procedure tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,6 +54,8 @@ pub(crate) struct Recorded {
     pub entries: &'static str,
     /// The method by which the contributions to the uncertainty of its results were found.
     pub uncertainty: &'static str,
+    /// The correction of the readings of a sweep's strokes to one position.
+    pub strokes: Option<BroughtTogether>,
 }
 
 impl Default for Recorded {
@@ -63,6 +66,7 @@ impl Default for Recorded {
             budgeted: &[],
             entries: "number",
             uncertainty: unload::report::UNCERTAINTY,
+            strokes: None,
         }
     }
 }

@@ -21,20 +21,17 @@ use crate::physics::self_test::Part;
 use crate::plan::{
     DeclaredNoise, Figure, FigureKind, Ground, Impact, Plan, Procedure, ProcedureKind,
 };
-use crate::record::{
-    BroughtTogether, CycleStep, History, NamedResult, ProcedureRecord, RampHistory, SweepStep,
-};
+use crate::record::{CycleStep, History, NamedResult, ProcedureRecord, RampHistory, SweepStep};
 use crate::report::Run;
 use crate::report::document::Block;
 use crate::report::figures::chart::{Chart, SharedCurve};
-use crate::report::tables::{Table, each_once, numeric, written};
+use crate::report::tables::{Table, each_once, numeric};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::schema::{Column, Kind};
 use crate::uncertainty::Source;
 use facts::{Delay, Facts, Leaves, Recorded, Tests};
-use impact::check::judge::Strikers;
 
 /// Check: the procedure that a block specifies; None after an error, and for a block that does not declare a procedure.
 pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
@@ -69,23 +66,13 @@ pub(crate) fn judge(
 ) {
     match kind {
         ProcedureKind::Impact(impact) => {
-            if let Some(striker) = declared.striker(impact.striker) {
-                let strikers = Strikers {
-                    slowest: striker,
-                    fastest: striker,
-                };
-                impact::check::judge::judge(checker, block, impact, &strikers, declared);
-            }
+            impact::check::judge::with_its_striker(checker, block, impact, declared);
         }
         ProcedureKind::Escalate(escalate) => {
             impact_series::judge::judge(checker, block, escalate, declared);
         }
         ProcedureKind::Shake(shake) => {
-            if let Some(frame) = declared.frame(shake.specimen)
-                && let Some(ground) = declared.ground(shake.ground)
-            {
-                base_excitation::check::judge(checker, block, shake, frame, ground);
-            }
+            base_excitation::check::judge(checker, block, shake, declared);
         }
         ProcedureKind::StiffnessRamp(_)
         | ProcedureKind::DampingSweep(_)
@@ -172,7 +159,7 @@ pub(crate) fn facts_of(kind: &ProcedureKind) -> Facts<'_> {
 pub(crate) fn recorded(history: &History) -> Recorded {
     match history {
         History::Ramp(history) => stiffness_ramp::facts::recorded(history),
-        History::Sweep(_) => damping_sweep::facts::recorded(),
+        History::Sweep(history) => damping_sweep::facts::recorded(history),
         History::Impact(history) => impact::facts::recorded(history),
         History::Shake(history) => base_excitation::facts::recorded(history),
         History::Cycle(_) => cycle::facts::recorded(),
@@ -248,17 +235,10 @@ pub(crate) fn attribute(
 /// Run: an upper bound of a procedure's steps, if the plan alone gives one.
 pub(crate) fn most_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
     match kind {
-        ProcedureKind::StiffnessRamp(ramp) => {
-            let once = ramp.displacements.len() as u64 * if ramp.return_path { 2 } else { 1 };
-            Some(once * u64::from(ramp.repeats))
-        }
+        ProcedureKind::StiffnessRamp(ramp) => Some(ramp.targets()),
         ProcedureKind::Impact(_) | ProcedureKind::Shake(_) => known_steps(kind, plan),
         ProcedureKind::Cycle(cycle) => cycle.rate.is_none().then(|| cycle.targets() + 1),
-        ProcedureKind::Escalate(series) => {
-            let steps = series.known_steps_of_an_impact(plan)?;
-            let steps = steps.saturating_add(impact_series::run::most_moves(series.between));
-            Some(steps.saturating_mul(series.velocities.len() as u64))
-        }
+        ProcedureKind::Escalate(series) => impact_series::run::most_steps(series, plan),
         ProcedureKind::Move(_) => Some(1),
         ProcedureKind::Inspect { .. } => Some(0),
         ProcedureKind::DampingSweep(_)
@@ -343,22 +323,13 @@ pub(crate) fn tables(procedure: &ProcedureRecord) -> Vec<Table<'_>> {
     let name = procedure.name.clone();
     match &procedure.history {
         History::Ramp(history) => stiffness_ramp::tables::tables(name, history),
-        History::Sweep(history) => {
-            let steps = &history.steps;
-            vec![Table::of(name, steps, |steps| {
-                written(damping_sweep::tables::STEPS, steps)
-            })]
-        }
+        History::Sweep(history) => vec![damping_sweep::tables::table(name, history)],
         History::Impact(history) => vec![impact::tables::table(name, history)],
         History::Shake(history) => vec![base_excitation::tables::table(name, history)],
         History::Cycle(history) => cycle::tables::tables(name, history),
         History::Escalate(history) => impact_series::tables::tables(name, history),
-        History::Move(steps) => vec![Table::of(name, steps, |steps| {
-            written(stiffness_ramp::tables::STEPS, steps)
-        })],
-        History::FrameUnload(steps) => {
-            vec![Table::of(name, steps, base_excitation::tables::unloading)]
-        }
+        History::Move(steps) => vec![stiffness_ramp::tables::of_moves(name, steps)],
+        History::FrameUnload(steps) => vec![unload::tables::of_floors(name, steps)],
         History::Inspect => Vec::new(),
     }
 }
@@ -465,20 +436,5 @@ pub(crate) fn readings(history: &History, give: &mut dyn FnMut(&[f64], &[f64])) 
             steps.for_each(|step| give(&step.displacement, &step.restoring_force));
         }
         History::Inspect => {}
-    }
-}
-
-/// Report: the correction of the readings of a sweep's strokes to one position; None for another procedure.
-pub(crate) const fn strokes(history: &History) -> Option<BroughtTogether> {
-    match history {
-        History::Sweep(sweep) => Some(sweep.together),
-        History::Ramp(_)
-        | History::Impact(_)
-        | History::Shake(_)
-        | History::Cycle(_)
-        | History::Escalate(_)
-        | History::Move(_)
-        | History::FrameUnload(_)
-        | History::Inspect => None,
     }
 }

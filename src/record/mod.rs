@@ -5,13 +5,12 @@
 pub mod equipment;
 pub mod failpoint;
 mod held;
-mod history;
+pub(crate) mod history;
 mod identity;
 pub mod journal;
 pub mod remote;
 mod zero_drift;
 
-use crate::schema::procedures::stiffness_ramp;
 use serde::{Deserialize, Serialize};
 
 pub use crate::physics::contact::state::StepState;
@@ -27,6 +26,7 @@ use crate::schema::block_of_words;
 use crate::uncertainty::{Contribution, Source, combined_entries};
 use crate::units::Dimension;
 pub use held::Held;
+pub use history::History;
 pub use history::base_excitation::{ShakeHistory, ShakeStep};
 pub use history::cycle::{CycleHistory, CycleStep, WholeCycle};
 pub use history::floors::{FloorStep, Floors, FloorsAt, StruckFrame};
@@ -150,90 +150,6 @@ pub struct NamedResult {
     /// The uncertainty contributions of a number, or of each entry of a list. Empty if its uncertainty is a separate contribution, or if
     /// it has none.
     pub contributions: Vec<Contribution>,
-}
-
-/// The history of a procedure, step by step.
-#[derive(Clone, Debug)]
-pub enum History {
-    Ramp(RampHistory),
-    Sweep(SweepHistory),
-    Impact(ImpactHistory),
-    Shake(ShakeHistory),
-    Cycle(CycleHistory),
-    Escalate(EscalateHistory),
-    Move(Vec<RampStep>),
-    /// The floors of a frame during the unloading.
-    FrameUnload(Vec<UnloadStep>),
-    Inspect,
-}
-
-/// Results of a ramp that are fitted to the relaxation of all its moves and dwells together.
-const OF_SUPERPOSITION: [&str; 6] = [
-    stiffness_ramp::TIME_CONSTANT.name,
-    stiffness_ramp::REMAINING_RELAXATION.name,
-    stiffness_ramp::REQUIRED_PAUSE.name,
-    stiffness_ramp::RELAXATION_SHARE.name,
-    stiffness_ramp::REFERENCE_TIME.name,
-    stiffness_ramp::RELAXATION_RATE.name,
-];
-
-/// Results of a ramp that are fitted to its relaxation with all of its degrees of freedom.
-const OF_RELAXATION: [&str; 4] = [
-    stiffness_ramp::TIME_CONSTANT.name,
-    stiffness_ramp::BRANCH_STIFFNESS.name,
-    stiffness_ramp::REMAINING_RELAXATION.name,
-    stiffness_ramp::REQUIRED_PAUSE.name,
-];
-
-impl History {
-    /// The time step and the critical time step \[s\], if the step was longer than the critical one; for several impacts, those of the
-    /// first.
-    #[must_use]
-    pub fn above_critical(&self) -> Option<(f64, f64)> {
-        let of_blow = |blow: &ImpactHistory| (blow.time_step, blow.critical_time_step);
-        let mut steps = match self {
-            Self::Impact(blow) => vec![of_blow(blow)],
-            Self::Shake(history) => vec![(history.time_step, history.critical_time_step)],
-            Self::Escalate(history) => history
-                .blows
-                .iter()
-                .map(|blow| of_blow(&blow.history))
-                .collect(),
-            Self::Ramp(_)
-            | Self::Sweep(_)
-            | Self::Cycle(_)
-            | Self::Move(_)
-            | Self::FrameUnload(_)
-            | Self::Inspect => Vec::new(),
-        };
-        steps.retain(|(step, critical)| step > critical);
-        steps.first().copied()
-    }
-
-    /// Degrees of freedom of the scatter of a fitted result. None for a result that is not fitted.
-    #[must_use]
-    pub fn degrees(&self, result: &str) -> Option<f64> {
-        match self {
-            Self::Ramp(RampHistory {
-                reached: Some(fit), ..
-            }) if OF_SUPERPOSITION.contains(&result) => Some(fit.best().degrees),
-            Self::Ramp(ramp) => match (result, ramp.relaxation.as_deref()) {
-                (_, Some(fit)) if result == stiffness_ramp::RELAXED_STIFFNESS.name => {
-                    Some(fit.degrees_of_stiffness())
-                }
-                (_, Some(fit)) if OF_RELAXATION.contains(&result) => Some(fit.degrees),
-                _ => {
-                    let line = ramp.fit.map(|fit| fit.degrees);
-                    let bilinear = || ramp.bilinear.as_ref().map(|fit| fit.degrees);
-                    line.or_else(bilinear)
-                        .or_else(|| ramp.multilinear.as_ref().map(|fit| fit.degrees))
-                }
-            },
-            Self::Sweep(sweep) => sweep.fit.map(|fit| fit.degrees),
-            Self::Cycle(cycle) => cycle.backbone.as_ref().map(|fit| fit.degrees),
-            _ => None,
-        }
-    }
 }
 
 impl Record {

@@ -23,27 +23,42 @@ pub use types::{
     BlockKind, Field, FieldType, Kind, Naming, Need, Range, ResultKind, RigKind, Variant,
 };
 
-/// Every kind of block, in the order of the reference.
-pub const BLOCKS: &[&BlockKind] = &[
+/// Every kind of block, in the order of the reference: the declarations, the procedures, and the blocks about the run.
+pub const BLOCKS: &[&BlockKind] = &joined::<
+    { DECLARATIONS.len() + procedures::BLOCKS.len() + ABOUT_THE_RUN.len() },
+>([DECLARATIONS, procedures::BLOCKS, ABOUT_THE_RUN]);
+
+const DECLARATIONS: &[&BlockKind] = &[
     &blocks::plan_block::PLAN,
     &blocks::specimen::SPECIMEN,
     &blocks::striker::STRIKER,
     &blocks::ground::GROUND,
     &blocks::limits::LIMITS,
     &blocks::rig::RIG,
-    &blocks::procedures::stiffness_ramp::BLOCK,
-    &blocks::procedures::damping_sweep::BLOCK,
-    &blocks::procedures::impact::BLOCK,
-    &blocks::procedures::cycle::BLOCK,
-    &blocks::procedures::base_excitation::BLOCK,
-    &blocks::procedures::impact_series::BLOCK,
-    &blocks::procedures::unload::BLOCK,
-    &blocks::procedures::move_to::BLOCK,
-    &blocks::procedures::inspect::BLOCK,
+];
+
+const ABOUT_THE_RUN: &[&BlockKind] = &[
     &blocks::report::REPORT,
     &blocks::golden::GOLDEN,
     &later::STUDY,
 ];
+
+/// These lists as one, of `N` blocks.
+const fn joined<const N: usize>(
+    lists: [&'static [&'static BlockKind]; 3],
+) -> [&'static BlockKind; N] {
+    let mut all = [lists[0][0]; N];
+    let (mut place, mut list) = (0, 0);
+    while list < lists.len() {
+        let mut entry = 0;
+        while entry < lists[list].len() {
+            all[place] = lists[list][entry];
+            (place, entry) = (place + 1, entry + 1);
+        }
+        list += 1;
+    }
+    all
+}
 
 /// Keywords of items that are not blocks, for suggestions.
 pub const ITEM_WORDS: &[&str] = &["use", "param", "let", "require"];

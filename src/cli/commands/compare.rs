@@ -17,7 +17,7 @@ use crate::golden::comparison::page::page;
 use crate::golden::comparison::{Comparison, Side};
 use crate::golden::{FIGURES, SUMMARY, older};
 use crate::report::summary::Summary;
-use crate::report::{Figures, OutputError, OutputFile, Run, figure_data};
+use crate::report::{Figures, OutputError, OutputFile, figure_data};
 
 /// Compares runs.
 pub fn compare(arguments: &CompareArguments) -> Result<Exit, Failure> {
@@ -90,15 +90,10 @@ fn from_record(name: String, run: &Path) -> Result<Side, Failure> {
             "is a run that a client drove: it has no results to compare",
         ));
     }
-    let told = Run {
-        plan: &played.plan,
-        record: &played.record,
-        assessment: &played.assessment,
-        provenance: &played.provenance,
-    };
-    let summary = serde_json::to_value(Summary::of(&told)).map_err(OutputError::from)?;
+    let run = played.run();
+    let summary = serde_json::to_value(Summary::of(&run)).map_err(OutputError::from)?;
     let figures =
-        serde_json::from_slice::<Figures>(&figure_data(&told).bytes).map_err(OutputError::from)?;
+        serde_json::from_slice::<Figures>(&figure_data(&run).bytes).map_err(OutputError::from)?;
     Ok(Side {
         name,
         summary,

@@ -1,19 +1,32 @@
 //! A real rig for a command. In: a checked plan that names one. Out: the open rig, with its observer.
 
+use std::path::Path;
+
 use super::watch::{Attendance, Signals, Watcher, throw_away};
 use crate::cli::args::{PlanSettings, name};
 use crate::cli::exit::Failure;
+use crate::cli::files::plan_file;
 use crate::cli::files::record_file::Circumstances;
 use crate::cli::output::print_message;
 use crate::cli::settings::Settings;
+use crate::language::check::Checked;
 use crate::plan::Plan;
 use crate::rig::{Connected, Rig as _, StopRequest, connect};
 use crate::run::replay::Wall;
 use crate::schema::plan_block::OPERATOR;
 
-/// Whether the command line names no operator, and no operator can be asked.
-pub fn unattended(attendance: &Attendance, settings: Settings) -> bool {
-    attendance.operator.is_none() && (attendance.yes || !settings.can_ask)
+/// Reads and checks the plan of a command that may move a rig, and prints its diagnostics. The plan is checked as unattended if the
+/// command line names no operator, and none can be asked.
+pub fn open_plan(
+    path: &Path,
+    given: &PlanSettings,
+    attendance: &Attendance,
+    settings: Settings,
+) -> Result<Checked, Failure> {
+    let unattended = attendance.operator.is_none() && (attendance.yes || !settings.can_ask);
+    let checked = plan_file::open_to_run(path, given, unattended)?;
+    plan_file::show(&checked, path, settings);
+    Ok(checked)
 }
 
 /// The name of the operator of a test on a real rig. It is asked for at the terminal if neither command line nor plan gives it. Nothing

@@ -1,4 +1,4 @@
-//! Emulated controllers, one file per protocol, written from the manuals of the makers. In: bytes
+//! Emulated controllers, one file or folder per protocol, written from the manuals of the makers. In: bytes
 //! from the host. Out: bytes of the controller. They must not know the drivers in `rig`.
 
 mod grbl;
@@ -7,10 +7,7 @@ mod indicator;
 mod instron;
 mod line_buffer;
 mod mark10;
-mod mark10_load_cell;
 mod modbus;
-mod modbus_frame;
-mod modbus_registers;
 mod native;
 mod nees;
 mod scpi;
@@ -21,8 +18,7 @@ pub use grbl::Grbl;
 pub use hx711::Hx711;
 pub use indicator::Indicator;
 pub use instron::Instron;
-pub use mark10::Mark10;
-pub use mark10_load_cell::Mark10Gauge;
+pub use mark10::{Mark10, Mark10Gauge};
 pub use modbus::Modbus;
 #[cfg(test)]
 pub use native::sealed;

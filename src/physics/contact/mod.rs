@@ -14,11 +14,104 @@ pub use restitution::RestitutionContact;
 
 use thiserror::Error;
 
-use super::contact::state::{ContactLaw, StepState};
+use super::contact::state::StepState;
 use crate::integrator::Integrator;
 use crate::integrator::step_form::Motion;
 use crate::integrator::substep::{Scratch, Striker, Substep};
 use crate::structure::matrix::Vector;
+
+/// The contact law between striker and structure, with its numbers: f64 in SI here, formulas in a plan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ContactLaw<N = f64> {
+    /// One velocity while they touch (Melo et al. 2006, eq. 4).
+    Rigid,
+    /// Rigid up to `force` \[N\], then perfectly plastic (Melo et al. 2006, Fig. 7).
+    Limit { force: N },
+    /// Separation speed over closing speed, 0 to 1.
+    Restitution { coefficient: N },
+    /// F = k δ^1.5 (1 + loss·δ̇), k in N/m^1.5, loss in s/m; above `force_limit` \[N\] the surface is permanently indented.
+    Hertz {
+        stiffness: N,
+        loss: N,
+        force_limit: Option<N>,
+    },
+}
+
+impl<N> ContactLaw<N> {
+    /// Its word in a plan.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Rigid => "rigid",
+            Self::Limit { .. } => "limit",
+            Self::Restitution { .. } => "restitution",
+            Self::Hertz { .. } => "hertz",
+        }
+    }
+
+    /// Its numbers, in the order of its declaration.
+    #[must_use]
+    pub fn numbers(&self) -> Vec<&N> {
+        match self {
+            Self::Rigid => Vec::new(),
+            Self::Limit { force } => vec![force],
+            Self::Restitution { coefficient } => vec![coefficient],
+            Self::Hertz {
+                stiffness,
+                loss,
+                force_limit,
+            } => [stiffness, loss].into_iter().chain(force_limit).collect(),
+        }
+    }
+
+    /// k of a law of finite stiffness \[N/m^1.5\].
+    #[must_use]
+    pub const fn stiffness(&self) -> Option<&N> {
+        match self {
+            Self::Hertz { stiffness, .. } => Some(stiffness),
+            Self::Rigid | Self::Limit { .. } | Self::Restitution { .. } => None,
+        }
+    }
+
+    /// The largest contact force of the law, if it has one \[N\].
+    #[must_use]
+    pub const fn force_limit(&self) -> Option<&N> {
+        match self {
+            Self::Limit { force } => Some(force),
+            Self::Hertz { force_limit, .. } => force_limit.as_ref(),
+            Self::Rigid | Self::Restitution { .. } => None,
+        }
+    }
+
+    /// Whether it follows the contact inside a step, by the tangent's prediction of the restoring force. No other integrator has one.
+    #[must_use]
+    pub const fn needs_tangent(&self) -> bool {
+        match self {
+            Self::Rigid | Self::Limit { .. } => false,
+            Self::Restitution { .. } | Self::Hertz { .. } => true,
+        }
+    }
+
+    /// Whether every contact force is that of an impulse over one step, so that its peak grows as 1/Δt without a bound.
+    #[must_use]
+    pub const fn is_impulsive(&self) -> bool {
+        match self {
+            Self::Rigid | Self::Restitution { .. } => true,
+            Self::Limit { .. } | Self::Hertz { .. } => false,
+        }
+    }
+}
+
+impl ContactLaw {
+    /// Whether a peak contact force \[N\] is that of an impulse over one step: it grows as 1/Δt and is not a property of the impact.
+    #[must_use]
+    pub fn force_follows_the_step(&self, largest: f64) -> bool {
+        match self {
+            Self::Limit { force } => largest < *force * (1.0 - 1e-9),
+            _ => self.is_impulsive(),
+        }
+    }
+}
 
 /// Striker and struck degree of freedom at the start of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,15 +197,15 @@ impl AnyContact {
         integrator: Integrator,
         impact: Approaching,
     ) -> Result<Self, NeedsTangent> {
-        let tangent = integrator == Integrator::Tangent;
+        if law.needs_tangent() && integrator != Integrator::Tangent {
+            return Err(NeedsTangent(law.name()));
+        }
         match law {
             ContactLaw::Rigid => Ok(Self::Impulse(ImpulseContact::rigid())),
             ContactLaw::Limit { force } => Ok(Self::Impulse(ImpulseContact::limited(force))),
-            ContactLaw::Restitution { .. } if !tangent => Err(NeedsTangent("restitution")),
             ContactLaw::Restitution { coefficient } => Ok(Self::Divided(
                 DividingContact::Restitution(RestitutionContact::new(coefficient)),
             )),
-            ContactLaw::Hertz { .. } if !tangent => Err(NeedsTangent("hertz")),
             ContactLaw::Hertz {
                 stiffness,
                 loss,

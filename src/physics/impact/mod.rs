@@ -13,7 +13,9 @@ pub use until::Until;
 
 use thiserror::Error;
 
-use crate::contact::state::{ContactLaw, StepState};
+use crate::contact::ContactLaw;
+
+use crate::contact::state::StepState;
 use crate::contact::{Approaching, NeedsTangent};
 use crate::integrator::Integrator;
 use crate::integrator::input::FrameError;

@@ -1,7 +1,8 @@
 //! Results of an impact: peaks, times, impulse, energies. In: the ends of its steps.
 
 use super::{ImpactInput, ImpactState, Sink};
-use crate::contact::state::{ContactLaw, StepState};
+use crate::contact::ContactLaw;
+use crate::contact::state::StepState;
 use crate::integrator::state::State;
 
 /// Results of an impact. Peaks are over step ends.

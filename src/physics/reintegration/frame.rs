@@ -6,7 +6,8 @@ use std::cell::Cell;
 
 use super::frame_path::{FramePath, FrameRetrace};
 use super::impact::{ImpactResults, Outcome};
-use crate::contact::state::{ContactLaw, StepState};
+use crate::contact::ContactLaw;
+use crate::contact::state::StepState;
 use crate::impact::Until;
 use crate::impact::peaks::{Peak, PeakDisplacements, farther};
 use crate::impact::{FrameImpactSolver, ImpactError, ImpactInput, ImpactSetup, ImpactState, Sink};

@@ -356,7 +356,7 @@ impl Ending {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::state::ContactLaw;
+    use crate::contact::ContactLaw;
     use crate::integrator::Integrator;
     use crate::statistics::ReadingNoise;
 

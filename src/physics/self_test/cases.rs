@@ -4,7 +4,7 @@ use super::runs::{
     displacement_on_moving_ground, free_vibration, impact, impact_of, input, struck_storey,
 };
 use super::{Part, Quantity, SelfTest};
-use crate::contact::state::ContactLaw;
+use crate::contact::ContactLaw;
 use crate::critical_time_step;
 use crate::identification::fit_line;
 use crate::impact::ImpactInput;

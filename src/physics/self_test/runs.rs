@@ -1,7 +1,7 @@
 //! The runs of the self-test, on ideal specimens. In: a law, an integrator, a step. Out: peaks and displacements.
 
 use crate::contact::Approaching;
-use crate::contact::state::ContactLaw;
+use crate::contact::ContactLaw;
 use crate::impact::summary::{ImpactSummary, SummaryBuilder};
 use crate::impact::{FrameImpactSolver, ImpactInput, ImpactSetup, ImpactSolver, Until, simulate};
 use crate::integrator::Integrator;

@@ -6,13 +6,9 @@ mod bilinear;
 mod bolted;
 mod bouc_wen;
 mod degrading;
-mod deteriorating_bilinear;
 mod deterioration;
 mod fracture;
 mod multilinear;
-mod pinching;
-#[cfg(test)]
-mod pinching_tests;
 mod series;
 mod table;
 #[cfg(test)]
@@ -23,11 +19,11 @@ pub use bilinear::{Bilinear, BilinearCurve};
 pub use bolted::{Bolted, BoltedJoint};
 pub use bouc_wen::BoucWen;
 pub use degrading::{Degrading, DegradingCurve};
-pub use deteriorating_bilinear::DeterioratingBilinear;
 pub use deterioration::Deterioration;
+pub use deterioration::bilinear::DeterioratingBilinear;
+pub use deterioration::pinching::{Capping, PinchedHysteresis, Pinching};
 pub use fracture::{Breaks, Fracture};
 pub use multilinear::Multilinear;
-pub use pinching::{Capping, PinchedHysteresis, Pinching};
 pub use series::Series;
 pub use table::{AlongTheCurve, PlasticCurve, Table, Unloading};
 

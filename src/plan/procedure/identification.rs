@@ -47,6 +47,13 @@ pub(crate) use stiffness_ramp_fields;
 stiffness_ramp_fields!(parameters);
 
 impl StiffnessRamp {
+    /// Number of targets, on all its paths out and back.
+    #[must_use]
+    pub const fn targets(&self) -> u64 {
+        let paths = if self.return_path { 2 } else { 1 };
+        self.displacements.len() as u64 * paths * self.repeats as u64
+    }
+
     /// Number of outward steps in the fit, and degrees of freedom of their scatter about it. None if they are too few for a fit or not
     /// known before the run.
     #[must_use]

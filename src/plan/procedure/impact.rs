@@ -1,6 +1,7 @@
 //! A checked `impact`: a computed striker meets a structure on the rig, either one degree of freedom or one floor of a frame. In:
 //! formulas from the check. Out: SI numbers, and the critical time step if its inputs are known. It integrates nothing.
 
+use crate::physics::contact::ContactLaw;
 use crate::physics::contact::contact_time_step::Approach;
 use crate::plan::formula::Formula;
 use crate::plan::{ShakeDamping, Stepping, Striker, Until};
@@ -71,9 +72,21 @@ impl Impact {
         }
     }
 
+    /// State of the striker at contact, if `known` contains the stiffness of the contact law.
+    pub fn approach(
+        &self,
+        striker: &Striker,
+        known: impl Fn(&Formula) -> Option<f64>,
+    ) -> Option<Approach> {
+        let stiffness = match self.contact.stiffness() {
+            Some(stiffness) => Some(known(stiffness)?),
+            None => None,
+        };
+        Some(striker.approach(stiffness))
+    }
+
     /// Critical time step of an impact of this striker on one degree of freedom \[s\], if `known` contains mass and stiffnesses. None if
     /// a floor is struck.
-    /// where a floor is struck.
     pub fn critical_time_step(
         &self,
         striker: &Striker,
@@ -82,50 +95,10 @@ impl Impact {
         let PointTarget {
             mass, stiffness, ..
         } = self.point()?;
-        let approach = self.contact.approach(striker, &known)?;
+        let approach = self.approach(striker, &known)?;
         Some(approach.critical_time_step(known(mass)?, known(stiffness)?))
     }
 }
 
-/// The contact law of striker and structure.
-#[derive(Clone, Debug)]
-pub enum Contact {
-    Rigid,
-    /// \[N\]
-    Limit {
-        force: Formula,
-    },
-    Restitution {
-        coefficient: Formula,
-    },
-    /// k \[N/m^1.5\]; `loss` is the Hunt–Crossley factor \[s/m\]: F = k δ^1.5 (1 + loss·δ̇).
-    Hertz {
-        stiffness: Formula,
-        loss: Formula,
-        force_limit: Option<Formula>,
-    },
-}
-
-impl Contact {
-    /// k of a contact of finite stiffness \[N/m^1.5\]; None for a contact law without k.
-    #[must_use]
-    pub const fn stiffness(&self) -> Option<&Formula> {
-        match self {
-            Self::Hertz { stiffness, .. } => Some(stiffness),
-            Self::Rigid | Self::Limit { .. } | Self::Restitution { .. } => None,
-        }
-    }
-
-    /// State of the striker at contact, if `known` contains the stiffness that it meets.
-    pub fn approach(
-        &self,
-        striker: &Striker,
-        known: impl Fn(&Formula) -> Option<f64>,
-    ) -> Option<Approach> {
-        let hertz = match self.stiffness() {
-            Some(stiffness) => Some(known(stiffness)?),
-            None => None,
-        };
-        Some(striker.approach(hertz))
-    }
-}
+/// The contact law of striker and structure, with formulas for its numbers.
+pub type Contact = ContactLaw<Formula>;

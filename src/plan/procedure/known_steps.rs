@@ -13,7 +13,7 @@ impl Impact {
         let critical = match &self.target {
             ImpactTarget::Point(_) => self.critical_time_step(striker, Formula::constant)?,
             ImpactTarget::Storey(target) => {
-                let approach = self.contact.approach(striker, Formula::constant)?;
+                let approach = self.approach(striker, Formula::constant)?;
                 undamped(plan, self.specimen)?.critical_on_impact(target.storey, &approach)
             }
         };

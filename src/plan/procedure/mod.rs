@@ -1,5 +1,5 @@
-//! Parameters of the procedures, in SI, one file per procedure. They are data: they check nothing
-//! and run nothing.
+//! The procedures of a plan: the list of them, and their parameters in SI, one file per procedure. They
+//! are data: they check nothing and run nothing.
 
 pub(crate) mod cycle;
 pub(crate) mod damping_sweep;
@@ -12,3 +12,59 @@ pub(crate) mod move_to;
 pub(crate) mod stepping;
 pub(crate) mod structure;
 pub(crate) mod unload;
+
+use crate::plan::{
+    Cycle, DampingSweep, Escalate, FrameUnload, Impact, Move, Shake, StiffnessRamp, Unload,
+};
+
+/// The parameters of a procedure.
+#[derive(Clone, Debug)]
+pub enum ProcedureKind {
+    StiffnessRamp(StiffnessRamp),
+    DampingSweep(DampingSweep),
+    Impact(Impact),
+    Shake(Shake),
+    Cycle(Cycle),
+    Unload(Unload),
+    FrameUnload(FrameUnload),
+    Escalate(Escalate),
+    Move(Move),
+    /// The operator inspects the specimen.
+    Inspect {
+        note: String,
+    },
+}
+
+impl ProcedureKind {
+    /// The block's keyword, as in `summary.json`.
+    #[must_use]
+    pub const fn keyword(&self) -> &'static str {
+        match self {
+            Self::StiffnessRamp(_) => "stiffness ramp",
+            Self::DampingSweep(_) => "damping sweep",
+            Self::Impact(_) => "impact",
+            Self::Shake(_) => "shake",
+            Self::Cycle(_) => "cycle",
+            Self::Unload(_) | Self::FrameUnload(_) => "unload",
+            Self::Escalate(_) => "escalate",
+            Self::Move(_) => "move",
+            Self::Inspect { .. } => "inspect",
+        }
+    }
+
+    /// The tested specimen, as an index into `Plan::specimens`; None of a procedure that only moves or inspects.
+    #[must_use]
+    pub const fn specimen(&self) -> Option<usize> {
+        match self {
+            Self::StiffnessRamp(ramp) => Some(ramp.specimen),
+            Self::DampingSweep(sweep) => Some(sweep.specimen),
+            Self::Impact(impact) => Some(impact.specimen),
+            Self::Shake(shake) => Some(shake.specimen),
+            Self::Cycle(cycle) => Some(cycle.specimen),
+            Self::Unload(unload) => Some(unload.specimen),
+            Self::FrameUnload(unload) => Some(unload.specimen),
+            Self::Escalate(series) => Some(series.impact.specimen),
+            Self::Move(_) | Self::Inspect { .. } => None,
+        }
+    }
+}

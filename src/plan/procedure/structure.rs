@@ -1,7 +1,7 @@
 //! The initial state of a struck structure. In: the known values before the first step, the striker of a plan, and the step parameters of
 //! the plan. Out: the initial values of an impact. It integrates nothing.
 
-use crate::physics::contact::state::ContactLaw;
+use crate::physics::contact::ContactLaw;
 use crate::physics::impact::ImpactInput;
 use crate::plan::{Stepping, Striker};
 

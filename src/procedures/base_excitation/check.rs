@@ -2,9 +2,10 @@
 
 use crate::language::check::checker::{Checker, Shape};
 use crate::language::check::declarations::specimen::frame;
+use crate::language::check::declared::Declared;
 use crate::language::check::messages::{frames as fault, types};
 use crate::plan::formula::Formula;
-use crate::plan::{Contact, Frame, Ground, ProcedureKind, Shake, ShakeDamping};
+use crate::plan::{Contact, ProcedureKind, Shake, ShakeDamping};
 use crate::procedures::stepping;
 use crate::procedures::stepping::check::frame_check;
 use crate::procedures::stepping::check::frame_check::FrameSteps;
@@ -89,7 +90,13 @@ pub fn damping_uncertainty(
 
 /// Checks the time step of a ground-motion test, as far as it is known before the run: against the limits of any frame, and against the
 /// time step of the record.
-pub fn judge(checker: &mut Checker, block: usize, shake: &Shake, frame: &Frame, ground: &Ground) {
+pub(crate) fn judge(checker: &mut Checker, block: usize, shake: &Shake, declared: &Declared<'_>) {
+    let (Some(frame), Some(ground)) = (
+        declared.frame(shake.specimen),
+        declared.ground(shake.ground),
+    ) else {
+        return;
+    };
     let duration = shake
         .duration
         .as_ref()

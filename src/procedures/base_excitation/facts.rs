@@ -43,6 +43,7 @@ pub(crate) fn recorded(history: &ShakeHistory) -> Recorded {
         budgeted: stepping::report::FRAME_BUDGET,
         entries: "floor",
         uncertainty: stepping::report::UNCERTAINTY,
+        ..Recorded::default()
     }
 }
 

@@ -40,13 +40,7 @@ pub(crate) fn drift<S: Floors>(steps: &[S], limits: &[Reference]) -> Chart {
         "storey",
         S::drift,
     );
-    chart.references = limits
-        .iter()
-        .map(|limit| Reference {
-            label: limit.label.clone(),
-            y: limit.y,
-        })
-        .collect();
+    chart.references = limits.to_vec();
     chart
 }
 
@@ -81,13 +75,7 @@ pub(crate) fn base_shear<S: Floors>(steps: &[S], limits: &[Reference]) -> Chart 
         read,
         Style::line(palette::BLUE, 1.6, SOLID),
     )];
-    chart.references = limits
-        .iter()
-        .map(|limit| Reference {
-            label: limit.label.clone(),
-            y: limit.y,
-        })
-        .collect();
+    chart.references = limits.to_vec();
     chart
 }
 

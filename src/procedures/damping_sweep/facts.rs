@@ -3,6 +3,7 @@
 use super::chart;
 use crate::procedures::facts::{Facts, Recorded};
 use crate::procedures::stiffness_ramp;
+use crate::record::SweepHistory;
 use crate::schema::procedures::damping_sweep as schema;
 
 pub(crate) fn facts() -> Facts<'static> {
@@ -17,8 +18,9 @@ pub(crate) fn facts() -> Facts<'static> {
     }
 }
 
-pub(crate) fn recorded() -> Recorded {
+pub(crate) fn recorded(history: &SweepHistory) -> Recorded {
     Recorded {
+        strokes: Some(history.together),
         uncertainty: stiffness_ramp::report::UNCERTAINTY,
         ..Recorded::default()
     }

@@ -1,7 +1,8 @@
 //! The table of a damping sweep, a row a reading. In: its steps. Out: columns.
 
-use crate::record::SweepStep;
+use crate::record::{SweepHistory, SweepStep};
 use crate::report::tables::TableColumn::{self, Flag, Integer, Number};
+use crate::report::tables::{Table, written};
 use crate::schema::columns::{self, column};
 use crate::units::Dimension;
 
@@ -16,3 +17,8 @@ pub(crate) const STEPS: &[TableColumn<SweepStep>] = &[
     }),
     Flag("steady", |step| Some(step.steady)),
 ];
+
+/// The table under this name.
+pub(crate) fn table(name: String, history: &SweepHistory) -> Table<'_> {
+    Table::of(name, &history.steps, |steps| written(STEPS, steps))
+}

@@ -1,9 +1,8 @@
 //! The delay of the actuators in an impact, before the run. In: the plan, the striker. Out: the delay; None where not enough is known.
 
 use super::check::time_step::time_step_before_the_run;
-use crate::plan::{
-    Contact, Escalate, Impact, ImpactTarget, Plan, PointTarget, StoreyTarget, Striker,
-};
+use crate::plan::formula::Formula;
+use crate::plan::{Escalate, Impact, ImpactTarget, Plan, PointTarget, StoreyTarget, Striker};
 use crate::procedures::facts::Delay;
 use crate::procedures::stepping::tracking::delay::{late, of_frame};
 
@@ -47,17 +46,12 @@ fn on_storey(
     target: &StoreyTarget,
     striker: &Striker,
 ) -> Option<Delay> {
-    let stiffness = match &impact.contact {
-        Contact::Hertz { stiffness, .. } => Some(stiffness.constant()?),
-        _ => None,
-    };
+    let approach = impact.approach(striker, Formula::constant)?;
     of_frame(
         plan,
         impact.specimen,
         &target.damping,
         &impact.stepping,
-        |properties| {
-            Some(properties.critical_on_impact(target.storey, &striker.approach(stiffness)))
-        },
+        |properties| Some(properties.critical_on_impact(target.storey, &approach)),
     )
 }

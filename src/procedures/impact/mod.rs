@@ -2,6 +2,7 @@
 //! behind the guard. Out: parameters, history, results, figures, report text.
 
 pub(crate) mod check;
+pub(crate) mod contact;
 pub(crate) mod delay;
 pub(crate) mod facts;
 pub(crate) mod figures;

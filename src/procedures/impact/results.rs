@@ -2,7 +2,7 @@
 //! reference. It moves nothing.
 
 use super::summary::{FloorSummary, StruckSummary};
-use crate::physics::contact::state::ContactLaw;
+use crate::physics::contact::ContactLaw;
 use crate::physics::impact::energy::Energies;
 use crate::physics::impact::summary::ImpactSummary;
 use crate::physics::reintegration::impact::ImpactValues;

@@ -1,14 +1,14 @@
 //! The quantities of an impact that are known before the first step. In: an impact of the plan, its formulas, a striker. Out: numbers,
 //! each inside its domain, and the steps that they lead to. It moves nothing.
 
+use super::contact;
 use crate::physics::contact::contact_time_step::Approach;
-use crate::physics::contact::state::ContactLaw;
 use crate::physics::impact::ImpactInput;
 use crate::physics::integrator::stability::{Met, longest_stable_step};
 use crate::physics::structure::Matrices;
 use crate::plan::formula::Estimate;
 use crate::plan::{
-    Contact, Frame, Impact, ImpactTarget, Plan, PointTarget, StoreyTarget, Striker, Structure,
+    Frame, Impact, ImpactTarget, Plan, PointTarget, StoreyTarget, Striker, Structure,
 };
 use crate::procedures::stepping;
 use crate::procedures::stepping::run::{FrameSteps, Steps, Times, frame_of, stable};
@@ -18,7 +18,7 @@ use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::schema::methods;
 use crate::schema::procedures::{STIFFNESS, impact as schema};
-use crate::units::{Dimension, Exponent};
+use crate::units::Dimension;
 
 /// Everything known before the first step.
 pub(crate) struct Setting {
@@ -77,8 +77,8 @@ impl Setting {
         )?;
         let (stiffness, operator_stiffness) = (stiffness.value, upper_end(stiffness));
         let damping = inputs.damping(schema::DAMPING.name, &point.damping, Dimension::DAMPING)?;
-        let law = contact_law(&plan.contact, inputs)?;
-        let approach = striker.approach(law.stiffness());
+        let law = contact::with_numbers(&plan.contact, inputs)?;
+        let approach = striker.approach(law.stiffness().copied());
         let critical = approach.critical_time_step(mass, stiffness);
         let time_step = stepping::run::time_step(&plan.stepping, critical, inputs)?;
         let duration = inputs.positive(methods::DURATION.name, &plan.duration, Dimension::TIME)?;
@@ -134,8 +134,8 @@ impl Setting {
         session: &Session<'_>,
     ) -> Result<Self, Stop> {
         let properties = stepping::run::properties(frame, &target.damping, inputs)?;
-        let law = contact_law(&plan.contact, inputs)?;
-        let approach = striker.approach(law.stiffness());
+        let law = contact::with_numbers(&plan.contact, inputs)?;
+        let approach = striker.approach(law.stiffness().copied());
         let critical = properties.critical_on_impact(target.storey, &approach);
         let time_step = stepping::run::time_step(&plan.stepping, critical, inputs)?;
         stepping::run::stable_on_frame(&plan.stepping, time_step, frame, &properties, session)?;
@@ -198,50 +198,3 @@ impl Setting {
 fn upper_end(stiffness: Estimate) -> f64 {
     stiffness.value + 2.0 * stiffness.uncertainty.unwrap_or(0.0)
 }
-
-/// The contact law with its numbers.
-pub(crate) fn contact_law(contact: &Contact, inputs: &mut Inputs<'_>) -> Result<ContactLaw, Stop> {
-    Ok(match contact {
-        Contact::Rigid => ContactLaw::Rigid,
-        Contact::Limit { force } => ContactLaw::Limit {
-            force: inputs.positive(schema::FORCE_LIMIT.name, force, Dimension::FORCE)?,
-        },
-        Contact::Restitution { coefficient } => {
-            let coefficient = inputs.not_negative("restitution", coefficient, Dimension::NUMBER)?;
-            if coefficient > 1.0 {
-                return Err(Stop::bad_input(
-                    "restitution",
-                    coefficient,
-                    Dimension::NUMBER,
-                    "at most 1",
-                ));
-            }
-            ContactLaw::Restitution { coefficient }
-        }
-        Contact::Hertz {
-            stiffness,
-            loss,
-            force_limit,
-        } => ContactLaw::Hertz {
-            stiffness: inputs.positive(
-                "contact_stiffness",
-                stiffness,
-                Dimension::HERTZ_STIFFNESS,
-            )?,
-            loss: inputs.not_negative(schema::LOSS.name, loss, SECONDS_PER_METRE)?,
-            force_limit: match force_limit {
-                Some(force) => {
-                    Some(inputs.positive(schema::FORCE_LIMIT.name, force, Dimension::FORCE)?)
-                }
-                None => None,
-            },
-        },
-    })
-}
-
-/// The dimension of the Hunt–Crossley loss factor.
-const SECONDS_PER_METRE: Dimension = Dimension {
-    length: Exponent::whole(-1),
-    mass: Exponent::ZERO,
-    time: Exponent::whole(1),
-};

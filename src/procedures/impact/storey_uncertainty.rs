@@ -1,11 +1,10 @@
 //! The uncertainty of the results of an impact on a storey. In: its inputs with their sources of uncertainty, and the recorded steps. Out:
 //! the contributions of each source to each number. The frame is re-integrated along its recorded path.
 
+use super::contact;
 use super::results::re_integrated;
-use super::setting::{Setting, contact_law};
-use super::uncertainty::{
-    at_least, contact_formulas, no_known_force, same, striker_sources, whole_steps,
-};
+use super::setting::Setting;
+use super::uncertainty::{at_least, no_known_force, same, striker_sources, whole_steps};
 use crate::physics::impact::ImpactInput;
 use crate::physics::impact::summary::ImpactSummary;
 use crate::physics::reintegration::frame::{Blow, Floors, FrameRun, StrikerOutcome};
@@ -88,7 +87,7 @@ pub(crate) fn propagate(
         reported[shear] = found.floors.between.max_base_shear;
     }
     let stated = striker_sources(doubts.whole, plan.striker);
-    let sources = doubts.sources(&contact_formulas(&plan.contact), &stated);
+    let sources = doubts.sources(&plan.contact.numbers(), &stated);
     let mut contributions =
         doubts.contributions(&evaluate, sources, history.len(), reported, tick)?;
     no_known_force(setting.input.law, summary, &layout, &mut contributions);
@@ -184,7 +183,7 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
         let (properties, law) = doubts.with_inputs(shifts, &mut |inputs| {
             Ok((
                 stepping::run::properties(&frame, &damping, inputs)?,
-                contact_law(&plan.contact, inputs)?,
+                contact::with_numbers(&plan.contact, inputs)?,
             ))
         })?;
         let declared = &doubts.whole.strikers[plan.striker];
@@ -209,8 +208,8 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
             velocity: striker.velocity * (setting.fastest / recorded_velocity),
             ..striker.clone()
         };
-        let critical_time_step =
-            properties.critical_on_impact(target.storey, &fastest.approach(law.stiffness()));
+        let critical_time_step = properties
+            .critical_on_impact(target.storey, &fastest.approach(law.stiffness().copied()));
         let stiffness = frame.stiffness[target.storey][target.storey];
         let body = ImpactInput {
             mass: properties.struck_mass(target.storey),

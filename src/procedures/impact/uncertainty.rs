@@ -4,7 +4,7 @@
 
 use super::results::re_integrated;
 use super::setting::{Setting, StruckStructure};
-use crate::physics::contact::state::ContactLaw;
+use crate::physics::contact::ContactLaw;
 use crate::physics::impact::ImpactError;
 use crate::physics::impact::summary::ImpactSummary;
 use crate::physics::reintegration::hysteresis_replay::{ContinuousMotion, Reading, RecordedPath};
@@ -12,7 +12,7 @@ use crate::physics::reintegration::impact::{ImpactValues, Outcome, predicted_vel
 use crate::physics::reintegration::perturbation::Perturbation;
 use crate::physics::statistics::ReadingNoise;
 use crate::plan::formula::{Formula, ProcedureId, Results};
-use crate::plan::{Contact, Impact, Mode, Plan, PointTarget, Striker};
+use crate::plan::{Impact, Mode, Plan, PointTarget, Striker};
 use crate::procedures::common::perturbed_inputs::{
     LEADS_ELSEWHERE, out_of_bounds, uncertain_inputs, with_shifts,
 };
@@ -166,7 +166,7 @@ impl<'run> ImpactUncertainty<'run> {
         } = self.point;
         let formulas: Vec<&Formula> = [mass, stiffness, damping]
             .into_iter()
-            .chain(contact_formulas(contact))
+            .chain(contact.numbers())
             .collect();
         let stated = striker_sources(self.whole, *striker)
             .into_iter()
@@ -269,20 +269,6 @@ impl Evaluate for RecordedImpact<'_, '_> {
             before_departure: found.before_departure.as_ref().map(with_step),
             farthest: found.farthest,
         }
-    }
-}
-
-/// The formulas that a contact law reads.
-pub(crate) fn contact_formulas(contact: &Contact) -> Vec<&Formula> {
-    match contact {
-        Contact::Rigid => Vec::new(),
-        Contact::Limit { force } => vec![force],
-        Contact::Restitution { coefficient } => vec![coefficient],
-        Contact::Hertz {
-            stiffness,
-            loss,
-            force_limit,
-        } => [stiffness, loss].into_iter().chain(force_limit).collect(),
     }
 }
 

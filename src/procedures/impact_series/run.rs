@@ -213,8 +213,15 @@ fn bring(
     Ok(rest)
 }
 
+/// An upper bound of its steps, if the plan alone gives one.
+pub(crate) fn most_steps(series: &Escalate, plan: &Plan) -> Option<u64> {
+    let steps = series.known_steps_of_an_impact(plan)?;
+    let steps = steps.saturating_add(most_moves(series.between));
+    Some(steps.saturating_mul(series.velocities.len() as u64))
+}
+
 /// Moves between two impacts, at most.
-pub(crate) const fn most_moves(between: Between) -> u64 {
+const fn most_moves(between: Between) -> u64 {
     match between {
         Between::Stay => 0,
         Between::Home => 1,

@@ -62,6 +62,11 @@ pub(crate) fn tables(name: String, history: &RampHistory) -> Vec<Table<'_>> {
     .collect()
 }
 
+/// The table of moves, under this name.
+pub(crate) fn of_moves(name: String, steps: &[RampStep]) -> Table<'_> {
+    Table::of(name, steps, |steps| written(STEPS, steps))
+}
+
 /// The readings of these holds after each other.
 fn readings(holds: &[Hold]) -> Vec<HoldReading> {
     let of_hold = |hold: &Hold| {

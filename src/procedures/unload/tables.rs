@@ -1,7 +1,8 @@
 //! The table of an unloading: that of the moves of one degree of freedom, or of the floors of a frame. In: steps. Out: columns.
 
 use crate::procedures::{base_excitation, stiffness_ramp};
-use crate::report::tables::numeric;
+use crate::record::UnloadStep;
+use crate::report::tables::{Table, numeric};
 use crate::schema::Column;
 
 /// The numeric columns of both tables.
@@ -11,4 +12,9 @@ pub(crate) fn columns() -> Vec<Column> {
         numeric(&base_excitation::tables::unloaded()),
     ]
     .concat()
+}
+
+/// The table of the floors of a frame, under this name.
+pub(crate) fn of_floors(name: String, steps: &[UnloadStep]) -> Table<'_> {
+    Table::of(name, steps, base_excitation::tables::unloading)
 }

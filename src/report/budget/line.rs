@@ -160,7 +160,7 @@ impl Input {
             }
             Source::StrokeStiffness { procedure } => {
                 let strokes = procedure_of(run, procedure)
-                    .and_then(|procedure| procedures::strokes(&procedure.history));
+                    .and_then(|procedure| procedures::recorded(&procedure.history).strokes);
                 Self {
                     name: wording::stroke_stiffness_of(procedure_name(run, procedure)),
                     origin: Origin::Result,

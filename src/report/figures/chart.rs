@@ -115,6 +115,7 @@ pub(crate) struct Band {
 }
 
 /// A horizontal line across the plot with its text.
+#[derive(Clone)]
 pub(crate) struct Reference {
     pub label: String,
     pub y: f64,

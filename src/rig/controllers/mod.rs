@@ -15,24 +15,21 @@ pub mod scpi;
 #[cfg(test)]
 mod tests;
 
-mod composite;
 mod device;
 mod line;
-mod load_cell;
 
 use crate::plan::{DeviceLink, Dialect, PortPlan};
 use crate::rig::StopRequest;
 use crate::rig::transport::{Clock, Port};
 
-pub use composite::{Member, together};
 use device::one_axis;
 pub use device::{
-    Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Flags, Force, NOT_TRUSTED, Sample,
+    Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Flags, Force, LoadCell, Member,
+    NOT_TRUSTED, Sample, together,
 };
 pub use line::client::{Answer, LONGEST_LINE, LineClient, Missed, SLICE};
 pub use line::number;
 use line::{request_reply, stream, unsequenced};
-pub use load_cell::LoadCell;
 pub use native::driver::{NativeDevice, SIMULATED};
 
 /// The device at a port. Its waits end when `stop_request` demands a hold. `settling` \[s\] is the longest settling time of a rig that

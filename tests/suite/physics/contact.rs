@@ -1,6 +1,8 @@
 //! The contact laws, compared with closed forms and exact collisions.
 
-use psd::physics::contact::state::{ContactLaw, StepState};
+use psd::physics::contact::ContactLaw;
+
+use psd::physics::contact::state::StepState;
 use psd::physics::impact::ImpactInput;
 use psd::physics::specimen::{Bilinear, BilinearCurve, Elastic, RestoringForce};
 

@@ -1,6 +1,8 @@
 //! Strikers that fall, Ms Ẍs = Ms g − F: compared with the flight of a ball, the pair on a spring and the energy balance.
 
-use psd::physics::contact::state::{ContactLaw, StepState};
+use psd::physics::contact::ContactLaw;
+
+use psd::physics::contact::state::StepState;
 use psd::physics::impact::ImpactInput;
 use psd::physics::specimen::Elastic;
 

@@ -1,6 +1,6 @@
 //! Every integrator, compared with the same closed forms: free vibration, the paper's examples with decreasing step, energy.
 
-use psd::physics::contact::state::ContactLaw;
+use psd::physics::contact::ContactLaw;
 use psd::physics::impact::{ImpactInput, ImpactSolver};
 use psd::physics::integrator::stability::{Met, longest_stable_step};
 use psd::physics::specimen::{RestoringForce, SpecimenModel};

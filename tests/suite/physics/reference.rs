@@ -1,6 +1,6 @@
 //! The reference results: each a case of the paper, at its step and converged.
 
-use psd::physics::contact::state::ContactLaw;
+use psd::physics::contact::ContactLaw;
 use psd::physics::critical_time_step;
 use psd::physics::impact::ImpactInput;
 

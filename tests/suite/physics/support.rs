@@ -1,6 +1,6 @@
 //! Runs of an impact, and an exact solution of hard collisions that shares no code with the product.
 
-use psd::physics::contact::state::ContactLaw;
+use psd::physics::contact::ContactLaw;
 use psd::physics::impact::summary::{ImpactSummary, SummaryBuilder};
 use psd::physics::impact::{ImpactInput, ImpactSolver, ImpactState};
 use psd::physics::specimen::{Elastic, RestoringForce};

@@ -10,7 +10,6 @@ use crate::cli::output::{print_message, print_wrapped};
 use crate::cli::settings::Settings;
 use crate::evidence::PlayedBack;
 use crate::report;
-use crate::report::Run;
 
 /// Prints the verdict of a replayed run, and writes its results.
 pub fn finish_replayed(
@@ -19,25 +18,9 @@ pub fn finish_replayed(
     beside: &[(String, String)],
     settings: Settings,
 ) -> Result<Exit, Failure> {
-    let PlayedBack {
-        plan,
-        provenance,
-        record,
-        assessment,
-        mismatch,
-        steps,
-    } = played;
-    if steps.is_none() {
+    if played.steps.is_none() {
         print_wrapped(
-            &report::console::verdict_text(
-                &Run {
-                    plan,
-                    record,
-                    assessment,
-                    provenance,
-                },
-                settings.color,
-            ),
+            &report::console::verdict_text(&played.run(), settings.color),
             settings,
         );
     }
@@ -45,8 +28,8 @@ pub fn finish_replayed(
     write_made(FolderSink::replacing(folder), beside, |sink| {
         played.results(&mut ProgressSink::new(sink, settings))
     })?;
-    let exit = Exit::from(assessment.verdict);
-    let Some(mismatch) = mismatch else {
+    let exit = Exit::from(played.assessment.verdict);
+    let Some(mismatch) = &played.mismatch else {
         return Ok(exit);
     };
     print_message(&format!(

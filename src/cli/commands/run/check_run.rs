@@ -2,12 +2,11 @@
 //! The rest runs on a simulated specimen with the measured stiffness. In: a checked plan. Out: a run folder marked as a check run, and
 //! the predicted margin of the whole run to each limit.
 
-use super::on_rig::{Ran, on_its_rig};
+use super::on_rig::{End, on_its_rig};
 use crate::cli::args::{Format, RunArguments};
 use crate::cli::commands::explain_plan::DryRun;
 use crate::cli::commands::prediction::told;
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::finish_run::{finish_run, summary};
 use crate::cli::operator::watch::Attendance;
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
@@ -23,18 +22,13 @@ pub fn check_run(
 ) -> Result<Exit, Failure> {
     let part = check_run::measured_part(plan)?;
     let ran = on_its_rig(&part, arguments, attendance, settings)?;
-    if let Some(exit) = ran.goes_on(&part, attendance, settings)? {
-        return Ok(exit);
-    }
-    let Ran {
-        folder,
-        provenance,
-        recorded,
-        ..
-    } = ran;
-    let exit = finish_run(folder.path(), &part, &provenance, &recorded, settings)?;
+    let finished = match ran.finish(&part, attendance, settings)? {
+        End::Resumed(exit) => return Ok(exit),
+        End::Finished(finished) => finished,
+    };
+    let exit = finished.exit;
     let predicted = if exit <= Exit::Missed {
-        let stand_in = check_run::prediction(plan, &recorded.record)?;
+        let stand_in = check_run::prediction(plan, &finished.recorded.record)?;
         let dry = DryRun::on(plan, &stand_in, told(plan, &stand_in));
         let text = dry.text(settings);
         match arguments.format {
@@ -46,9 +40,6 @@ pub fn check_run(
         print_message("  no prediction: the check run was not completed\n");
         exit
     };
-    match arguments.format {
-        Format::Human => print_result(&format!("{}\n", folder.path().display()))?,
-        Format::Json => print_result(&summary(folder.path(), &recorded.record)?)?,
-    }
+    finished.print(arguments.format)?;
     Ok(exit.max(predicted))
 }

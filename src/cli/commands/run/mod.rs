@@ -7,7 +7,6 @@ pub(crate) mod resume;
 use crate::cli::args::{Format, RunArguments};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::accepted::AcceptedFolder;
-use crate::cli::files::finish_run::{finish_run, summary};
 use crate::cli::files::golden_run;
 use crate::cli::files::golden_run::Extent;
 use crate::cli::files::plan_file;
@@ -19,7 +18,7 @@ use crate::golden::print::console;
 use crate::golden::{Outcome, Tested};
 use crate::text::diagnostic::json;
 use check_run::check_run;
-use on_rig::{Ran, on_its_rig};
+use on_rig::{End, on_its_rig};
 
 /// Runs one plan.
 pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure> {
@@ -27,9 +26,12 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
         yes: arguments.yes,
         operator: arguments.operator.clone(),
     };
-    let unattended = real_rig::unattended(&attendance, settings);
-    let checked = plan_file::open_to_run(&arguments.plan, &arguments.plan_settings, unattended)?;
-    plan_file::show(&checked, &arguments.plan, settings);
+    let checked = real_rig::open_plan(
+        &arguments.plan,
+        &arguments.plan_settings,
+        &attendance,
+        settings,
+    )?;
     let Some(plan) = &checked.plan else {
         if arguments.format == Format::Json {
             print_result(&json::text(&plan_file::diagnostics(
@@ -63,19 +65,13 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
         .help("remove `--set`, `--rig` and `--date`, or write them into the plan"));
     }
     let ran = on_its_rig(plan, arguments, &attendance, settings).map_err(in_the_plan)?;
-    if let Some(exit) = ran.goes_on(plan, &attendance, settings)? {
-        return Ok(exit);
-    }
-    let Ran {
-        folder,
-        provenance,
-        recorded,
-        ..
-    } = ran;
-    let exit = finish_run(folder.path(), plan, &provenance, &recorded, settings)?;
+    let finished = match ran.finish(plan, &attendance, settings)? {
+        End::Resumed(exit) => return Ok(exit),
+        End::Finished(finished) => finished,
+    };
     if let Some(accepted) = accepted {
         let trial = golden_run::of(&arguments.plan, Extent::All)?;
-        if trial.ended.as_ref() == Some(&recorded.record.outcome) {
+        if trial.ended.as_ref() == Some(&finished.recorded.record.outcome) {
             let outcome = Outcome::Accepted(accepted.accept(
                 &trial.files,
                 &trial.tolerances,
@@ -95,9 +91,6 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
             );
         }
     }
-    match arguments.format {
-        Format::Human => print_result(&format!("{}\n", folder.path().display()))?,
-        Format::Json => print_result(&summary(folder.path(), &recorded.record)?)?,
-    }
-    Ok(exit)
+    finished.print(arguments.format)?;
+    Ok(finished.exit)
 }

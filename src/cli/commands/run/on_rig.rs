@@ -1,15 +1,16 @@
 //! A run on the rig that the plan names, with its run log. In: a checked plan. Out: the recorded run.
 
 use super::resume;
-use crate::cli::args::RunArguments;
+use crate::cli::args::{Format, RunArguments};
 use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::finish_run::{finish_run, summary};
 use crate::cli::files::provenance;
 use crate::cli::files::record_file;
 use crate::cli::files::record_file::Circumstances;
 use crate::cli::files::run_folder::RunFolder;
 use crate::cli::operator::watch::{Attendance, Signals, Watcher};
 use crate::cli::operator::{expected, held, real_rig};
-use crate::cli::output::print_message;
+use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::plan::{Link, Plan};
 use crate::report::Provenance;
@@ -26,9 +27,48 @@ pub(crate) struct Ran {
     pub(crate) resume: Option<String>,
 }
 
+/// The end of a run.
+pub(crate) enum End {
+    /// The operator resumed the held run, which has ended with this exit.
+    Resumed(Exit),
+    /// The results are in the run folder.
+    Finished(Box<Finished>),
+}
+
+/// A run with its results.
+pub(crate) struct Finished {
+    pub(crate) folder: RunFolder,
+    pub(crate) recorded: Recorded,
+    pub(crate) exit: Exit,
+}
+
 impl Ran {
+    /// Resumes a held run if the operator wants it; else prints the verdict and writes the results.
+    pub(crate) fn finish(
+        self,
+        plan: &Plan,
+        attendance: &Attendance,
+        settings: Settings,
+    ) -> Result<End, Failure> {
+        if let Some(exit) = self.goes_on(plan, attendance, settings)? {
+            return Ok(End::Resumed(exit));
+        }
+        let Self {
+            folder,
+            provenance,
+            recorded,
+            ..
+        } = self;
+        let exit = finish_run(folder.path(), plan, &provenance, &recorded, settings)?;
+        Ok(End::Finished(Box::new(Finished {
+            folder,
+            recorded,
+            exit,
+        })))
+    }
+
     /// Resumes a held run if the operator wants it; None: the run ends here.
-    pub(crate) fn goes_on(
+    fn goes_on(
         &self,
         plan: &Plan,
         attendance: &Attendance,
@@ -45,6 +85,18 @@ impl Ran {
             &self.recorded,
             settings,
         )
+    }
+}
+
+impl Finished {
+    /// Prints the result of the command: the run folder, or its summary.
+    pub(crate) fn print(&self, format: Format) -> Result<(), Failure> {
+        let folder = self.folder.path();
+        match format {
+            Format::Human => print_result(&format!("{}\n", folder.display()))?,
+            Format::Json => print_result(&summary(folder, &self.recorded.record)?)?,
+        }
+        Ok(())
     }
 }
 

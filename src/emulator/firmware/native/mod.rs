@@ -2,21 +2,29 @@
 //! 41 17 1.250000 0.500000*6858`. Out: one reply per frame, the same reply for the same sequence
 //! number. It never clamps: it refuses a command that it cannot carry out exactly.
 
+mod bounds;
+mod frame;
+mod glide;
+mod readings;
+#[cfg(test)]
+mod tests;
+
 use rand::RngExt as _;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::SeedableRng as _;
 
 use crate::emulator::{Bench, Firmware};
 use crate::plan::Interval;
+use bounds::{AxisBounds, Bounds};
+#[cfg(test)]
+pub use frame::sealed;
+use frame::{crc, decimal, of_axis};
 
 /// Longest frame with its ending \[bytes\]: with one axis, with several.
 const LONGEST: usize = 96;
 const LONGEST_OF_SEVERAL: usize = 512;
 /// Maximum number of readings of one `MEAS`.
 const MOST_READINGS: usize = 1000;
-/// Value that stands for an absent limit: mm and mm/s, N.
-const NO_LIMIT_MM: f64 = 999.0;
-const NO_LIMIT_N: f64 = 99_999.0;
 
 /// Settings of a native rig in addition to its bench.
 #[derive(Clone, Debug)]
@@ -41,41 +49,6 @@ impl Default for NativeSettings {
             watchdog: 3.0,
             boot: None,
         }
-    }
-}
-
-/// Limits in the units of the protocol.
-#[derive(Clone, Debug)]
-struct Bounds {
-    axes: Vec<AxisBounds>,
-    /// mm/s
-    top_speed: f64,
-}
-
-/// mm and N
-#[derive(Clone, Copy, Debug)]
-struct AxisBounds {
-    displacement: (f64, f64),
-    force: (f64, f64),
-}
-
-impl AxisBounds {
-    /// Parses the four words of an axis.
-    fn of(words: &[&str]) -> Option<Self> {
-        let [low, high, least, most] = words else {
-            return None;
-        };
-        Some(Self {
-            displacement: (decimal(low)?, decimal(high)?),
-            force: (decimal(least)?, decimal(most)?),
-        })
-    }
-
-    fn narrower_than(&self, own: &Self) -> bool {
-        let within = |(low, high): (f64, f64), (least, most): (f64, f64)| {
-            least <= low && low <= high && high <= most
-        };
-        within(self.displacement, own.displacement) && within(self.force, own.force)
     }
 }
 
@@ -108,43 +81,11 @@ impl Native {
     pub fn new(settings: NativeSettings, bench: &Bench) -> Self {
         let mut generator = Pcg64::seed_from_u64(bench.settings().seed ^ 0xb007);
         let boot = settings.boot.unwrap_or_else(|| generator.random());
-        let known = |value: f64, otherwise: f64, per: f64, decimals: i32| {
-            let wire = if value.is_finite() {
-                value * per
-            } else {
-                otherwise.copysign(value)
-            };
-            let scale = 10_f64.powi(decimals);
-            (wire * scale).round() / scale
-        };
         let rams = settings
             .rams
             .clone()
             .unwrap_or_else(|| (0..bench.rams()).collect());
-        let axis = |(axis, ram): (usize, &usize)| {
-            let (place, force) = (
-                bench.limits_of(*ram),
-                settings
-                    .force_limits
-                    .get(axis)
-                    .copied()
-                    .unwrap_or(Interval::ALL),
-            );
-            AxisBounds {
-                displacement: (
-                    known(place.low, NO_LIMIT_MM, 1e3, 6),
-                    known(place.high, NO_LIMIT_MM, 1e3, 6),
-                ),
-                force: (
-                    known(force.low, NO_LIMIT_N, 1.0, 3),
-                    known(force.high, NO_LIMIT_N, 1.0, 3),
-                ),
-            }
-        };
-        let own = Bounds {
-            axes: rams.iter().enumerate().map(axis).collect(),
-            top_speed: known(bench.settings().top_speed, NO_LIMIT_MM, 1e3, 6),
-        };
+        let own = Bounds::of_rig(&settings, &rams, bench);
         Self {
             rams,
             settings,
@@ -358,66 +299,7 @@ impl Native {
         bench.go_those(Some(id), &self.rams, &metres, rate / 1e3);
         Ok(())
     }
-
-    /// Returns the medians of several readings.
-    fn measure(&self, count: usize, bench: &mut Bench) -> String {
-        let told = |(axis, ram): (usize, &usize)| {
-            let ram = *ram;
-            let mut forces: Vec<f64> = (0..count).map(|_| bench.force_of(ram)).collect();
-            forces.sort_by(f64::total_cmp);
-            let force = f64::midpoint(forces[(count - 1) / 2], forces[count / 2]);
-            let raw = bench.counts_of(force);
-            let displacement = bench.displacement_of(ram) * 1e3;
-            let shown = bench.shown_force(ram, format!("{force:.3}"));
-            let flags = self.flags(axis, !(-8_388_607..8_388_607).contains(&raw), bench);
-            format!("{displacement:.6} {shown} {raw} 0x{flags:04X}")
-        };
-        let axes: Vec<String> = self.rams.iter().enumerate().map(told).collect();
-        format!(
-            "{:.0} {} {}",
-            (bench.time() * 1e3).floor(),
-            axes.join(" "),
-            self.state(bench)
-        )
-    }
-
-    fn state(&self, bench: &Bench) -> &'static str {
-        match (self.held, self.moves(bench)) {
-            (true, _) => "HELD",
-            (false, true) => "MOVING",
-            (false, false) => "IDLE",
-        }
-    }
-
-    /// The flags of all axes, combined.
-    fn all_flags(&self, bench: &Bench) -> u16 {
-        (0..self.run.axes.len()).fold(0, |flags, axis| flags | self.flags(axis, false, bench))
-    }
-
-    fn flags(&self, axis: usize, saturated: bool, bench: &Bench) -> u16 {
-        let (position, (low, high)) = (
-            bench.commanded_of(self.rams[axis]) * 1e3,
-            self.run.axes[axis].displacement,
-        );
-        // A position on a limit is within it. The conversion to mm has rounding errors.
-        let beyond = |excess: f64| excess > 1e-6;
-        let bits = [
-            saturated,
-            false,
-            beyond(position - high),
-            beyond(low - position),
-            false,
-            !self.referenced,
-            self.moves(bench),
-            self.watchdog_tripped,
-        ];
-        bits.iter()
-            .rev()
-            .fold(0, |word, bit| word << 1 | u16::from(*bit))
-    }
 }
-
-mod glide;
 
 impl Firmware for Native {
     fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
@@ -473,46 +355,3 @@ impl Firmware for Native {
         Vec::new()
     }
 }
-
-/// Adds the axis, from 1, to a code if there are several axes.
-fn of_axis(code: &str, axis: usize, axes: usize) -> String {
-    if axes > 1 {
-        format!("{code} {}", axis + 1)
-    } else {
-        code.to_owned()
-    }
-}
-
-/// Parses a number of the protocol: digits, at most one point with digits on both sides, no exponent.
-fn decimal(word: &str) -> Option<f64> {
-    let digits = word.strip_prefix('-').unwrap_or(word);
-    let (whole, fraction) = digits.split_once('.').unwrap_or((digits, "0"));
-    let all_digits =
-        |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
-    if all_digits(whole) && all_digits(fraction) {
-        word.parse().ok()
-    } else {
-        None
-    }
-}
-
-/// CRC-16/CCITT-FALSE by table-free byte steps.
-fn crc(bytes: &[u8]) -> u16 {
-    let mut crc = 0xffff_u16;
-    for byte in bytes {
-        // The classical byte-wise form, different from the driver's shift register.
-        let mut mixed = crc >> 8 ^ u16::from(*byte);
-        mixed ^= mixed >> 4;
-        crc = crc << 8 ^ mixed << 12 ^ mixed << 5 ^ mixed;
-    }
-    crc
-}
-
-/// A request with its checksum, for tests that act as a host.
-#[cfg(test)]
-pub fn sealed(body: &str) -> Vec<u8> {
-    format!(">{body}*{:04X}\n", crc(body.as_bytes())).into_bytes()
-}
-
-#[cfg(test)]
-mod tests;

@@ -8,7 +8,7 @@ pub mod tracking;
 
 use super::checker::Checker;
 use super::messages::{cyclic, values, whole as message};
-use crate::plan::{Condition, Contact, Ground, Procedure, Requirement};
+use crate::plan::{Condition, Ground, Procedure, Requirement};
 use crate::procedures::facts::{Leaves, Motion};
 use crate::schema::Kind;
 use crate::schema::procedures::impact::MAX_CONTACT_FORCE;
@@ -144,10 +144,9 @@ fn peak_forces(
     procedures: &[(usize, Option<Procedure>)],
     requirements: &[Requirement],
 ) {
-    let law = |procedure: &Procedure| match crate::procedures::facts_of(&procedure.kind).contact? {
-        Contact::Rigid => Some("rigid"),
-        Contact::Restitution { .. } => Some("restitution"),
-        Contact::Limit { .. } | Contact::Hertz { .. } => None,
+    let law = |procedure: &Procedure| {
+        let contact = crate::procedures::facts_of(&procedure.kind).contact?;
+        contact.is_impulsive().then(|| contact.name())
     };
     let read = |checker: &mut Checker, conditions: &[Condition], span: Span| {
         let mut references = Vec::new();

@@ -2,7 +2,7 @@
 //! [`super::super::ImpactSolver`], in the same order, and of the summary of its steps.
 
 use super::{Impact, LaneSpecimen};
-use crate::contact::state::ContactLaw;
+use crate::contact::ContactLaw;
 use crate::impact::ImpactInput;
 use crate::impact::summary::{ImpactSummary, still_rising};
 

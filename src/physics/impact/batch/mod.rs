@@ -11,7 +11,7 @@ mod tests;
 
 use super::summary::{ImpactSummary, SummaryBuilder};
 use super::{ImpactError, ImpactInput, ImpactSolver, Until};
-use crate::contact::state::ContactLaw;
+use crate::contact::ContactLaw;
 use crate::integrator::Integrator;
 use crate::specimen::{Bilinear, Elastic, RestoringForce, SpecimenModel};
 use lanes::{LANES, Lanes};

@@ -26,6 +26,22 @@ pub(crate) struct Strikers<'a> {
     pub fastest: &'a Striker,
 }
 
+/// Judges an impact of its own striker.
+pub(crate) fn with_its_striker(
+    checker: &mut Checker,
+    block: usize,
+    impact: &Impact,
+    declared: &Declared<'_>,
+) {
+    if let Some(striker) = declared.striker(impact.striker) {
+        let strikers = Strikers {
+            slowest: striker,
+            fastest: striker,
+        };
+        judge(checker, block, impact, &strikers, declared);
+    }
+}
+
 /// Judges an impact of these strikers.
 pub(crate) fn judge(
     checker: &mut Checker,
@@ -112,7 +128,7 @@ fn on_storey(
         duration: impact.duration.constant(),
     };
     let critical = |properties: &FrameProperties| {
-        let approach = impact.contact.approach(striker, Formula::constant);
+        let approach = impact.approach(striker, Formula::constant);
         approach.map(|approach| properties.critical_on_impact(target.storey, &approach))
     };
     let Some((properties, step)) = frame_check::judge(checker, block, &steps, critical) else {

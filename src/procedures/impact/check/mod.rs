@@ -8,7 +8,8 @@ pub(crate) mod warnings;
 
 use crate::language::check::checker::Checker;
 use crate::language::check::declarations::specimen::frame;
-use crate::plan::{Contact, Impact, ProcedureKind, Until};
+use crate::plan::{Impact, ProcedureKind, Until};
+use crate::procedures::impact::contact;
 use crate::procedures::stepping;
 use crate::procedures::stepping::check::integrator_check;
 use crate::schema::Kind;
@@ -31,7 +32,7 @@ pub(crate) fn fields(checker: &mut Checker, block: usize) -> Option<Impact> {
         Some((frame_block, frame)) => target::storey(checker, block, *frame_block, frame.as_ref()),
         None => target::point(checker, block, specimen),
     };
-    let contact = contact(checker, block);
+    let contact = contact::check(checker, block);
     let stepping = stepping::check::stepping(checker, block, contact.as_ref(), FINER);
     let duration = checker.quantity(block, methods::DURATION.name);
     let until = until(checker, block);
@@ -61,36 +62,4 @@ fn until(checker: &mut Checker, block: usize) -> Option<Until> {
             _ => Until::StrikerStop,
         },
     )
-}
-
-fn contact(checker: &mut Checker, block: usize) -> Option<Contact> {
-    let Some((entry, _)) = checker.field(block, schema::CONTACT.name) else {
-        return Some(Contact::Rigid);
-    };
-    let place = checker.context_of(block, entry);
-    let chosen = checker.choice(block, schema::CONTACT.name)?;
-    Some(match chosen.variant.name {
-        "limit" => Contact::Limit {
-            force: checker.argument(&chosen, schema::LIMIT_FORCE.name, place)?,
-        },
-        "restitution" => Contact::Restitution {
-            coefficient: checker.argument(&chosen, schema::COEFFICIENT.name, place)?,
-        },
-        "hertz" => {
-            let stiffness = checker.argument(&chosen, schema::HERTZ_STIFFNESS.name, place);
-            let loss = checker.argument(&chosen, schema::LOSS.name, place);
-            let force_limit = match chosen.find(schema::FORCE_LIMIT.name) {
-                Some((_, Some(_))) => checker
-                    .argument(&chosen, schema::FORCE_LIMIT.name, place)
-                    .map(Some),
-                _ => Some(None),
-            };
-            Contact::Hertz {
-                stiffness: stiffness?,
-                loss: loss?,
-                force_limit: force_limit?,
-            }
-        }
-        _ => Contact::Rigid,
-    })
 }

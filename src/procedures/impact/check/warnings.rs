@@ -5,7 +5,7 @@ use super::time_step::{predicted_critical, time_step_before_the_run};
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::{specimens, whole as fault};
 use crate::physics::structure::portal::limit::mechanism_limit;
-use crate::plan::formula::NoResults;
+use crate::plan::formula::{Formula, NoResults};
 use crate::plan::{Behaviour, Contact, Impact, Specimen, Striker};
 use crate::schema::methods;
 use crate::schema::procedures::impact as schema;
@@ -58,14 +58,7 @@ pub(crate) fn mechanism(
     impact: &Impact,
     specimen: Option<&Specimen>,
 ) {
-    let bound = match &impact.contact {
-        Contact::Limit { force }
-        | Contact::Hertz {
-            force_limit: Some(force),
-            ..
-        } => force.constant(),
-        _ => None,
-    };
+    let bound = impact.contact.force_limit().and_then(Formula::constant);
     let portal = specimen
         .and_then(|specimen| specimen.behaviour.as_ref())
         .and_then(Behaviour::portal);

@@ -1,7 +1,8 @@
 //! Charts of an impact (paper, Figs. 9–11 and 16). In: the steps of one impact. Out: [`Chart`]s in SI.
 
+use crate::plan::ProcedureKind;
 use crate::plan::formula::ProcedureId;
-use crate::plan::{Contact, ProcedureKind};
+use crate::procedures::impact::contact;
 use crate::procedures::stepping::energy::{EnergyCurve, nonzero_curves};
 use crate::record::{ImpactHistory, ImpactStep, StepState};
 use crate::report::Run;
@@ -27,13 +28,7 @@ pub(crate) fn displacement(history: &ImpactHistory, limits: &[Reference]) -> Cha
             Style::line(palette::VERMILION, 2.0, DASHED),
         ),
     ];
-    chart.references = limits
-        .iter()
-        .map(|limit| Reference {
-            label: limit.label.clone(),
-            y: limit.y,
-        })
-        .collect();
+    chart.references = limits.to_vec();
     chart
 }
 
@@ -117,13 +112,7 @@ pub(crate) fn contact_force(history: &ImpactHistory, limits: &[Reference]) -> Ch
         points,
         style: Style::line(palette::BLUE, 1.5, SOLID),
     }];
-    chart.references = limits
-        .iter()
-        .map(|limit| Reference {
-            label: limit.label.clone(),
-            y: limit.y,
-        })
-        .collect();
+    chart.references = limits.to_vec();
     chart
 }
 
@@ -146,26 +135,12 @@ pub(crate) fn force_displacement(history: &ImpactHistory) -> Chart {
     }
 }
 
-/// The name of the energy that the contact took: a spring stores it, every other law loses it.
+/// The name of the energy that the contact took.
 pub(crate) fn energy_of_contact(run: &Run<'_>, procedure: ProcedureId) -> &'static str {
-    let Some(ProcedureKind::Impact(impact)) = run
-        .plan
-        .procedures
-        .get(procedure.0)
-        .map(|procedure| &procedure.kind)
-    else {
-        return "transferred in contact";
-    };
-    match &impact.contact {
-        Contact::Hertz {
-            loss,
-            force_limit: None,
-            ..
-        } if loss.constant() == Some(0.0) => "stored in the contact",
-        Contact::Hertz { .. } => "stored and lost in the contact",
-        Contact::Rigid | Contact::Limit { .. } | Contact::Restitution { .. } => {
-            "lost in the contact"
-        }
+    let planned = run.plan.procedures.get(procedure.0);
+    match planned.map(|planned| &planned.kind) {
+        Some(ProcedureKind::Impact(impact)) => contact::reported(&impact.contact).energy,
+        _ => "transferred in contact",
     }
 }
 

@@ -6,6 +6,7 @@ pub(crate) mod storey;
 
 use crate::plan::{Contact, Impact, Integrator, PointTarget, ProcedureKind};
 use crate::procedures;
+use crate::procedures::impact::contact;
 use crate::procedures::stepping::{self, energy};
 use crate::record::{ImpactHistory, ProcedureRecord};
 use crate::report::document::Block;
@@ -17,13 +18,9 @@ use crate::units::Dimension;
 /// Results that have a budget even if no requirement reads any.
 pub(crate) const BUDGET: &[&str] = &[schema::MAX_DISPLACEMENT.name, schema::ABSORBED_ENERGY.name];
 
-/// The results that a reader looks for first. The largest contact force is one of them where a law bounds it.
+/// The results that a reader looks for first.
 pub(crate) fn headline(contact: &Contact) -> Vec<&'static str> {
-    let of_contact: &[&str] = match contact {
-        Contact::Rigid | Contact::Restitution { .. } => &[],
-        Contact::Limit { .. } => &[schema::MAX_CONTACT_FORCE.name],
-        Contact::Hertz { .. } => &[schema::MAX_CONTACT_FORCE.name, schema::INDENTATION.name],
-    };
+    let of_contact = contact::reported(contact).headline;
     let first = [schema::MAX_DISPLACEMENT.name, schema::ABSORBED_ENERGY.name];
     let last = [
         schema::STOP_TIME.name,
@@ -33,18 +30,10 @@ pub(crate) fn headline(contact: &Contact) -> Vec<&'static str> {
     [&first[..], of_contact, &last].concat()
 }
 
-/// Inputs, settings and counts of the method, and the tracking, which the text below the results states; a peak force that
-/// depends on the time step; an indentation that the law does not have.
+/// Inputs, settings and counts of the method, and the tracking, which the text below the results states; the results that the
+/// contact law does not have.
 pub(crate) fn unprinted(contact: &Contact) -> Vec<&'static str> {
-    let of_contact: &[&str] = match contact {
-        Contact::Rigid | Contact::Restitution { .. } => &[
-            schema::MAX_CONTACT_FORCE.name,
-            schema::INDENTATION.name,
-            schema::INDENTATION_ENERGY.name,
-        ],
-        Contact::Limit { .. } => &[schema::INDENTATION.name, schema::INDENTATION_ENERGY.name],
-        Contact::Hertz { .. } => &[],
-    };
+    let of_contact = contact::reported(contact).unprinted;
     let of_method = [
         schema::CONTACTS.name,
         schema::STRIKER_ENERGY.name,
@@ -97,7 +86,7 @@ fn force_note(
         _ => format!("Time step {step}."),
     };
     let mut sentences = vec![
-        format!("Contact law: {}.", contact_law(&impact.contact)),
+        format!("Contact law: {}.", contact::reported(&impact.contact).name),
         forces,
         format!("Critical time step (Melo et al. 2006, eq. 7) {critical}."),
     ];
@@ -137,16 +126,6 @@ fn damping_range(run: &Run<'_>, procedure: &ProcedureRecord, point: &PointTarget
         )
     });
     sentences.collect()
-}
-
-/// The law of contact as the plan chose it, in words.
-pub(crate) fn contact_law(contact: &Contact) -> &'static str {
-    match contact {
-        Contact::Rigid => "rigid",
-        Contact::Limit { .. } => "rigid up to a limit force",
-        Contact::Restitution { .. } => "restitution",
-        Contact::Hertz { .. } => "Hertz",
-    }
 }
 
 /// e = Ms/(Ms + 2M): the limit of the rigid law as the time step goes to zero.
@@ -224,9 +203,7 @@ fn tracking(history: &ImpactHistory) -> Option<String> {
 pub(crate) fn contact_work(run: &Run<'_>, index: usize) -> &'static str {
     let planned = run.plan.procedures.get(index);
     match planned.and_then(|planned| procedures::facts_of(&planned.kind).contact) {
-        Some(Contact::Rigid | Contact::Limit { .. }) => {
-            "contact, Σ F₁ΔXs − ½(F₀ + F₁)ΔX of each step"
-        }
+        Some(contact) if !contact.needs_tangent() => "contact, Σ F₁ΔXs − ½(F₀ + F₁)ΔX of each step",
         _ => "contact, ∫F d(Xs − X) within each step",
     }
 }

@@ -1,10 +1,11 @@
 //! An impact on one storey of a frame, as a report states it: the contact, the modes, the response and the energy of each
 //! storey, the energy balance, the contact log. In: a plan and a record. Out: blocks.
 
-use super::{contact_law, contact_log, contact_work, energy_balance};
+use super::{contact_log, contact_work, energy_balance};
 use crate::plan::formula::ResultValue;
 use crate::plan::{Contact, Impact, Mode, ProcedureKind, StoreyTarget};
 use crate::procedures::base_excitation;
+use crate::procedures::impact::contact;
 use crate::procedures::stepping::energy;
 use crate::record::{ImpactHistory, ProcedureRecord, StruckFrame};
 use crate::report::document::{Block, Column, Table, Text};
@@ -80,17 +81,16 @@ fn method(
 ) -> Vec<String> {
     let time = |value| number::text(value, Dimension::TIME);
     let step = time(history.time_step);
-    let critical = match impact.contact {
-        Contact::Hertz { .. } => {
-            "a tenth of the shortest period of the frame with the striker in contact (tangent at the largest indentation) is"
-        }
-        _ => "a tenth of the frame's shortest period is",
+    let critical = if impact.contact.stiffness().is_some() {
+        "a tenth of the shortest period of the frame with the striker in contact (tangent at the largest indentation) is"
+    } else {
+        "a tenth of the frame's shortest period is"
     };
     let mut sentences = vec![
         format!(
             "Floor {} is struck. Contact law: {}.",
             struck.struck + 1,
-            contact_law(&impact.contact)
+            contact::reported(&impact.contact).name
         ),
         base_excitation::report::integrated(
             base_excitation::report::frame_of(run, impact.specimen),

@@ -19,7 +19,7 @@ pub fn integrator(
 ) -> Option<Integrator> {
     let Some((entry, _)) = checker.field(block, methods::INTEGRATOR.name) else {
         let continuous = matches!(mode, Some(Mode::Continuous { .. }));
-        let whole_steps = matches!(contact, Some(Contact::Rigid | Contact::Limit { .. }));
+        let whole_steps = contact.is_some_and(|contact| !contact.needs_tangent());
         return Some(if continuous && whole_steps {
             Integrator::Explicit
         } else {
@@ -45,12 +45,7 @@ pub fn meets_the_contact(
     integrator: Integrator,
     contact: &Contact,
 ) -> Option<()> {
-    let law = match contact {
-        Contact::Restitution { .. } => "restitution",
-        Contact::Hertz { .. } => "hertz",
-        Contact::Rigid | Contact::Limit { .. } => return Some(()),
-    };
-    if integrator == Integrator::Tangent {
+    if !contact.needs_tangent() || integrator == Integrator::Tangent {
         return Some(());
     }
     let head = checker.scope.blocks[block].block.head;
@@ -63,7 +58,7 @@ pub fn meets_the_contact(
     checker.fail(fault::law_needs_the_tangent(
         integrator.name(),
         named,
-        law,
+        contact.name(),
         struck,
     ))
 }

@@ -1,4 +1,4 @@
-//! The procedures of the language, one file each: its block and its results.
+//! The procedures of the language, one file each: its block and its results. The list of them is here.
 
 pub(crate) mod base_excitation;
 pub(crate) mod cycle;
@@ -11,8 +11,21 @@ pub(crate) mod stiffness_ramp;
 pub(crate) mod tracking;
 pub(crate) mod unload;
 
-use crate::schema::types::{Field, Kind, RigKind};
+use crate::schema::types::{BlockKind, Field, Kind, RigKind};
 use crate::units::Dimension;
+
+/// The blocks of the procedures, in the order of the reference.
+pub(crate) const BLOCKS: &[&BlockKind] = &[
+    &stiffness_ramp::BLOCK,
+    &damping_sweep::BLOCK,
+    &impact::BLOCK,
+    &cycle::BLOCK,
+    &base_excitation::BLOCK,
+    &impact_series::BLOCK,
+    &unload::BLOCK,
+    &move_to::BLOCK,
+    &inspect::BLOCK,
+];
 
 pub(crate) const SPECIMEN: Field = Field::specimen("specimen");
 

@@ -1,7 +1,7 @@
 //! An impact on one floor: one storey equals one degree of freedom; many close their energy balance and converge to closed forms.
 
+use psd::physics::contact::ContactLaw;
 use psd::physics::contact::NeedsTangent;
-use psd::physics::contact::state::ContactLaw;
 use psd::physics::impact::{FrameImpactSolver, ImpactError, ImpactInput, ImpactSetup, ImpactState};
 use psd::physics::integrator::input::FrameInput;
 use psd::physics::integrator::tangents::Tangents;

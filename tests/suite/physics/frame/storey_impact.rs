@@ -1,7 +1,7 @@
 //! An impact on one of two floors compared with closed forms: the joined chain of a plastic impact, free masses under Hertz's contact,
 //! momentum and energy.
 
-use psd::physics::contact::state::ContactLaw;
+use psd::physics::contact::ContactLaw;
 use psd::physics::impact::{FrameImpactSolver, ImpactSetup};
 use psd::physics::structure::{FrameMatrices, SymmetricBand, storey_stiffness};
 use psd::plan::Integrator;

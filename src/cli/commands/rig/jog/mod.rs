@@ -38,9 +38,12 @@ pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure
         yes: arguments.yes,
         operator: arguments.operator.clone(),
     };
-    let unattended = real_rig::unattended(&attendance, settings);
-    let checked = plan_file::open_to_run(&arguments.plan, &arguments.plan_settings, unattended)?;
-    plan_file::show(&checked, &arguments.plan, settings);
+    let checked = real_rig::open_plan(
+        &arguments.plan,
+        &arguments.plan_settings,
+        &attendance,
+        settings,
+    )?;
     let Some(plan) = &checked.plan else {
         return Ok(Exit::Wrong);
     };

@@ -1,9 +1,8 @@
 //! A bilinear spring with cyclic deterioration. In: a displacement. Out: the force there, exact for a move of any length; without
 //! deterioration bit-identical to the bilinear spring.
 
-use super::deterioration::Degradation;
-use super::{BilinearCurve, RestoringForce};
-use crate::specimen::Deterioration;
+use super::{Degradation, Deterioration};
+use crate::specimen::{BilinearCurve, RestoringForce};
 
 /// The bilinear spring (`Bilinear`: K between two lines of slope k, R = kX ± Y, Y = (1 − h)F_y, k = hK) with two of the modes of
 /// deterioration of Ibarra, Medina & Krawinkler (Earthquake Engng Struct. Dyn. 34 (2005) 1489–1511), in the order of `IMKBilin` of
@@ -185,9 +184,9 @@ impl RestoringForce for DeterioratingBilinear {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Bilinear;
-    use super::super::tests::energy_along;
     use super::*;
+    use crate::specimen::Bilinear;
+    use crate::specimen::tests::energy_along;
 
     /// Infinite capacities.
     const NO_WEAR: Deterioration = Deterioration {

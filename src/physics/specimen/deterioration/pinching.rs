@@ -1,9 +1,8 @@
 //! Peak-oriented pinched hysteresis. In: a displacement. Out: the force there, exact for a move of any length: every branch is straight,
 //! and a move is divided at their ends.
 
-use super::RestoringForce;
-use super::deterioration::Degradation;
-use super::deterioration::Deterioration;
+use super::{Degradation, Deterioration};
+use crate::specimen::RestoringForce;
 
 /// Parameters of a pinched hysteresis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -275,8 +274,8 @@ impl RestoringForce for PinchedHysteresis {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::super::tests::energy_along;
     use super::*;
+    use crate::specimen::tests::energy_along;
 
     /// 1000 N/mm to 1 kN, perfectly plastic; κ_F = 0.4, κ_D = 0.5.
     pub(crate) const PLAN: Pinching = Pinching {

@@ -10,6 +10,11 @@
 //! - At the reversal of a loaded excursion: the unloading stiffness of both sides times 1 − `β_k`, with `E_i` and ΣE_j minus the released
 //!   elastic energy.
 
+pub(super) mod bilinear;
+pub(super) mod pinching;
+#[cfg(test)]
+mod pinching_tests;
+
 /// Parameters of cyclic deterioration: for each mode the energy capacity γ over `F_y` `x_y`, infinite if the mode is off.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deterioration {

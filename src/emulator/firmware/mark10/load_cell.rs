@@ -4,7 +4,7 @@
 //! Choices where the published commands are not specific: `?` and `?C` are the same; a reading has two digits after the point
 //! and the unit N; a peak is the absolute value since zero; `Z` has no answer.
 
-use super::line_buffer::LineBuffer;
+use crate::emulator::firmware::line_buffer::LineBuffer;
 use crate::emulator::{Bench, Firmware};
 
 /// A gauge with its own port.

@@ -1,9 +1,15 @@
 //! A device on one port: the trait that every driver implements, and the types that it exchanges with the rig. It knows no
 //! protocol.
 
+mod composite;
+mod load_cell;
+
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::Limits;
 use crate::rig::{LastMove, LineStatistics};
+
+pub use composite::{Member, together};
+pub use load_cell::LoadCell;
 
 /// The identity that a device reports.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

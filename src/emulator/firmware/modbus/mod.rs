@@ -6,10 +6,13 @@
 //! command, or, without a command register, with the target. A start without a target, or with a speed not above 0, gives
 //! exception 4. Without a speed register the maximum speed applies.
 
-use super::modbus_frame::{Assembler, Exception, Frame, reply};
-use super::modbus_registers::{decode, encode, width};
+mod frame;
+mod registers;
+
 use crate::emulator::{Bench, Firmware};
 use crate::plan::ModbusMap;
+use frame::{Assembler, Exception, Frame, reply};
+use registers::{decode, encode, width};
 
 #[derive(Debug)]
 pub struct Modbus {
@@ -205,7 +208,7 @@ impl Firmware for Modbus {
 
 #[cfg(test)]
 mod tests {
-    use super::super::modbus_frame::checksum;
+    use super::frame::checksum;
     use super::*;
     use crate::emulator::firmware::testing::spring;
     use crate::plan::ModbusNumber;

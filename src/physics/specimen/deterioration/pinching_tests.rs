@@ -1,11 +1,10 @@
 //! Pinched hysteresis with cyclic deterioration: each mode by hand, no deterioration without a stated capacity, and never more dissipated
 //! energy than the capacity.
 
-use super::RestoringForce;
 use super::pinching::PinchedHysteresis;
 use super::pinching::tests::PLAN;
-use super::tests::energy_along;
-use crate::specimen::{Capping, Deterioration, Pinching};
+use crate::specimen::tests::energy_along;
+use crate::specimen::{Capping, Deterioration, Pinching, RestoringForce};
 
 /// Infinite capacities.
 const NO_WEAR: Deterioration = Deterioration {

@@ -6,8 +6,10 @@
 //! published, is not answered; a speed given with `e` applies from `o` on, until then the panel's speed applies; letters
 //! between `/` and `\` go to the gauge, whose command ends with CR or with `\`; a speed of zero is ignored.
 
-use super::mark10_load_cell::Mark10Gauge;
+mod load_cell;
+
 use crate::emulator::{Bench, Firmware};
+pub use load_cell::Mark10Gauge;
 
 /// Travel limits of the stand itself \[m\], in both directions: `u` and `d` end there in manual mode.
 const END_OF_TRAVEL: f64 = 0.3;

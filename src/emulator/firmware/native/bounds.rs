@@ -1,0 +1,85 @@
+//! The limits of a native rig, in the units of its protocol. In: the settings of bench and rig, or the words of `LIM`. Out: limits of
+//! each axis. They stop nothing themselves.
+
+use super::NativeSettings;
+use super::frame::decimal;
+use crate::emulator::Bench;
+use crate::plan::Interval;
+
+/// Value that stands for an absent limit: mm and mm/s, N.
+const NO_LIMIT_MM: f64 = 999.0;
+const NO_LIMIT_N: f64 = 99_999.0;
+
+/// Limits in the units of the protocol.
+#[derive(Clone, Debug)]
+pub(super) struct Bounds {
+    pub(super) axes: Vec<AxisBounds>,
+    /// mm/s
+    pub(super) top_speed: f64,
+}
+
+/// mm and N
+#[derive(Clone, Copy, Debug)]
+pub(super) struct AxisBounds {
+    pub(super) displacement: (f64, f64),
+    pub(super) force: (f64, f64),
+}
+
+impl Bounds {
+    /// The limits of the rig itself, as its bench and its settings state them.
+    pub(super) fn of_rig(settings: &NativeSettings, rams: &[usize], bench: &Bench) -> Self {
+        let axis = |(axis, ram): (usize, &usize)| {
+            let place = bench.limits_of(*ram);
+            let own = settings.force_limits.get(axis).copied();
+            let force = own.unwrap_or(Interval::ALL);
+            AxisBounds {
+                displacement: (millimetres(place.low), millimetres(place.high)),
+                force: (newtons(force.low), newtons(force.high)),
+            }
+        };
+        Self {
+            axes: rams.iter().enumerate().map(axis).collect(),
+            top_speed: millimetres(bench.settings().top_speed),
+        }
+    }
+}
+
+/// A length \[m\] or speed \[m/s\] in the unit of the protocol, rounded as it is sent.
+fn millimetres(value: f64) -> f64 {
+    rounded(value * 1e3, NO_LIMIT_MM, 1e6)
+}
+
+/// A force \[N\], rounded as it is sent.
+fn newtons(value: f64) -> f64 {
+    rounded(value, NO_LIMIT_N, 1e3)
+}
+
+/// A limit to the decimals that `scale` keeps; `absent` if there is no limit.
+fn rounded(value: f64, absent: f64, scale: f64) -> f64 {
+    let wire = if value.is_finite() {
+        value
+    } else {
+        absent.copysign(value)
+    };
+    (wire * scale).round() / scale
+}
+
+impl AxisBounds {
+    /// Parses the four words of an axis.
+    pub(super) fn of(words: &[&str]) -> Option<Self> {
+        let [low, high, least, most] = words else {
+            return None;
+        };
+        Some(Self {
+            displacement: (decimal(low)?, decimal(high)?),
+            force: (decimal(least)?, decimal(most)?),
+        })
+    }
+
+    pub(super) fn narrower_than(&self, own: &Self) -> bool {
+        let within = |(low, high): (f64, f64), (least, most): (f64, f64)| {
+            least <= low && low <= high && high <= most
+        };
+        within(self.displacement, own.displacement) && within(self.force, own.force)
+    }
+}
