@@ -36,6 +36,8 @@ pub(crate) mod evidence;
 pub(crate) mod files;
 pub mod golden;
 
+pub mod study;
+
 pub mod cli;
 
 #[cfg(test)]

@@ -25,6 +25,8 @@ pub enum Exit {
     Stopped,
     /// 5: results differ from the accepted ones.
     Differs,
+    /// 75: a study was stopped before all of its runs were done; the same command continues it (`EX_TEMPFAIL` of sysexits.h).
+    Unfinished,
 }
 
 impl Exit {
@@ -38,6 +40,7 @@ impl Exit {
             Self::Fault => 3,
             Self::Stopped => 4,
             Self::Differs => 5,
+            Self::Unfinished => 75,
         }
     }
 }

@@ -51,6 +51,7 @@ pub fn main(arguments: impl Iterator<Item = OsString>) -> Exit {
             commands::explain::explain(code.as_deref(), *full, settings)
         }
         args::Command::Limits => commands::limits::limits(),
+        args::Command::Study { command } => commands::study::study(command, settings),
         args::Command::Rig { command } => commands::rig::rig(command, settings),
     };
     outcome.unwrap_or_else(|failure: Failure| {

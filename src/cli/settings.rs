@@ -108,6 +108,11 @@ impl Settings {
     }
 }
 
+/// A variable of the environment, as a batch system sets it for a task.
+pub fn variable(name: &str) -> Option<String> {
+    std::env::var(name).ok()
+}
+
 /// The folder of a plan as it was typed, with its slash: `plans/`; empty for a plan of this folder.
 pub fn folder_of(plan: &Path) -> String {
     let folder = plan

@@ -84,6 +84,7 @@ pub fn plan_of(played: &LoggedRun) -> Result<Plan, String> {
         header.date.clone(),
     );
     let options = Options {
+        for_studies: false,
         rig,
         settings,
         date,

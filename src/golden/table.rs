@@ -4,8 +4,8 @@ use super::finding::{Change, Count, Finding, Part, Place};
 use super::tolerance::Tolerances;
 use super::{Truth, number};
 use crate::procedures;
+use crate::schema;
 use crate::schema::columns;
-use crate::schema::{self, Kind};
 use crate::units::Dimension;
 
 /// A table as it was read.
@@ -218,11 +218,9 @@ fn words(was: &Table, is: &Table, column: &str) -> Option<Change> {
 /// The quantity of a column: one name has one meaning in every table.
 #[must_use]
 pub fn dimension(column: &str) -> Dimension {
-    let kinds = schema::BLOCKS
+    let known = schema::BLOCKS
         .iter()
         .map(|block| block.kind)
-        .filter(|kind| *kind != Kind::Later);
-    let known = kinds
         .flat_map(procedures::columns)
         .find(|known| known.name == column);
     known.map_or(Dimension::NUMBER, |known| known.dimension)

@@ -121,9 +121,21 @@ impl Walk<'_> {
                 self.result(base, name);
                 self.expression(base);
             }
+            ExprKind::Member {
+                base,
+                name,
+                arguments,
+            } => {
+                self.expression(base);
+                self.arguments(&name.node, arguments);
+            }
             ExprKind::Index { base, index } => {
                 self.expression(base);
                 self.expression(index);
+            }
+            ExprKind::Stepped { input, values } => {
+                self.expression(input);
+                self.expression(values);
             }
             ExprKind::Negate(inner) | ExprKind::Parenthesised(inner) => self.expression(inner),
             ExprKind::Binary { left, right, .. } => {

@@ -61,7 +61,7 @@ pub use rig::{
     VirtualLink, ZeroAfter,
 };
 pub use specimen::frame::{Ground, MOST_STOREYS, Shake, ShakeDamping, rayleigh};
-pub use study::{Fragility, Studies, Study, StudyEvent, StudyRequirement};
+pub use study::{Collected, Fragility, Studies, Study, StudyEvent, StudyRequirement};
 
 /// Everything that a run needs to know beforehand, in SI units. Names are resolved to indices into its lists.
 #[derive(Clone, Debug)]

@@ -1,17 +1,21 @@
 //! Studies: many runs of the plan with scattered inputs. In: nothing. Out: the checked parameters of `study` and `fragility` blocks, and
 //! the requirements on their probabilities. A run of the plan itself does not read them.
 
-use super::results::ResultReference;
+use super::formula::Formula;
 use super::{Comparison, Condition};
 use crate::physics::study::Confidence;
 use crate::physics::study::correlation::Pair;
 use crate::physics::study::inputs::Source;
-use crate::units::Dimension;
+use crate::units::{Dimension, Quantity};
 
 /// Most runs of a study.
 pub const MOST_RUNS: u64 = 10_000_000_000;
 /// Runs of a study that does not state their number.
 pub const USUAL_RUNS: u64 = 10_000;
+/// Seed of a study that does not state one.
+pub const USUAL_SEED: u64 = 1;
+/// Largest seed: a whole number of a plan is exact up to 2⁵³.
+pub const MOST_SEED: u64 = 1 << 53;
 /// Scrambled replicates of a Sobol' study: the scatter of their means gives an interval.
 pub const REPLICATES: u32 = 16;
 
@@ -38,6 +42,27 @@ pub struct Input {
     pub text: String,
     /// The value of the plan without the study, SI.
     pub nominal: f64,
+    /// Whether it is an angle, which a plan writes with its unit.
+    pub angle: bool,
+}
+
+impl Input {
+    /// The argument of `--set` that gives the plan this value [SI] to the last bit: `beam.mass=2.1kg`.
+    #[must_use]
+    pub fn setting(&self, value: f64) -> String {
+        let written = Quantity::new(value, self.dimension).in_plan_syntax();
+        let unit = if self.angle { "rad" } else { "" };
+        format!("{}={}{unit}", self.name, written.replace(' ', ""))
+    }
+}
+
+/// A number that is kept for every run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Collected {
+    /// As the plan writes it: `hit.max_displacement`, `max(quake.max_drift)`.
+    pub text: String,
+    pub value: Formula,
+    pub dimension: Dimension,
 }
 
 /// How the points of a study are chosen.
@@ -98,8 +123,8 @@ pub struct Study {
     pub runs: Runs,
     /// Confidence of its intervals.
     pub confidence: Confidence,
-    /// Results that are kept for every run, beside those that a requirement reads.
-    pub collect: Vec<ResultReference>,
+    /// Numbers that are kept for every run, beside those that a requirement reads.
+    pub collect: Vec<Collected>,
 }
 
 /// A `fragility` block: the probability of an exceedance by the intensity.
@@ -149,4 +174,14 @@ pub struct Studies {
     pub studies: Vec<Study>,
     pub fragilities: Vec<Fragility>,
     pub requirements: Vec<StudyRequirement>,
+}
+
+impl Studies {
+    /// The names of the requirements that a study decides, in quotes; None without one.
+    #[must_use]
+    pub fn requirement_names(&self) -> Option<String> {
+        let quoted = |requirement: &StudyRequirement| format!("\"{}\"", requirement.label);
+        let names: Vec<String> = self.requirements.iter().map(quoted).collect();
+        (!names.is_empty()).then(|| names.join(", "))
+    }
 }

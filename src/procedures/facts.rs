@@ -2,7 +2,7 @@
 //! Out: types.
 
 use super::unload;
-use crate::plan::{Condition, Contact, Dependence, FigureKind, ShakeDamping, Stepping};
+use crate::plan::{Condition, Contact, Dependence, FigureKind, Impact, ShakeDamping, Stepping};
 use crate::record::BroughtTogether;
 
 /// The structure that a procedure tests.
@@ -20,6 +20,8 @@ pub(crate) struct Facts<'a> {
     pub tests: Tests,
     /// Its time stepping, if it integrates.
     pub stepping: Option<&'a Stepping>,
+    /// The impact that it is, if that is on one degree of freedom: a study may run it in a batch.
+    pub point_impact: Option<&'a Impact>,
     /// The contact law of an impact.
     pub contact: Option<&'a Contact>,
     /// The conditions under which a series of impacts continues.

@@ -53,7 +53,8 @@ pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<ProcedureKind
         | Kind::Ground
         | Kind::Report
         | Kind::Golden
-        | Kind::Later => None,
+        | Kind::Study
+        | Kind::Fragility => None,
     }
 }
 
@@ -354,7 +355,8 @@ pub fn columns(kind: Kind) -> impl Iterator<Item = Column> {
         | Kind::Ground
         | Kind::Report
         | Kind::Golden
-        | Kind::Later => Vec::new(),
+        | Kind::Study
+        | Kind::Fragility => Vec::new(),
     };
     each_once(all).into_iter()
 }

@@ -80,6 +80,9 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
         let line = format!("  {verdict}  {}  {}", cells.join("  "), row[4]);
         let _ = writeln!(text, "{}", line.trim_end());
     }
+    if let Some(names) = run.plan.studies.requirement_names() {
+        let _ = writeln!(text, "  by a study: {}", one_line(&names));
+    }
     text.push_str(&decision_rule(run));
     for deviation in deviations::of_run(run) {
         let _ = writeln!(text, "  note: {}", one_line(&deviation));

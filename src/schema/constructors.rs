@@ -12,7 +12,6 @@ impl Field {
             range: Range::ANY,
             example: "",
             doc,
-            available: true,
             real_rig_only: false,
             of_frames: false,
             angle: false,

@@ -6,14 +6,14 @@ pub mod blocks;
 pub(crate) mod columns;
 mod constructors;
 mod functions;
-mod later;
 mod reference;
 mod renamed;
 mod types;
 
+pub(crate) use blocks::evaluation::{golden, report, study};
 pub(crate) use blocks::{
-    curves, devices, frames, golden, ground, limits, methods, plan_block, procedures, report, rig,
-    specimen, striker,
+    curves, devices, frames, ground, limits, methods, plan_block, procedures, rig, specimen,
+    striker,
 };
 pub use columns::Column;
 pub use functions::{FUNCTIONS, FunctionKind};
@@ -38,9 +38,10 @@ const DECLARATIONS: &[&BlockKind] = &[
 ];
 
 const ABOUT_THE_RUN: &[&BlockKind] = &[
-    &blocks::report::REPORT,
-    &blocks::golden::GOLDEN,
-    &later::STUDY,
+    &blocks::evaluation::report::REPORT,
+    &blocks::evaluation::golden::GOLDEN,
+    &blocks::evaluation::study::STUDY,
+    &blocks::evaluation::study::FRAGILITY,
 ];
 
 /// These lists as one, of `N` blocks.
@@ -105,7 +106,9 @@ mod tests {
         /// The field, its arguments, and theirs.
         fn all(field: &'static Field) -> Vec<&'static Field> {
             let inner: Vec<&Field> = match field.ty {
-                FieldType::Choice(variants) | FieldType::Choices(variants) => variants
+                FieldType::Choice(variants)
+                | FieldType::Choices(variants)
+                | FieldType::Inputs(variants) => variants
                     .iter()
                     .flat_map(|variant| variant.arguments)
                     .flat_map(all)

@@ -22,8 +22,8 @@ pub enum Kind {
     Inspect,
     Report,
     Golden,
-    /// A known keyword that this version does not implement.
-    Later,
+    Study,
+    Fragility,
 }
 
 /// The part between the keyword and the brace.
@@ -70,8 +70,6 @@ pub struct Field {
     pub range: Range,
     pub example: &'static str,
     pub doc: &'static str,
-    /// False for a known field that this version does not implement.
-    pub available: bool,
     /// Whether it applies to a real rig only, so that it has no effect on a virtual one.
     pub real_rig_only: bool,
     /// Whether it applies to a frame only.
@@ -123,6 +121,18 @@ pub enum FieldType {
     Tolerance,
     /// Conditions on the results of an impact, as in `require`.
     Condition,
+    /// A list of `INPUT ~ DISTRIBUTION`, with these distributions.
+    Inputs(&'static [Variant]),
+    /// `INPUT in VALUES`
+    Intensity,
+    /// The name of an input of the study.
+    InputName,
+    /// The name of a requirement of the plan.
+    RequirementName,
+    /// A value with the dimension of the input.
+    OfInput,
+    /// A range with the dimension of the input.
+    RangeOfInput,
 }
 
 impl FieldType {

@@ -20,7 +20,13 @@ impl Quantity {
     /// The quantity as a plan writes it, with every digit that the value needs: `0.0015 m`, `1.5`.
     #[must_use]
     pub fn in_plan_syntax(self) -> String {
-        let number = self.value.to_string();
+        let digits = self.value.to_string();
+        // A number of a plan has at most 40 characters.
+        let number = if digits.len() > 30 {
+            format!("{:e}", self.value)
+        } else {
+            digits
+        };
         match self.dimension {
             Dimension::NUMBER => number,
             dimension => format!("{number} {}", si_unit(dimension)),

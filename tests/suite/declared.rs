@@ -110,7 +110,10 @@ fn literals(code: &str) -> Vec<(&str, &str)> {
 /// Names of a field, of its arguments, and of theirs.
 fn names_of(field: &'static Field, found: &mut BTreeSet<&'static str>) {
     found.insert(field.name);
-    if let FieldType::Choice(variants) | FieldType::Choices(variants) = field.ty {
+    if let FieldType::Choice(variants)
+    | FieldType::Choices(variants)
+    | FieldType::Inputs(variants) = field.ty
+    {
         for argument in variants.iter().flat_map(|variant| variant.arguments) {
             // A model inside a model has no further names.
             if found.insert(argument.name) {

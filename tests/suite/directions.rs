@@ -20,6 +20,7 @@ const ORDER: &[&[&str]] = &[
     &["golden", "remote"],
     &["files"],
     &["emulator", "evidence"],
+    &["study"],
     &["cli"],
 ];
 

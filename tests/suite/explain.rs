@@ -85,6 +85,7 @@ fn checked(code: Code, kind: &str) -> Checked {
         date: None,
         unattended: plan.option("unattended").is_some(),
         recorded: false,
+        for_studies: false,
     };
     check("plan.psd", &plan.text, &PageFiles(&fences), &options)
 }

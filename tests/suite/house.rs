@@ -44,9 +44,10 @@ const IMPURE: &[&str] = &[
 /// A crate, and the only folders of `src` that may name it.
 const KNOWS: &[(&[&str], &[&str])] = &[
     (&["pest", "pest_derive"], &["language/syntax"]),
+    (&["polars"], &["report", "study/data_set"]),
+    (&["polars_parquet"], &["study/data_set"]),
     (
         &[
-            "polars",
             "plotters",
             "maud",
             "typst",

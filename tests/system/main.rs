@@ -27,6 +27,7 @@ mod served;
 mod signals;
 mod signed;
 mod stage;
+mod study;
 mod terminal;
 mod twice;
 mod unasked;

@@ -2,6 +2,7 @@
 //! every value checked. It does not open files and does not know what a command does.
 
 mod evidence;
+mod study;
 
 use std::path::PathBuf;
 
@@ -11,6 +12,9 @@ use crate::text::diagnostic::excerpt::escape;
 
 pub use evidence::{
     IssueArguments, KeygenArguments, ReportArguments, SignArguments, VerifyArguments,
+};
+pub use study::{
+    ReportStudyArguments, RunStudyArguments, StudyChoice, StudyCommand, SubmitArguments,
 };
 
 /// Pseudo-dynamic structural tests, from a plan to a test report.
@@ -61,6 +65,11 @@ pub enum Command {
     },
     /// List the limits of the language: sizes, nesting, steps
     Limits,
+    /// Run many simulations of a plan with scattered inputs
+    Study {
+        #[command(subcommand)]
+        command: StudyCommand,
+    },
     /// Probe, monitor, jog, emulate or serve a rig
     Rig {
         #[command(subcommand)]

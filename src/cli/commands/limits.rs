@@ -76,11 +76,16 @@ pub fn limits() -> Result<Exit, Failure> {
             journal::MOST_BYTES.to_string(),
             "bytes of the run log of one run",
         ),
+        (
+            check::MOST_SAMPLE_ROWS.to_string(),
+            "rows of one file of measured inputs",
+        ),
+        (plan::study::MOST_RUNS.to_string(), "runs of one study"),
     ];
     print_result(&counted.iter().chain(&reckoned).chain(&record).fold(
         String::new(),
         |mut text, (bound, what)| {
-            let _ = writeln!(text, "{bound:>10}  {what}");
+            let _ = writeln!(text, "{bound:>11}  {what}");
             text
         },
     ))?;

@@ -11,4 +11,5 @@ pub(crate) mod limits;
 pub(crate) mod prediction;
 pub(crate) mod rig;
 pub(crate) mod run;
+pub(crate) mod study;
 pub(crate) mod test;

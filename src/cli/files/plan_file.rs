@@ -9,7 +9,7 @@ use crate::cli::args::PlanSettings;
 use crate::cli::output::print_message;
 use crate::cli::settings::{Settings, folder_of};
 use crate::files::failure::Failure;
-use crate::language::check::{Checked, Options, check};
+use crate::language::check::{Checked, Options, ParsedPlan};
 use crate::text::diagnostic::{json, render};
 use crate::text::source::{Position, Span};
 
@@ -24,6 +24,30 @@ pub fn open_to_run(
     settings: &PlanSettings,
     unattended: bool,
 ) -> Result<Checked, Failure> {
+    let options = Options {
+        unattended,
+        ..Options::default()
+    };
+    parsed(path, settings, options).map(|(_, checked)| checked)
+}
+
+/// [`open`] before the studies of the plan are run, with the syntax trees, which a study binds to other values.
+pub fn open_for_studies(
+    path: &Path,
+    settings: &PlanSettings,
+) -> Result<(ParsedPlan, Checked), Failure> {
+    let options = Options {
+        for_studies: true,
+        ..Options::default()
+    };
+    parsed(path, settings, options)
+}
+
+fn parsed(
+    path: &Path,
+    settings: &PlanSettings,
+    options: Options,
+) -> Result<(ParsedPlan, Checked), Failure> {
     for (at, (name, _)) in settings.set.iter().enumerate() {
         if settings.set[..at].iter().any(|(before, _)| before == name) {
             return Err(
@@ -43,10 +67,11 @@ pub fn open_to_run(
         rig,
         settings: set,
         date,
-        unattended,
-        recorded: false,
+        ..options
     };
-    Ok(check(&name_of(path), &text, &loader, &options))
+    let mut parsed = ParsedPlan::parse(&name_of(path), &text, &loader, &options);
+    let checked = parsed.check(&loader);
+    Ok((parsed, checked))
 }
 
 /// Prints the diagnostics for the operator.

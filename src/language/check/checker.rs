@@ -6,13 +6,13 @@ use std::rc::Rc;
 use super::Loader;
 use super::expressions::data_file::DataFile;
 use super::messages::{names as message, values};
-use super::scope::Scope;
+use super::scope::{Overrides, Scope};
 use crate::language::syntax::ast::Expr;
 use crate::plan::Frame;
 use crate::plan::formula::{Formula, ProcedureId, ResultReference};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::source::{Sources, Span};
-use crate::units::Dimension;
+use crate::units::{Dimension, Quantity};
 
 /// A value that is evaluated once: a `let` or `param`, or an entry of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -51,6 +51,16 @@ pub enum Reads {
     /// Those of the impact that has just ended, by their own names, and those of procedures that run before this one.
     Impact(ProcedureId),
     All,
+}
+
+/// A smallest or largest value of an input of a study.
+#[derive(Clone, Debug)]
+pub struct End {
+    /// As in `--set`.
+    pub name: String,
+    pub value: Quantity,
+    /// The distribution.
+    pub span: Span,
 }
 
 /// The context of an expression.
@@ -92,6 +102,12 @@ pub struct Checker<'a> {
     pub recorded: bool,
     /// The rig of the run, if it moves a real specimen.
     pub real_rig: Option<usize>,
+    /// Values of fields that are given from outside the plan.
+    pub overrides: Overrides<'a>,
+    /// Whether the studies of the plan are about to be run.
+    pub for_studies: bool,
+    /// Ends of the inputs of studies, at which the plan must be valid.
+    pub ends: Vec<End>,
     stack: Vec<Node>,
     /// Whether it was reported that values depend on one another too deeply.
     too_deep: bool,
@@ -141,6 +157,9 @@ impl<'a> Checker<'a> {
             taken: Vec::new(),
             recorded: false,
             real_rig: None,
+            overrides: Overrides::new(),
+            for_studies: false,
+            ends: Vec::new(),
             stack,
             too_deep: false,
         }

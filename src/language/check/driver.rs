@@ -13,7 +13,10 @@ use crate::text::source::{FileId, Sources, Span};
 /// Whether a check also looks for warnings.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Findings {
+    /// Errors, without the studies of the plan.
     ErrorsAlone,
+    /// Errors, with its studies.
+    OfStudies,
     WarningsToo,
 }
 
@@ -89,6 +92,7 @@ pub fn plan(
     findings: Findings,
 ) -> Option<Plan> {
     checker.recorded = options.recorded;
+    checker.for_studies = options.for_studies;
     checker.real_rig = rig::real_rig_of_run(checker, options.rig.as_deref());
     for block in 0..checker.scope.blocks.len() {
         checker.entries_of(block);
@@ -144,6 +148,11 @@ pub fn plan(
         }
     }
     let requirements = checker.requirements();
+    // Studies bind the plan again and again, and their runs read no study.
+    let studies = match findings {
+        Findings::WarningsToo | Findings::OfStudies => declarations::study::studies(checker),
+        Findings::ErrorsAlone => Some(Studies::default()),
+    };
     let by_place: Vec<Option<Procedure>> = procedures
         .iter()
         .map(|(_, procedure)| procedure.clone())
@@ -195,7 +204,7 @@ pub fn plan(
         report: report?,
         golden: golden?,
         check_run_of: None,
-        studies: Studies::default(),
+        studies: studies?,
         unloads_at_once: false,
         files: [text.files, checker.data_files()].concat(),
         settings: text.settings,

@@ -19,6 +19,7 @@ pub(crate) mod warnings;
 
 pub use checker::{DEEPEST_VALUES, MOST_TERMS};
 pub use declarations::ground::record::MOST_SAMPLES as MOST_GROUND_SAMPLES;
+pub use declarations::study::MOST_SAMPLE_ROWS;
 pub use expressions::literal::MOST_ENTRIES;
 pub use imports::{DEEPEST, MOST_FILES};
 pub use parsed_plan::{ParsedPlan, check};
@@ -55,6 +56,8 @@ pub struct Options {
     pub unattended: bool,
     /// The plan comes from a run log: names of older versions are read too.
     pub recorded: bool,
+    /// The studies of the plan are about to be run, which a real rig cannot do.
+    pub for_studies: bool,
 }
 
 /// The outcome of a check. There is a `plan` if there is no error.

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::checker::Checker;
+use super::checker::{Checker, End};
 use super::driver::{self, Findings, PlanText};
 use super::expressions::data_file::DataFile;
 use super::expressions::parameters::{names_of_parameters, read_settings};
@@ -42,12 +42,16 @@ pub struct ParsedPlan {
     data: Vec<DataFile>,
 }
 
+/// Most ends of inputs at which a plan is checked: each is a check of its own.
+const MOST_ENDS: usize = 64;
+
 /// The findings of one check.
 struct Outcome {
     plan: Option<Plan>,
     diagnostics: Vec<Diagnostic>,
     rig_links: Vec<Span>,
     data: Vec<DataFile>,
+    ends: Vec<End>,
 }
 
 /// A binding reads no file.
@@ -97,8 +101,9 @@ impl ParsedPlan {
         let settings = self.written_settings();
         let mut outcome =
             self.evaluate(&self.settings, settings, loader, Findings::WarningsToo, &[]);
+        self.data = std::mem::take(&mut outcome.data);
+        self.try_ends(&mut outcome);
         messages::cap(&mut outcome.diagnostics);
-        self.data = outcome.data;
         Checked {
             plan: outcome.plan,
             diagnostics: outcome.diagnostics,
@@ -107,17 +112,65 @@ impl ParsedPlan {
         }
     }
 
-    /// The plan with other values of its parameters: its expressions are evaluated and checked again, but no text is parsed. A parameter
-    /// without a value here keeps the one of `--set`, else its own. To be called after [`Self::check`] found no error.
+    /// Whether the plan is valid at the ends of the inputs of its studies. Not where a value is set: a run of a study is one point, and the
+    /// ends of the other inputs do not matter there.
+    fn try_ends(&self, outcome: &mut Outcome) {
+        if outcome.plan.is_none() || !self.settings.is_empty() || self.options.recorded {
+            return;
+        }
+        let mut reported = Vec::new();
+        for end in outcome.ends.iter().take(MOST_ENDS) {
+            let value = BTreeMap::from([(end.name.clone(), end.value)]);
+            let Err(errors) = self.bind(&value) else {
+                continue;
+            };
+            if let Some(first) = errors.first().filter(|_| !reported.contains(&end.span)) {
+                reported.push(end.span);
+                let shown = end.value.in_plan_syntax();
+                outcome.diagnostics.push(messages::studies::invalid_end(
+                    &end.name, &shown, first, end.span,
+                ));
+            }
+        }
+        if !reported.is_empty() {
+            outcome.plan = None;
+            outcome
+                .diagnostics
+                .sort_by_key(|found| found.span().map(|span| (span.file, span.start, span.end)));
+        }
+    }
+
+    /// The plan with other values of its inputs, named as by `--set`: a `param`, or a field such as `beam.mass`. Its expressions are
+    /// evaluated and checked again, but no text is parsed. An input without a value here keeps the one of `--set`, else its own. The
+    /// plan has no studies. To be called after [`Self::check`] found no error.
     ///
     /// # Errors
-    /// The errors of the plan with these values: an unknown parameter, a value with a wrong dimension or outside its bounds, and any
+    /// The errors of the plan with these values: an unknown input, a value with a wrong dimension or outside its bounds, and any
     /// other error of the plan.
     pub fn bind(&self, values: &BTreeMap<String, Quantity>) -> Result<Plan, Vec<Diagnostic>> {
+        self.bound(values, Findings::ErrorsAlone)
+    }
+
+    /// [`Self::bind`] with the studies of the plan, whose formulas may contain the values.
+    ///
+    /// # Errors
+    /// As [`Self::bind`].
+    pub fn bind_with_studies(
+        &self,
+        values: &BTreeMap<String, Quantity>,
+    ) -> Result<Plan, Vec<Diagnostic>> {
+        self.bound(values, Findings::OfStudies)
+    }
+
+    fn bound(
+        &self,
+        values: &BTreeMap<String, Quantity>,
+        findings: Findings,
+    ) -> Result<Plan, Vec<Diagnostic>> {
         let known = names_of_parameters(&self.trees);
         let unknown: Vec<Diagnostic> = values
             .keys()
-            .filter(|name| !known.contains(&name.as_str()))
+            .filter(|name| !known.contains(&name.as_str()) && !name.contains('.'))
             .map(|name| names::unknown_parameter(name, &known))
             .collect();
         if !unknown.is_empty() {
@@ -129,13 +182,7 @@ impl ParsedPlan {
             settings.insert(name.clone(), Setting::Bound(*value));
             written.insert(name.clone(), value.in_plan_syntax());
         }
-        let outcome = self.evaluate(
-            &settings,
-            written,
-            &NoLoader,
-            Findings::ErrorsAlone,
-            &self.data,
-        );
+        let outcome = self.evaluate(&settings, written, &NoLoader, findings, &self.data);
         outcome.plan.ok_or(outcome.diagnostics)
     }
 
@@ -164,6 +211,7 @@ impl ParsedPlan {
             self.incomplete,
         );
         checker.data = data.to_vec();
+        checker.override_fields(settings);
         let text = PlanText {
             name: &self.name,
             files: self.files.clone(),
@@ -179,6 +227,7 @@ impl ParsedPlan {
             diagnostics,
             rig_links,
             data: checker.data,
+            ends: checker.ends,
         }
     }
 }

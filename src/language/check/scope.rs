@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::messages::names as message;
-use crate::language::syntax::ast::{Ast, Block, Expr, Ident, ItemKind};
+use crate::language::syntax::ast::{Ast, Block, Expr, ExprKind, Ident, ItemKind};
 use crate::language::syntax::control;
 use crate::plan::formula::ProcedureId;
 use crate::schema::{self, BlockKind, Kind, Naming};
@@ -49,6 +49,9 @@ pub enum Setting {
     Bound(Quantity),
 }
 
+/// Values given from outside the plan for fields, by the span of the value that each replaces, with the name of the input.
+pub type Overrides<'a> = BTreeMap<Span, (&'a str, &'a Setting)>;
+
 /// The meaning of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Meaning {
@@ -67,7 +70,10 @@ pub struct DeclaredRequirement<'a> {
 pub struct Scope<'a> {
     pub blocks: Vec<DeclaredBlock<'a>>,
     pub values: Vec<DeclaredValue<'a>>,
+    /// Requirements on the results of a run.
     pub requirements: Vec<DeclaredRequirement<'a>>,
+    /// Requirements on a probability of a study.
+    pub study_requirements: Vec<DeclaredRequirement<'a>>,
     /// Kinds with more blocks than are allowed, which is reported.
     pub twice: Vec<Kind>,
     names: BTreeMap<&'a str, (Meaning, Span)>,
@@ -184,8 +190,12 @@ impl<'a> Scope<'a> {
         if first != label.span {
             diagnostics.push(message::requirement_twice(&label.node, label.span, first));
         }
-        self.requirements
-            .push(DeclaredRequirement { label, condition });
+        let declared = DeclaredRequirement { label, condition };
+        if reads_a_study(condition) {
+            self.study_requirements.push(declared);
+        } else {
+            self.requirements.push(declared);
+        }
     }
 
     fn declare(&mut self, name: &'a Ident, meaning: Meaning, diagnostics: &mut Vec<Diagnostic>) {
@@ -253,11 +263,6 @@ impl<'a> Scope<'a> {
             return;
         };
         let rest = &block.words[kind.keyword.len()..];
-        if kind.kind == Kind::Later {
-            diagnostics.push(message::block_of_later_version(kind, block));
-            self.poison(rest, diagnostics);
-            return;
-        }
         if library
             && !matches!(
                 kind.kind,
@@ -332,5 +337,25 @@ impl<'a> Scope<'a> {
         if let Some(name) = words.last() {
             self.declare(name, Meaning::Poisoned, diagnostics);
         }
+    }
+}
+
+/// Whether a condition reads a member with arguments, which only a study has.
+fn reads_a_study(condition: &Expr) -> bool {
+    match &condition.kind {
+        ExprKind::Member { .. } => true,
+        ExprKind::Parenthesised(inner) | ExprKind::Negate(inner) => reads_a_study(inner),
+        ExprKind::Binary { left, right, .. } => reads_a_study(left) || reads_a_study(right),
+        ExprKind::Within {
+            value,
+            tolerance,
+            target,
+        } => [value, tolerance, target]
+            .into_iter()
+            .any(|part| reads_a_study(part)),
+        ExprKind::Call { arguments, .. } => arguments
+            .iter()
+            .any(|argument| reads_a_study(&argument.value)),
+        _ => false,
     }
 }

@@ -111,6 +111,12 @@ pub enum ExprKind {
         base: Box<Expr>,
         name: Ident,
     },
+    /// `scatter.probability(fails: "stays in travel")`
+    Member {
+        base: Box<Expr>,
+        name: Ident,
+        arguments: Vec<Argument>,
+    },
     /// `quake.max_drift[0]`
     Index {
         base: Box<Expr>,
@@ -127,6 +133,11 @@ pub enum ExprKind {
         value: Box<Expr>,
         tolerance: Box<Expr>,
         target: Box<Expr>,
+    },
+    /// `impact_speed in 0.4 .. 1.6 step 0.1 m/s`
+    Stepped {
+        input: Box<Expr>,
+        values: Box<Expr>,
     },
     /// `( … )`, kept so that the formatter writes it as it was.
     Parenthesised(Box<Expr>),
@@ -150,6 +161,8 @@ pub enum BinaryOperator {
     GreaterEqual,
     Equal,
     NotEqual,
+    /// `~`: the value on the left is drawn from the distribution on the right.
+    DrawnFrom,
     Add,
     Subtract,
     Multiply,
@@ -168,6 +181,7 @@ impl BinaryOperator {
             Self::GreaterEqual => ">=",
             Self::Equal => "==",
             Self::NotEqual => "!=",
+            Self::DrawnFrom => "~",
             Self::Add => "+",
             Self::Subtract => "-",
             Self::Multiply => "*",

@@ -47,6 +47,7 @@ fn operator(text: &str) -> BinaryOperator {
         ">=" => BinaryOperator::GreaterEqual,
         "==" => BinaryOperator::Equal,
         "!=" => BinaryOperator::NotEqual,
+        "~" => BinaryOperator::DrawnFrom,
         "+" => BinaryOperator::Add,
         "-" => BinaryOperator::Subtract,
         "*" => BinaryOperator::Multiply,
@@ -90,6 +91,9 @@ impl Lowering {
         let Some(first) = parts.next() else {
             return Self::faulty(span);
         };
+        if first.as_rule() == Rule::stepped {
+            return self.stepped(first, depth);
+        }
         let value = self.range(first, depth);
         let Some(sign) = parts.next() else {
             return value;
@@ -115,6 +119,34 @@ impl Lowering {
                 target,
             },
         }
+    }
+
+    /// `hammer.velocity in 0.4 .. 1.6 step 0.1 m/s`
+    fn stepped(&self, pair: Pair<'_, Rule>, depth: usize) -> Expr {
+        let whole = self.span(&pair);
+        let (mut input, mut values) = (None, None);
+        for part in pair.into_inner() {
+            match (part.as_rule(), input.take()) {
+                (Rule::variable, _) => {
+                    let span = self.span(&part);
+                    let kind = ExprKind::Name(part.as_str().to_owned());
+                    input = Some(Expr { span, kind });
+                }
+                (Rule::field, Some(base)) => input = Some(self.postfix(base, part, depth)),
+                (Rule::range, kept) => {
+                    values = Some(self.range(part, depth));
+                    input = kept;
+                }
+                (_, kept) => input = kept,
+            }
+        }
+        let (Some(input), Some(values)) = (input, values) else {
+            return Self::faulty(whole);
+        };
+        let span = input.span.to(values.span);
+        let (input, values) = (Box::new(input), Box::new(values));
+        let kind = ExprKind::Stepped { input, values };
+        Expr { span, kind }
     }
 
     #[must_use]
@@ -170,26 +202,30 @@ impl Lowering {
 
     fn postfix(&self, base: Expr, pair: Pair<'_, Rule>, depth: usize) -> Expr {
         let mut span = base.span;
-        let mut kind = ExprKind::Faulty;
-        let mut base = Some(Box::new(base));
+        let (mut name, mut arguments, mut index) = (None, None, None);
         for part in pair.into_inner() {
             span = span.to(self.span(&part));
-            match (part.as_rule(), base.take()) {
-                (Rule::name, Some(base)) => {
-                    kind = ExprKind::Field {
-                        base,
-                        name: self.ident(&part),
-                    }
-                }
-                (Rule::expression, Some(base)) => {
-                    kind = ExprKind::Index {
-                        base,
-                        index: Box::new(self.expression(part, depth)),
-                    };
-                }
-                (_, kept) => base = kept,
+            match part.as_rule() {
+                Rule::name => name = Some(self.ident(&part)),
+                Rule::arguments => arguments = Some(self.arguments(part, depth)),
+                Rule::expression => index = Some(self.expression(part, depth)),
+                _ => {}
             }
         }
+        let base = Box::new(base);
+        let kind = match (name, arguments, index) {
+            (Some(name), None, _) => ExprKind::Field { base, name },
+            (Some(name), Some(arguments), _) => ExprKind::Member {
+                base,
+                name,
+                arguments,
+            },
+            (None, _, Some(index)) => ExprKind::Index {
+                base,
+                index: Box::new(index),
+            },
+            (None, _, None) => ExprKind::Faulty,
+        };
         Expr { span, kind }
     }
 
@@ -273,6 +309,15 @@ impl Lowering {
             };
         };
         let span = name.span.to(self.span(&list));
+        let arguments = self.arguments(list, depth);
+        Expr {
+            span,
+            kind: ExprKind::Call { name, arguments },
+        }
+    }
+
+    fn arguments(&self, list: Pair<'_, Rule>, depth: usize) -> Vec<Argument> {
+        let span = self.span(&list);
         let mut arguments: Vec<Argument> = Vec::new();
         for part in list
             .into_inner()
@@ -297,9 +342,6 @@ impl Lowering {
                 value,
             });
         }
-        Expr {
-            span,
-            kind: ExprKind::Call { name, arguments },
-        }
+        arguments
     }
 }

@@ -68,8 +68,8 @@ pub fn cut(tokens: &Tokens) -> (Vec<Piece>, Vec<Diagnostic>) {
 const FIELDS_WITHOUT_BRACE: usize = 500;
 
 /// Characters between two values.
-const OPERATORS: [&str; 12] = [
-    "+", "-", "*", "/", "^", "..", "<", "<=", ">", ">=", "==", "!=",
+const OPERATORS: [&str; 13] = [
+    "+", "-", "*", "/", "^", "..", "<", "<=", ">", ">=", "==", "!=", "~",
 ];
 
 struct Cutter<'a> {

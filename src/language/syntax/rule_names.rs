@@ -52,6 +52,8 @@ pub const fn human(rule: Rule) -> Option<&'static str> {
         Rule::close_paren => "`)`",
         Rule::end_of_line | Rule::newline | Rule::EOI => "the end of the line",
         Rule::within_word
+        | Rule::stepped
+        | Rule::in_word
         | Rule::step_word
         | Rule::WHITESPACE
         | Rule::comment

@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut outcomes = Outcomes::default();
     let mut displacements = Vec::new();
     for result in batch::run(&impacts, Some(Until::StrikerStop), 3000) {
-        let displacement = result?.max_displacement;
+        let displacement = result?.summary.max_displacement;
         if displacement > 0.18 {
             outcomes.failed += 1;
         } else {

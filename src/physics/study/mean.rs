@@ -29,7 +29,8 @@ pub fn of(values: &[f64], confidence: Confidence) -> Option<Mean> {
 }
 
 /// Student's t, two-sided: by bisection, because its distribution rises.
-fn factor(degrees: f64, confidence: Confidence) -> f64 {
+#[must_use]
+pub fn factor(degrees: f64, confidence: Confidence) -> f64 {
     let wanted = 1.0 - 0.5 * confidence.error();
     let (mut low, mut high) = (0.0, 1.0);
     while student_t::below(high, degrees) < wanted {

@@ -113,7 +113,8 @@ const OF_IMPACT: [(ResultKind, Value); 16] = [
     ),
 ];
 
-fn of_impact(
+/// Displacements, contact and energies; an energy at the last step is missing without steps.
+pub(super) fn of_impact(
     summary: Option<&ImpactSummary>,
     history: &ImpactHistory,
 ) -> impl Iterator<Item = NamedResult> {
@@ -142,7 +143,7 @@ pub(crate) fn re_integrated(values: &ImpactValues) -> Evaluated {
 }
 
 /// Time steps, and how many.
-fn of_steps(history: &ImpactHistory) -> [NamedResult; 3] {
+pub(super) fn of_steps(history: &ImpactHistory) -> [NamedResult; 3] {
     let known = |value: f64| (value > 0.0).then_some(value);
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
     let steps = history.steps.last().map(|last| last.step as f64);

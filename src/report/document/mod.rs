@@ -4,8 +4,8 @@
 
 pub mod comparison;
 pub(super) mod fonts;
-pub(super) mod html;
-pub(super) mod pdf;
+pub(crate) mod html;
+pub(crate) mod pdf;
 mod text;
 mod world;
 
@@ -18,7 +18,7 @@ pub(crate) use text::{Style, Text, printable};
 
 /// A whole report.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct Document {
+pub(crate) struct Document {
     /// The kind of report, above the title.
     pub kind: &'static str,
     /// The report that this one replaces.
@@ -52,7 +52,7 @@ pub(super) struct Document {
 
 /// The statement on the whole run.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct Verdict {
+pub(crate) struct Verdict {
     pub tone: Tone,
     pub heading: String,
     pub text: Text,
@@ -61,7 +61,7 @@ pub(super) struct Verdict {
 /// The colour of a statement. The words alone are enough: a report may be printed in grey.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum Tone {
+pub(crate) enum Tone {
     /// No statement of conformity, or a simulation.
     Neutral,
     Pass,
@@ -83,13 +83,13 @@ impl Tone {
 
 /// A notice against an incorrect use of the report: text in a box, and the reason.
 #[derive(Clone, Debug, Serialize)]
-pub(super) struct Notice {
+pub(crate) struct Notice {
     pub words: Vec<&'static str>,
     pub text: Text,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Attachment {
+pub(crate) struct Attachment {
     pub name: String,
     pub text: String,
 }

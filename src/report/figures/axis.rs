@@ -23,6 +23,9 @@ const LINE_WIDTH: f64 = 0.004;
 impl Axis {
     /// An axis that holds every finite one of `values` (SI), with about `wanted` ticks.
     pub fn over(quantity: &Quantity, values: impl Iterator<Item = f64>, wanted: u32) -> Self {
+        if !quantity.names.is_empty() {
+            return Self::of_names(quantity);
+        }
         let start = if quantity.from_zero {
             Some((0.0, 0.0))
         } else {
@@ -75,6 +78,22 @@ impl Axis {
             ticks: ticks(low..=high, step),
             title,
             factor,
+        }
+    }
+
+    /// An axis with a name at every whole number.
+    fn of_names(quantity: &Quantity) -> Self {
+        let ticks: Vec<(f64, String)> = (0_u32..)
+            .map(f64::from)
+            .zip(quantity.names.iter().cloned())
+            .collect();
+        let last = ticks.last().map_or(0.0, |(at, _)| *at);
+        Self {
+            low: -0.5,
+            high: last + 0.5,
+            ticks,
+            title: quantity.name.to_string(),
+            factor: 1.0,
         }
     }
 
@@ -155,6 +174,18 @@ mod tests {
         let energy = Quantity::of("Energy", Dimension::ENERGY);
         assert_eq!(labels(&energy, -0.01, 5.0)[0], "0");
         assert_eq!(labels(&energy, -0.1, 5.0)[0], "−2");
+    }
+
+    #[test]
+    fn names_are_at_whole_numbers() {
+        let names = Quantity {
+            names: vec!["mass".to_owned(), "speed".to_owned()],
+            ..Quantity::of("", Dimension::NUMBER)
+        };
+        let axis = Axis::over(&names, [7.0].into_iter(), 5);
+        assert_eq!([axis.low, axis.high], [-0.5, 1.5]);
+        assert_eq!(axis.ticks[1], (1.0, "speed".to_owned()));
+        assert_eq!(axis.fraction(0.5), 0.5);
     }
 
     #[test]

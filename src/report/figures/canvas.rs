@@ -19,6 +19,9 @@ pub(super) trait Canvas {
 
     fn disc(&self, centre: Point, radius: f64, colour: Colour) -> Result<(), String>;
 
+    /// A filled area; its corners in order.
+    fn polygon(&self, corners: &[Point], colour: Colour) -> Result<(), String>;
+
     /// A line of several segments with round joins.
     fn polyline(&self, points: &[Point], line: Line, colour: Colour) -> Result<(), String>;
 

@@ -45,6 +45,8 @@ pub(crate) struct Quantity {
     pub end: End,
     /// Whether zero must be on the axis.
     pub from_zero: bool,
+    /// Names instead of numbers: name i is at i, the first one lowest. Empty: an axis of numbers.
+    pub names: Vec<String>,
 }
 
 /// The end of an axis.
@@ -67,6 +69,7 @@ impl Quantity {
             dimension: Dimension::TIME,
             end: End::Data,
             from_zero: false,
+            names: Vec::new(),
         }
     }
 
@@ -77,6 +80,7 @@ impl Quantity {
             dimension,
             end: End::Tick,
             from_zero: true,
+            names: Vec::new(),
         }
     }
 
@@ -87,6 +91,7 @@ impl Quantity {
             dimension,
             end: End::Margin,
             from_zero: true,
+            names: Vec::new(),
         }
     }
 }
@@ -136,6 +141,7 @@ pub(crate) mod palette {
     pub const CONTACT: Colour = (226, 232, 238);
     pub const LIMIT: Colour = (250, 226, 196);
     pub const CLOUD: Colour = (176, 190, 200);
+    pub const FILL: Colour = (206, 222, 236);
 }
 
 /// The look of a series.
@@ -145,6 +151,8 @@ pub(crate) struct Style {
     /// None: markers only.
     pub line: Option<Line>,
     pub marker: Option<Marker>,
+    /// The points are the corners of an area of this colour.
+    pub fill: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -167,6 +175,7 @@ impl Style {
             colour,
             line: Some(Line { width, dash }),
             marker: None,
+            fill: false,
         }
     }
 
@@ -175,6 +184,17 @@ impl Style {
             colour,
             line: None,
             marker: Some(marker),
+            fill: false,
+        }
+    }
+
+    /// An area without an outline.
+    pub const fn area(colour: Colour) -> Self {
+        Self {
+            colour,
+            line: None,
+            marker: None,
+            fill: true,
         }
     }
 }

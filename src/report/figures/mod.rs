@@ -86,6 +86,16 @@ impl Undrawn {
     }
 }
 
+/// A chart as PNG.
+pub(crate) fn png(chart: &Chart) -> Result<Vec<u8>, String> {
+    draw::png(chart)
+}
+
+/// A chart in vectors.
+pub(crate) fn svg(chart: &Chart) -> Result<String, String> {
+    draw::svg(chart)
+}
+
 /// The curves of the figures of a report, in its order.
 #[must_use]
 pub fn data(run: &Run<'_>) -> Figures {

@@ -60,6 +60,7 @@ impl Curves {
             dimension: axis.dimension,
             end,
             from_zero: false,
+            names: Vec::new(),
         };
         let x_end = if self.x.dimension == Dimension::TIME {
             End::Data

@@ -24,6 +24,10 @@ impl Canvas for Sheet<'_> {
         self.disc(centre, radius, colour)
     }
 
+    fn polygon(&self, corners: &[Point], colour: Colour) -> Result<(), String> {
+        self.polygon(corners, colour)
+    }
+
     fn polyline(&self, points: &[Point], line: Line, colour: Colour) -> Result<(), String> {
         let Line { width, dash } = line;
         self.polyline(points, psd_raster::Line { width, dash }, colour)

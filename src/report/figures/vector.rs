@@ -68,6 +68,19 @@ impl Canvas for Drawing {
         Ok(())
     }
 
+    fn polygon(&self, corners: &[Point], colour: Colour) -> Result<(), String> {
+        let corners: Vec<String> = corners
+            .iter()
+            .map(|(x, y)| format!("{},{}", number(*x), number(*y)))
+            .collect();
+        self.add(&format!(
+            "<polygon points=\"{}\" fill=\"{}\"/>",
+            corners.join(" "),
+            hex(colour)
+        ));
+        Ok(())
+    }
+
     fn polyline(&self, points: &[Point], line: Line, colour: Colour) -> Result<(), String> {
         let mut path = String::new();
         for (index, (x, y)) in points.iter().enumerate() {

@@ -115,6 +115,17 @@ impl Sheet<'_> {
             .map_err(|error| error.to_string())
     }
 
+    /// A filled polygon.
+    ///
+    /// # Errors
+    /// As [`Self::rectangle`].
+    pub fn polygon(&self, corners: &[Point], colour: Colour) -> Result<(), String> {
+        let corners: Vec<(i32, i32)> = corners.iter().copied().map(fine).collect();
+        self.area
+            .draw(&Polygon::new(corners, rgb(colour).filled()))
+            .map_err(|error| error.to_string())
+    }
+
     /// A line of several segments. Each segment is a separate quadrangle: one filled outline would show slits where the line folds back.
     ///
     /// # Errors
@@ -160,8 +171,6 @@ impl Sheet<'_> {
             (to.0 - nx, to.1 - ny),
             (from.0 - nx, from.1 - ny),
         ];
-        self.area
-            .draw(&Polygon::new(corners.map(fine), rgb(colour).filled()))
-            .map_err(|error| error.to_string())
+        self.polygon(&corners, colour)
     }
 }

@@ -47,6 +47,9 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     }
     body.push(Block::Table(Table { columns, rows }));
     body.push(Block::note(decision_rule(run, uncertain)));
+    if let Some(names) = run.plan.studies.requirement_names() {
+        body.push(Block::note(wording::of_studies(names)));
+    }
     if prints_mark(run) {
         body.push(Block::note(common::MARKED));
     }

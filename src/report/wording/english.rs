@@ -115,6 +115,7 @@ wording! {
         PROBABILITY = "P is the probability that the item conforms (JCGM 106): a pass is wrong with probability 1 − P, \
             a fail with probability P. U and P cover the declared uncertainty contributions only.";
         WIDER_THAN_TOLERANCE = "U exceeds the tolerance";
+        fn of_studies(names) = "Not decided by one run, but by a study of the plan: {names}.";
         fn guarded_rule(equation) = "Decision rule: guarded acceptance (ILAC-G8:09/2019), guard band w = {equation} of \
             the distance between value and limit. Pass: inside the limit by at least w. Fail: outside by more than \
             w. Otherwise, and where no uncertainty is known: inconclusive. Exact values are compared without w.";

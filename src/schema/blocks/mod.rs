@@ -4,14 +4,13 @@
 pub(crate) mod behaviours;
 pub(crate) mod curves;
 pub(crate) mod devices;
+pub(crate) mod evaluation;
 pub(crate) mod frames;
-pub(crate) mod golden;
 pub(crate) mod ground;
 pub(crate) mod limits;
 pub(crate) mod methods;
 pub(crate) mod plan_block;
 pub(crate) mod procedures;
-pub(crate) mod report;
 pub(crate) mod rig;
 pub(crate) mod specimen;
 pub(crate) mod striker;

@@ -33,8 +33,7 @@ pub(super) fn write(
         "\n### {words}\n\n{kind} `{words}{naming} {{ … }}`. {}.\n",
         block.doc
     );
-    let available = || block.fields.iter().filter(|field| field.available);
-    let (new, known) = apart(available(), earlier, |it| it.fields, same_field);
+    let (new, known) = apart(block.fields.iter(), earlier, |it| it.fields, same_field);
     let (advanced, usual): (Vec<&Field>, Vec<&Field>) =
         new.into_iter().partition(|field| field.advanced);
     write_fields(text, block, &usual, earlier);
@@ -54,15 +53,6 @@ pub(super) fn write(
         let _ = writeln!(text, "\n#### Advanced: {words}\n");
         write_fields(text, block, &advanced, earlier);
         write_options(text, block, &advanced, &mut written);
-    }
-    let later: Vec<String> = block
-        .fields
-        .iter()
-        .filter(|field| !field.available)
-        .map(|field| format!("`{}`", field.name))
-        .collect();
-    if !later.is_empty() {
-        let _ = writeln!(text, "\nNot in this version: {}.", later.join(", "));
     }
 }
 
@@ -173,7 +163,10 @@ fn write_options(
 ) {
     let mut head = "\nOptions:\n\n";
     for field in fields.iter().filter(|field| !is_truth(field)) {
-        if let FieldType::Choice(variants) | FieldType::Choices(variants) = field.ty {
+        if let FieldType::Choice(variants)
+        | FieldType::Choices(variants)
+        | FieldType::Inputs(variants) = field.ty
+        {
             let _ = writeln!(text, "{head}- `{}`:", field.name);
             written.write(text, block, field.name, variants);
             head = "";

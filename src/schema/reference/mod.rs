@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use super::{BLOCKS, BlockKind, FUNCTIONS, Kind};
+use super::{BLOCKS, FUNCTIONS};
 use crate::text::diagnostic::Code;
 use crate::units::Dimension;
 use crate::units::display::si_unit;
@@ -28,15 +28,9 @@ const INTRODUCTION: &str = "## Vocabulary
 pub fn reference() -> String {
     let mut text = INTRODUCTION.to_owned();
     let mut options = Vec::new();
-    let known: Vec<&'static BlockKind> = BLOCKS
-        .iter()
-        .copied()
-        .filter(|block| block.kind != Kind::Later)
-        .collect();
-    for (index, block) in known.iter().enumerate() {
-        blocks::write(&mut text, block, &known[..index], &mut options);
+    for (index, block) in BLOCKS.iter().enumerate() {
+        blocks::write(&mut text, block, &BLOCKS[..index], &mut options);
     }
-    write_later(&mut text);
     write_functions(&mut text);
     write_units(&mut text);
     text
@@ -59,16 +53,6 @@ pub fn codes() -> String {
 }
 
 // Writing to a string cannot fail, so that the results of `write!` are ignored.
-
-fn write_later(text: &mut String) {
-    let _ = writeln!(
-        text,
-        "\n### Not in this version\n\nKeywords that this version of psd does not implement.\n"
-    );
-    for block in BLOCKS.iter().filter(|block| block.kind == Kind::Later) {
-        let _ = writeln!(text, "- `{}`: {}", block.words(), block.doc);
-    }
-}
 
 fn write_functions(text: &mut String) {
     let _ = writeln!(text, "\n## Functions\n\n| function | |\n|---|---|");

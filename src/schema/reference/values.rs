@@ -49,6 +49,12 @@ pub(super) fn value(field: &Field, blocks: &[&BlockKind]) -> String {
         FieldType::ColumnName => {
             "numeric column: `hit.displacement_m`, or `displacement_m` of all tables".to_owned()
         }
+        FieldType::Inputs(_) => "list of `INPUT ~ DISTRIBUTION`".to_owned(),
+        FieldType::Intensity => "`INPUT in VALUES`".to_owned(),
+        FieldType::InputName => "input".to_owned(),
+        FieldType::RequirementName => "name of a requirement".to_owned(),
+        FieldType::OfInput => format!("as the input{}", limits(field.range, Dimension::NUMBER)),
+        FieldType::RangeOfInput => "range, as the input".to_owned(),
         FieldType::Tolerance => "value in the unit of the number, or `%` of it; ≥ 0".to_owned(),
     }
 }

@@ -55,7 +55,6 @@ codes! {
     E208 Duplicate Error;
     E209 MissingField Error;
     E210 MissingBlock Error;
-    E211 NotInThisVersion Error;
     E212 BlockName Error;
     E213 BadArgument Error;
     E214 UnknownParameter Error;
@@ -137,6 +136,17 @@ codes! {
     E653 TooManyRecordedSteps Error;
     E654 ReadApart Error;
     E655 NeverGiven Error;
+    E656 NotAnInput Error;
+    E657 BadDistribution Error;
+    E658 BadCorrelation Error;
+    E659 SamplesFile Error;
+    E660 CannotGrow Error;
+    E661 VariesNothing Error;
+    E662 NoResultRead Error;
+    E663 ProbabilityMisplaced Error;
+    E664 NothingToDecide Error;
+    E665 StudyOnRealRig Error;
+    E666 InvalidEnd Error;
     // 7: plans that run but are not advisable
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;
@@ -166,6 +176,7 @@ codes! {
     W727 CheckWithinNoise Warning;
     W729 NothingToGuard Warning;
     W730 FinalIsNotResidual Warning;
+    W731 TooFewRuns Warning;
 }
 
 impl std::fmt::Display for Code {

@@ -11,3 +11,4 @@ pub(crate) mod report;
 pub(crate) mod require;
 pub(crate) mod specimen;
 pub(crate) mod striker;
+pub(crate) mod study;

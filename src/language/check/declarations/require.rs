@@ -1,7 +1,7 @@
 //! `require "label" condition`: comparisons and `within`, one condition for each part joined with `and`.
 
 use crate::language::check::checker::{Checker, Context, Reads, Typed};
-use crate::language::check::messages::{types as message, values};
+use crate::language::check::messages::{studies, types as message, values};
 use crate::language::syntax::ast::{BinaryOperator, Expr, ExprKind};
 use crate::plan::formula::Formula;
 use crate::plan::{Comparison, Condition, Requirement, Test};
@@ -65,6 +65,10 @@ impl<'a> Checker<'a> {
             .join(" ");
         match &expr.kind {
             ExprKind::Faulty => None,
+            ExprKind::Stepped { .. } => self.fail(studies::steps_misplaced(expr.span)),
+            ExprKind::Binary { operator, .. } if operator.node == BinaryOperator::DrawnFrom => {
+                self.fail(studies::distribution_misplaced(operator.span))
+            }
             ExprKind::Within {
                 value,
                 tolerance,
@@ -128,10 +132,16 @@ impl<'a> Checker<'a> {
                 })
             }
             _ => {
+                let key = context.entry.map(|(block, entry)| {
+                    self.scope.blocks[block].block.fields[entry]
+                        .key
+                        .node
+                        .as_str()
+                });
                 let wanted_by = if matches!(context.reads, Reads::Impact(_)) {
                     WHILE.name
                 } else {
-                    "require"
+                    key.unwrap_or("require")
                 };
                 self.fail(message::condition_wanted(
                     wanted_by,

@@ -86,7 +86,17 @@ impl<'a> Checker<'a> {
         let Some(variant) = variants.iter().find(|variant| variant.name == name) else {
             return self.fail(message::unknown_variant(field, name, span, variants));
         };
-        let (placed, rest) = self.match_arguments(variant, arguments, written.span)?;
+        self.arguments_of(variant, arguments, written.span)
+    }
+
+    /// A variant whose arguments are written behind a name, as in `scatter.probability(fails: "…")`.
+    pub fn arguments_of(
+        &mut self,
+        variant: &'static Variant,
+        arguments: &'a [Argument],
+        span: Span,
+    ) -> Option<Chosen<'a>> {
+        let (placed, rest) = self.match_arguments(variant, arguments, span)?;
         Some(Chosen {
             variant,
             arguments: placed,

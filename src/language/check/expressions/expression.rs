@@ -3,7 +3,7 @@
 
 use crate::language::check::checker::{Checker, Context, Shape, Typed, literal};
 use crate::language::check::declarations::specimen::frame;
-use crate::language::check::messages::{types as message, values};
+use crate::language::check::messages::{studies, types as message, values};
 use crate::language::syntax::ast::{BinaryOperator, Expr, ExprKind};
 use crate::plan::formula::{Formula, Operator};
 use crate::schema::{self, Kind};
@@ -50,6 +50,9 @@ impl<'a> Checker<'a> {
                 left,
                 right,
             } => {
+                if operator.node == BinaryOperator::DrawnFrom {
+                    return self.fail(studies::distribution_misplaced(operator.span));
+                }
                 if is_logical(operator.node) {
                     return self.fail(message::condition_for_number(
                         expr.span,
@@ -74,6 +77,8 @@ impl<'a> Checker<'a> {
             ExprKind::Within { .. } => {
                 self.fail(message::condition_for_number(expr.span, "within"))
             }
+            ExprKind::Member { .. } => self.fail(studies::probability_misplaced(expr.span)),
+            ExprKind::Stepped { .. } => self.fail(studies::steps_misplaced(expr.span)),
         }
     }
 

@@ -30,9 +30,6 @@ impl<'a> Checker<'a> {
                     self.diagnostics
                         .push(message::unknown_field(kind, &entry.key));
                 }
-                Some(field) if !field.available => self
-                    .diagnostics
-                    .push(message::field_of_later_version(kind, field, &entry.key)),
                 Some(_) => {
                     if let Some(first) = declared.block.fields[..index]
                         .iter()
@@ -201,12 +198,15 @@ impl<'a> Checker<'a> {
     ) -> Option<Typed> {
         let dimension = field.dimension()?;
         let many = matches!(field.ty, FieldType::Quantities(_));
-        let typed = if many {
-            self.value(written, context)?
+        let own = if many {
+            self.value(written, context)
         } else {
-            self.single(written, context)?
+            self.single(written, context)
         };
-        let typed = self.expect(typed, dimension, field.name, written)?;
+        let (typed, written) = match self.overridden(field, written) {
+            Some(outside) => outside?,
+            None => (self.expect(own?, dimension, field.name, written)?, written),
+        };
         if field.angle && !self.recorded && self.is_plain(&typed, written) {
             return self.fail(types::angle_without_unit(
                 self.text(written.span),

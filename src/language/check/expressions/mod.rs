@@ -10,5 +10,6 @@ pub(crate) mod expression;
 pub(crate) mod fields;
 pub(crate) mod literal;
 pub(crate) mod names;
+pub(crate) mod overrides;
 pub(crate) mod parameters;
 pub(crate) mod read_field;

@@ -27,11 +27,13 @@ pub fn read_settings(
         .collect();
     let mut read = BTreeMap::new();
     for (name, value) in last {
-        if !known.contains(&name) {
+        // `beam.mass`: the declarations decide whether there is such a field.
+        if !known.contains(&name) && !name.contains('.') {
             errors.push(names::unknown_parameter(name, &known));
             continue;
         }
-        let file = sources.add(format!("--set {name}"), format!("param {name} = {value}"));
+        let word = name.replace('.', "_");
+        let file = sources.add(format!("--set {name}"), format!("param {word} = {value}"));
         let (tree, found) = syntax::parse(sources, file);
         let broken = !found.is_empty();
         errors.extend(found);
@@ -147,15 +149,15 @@ impl<'a> Checker<'a> {
         };
         let value = set.constant()?;
         if !bounds.contains(value) {
-            let text = match setting {
-                Setting::Written(_) => self.text(set.span).to_owned(),
-                Setting::Bound(quantity) => quantity.in_plan_syntax(),
+            let (name, text) = match setting {
+                Setting::Written(_) => (format!("--set {name}"), self.text(set.span).to_owned()),
+                Setting::Bound(quantity) => (name.clone(), quantity.in_plan_syntax()),
             };
             let at = declared
                 .bounds
                 .map_or(declared.value.span, |bounds| bounds.span);
             return self.fail(values::setting_out_of_range(
-                name,
+                &name,
                 &text,
                 set.span,
                 bounds,

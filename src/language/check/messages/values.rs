@@ -199,6 +199,7 @@ pub fn parameter_out_of_bounds(
     .help("widen the range or change the value")
 }
 
+/// `name`: as in `--set speed`, or the parameter alone where no text gives the value.
 pub fn setting_out_of_range(
     name: &str,
     text: &str,
@@ -210,7 +211,7 @@ pub fn setting_out_of_range(
     let (low, high) = (shown(bounds.low, dimension), shown(bounds.high, dimension));
     Diagnostic::new(
         Code::SettingOutOfRange,
-        format!("`--set {name}` is outside {low} .. {high}"),
+        format!("`{name}` is outside {low} .. {high}"),
     )
     .at(span, format!("`{text}` is outside"))
     .at(bounds_at, "allowed range")

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use super::{Files, checked};
 use crate::language::check::{LoadError, Loader, Options, ParsedPlan};
 use crate::plan::Plan;
+use crate::plan::study::Input;
 use crate::text::diagnostic::Code;
 use crate::units::{Dimension, Quantity};
 
@@ -142,4 +143,123 @@ fn files_are_read_once_however_often_parameters_are_bound() {
         assert_eq!(plan.files.len(), 2);
     }
     assert_eq!(loader.0.get(), 1);
+}
+
+/// A plan whose numbers are in blocks and in options of them.
+const FIELDS: &str = "specimen beam {\n  mass = 1 kg\n  mass_uncertainty = 5 g\n  behaviour = fracture(of: elastic(stiffness: 300 kN/m), displacement: 1 m)\n}\n\
+     striker hammer {\n  mass = 4 kg\n  arm = 1 m\n  angle = 60 deg\n}\n\
+     impact hit {\n  striker = hammer\n  duration = 1 s\n  time_step = 0.1 ms\n  contact = limit(1500 N)\n}\n\
+     require \"small\" hit.max_displacement < 2 * beam.mass / 1 kg * 1 m\n";
+
+/// Values that decimals do not write exactly.
+const VALUES: [(&str, f64, Dimension); 6] = [
+    ("beam.mass", 0.1 + 0.2, Dimension::MASS),
+    (
+        "beam.behaviour.of.stiffness",
+        1e6 / 3.0,
+        Dimension::STIFFNESS,
+    ),
+    (
+        "beam.behaviour.displacement",
+        1.000_000_000_000_000_2,
+        Dimension::LENGTH,
+    ),
+    (
+        "hammer.angle",
+        std::f64::consts::FRAC_PI_3,
+        Dimension::NUMBER,
+    ),
+    (
+        "hit.contact.force",
+        1499.999_999_999_999_8,
+        Dimension::FORCE,
+    ),
+    ("hit.time_step", 1.234_567_890_123_456_7e-4, Dimension::TIME),
+];
+
+fn parsed_fields(settings: &[(String, String)]) -> (ParsedPlan, Plan) {
+    let options = Options {
+        settings: settings.to_vec(),
+        ..Options::default()
+    };
+    let mut parsed = ParsedPlan::parse("plan.psd", FIELDS, &FILES, &options);
+    let checked = parsed.check(&FILES);
+    let plan = checked
+        .plan
+        .unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
+    (parsed, plan)
+}
+
+/// The text of `--set` that a study prints reproduces a bound run to the last bit.
+#[test]
+fn fields_are_bound_as_their_settings_write_them() {
+    let bound_plan = parsed_fields(&[]).0.bind(&bound(&VALUES)).unwrap();
+    let settings: Vec<(String, String)> = VALUES
+        .iter()
+        .map(|(name, value, dimension)| {
+            let input = Input {
+                name: (*name).to_owned(),
+                dimension: *dimension,
+                text: String::new(),
+                nominal: 0.0,
+                angle: name.ends_with("angle"),
+            };
+            let setting = input.setting(*value);
+            let (name, value) = setting.split_once('=').unwrap();
+            (name.to_owned(), value.to_owned())
+        })
+        .collect();
+    let set = parsed_fields(&settings).1;
+    assert_eq!(as_run(set.clone()), as_run(bound_plan));
+    assert_eq!(set.specimens[0].mass.to_bits(), (0.1_f64 + 0.2).to_bits());
+    let unset = parsed_fields(&[]).1;
+    assert_ne!(as_run(set), as_run(unset));
+}
+
+/// A number of any size is written so that it is read again to the last bit.
+#[test]
+fn a_setting_of_any_size_is_read_to_the_last_bit() {
+    for value in [f64::MIN_POSITIVE, 1e-30 / 3.0, 1.0 / 3.0, 1e22 / 3.0] {
+        let setting = Quantity::new(value, Dimension::MASS).in_plan_syntax();
+        let set = [("beam.mass".to_owned(), setting.replace(' ', ""))];
+        let mass = parsed_fields(&set).1.specimens[0].mass;
+        assert_eq!(mass.to_bits(), value.to_bits(), "{setting}");
+    }
+}
+
+#[test]
+fn a_name_of_no_number_is_an_error() {
+    let (parsed, _) = parsed_fields(&[]);
+    for (name, dimension, code) in [
+        ("beam.mas", Dimension::MASS, Code::UnknownParameter),
+        ("bean.mass", Dimension::MASS, Code::UnknownParameter),
+        (
+            "beam.stiffness",
+            Dimension::STIFFNESS,
+            Code::UnknownParameter,
+        ),
+        (
+            "beam.behaviour",
+            Dimension::STIFFNESS,
+            Code::UnknownParameter,
+        ),
+        ("beam.mass.u", Dimension::MASS, Code::UnknownParameter),
+        ("hammer.gap", Dimension::LENGTH, Code::UnknownParameter),
+        (
+            "hit.max_displacement",
+            Dimension::LENGTH,
+            Code::UnknownParameter,
+        ),
+        ("beam.mass", Dimension::LENGTH, Code::WrongDimension),
+    ] {
+        let errors = parsed.bind(&bound(&[(name, 2.0, dimension)])).unwrap_err();
+        let codes: Vec<Code> = errors.iter().map(|error| error.code).collect();
+        assert_eq!(codes, [code], "{name}: {errors:?}");
+    }
+    for (value, code) in [(-1.0, Code::OutOfRange), (f64::NAN, Code::NotFinite)] {
+        let errors = parsed
+            .bind(&bound(&[("beam.mass", value, Dimension::MASS)]))
+            .unwrap_err();
+        assert_eq!(errors[0].code, code, "{value}");
+    }
 }

@@ -8,6 +8,7 @@ mod plan;
 mod real_rig;
 mod recorded;
 mod renamed;
+mod studies;
 
 use super::{Checked, LoadError, Loader, Options, check};
 

@@ -77,6 +77,19 @@ fn spacing_is_canonical() {
             "let x = a within (1 mm) of b\n",
         ),
         ("let x = within (1 mm)", "let x = within(1 mm)\n"),
+        (
+            "b{x=[a . b~f( sd:1 m ,between:1 m..2 m),c]}",
+            "b { x = [a.b ~ f(sd: 1 m, between: 1 m .. 2 m), c] }\n",
+        ),
+        (
+            "b{x=a in  1..3  step 1 m}",
+            "b { x = a in 1 .. 3 step 1 m }\n",
+        ),
+        ("b{x=a in[1,2]in}", "b { x = a in [1, 2] in }\n"),
+        (
+            "require \"a\" s . p (fails :\"b\")<2 %",
+            "require \"a\" s.p(fails: \"b\") < 2 %\n",
+        ),
         ("limits{force=1 N..2 N}", "limits { force = 1 N .. 2 N }\n"),
         (
             "a { }\nb {}\n\n\n\nc{\n\n x=1\n\n\n y=2\n\n}\n\n\n",

@@ -99,7 +99,8 @@ fn atoms<'a>(tokens: &Tokens<'a>, start: usize, end: usize) -> Vec<Atom<'a>> {
             (Kind::Sign, ".") => (Role::Operand, false, true, false),
             (Kind::Sign, "-") if !after_value => (Role::Operand, !glued, true, false),
             (Kind::Sign, _) => (Role::Infix, true, false, false),
-            (Kind::Word, _) if after_value && JOINING_WORDS.contains(&text) => {
+            // `in` is no joining word to the lexer, because `3 in` is three inches.
+            (Kind::Word, _) if after_value && (JOINING_WORDS.contains(&text) || text == "in") => {
                 (Role::Infix, true, false, false)
             }
             _ => (Role::Operand, !glued, false, true),

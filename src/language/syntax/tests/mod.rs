@@ -5,7 +5,7 @@ mod faulty;
 mod sound;
 
 use super::{
-    ast::{Ast, Block, Expr, ExprKind, ItemKind},
+    ast::{Argument, Ast, Block, Expr, ExprKind, ItemKind},
     parse,
 };
 use crate::text::diagnostic::{Code, Diagnostic};
@@ -73,18 +73,17 @@ pub fn shape(expr: &Expr) -> String {
             format!("({} .. {}{step})", shape(start), shape(end))
         }
         ExprKind::Call { name, arguments } => {
-            let arguments: Vec<String> = arguments
-                .iter()
-                .map(|argument| {
-                    let name = argument
-                        .name
-                        .as_ref()
-                        .map_or(String::new(), |name| format!("{}: ", name.node));
-                    format!("{name}{}", shape(&argument.value))
-                })
-                .collect();
-            format!("{}({})", name.node, arguments.join(", "))
+            format!("{}({})", name.node, shape_of_arguments(arguments))
         }
+        ExprKind::Member {
+            base,
+            name,
+            arguments,
+        } => {
+            let arguments = shape_of_arguments(arguments);
+            format!("({} . {}({arguments}))", shape(base), name.node)
+        }
+        ExprKind::Stepped { input, values } => format!("({} in {})", shape(input), shape(values)),
         ExprKind::Field { base, name } => format!("({} . {})", shape(base), name.node),
         ExprKind::Index { base, index } => format!("({} @ {})", shape(base), shape(index)),
         ExprKind::Negate(value) => format!("(- {})", shape(value)),
@@ -115,6 +114,20 @@ pub fn shape(expr: &Expr) -> String {
         ExprKind::Parenthesised(inner) => format!("<{}>", shape(inner)),
         ExprKind::Faulty => "?".to_owned(),
     }
+}
+
+fn shape_of_arguments(arguments: &[Argument]) -> String {
+    let arguments: Vec<String> = arguments
+        .iter()
+        .map(|argument| {
+            let name = argument
+                .name
+                .as_ref()
+                .map_or(String::new(), |name| format!("{}: ", name.node));
+            format!("{name}{}", shape(&argument.value))
+        })
+        .collect();
+    arguments.join(", ")
 }
 
 /// The whole tree as text without spans.

@@ -131,6 +131,14 @@ fn precedence_is_that_of_the_language() {
         ("f(1, a: 2,)", "f(1, a: 2)"),
         ("max(k0.stiffness.u, 2)", "max(((k0 . stiffness) . u), 2)"),
         ("1 +\n  # why\n  2", "(1 + 2)"),
+        (
+            "s.probability(fails: \"a\") < 2 %",
+            "((s . probability(fails: \"a\")) < 2%)",
+        ),
+        ("a.b ~ normal(sd: 1)", "((a . b) ~ normal(sd: 1))"),
+        ("a.b in 1 .. 3 step 1 m", "((a . b) in (1 .. 3 step 1 m))"),
+        ("a in [1, 2] in", "(a in [1, 2] in)"),
+        ("in in 3 in .. 5 in", "(in in (3 in .. 5 in))"),
         ("f(\n 1 # one\n , # two\n 2\n)", "f(1, 2)"),
         (r#""a \"b\" \\ \n\t µ""#, r#""a \"b\" \\ \n\t µ""#),
     ] {
@@ -153,7 +161,13 @@ fn assert_spans(expr: &Expr, sources: &Sources) {
             arguments.iter().map(|argument| &argument.value).collect()
         }
         ExprKind::Field { base, .. } => vec![base],
+        ExprKind::Member {
+            base, arguments, ..
+        } => std::iter::once(&**base)
+            .chain(arguments.iter().map(|argument| &argument.value))
+            .collect(),
         ExprKind::Index { base, index } => vec![base, index],
+        ExprKind::Stepped { input, values } => vec![input, values],
         ExprKind::Negate(value) | ExprKind::Parenthesised(value) => vec![value],
         ExprKind::Binary { left, right, .. } => vec![left, right],
         ExprKind::Within {
@@ -183,6 +197,9 @@ fn spans_cover_the_whole_expression_and_no_blank() {
         "2 kg",
         "\"x\"",
         "a + f(2 kN/m , [1] m)",
+        "a . p( x : 1 ) < 2 %",
+        "a . b ~ f( 1 )",
+        "a . b in [ 1 , 2 ] m",
     ] {
         for after in ["", "  ", "   # note"] {
             let (value, sources) = expression(&format!("{text}{after}"));

@@ -1,7 +1,7 @@
 //! Sixteen impacts, one step at a time. In: impacts that begin in a lane. Out: their results when they end. The arithmetic is that of
 //! [`super::super::ImpactSolver`], in the same order, and of the summary of its steps.
 
-use super::{Impact, LaneSpecimen};
+use super::{Impact, LaneSpecimen, Reach};
 use crate::contact::ContactLaw;
 use crate::impact::ImpactInput;
 use crate::impact::summary::{ImpactSummary, still_rising};
@@ -58,6 +58,8 @@ rows! {
     restoring_energy, damping_energy, contact_loss, indentation_energy, weight, error, input,
     max_displacement, time_of_max_displacement, absorbed_energy, max_velocity, max_contact_force, impulse,
     stopped, stop_time,
+    /// The reach, beside the largest displacement.
+    least_displacement, least_force, largest_force, largest_increment,
     /// The first contact: begun, ended, closing speed before it, closing speed after it.
     begun, ended, closing, separating,
 }
@@ -263,6 +265,13 @@ impl Lanes {
             let most = self.max_contact_force[lane];
             self.max_contact_force[lane] = select(contact_force > most, contact_force, most);
             self.impulse[lane] += contact_force * time_step;
+            let least = self.least_displacement[lane];
+            self.least_displacement[lane] = select(x1 < least, x1, least);
+            let [least, most] = [self.least_force[lane], self.largest_force[lane]];
+            self.least_force[lane] = select(r1 < least, r1, least);
+            self.largest_force[lane] = select(r1 > most, r1, most);
+            let [increment, longest] = [change.abs(), self.largest_increment[lane]];
+            self.largest_increment[lane] = select(increment > longest, increment, longest);
             let stops = (vs1 <= 0.0) & (self.stopped[lane] == NO);
             self.stop_time[lane] = select(stops, time, self.stop_time[lane]);
             self.stopped[lane] = select(stops, YES, self.stopped[lane]);
@@ -303,6 +312,17 @@ impl Lanes {
     pub fn is_over(&self, lane: usize, ends_at_stop: bool, last: f64) -> bool {
         let stopped = self.striker_velocity[lane] <= 0.0 && self.velocity[lane] <= 0.0;
         self.step[lane] >= last || ends_at_stop && stopped
+    }
+
+    /// How far the impact of a lane reached.
+    pub fn reach(&self, lane: usize) -> Reach {
+        Reach {
+            displacement: [self.least_displacement[lane], self.max_displacement[lane]],
+            restoring_force: [self.least_force[lane], self.largest_force[lane]],
+            increment: self.largest_increment[lane],
+            last_velocity: self.velocity[lane],
+            last_contact_force: self.contact_force[lane],
+        }
     }
 
     /// The results of the impact of a lane.

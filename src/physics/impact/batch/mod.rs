@@ -6,21 +6,45 @@
 //! does the arithmetic of a single impact. An impact that ends gives its lane to the next one. All other impacts run one by one.
 
 mod lanes;
+mod reach;
 #[cfg(test)]
 mod tests;
 
 use super::summary::{ImpactSummary, SummaryBuilder};
-use super::{ImpactError, ImpactInput, ImpactSolver, Until};
+use super::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink, Until};
 use crate::contact::ContactLaw;
 use crate::integrator::Integrator;
+use crate::integrator::state::State;
 use crate::specimen::{Bilinear, Elastic, RestoringForce, SpecimenModel};
 use lanes::{LANES, Lanes};
+pub use reach::Reach;
+use reach::ReachBuilder;
 
 /// An impact on an ideal rig from rest at X = 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Impact {
     pub input: ImpactInput,
     pub specimen: SpecimenModel,
+}
+
+/// The results of an impact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Batched {
+    pub summary: ImpactSummary,
+    pub reach: Reach,
+}
+
+/// Sums up the steps of an impact that runs alone.
+struct Builder {
+    summary: SummaryBuilder,
+    reach: ReachBuilder,
+}
+
+impl<V> Sink<V> for Builder {
+    fn push(&mut self, structure: &State<V>, state: &ImpactState, over: bool) {
+        self.summary.push(state);
+        self.reach.push(structure, state, over);
+    }
 }
 
 /// The specimen of an impact in a lane: elastic is bilinear without a limit.
@@ -60,17 +84,23 @@ impl Impact {
     ///
     /// # Errors
     /// As [`ImpactSolver::new`].
-    pub fn run(&self, until: Option<Until>, steps: u64) -> Result<ImpactSummary, ImpactError> {
+    pub fn run(&self, until: Option<Until>, steps: u64) -> Result<Batched, ImpactError> {
         let mut specimen = self.specimen.clone();
         let mut solver = ImpactSolver::new(&self.input, 0.0, specimen.move_to(0.0))?;
-        let mut summary = SummaryBuilder::new(&self.input);
-        summary.push(solver.state());
+        let mut builder = Builder {
+            summary: SummaryBuilder::new(&self.input),
+            reach: ReachBuilder::default(),
+        };
+        builder.push(solver.structure(), solver.state(), false);
         let read = |solver: &mut ImpactSolver| {
             let target = solver.predict();
             [target, specimen.move_to(target)]
         };
-        solver.run(until, steps, read, &mut summary);
-        Ok(summary.finish())
+        solver.run(until, steps, read, &mut builder);
+        Ok(Batched {
+            summary: builder.summary.finish(),
+            reach: builder.reach.reach,
+        })
     }
 }
 
@@ -83,10 +113,10 @@ pub fn run(
     impacts: &[Impact],
     until: Option<Until>,
     steps: u64,
-) -> Vec<Result<ImpactSummary, ImpactError>> {
+) -> Vec<Result<Batched, ImpactError>> {
     // Lanes differ in what their loop contains: yielding specimens, limited forces.
     let mut queues: [Vec<usize>; 4] = Default::default();
-    let mut results: Vec<Option<Result<ImpactSummary, ImpactError>>> = Vec::new();
+    let mut results: Vec<Option<Result<Batched, ImpactError>>> = Vec::new();
     for (place, impact) in impacts.iter().enumerate() {
         let start = ImpactSolver::new(&impact.input, 0.0, 0.0);
         results.push(match (start, impact.lane_specimen(until)) {
@@ -102,7 +132,7 @@ pub fn run(
     }
     let [plain, yielding, limited, both] = queues;
     let ends = until.is_some_and(|until| until == Until::StrikerStop);
-    let mut take = |place: usize, summary| results[place] = Some(Ok(summary));
+    let mut take = |place: usize, result| results[place] = Some(Ok(result));
     in_lanes::<false, false>(impacts, &plain, ends, steps, &mut take);
     in_lanes::<true, false>(impacts, &yielding, ends, steps, &mut take);
     in_lanes::<false, true>(impacts, &limited, ends, steps, &mut take);
@@ -112,7 +142,7 @@ pub fn run(
         .zip(results)
         .map(|(impact, result)| match result {
             // Beyond the largest numbers, selections and branches differ in what is not a number.
-            Some(Ok(summary)) if !is_finite(&summary) => impact.run(until, steps),
+            Some(Ok(result)) if !is_finite(&result.summary) => impact.run(until, steps),
             Some(result) => result,
             None => impact.run(until, steps),
         });
@@ -129,7 +159,7 @@ fn in_lanes<const YIELDS: bool, const LIMITED: bool>(
     places: &[usize],
     ends_at_stop: bool,
     steps: u64,
-    take: &mut impl FnMut(usize, ImpactSummary),
+    take: &mut impl FnMut(usize, Batched),
 ) {
     let mut lanes = Lanes::new();
     let mut waiting = places.iter().copied();
@@ -156,7 +186,11 @@ fn in_lanes<const YIELDS: bool, const LIMITED: bool>(
             if let Some(place) = *running
                 && lanes.is_over(lane, ends_at_stop, last)
             {
-                take(place, lanes.summary(lane, &impacts[place].input));
+                let result = Batched {
+                    summary: lanes.summary(lane, &impacts[place].input),
+                    reach: lanes.reach(lane),
+                };
+                take(place, result);
                 *running = begin(&mut lanes, lane);
             }
         }

@@ -59,9 +59,16 @@ fn impact(run: u64, law: ContactLaw, yields: bool) -> Impact {
 }
 
 /// All numbers of a result as bits.
-fn bits(summary: &ImpactSummary) -> Vec<Option<u64>> {
+fn bits(Batched { summary, reach }: &Batched) -> Vec<Option<u64>> {
     let whole = |number: f64| Some(number.to_bits());
     vec![
+        whole(reach.displacement[0]),
+        whole(reach.displacement[1]),
+        whole(reach.restoring_force[0]),
+        whole(reach.restoring_force[1]),
+        whole(reach.increment),
+        whole(reach.last_velocity),
+        whole(reach.last_contact_force),
         whole(summary.max_displacement),
         whole(summary.time_of_max_displacement),
         summary.stop_time.map(f64::to_bits),
@@ -184,7 +191,11 @@ fn a_study_of_impacts_recovers_a_known_probability() {
         }),
     };
     let until = Some(Until::StrikerStop);
-    let farthest = with_speed(1.0).run(until, 1000).unwrap().max_displacement;
+    let farthest = with_speed(1.0)
+        .run(until, 1000)
+        .unwrap()
+        .summary
+        .max_displacement;
     let truth = normal::below(-1.5);
     let speed = Distribution::normal(1.0, Spread::Sd(0.05)).unwrap();
     let inputs = Inputs::new(vec![Source::Distribution(speed)], &[], Design::Random, 1).unwrap();
@@ -198,7 +209,7 @@ fn a_study_of_impacts_recovers_a_known_probability() {
     let mut outcomes = Outcomes::default();
     for result in run(&impacts, until, 1000) {
         // One and a half standard deviations above the mean.
-        if result.unwrap().max_displacement > 1.075 * farthest {
+        if result.unwrap().summary.max_displacement > 1.075 * farthest {
             outcomes.failed += 1;
         } else {
             outcomes.passed += 1;

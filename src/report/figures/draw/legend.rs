@@ -22,6 +22,7 @@ pub(super) enum Entry<'a> {
 impl Entry<'_> {
     fn sample(&self) -> f64 {
         match self {
+            Self::Series(series) if series.style.fill => 18.0,
             Self::Series(series) if series.style.line.is_some() => SAMPLE,
             Self::Series(_) => 10.0,
             Self::Band(..) => 18.0,
@@ -81,6 +82,9 @@ pub(super) fn draw(
 ) -> Result<(), String> {
     let sample = entry.sample();
     match entry {
+        Entry::Series(series) if series.style.fill => {
+            draw_area(canvas, (left, middle), sample, series.style.colour)?;
+        }
         Entry::Series(series) => {
             if let Some(line) = series.style.line {
                 canvas.polyline(
@@ -98,22 +102,30 @@ pub(super) fn draw(
                 )?;
             }
         }
-        Entry::Band(_, colour) => {
-            canvas.rectangle(
-                (left, middle - 6.0),
-                (left + sample, middle + 6.0),
-                palette::CLOUD,
-            )?;
-            canvas.rectangle(
-                (left + 0.8, middle - 5.2),
-                (left + sample - 0.8, middle + 5.2),
-                *colour,
-            )?;
-        }
+        Entry::Band(_, colour) => draw_area(canvas, (left, middle), sample, *colour)?,
     }
     canvas.text(
         entry.label(),
         (left + sample + NEAR, middle),
         &lettering(13.0, HPos::Left, VPos::Center),
+    )
+}
+
+/// A sample of an area with a thin outline.
+fn draw_area(
+    canvas: &dyn Canvas,
+    (left, middle): Point,
+    width: f64,
+    colour: Colour,
+) -> Result<(), String> {
+    canvas.rectangle(
+        (left, middle - 6.0),
+        (left + width, middle + 6.0),
+        palette::CLOUD,
+    )?;
+    canvas.rectangle(
+        (left + 0.8, middle - 5.2),
+        (left + width - 0.8, middle + 5.2),
+        colour,
     )
 }

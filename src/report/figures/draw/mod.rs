@@ -19,6 +19,8 @@ const HEIGHT: u32 = 430;
 /// The frame, reference pixels; its top moves down if the legend has two lines.
 const LEFT: f64 = 78.0;
 const RIGHT: f64 = 700.0;
+/// The left edge of a frame with long names beside it.
+const WIDEST_NAMES: f64 = 330.0;
 const BOTTOM: f64 = 372.0;
 const LEGEND_TOP: f64 = 20.0;
 const LEGEND_LINE: f64 = 21.0;
@@ -59,6 +61,7 @@ fn paint(chart: &Chart, canvas: &dyn Canvas) -> Result<(), String> {
         x: &x,
         y: &y,
         top,
+        left: left_edge(chart)?,
     };
     sheet.bands(chart)?;
     sheet.grid()?;
@@ -75,6 +78,17 @@ fn paint(chart: &Chart, canvas: &dyn Canvas) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+/// The left edge of the frame: an axis of names needs the width of the longest one.
+fn left_edge(chart: &Chart) -> Result<f64, String> {
+    let style = lettering(13.0, HPos::Right, VPos::Center);
+    let title = if chart.y.name.is_empty() { 0.0 } else { 24.0 };
+    let mut left = LEFT;
+    for name in &chart.y.names {
+        left = left.max(style.width(name)? + 20.0 + title);
+    }
+    Ok(left.min(WIDEST_NAMES))
 }
 
 fn lettering(size: f64, horizontal: HPos, vertical: VPos) -> Lettering {

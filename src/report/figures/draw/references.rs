@@ -5,7 +5,7 @@ use plotters::style::text_anchor::{HPos, VPos};
 use super::super::canvas::{Lettering, Point};
 use super::super::chart::{Chart, Line, Series};
 use super::sheet::Sheet;
-use super::{BOTTOM, LEFT, LIMIT_INK, RIGHT, lettering};
+use super::{BOTTOM, LIMIT_INK, RIGHT, lettering};
 
 /// Reference lines that the axis includes. If a line is far from the data, only its text is printed, at the nearer edge. Otherwise the
 /// axis range would make the curves flat.
@@ -117,7 +117,7 @@ pub(super) fn draw(sheet: &Sheet<'_>, chart: &Chart) -> Result<(), String> {
             };
             sheet
                 .canvas
-                .polyline(&[(LEFT, y), (RIGHT, y)], line, LIMIT_INK)?;
+                .polyline(&[(sheet.left, y), (RIGHT, y)], line, LIMIT_INK)?;
         }
         if reference.label.is_empty() {
             continue;
@@ -138,10 +138,10 @@ pub(super) fn draw(sheet: &Sheet<'_>, chart: &Chart) -> Result<(), String> {
             .flatten()
             .flat_map(|y| [y - 3.0, y + 18.0])
             .filter(|bottom| bottom - 17.0 >= sheet.top && *bottom <= BOTTOM);
-        let rightmost = (RIGHT - width - 8.0).max(LEFT + 8.0);
+        let rightmost = (RIGHT - width - 8.0).max(sheet.left + 8.0);
         let positions = bottoms.flat_map(|bottom| {
-            let middle = 0.5 * (rightmost + LEFT + 8.0);
-            [rightmost, middle, LEFT + 8.0].map(|left| (left, bottom))
+            let middle = 0.5 * (rightmost + sheet.left + 8.0);
+            [rightmost, middle, sheet.left + 8.0].map(|left| (left, bottom))
         });
         let covered =
             |position: &Point| cover(sheet, chart, &written, Area::of_text(*position, width));

@@ -6,7 +6,7 @@ use super::super::axis::Axis;
 use super::super::canvas::{Canvas, Lettering, Point};
 use super::super::chart::{Chart, Colour, Line, Series};
 use super::thinning::{columns, thinned};
-use super::{BOTTOM, GRID, INK, LEFT, RIGHT, THINNEST, draw_marker, lettering};
+use super::{BOTTOM, GRID, INK, RIGHT, THINNEST, draw_marker, lettering};
 
 /// The area of the data with its axes.
 pub(super) struct Sheet<'a> {
@@ -15,6 +15,8 @@ pub(super) struct Sheet<'a> {
     pub y: &'a Axis,
     /// Upper edge of the frame, reference pixels.
     pub top: f64,
+    /// Left edge of the frame, reference pixels.
+    pub left: f64,
 }
 
 impl Sheet<'_> {
@@ -22,7 +24,7 @@ impl Sheet<'_> {
     pub fn point(&self, data: (f64, f64)) -> Point {
         let (x, y) = data;
         (
-            LEFT + self.x.fraction(x) * (RIGHT - LEFT),
+            self.left + self.x.fraction(x) * (RIGHT - self.left),
             BOTTOM - self.y.fraction(y) * (BOTTOM - self.top),
         )
     }
@@ -30,9 +32,13 @@ impl Sheet<'_> {
     pub fn bands(&self, chart: &Chart) -> Result<(), String> {
         for band in &chart.bands {
             for (from, to) in &band.intervals {
-                let left = self.point((*from, 0.0)).0.clamp(LEFT, RIGHT);
+                let left = self.point((*from, 0.0)).0.clamp(self.left, RIGHT);
                 // An impact of one step stays visible.
-                let right = self.point((*to, 0.0)).0.max(left + 0.75).clamp(LEFT, RIGHT);
+                let right = self
+                    .point((*to, 0.0))
+                    .0
+                    .max(left + 0.75)
+                    .clamp(self.left, RIGHT);
                 self.canvas
                     .rectangle((left, self.top), (right, BOTTOM), band.colour)?;
             }
@@ -56,8 +62,11 @@ impl Sheet<'_> {
             let y = BOTTOM - (tick - self.y.low) / (self.y.high - self.y.low) * (BOTTOM - self.top);
             let zero_inside = *tick == 0.0 && self.y.low < 0.0;
             let (colour, width) = if zero_inside { ZERO } else { (GRID, 0.7) };
-            self.canvas
-                .polyline(&[(LEFT, y), (RIGHT, y)], Line { width, dash: &[] }, colour)?;
+            self.canvas.polyline(
+                &[(self.left, y), (RIGHT, y)],
+                Line { width, dash: &[] },
+                colour,
+            )?;
         }
         Ok(())
     }
@@ -73,19 +82,20 @@ impl Sheet<'_> {
                 INK,
             )
         };
-        line((LEFT, self.top), (LEFT, BOTTOM))?;
-        line((LEFT, BOTTOM), (RIGHT, BOTTOM))?;
+        line((self.left, self.top), (self.left, BOTTOM))?;
+        line((self.left, BOTTOM), (RIGHT, BOTTOM))?;
         for (tick, label) in &self.y.ticks {
             let y = BOTTOM - (tick - self.y.low) / (self.y.high - self.y.low) * (BOTTOM - self.top);
-            line((LEFT - 5.0, y), (LEFT, y))?;
+            line((self.left - 5.0, y), (self.left, y))?;
             self.canvas.text(
                 label,
-                (LEFT - 9.0, y),
+                (self.left - 9.0, y),
                 &lettering(13.0, HPos::Right, VPos::Center),
             )?;
         }
         for (tick, label) in &self.x.ticks {
-            let x = LEFT + (tick - self.x.low) / (self.x.high - self.x.low) * (RIGHT - LEFT);
+            let x =
+                self.left + (tick - self.x.low) / (self.x.high - self.x.low) * (RIGHT - self.left);
             line((x, BOTTOM), (x, BOTTOM + 5.0))?;
             self.canvas.text(
                 label,
@@ -93,7 +103,7 @@ impl Sheet<'_> {
                 &lettering(13.0, HPos::Center, VPos::Top),
             )?;
         }
-        let middle = (0.5 * (LEFT + RIGHT), 0.5 * (self.top + BOTTOM));
+        let middle = (0.5 * (self.left + RIGHT), 0.5 * (self.top + BOTTOM));
         self.canvas.text(
             &self.x.title,
             (middle.0, BOTTOM + 30.0),
@@ -113,6 +123,9 @@ impl Sheet<'_> {
             .filter(|(x, y)| x.is_finite() && y.is_finite())
             .map(|point| self.point(*point))
             .collect();
+        if series.style.fill {
+            return self.canvas.polygon(&points, series.style.colour);
+        }
         // Every marker of a series without a line is drawn.
         let points = if series.style.line.is_some() {
             columns(&points, THINNEST)

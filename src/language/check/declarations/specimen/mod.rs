@@ -188,6 +188,7 @@ fn invalid_portal(checker: &mut Checker, block: usize) -> bool {
 fn mass_from(checker: &mut Checker, block: usize) -> Option<String> {
     match checker.field(block, fields::MASS.name) {
         Some((_, entry)) if matches!(entry.value.kind, ExprKind::Number { .. }) => None,
+        Some((_, entry)) if checker.overrides.contains_key(&entry.value.span) => None,
         Some((_, entry)) => Some(checker.text(entry.value.span).to_owned()),
         None if mass_of_portal(checker, block).is_some() => Some("elastic_mass".to_owned()),
         None => Some("density * area * length / 2".to_owned()),

@@ -27,11 +27,7 @@ pub fn unknown_block(block: &Block) -> Diagnostic {
             .at(block.words[0].span, "not an item")
             .help(help);
     }
-    let keywords: Vec<String> = BLOCKS
-        .iter()
-        .filter(|block| block.kind != Kind::Later)
-        .map(|block| block.words())
-        .collect();
+    let keywords: Vec<String> = BLOCKS.iter().map(|block| block.words()).collect();
     let known = || {
         keywords
             .iter()
@@ -72,30 +68,6 @@ pub fn unknown_block(block: &Block) -> Diagnostic {
     Diagnostic::new(Code::UnknownBlock, format!("unknown block `{written}`"))
         .at(span, "unknown block")
         .help(help)
-}
-
-pub fn block_of_later_version(kind: &BlockKind, block: &Block) -> Diagnostic {
-    let last = kind.keyword.len().clamp(1, block.words.len()) - 1;
-    let span = block.words[0].span.to(block.words[last].span);
-    Diagnostic::new(
-        Code::NotInThisVersion,
-        format!("`{}` is not available in this version", kind.words()),
-    )
-    .at(span, "block of a later version")
-    .help(format!("remove this `{}` block", kind.words()))
-}
-
-pub fn field_of_later_version(kind: &BlockKind, field: &Field, key: &Ident) -> Diagnostic {
-    Diagnostic::new(
-        Code::NotInThisVersion,
-        format!(
-            "field `{}` of `{}` is not available in this version",
-            field.name,
-            kind.words()
-        ),
-    )
-    .at(key.span, "field of a later version")
-    .help(format!("remove `{}`", field.name))
 }
 
 /// The error of the words after the keyword, if any.
@@ -193,11 +165,7 @@ pub fn renamed(row: &Renamed, span: Span) -> Diagnostic {
 }
 
 pub fn unknown_field(kind: &BlockKind, key: &Ident) -> Diagnostic {
-    let known = kind
-        .fields
-        .iter()
-        .filter(|field| field.available)
-        .map(|field| field.name);
+    let known = kind.fields.iter().map(|field| field.name);
     Diagnostic::new(
         Code::UnknownField,
         format!("`{}` has no field `{}`", kind.words(), key.node),

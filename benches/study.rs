@@ -1,0 +1,61 @@
+//! Runs of a study: bound and simulated, in batches and one by one, and the share of the binding. The goal is runs per second on one core.
+
+use psd::language::check::{LoadError, Loader, Options, ParsedPlan};
+use psd::plan::Plan;
+use psd::study::definition::Definition;
+use psd::study::simulation::Simulation;
+
+fn main() {
+    divan::main();
+}
+
+const PLAN: &str = "param speed = 1 m/s\n\
+    specimen beam { mass = 1 kg\nbehaviour = elastic(stiffness: 300 N/m) }\n\
+    striker hammer { mass = 10 kg\nvelocity = speed }\n\
+    impact hit { striker = hammer\nduration = 1 s\ntime_step = 2 ms }\n\
+    study scatter { vary = [speed ~ normal(sd: 0.05 m/s), beam.mass ~ lognormal(cv: 2 %)] }\n\
+    require \"stays in travel\" hit.max_displacement < 0.2 m\n";
+
+struct Nothing;
+
+impl Loader for Nothing {
+    fn load(&self, _: &str) -> Result<String, LoadError> {
+        Err(LoadError::NotFound)
+    }
+}
+
+fn checked() -> (ParsedPlan, Plan, Definition) {
+    let mut parsed = ParsedPlan::parse("study.psd", PLAN, &Nothing, &Options::default());
+    let plan = parsed.check(&Nothing).plan.expect("a sound plan");
+    let study = Definition::of(&plan.studies, None, None).expect("one study");
+    (parsed, plan, study)
+}
+
+#[divan::bench]
+fn in_batches(bencher: divan::Bencher) {
+    let (parsed, plan, study) = checked();
+    let simulation = Simulation::new(&parsed, &plan, &study);
+    assert!(simulation.is_batched());
+    bencher
+        .counter(divan::counter::ItemsCount::new(1024_u32))
+        .bench_local(|| simulation.block(0..1024));
+}
+
+#[divan::bench]
+fn one_by_one(bencher: divan::Bencher) {
+    let (parsed, plan, study) = checked();
+    let simulation = Simulation::new(&parsed, &plan, &study).one_by_one();
+    bencher
+        .counter(divan::counter::ItemsCount::new(64_u32))
+        .bench_local(|| simulation.block(0..64));
+}
+
+#[divan::bench]
+fn binding_alone(bencher: divan::Bencher) {
+    let (parsed, ..) = checked();
+    let values = std::collections::BTreeMap::from([(
+        "speed".to_owned(),
+        psd::units::Quantity::new(1.1, psd::units::Dimension::VELOCITY),
+    )]);
+    bencher.bench_local(|| parsed.bind(&values).is_ok());
+}

@@ -1,0 +1,37 @@
+//! The answers of a finished study. In: its data set. Out: the answers on the terminal and in `summary.json` beside the data set, and the
+//! exit code.
+
+use std::path::Path;
+
+use super::failure;
+use crate::cli::args::Format;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::output::{print_message, print_result};
+use crate::files::failure::plain;
+use crate::physics::study::probability::Decision;
+use crate::report::SUMMARY;
+use crate::study::answers::Answers;
+use crate::study::console;
+use crate::study::data_set::Reader;
+use crate::study::report::summary;
+
+/// Writes and prints the answers. The exit code is that of the requirements on probabilities.
+pub fn give(path: &Path, format: Format) -> Result<Exit, Failure> {
+    let reader = Reader::open(path).map_err(|fault| failure::of_data_set(&fault))?;
+    let answers = Answers::of(&reader).map_err(|fault| failure::of_data_set(&fault))?;
+    let summary = summary(reader.metadata(), &answers)?;
+    let beside = path.with_file_name(SUMMARY);
+    std::fs::write(&beside, &summary).map_err(|error| Failure::file(&beside, plain(&error)))?;
+    print_message(&console::text(reader.metadata(), &answers));
+    let folder = path.parent().unwrap_or(path);
+    match format {
+        Format::Human => print_result(&format!("{}\n", folder.display()))?,
+        Format::Json => print_result(&String::from_utf8_lossy(&summary))?,
+    }
+    let decided = |decision| answers.studied.iter().all(|it| it.decision == decision);
+    Ok(if decided(Decision::Met) {
+        Exit::Met
+    } else {
+        Exit::Missed
+    })
+}

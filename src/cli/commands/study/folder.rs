@@ -1,0 +1,72 @@
+//! `psd study status` and `psd study merge`. In: the folder of a study. Out: how far it is, or its shards in one file.
+
+use std::path::Path;
+
+use super::{answers, failure};
+use crate::cli::args::Format;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::output::{print_message, print_result};
+use crate::study::collection::merge::{self, listed};
+use crate::study::collection::status::{self, Part};
+
+/// Shows the runs that are there, and the shards that are not finished.
+pub fn status(folder: &Path) -> Result<Exit, Failure> {
+    let status = status::status(folder).map_err(|fault| failure::of_data_set(&fault))?;
+    let Some(metadata) = &status.metadata else {
+        return Err(Failure::file(folder, "contains no runs of a study yet")
+            .help("name the folder of `psd study run`"));
+    };
+    let mut text = format!(
+        "study {} of {}, {} runs\n",
+        metadata.study, metadata.plan, metadata.at_most
+    );
+    let finished = |part: &&Part| part.shard.is_some() && part.finished;
+    let shards = status.parts.iter().filter(|part| part.shard.is_some());
+    let of = shards.clone().count();
+    if of > 0 {
+        let done: u64 = shards.clone().map(|part| part.runs).sum();
+        text += &format!(
+            "  {} of {of} shards are finished, {done} of {} runs are durable\n",
+            shards.clone().filter(finished).count(),
+            metadata.at_most
+        );
+        for part in shards.filter(|part| !part.finished && part.runs > 0) {
+            text += &unfinished(part);
+        }
+        let missing = status.unfinished();
+        if !missing.is_empty() {
+            text += &format!("  submit again: --array={}\n", listed(&missing));
+        }
+    }
+    for part in status.parts.iter().filter(|part| part.shard.is_none()) {
+        text += &if part.finished {
+            format!("  study.parquet is finished, {} runs\n", part.runs)
+        } else {
+            unfinished(part)
+        };
+    }
+    print_result(&text)?;
+    let whole = |part: &Part| part.shard.is_none() && part.finished;
+    let complete = status.parts.iter().any(whole) || status.parts.iter().all(|part| part.finished);
+    Ok(if complete {
+        Exit::Met
+    } else {
+        Exit::Unfinished
+    })
+}
+
+fn unfinished(part: &Part) -> String {
+    let name = part.shard.map_or_else(
+        || "the study".to_owned(),
+        |shard| format!("shard {}", shard.number),
+    );
+    format!("  {name}: {} of {} runs\n", part.runs, part.of)
+}
+
+/// Puts shards together, and answers as `psd study run` does.
+pub fn merge(folder: &Path) -> Result<Exit, Failure> {
+    let (path, metadata) = merge::merge(folder).map_err(|fault| failure::of_merge(&fault))?;
+    let (runs, path_shown) = (metadata.runs(), path.display());
+    print_message(&format!("  {runs} runs are in {path_shown}\n"));
+    answers::give(&path, Format::Human)
+}

@@ -1,0 +1,71 @@
+//! `psd study report FOLDER`: summary, figures and report of a study. In: its data set alone. Out: files beside it, which replace older
+//! ones: equal data sets give equal files. It reads no plan and simulates nothing.
+
+use std::path::Path;
+
+use super::failure;
+use crate::cli::args::ReportStudyArguments;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::run_folder::FolderSink;
+use crate::cli::files::writing::ProgressSink;
+use crate::cli::output::print_result;
+use crate::cli::settings::Settings;
+use crate::files::failure::plain;
+use crate::physics::study::probability::Decision;
+use crate::study::answers::Answers;
+use crate::study::collection::folder::Place;
+use crate::study::data_set::Reader;
+
+use crate::study::report;
+
+/// Makes the files of a study.
+pub fn report(arguments: &ReportStudyArguments, settings: Settings) -> Result<Exit, Failure> {
+    let given = &arguments.folder;
+    let path = if given.is_dir() {
+        Place::of(given, None).path()
+    } else {
+        given.clone()
+    };
+    if !path.exists() {
+        let failure = Failure::file(&path, "no such data set");
+        return Err(failure
+            .help("name the folder of a finished study; `psd study merge` puts shards together"));
+    }
+    let folder = match &arguments.out {
+        Some(out) => out.as_path(),
+        None => path.parent().unwrap_or_else(|| Path::new("")),
+    };
+    let exit = written(&path, folder, settings)?;
+    print_result(&format!("{}\n", folder.display()))?;
+    Ok(exit)
+}
+
+/// Reads the data set and writes every file of its report into the folder; the exit code is that of its requirements.
+pub fn written(path: &Path, folder: &Path, settings: Settings) -> Result<Exit, Failure> {
+    let read = || {
+        let reader = Reader::open(path)?;
+        let answers = Answers::of(&reader)?;
+        Ok((reader, answers))
+    };
+    let (reader, answers) = read().map_err(|fault| failure::of_data_set(&fault))?;
+    std::fs::create_dir_all(folder).map_err(|error| Failure::file(folder, plain(&error)))?;
+    let mut sink = FolderSink::replacing(folder);
+    let made = {
+        let mut progress = ProgressSink::new(&mut sink, settings);
+        report::put(reader.metadata(), &answers, &mut progress)
+    };
+    if let Err(error) = made {
+        return Err(sink.failed(error));
+    }
+    Ok(exit(&answers))
+}
+
+/// 1 if a requirement on a probability is not met or undecided.
+fn exit(answers: &Answers) -> Exit {
+    let met = |decision| decision == Decision::Met;
+    if answers.studied.iter().all(|it| met(it.decision)) {
+        Exit::Met
+    } else {
+        Exit::Missed
+    }
+}

@@ -1,0 +1,107 @@
+//! `psd study run`: the runs of a study, or of one of its shards. In: a plan. Out: the data set, and its answers on the terminal and in
+//! `summary.json`. A study that is there already is continued.
+
+use super::progress::StudyProgress;
+use super::{answers, failure, open};
+use crate::cli::args::RunStudyArguments;
+use crate::cli::exit::{Exit, Failure};
+use crate::cli::operator::watch::Signals;
+use crate::cli::output::{print_message, print_result};
+use crate::cli::settings::{Settings, variable};
+use crate::rig::StopRequest;
+use crate::study::cluster::shard::Shard;
+use crate::study::collection::{Collection, Ended};
+use crate::study::data_set::Metadata;
+use crate::study::simulation::Simulation;
+use crate::study::stopping::Looks;
+use crate::study::{collection, metadata};
+
+/// Stack size for the deepest plan, also in a build without optimisation.
+const STACK: usize = 32 << 20;
+
+pub fn run(arguments: &RunStudyArguments, settings: Settings) -> Result<Exit, Failure> {
+    let shard = arguments
+        .shard
+        .map(|shard| shard.resolve(variable))
+        .transpose()
+        .map_err(|error| failure::of_shard(&error))?;
+    let Some(opened) = open(&arguments.plan, &arguments.choice, settings)? else {
+        return Ok(Exit::Wrong);
+    };
+    let simulation = Simulation::new(&opened.parsed, &opened.plan, &opened.study);
+    let simulation = if arguments.one_by_one {
+        simulation.one_by_one()
+    } else {
+        simulation
+    };
+    let metadata = metadata::of(&opened.plan, &opened.study, simulation.readout());
+    print_message(&begins(&metadata, &simulation, shard));
+    let collection = Collection {
+        simulation: &simulation,
+        metadata: &metadata,
+        runs: opened.study.runs,
+        folder: &opened.folder,
+        shard,
+    };
+    let (ended, _) = collected(&collection, arguments, settings)?;
+    match ended {
+        Ended::Stopped { runs, of } => {
+            print_message(&format!(
+                "STOPPED  {runs} of {of} runs are kept; the same command continues\n"
+            ));
+            Ok(Exit::Unfinished)
+        }
+        Ended::Finished { path, simulated } => {
+            if simulated == 0 {
+                print_message("  all runs were there already\n");
+            }
+            if shard.is_none() {
+                return answers::give(&path, arguments.format);
+            }
+            print_result(&format!("{}\n", path.display()))?;
+            Ok(Exit::Met)
+        }
+    }
+}
+
+/// What is simulated, and how.
+fn begins(metadata: &Metadata, simulation: &Simulation<'_>, shard: Option<Shard>) -> String {
+    let how = if simulation.is_batched() {
+        "in batches"
+    } else {
+        "one by one"
+    };
+    let part = shard.map_or_else(String::new, |shard| {
+        format!(", shard {} of {}", shard.number, shard.of)
+    });
+    format!(
+        "SIMULATION  study {}: up to {} runs {how}{part}\n",
+        metadata.study, metadata.at_most
+    )
+}
+
+/// Simulates on all threads until the study ends or a signal arrives.
+fn collected(
+    collection: &Collection<'_>,
+    arguments: &RunStudyArguments,
+    settings: Settings,
+) -> Result<(Ended, Looks), Failure> {
+    let stop = StopRequest::default();
+    let _signals = Signals::ending(&stop).map_err(Failure::Signals)?;
+    let mut builder = rayon::ThreadPoolBuilder::new().stack_size(STACK);
+    if let Some(jobs) = arguments.jobs {
+        builder = builder.num_threads(jobs.get());
+    }
+    let pool = builder
+        .build()
+        .map_err(|error| Failure::command_line(format!("no threads to simulate on: {error}")))?;
+    let mut progress = StudyProgress::new(&collection.metadata.study, settings);
+    let result = pool.install(|| {
+        collection.run(&mut |now: &collection::Progress<'_>| {
+            progress.show(now);
+            !stop.end_requested()
+        })
+    });
+    progress.finish();
+    result.map_err(failure::of_collection)
+}

@@ -1,0 +1,73 @@
+//! Arguments of a distribution that have the unit of the input. In: the option as written. Out: numbers and ranges in SI.
+
+use super::known;
+use crate::language::check::checker::{Checker, Context, Reads, Typed};
+use crate::language::check::expressions::choice::Chosen;
+use crate::language::check::messages::{studies as message, values};
+use crate::plan::Interval;
+use crate::plan::formula::Formula;
+use crate::schema::Field;
+use crate::schema::study as schema;
+use crate::units::Dimension;
+
+const CONTEXT: Context = Context {
+    entry: None,
+    reads: Reads::Nothing("a study"),
+    critical: false,
+};
+
+/// An argument in the unit of the input: `Some(None)` if it is omitted, None if it has an error.
+#[expect(
+    clippy::option_option,
+    reason = "left out and faulty are different things here"
+)]
+pub(super) fn number<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    field: Field,
+    dimension: Dimension,
+) -> Option<Option<f64>> {
+    let Some((field, Some(written))) = chosen.find(field.name) else {
+        return Some(None);
+    };
+    let typed = checker.single(written, CONTEXT)?;
+    if typed.percent && dimension != Dimension::NUMBER && field.name == schema::SD.name {
+        let text = checker.text(written.span);
+        return checker.fail(message::relative_deviation(text, written.span));
+    }
+    let typed = checker.expect(typed, dimension, field.name, written)?;
+    let value = known(checker, typed.constant(), written.span)?;
+    if !field.range.contains(value) {
+        return checker.fail(values::out_of_range(
+            field,
+            dimension,
+            value,
+            checker.text(written.span),
+            written.span,
+        ));
+    }
+    Some(Some(value))
+}
+
+/// A range in the unit of the input.
+#[expect(
+    clippy::option_option,
+    reason = "left out and faulty are different things here"
+)]
+pub(super) fn range<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    field: Field,
+    dimension: Dimension,
+) -> Option<Option<Interval>> {
+    let Some((field, Some(written))) = chosen.find(field.name) else {
+        return Some(None);
+    };
+    let (interval, found) = checker.interval(written, CONTEXT)?;
+    let typed = Typed {
+        bare: found == Dimension::NUMBER && dimension != Dimension::NUMBER,
+        ..Typed::number(Formula::Constant(interval.high), found, written.span)
+    };
+    checker.expect(typed, dimension, field.name, written)?;
+    Some(Some(interval))
+}

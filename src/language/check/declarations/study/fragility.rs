@@ -1,0 +1,98 @@
+//! `fragility NAME { … }`: the probability of an exceedance by the intensity. In: the block. Out: a [`Fragility`].
+
+use super::target::{self, Target};
+use super::{confidence, ends, inputs, known, reads_a_result, whole};
+use crate::language::check::checker::{Checker, Context, Reads};
+use crate::language::check::messages::studies as message;
+use crate::language::syntax::ast::{Expr, ExprKind};
+use crate::plan::Condition;
+use crate::plan::study::Fragility;
+use crate::schema::study as schema;
+
+pub(super) fn fragility(checker: &mut Checker, block: usize) -> Option<Fragility> {
+    let confidence = confidence(checker, block);
+    let stepped = stepped(checker, block);
+    let exceeds = exceeds(checker, block);
+    let runs = whole(checker, block, schema::STRIPE_RUNS.name);
+    let (varies, intensity) = (
+        checker.field(block, schema::VARY_OTHERS.name).is_some(),
+        stepped.as_ref().map(|(target, _)| target),
+    );
+    let variation = if varies {
+        inputs::variation(checker, block, schema::VARY_OTHERS.name, intensity).map(Some)
+    } else {
+        Some(None)
+    };
+    let runs = runs?;
+    if !varies && runs > 1 {
+        let head = checker.scope.blocks[block].block.head;
+        return checker.fail(message::varies_nothing(head));
+    }
+    let (target, stripes) = stepped?;
+    Some(Fragility {
+        name: checker.scope.blocks[block].name?.node.clone(),
+        intensity: target.input(String::new()),
+        stripes,
+        exceeds: exceeds?,
+        variation: variation?,
+        runs,
+        confidence: confidence?,
+    })
+}
+
+/// `impact_speed in 0.5 .. 1.5 step 0.1 m/s`: the input and its values.
+fn stepped<'a>(checker: &mut Checker<'a>, block: usize) -> Option<(Target<'a>, Vec<f64>)> {
+    let (entry, written) = checker.field(block, schema::INTENSITY.name)?;
+    let context = checker.context_of(block, entry);
+    let (input, values): (&'a Expr, &'a Expr) = match &written.value.kind {
+        ExprKind::Stepped { input, values } => (input, values),
+        ExprKind::Faulty => return None,
+        _ => {
+            let span = written.value.span;
+            return checker.fail(message::intensity_wanted(checker.text(span), span));
+        }
+    };
+    let target = target::target(checker, input);
+    let typed = checker.value(values, context);
+    let (target, typed) = (target?, typed?);
+    let typed = checker.expect(typed, target.dimension, &target.name, values)?;
+    let mut stripes: Vec<f64> = Vec::new();
+    for (at, part) in typed.parts().iter().enumerate() {
+        let span = match &values.kind {
+            ExprKind::List { items, .. } if items.len() == typed.parts().len() => items[at].span,
+            _ => values.span,
+        };
+        let value = known(checker, part.constant(), span)?;
+        if value <= stripes.last().copied().unwrap_or(0.0) {
+            return checker.fail(message::stripes_do_not_rise(checker.text(span), span));
+        }
+        stripes.push(value);
+    }
+    if let (Some(first), Some(last)) = (stripes.first(), stripes.last()) {
+        ends::note_ends(checker, &target, [*first, *last], written.value.span);
+    }
+    Some((target, stripes))
+}
+
+/// The one condition, which reads a result.
+fn exceeds(checker: &mut Checker, block: usize) -> Option<Condition> {
+    let (entry, written) = checker.field(block, schema::EXCEEDS.name)?;
+    let context = Context {
+        entry: Some((block, entry)),
+        reads: Reads::All,
+        critical: false,
+    };
+    let conditions = checker.conditions_at(&written.value, context)?;
+    let span = written.value.span;
+    let Ok([condition]) = <[Condition; 1]>::try_from(conditions) else {
+        return checker.fail(message::one_exceedance(span));
+    };
+    if !condition.formulas().any(reads_a_result) {
+        return checker.fail(message::reads_no_result(
+            checker.text(span),
+            "hit.max_displacement > 50 mm",
+            span,
+        ));
+    }
+    Some(condition)
+}

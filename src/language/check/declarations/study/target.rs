@@ -1,0 +1,151 @@
+//! An input as a study names it: `impact_speed`, `beam.mass`. In: the expression. Out: its place, dimension and value in the plan.
+
+use crate::language::check::checker::{Checker, Shape, literal};
+use crate::language::check::expressions::overrides::{self, Place};
+use crate::language::check::messages::{inputs as names, studies as message};
+use crate::language::check::rig;
+use crate::language::syntax::ast::{Expr, ExprKind};
+use crate::plan::study::Input;
+use crate::schema::{Field, FieldType, Kind, RigKind};
+use crate::text::source::Span;
+use crate::units::Dimension;
+
+/// An input as a study names it.
+pub(super) struct Target<'a> {
+    pub name: String,
+    /// The name.
+    pub span: Span,
+    pub place: Place<'a>,
+    pub dimension: Dimension,
+    /// The value of the plan without the study, SI.
+    pub nominal: f64,
+    pub angle: bool,
+}
+
+impl Target<'_> {
+    /// The input with its distribution as text.
+    pub(super) fn input(&self, text: String) -> Input {
+        Input {
+            name: self.name.clone(),
+            dimension: self.dimension,
+            text,
+            nominal: self.nominal,
+            angle: self.angle,
+        }
+    }
+}
+
+/// The words of `beam.behaviour.stiffness`; None for anything else.
+pub(super) fn path_of(written: &Expr) -> Option<Vec<&str>> {
+    match &written.kind {
+        ExprKind::Name(name) => Some(vec![name]),
+        ExprKind::Field { base, name } => {
+            let mut path = path_of(base)?;
+            path.push(&name.node);
+            Some(path)
+        }
+        _ => None,
+    }
+}
+
+/// The input that an expression names.
+pub(super) fn target<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option<Target<'a>> {
+    let span = written.span;
+    let Some(path) = path_of(written) else {
+        return match written.kind {
+            ExprKind::Faulty => None,
+            _ => checker.fail(names::input_wanted(checker.text(span), span)),
+        };
+    };
+    let name = path.join(".");
+    let place = match overrides::place(checker.scope, &path) {
+        Ok(place) => place,
+        Err(_) if checker.may_be_lost(path[0]) => return None,
+        Err(reason) => {
+            checker.diagnostics.extend(names::no_input(&reason, span));
+            return None;
+        }
+    };
+    let (dimension, nominal, angle) = match place {
+        Place::Parameter(index) => of_parameter(checker, index)?,
+        Place::Field {
+            block,
+            entry,
+            field,
+            written,
+        } => {
+            refuse(checker, &name, block, field, span)?;
+            let context = checker.context_of(block, entry);
+            // An error of the value is reported where the block is read.
+            let before = checker.diagnostics.len();
+            let typed = checker.typed_field(field, written, context);
+            checker.diagnostics.truncate(before);
+            let typed = typed?;
+            if typed.shape == Shape::List {
+                let help = "write a `param`, use it in the list, and name it here";
+                return checker.fail(names::cannot_vary(&name, "is a list", span, help));
+            }
+            let Some(nominal) = typed.constant() else {
+                return checker.fail(names::cannot_vary(
+                    &name,
+                    "is known only in the run",
+                    span,
+                    "vary the inputs from which it is calculated",
+                ));
+            };
+            (typed.dimension, nominal, field.angle)
+        }
+    };
+    Some(Target {
+        name,
+        span,
+        place,
+        dimension,
+        nominal,
+        angle,
+    })
+}
+
+fn of_parameter(checker: &mut Checker, index: usize) -> Option<(Dimension, f64, bool)> {
+    let declared = &checker.scope.values[index];
+    // A parameter that only a study names has no effect on a run.
+    let was_used = checker.used.contains(&index);
+    let typed = checker.declared_value(index, declared.name.span);
+    if !was_used {
+        checker.used.remove(&index);
+    }
+    let typed = typed.filter(|typed| typed.shape == Shape::Number)?;
+    let unit = literal(declared.value).and_then(|number| match &number.kind {
+        ExprKind::Number { unit, .. } => unit.as_ref(),
+        _ => None,
+    });
+    let angle = typed.dimension == Dimension::NUMBER
+        && unit.is_some_and(|unit| matches!(unit.node.as_str(), "deg" | "rad"));
+    Some((typed.dimension, typed.constant()?, angle))
+}
+
+/// Fields that a simulated run does not scatter.
+fn refuse(
+    checker: &mut Checker,
+    name: &str,
+    block: usize,
+    field: &'static Field,
+    span: Span,
+) -> Option<()> {
+    if matches!(field.ty, FieldType::Count) {
+        let help = "vary a number that is not a count";
+        return checker.fail(names::cannot_vary(name, "is a whole number", span, help));
+    }
+    match checker.scope.blocks[block].kind.kind {
+        Kind::Study | Kind::Fragility => checker.fail(names::cannot_vary(
+            name,
+            "describes a study, not a run",
+            span,
+            "vary a field of a specimen, a striker, a ground motion or a procedure",
+        )),
+        Kind::Rig if rig::kind(checker, block) == Some(RigKind::Real) => {
+            checker.fail(message::of_a_real_rig(name, span))
+        }
+        _ => Some(()),
+    }
+}

@@ -1,0 +1,287 @@
+//! Inputs of a plan by name: a `param`, a field such as `beam.mass`, an argument such as `beam.behaviour.stiffness`. In: the name and the
+//! declarations. Out: the place where the plan writes its value, or why there is none; and the values given from outside for such places.
+
+use std::collections::BTreeMap;
+
+use crate::language::check::checker::{Checker, Context, Reads, Typed};
+use crate::language::check::messages::inputs::{self as message, NoPlace};
+use crate::language::check::messages::{types, values};
+use crate::language::check::rig;
+use crate::language::check::scope::{Meaning, Scope, Setting};
+use crate::language::syntax::ast::{Argument, Entry, Expr, ExprKind};
+use crate::plan::formula::Formula;
+use crate::schema::{Field, FieldType, Kind, Need, RigKind, Variant};
+use crate::text::source::Span;
+use crate::units::Quantity;
+
+/// Where the plan writes the value of an input.
+#[derive(Clone, Copy)]
+pub enum Place<'a> {
+    /// A `param`, as an index among the values.
+    Parameter(usize),
+    /// A field of a block, or an argument in the value of one.
+    Field {
+        block: usize,
+        entry: usize,
+        field: &'static Field,
+        written: &'a Expr,
+    },
+}
+
+/// The place of the input with this path.
+pub fn place<'a>(scope: &Scope<'a>, path: &[&str]) -> Result<Place<'a>, NoPlace> {
+    let (&owner, rest) = path.split_first().unwrap_or((&"", &[]));
+    let block = match scope.meaning(owner) {
+        Some(Meaning::Value(index)) if scope.values[index].keyword == "param" => {
+            return match rest.first() {
+                None => Ok(Place::Parameter(index)),
+                Some(_) => Err(NoPlace::InsideANumber(owner.to_owned())),
+            };
+        }
+        Some(Meaning::Value(_)) => return Err(NoPlace::Let(owner.to_owned())),
+        Some(Meaning::Block(index)) => index,
+        Some(Meaning::Poisoned) => return Err(NoPlace::Reported),
+        None => return Err(NoPlace::Unknown(unknown(scope, owner))),
+    };
+    let declared = &scope.blocks[block];
+    let Some((&name, rest)) = rest.split_first() else {
+        return Err(NoPlace::Block {
+            name: owner.to_owned(),
+            inputs: inputs_of(scope, block),
+        });
+    };
+    let no_field = |reason: message::NoField| {
+        Err(NoPlace::NoField {
+            path: path.join("."),
+            inputs: near(inputs_of(scope, block), path),
+            reason,
+        })
+    };
+    let field = declared.kind.field(name);
+    let mut entries = declared.block.fields.iter().enumerate();
+    let written = entries.find(|(_, entry)| entry.key.node == name);
+    let (Some(field), Some((entry, written))) = (field, written) else {
+        return no_field(if declared.kind.result(name).is_some() {
+            message::NoField::Result
+        } else if field.is_some_and(|field| matches!(field.need, Need::Default { .. })) {
+            message::NoField::NotWritten
+        } else if declared.kind.export(name).is_some() {
+            message::NoField::Derived
+        } else if field.is_some() {
+            message::NoField::NotWritten
+        } else {
+            message::NoField::Unknown
+        });
+    };
+    let mut at = Some((field, &written.value));
+    let mut variants = None;
+    for name in rest {
+        at = at.and_then(|(field, written)| inside(field, written, &mut variants, name));
+    }
+    match at {
+        Some((field, written)) if is_number(field, written) => Ok(Place::Field {
+            block,
+            entry,
+            field,
+            written,
+        }),
+        Some((field, _))
+            if matches!(field.ty, FieldType::Quantities(_) | FieldType::Choices(_)) =>
+        {
+            no_field(message::NoField::List)
+        }
+        Some(_) => no_field(message::NoField::NotANumber),
+        None => no_field(message::NoField::Unknown),
+    }
+}
+
+/// Whether a field has one number. A field for one or several may have one.
+fn is_number(field: &Field, written: &Expr) -> bool {
+    match field.ty {
+        FieldType::Quantity(_) | FieldType::Count => true,
+        FieldType::Quantities(_) => {
+            !matches!(written.kind, ExprKind::List { .. } | ExprKind::Range { .. })
+        }
+        _ => false,
+    }
+}
+
+/// The argument `name` of the variant that is the value of a field. `outer`: the variants of the field itself, which an inner model
+/// shares.
+fn inside<'a>(
+    field: &'static Field,
+    written: &'a Expr,
+    outer: &mut Option<&'static [Variant]>,
+    name: &str,
+) -> Option<(&'static Field, &'a Expr)> {
+    if let FieldType::Choice(variants) = field.ty {
+        *outer = Some(variants);
+    } else if !matches!(field.ty, FieldType::Inner) {
+        return None;
+    }
+    let arguments = arguments_of((*outer)?, written);
+    arguments
+        .into_iter()
+        .find(|(argument, _)| argument.name == name)
+}
+
+/// The arguments of a call, with the schema's argument for each.
+fn arguments_of<'a>(
+    variants: &'static [Variant],
+    written: &'a Expr,
+) -> Vec<(&'static Field, &'a Expr)> {
+    match &written.kind {
+        ExprKind::Parenthesised(inner) => arguments_of(variants, inner),
+        ExprKind::Call { name, arguments } => {
+            let variant = variants.iter().find(|variant| variant.name == name.node);
+            let of_variant = |(at, argument): (usize, &'a Argument)| {
+                let field = match &argument.name {
+                    Some(name) => variant?.argument(&name.node)?,
+                    None => variant?.arguments.get(at)?,
+                };
+                Some((field, &argument.value))
+            };
+            arguments
+                .iter()
+                .enumerate()
+                .filter_map(of_variant)
+                .collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The paths of the numbers that a block writes.
+fn inputs_of(scope: &Scope, block: usize) -> Vec<String> {
+    fn add(
+        path: &str,
+        field: &'static Field,
+        written: &Expr,
+        outer: Option<&'static [Variant]>,
+        into: &mut Vec<String>,
+    ) {
+        if !matches!(field.ty, FieldType::Count) && is_number(field, written) {
+            into.push(path.to_owned());
+            return;
+        }
+        let variants = match field.ty {
+            FieldType::Choice(variants) => variants,
+            FieldType::Inner => outer.unwrap_or(&[]),
+            _ => return,
+        };
+        for (argument, written) in arguments_of(variants, written) {
+            let path = format!("{path}.{}", argument.name);
+            add(&path, argument, written, Some(variants), into);
+        }
+    }
+    let declared = &scope.blocks[block];
+    let owner = declared.name.map_or("", |name| name.node.as_str());
+    let mut inputs = Vec::new();
+    let known = |entry: &'_ Entry| declared.kind.field(&entry.key.node);
+    for entry in &declared.block.fields {
+        if let Some(field) = known(entry) {
+            let path = format!("{owner}.{}", field.name);
+            add(&path, field, &entry.value, None, &mut inputs);
+        }
+    }
+    inputs
+}
+
+/// Those inputs whose last word is the one of the path; if none, all.
+fn near(inputs: Vec<String>, path: &[&str]) -> Vec<String> {
+    let last = path.last().copied().unwrap_or_default();
+    let ends = |input: &&String| input.rsplit('.').next() == Some(last);
+    let same: Vec<String> = inputs.iter().filter(ends).cloned().collect();
+    if same.is_empty() { inputs } else { same }
+}
+
+/// An unknown first word, with the names that it may be.
+fn unknown(scope: &Scope, name: &str) -> message::UnknownName {
+    let values = scope.values.iter().filter(|value| value.keyword == "param");
+    let values = values.map(|value| value.name.node.clone());
+    let blocks = scope.blocks.iter().filter_map(|block| block.name);
+    message::UnknownName {
+        name: name.to_owned(),
+        known: values.chain(blocks.map(|name| name.node.clone())).collect(),
+    }
+}
+
+impl<'a> Checker<'a> {
+    /// Takes the settings whose names have a point. Those that name nothing are errors, and so are numbers of a real rig: its scale factors
+    /// and times are in the plan alone.
+    pub fn override_fields(&mut self, settings: &'a BTreeMap<String, Setting>) {
+        for (name, setting) in settings.iter().filter(|(name, _)| name.contains('.')) {
+            let path: Vec<&str> = name.split('.').collect();
+            match place(self.scope, &path) {
+                Ok(Place::Field { block, .. })
+                    if self.scope.blocks[block].kind.kind == Kind::Rig
+                        && rig::kind(self, block) == Some(RigKind::Real) =>
+                {
+                    self.diagnostics.push(message::setting_of_a_real_rig(name));
+                }
+                Ok(Place::Field { written, .. }) => {
+                    self.overrides
+                        .insert(written.span, (name.as_str(), setting));
+                }
+                Ok(Place::Parameter(_)) => {}
+                Err(reason) => self
+                    .diagnostics
+                    .push(message::setting_without_place(name, &reason)),
+            }
+        }
+    }
+
+    /// The value given from outside the plan for a field or argument, checked as the plan's own would be. None: there is none.
+    #[expect(
+        clippy::option_option,
+        reason = "no value from outside and a faulty one are different things here"
+    )]
+    pub fn overridden(
+        &mut self,
+        field: &'static Field,
+        written: &'a Expr,
+    ) -> Option<Option<(Typed, &'a Expr)>> {
+        let (name, setting) = self.overrides.get(&written.span).copied()?;
+        let dimension = field.dimension()?;
+        Some(match setting {
+            Setting::Written(set) => {
+                let context = Context {
+                    entry: None,
+                    reads: Reads::Nothing("a setting"),
+                    critical: false,
+                };
+                self.single(set, context)
+                    .and_then(|typed| self.expect(typed, dimension, name, set))
+                    .map(|typed| (typed, set))
+            }
+            Setting::Bound(quantity) => self
+                .bound(field, *quantity, written.span)
+                .map(|typed| (typed, written)),
+        })
+    }
+
+    /// A number that is bound without any text; its range is checked here, because no text shows it.
+    fn bound(&mut self, field: &'static Field, quantity: Quantity, span: Span) -> Option<Typed> {
+        let dimension = field.dimension()?;
+        if quantity.dimension != dimension {
+            return self.fail(types::wrong_dimension_of_quantity(
+                quantity, dimension, field.name, span,
+            ));
+        }
+        if !quantity.value.is_finite() {
+            return self.fail(values::not_finite(span));
+        }
+        if !field.range.contains(quantity.value) {
+            let text = quantity.in_plan_syntax();
+            return self.fail(values::out_of_range(
+                field,
+                dimension,
+                quantity.value,
+                &text,
+                span,
+            ));
+        }
+        let formula = Formula::Constant(quantity.value);
+        Some(Typed::number(formula, dimension, span))
+    }
+}

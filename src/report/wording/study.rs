@@ -1,0 +1,149 @@
+//! The words of a study's figures and report. In: values as text. Out: sentences. A test report has its words in `english.rs`.
+
+phrases! {
+    KIND = "Report of a study";
+    HEADING = "STUDY (SIMULATION)";
+    WATERMARK = "SIMULATION";
+    END = "— End of report ";
+    SIMULATED = "Every run of this study is simulated. It states what the model does when its inputs scatter, not what a \
+        specimen does.";
+    fn decided(met, not_met, undecided) = "Requirements on the study: {met} met, {not_met} not met, {undecided} undecided.";
+    fn incomplete(runs, at_most) = "INCOMPLETE: {runs} of up to {at_most} runs. An incomplete study decides nothing.";
+    NO_STUDIED = "The plan has no requirement on a probability of this study.";
+
+    // The first page.
+    PLAN = "Plan";
+    STUDY = "Study";
+    RUNS = "Runs";
+    SEED = "Seed";
+    SAMPLING = "Sampling";
+    ENDS = "Ends";
+    CONFIDENCE = "Confidence";
+    fn runs_of(runs, at_most) = "{runs} of at most {at_most}";
+    ENDS_FIXED = "after a fixed number of runs";
+    ENDS_DECIDED = "when every requirement on the study is decided";
+    fn ends_half_width(width) = "when half of every interval is at most {width}";
+    fn ends_stripes(stripes, runs) = "{stripes} intensities with {runs} runs each";
+    RANDOM = "independent random runs";
+    LATIN_HYPERCUBE = "Latin hypercube";
+    fn sobol(replicates) = "scrambled Sobol' sequences, {replicates} replicates";
+    STATEMENTS = "Requirements on the study";
+    STATEMENT_COLUMNS = ["Requirement", "Statement", "Probability", "Interval"];
+    MET = "MET";
+    NOT_MET = "NOT MET";
+    UNDECIDED = "UNDECIDED";
+    fn at_look(number) = " at look {number}";
+    fn intervals(confidence) = "Intervals have a confidence of {confidence} (Clopper–Pearson). A requirement is met or not met if its \
+        whole interval is on one side of the limit, otherwise undecided.";
+    BY_LOOKS = "The study chose its own end: a requirement is decided by the interval of the first look that can, which is wider \
+        than the interval above.";
+    NOT_EXACT = "The runs are not independent of each other: the interval is that of as many independent runs.";
+
+    // Requirements of the plan.
+    REQUIREMENTS = "Requirements of the plan, run by run";
+    REQUIREMENT_COLUMNS = ["Requirement", "Met", "Not met", "No result", "P(not met)", "Interval"];
+    fn below(bound) = "below {bound}";
+    fn above(bound) = "above {bound}";
+    fn between(low, high) = "{low} to {high}";
+    NO_FAILURE = "A requirement that no run failed has an upper bound, not the probability 0.";
+    NO_RESULT_BOUNDS = "Runs without a result are not dropped: the first number counts them as met, the second as not met, and the \
+        interval holds for both.";
+
+    // Results.
+    RESULTS = "Results";
+    RESULT_COLUMNS = ["Result", "Mean", "Standard deviation", "5 %", "50 %", "95 %"];
+    fn kept(runs) = "Quantiles, histograms and cumulative curves are those of the first {runs} runs.";
+    fn by_ranks(confidence) = "In brackets: interval with a confidence of {confidence}; of a quantile by ranks, which holds for any \
+        distribution.";
+    fn by_replicates(confidence) = "In brackets: interval with a confidence of {confidence}, from the scatter of the replicates.";
+    NO_INTERVAL = "A Latin hypercube gives no interval: its runs depend on each other, and one hypercube shows no scatter.";
+    UNBOUNDED = "∞";
+    fn lost(count) = "{count} runs without it";
+
+    // Sensitivities.
+    SENSITIVITIES = "Sensitivities";
+    SENSITIVITY_COLUMNS = ["Input", "First-order index", "Interval", "Rank correlation", "Interval"];
+    fn of_result(name) = "Sensitivities of {name}";
+    EXPLAINED = "The first-order index is the fraction of the variance of the result that the input explains alone, estimated by \
+        ranks. Spearman's rank correlation gives the direction.";
+    fn ranked(runs) = "From the first {runs} runs.";
+    MAY_BE_ZERO = "*  not distinguishable from 0";
+    CORRELATED = "The inputs are correlated: the variance of a result cannot be split among them. Rank correlations are given.";
+
+    // Worst runs.
+    WORST = "Worst runs";
+    WORST_COLUMNS = ["Run", "Requirement", "Value", "Settings"];
+    fn worst_of(label) = "Worst runs: {label}";
+    REPRODUCE = "A run is reproduced bit for bit by ";
+    NO_WORST = "No run is listed: every run meets this requirement, and it does not compare a single result.";
+
+    // Fragility.
+    FRAGILITY = "Fragility";
+    STRIPE_COLUMNS = ["Intensity", "Runs", "Exceeded", "No result", "Fraction", "Interval"];
+    FIT_COLUMNS = ["Curve", "Median θ", "Interval", "Dispersion β", "Interval", "Goodness of fit"];
+    CURVE = "P = Φ(ln(x/θ)/β)";
+    CURVE_LOW = "no result = not exceeded";
+    CURVE_HIGH = "no result = exceeded";
+    fn no_fit(reason) = "No curve fits: {reason}.";
+    FITTED = "Lognormal curve of the largest likelihood through all stripes (J. W. Baker, Earthquake Spectra 31 (2015) 579–599). \
+        Intervals and band: profile likelihood.";
+    GOODNESS = "Goodness of fit: probability of a deviance as large as this one if the curve is lognormal. Below 5 % the curve is \
+        doubtful.";
+    NO_MIDDLE = "No stripe has between 10 % and 90 % of exceedances: the dispersion is a guess. Add intensities between them.";
+    SPREAD = "The dispersion is that of the varied inputs. The record-to-record dispersion is not included: one ground motion is \
+        scaled.";
+    STEPPED = "stepped";
+
+    // Looks.
+    LOOKS = "Looks of the stopping rule";
+    LOOK_COLUMNS = ["Look", "Runs", "Confidence"];
+    SPENT = "Look m spends α/(m(m + 1)) of the error probability α. Their sum is at most α, so the decision holds although the study \
+        chose its own end.";
+
+    // Inputs, runs without result, provenance.
+    INPUTS = "Inputs";
+    INPUT_COLUMNS = ["Input", "Distribution", "Value of the plan"];
+    CORRELATIONS = "Correlations: ";
+    TABLE_ROWS = "Inputs from one table are drawn together, row by row.";
+    REASONS = "Runs without a result";
+    REASON_COLUMNS = ["Reason", "Runs", "First run"];
+    PROVENANCE = "Provenance";
+    VERSION = "Program";
+    DIGEST = "SHA-256 of the plan and its settings";
+    SETTINGS = "Settings on the command line";
+    NO_SETTINGS = "none";
+    DATA_SET = "Data set";
+    fn data_set(runs) = "{runs} rows, one a run";
+    DATA_DIGEST = "SHA-256 of the data set's metadata";
+    SAME = "Run i depends on the seed and i alone. The same plan, seed and program give the same data set, bit for bit.";
+
+    // Figures.
+    RUNS_AXIS = "Runs";
+    FRACTION_AXIS = "Fraction of runs not above";
+    PROBABILITY_AXIS = "Probability of exceedance";
+    FIRST_ORDER_AXIS = "First-order index";
+    RANK_AXIS = "Rank correlation";
+    QUANTILES = "quantiles 5, 50, 95 % with intervals";
+    WORST_RUNS = "worst runs";
+    STRIPES = "stripes with intervals";
+    fn limit_of(label, limit) = "{label}: {limit}";
+    fn interval(confidence) = "{confidence} interval";
+    fn band(confidence) = "{confidence} band";
+    fn runs_drawn(count) = "{count} runs";
+    fn histogram(name, runs) = "{name}: histogram of {runs} runs.";
+    fn cumulative(name) = "{name}: cumulative curve of the runs.";
+    fn tornado(name) = "{name}: first-order sensitivities by ranks.";
+    fn rank_tornado(name) = "{name}: rank correlations with the inputs.";
+    fn scatter(result, input) = "{result} against {input}, one dot a run.";
+    fn fragility(condition, intensity) = "Probability of {condition} by {intensity}. Beyond the stripes the curve is dashed.";
+    fn described(caption, x, y) = "{caption} x: {x}; y: {y}.";
+}
+
+/// The name of a fitted curve, by what runs without a result count as.
+pub(crate) fn curve_label(no_result_as: &str) -> &'static str {
+    match no_result_as {
+        "not_exceeded" => CURVE_LOW,
+        "exceeded" => CURVE_HIGH,
+        _ => CURVE,
+    }
+}

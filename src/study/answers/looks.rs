@@ -1,0 +1,62 @@
+//! Outcomes counted, and the counts at every look of the stopping rule. In: rows in the order of their runs. Out: counts for each
+//! requirement. A run without a result is a count of its own.
+
+use crate::physics::study::Confidence;
+use crate::physics::study::probability::stopping::Look;
+use crate::plan::study::Runs;
+use crate::study::counts::Counts;
+use crate::study::data_set::{Kind, Metadata, Row, Stopping};
+use crate::study::stopping::Looks;
+
+/// Counts so far.
+pub struct CountsWithLooks {
+    rule: Looks,
+    pub taken: Vec<CountsAtLook>,
+}
+
+/// Counts at a look.
+pub struct CountsAtLook {
+    pub look: Look,
+    pub counts: Counts,
+}
+
+impl CountsWithLooks {
+    pub fn new(metadata: &Metadata, confidence: Confidence) -> Self {
+        let at_most = metadata.at_most;
+        let runs = match metadata.kind {
+            Kind::Study(Stopping::Fixed) | Kind::Fragility(_) => Runs::Fixed(at_most),
+            Kind::Study(Stopping::Decided) => Runs::Decided {
+                confidence,
+                at_most,
+            },
+            Kind::Study(Stopping::HalfWidth(half_width)) => Runs::HalfWidth {
+                half_width,
+                confidence,
+                at_most,
+            },
+        };
+        Self {
+            rule: Looks::of(runs, metadata),
+            taken: Vec::new(),
+        }
+    }
+
+    pub fn add(&mut self, row: &Row) {
+        let look = self.rule.planned();
+        self.rule.add(row);
+        let counts = self.counts();
+        if let Some(look) = look.filter(|look| look.runs == counts.runs) {
+            let counts = counts.clone();
+            self.taken.push(CountsAtLook { look, counts });
+        }
+    }
+
+    pub const fn counts(&self) -> &Counts {
+        &self.rule.counts
+    }
+
+    /// Whether the study has all the runs that it asks for.
+    pub fn are_complete(&self) -> bool {
+        self.rule.are_over()
+    }
+}

@@ -1,0 +1,194 @@
+//! Reads a data set, a row group at a time. In: a file. Out: its metadata, and its rows in the order of their runs. A file that is cut,
+//! changed or of another program is an error with its place; no byte is decoded before its digest is verified.
+
+use std::fs::File;
+use std::io::{Read as _, Seek as _, SeekFrom};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use polars::prelude::{
+    FileMetadata, FileMetadataRef, ParallelStrategy, ParquetReader, SerReader as _,
+};
+use sha2::{Digest as _, Sha256};
+
+use super::block::{Block, Row};
+use super::fault::DataSetFault;
+use super::frame;
+use super::group::Group;
+use super::metadata::{FORMAT, Metadata};
+use super::writer::{KEY_FORMAT, KEY_GROUPS, KEY_STUDY};
+use crate::text::digest::hex;
+
+/// Shortest file: its mark, the length of the footer, and the mark again.
+const LEAST_BYTES: u64 = 12;
+/// Bytes that are digested together.
+const CHUNK: usize = 1 << 16;
+
+/// A data set on the disk.
+#[derive(Debug)]
+pub struct Reader {
+    path: PathBuf,
+    metadata: Metadata,
+    groups: Vec<Group>,
+    footer: FileMetadataRef,
+}
+
+impl Reader {
+    /// Reads and checks the footer.
+    ///
+    /// # Errors
+    /// The file cannot be read, is no data set of a study, or is incomplete.
+    pub fn open(path: &Path) -> Result<Self, DataSetFault> {
+        let file = File::open(path).map_err(DataSetFault::of(path))?;
+        let length = file.metadata().map_err(DataSetFault::of(path))?.len();
+        if length < LEAST_BYTES {
+            return Err(DataSetFault::new(path, "is incomplete: it has no footer"));
+        }
+        let footer = ParquetReader::new(file).get_metadata().cloned();
+        let footer = footer.map_err(|error| {
+            DataSetFault::new(
+                path,
+                format!("is incomplete, or not a Parquet file: {error}"),
+            )
+        })?;
+        let foreign =
+            || DataSetFault::new(path, "is a Parquet file, but not a data set of a study");
+        let format = text(&footer, KEY_FORMAT).ok_or_else(foreign)?;
+        if format != FORMAT.to_string() {
+            let reason = format!("is a data set of format {format}, this program reads {FORMAT}");
+            return Err(DataSetFault::new(path, reason));
+        }
+        let study = text(&footer, KEY_STUDY).ok_or_else(foreign)?;
+        let groups = text(&footer, KEY_GROUPS).ok_or_else(foreign)?;
+        let damaged = |error| DataSetFault::new(path, format!("has a damaged footer: {error}"));
+        let metadata: Metadata = serde_json::from_str(study).map_err(damaged)?;
+        let groups: Vec<Group> = serde_json::from_str(groups).map_err(damaged)?;
+        if let Some(reason) = contradiction(&footer, &metadata, &groups) {
+            return Err(DataSetFault::new(
+                path,
+                format!("has a damaged footer: {reason}"),
+            ));
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            metadata,
+            groups,
+            footer,
+        })
+    }
+
+    #[must_use]
+    pub const fn metadata(&self) -> &Metadata {
+        &self.metadata
+    }
+
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// All rows; after an error, no more follow.
+    pub fn rows(&self) -> impl Iterator<Item = Result<Row, DataSetFault>> + '_ {
+        self.blocks().flat_map(|block| {
+            let (rows, fault) = match block {
+                Ok(block) => (block.rows().map(Ok).collect(), None),
+                Err(fault) => (Vec::new(), Some(Err(fault))),
+            };
+            rows.into_iter().chain(fault)
+        })
+    }
+
+    /// All rows, one block for each row group; after an error, no more follow.
+    pub fn blocks(&self) -> impl Iterator<Item = Result<Block, DataSetFault>> + '_ {
+        let mut first = self.metadata.first;
+        let mut from = 0;
+        let mut failed = false;
+        self.groups
+            .iter()
+            .enumerate()
+            .map_while(move |(at, group)| {
+                if failed {
+                    return None;
+                }
+                let block = self.block(at, first, from);
+                first += group.rows;
+                from += group.bytes;
+                failed = block.is_err();
+                Some(block)
+            })
+    }
+
+    /// One row group: `first` is the number of its first run, `from` the place of its first byte.
+    fn block(&self, at: usize, first: u64, from: u64) -> Result<Block, DataSetFault> {
+        let group = &self.groups[at];
+        let last = first + group.rows.saturating_sub(1);
+        let fault = |reason: String| {
+            DataSetFault::new(&self.path, format!("runs {first} to {last}: {reason}"))
+        };
+        let mut file = File::open(&self.path).map_err(DataSetFault::of(&self.path))?;
+        let found =
+            digest(&mut file, from, group.bytes).map_err(|error| fault(error.to_string()))?;
+        if found != group.sha256 {
+            return Err(fault(format!(
+                "damaged: SHA-256 of bytes {from} to {} is {found}, the footer says {}",
+                from + group.bytes,
+                group.sha256
+            )));
+        }
+        let mut reader = ParquetReader::new(file).read_parallel(ParallelStrategy::Columns);
+        let groups = &self.footer.row_groups[at..=at];
+        reader.set_metadata(Arc::new(FileMetadata {
+            num_rows: groups[0].num_rows(),
+            row_groups: groups.to_vec(),
+            ..FileMetadata::clone(&self.footer)
+        }));
+        let frame = reader.finish().map_err(|error| fault(error.to_string()))?;
+        frame::block(&frame, first, &self.metadata).map_err(fault)
+    }
+}
+
+/// A text of the footer.
+fn text<'a>(footer: &'a FileMetadata, key: &str) -> Option<&'a str> {
+    let texts = footer.key_value_metadata().as_ref()?;
+    let found = texts.iter().find(|text| text.key == key)?;
+    found.value.as_deref()
+}
+
+/// What in the footer contradicts itself: its row groups must be those that the metadata name, and lie one behind the other.
+fn contradiction(footer: &FileMetadata, metadata: &Metadata, groups: &[Group]) -> Option<String> {
+    let rows: u64 = groups.iter().map(|group| group.rows).sum();
+    if metadata.end.checked_sub(metadata.first) != Some(rows) {
+        let Metadata { first, end, .. } = metadata;
+        return Some(format!("runs {first} to {end} are {rows} rows"));
+    }
+    if footer.row_groups.len() != groups.len() {
+        let [found, named] = [footer.row_groups.len(), groups.len()];
+        return Some(format!("{found} row groups, of which it names {named}"));
+    }
+    let mut from = 0;
+    for (at, (found, named)) in footer.row_groups.iter().zip(groups).enumerate() {
+        let end = from + named.bytes;
+        let inside = |range: std::ops::Range<u64>| from <= range.start && range.end <= end;
+        let wrong = found.num_rows() as u64 != named.rows || !found.byte_ranges_iter().all(inside);
+        if wrong {
+            return Some(format!("row group {at} is not where it should be"));
+        }
+        from = end;
+    }
+    None
+}
+
+/// SHA-256 of a range of bytes.
+fn digest(file: &mut File, from: u64, bytes: u64) -> std::io::Result<String> {
+    file.seek(SeekFrom::Start(from))?;
+    let mut left = file.take(bytes);
+    let mut digest = Sha256::new();
+    let mut chunk = vec![0; CHUNK];
+    loop {
+        let read = left.read(&mut chunk)?;
+        if read == 0 {
+            return Ok(hex(&digest.finalize()));
+        }
+        digest.update(&chunk[..read]);
+    }
+}

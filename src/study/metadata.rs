@@ -1,0 +1,141 @@
+//! The metadata of a study: what its data set says about itself. In: the plan and the study. Out: the metadata of its first run.
+
+use super::data_set::{Column, Event, Kind, Metadata, Setting, StudiedRequirement};
+use super::definition::Definition;
+use super::simulation::readout::Readout;
+use crate::files::provenance::BUILD;
+use crate::physics::study::inputs::Source;
+use crate::plan::study::{Input, REPLICATES, Sampling, StudyEvent, Variation};
+use crate::plan::{Plan, StudyRequirement};
+use crate::text::digest::sha256;
+
+/// The build of psd that simulates the runs: runs of two builds are not mixed.
+#[must_use]
+pub fn version() -> String {
+    format!("{} {BUILD}", env!("CARGO_PKG_VERSION"))
+}
+
+/// The metadata of a study of `plan`, without runs.
+#[must_use]
+pub fn of(plan: &Plan, study: &Definition, readout: &Readout) -> Metadata {
+    let variation = match study.kind {
+        Kind::Study(_) => Some(&plan.studies.studies[study.place].variation),
+        Kind::Fragility(_) => plan.studies.fragilities[study.place].variation.as_ref(),
+    };
+    let setting = |(name, text): &(String, String)| Setting {
+        name: name.clone(),
+        text: text.clone(),
+    };
+    Metadata {
+        version: version(),
+        title: plan.title.clone(),
+        plan: plan
+            .files
+            .first()
+            .map_or_else(String::new, |file| file.name.clone()),
+        digest: digest(plan),
+        settings: plan.settings.iter().map(setting).collect(),
+        study: study.name.clone(),
+        kind: study.kind.clone(),
+        seed: study.seed,
+        sampling: study.sampling,
+        replicates: match study.sampling {
+            Sampling::Sobol => REPLICATES,
+            Sampling::Random | Sampling::LatinHypercube => 1,
+        },
+        correlations: variation.map_or_else(Vec::new, correlations),
+        is_correlated: variation.is_some_and(is_correlated),
+        confidence: 1.0 - study.confidence.error(),
+        at_most: study.runs.at_most(),
+        first: 0,
+        end: 0,
+        inputs: study.inputs.iter().map(column).collect(),
+        results: readout.columns(),
+        requirements: readout.decisions(plan),
+        studied: match study.kind {
+            Kind::Study(_) => studied(&plan.studies.requirements, study.place),
+            Kind::Fragility(_) => Vec::new(),
+        },
+    }
+}
+
+/// SHA-256 of all files and settings of a plan, and of the name of its rig.
+fn digest(plan: &Plan) -> String {
+    let mut text = String::new();
+    let mut add = |part: &str| {
+        // With its length, so that no two lists of parts give one text.
+        text.push_str(&part.len().to_string());
+        text.push(':');
+        text.push_str(part);
+    };
+    for file in &plan.files {
+        add(&file.name);
+        add(&file.text);
+    }
+    add("settings");
+    for (name, value) in &plan.settings {
+        add(name);
+        add(value);
+    }
+    add(&plan.rig.name);
+    sha256(text.as_bytes())
+}
+
+fn column(input: &Input) -> Column {
+    Column {
+        nominal: Some(input.nominal),
+        ..Column::new(&input.name, input.dimension, &input.text)
+    }
+}
+
+fn studied(requirements: &[StudyRequirement], study: usize) -> Vec<StudiedRequirement> {
+    let own = requirements.iter().filter(|it| it.study == study);
+    own.map(|it| {
+        let (event, requirement) = match it.event {
+            StudyEvent::Fails { requirement } => (Event::Fails, requirement),
+            StudyEvent::Holds { requirement } => (Event::Holds, requirement),
+        };
+        StudiedRequirement {
+            label: it.label.clone(),
+            text: it.text.clone(),
+            requirement,
+            event,
+            comparison: it.comparison,
+            limit: it.limit,
+        }
+    })
+    .collect()
+}
+
+/// Rank correlations as the plan writes them.
+fn correlations(variation: &Variation) -> Vec<String> {
+    let mut first = 0;
+    let names: Vec<&str> = variation
+        .sources
+        .iter()
+        .map(|source| {
+            let name = variation.inputs.get(first);
+            first += width(source);
+            name.map_or("", |input| input.name.as_str())
+        })
+        .collect();
+    let pairs = variation.correlations.iter();
+    pairs
+        .map(|pair| {
+            let [first, second] = pair.inputs.map(|at| names[at]);
+            format!("rank({first}, {second}, {})", pair.correlation)
+        })
+        .collect()
+}
+
+fn is_correlated(variation: &Variation) -> bool {
+    !variation.correlations.is_empty() || variation.sources.iter().any(|source| width(source) > 1)
+}
+
+/// Number of inputs that a source gives.
+fn width(source: &Source) -> usize {
+    match source {
+        Source::Distribution(_) => 1,
+        Source::Rows(rows) => rows.first().map_or(0, Vec::len),
+    }
+}

@@ -1,0 +1,198 @@
+//! The report of a study as a document. In: metadata, answers and drawn figures. Out: the document that HTML and PDF print. The first page
+//! states what was decided; the rest shows from what.
+
+use crate::physics::study::probability::Decision;
+use crate::plan::study::Sampling;
+use crate::report::document::{Block, Column, Document, Figure, Style, Table, Text, Tone, Verdict};
+use crate::report::wording::{LABELS, study as wording};
+use crate::study::answers::{Answers, StudiedAnswer};
+use crate::study::data_set::{Kind, Metadata, Stopping};
+
+use super::figures::{FigureKind, percent};
+use super::numbers::{probability, range};
+use super::{DrawnFigure, fragility, provenance, results, runs};
+
+/// What the sections read.
+pub struct Source<'a> {
+    pub metadata: &'a Metadata,
+    pub answers: &'a Answers,
+    pub figures: &'a [DrawnFigure],
+    /// First digits of the SHA-256 of the metadata.
+    pub id: &'a str,
+}
+
+impl Source<'_> {
+    /// The figures of this kind, as blocks.
+    pub fn figures_of(&self, wanted: impl Fn(&DrawnFigure) -> bool) -> impl Iterator<Item = Block> {
+        let chosen: Vec<Block> = self
+            .figures
+            .iter()
+            .enumerate()
+            .filter(|(_, figure)| wanted(figure))
+            .map(|(index, figure)| {
+                Block::Figure(Figure {
+                    number: index + 1,
+                    caption: figure.caption.clone().into(),
+                    description: figure.description.clone().into(),
+                    svg: figure.svg.clone(),
+                })
+            })
+            .collect();
+        chosen.into_iter()
+    }
+}
+
+/// The whole report.
+pub fn document(source: &Source<'_>) -> Document {
+    let Source {
+        metadata, answers, ..
+    } = source;
+    let mut body = Vec::new();
+    statements(source, &mut body);
+    body.push(Block::NewPage);
+    runs::requirements(source, &mut body);
+    fragility::section(source, &mut body);
+    results::section(source, &mut body);
+    results::sensitivities(source, &mut body);
+    runs::worst(source, &mut body);
+    runs::reasons(source, &mut body);
+    provenance::looks(source, &mut body);
+    provenance::inputs(source, &mut body);
+    provenance::section(source, &mut body);
+    Document {
+        kind: wording::KIND,
+        replaces: None,
+        title: metadata.title.as_str().into(),
+        logo: None,
+        id: source.id.to_owned(),
+        date: None,
+        dated: None,
+        front: front(metadata, answers),
+        missing_fields: Vec::new(),
+        verdict: Verdict {
+            tone: tone(answers),
+            heading: wording::HEADING.to_owned(),
+            text: statement(answers),
+        },
+        notices: Vec::new(),
+        watermarks: vec![wording::WATERMARK],
+        body,
+        end: Text::from(wording::END).id(source.id).and(" —"),
+        labels: LABELS,
+        attachments: Vec::new(),
+    }
+}
+
+fn front(metadata: &Metadata, answers: &Answers) -> Vec<(Text, Text)> {
+    let ends = match &metadata.kind {
+        Kind::Study(Stopping::Fixed) => wording::ENDS_FIXED.to_owned(),
+        Kind::Study(Stopping::Decided) => wording::ENDS_DECIDED.to_owned(),
+        Kind::Study(Stopping::HalfWidth(width)) => wording::ends_half_width(percent(*width)),
+        Kind::Fragility(stripes) => wording::ends_stripes(stripes.values.len(), stripes.runs),
+    };
+    let sampling = match metadata.sampling {
+        Sampling::Random => wording::RANDOM.to_owned(),
+        Sampling::LatinHypercube => wording::LATIN_HYPERCUBE.to_owned(),
+        Sampling::Sobol => wording::sobol(metadata.replicates),
+    };
+    let rows = [
+        (wording::PLAN, metadata.plan.clone()),
+        (wording::STUDY, metadata.study.clone()),
+        (
+            wording::RUNS,
+            wording::runs_of(answers.runs, answers.at_most),
+        ),
+        (wording::ENDS, ends),
+        (wording::SAMPLING, sampling),
+        (wording::SEED, metadata.seed.to_string()),
+        (wording::CONFIDENCE, percent(metadata.confidence)),
+    ];
+    rows.map(|(name, value)| (name.into(), value.into())).into()
+}
+
+/// Only the colour of a missed requirement is that of a failure: a study is a simulation and never green.
+fn tone(answers: &Answers) -> Tone {
+    let has = |decision| answers.studied.iter().any(|it| it.decision == decision);
+    if has(Decision::NotMet) {
+        Tone::Fail
+    } else if has(Decision::Undecided) || !answers.complete {
+        Tone::Inconclusive
+    } else {
+        Tone::Neutral
+    }
+}
+
+fn statement(answers: &Answers) -> Text {
+    let count = |decision| {
+        let decided = answers.studied.iter().filter(|it| it.decision == decision);
+        decided.count()
+    };
+    let mut text = Text::new();
+    if !answers.complete {
+        let words = wording::incomplete(answers.runs, answers.at_most);
+        text = text.with(Style::Strong, words).and(" ");
+    }
+    let decided = if answers.studied.is_empty() {
+        wording::NO_STUDIED.to_owned()
+    } else {
+        wording::decided(
+            count(Decision::Met),
+            count(Decision::NotMet),
+            count(Decision::Undecided),
+        )
+    };
+    text.and(decided).and(" ").and(wording::SIMULATED)
+}
+
+/// The statements and the figure of the first page.
+fn statements(source: &Source<'_>, body: &mut Vec<Block>) {
+    let answers = source.answers;
+    if !answers.studied.is_empty() {
+        body.push(Block::section(wording::STATEMENTS));
+        let [requirement, statement, chance, interval] = wording::STATEMENT_COLUMNS;
+        body.push(Block::Table(Table {
+            columns: vec![
+                Column::words(requirement, 1),
+                Column::short(statement),
+                Column::numbers(chance),
+                Column::numbers(interval),
+            ],
+            rows: answers.studied.iter().map(statement_row).collect(),
+        }));
+        body.push(Block::note(wording::intervals(percent(answers.confidence))));
+        if !answers.looks.is_empty() {
+            body.push(Block::note(wording::BY_LOOKS));
+        }
+        let probabilities = answers
+            .studied
+            .iter()
+            .filter_map(|it| it.probability.as_ref());
+        if probabilities
+            .clone()
+            .any(|probability| !probability.is_exact)
+        {
+            body.push(Block::note(wording::NOT_EXACT));
+        }
+    }
+    let first = source.figures.first().map(|figure| figure.kind);
+    let shown = match first {
+        Some(FigureKind::Fragility) => FigureKind::Fragility,
+        _ => FigureKind::Histogram,
+    };
+    body.extend(source.figures_of(|figure| figure.kind == shown).take(1));
+}
+
+fn statement_row(answer: &StudiedAnswer) -> Vec<Text> {
+    let (style, word) = match answer.decision {
+        Decision::Met => (Style::Strong, wording::MET),
+        Decision::NotMet => (Style::Fail, wording::NOT_MET),
+        Decision::Undecided => (Style::Inconclusive, wording::UNDECIDED),
+    };
+    let look = answer.look.map(wording::at_look).unwrap_or_default();
+    vec![
+        Text::from(answer.label.as_str()).line().code(&answer.text),
+        Text::new().with(style, word).soft(look),
+        probability(answer.probability.as_ref()),
+        range(answer.probability.as_ref()),
+    ]
+}

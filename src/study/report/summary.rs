@@ -1,0 +1,34 @@
+//! `summary.json` of a study: schema `psd.study/1`, SI, stable order. In: metadata and answers. Out: the file.
+
+use serde::Serialize;
+
+use crate::report::OutputError;
+use crate::study::answers::Answers;
+use crate::study::data_set::Metadata;
+
+/// Name and version of the format; a change that breaks a reader raises the number.
+pub const SCHEMA: &str = "psd.study/1";
+
+/// The file.
+#[derive(Serialize)]
+struct Summary<'a> {
+    schema: &'static str,
+    /// The metadata of the data set.
+    study: &'a Metadata,
+    answers: &'a Answers,
+}
+
+/// The summary as JSON.
+///
+/// # Errors
+/// It cannot be encoded.
+pub fn summary(metadata: &Metadata, answers: &Answers) -> Result<Vec<u8>, OutputError> {
+    let summary = Summary {
+        schema: SCHEMA,
+        study: metadata,
+        answers,
+    };
+    let mut text = serde_json::to_string_pretty(&summary)?;
+    text.push('\n');
+    Ok(text.into_bytes())
+}

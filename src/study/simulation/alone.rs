@@ -1,0 +1,14 @@
+//! One run of a study on the simulated rig of its plan. In: the plan with the values of the run. Out: its record. It keeps no run log
+//! and evaluates no uncertainty: the scatter of the study takes its place.
+
+use crate::plan::Plan;
+use crate::record::Record;
+use crate::rig::virtual_rig;
+use crate::run::{Settings, Unwatched, run_with};
+
+/// Runs the plan as `psd run` does on its virtual rig, an ideal one if it names none. The results are the same to the last bit.
+pub fn simulate(plan: &Plan) -> Record {
+    let mut rig = virtual_rig(plan);
+    let settings = Settings { uncertainty: false };
+    run_with(plan, rig.as_mut(), &mut Unwatched, settings)
+}

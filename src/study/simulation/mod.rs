@@ -1,0 +1,163 @@
+//! The runs of a study. In: a parsed plan and a study of it. Out: the row of run i: its inputs, results and outcomes, which depend on the
+//! seed and i alone. It writes no file.
+
+mod alone;
+mod batches;
+pub mod readout;
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::data_set::Row;
+use super::definition::Definition;
+use crate::language::check::ParsedPlan;
+use crate::plan::Plan;
+use crate::units::Quantity;
+use batches::Batch;
+use readout::{Kept, Readout};
+
+/// Runs that one thread takes at a time.
+pub const BLOCK: u64 = 1024;
+
+/// Simulates the runs of a study.
+pub struct Simulation<'a> {
+    parsed: &'a ParsedPlan,
+    /// The plan without the study.
+    plan: &'a Plan,
+    study: &'a Definition,
+    readout: Readout,
+    is_batched: bool,
+    /// Formulas of the study contain varied values.
+    with_studies: bool,
+}
+
+impl<'a> Simulation<'a> {
+    /// The runs of `study`. `plan` is what `parsed` gives with no other values.
+    #[must_use]
+    pub fn new(parsed: &'a ParsedPlan, plan: &'a Plan, study: &'a Definition) -> Self {
+        let readout = Readout::of(plan, study);
+        let is_batched = batches::takes(plan, &readout.references(plan));
+        let mut simulation = Self {
+            parsed,
+            plan,
+            study,
+            readout,
+            is_batched,
+            with_studies: false,
+        };
+        let mut values = Vec::new();
+        study.draws.draw(0, &mut values);
+        let first = parsed.bind_with_studies(&simulation.quantities(&values));
+        simulation.with_studies = first.is_ok_and(|first| simulation.readout.differs(&first));
+        simulation
+    }
+
+    /// The same, run by run: the reference for batches.
+    #[must_use]
+    pub fn one_by_one(self) -> Self {
+        Self {
+            is_batched: false,
+            ..self
+        }
+    }
+
+    /// Whether impacts run in batches.
+    #[must_use]
+    pub const fn is_batched(&self) -> bool {
+        self.is_batched
+    }
+
+    /// What is kept of every run.
+    #[must_use]
+    pub const fn readout(&self) -> &Readout {
+        &self.readout
+    }
+
+    /// The rows of these runs, in their order, on all cores. They do not depend on the number of threads.
+    #[must_use]
+    pub fn rows(&self, runs: Range<u64>) -> Vec<Row> {
+        let threads = rayon::current_num_threads() as u64;
+        // Several pieces a thread, so that none waits long for the others; large enough for batches.
+        let size = ((runs.end - runs.start) / (4 * threads)).clamp(1, BLOCK);
+        let starts: Vec<u64> = (runs.start..runs.end)
+            .step_by(usize::try_from(size).expect("at most BLOCK"))
+            .collect();
+        let of_start = |start: &u64| self.block(*start..(start + size).min(runs.end));
+        starts.par_iter().map(of_start).flatten().collect()
+    }
+
+    /// The rows of these runs, on this thread.
+    #[must_use]
+    pub fn block(&self, runs: Range<u64>) -> Vec<Row> {
+        let mut rows = Vec::new();
+        let mut values = Vec::new();
+        let mut batch = Batch::default();
+        for run in runs {
+            self.study.draws.draw(run, &mut values);
+            let kept = match self.bind(&values) {
+                Err(reason) => self.readout.nothing(self.plan, reason),
+                Ok(plan) => match batches::impact(&plan).filter(|_| self.is_batched) {
+                    Some(impact) => {
+                        batch.add(rows.len(), plan, impact);
+                        Kept::default()
+                    }
+                    None => self.alone(&plan),
+                },
+            };
+            rows.push(row(run, values.clone(), kept));
+        }
+        for (at, plan, record) in batch.run() {
+            let kept = match record {
+                Some(record) => self.readout.read(&plan, &record),
+                None => self.alone(&plan),
+            };
+            let inputs = std::mem::take(&mut rows[at].inputs);
+            rows[at] = row(rows[at].run, inputs, kept);
+        }
+        rows
+    }
+
+    fn alone(&self, plan: &Plan) -> Kept {
+        self.readout.read(plan, &alone::simulate(plan))
+    }
+
+    fn quantities(&self, values: &[f64]) -> BTreeMap<String, Quantity> {
+        let inputs = self.study.inputs.iter().zip(values);
+        inputs
+            .map(|(input, value)| (input.name.clone(), Quantity::new(*value, input.dimension)))
+            .collect()
+    }
+
+    /// The plan with these values of the inputs, prepared; the first error if it is invalid.
+    fn bind(&self, values: &[f64]) -> Result<Plan, String> {
+        let quantities = self.quantities(values);
+        let bound = if self.with_studies {
+            self.parsed.bind_with_studies(&quantities)
+        } else {
+            self.parsed.bind(&quantities)
+        };
+        let mut plan = bound.map_err(|errors| {
+            let first = errors.into_iter().find(|found| found.is_error());
+            first.map_or_else(
+                || "the plan with these inputs is invalid".to_owned(),
+                |first| format!("the plan with these inputs is invalid: {}", first.message),
+            )
+        })?;
+        self.readout.prepare(&mut plan);
+        Ok(plan)
+    }
+}
+
+fn row(run: u64, inputs: Vec<f64>, kept: Kept) -> Row {
+    Row {
+        run,
+        inputs,
+        results: kept.results,
+        outcomes: kept.outcomes,
+        reason: kept.reason,
+    }
+}

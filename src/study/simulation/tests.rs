@@ -1,0 +1,342 @@
+//! Runs of studies made by hand: alone and in batches, invalid, stopped, and taken again by `--set`.
+
+use super::*;
+use crate::language::check::{LoadError, Loader, Options, check};
+use crate::physics::study::distribution::{Distribution, Spread};
+use crate::physics::study::inputs::Source;
+use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
+use crate::plan::study::{Collected, Fragility, Variation};
+use crate::plan::{Comparison, Condition, Test};
+use crate::study::data_set::Outcome;
+use crate::study::testing::{Studied, checked, plan, usual, variation};
+use crate::units::Dimension;
+
+/// Files beside the examples.
+struct Folder;
+
+impl Loader for Folder {
+    fn load(&self, path: &str) -> Result<String, LoadError> {
+        std::fs::read_to_string(format!("plans/{path}")).map_err(|_| LoadError::NotFound)
+    }
+}
+
+/// Inputs and results as bits.
+fn bits(rows: &[Row]) -> Vec<(u64, Vec<u64>, Vec<Option<u64>>)> {
+    let of = |row: &Row| {
+        (
+            row.run,
+            row.inputs.iter().map(|value| value.to_bits()).collect(),
+            row.results
+                .iter()
+                .map(|value| value.map(f64::to_bits))
+                .collect(),
+        )
+    };
+    rows.iter().map(of).collect()
+}
+
+const EVERYTHING: &str = "require \"everything\" hit.max_displacement < 202 mm and hit.stop_time < 0.3 s and \
+    hit.max_contact_force > 1 N and hit.absorbed_energy > 1 mJ and hit.max_velocity > 0.1 m/s and hit.impulse > 1 N*s and \
+    abs(hit.energy_error) < 50 % and hit.final_displacement > 1 mm and hit.critical_time_step > 1 us";
+
+/// Some impacts are stopped by a limit, some begin with an error, some do not end: then the batch leaves them to the rig. All outcomes
+/// occur, and the rows are the same.
+#[test]
+fn runs_in_batches_are_the_runs_one_by_one() {
+    let bilinear = |text: String| {
+        text.replace(
+            "elastic(stiffness: 300 N/m)",
+            "bilinear(stiffness: 300 N/m, yield_force: 45 N, post_yield_ratio: 0.1)",
+        )
+    };
+    let cases = [
+        usual(),
+        plan("", EVERYTHING),
+        plan("contact = limit(force: 80 N)", EVERYTHING),
+        plan("until = duration", EVERYTHING),
+        bilinear(plan("", EVERYTHING)),
+        plan(
+            "",
+            &format!(
+                "limits {{ displacement = -1 mm .. 205 mm\nforce = -1 N .. 61 N\nincrement = 12 mm }}\n{EVERYTHING}"
+            ),
+        ),
+        plan("", EVERYTHING).replace("duration = 1 s", "duration = 0.26 s"),
+        plan("", EVERYTHING).replace(
+            "param weight = 1 kg",
+            "param weight = 1 kg between 0.8 kg .. 1.2 kg",
+        ),
+        plan("", EVERYTHING).replace("time_step = 10 ms", "time_step = 0.01 * critical"),
+    ];
+    let mut seen = Vec::new();
+    for text in cases {
+        let studied = Studied::of(&text, 300);
+        let definition = studied.definition();
+        let simulation = || Simulation::new(&studied.parsed, &studied.plan, &definition);
+        assert!(simulation().is_batched(), "{text}");
+        let batched = simulation().block(0..300);
+        let alone = simulation().one_by_one().block(0..300);
+        assert_eq!(bits(&batched), bits(&alone), "{text}");
+        assert_eq!(batched, alone, "{text}");
+        seen.extend(batched.into_iter().flat_map(|row| row.outcomes));
+    }
+    for outcome in [Outcome::Met, Outcome::NotMet, Outcome::NoResult] {
+        assert!(seen.contains(&outcome), "{outcome:?}");
+    }
+}
+
+/// Every example that is one impact on an ideal rig: its results in a batch are those of its run.
+#[test]
+fn every_example_that_a_batch_takes_has_the_same_results_in_it() {
+    let mut taken = Vec::new();
+    for entry in std::fs::read_dir("plans").unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|extension| extension != "psd") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).unwrap();
+        let found = check("plan.psd", &text, &Folder, &Options::default());
+        let Some(plan) = found.plan else { continue };
+        let Some(impact) = batches::impact(&plan) else {
+            continue;
+        };
+        let alone = alone::simulate(&plan);
+        let mut batch = Batch::default();
+        batch.add(0, plan, impact);
+        let (_, _, found) = batch.run().next().unwrap();
+        let Some(found) = found else { continue };
+        let names: Vec<&str> = found.procedures[0]
+            .results
+            .iter()
+            .map(|result| result.name)
+            .filter(|name| crate::procedures::impact::batched::gives(name))
+            .collect();
+        for name in names {
+            let number = |record: &crate::record::Record| {
+                record.procedures[0].number(name).map(f64::to_bits)
+            };
+            assert_eq!(number(&found), number(&alone), "{}: {name}", path.display());
+        }
+        taken.push(path);
+    }
+    assert!(taken.len() >= 3, "{taken:?}");
+}
+
+#[test]
+fn a_plan_that_reads_more_than_a_batch_gives_runs_one_by_one() {
+    for (text, is_batched) in [
+        (usual(), true),
+        (plan("", "require \"a\" hit.restoring_energy > 1 mJ"), false),
+        (plan("", "require \"a\" hit.steps > 3"), false),
+        (plan("", "require \"a\" hit.peak_error < 1 mm"), false),
+        (
+            plan(
+                "contact = restitution(coefficient: 0.5)",
+                "require \"a\" hit.impulse > 0 N*s",
+            ),
+            false,
+        ),
+        (
+            plan(
+                "",
+                "rig noisy { link = virtual(noise: 1 N) }\nrequire \"a\" hit.impulse > 0 N*s",
+            ),
+            false,
+        ),
+        (
+            usual()
+                + "\nunload back { at = hit }"
+                    .replace("{ at = hit }", "{ force = 1 N }")
+                    .as_str(),
+            false,
+        ),
+    ] {
+        let Ok(studied) = std::panic::catch_unwind(|| Studied::of(&text, 1)) else {
+            panic!("{text}");
+        };
+        let definition = studied.definition();
+        let simulation = Simulation::new(&studied.parsed, &studied.plan, &definition);
+        assert_eq!(simulation.is_batched(), is_batched, "{text}");
+    }
+}
+
+/// The printed settings of a run give the plan whose run has the same results, to the last bit.
+#[test]
+fn a_run_is_reproduced_by_its_settings() {
+    let text = plan("", EVERYTHING);
+    let studied = Studied::of(&text, 20);
+    let definition = studied.definition();
+    let simulation = Simulation::new(&studied.parsed, &studied.plan, &definition);
+    for row in simulation.block(0..20) {
+        let settings: Vec<(String, String)> = definition
+            .inputs
+            .iter()
+            .zip(&row.inputs)
+            .map(|(input, value)| {
+                let setting = input.setting(*value);
+                let (name, value) = setting.split_once('=').unwrap();
+                (name.to_owned(), value.to_owned())
+            })
+            .collect();
+        let (_, plan) = checked(&text, &settings);
+        let record = alone::simulate(&plan);
+        let kept = simulation.readout.read(&plan, &record);
+        let values = |results: &[Option<f64>]| -> Vec<Option<u64>> {
+            results.iter().map(|it| it.map(f64::to_bits)).collect()
+        };
+        assert_eq!(values(&kept.results), values(&row.results), "{settings:?}");
+        assert_eq!(kept.outcomes, row.outcomes);
+    }
+}
+
+#[test]
+fn a_run_without_a_result_says_why() {
+    let row = |text: &str, speed: f64| {
+        let speed = Distribution::uniform(speed, speed * 1.000_001).unwrap();
+        let studied = Studied::varied(
+            text,
+            1,
+            Variation {
+                inputs: variation().inputs[..1].to_vec(),
+                sources: vec![Source::Distribution(speed)],
+                correlations: Vec::new(),
+                ..variation()
+            },
+        );
+        let definition = studied.definition();
+        Simulation::new(&studied.parsed, &studied.plan, &definition)
+            .block(0..1)
+            .remove(0)
+    };
+    let bounded = usual().replace("speed = 1 m/s", "speed = 1 m/s between 0.5 m/s .. 1.5 m/s");
+    let invalid = row(&bounded, 2.0);
+    assert_eq!(invalid.outcomes, [Outcome::NoResult]);
+    assert_eq!(invalid.results, [None]);
+    assert!(
+        invalid
+            .reason
+            .unwrap()
+            .starts_with("the plan with these inputs is invalid: ")
+    );
+
+    let limited = plan(
+        "",
+        "limits { displacement = -1 mm .. 205 mm }\nrequire \"stays in travel\" hit.max_displacement < 202 mm",
+    );
+    let stopped = row(&limited, 1.3);
+    assert_eq!(
+        (stopped.outcomes, stopped.results),
+        (vec![Outcome::NoResult], vec![None])
+    );
+    assert!(stopped.reason.unwrap().contains("outside its limit"));
+
+    let short = usual().replace("duration = 1 s", "duration = 50 ms");
+    let missing = row(
+        &short.replace("max_displacement < 202 mm", "stop_time < 1 s"),
+        1.0,
+    );
+    assert_eq!(
+        (missing.outcomes, missing.results),
+        (vec![Outcome::NoResult], vec![None])
+    );
+    assert!(missing.reason.unwrap().contains("stop_time"));
+
+    let rising = row(&short, 1.0);
+    assert_eq!(
+        (rising.outcomes, rising.results),
+        (vec![Outcome::NoResult], vec![None])
+    );
+    assert!(rising.reason.unwrap().contains("peak"));
+}
+
+#[test]
+fn rows_do_not_depend_on_the_number_of_threads() {
+    let studied = Studied::of(&plan("", EVERYTHING), 700);
+    let definition = studied.definition();
+    let simulation = Simulation::new(&studied.parsed, &studied.plan, &definition);
+    let with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.unwrap().install(|| simulation.rows(0..700))
+    };
+    let one = with(1);
+    assert_eq!(one.len(), 700);
+    assert_eq!(bits(&with(4)), bits(&one));
+    assert_eq!(simulation.rows(300..310), one[300..310]);
+}
+
+/// An exceedance at one of three speeds, and a collected number.
+#[test]
+fn a_fragility_decides_its_condition_at_each_stripe() {
+    let mut studied = Studied::of(&usual(), 1);
+    let displacement = Formula::Result(ResultReference {
+        procedure: ProcedureId(0),
+        name: crate::schema::procedures::impact::MAX_DISPLACEMENT.name,
+        part: Part::Value,
+    });
+    studied.plan.studies.studies[0].collect = vec![Collected {
+        text: "2 * hit.max_displacement".to_owned(),
+        value: Formula::Binary(
+            crate::plan::formula::Operator::Multiply,
+            Box::new(Formula::Constant(2.0)),
+            Box::new(displacement.clone()),
+        ),
+        dimension: Dimension::LENGTH,
+    }];
+    let definition = studied.definition();
+    let simulation = Simulation::new(&studied.parsed, &studied.plan, &definition);
+    let rows = simulation.block(0..3);
+    let names: Vec<String> = simulation
+        .readout()
+        .columns()
+        .into_iter()
+        .map(|column| column.name)
+        .collect();
+    assert_eq!(names, ["hit.max_displacement", "2 * hit.max_displacement"]);
+    for row in &rows {
+        assert_eq!(row.results[1], row.results[0].map(|value| 2.0 * value));
+    }
+
+    let mass = Variation {
+        inputs: variation().inputs[1..].to_vec(),
+        sources: vec![Source::Distribution(
+            Distribution::lognormal(1.0, Spread::Cv(0.01)).unwrap(),
+        )],
+        correlations: Vec::new(),
+        ..variation()
+    };
+    studied.plan.studies.studies.clear();
+    studied.plan.studies.fragilities.push(Fragility {
+        name: "tip".to_owned(),
+        intensity: variation().inputs[0].clone(),
+        stripes: vec![0.5, 1.0, 1.5],
+        exceeds: Condition {
+            text: "hit.max_displacement > 190 mm".to_owned(),
+            value: displacement,
+            test: Test::Compare {
+                comparison: Comparison::Greater,
+                limit: Formula::Constant(0.19),
+            },
+            dimension: Dimension::LENGTH,
+        },
+        variation: Some(mass),
+        runs: 4,
+        confidence: definition.confidence,
+    });
+    let definition = studied.definition();
+    assert_eq!(definition.runs.at_most(), 12);
+    let simulation = Simulation::new(&studied.parsed, &studied.plan, &definition);
+    for row in simulation.block(0..12) {
+        assert_eq!(row.inputs.len(), 2);
+        let expected = if row.inputs[0] == 0.5 {
+            Outcome::NotMet
+        } else {
+            row.outcomes[0]
+        };
+        assert_eq!(row.outcomes, [expected]);
+        if row.inputs[0] == 1.5 {
+            assert_eq!(row.outcomes, [Outcome::Met], "{row:?}");
+        }
+        let value = row.results[0].unwrap();
+        assert_eq!(value > 0.19, row.outcomes[0] == Outcome::Met);
+    }
+}
