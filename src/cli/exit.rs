@@ -65,7 +65,7 @@ impl From<Exit> for ExitCode {
 /// Part of the message of a device that does not answer.
 const SILENT: &str = "no usable answer";
 /// Possible causes of a silent device.
-const LOOK_FOR: &str = "the baud rate, the `dialect`, crossed wires, or a device that is still starting; with `psd rig simulate` in its stead\n       you can check the plan";
+const LOOK_FOR: &str = "the baud rate, the `dialect`, crossed wires, or a device that is still starting; check the plan\n       with `psd rig simulate`, which emulates the rig";
 
 impl Failure {
     pub const fn exit(&self) -> Exit {

@@ -17,7 +17,14 @@ const AT_THE_LAST_STEP: [(&str, &str); 2] = [
 ];
 
 /// Keys of the summary itself.
-const KEYS: [(&str, &str); 1] = [("drift", "zero_drift")];
+const KEYS: [(&str, &str); 2] = [("drift", "zero_drift"), ("standing", "report_status")];
+
+/// Names of the status of a report.
+const STATUS: [(&str, &str); 3] = [
+    ("rehearsal", "simulation"),
+    ("certifiable", "issuable"),
+    ("not certifiable", "not issuable"),
+];
 
 /// Reads a summary. Its results have their present names, whichever version wrote them.
 ///
@@ -32,8 +39,10 @@ pub fn summary(text: &str) -> Result<Value, serde_json::Error> {
             keys.insert(is.to_owned(), value);
         }
     }
-    if summary["standing"] == "rehearsal" {
-        summary["standing"] = "simulation".into();
+    for (was, is) in STATUS {
+        if summary["report_status"] == was {
+            summary["report_status"] = is.into();
+        }
     }
     let procedures = summary.get_mut("procedures").and_then(Value::as_object_mut);
     for procedure in procedures.into_iter().flat_map(Map::values_mut) {
@@ -112,6 +121,14 @@ mod tests {
                 };
                 assert_eq!(read["procedures"]["one"]["results"], present, "{}", row.old);
             }
+        }
+    }
+
+    #[test]
+    fn the_status_of_an_older_report_is_read_under_its_present_name() {
+        for (was, is) in STATUS {
+            let read = summary(&json!({ "standing": was }).to_string()).unwrap();
+            assert_eq!(read, json!({ "report_status": is }));
         }
     }
 

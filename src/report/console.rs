@@ -122,7 +122,7 @@ fn band(condition: &ConditionOutcome, rule: DecisionRule) -> String {
 fn decision_rule(run: &Run<'_>) -> String {
     let expanded = match coverage_factor::largest(run.assessment) {
         Some(factor) => {
-            format!("± is U = k·u (about 95 %; k up to {factor}, of few degrees of freedom)")
+            format!("± is U = k·u (about 95 %, k up to {factor})")
         }
         None => "± is U = 2u".to_owned(),
     };
@@ -132,15 +132,15 @@ fn decision_rule(run: &Run<'_>) -> String {
         .iter()
         .flat_map(|requirement| &requirement.conditions);
     match run.assessment.rule {
-        DecisionRule::Guarded => format!(
-            "  decision rule: guarded; {expanded}, and a limit nearer than that decides nothing\n"
-        ),
+        DecisionRule::Guarded => {
+            format!("  decision rule: guarded acceptance, guard band w = U; {expanded}\n")
+        }
         DecisionRule::Simple
             if uncertain
                 .into_iter()
                 .any(|condition| condition.conforms.is_some()) =>
         {
-            format!("  decision rule: simple; {expanded}, the value alone decides\n")
+            format!("  decision rule: simple acceptance; {expanded}\n")
         }
         DecisionRule::Simple => String::new(),
     }
@@ -149,14 +149,13 @@ fn decision_rule(run: &Run<'_>) -> String {
 /// The status of the report, if it is not issuable as a test report.
 fn status_text(status: &ReportStatus, rig: &str) -> String {
     match status {
-        ReportStatus::Certifiable => String::new(),
+        ReportStatus::Issuable => String::new(),
         ReportStatus::CheckRun => "  (CHECK RUN: not the test of the plan)".to_owned(),
         ReportStatus::Simulation => format!("  (rig `{rig}`: a simulation)"),
         ReportStatus::Incomplete => "  (INCOMPLETE)".to_owned(),
-        ReportStatus::NotCertifiable { missing } => format!(
-            "  (NOT CERTIFIABLE: lacks {})",
-            one_line(&missing.join(", "))
-        ),
+        ReportStatus::NotIssuable { missing } => {
+            format!("  (NOT ISSUABLE: lacks {})", one_line(&missing.join(", ")))
+        }
         ReportStatus::ParticularsMissing { missing } => {
             format!(
                 "  (PARTICULARS MISSING: {}; see `psd issue`)",

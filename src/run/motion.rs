@@ -4,7 +4,7 @@
 use crate::plan::{Interval, Limits, Plan};
 use crate::rig::Identity;
 use crate::units::Dimension;
-use crate::units::display::{plain, readable, stated};
+use crate::units::display::{plain, readable, readable_beside, stated, stated_beside};
 
 /// A motion that waits for its release.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,7 +80,7 @@ impl Motion {
             row(
                 "travel",
                 &within(
-                    travel.map(|travel| span(travel, Dimension::LENGTH, readable)),
+                    travel.map(|travel| span(travel, Dimension::LENGTH, readable_beside)),
                     self.limits.displacement,
                     Dimension::LENGTH,
                 ),
@@ -88,7 +88,7 @@ impl Motion {
             row(
                 "force",
                 &within(
-                    force.map(|force| span(force, Dimension::FORCE, readable)),
+                    force.map(|force| span(force, Dimension::FORCE, readable_beside)),
                     self.limits.force,
                     Dimension::FORCE,
                 ),
@@ -133,7 +133,7 @@ fn within(expected: Option<String>, limit: Interval, dimension: Dimension) -> St
         (true, true) if limit.low == 0.0 || dimension == Dimension::VELOCITY => {
             format!("limit {}", stated(limit.high, dimension))
         }
-        (true, true) => format!("limits {}", span(limit, dimension, stated)),
+        (true, true) => format!("limits {}", span(limit, dimension, stated_beside)),
         (false, true) => format!("limit {}", stated(limit.high, dimension)),
         (true, false) => format!("limit {}", stated(limit.low, dimension)),
         (false, false) => "no limit".to_owned(),
@@ -141,12 +141,17 @@ fn within(expected: Option<String>, limit: Interval, dimension: Dimension) -> St
     format!("{expected}; {limit}")
 }
 
-fn span(interval: Interval, dimension: Dimension, written: fn(f64, Dimension) -> String) -> String {
-    format!(
-        "{} .. {}",
-        written(interval.low, dimension),
-        written(interval.high, dimension)
-    )
+/// Both ends of an interval. A zero has the unit of the other end; `written` gets a value, and the value that chooses its unit.
+fn span(
+    Interval { low, high }: Interval,
+    dimension: Dimension,
+    written: fn(f64, f64, Dimension) -> String,
+) -> String {
+    let end = |end: f64, other: f64| {
+        let beside = if end == 0.0 { other } else { end };
+        written(end, beside, dimension)
+    };
+    format!("{} .. {}", end(low, high), end(high, low))
 }
 
 /// The duration of a motion, as text.
@@ -215,13 +220,22 @@ mod tests {
         let known = unknown.expecting(expected);
         let lines = known.lines();
         assert!(
-            lines[2].ends_with("8.165 mm; limits −5 mm .. 10 mm")
-                && lines[3].ends_with("2.450 kN; no limit"),
+            lines[2] == "travel    0 mm .. 8.165 mm; limits −5 mm .. 10 mm"
+                && lines[3] == "force     0 kN .. 2.450 kN; no limit",
             "{lines:#?}"
         );
         assert!(
             lines[4].contains("20.00 mm/s") && lines[5] == "duration  about 1.5 min",
             "{lines:#?}"
+        );
+        let light = Interval {
+            low: 0.0,
+            high: 78.0,
+        };
+        let light = span(light, Dimension::FORCE, readable_beside);
+        assert_eq!(
+            light, "0 N .. 78.00 N",
+            "a zero has the unit of the other end"
         );
         let moved = known.expecting(Extent {
             duration: Some(1.0),

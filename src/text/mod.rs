@@ -5,6 +5,7 @@ pub mod columns;
 pub mod diagnostic;
 pub mod digest;
 pub mod glyphs;
+pub mod markdown;
 pub mod sanitize;
 pub mod source;
 pub mod suggest;

@@ -1,12 +1,13 @@
 //! The pages of `psd explain`: each code has one, and its wrong and right plans behave as the page states.
 //!
 //! A page's plans are its fenced blocks. The first word after `psd` gives the kind: `wrong`, `right`, or `file="lib/a.psd"`. Such a file
-//! can be used by both plans (`*` matches any digits). `set="speed=2 m/s"` and `rig="name"` are options of the command line. With
+//! can be used by both plans (`*` matches any digits). `name="a.md"` is the name of a plan that is not `plan.psd`. `set="speed=2 m/s"` and `rig="name"` are options of the command line. With
 //! `unattended="yes"` a run begins without an operator.
 
 use psd::language::check::{Checked, LoadError, Loader, Options, check};
-use psd::language::syntax::{format, parse};
+use psd::language::syntax::{format, format_document, parse};
 use psd::text::diagnostic::{Code, OF_THE_MACHINE, Severity};
+use psd::text::markdown::is_document;
 use psd::text::source::Sources;
 
 /// One fenced block of a page.
@@ -20,6 +21,11 @@ impl Fence {
     fn option(&self, key: &str) -> Option<&str> {
         let (_, rest) = self.info.split_once(&format!("{key}=\""))?;
         rest.split_once('"').map(|(value, _)| value)
+    }
+
+    /// The name of the plan's file.
+    fn name(&self) -> &str {
+        self.option("name").unwrap_or("plan.psd")
     }
 
     fn is(&self, word: &str) -> bool {
@@ -87,7 +93,7 @@ fn checked(code: Code, kind: &str) -> Checked {
         recorded: false,
         for_studies: false,
     };
-    check("plan.psd", &plan.text, &PageFiles(&fences), &options)
+    check(plan.name(), &plan.text, &PageFiles(&fences), &options)
 }
 
 /// `E202 unknown field …` of each diagnostic, for the message of a failing test.
@@ -182,12 +188,16 @@ fn the_plans_of_the_pages_are_written_as_the_formatter_writes_them() {
     for &code in Code::ALL {
         for fence in fences(code.page()) {
             let mut sources = Sources::default();
-            let file = sources.add("plan.psd", fence.text.as_str());
+            let file = sources.add(fence.name(), fence.text.as_str());
             let (ast, faults) = parse(&sources, file);
             if faults.is_empty() {
+                let formatted = if is_document(fence.name()) {
+                    format_document(&fence.text)
+                } else {
+                    format(&ast, &fence.text)
+                };
                 assert_eq!(
-                    format(&ast, &fence.text),
-                    fence.text,
+                    formatted, fence.text,
                     "{code}: psd fmt would change a plan of the page"
                 );
             }

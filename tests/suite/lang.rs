@@ -40,6 +40,8 @@ const WITHOUT_CASE: &[(Code, &str)] = &[
 struct Case {
     stage: String,
     name: String,
+    /// The name of the file: `name.psd`, or `name.md`.
+    file: String,
     text: String,
     folder: PathBuf,
 }
@@ -63,6 +65,11 @@ impl Case {
             stage: folder
                 .file_name()
                 .expect("the folder has a name")
+                .to_string_lossy()
+                .into_owned(),
+            file: path
+                .file_name()
+                .expect("the case has a name")
                 .to_string_lossy()
                 .into_owned(),
             name: path
@@ -104,7 +111,7 @@ impl Case {
 
     fn check(&self) -> Checked {
         check(
-            &format!("{}.psd", self.name),
+            &self.file,
             &self.text,
             &Folder(&self.folder),
             &self.options(),
@@ -124,7 +131,10 @@ fn cases() -> Vec<Case> {
     for (stage, _) in STAGES {
         for entry in fs::read_dir(root.join(stage)).expect("every stage has its folder") {
             let path = entry.expect("the entry can be read").path();
-            if path.extension().is_some_and(|extension| extension == "psd") {
+            if path
+                .extension()
+                .is_some_and(|ending| ending == "psd" || ending == "md")
+            {
                 found.push(Case::read(&path));
             }
         }
@@ -195,7 +205,7 @@ fn told(record: &Record, assessment: &Assessment) -> String {
 
 #[test]
 fn cases_end_where_their_folder_says_and_say_why() {
-    insta::glob!("../lang", "*/*.psd", |path| {
+    insta::glob!("../lang", "*/*.{psd,md}", |path| {
         let case = Case::read(path);
         let checked = case.check();
         let played = play(&checked);

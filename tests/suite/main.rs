@@ -9,6 +9,7 @@ mod declared;
 mod dialects;
 mod directions;
 mod docs;
+mod document;
 mod evidence;
 mod explain;
 mod golden;

@@ -69,14 +69,14 @@ fn every_rig_block_checks_in_the_plan_around_it() {
             .expect("the plan around it");
         let plan = format!("{plan}\n{rig}");
         let mut sources = Sources::default();
-        let file = sources.add("rigs.md", &plan);
+        let file = sources.add("rigs.psd", &plan);
         assert_eq!(
             format(&parse(&sources, file).0, &plan),
             plan,
             "psd fmt would change `{name}`"
         );
         let checked = check(
-            "rigs.md",
+            "rigs.psd",
             &plan,
             &Ground,
             &Options {

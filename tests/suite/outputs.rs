@@ -382,6 +382,7 @@ fn a_run_stopped_early_still_leaves_a_whole_folder() {
             && html.contains("The run was stopped: force 12.1 kN is outside its limit.")
     );
     assert!(html.contains("Procedure hit did not run to its end."));
+    assert!(html.contains("the result max displacement does not exist in this run"));
     assert!(
         !files
             .iter()

@@ -92,7 +92,7 @@ fn every_plan_of_the_page_passes_and_its_loop_is_the_figure() {
     let bless = std::env::var_os("PSD_BLESS").is_some();
     for (name, text) in plans() {
         let mut sources = Sources::default();
-        let file = sources.add("specimens.md", &text);
+        let file = sources.add("specimens.psd", &text);
         assert_eq!(
             format(&parse(&sources, file).0, &text),
             text,

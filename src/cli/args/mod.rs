@@ -92,7 +92,7 @@ pub enum RigCommand {
     \x20 3  no rig answers, or a different rig than the plan names\n\
     \x20 4  the rig is outside a limit")]
     Probe {
-        /// The plan, a `.psd` file
+        /// The plan, a `.psd` file or a Markdown document
         #[arg(value_name = "PLAN")]
         plan: PathBuf,
         #[command(flatten)]
@@ -105,7 +105,7 @@ pub enum RigCommand {
     \x20 2  error in the plan or on the command line\n\
     \x20 3  fault of the rig, or no answer")]
     Monitor {
-        /// The plan, a `.psd` file
+        /// The plan, a `.psd` file or a Markdown document
         #[arg(value_name = "PLAN")]
         plan: PathBuf,
         #[command(flatten)]
@@ -135,7 +135,7 @@ pub enum RigCommand {
     \x20 4  stopped by a limit or by the operator"
 )]
 pub struct JogArguments {
-    /// The plan, a `.psd` file
+    /// The plan, a `.psd` file or a Markdown document
     #[arg(value_name = "PLAN")]
     pub plan: PathBuf,
     #[command(flatten)]
@@ -175,7 +175,7 @@ pub struct JogArguments {
     \x20 4  a target outside the limits"
 )]
 pub struct SimulateArguments {
-    /// The plan, a `.psd` file
+    /// The plan, a `.psd` file or a Markdown document
     #[arg(value_name = "PLAN")]
     pub plan: PathBuf,
     #[command(flatten)]
@@ -205,7 +205,7 @@ pub struct SimulateArguments {
     The worst session determines the code."
 )]
 pub struct ServeArguments {
-    /// The plan, a `.psd` file: its rig, specimen and limits apply
+    /// The plan: its rig, specimen and limits apply
     #[arg(value_name = "PLAN")]
     pub plan: PathBuf,
     #[command(flatten)]
@@ -267,7 +267,7 @@ impl ServedProtocol {
     \x20 4  stopped by a limit or by the operator"
 )]
 pub struct RunArguments {
-    /// The plan, a `.psd` file
+    /// The plan, a `.psd` file or a Markdown document
     #[arg(value_name = "PLAN")]
     pub plan: PathBuf,
     /// Run folder, new or empty [default: runs/PLAN-N]
@@ -335,7 +335,7 @@ pub struct ResumeArguments {
 
 #[derive(Debug, Args)]
 pub struct CheckArguments {
-    /// The plans, `.psd` files
+    /// The plans, `.psd` files or Markdown documents
     #[arg(value_name = "PLAN", required = true)]
     pub plans: Vec<PathBuf>,
     #[command(flatten)]
@@ -413,7 +413,7 @@ pub struct CompareArguments {
 
 #[derive(Debug, Args)]
 pub struct FmtArguments {
-    /// Files, or folders of `.psd` files
+    /// Plans, or folders of plans
     #[arg(value_name = "PATH", required = true)]
     pub paths: Vec<PathBuf>,
     /// Print the difference only; exit with 1 if there is one

@@ -132,9 +132,12 @@ fn changed_lines(wrong: &Example<'_>, right: &Example<'_>) -> Vec<String> {
 
 /// A page with its plans, as code blocks under headings.
 fn full_page(code: Code, settings: Settings) -> String {
-    let mut text = String::new();
+    let (mut text, mut in_plan) = (String::new(), false);
     for line in code.page().trim_end().lines() {
-        let shown = match (line.strip_prefix("# "), line.strip_prefix("```psd ")) {
+        in_plan = (in_plan || line.starts_with("```")) && line != "```";
+        // In a plan, `# ` begins a comment.
+        let heading = line.strip_prefix("# ").filter(|_| !in_plan);
+        let shown = match (heading, line.strip_prefix("```psd ")) {
             (Some(heading), _) => settings.paint_heading(heading),
             (None, Some(word)) => settings.paint_heading(&format!("{word}:")),
             (None, None) if line == "```" => continue,

@@ -1,5 +1,5 @@
 //! `psd fmt`: the canonical layout. In: files and folders. Out: the files rewritten, or with `--check` the names of those
-//! that would change. A file with syntax errors is not changed.
+//! that would change. In a Markdown document only the blocks of the plan change. A file with syntax errors is not changed.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use similar::TextDiff;
 
 use crate::cli::args::FmtArguments;
 use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::loader::read_plan;
+use crate::cli::files::loader::{is_plan, read_plan};
 use crate::cli::files::plan_file::name_of;
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
@@ -16,6 +16,7 @@ use crate::files::failure::plain;
 use crate::language::syntax;
 use crate::text::diagnostic::excerpt::one_line;
 use crate::text::diagnostic::render::render_all;
+use crate::text::markdown::is_document;
 use crate::text::source::Sources;
 
 /// Formats every named file and every plan under every named folder.
@@ -78,7 +79,11 @@ fn canonical(path: &Path, text: &str, settings: Settings) -> Option<String> {
         print_message(&render_all(&faults, &sources, &settings.appearance(path)));
         return None;
     }
-    Some(syntax::format(&ast, text))
+    Some(if is_document(&name_of(path)) {
+        syntax::format_document(text)
+    } else {
+        syntax::format(&ast, text)
+    })
 }
 
 /// Writes a new file and renames it, so that the plan on disk is always complete. A link stays a link.
@@ -101,7 +106,7 @@ fn replace(path: &Path, text: &str) -> std::io::Result<()> {
     })
 }
 
-/// The named files, and every `.psd` file under the named folders, sorted by name. Links to folders and hidden folders are not entered.
+/// The named files, and every plan under the named folders, sorted by name. Links to folders and hidden folders are not entered.
 fn plans(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for path in paths {
@@ -128,7 +133,7 @@ fn walk(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
         }
         if kind.is_dir() {
             walk(&path, found)?;
-        } else if kind.is_file() && path.extension().is_some_and(|extension| extension == "psd") {
+        } else if kind.is_file() && is_plan(&path) {
             found.push(path);
         }
     }

@@ -12,6 +12,7 @@ use crate::files::failure::{Failure, plain};
 use crate::language::check::{LoadError, Loader};
 use crate::language::syntax::limits::FILE_BYTES;
 use crate::plan::{PICTURE_BYTES, PictureKind};
+use crate::text::markdown::{Document, is_document};
 use crate::text::source::Position;
 
 /// Loads files of one folder and of the folders below it.
@@ -66,13 +67,22 @@ impl Loader for FolderLoader {
     }
 }
 
+/// Whether a file found in a folder is a plan: a `.psd` file, or a Markdown document with a block of a plan.
+pub fn is_plan(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let has_block = || read(path).is_ok_and(|text| !Document::read(&text).blocks.is_empty());
+    path.extension().is_some_and(|ending| ending == "psd") || is_document(&name) && has_block()
+}
+
 /// The text of the plan. It may be a link, because the operator named it.
 pub fn read_plan(path: &Path) -> Result<String, Failure> {
     let metadata = path
         .metadata()
         .map_err(|error| Failure::file(path, plain(&error)))?;
     if metadata.is_dir() {
-        return Err(Failure::file(path, "is a folder").help("name the plan itself, a `.psd` file"));
+        return Err(
+            Failure::file(path, "is a folder").help("name the plan itself, a `.psd` or `.md` file")
+        );
     }
     read(path).map_err(|Unread { reason, at }| Failure::NotAPlan {
         path: path.to_owned(),

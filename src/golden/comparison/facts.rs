@@ -31,7 +31,7 @@ pub(super) fn requirements(sides: &[Side]) -> Vec<(String, Vec<Option<String>>)>
 
 /// The differences: name, and text in each run.
 pub(super) fn facts(sides: &[Side]) -> Vec<(String, Vec<String>)> {
-    let mut names: Vec<Vec<String>> = ["psd", "date", "standing"]
+    let mut names: Vec<Vec<String>> = ["psd", "date", "report_status"]
         .map(|name| vec![name.to_owned()])
         .to_vec();
     for block in ["plan", "rig", "parameters"] {

@@ -8,6 +8,7 @@ use crate::plan::{Plan, PlanFile, Procedure, Studies};
 use crate::procedures as slices;
 use crate::schema::Kind;
 use crate::text::diagnostic::{Code, Diagnostic};
+use crate::text::markdown::is_document;
 use crate::text::source::{FileId, Sources, Span};
 
 /// Whether a check also looks for warnings.
@@ -226,5 +227,9 @@ fn has_error(checker: &Checker) -> bool {
 /// The title of a plan without one: `beam` for `plans/beam.psd`.
 fn stem(name: &str) -> &str {
     let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
-    file.strip_suffix(".psd").unwrap_or(file)
+    match file.rsplit_once('.') {
+        Some((stem, "psd")) => stem,
+        Some((stem, _)) if is_document(file) => stem,
+        _ => file,
+    }
 }

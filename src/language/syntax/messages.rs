@@ -5,8 +5,11 @@ use super::{
     lexical::{confusable::Confusable, letters, numbers},
     limits,
 };
+use std::ops::Range;
+
 use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
+use crate::text::markdown::{FRAGMENT, FenceError};
+use crate::text::source::{FileId, Span};
 
 /// The replacement for an `or`.
 const EITHER: &str = "all requirements must be met, so there is no `or`; if one of two values is sufficient, require \
@@ -168,6 +171,51 @@ pub fn unclosed(span: Span, open: &str, close: &str) -> Diagnostic {
     Diagnostic::new(Code::UnclosedBracket, format!("`{open}` is never closed"))
         .at(span, "opened here")
         .help(format!("write the matching `{close}`"))
+}
+
+/// A Markdown document without a `psd` block.
+pub fn no_plan_block(span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::PlanBlock,
+        "no `psd` block in this Markdown document: it has no plan",
+    )
+    .at(span, "no block from here to the end")
+    .help(
+        "write the plan in a code block: the line \"```psd\", then the plan, then the line \"```\"",
+    )
+}
+
+/// An error of a fence of a Markdown document.
+pub fn fence(file: FileId, error: &FenceError) -> Diagnostic {
+    let at = |range: &Range<usize>| Span::new(file, range.start, range.end);
+    match error {
+        FenceError::Unclosed { opening, next } => {
+            let unclosed = Diagnostic::new(Code::PlanBlock, "this code block is never closed")
+                .at(at(opening), "opened here");
+            let unclosed = next.iter().fold(unclosed, |unclosed, next| {
+                unclosed.at(at(next), "next block of the plan")
+            });
+            unclosed.help("write the closing fence, \"```\" or \"~~~\", on a separate line")
+        }
+        FenceError::UnknownWord { words } => Diagnostic::new(
+            Code::PlanBlock,
+            "unknown word after `psd`: psd does not know whether this block is part of the plan",
+        )
+        .at(at(words), "unknown word")
+        .help(format!(
+            "write `psd` alone for a block of the plan, or `psd {FRAGMENT}` for an example"
+        )),
+    }
+}
+
+/// A block of the plan that begins in one code block and ends in another.
+pub fn item_over_fences(head: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::PlanBlock,
+        "this continues after the end of its code block",
+    )
+    .at(head, "begins here")
+    .help("end it before the closing fence, or join the two code blocks")
 }
 
 pub fn bad_number(span: Span, written: &str, error: &numbers::NumberError) -> Diagnostic {

@@ -19,5 +19,5 @@ mod rule_names;
 #[cfg(test)]
 mod tests;
 
-pub use format::format;
+pub use format::{format, format_document};
 pub use parse::parse;

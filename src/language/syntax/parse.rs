@@ -20,13 +20,56 @@ use super::{
     messages, rule_names,
 };
 use crate::text::diagnostic::{Code, Diagnostic};
+use crate::text::markdown::{self, Document};
 use crate::text::source::{FileId, Sources, Span, Spanned};
 
-/// Parses one file. Never panics; the valid parts of a file with errors are in the tree, with
-/// [`ExprKind::Faulty`](super::ast::ExprKind::Faulty) in place of an invalid value.
+/// Parses one file: a text of the language, or the `psd` blocks of a Markdown document. Never panics; the valid parts of a file with
+/// errors are in the tree, with [`ExprKind::Faulty`](super::ast::ExprKind::Faulty) in place of an invalid value.
 #[must_use]
 pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
-    let text = sources.file(file).text.as_str();
+    let source = sources.file(file);
+    if !markdown::is_document(&source.name) {
+        return parse_text(&source.text, file);
+    }
+    let document = Document::read(&source.text);
+    let (ast, mut errors) = parse_text(&document.blanked(&source.text), file);
+    let of_fences = document.errors.iter();
+    let of_fences: Vec<Diagnostic> = of_fences
+        .map(|error| messages::fence(file, error))
+        .collect();
+    if document.blocks.is_empty() && of_fences.is_empty() && errors.is_empty() {
+        errors.push(messages::no_plan_block(Span::new(file, 0, 0)));
+    }
+    if errors.is_empty() && of_fences.is_empty() {
+        errors.extend(crossing(&document, &ast));
+    }
+    errors.extend(of_fences);
+    errors.sort_by_key(|error| error.span().map(|span| (span.start, span.end)));
+    (ast, errors)
+}
+
+/// The items that continue after the end of their code block.
+fn crossing(document: &Document, ast: &Ast) -> Vec<Diagnostic> {
+    let end_of_block = |span: Span| {
+        let start = span.range().start;
+        let bodies = document.blocks.iter().map(|block| &block.body);
+        let body = bodies.rev().find(|body| body.start <= start)?;
+        (span.range().end > body.end).then_some(body.end)
+    };
+    let mut found = Vec::new();
+    for item in &ast.items {
+        if let Some(end) = end_of_block(item.span) {
+            let head = match &item.kind {
+                ItemKind::Block(block) => block.head,
+                _ => Span::new(ast.file, item.span.range().start, end),
+            };
+            found.push(messages::item_over_fences(head));
+        }
+    }
+    found
+}
+
+fn parse_text(text: &str, file: FileId) -> (Ast, Vec<Diagnostic>) {
     let mut ast = Ast {
         file,
         items: Vec::new(),

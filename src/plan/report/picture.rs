@@ -85,7 +85,7 @@ impl PictureKind {
         };
         if width == 0 || height == 0 || width > SIDE || height > SIDE {
             return Err(format!(
-                "it has {width} × {height} pixels (1 to {SIDE} each way)"
+                "it has {width} × {height} pixels (limit {SIDE} × {SIDE}, at least 1 × 1)"
             ));
         }
         Ok(())

@@ -39,14 +39,14 @@ impl Plan {
         let mass_of_one = dependence.mass_uncertainty == Some(0.0);
         let own = [
             (
-                "the mass of the striker",
+                "striker mass",
                 striker.is_some_and(|striker| striker.mass_uncertainty == 0.0),
             ),
             (
-                "the velocity of the striker",
+                "striker velocity",
                 striker.is_some_and(|striker| striker.velocity_uncertainty == 0.0),
             ),
-            ("the mass of the specimen", mass_of_one || mass_of_frame),
+            ("specimen mass", mass_of_one || mass_of_frame),
         ];
         let own = own
             .into_iter()
@@ -69,13 +69,10 @@ impl RigPlan {
                 lacks(|calibration| calibration.displacement_uncertainty),
             ),
             (
-                "the zero of the load cell",
+                "zero offset of the load cell",
                 lacks(|calibration| calibration.zero_uncertainty),
             ),
-            (
-                "the drift of that zero in the run",
-                self.zero_drift.is_none(),
-            ),
+            ("zero drift in the run", self.zero_drift.is_none()),
         ];
         all.into_iter()
             .filter(|(_, lacking)| *lacking)
@@ -97,8 +94,8 @@ impl RigPlan {
     }
 }
 
-const FORCE: &str = "the calibration of the force";
-const DISPLACEMENT: &str = "the calibration of the displacement";
+const FORCE: &str = "force calibration";
+const DISPLACEMENT: &str = "displacement calibration";
 
 #[cfg(test)]
 mod tests {
@@ -119,11 +116,7 @@ mod tests {
         assert_eq!(undeclared(&plan, 0).len(), 4);
         assert_eq!(
             undeclared(&plan, 1)[..3],
-            [
-                "the mass of the striker",
-                "the velocity of the striker",
-                "the mass of the specimen"
-            ]
+            ["striker mass", "striker velocity", "specimen mass"]
         );
         plan.strikers[0].velocity_uncertainty = 0.01;
         if let ProcedureKind::Impact(blow) = &mut plan.procedures[1].kind {
@@ -131,10 +124,10 @@ mod tests {
         }
         assert_eq!(
             undeclared(&plan, 1)[..2],
-            ["the mass of the striker", "the calibration of the force"]
+            ["striker mass", "force calibration"]
         );
         let mut frame = struck_frame();
-        assert!(undeclared(&frame, 0).contains(&"the mass of the specimen"));
+        assert!(undeclared(&frame, 0).contains(&"specimen mass"));
         if let Some(frame) = &mut frame.specimens[0].frame {
             *frame = frame.with(|storeys| {
                 for storey in storeys {
@@ -142,7 +135,7 @@ mod tests {
                 }
             });
         }
-        assert!(!undeclared(&frame, 0).contains(&"the mass of the specimen"));
+        assert!(!undeclared(&frame, 0).contains(&"specimen mass"));
     }
 
     #[test]
@@ -155,7 +148,7 @@ mod tests {
             zero_uncertainty: 1.0,
             ..Calibration::default()
         };
-        assert_eq!(rig.undeclared(2), ["the drift of that zero in the run"]);
+        assert_eq!(rig.undeclared(2), ["zero drift in the run"]);
         rig.zero_drift = Some(DriftCheck {
             force: 5.0,
             displacement: None,

@@ -317,7 +317,7 @@ impl Cycling {
                 schema::RATE.name,
                 wanted,
                 Dimension::NUMBER,
-                format!("at most {MOST_TARGETS} readings a way"),
+                format!("at most {MOST_TARGETS} readings per move"),
             ));
         }
         #[expect(

@@ -102,7 +102,8 @@ pub(crate) fn perform(
     let fit = fit_of(&pairs, stated);
     if fit.is_none() && stop.is_none() {
         let text =
-            "no damping: the steady parts of the strokes have too few readings, or too few velocities, for a line".to_owned();
+            "damping not evaluated: too few steady readings, or too few velocities, to fit a line"
+                .to_owned();
         session.event(EventKind::Remark, text);
     }
     for text in sweep

@@ -92,7 +92,7 @@ pub(crate) fn balance_table(input: NamedEnergy, parts: &[NamedEnergy]) -> Block 
     let columns = vec![
         Column::words("Energy balance at the end of the run", 1),
         Column::numbers("Energy"),
-        Column::numbers("Of the input"),
+        Column::numbers("Fraction of input"),
     ];
     Block::Table(Table {
         columns,

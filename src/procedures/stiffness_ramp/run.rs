@@ -294,7 +294,8 @@ impl Ramp {
             RampFit::Bilinear => {
                 let (x, r): (Vec<f64>, Vec<f64>) = first().unzip();
                 let bilinear = fit_bilinear_stated(&x, &r, stated);
-                let none = "no bilinear fit: the outward steps are fewer than six, or show no knee that softens";
+                let none =
+                    "no bilinear fit: the outward steps are fewer than six, or show no yield point";
                 let remarks = if bilinear.is_none() {
                     vec![none.to_owned()]
                 } else {

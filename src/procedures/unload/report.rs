@@ -2,4 +2,4 @@
 
 /// The method by which the contributions to its uncertainty were found.
 pub(crate) const UNCERTAINTY: &str = "in closed form, from the unloaded position: R + K(x₀ − x) = 0 with the \
- stiffness measured on the way there";
+ stiffness measured during the unloading";

@@ -62,7 +62,7 @@ pub fn page(comparison: &ComparisonPage<'_>, figures: &[(String, Vec<u8>)]) -> S
                     } }
                 }
                 @if !comparison.facts.is_empty() {
-                    h2 { "What differs in plan, settings and rig" }
+                    h2 { "Differences in plan, settings and rig" }
                     div class="wide" { table {
                         (head(runs, &[]))
                         @for (what, texts) in comparison.facts { tr { td { (what) } @for text in texts { td class="n" { (short(text)) } } } }

@@ -135,8 +135,8 @@ fn render(block: &Block, heading: &str) -> Markup {
             Block::Table(it) => { (table(it, heading)) }
             Block::Figure(it) => { (figure(it)) }
             Block::Photos { photos } => { div.photos { @for it in photos { figure { (photo(it)) figcaption { (line(&it.caption)) } } } } }
-            Block::Code { lines } => {
-                pre { @for (index, line) in lines.iter().enumerate() { span.n { (index + 1) } (line) "\n" } }
+            Block::Code { first, lines } => {
+                pre { @for (number, line) in (*first..).zip(lines) { span.n { (number) } (line) "\n" } }
             }
             Block::Signatures { names } => { div.signatures { @for name in names { div { (line(name)) } } } }
         }

@@ -127,8 +127,10 @@ pub(crate) enum Block {
     Photos {
         photos: Vec<Photo>,
     },
-    /// A file with line numbers.
+    /// Lines of a file with their numbers.
     Code {
+        /// The number of the first line, from 1.
+        first: usize,
         lines: Vec<String>,
     },
     /// A line for each signatory.

@@ -65,7 +65,7 @@ pub(crate) enum End {
 impl Quantity {
     pub const fn time() -> Self {
         Self {
-            name: Cow::Borrowed("Virtual time"),
+            name: Cow::Borrowed("Simulated time"),
             dimension: Dimension::TIME,
             end: End::Data,
             from_zero: false,

@@ -6,6 +6,7 @@ use crate::report::document::{Attachment, Block, Text};
 use crate::report::output::paths::plan_files;
 use crate::report::run::Run;
 use crate::report::wording::plan as wording;
+use crate::text::markdown::{Document, is_document};
 use crate::text::sanitize;
 
 /// Every file of the plan.
@@ -18,15 +19,22 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     }
 }
 
-/// A file of the language in full; the first lines of a data file, which may have thousands.
+/// A file of the language in full; of a Markdown document its plan; the first lines of a data file, which may have thousands.
 fn listing(file: &PlanFile, kept: &str, body: &mut Vec<Block>) {
     const FIRST: usize = 8;
-    // A tab is printed as four spaces.
-    let lines: Vec<String> = file
-        .text
-        .lines()
-        .map(|line| sanitize::printed(&line.replace('\t', "    ")))
-        .collect();
+    if is_document(&file.name) {
+        for block in Document::read(&file.text).blocks {
+            let before = &file.text[..block.body.start];
+            body.push(Block::Code {
+                first: before.matches('\n').count() + 1,
+                lines: printed(&file.text[block.body]),
+            });
+        }
+        let note = Text::from(wording::OF_THE_DOCUMENT).code(kept);
+        body.push(Block::note(note.and(wording::IN_THE_FOLDER)));
+        return;
+    }
+    let lines = printed(&file.text);
     let left = lines.len().saturating_sub(FIRST);
     let is_plan = file
         .name
@@ -34,10 +42,11 @@ fn listing(file: &PlanFile, kept: &str, body: &mut Vec<Block>) {
         .next()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("psd"));
     if is_plan || left <= FIRST {
-        body.push(Block::Code { lines });
+        body.push(Block::Code { first: 1, lines });
         return;
     }
     body.push(Block::Code {
+        first: 1,
         lines: lines.into_iter().take(FIRST).collect(),
     });
     body.push(Block::note(
@@ -45,6 +54,13 @@ fn listing(file: &PlanFile, kept: &str, body: &mut Vec<Block>) {
             .code(kept)
             .and(wording::IN_THE_FOLDER),
     ));
+}
+
+/// The lines of a text as they are printed; a tab is four spaces.
+fn printed(text: &str) -> Vec<String> {
+    text.lines()
+        .map(|line| sanitize::printed(&line.replace('\t', "    ")))
+        .collect()
 }
 
 /// The plan and every file it used, under their names in the run folder.

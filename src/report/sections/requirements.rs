@@ -148,6 +148,17 @@ fn rows(run: &Run<'_>, requirement: &RequirementOutcome, planned: &Requirement) 
     rows
 }
 
+/// A reason with the names of results, which are in backquotes, as words.
+fn in_words(reason: &str) -> String {
+    let parts = reason.split('`').enumerate();
+    parts
+        .map(|(index, part)| match index % 2 {
+            0 => part.to_owned(),
+            _ => part.replace('_', " "),
+        })
+        .collect()
+}
+
 /// The row of one condition; the quantity that it reads follows `label`.
 fn row(
     run: &Run<'_>,
@@ -162,7 +173,7 @@ fn row(
         None => label.code(&condition.text),
     };
     if let Some(reason) = &condition.reason {
-        name = name.line().soft(reason);
+        name = name.line().soft(in_words(reason));
     }
     if condition.wider_than_tolerance && rule == DecisionRule::Simple {
         name = name.line().soft(wording::WIDER_THAN_TOLERANCE);

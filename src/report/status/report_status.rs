@@ -15,7 +15,7 @@ use crate::run::check_run;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ReportStatus {
     /// A real rig, a completed run, and no field is missing.
-    Certifiable,
+    Issuable,
     /// Only the pre-test check and the leading ramps were run, to predict the rest.
     CheckRun,
     /// No real rig moved.
@@ -23,7 +23,7 @@ pub enum ReportStatus {
     /// The run was not completed, or its run log has no end.
     Incomplete,
     /// A test of a specimen. Fields are missing that cannot be added after the test.
-    NotCertifiable { missing: Vec<String> },
+    NotIssuable { missing: Vec<String> },
     /// A test of a specimen. Particulars of ISO/IEC 17025, 7.8.2.1, are missing; an issue of the report may add them.
     ParticularsMissing { missing: Vec<String> },
 }
@@ -35,7 +35,7 @@ impl ReportStatus {
         Self::reasons(run)
             .into_iter()
             .next()
-            .unwrap_or(Self::Certifiable)
+            .unwrap_or(Self::Issuable)
     }
 
     /// Every reason against a test report, the most serious first; none if the report is issuable.
@@ -53,7 +53,7 @@ impl ReportStatus {
         }
         let missing = missing_fields(run);
         if !missing.is_empty() {
-            reasons.push(Self::NotCertifiable { missing });
+            reasons.push(Self::NotIssuable { missing });
         }
         let missing = missing_particulars(run);
         if !missing.is_empty() {
@@ -66,11 +66,11 @@ impl ReportStatus {
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
-            Self::Certifiable => "certifiable",
+            Self::Issuable => "issuable",
             Self::CheckRun => "check run",
             Self::Simulation => "simulation",
             Self::Incomplete => "incomplete",
-            Self::NotCertifiable { .. } => "not certifiable",
+            Self::NotIssuable { .. } => "not issuable",
             Self::ParticularsMissing { .. } => "particulars missing",
         }
     }

@@ -40,37 +40,36 @@ pub struct Summary {
     pub rig: RigSummary,
     /// Null on a virtual rig.
     pub record: Option<RecordSummary>,
-    /// Only of a rig that says how far its zeros may drift.
+    /// Only for a rig with a limit on its zero drift.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub zero_drift: Option<ZeroDriftSummary>,
-    /// The worst of all requirements, or how the run ended if that is worse; `completed` where nothing is required.
+    /// The worst verdict of all requirements, or the end of the run if that is worse; `completed` without requirements.
     #[schemars(extend("enum" = ["completed", "pass", "inconclusive", "fail", "aborted", "error"]))]
     pub verdict: &'static str,
-    /// By which every condition was decided.
+    /// Decision rule of all conditions.
     #[schemars(extend("enum" = ["simple", "guarded"]))]
     pub decision_rule: &'static str,
-    /// What the report may be taken for: its gravest ground against a test report.
-    #[schemars(extend("enum" = ["certifiable", "check run", "simulation", "incomplete", "not certifiable", "particulars missing"]))]
-    #[serde(rename = "standing")]
+    /// Status of the report: the most serious reason why it is not a test report.
+    #[schemars(extend("enum" = ["issuable", "check run", "simulation", "incomplete", "not issuable", "particulars missing"]))]
     pub report_status: &'static str,
-    /// What the report of a real rig must state and does not: of how it was measured, then particulars.
+    /// Missing statements of a report of a real rig: first on the measurement, then particulars.
     pub missing: Vec<String>,
     pub outcome: OutcomeSummary,
-    /// By name, in the order run.
+    /// By name, in the order of the run.
     pub procedures: Ordered<ProcedureSummary>,
     /// In the plan's order.
     pub requirements: Vec<RequirementSummary>,
     pub events: Vec<EventSummary>,
     /// By name, in the plan's order.
     pub parameters: Ordered<ParameterSummary>,
-    /// What departed from the plan as written.
+    /// Deviations from the plan.
     pub deviations: Vec<String>,
-    /// Only of a report that was issued or amended after the test.
+    /// Only for a report that was issued or amended after the test.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub issues: Option<IssuesSummary>,
 }
 
-/// What was stated of a report after the test.
+/// Issues and amendments of a report after the test.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct IssuesSummary {
     /// Id of this report.
@@ -83,17 +82,17 @@ pub struct IssuesSummary {
 pub struct IssueSummary {
     #[schemars(extend("enum" = ["issue", "amendment"]))]
     pub kind: &'static str,
-    /// Id of the report that it is made from.
+    /// Id of the report from which it was made.
     pub replaces: String,
-    /// Null of an amendment by an older version.
+    /// Null for an amendment by an older version.
     pub date: Option<String>,
     pub by: String,
-    /// Of an amendment.
+    /// Only for an amendment.
     pub reason: Option<String>,
     pub changes: Vec<ChangeSummary>,
 }
 
-/// A particular of the plan that an issue states; empty: not given.
+/// A particular of the plan that an issue states; an empty string means not given.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ChangeSummary {
     pub field: &'static str,
@@ -114,13 +113,13 @@ pub struct RigSummary {
     pub model: String,
     pub serial: String,
     pub firmware: String,
-    /// Nothing real moved.
+    /// Whether the rig is simulated, so that nothing moved.
     pub simulated: bool,
     /// Seed of a virtual rig's noise.
     pub seed: Option<u64>,
 }
 
-/// What the record of a real run says of people and place, and of itself.
+/// Data of the run log of a real run: people, machine, extent.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct RecordSummary {
     pub operator: Option<String>,
@@ -129,9 +128,9 @@ pub struct RecordSummary {
     pub began: Option<String>,
     /// UTC
     pub ended: Option<String>,
-    /// Number of records; null where the record could not be kept.
+    /// Number of entries; null if the run log could not be written.
     pub records: Option<u64>,
-    /// Hash of the last record, which all others lead to.
+    /// Hash of the last entry, which depends on all others.
     pub head: Option<String>,
 }
 
@@ -146,26 +145,26 @@ pub struct OutcomeSummary {
 pub struct ProcedureSummary {
     /// The block's keyword, such as `impact`.
     pub kind: &'static str,
-    /// Whether it ran to its own end.
+    /// Whether the procedure ran to its end.
     pub complete: bool,
-    /// Values the procedure was run with.
+    /// Values of the inputs of the procedure.
     pub inputs: Ordered<Quantity>,
     pub results: Ordered<Quantity>,
-    /// Of each result that uncertain inputs enter, what they contribute, largest first.
+    /// Contributions of the uncertain inputs to each result, the largest first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub uncertainty_budgets: Vec<BudgetSummary>,
 }
 
-/// What the standard uncertainty of a result is made of: u² is the sum of the squares of the contributions.
+/// Uncertainty budget of a result: u² is the sum of the squares of the contributions.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct BudgetSummary {
     pub result: &'static str,
-    /// Which entry of a list it is of, from 0.
+    /// Index of the entry of a list, from 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub entry: Option<usize>,
     pub unit: String,
     pub u: Option<f64>,
-    /// Effective degrees of freedom of u; absent where they are more than 10,000.
+    /// Effective degrees of freedom of u; absent above 10,000.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub degrees_of_freedom: Option<f64>,
     pub contributions: Vec<ContributionSummary>,
@@ -174,23 +173,23 @@ pub struct BudgetSummary {
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ContributionSummary {
     pub input: String,
-    /// `sampled` where errors were drawn.
+    /// `linearised`: first-order propagation; `sampled`: Monte Carlo trials.
     #[schemars(extend("enum" = ["linearised", "sampled"]))]
     pub method: &'static str,
-    /// Of the input; null where it has none of its own.
+    /// Value of the input; null if it has none.
     pub value: Option<f64>,
-    /// SI unit of the input; of a factor, none.
+    /// SI unit of the input; empty for a factor.
     pub input_unit: String,
     /// Standard uncertainty of the input.
     pub input_u: Option<f64>,
-    /// Change of the result over that of the input, both in SI units.
+    /// Sensitivity coefficient: change of the result over that of the input, in SI units.
     pub sensitivity: Option<f64>,
-    /// Change of the result when the input moves by its standard uncertainty, in the unit of the result.
+    /// Change of the result for a change of the input by its standard uncertainty, in the unit of the result.
     pub contribution: Option<f64>,
-    /// By which the size of the contribution is known; absent of what was not estimated from readings.
+    /// Degrees of freedom of the contribution; absent if it was not estimated from readings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub degrees_of_freedom: Option<f64>,
-    /// Whether the result follows the input smoothly; where not, the contribution is the largest change seen.
+    /// Whether the one-sided differences agree; otherwise the contribution is the largest change found.
     pub smooth: bool,
 }
 
@@ -200,15 +199,15 @@ pub struct Quantity {
     pub value: Value,
     pub unit: String,
     pub u: Uncertainty,
-    /// Effective degrees of freedom of u, of a list entry by entry; absent where they are more than 10,000.
+    /// Effective degrees of freedom of u, one per entry of a list; absent above 10,000.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub degrees_of_freedom: Option<Uncertainty>,
-    /// The factor of the expanded uncertainty U = k·u, which holds about 95 %; 2 where it is absent.
+    /// Coverage factor of U = k·u for about 95 % coverage; 2 if absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub k: Option<Uncertainty>,
 }
 
-/// The standard uncertainty of a number, or of each entry of a list; null where none is known.
+/// Standard uncertainty of a number, or of each entry of a list; null if not evaluated.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Uncertainty {
@@ -216,7 +215,7 @@ pub enum Uncertainty {
     List(Vec<Option<f64>>),
 }
 
-/// A number, null where the result does not exist in this run, a count as a whole number, or a list in one unit.
+/// A number, a whole number for a count, or a list in one unit; null if the run has no such result.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Value {
@@ -225,23 +224,23 @@ pub enum Value {
     List(Vec<Option<f64>>),
 }
 
-/// A requirement with the numbers of the condition that decides it: the worst, and of equal ones the first.
+/// A requirement with the numbers of its governing condition: the first of the worst ones.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct RequirementSummary {
     pub name: String,
     #[schemars(extend("enum" = ["pass", "inconclusive", "fail", "aborted", "error"]))]
     pub verdict: &'static str,
     pub value: Option<f64>,
-    /// What the value was held against; the target of `within`.
+    /// Limit with which the value was compared; for `within` the target.
     pub limit: Option<f64>,
-    /// Distance inside the bound; negative: missed by so much.
+    /// Distance inside the limit; negative outside.
     pub margin: Option<f64>,
     pub unit: Option<String>,
     /// Standard uncertainty of the value.
     pub u: Option<f64>,
-    /// w = U = k·u of the margin under the guarded rule; null under the simple one, and where no uncertainty is known.
+    /// Guard band w = U = k·u of the margin under the guarded rule; null under the simple rule or without uncertainty.
     pub guard_band: Option<f64>,
-    /// As the plan wrote it.
+    /// Text of the condition in the plan.
     pub condition: Option<String>,
     /// Every condition of the requirement.
     pub conditions: Vec<ConditionSummary>,
@@ -249,25 +248,25 @@ pub struct RequirementSummary {
 
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ConditionSummary {
-    /// As the plan wrote it.
+    /// Text of the condition in the plan.
     pub condition: String,
     #[schemars(extend("enum" = ["pass", "inconclusive", "fail", "aborted", "error"]))]
     pub verdict: &'static str,
     pub value: Option<f64>,
     pub limit: Option<f64>,
-    /// Of `within`, absolute.
+    /// Absolute tolerance of `within`.
     pub tolerance: Option<f64>,
     pub margin: Option<f64>,
     pub unit: String,
     pub u: Option<f64>,
-    /// The factor of the expanded uncertainty U = k·u of the value, which holds about 95 %; 2 where it is absent.
+    /// Coverage factor of U = k·u of the value for about 95 % coverage; 2 if absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub k: Option<f64>,
-    /// w = U = k·u of the margin under the guarded rule; null under the simple one, and where no uncertainty is known.
+    /// Guard band w = U = k·u of the margin under the guarded rule; null under the simple rule or without uncertainty.
     pub guard_band: Option<f64>,
-    /// Probability that what was measured conforms; null where its uncertainty is not known.
+    /// Probability that the item conforms; null without uncertainty.
     pub conforms: Option<f64>,
-    /// Why it is inconclusive.
+    /// Reason if inconclusive.
     pub reason: Option<String>,
 }
 
@@ -286,7 +285,7 @@ pub struct EventSummary {
 pub struct ParameterSummary {
     pub value: Option<f64>,
     pub unit: String,
-    /// Whether the command line gave it.
+    /// Whether it was set on the command line.
     pub set: bool,
 }
 

@@ -7,55 +7,55 @@ use serde::Serialize;
 use super::finite;
 use crate::record::{AxisDrift, Drift, Zero};
 
-/// What the zeros of the rig did in the run, and how far they may drift.
+/// Zero drift of the rig in the run, and its limits.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ZeroDriftSummary {
-    /// Whether none drifted farther than is allowed.
+    /// Whether every zero drift is within its limit.
     pub within: bool,
-    /// Why not.
+    /// Reasons if not.
     pub reasons: Vec<String>,
-    /// Change of the zero of the force, by size, at most, N.
+    /// Largest allowed zero drift of the force, absolute, N.
     pub force_allowed: Option<f64>,
-    /// Of displacement less target, m; null where it is told only.
+    /// Largest allowed zero drift of the displacement, absolute, m; null: reported, not checked.
     pub displacement_allowed: Option<f64>,
-    /// Time over which a zero is read; a hold as long tells a slope, s.
+    /// Time over which a zero is read, s; a dwell of this length has a slope.
     pub over: Option<f64>,
     #[schemars(extend("enum" = ["start", "free", "nowhere"]))]
     pub after: &'static str,
-    /// Holds that were long enough.
+    /// Number of dwells that were long enough.
     pub holds: u64,
     /// s
     pub longest_hold: Option<f64>,
-    /// Largest growth of the force in a hold farther out than ever before, where a specimen can only relax, N.
+    /// Largest growth of the force in a dwell beyond all earlier displacements, where a specimen can only relax, N.
     pub grown: Option<f64>,
     /// Lowest floor first.
     pub axes: Vec<AxisZeroDriftSummary>,
 }
 
-/// Of one actuator and its load cell.
+/// Zero drift of one actuator and its load cell.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct AxisZeroDriftSummary {
     pub before: ZeroSummary,
-    /// Null where it was not read.
+    /// Null if it was not read.
     pub after: Option<ZeroSummary>,
     /// N
     pub force_change: Option<f64>,
     /// m
     pub displacement_change: Option<f64>,
-    /// Fastest in a hold, by size, N/s; null without a hold.
+    /// Largest slope in a dwell, absolute, N/s; null without a dwell.
     pub held_force_slope: Option<f64>,
     /// m/s
     pub held_displacement_slope: Option<f64>,
 }
 
-/// A reading of no load.
+/// Mean of the readings at zero load.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct ZeroSummary {
     /// Rig time, s.
     pub wall_time_s: Option<f64>,
     /// N
     pub force: Option<f64>,
-    /// Measured displacement less its target, m.
+    /// Measured displacement minus target, m.
     pub displacement: Option<f64>,
     /// N/s
     pub force_slope: Option<f64>,

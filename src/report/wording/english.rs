@@ -25,7 +25,7 @@ wording! {
         PLAN = "Plan";
         LABORATORY = "Laboratory";
         ADDRESS = "Address";
-        PLACE = "Place of the test";
+        PLACE = "Location of the test";
         OPERATOR = "Operator";
         AUTHORISED_BY = "Authorised by";
         CUSTOMER = "Customer";
@@ -94,7 +94,7 @@ wording! {
     mod amendment {
         TITLE = "Amendment";
         SAME_RECORD = "The run log and every measured and computed number are unchanged. The report named above is \
-            kept and is no longer valid.";
+            kept, but not valid any more.";
         NOTHING = "nothing";
         NOTHING_ELSE = "nothing else";
         /// `date` is empty, or begins with a space.
@@ -236,7 +236,7 @@ wording! {
         fn stroke_stiffness_of(procedure) = "stiffness along the strokes of {procedure}";
         fn of_axis(channel, axis) = "{channel} of axis {axis}";
         fn budget_of(kind, result, entry) = "{kind} of {result}{entry}";
-        fn small(names) = "under 0.1\u{a0}% each: {names}";
+        fn small(names) = "below 0.1\u{a0}% each: {names}";
         fn combined(value, unit, k, degrees) = "combined: {value}\u{a0}{unit}, U = {k}\u{a0}u{degrees}";
         fn combined_without_calibrations(value) = "combined, without the calibrations: {value}, u in parentheses";
         fn sampled(draws) = " · Monte Carlo, {draws} trials";
@@ -351,7 +351,7 @@ wording! {
         WITHIN = "within";
         BEYOND = "BEYOND";
         AFTER_AT_START = "after the last, back at the start with the specimen on";
-        AFTER_FREE = "after the last, in place, with the specimen removed from the load cell";
+        AFTER_FREE = "after the last, without motion, with the specimen removed from the load cell";
         NOT_AFTER = "not after the last";
         fn force(of_axis) = "force{of_axis}";
         fn displacement(of_axis) = "displacement{of_axis}";
@@ -408,8 +408,8 @@ wording! {
     mod statements {
         TITLE = "Statements";
         fn signature(name) = "{name}: name, date and signature";
-        SIMULATION = "This is the report of a simulation, not a test report. It states what a model does, not what a \
-            specimen does.";
+        SIMULATION = "This is the report of a simulation, not a test report. It states the behaviour of a model, not that of a \
+            specimen.";
         ITEMS = "The results relate only to the items tested.";
         AS_RECEIVED = "They apply to the items as received.";
         STATED_VALUES = "Values marked “stated” are from the plan or the customer and were not measured; they can affect \
@@ -423,6 +423,7 @@ wording! {
 
     mod plan {
         IN_THE_FOLDER = " in the folder of the run.";
+        OF_THE_DOCUMENT = "These are the blocks of the plan, with the line numbers of the document. The whole document is ";
         fn more_lines(count) = "and {count} more lines; the whole file is ";
     }
 

@@ -26,7 +26,7 @@ pub fn rows(behaviour: &Behaviour, shown: Printed<'_>) -> Vec<(&'static str, Str
         )
     {
         rows.push((
-            "stiffness at first",
+            "initial stiffness",
             shown(behaviour.initial_stiffness(), Dimension::STIFFNESS),
         ));
     }
@@ -95,7 +95,7 @@ pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
                 })
                 .collect();
             format!(
-                "multilinear, kinematic hardening, corners {}",
+                "multilinear, kinematic hardening, backbone points {}",
                 corners.join(", ")
             )
         }
@@ -155,7 +155,11 @@ pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
             "degrading",
             &[
                 ("stiffness", *stiffness, Of::STIFFNESS),
-                ("half of the loss at", *half_displacement, Of::LENGTH),
+                (
+                    "half of the loss of stiffness at",
+                    *half_displacement,
+                    Of::LENGTH,
+                ),
                 ("residual", *residual, Of::NUMBER),
             ],
         ),
@@ -172,13 +176,13 @@ pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
             let ends = [table.points.first(), table.points.last()]
                 .map(|point| point.map_or(0.0, |[x, _]| *x));
             let unloading = match table.unloading {
-                Unloading::InitialStiffness => "unloading parallel to its steepest stretch",
+                Unloading::InitialStiffness => "unloading parallel to its steepest segment",
                 Unloading::AlongTheCurve => "unloading along the curve",
             };
             let scale = if table.scale == 1.0 {
                 String::new()
             } else {
-                format!(", its forces times {:.4}", table.scale)
+                format!(", forces multiplied by {:.4}", table.scale)
             };
             let (low, high) = (shown(ends[0], Of::LENGTH), shown(ends[1], Of::LENGTH));
             format!(
@@ -192,10 +196,10 @@ pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
                 Breaks::Displacement(bound) => shown(*bound, Of::LENGTH),
                 Breaks::Force(bound) => shown(*bound, Of::FORCE),
             };
-            format!("[{}], breaks at {at}", words(of, shown))
+            format!("[{}], fractures at {at}", words(of, shown))
         }
-        Behaviour::Series(parts) => format!("in series: {}", joined(parts, " behind ")),
-        Behaviour::Parallel(parts) => format!("in parallel: {}", joined(parts, " beside ")),
+        Behaviour::Series(parts) => format!("in series: {}", joined(parts, " + ")),
+        Behaviour::Parallel(parts) => format!("in parallel: {}", joined(parts, " + ")),
         Behaviour::Rate {
             of,
             reference_velocity,
@@ -206,7 +210,7 @@ pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
                 shown(*exponent, Of::NUMBER),
             );
             format!(
-                "[{}], on the load cell times 1 + (v/{velocity})^{exponent} while it moves",
+                "[{}], measured force multiplied by 1 + (v/{velocity})^{exponent} in motion",
                 words(of, shown)
             )
         }
@@ -220,7 +224,7 @@ pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
                 shown(*time_constant, Of::TIME),
             );
             format!(
-                "[{}], beside it {stiffness} that relax with a time constant of {tau}",
+                "[{}], in parallel with {stiffness} that relaxes with a time constant of {tau}",
                 words(of, shown)
             )
         }
@@ -233,7 +237,7 @@ pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
             let share = shown(*share, Of::NUMBER);
             let [time, longest] = [*reference_time, *longest].map(|time| shown(time, Of::TIME));
             format!(
-                "[{}], of which {share}·ln(1 + t/{time}) relaxes, until {longest}",
+                "[{}], of which the fraction {share}·ln(1 + t/{time}) relaxes, up to {longest}",
                 words(of, shown)
             )
         }
@@ -248,7 +252,7 @@ fn capped(pinching: &Pinching, shown: Printed<'_>) -> String {
         let [slope, residual] =
             [capping.slope, capping.residual].map(|number| shown(number, Dimension::NUMBER));
         format!(
-            ", falling from {displacement} on with {slope} of its stiffness, to {residual} of its strength"
+            ", softening from {displacement} with {slope} of the initial stiffness to {residual} of the strength"
         )
     })
 }
@@ -258,7 +262,7 @@ fn deteriorating(lost: Deterioration, unit: f64, shown: Printed<'_>) -> String {
     let residual = shown(lost.residual, Dimension::NUMBER);
     let modes = [
         (
-            format!("strength lost with energy: all but {residual} of it"),
+            format!("cyclic deterioration: strength, down to {residual} of it"),
             lost.strength,
         ),
         ("post-capping strength".to_owned(), lost.capping),

@@ -223,7 +223,7 @@ pub(crate) const BEHAVIOURS: &[Variant] = &[
                 .required("file: \"loop.csv\""),
             Field::choice("unloading", UNLOADING, "unloading rule").or_said("initial_stiffness"),
         ],
-        "measured points from a file; one-sided points apply both ways; constant force beyond the last point",
+        "measured points from a file; one-sided points apply in both directions; constant force beyond the last point",
     ),
     Variant::with(
         "fracture",
@@ -295,7 +295,7 @@ pub(crate) const BEHAVIOURS: &[Variant] = &[
                 .above_zero(),
             Field::quantity("shear_area", Dimension::AREA, "κA, effective shear area").above_zero(),
         ],
-        "elastic beam from its geometry; shear adds flexibility L/(4κGA), for a cantilever L/(κGA)",
+        "elastic beam from its geometry; shear adds flexibility L/(4κGA); L/(κGA) for a cantilever",
     ),
     Variant::with(
         "portal",

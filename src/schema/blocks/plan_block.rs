@@ -83,14 +83,14 @@ pub(crate) const DEVIATIONS: Field = Field::text(
     "known deviations from the standard or procedure",
 );
 
-pub(crate) const NOTES: Field = Field::text("notes", "further remarks for the report");
+pub(crate) const NOTES: Field = Field::text("notes", "further notes for the report");
 
 pub(crate) const DECISION_RULE: Field = Field::choice(
     "decision_rule",
     &[
         Variant::word(
             "simple",
-            "simple acceptance: the value decides, whatever its uncertainty",
+            "simple acceptance: the value decides; its uncertainty has no effect",
         ),
         Variant::word(
             "guarded",

@@ -37,16 +37,14 @@ pub(super) fn write(
     let (advanced, usual): (Vec<&Field>, Vec<&Field>) =
         new.into_iter().partition(|field| field.advanced);
     write_fields(text, block, &usual, earlier);
-    write_known(text, block, "Fields", &known, |field| {
-        (field.name, marks(field))
-    });
+    write_known(text, "Fields", &known, |field| (field.name, marks(field)));
     let mut written = options::Written::new(earlier, options);
     write_options(text, block, &usual, &mut written);
     write_values(text, block, "value", block.exports);
     let (new, known) = apart(block.results.iter(), earlier, |it| it.results, same_result);
     let new: Vec<ResultKind> = new.into_iter().copied().collect();
     write_values(text, block, "result", &new);
-    write_known(text, block, "Results", &known, |result| {
+    write_known(text, "Results", &known, |result| {
         (result.name, of_frames(result.of_storey))
     });
     if !advanced.is_empty() {
@@ -128,7 +126,6 @@ fn write_fields(text: &mut String, block: &BlockKind, fields: &[&Field], earlier
 /// The entries of earlier blocks, block by block.
 fn write_known<T>(
     text: &mut String,
-    block: &BlockKind,
     what: &str,
     known: &[(&BlockKind, &T)],
     named: impl Fn(&T) -> (&'static str, &'static str),
@@ -141,7 +138,7 @@ fn write_known<T>(
             .iter()
             .map(|(_, entry)| {
                 let (name, marks) = named(entry);
-                anchor(block, name, what == "Fields") + marks
+                format!("`{name}`{marks}")
             })
             .collect();
         let _ = writeln!(

@@ -1,5 +1,5 @@
 //! The schema as text: the generated part of the language reference, in Markdown. In: the tables of blocks, functions, units and
-//! diagnostic codes. Out: one text, in which every field, result and code has an anchor. Knows no plan.
+//! diagnostic codes. Out: one text, in which every field, result and code has an anchor where it is described. Knows no plan.
 
 use std::fmt::Write as _;
 
@@ -15,12 +15,12 @@ mod values;
 
 const INTRODUCTION: &str = "## Vocabulary
 
-- Every field and result has an anchor: `#impact.duration`. All codes are in `docs/reference/diagnostics.md`.
+- Every field and result has an anchor where it is described: `#impact.duration`. All codes are in `docs/reference/diagnostics.md`.
 - **Value** shows the usual unit and the limits: `mm` ≥ 0 is a length in any unit, at least 0. A number can be written in `%`.
 - A list is `[a, b, …]`, or a range with a step. A range is `a .. b`; a single number b is −b .. b (marked ±) or 0 .. b.
 - ᴿ: for real rigs only. ᶠ: for frames only.
 - *u*: the result has a standard uncertainty, read as `.u`.
-- Arguments of an option are in the order of its parentheses, else of the lines below it: `limit(force: 1500 N)`.
+- Arguments of an option are in the order of the lines below it: `limit(force: 1500 N)`.
 ";
 
 /// The generated part of `grammar/LANGUAGE.md`: every block, field, option and result, then functions and units.

@@ -77,8 +77,7 @@ impl<'b> Written<'b> {
         }
     }
 
-    /// An option, its usual arguments, then those that few plans set, then those that are explained elsewhere. The names behind the
-    /// option show the order of the arguments where the lines below do not.
+    /// An option and its arguments in their order. Arguments that were written before are named only.
     fn write_option(
         &mut self,
         text: &mut String,
@@ -86,58 +85,57 @@ impl<'b> Written<'b> {
         variant: &'static Variant,
         depth: usize,
     ) {
-        let (mut known, mut of_block) = (Vec::new(), Vec::new());
-        let mut new: Vec<&'static Field> = Vec::new();
-        for argument in variant.arguments {
-            let form = format!("{argument:?}");
-            if argument.need == Need::Said(OF_THE_RIG) && block.field(argument.name).is_some() {
-                of_block.push(format!("`{}`", argument.name));
-            } else if let Some((_, of)) = self.arguments.iter().find(|(it, _)| *it == form) {
-                push(&mut known, &format!("`{of}`"), argument.name);
-            } else {
-                self.arguments.push((form, variant.name));
-                new.push(argument);
-            }
-        }
         let indent = "  ".repeat(depth);
-        new.sort_by_key(|argument| argument.advanced);
-        let in_order = new
-            .iter()
-            .map(|argument| argument.name)
-            .eq(variant.arguments.iter().map(|argument| argument.name));
+        let _ = writeln!(text, "{indent}- `{}`: {}", signature(variant), variant.doc);
+        let indent = "  ".repeat(depth + 1);
+        let mut rest = variant.arguments;
+        while let Some((argument, after)) = rest.split_first() {
+            let origin = |argument: &Field| self.origin(block, argument);
+            let Some(of) = origin(argument) else {
+                self.arguments.push((format!("{argument:?}"), variant.name));
+                self.write_argument(text, &indent, argument);
+                if let (FieldType::Choice(inner), false) = (argument.ty, is_truth(argument)) {
+                    self.write_at(text, block, argument.name, inner, depth + 2);
+                }
+                rest = after;
+                continue;
+            };
+            let count = rest
+                .iter()
+                .take_while(|argument| origin(argument).as_ref() == Some(&of))
+                .count();
+            let (known, after) = rest.split_at(count);
+            let names: Vec<String> = known
+                .iter()
+                .map(|argument| format!("`{}`", argument.name))
+                .collect();
+            let _ = writeln!(text, "{indent}- {} as in {of}", names.join(", "));
+            rest = after;
+        }
+    }
+
+    /// The text that says where an argument was written before; none for a new one.
+    fn origin(&self, block: &'static BlockKind, argument: &Field) -> Option<String> {
+        if argument.need == Need::Said(OF_THE_RIG) && block.field(argument.name).is_some() {
+            return Some("the block, whose value is the default".to_owned());
+        }
+        let form = format!("{argument:?}");
+        let known = self.arguments.iter().find(|(it, _)| *it == form);
+        known.map(|(_, of)| format!("`{of}`"))
+    }
+
+    fn write_argument(&self, text: &mut String, indent: &str, argument: &Field) {
+        let marks = if argument.advanced { " (advanced)" } else { "" };
+        let value = [value(argument, self.blocks), default(argument)]
+            .into_iter()
+            .filter(|part| !part.is_empty())
+            .collect::<Vec<String>>()
+            .join("; ");
         let _ = writeln!(
             text,
-            "{indent}- `{}`: {}",
-            signature(variant, in_order),
-            variant.doc
+            "{indent}- `{}` [{value}]{marks}: {}",
+            argument.name, argument.doc
         );
-        let indent = "  ".repeat(depth + 1);
-        for argument in new {
-            let marks = if argument.advanced { " (advanced)" } else { "" };
-            let value = [value(argument, self.blocks), default(argument)]
-                .into_iter()
-                .filter(|part| !part.is_empty())
-                .collect::<Vec<String>>()
-                .join("; ");
-            let _ = writeln!(
-                text,
-                "{indent}- `{}` [{value}]{marks}: {}",
-                argument.name, argument.doc
-            );
-            if let (FieldType::Choice(inner), false) = (argument.ty, is_truth(argument)) {
-                self.write_at(text, block, argument.name, inner, depth + 2);
-            }
-        }
-        for (of, names) in known {
-            let _ = writeln!(text, "{indent}- {} as in {of}", names.join(", "));
-        }
-        if !of_block.is_empty() {
-            let _ = writeln!(
-                text,
-                "{indent}- {} as in the block, whose value is the default",
-                of_block.join(", ")
-            );
-        }
     }
 }
 
@@ -161,21 +159,15 @@ fn push(groups: &mut Vec<(String, Vec<String>)>, of: &str, name: &str) {
     }
 }
 
-/// `elastic(stiffness)`; `short`: `elastic(…)`.
-fn signature(variant: &Variant, short: bool) -> String {
-    let many = variant
-        .arguments
-        .iter()
-        .any(|argument| matches!(argument.ty, FieldType::Inners));
-    let names: Vec<&str> = variant
-        .arguments
-        .iter()
-        .map(|argument| argument.name)
-        .collect();
-    match (names.is_empty(), many) {
+/// `elastic(…)`, or `series(a, b, …)`.
+fn signature(variant: &Variant) -> String {
+    let is_list = |argument: &Field| matches!(argument.ty, FieldType::Inners);
+    match (
+        variant.arguments.is_empty(),
+        variant.arguments.iter().any(is_list),
+    ) {
         (true, _) => variant.name.to_owned(),
         (false, true) => format!("{}(a, b, …)", variant.name),
-        (false, false) if short => format!("{}(…)", variant.name),
-        (false, false) => format!("{}({})", variant.name, names.join(", ")),
+        (false, false) => format!("{}(…)", variant.name),
     }
 }

@@ -45,7 +45,7 @@ fn rigs() -> Vec<Plan> {
             rig: Some(name),
             ..Options::default()
         };
-        let mut plan = check("rigs.md", &format!("{around}\n{rig}"), &Ground, &options)
+        let mut plan = check("rigs.psd", &format!("{around}\n{rig}"), &Ground, &options)
             .plan
             .unwrap();
         plan.procedures.clear();

@@ -44,6 +44,7 @@ codes! {
     E105 NestedTooDeep Error;
     E106 BadText Error;
     E107 TooLarge Error;
+    E108 PlanBlock Error;
     // 2: names
     E201 UnknownBlock Error;
     E202 UnknownField Error;

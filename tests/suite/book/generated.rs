@@ -40,26 +40,56 @@ fn listed(page: &str) -> Vec<String> {
         .collect()
 }
 
+/// The end of the name of a column in this unit: `_m_per_s2` for m/s^2.
+fn suffix(unit: &str) -> String {
+    let words = unit
+        .replace('/', "_per_")
+        .replace('*', "_")
+        .replace('^', "");
+    format!("_{}", words.to_lowercase())
+}
+
+/// A procedure with its columns, each once.
+type Listed = (String, Vec<&'static str>);
+
+/// The columns of a procedure in words. Those of an earlier procedure that has many of them are named together.
+fn row((words, names): &Listed, earlier: &[Listed]) -> String {
+    let is_part =
+        |other: &&Listed| other.1.len() > 20 && other.1.iter().all(|name| names.contains(name));
+    let part = earlier.iter().find(is_part);
+    let own = names
+        .iter()
+        .filter(|name| part.is_none_or(|(_, known)| !known.contains(name)));
+    let own: Vec<String> = own.map(|name| format!("`{name}`")).collect();
+    let of_part = part.map_or_else(String::new, |(part, _)| format!("; those of `{part}`"));
+    format!("| `{words}` | {}{of_part} |", own.join(", "))
+}
+
 #[test]
 fn every_column_is_explained_and_listed() {
     let mut text = "\n| procedure | numeric columns |\n|---|---|\n".to_owned();
     let mut units = BTreeMap::new();
+    let mut earlier: Vec<Listed> = Vec::new();
     for block in BLOCKS.iter().filter(|block| block.procedure) {
-        let names: Vec<&str> = columns(block.kind).map(|column| column.name).collect();
+        let names = columns(block.kind).map(|column| column.name);
         units.extend(columns(block.kind).map(|column| (column.name, si_unit(column.dimension))));
-        if !names.is_empty() {
-            let mut seen = Vec::new();
-            for name in names {
-                if !seen.contains(&format!("`{name}`")) {
-                    seen.push(format!("`{name}`"));
-                }
+        let mut once: Vec<&str> = Vec::new();
+        names.for_each(|name| {
+            if !once.contains(&name) {
+                once.push(name);
             }
-            let _ = writeln!(text, "| `{}` | {} |", block.words(), seen.join(", "));
+        });
+        if !once.is_empty() {
+            let listed = (block.words(), once);
+            let _ = writeln!(text, "{}", row(&listed, &earlier));
+            earlier.push(listed);
         }
     }
-    text += "\n| column | SI unit |\n|---|---|\n";
     for (name, unit) in &units {
-        let _ = writeln!(text, "| `{name}` | {unit} |");
+        assert!(
+            unit == "1" || name.ends_with(&suffix(unit)),
+            "`{name}` does not end with its unit, {unit}"
+        );
     }
     text += "\n";
     hold("reference/tables.md", &text);

@@ -556,8 +556,8 @@ fn plan() -> Plan {
             photos: Vec::new(),
         },
         golden: psd::plan::Golden::default(),
-        studies: psd::plan::Studies::default(),
         check_run_of: None,
+        studies: psd::plan::Studies::default(),
         unloads_at_once: false,
         files: vec![
             PlanFile {

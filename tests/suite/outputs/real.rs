@@ -102,15 +102,15 @@ fn real() -> Finished {
 
 fn missing(finished: &Finished) -> Vec<String> {
     match ReportStatus::of(&finished.run()) {
-        ReportStatus::NotCertifiable { missing } => missing,
+        ReportStatus::NotIssuable { missing } => missing,
         other => panic!("{other:?}"),
     }
 }
 
 #[test]
-fn a_real_run_that_lacks_nothing_is_certifiable_and_says_what_it_was_made_with() {
+fn a_real_run_that_lacks_nothing_is_issuable_and_says_what_it_was_made_with() {
     let finished = real();
-    assert_eq!(ReportStatus::of(&finished.run()), ReportStatus::Certifiable);
+    assert_eq!(ReportStatus::of(&finished.run()), ReportStatus::Issuable);
     let files = files(&finished);
     let html = text(&files, "report.html").replace('\u{a0}', " ");
     for told in [
@@ -143,14 +143,14 @@ fn a_real_run_that_lacks_nothing_is_certifiable_and_says_what_it_was_made_with()
     }
     let summary: serde_json::Value = serde_json::from_str(text(&files, "summary.json")).unwrap();
     assert_eq!(
-        (&summary["standing"], &summary["record"]["records"]),
-        (&"certifiable".into(), &1234.into())
+        (&summary["report_status"], &summary["record"]["records"]),
+        (&"issuable".into(), &1234.into())
     );
     assert_eq!(
         summary["procedures"]["hit"]["results"]["contacts"]["value"].to_string(),
         "6"
     );
-    assert!(!console::verdict_text(&finished.run(), false).contains("CERTIFIABLE"));
+    assert!(!console::verdict_text(&finished.run(), false).contains("ISSUABLE"));
 }
 
 #[test]
@@ -185,7 +185,7 @@ fn what_a_report_must_state_and_lacks_is_named() {
     );
     assert!(
         console::verdict_text(&expired.run(), false)
-            .contains("(NOT CERTIFIABLE: lacks a valid calibration")
+            .contains("(NOT ISSUABLE: lacks a valid calibration")
     );
     // Without times in the record, the plan's own date is used. An invalid date counts as missing.
     let mut undated = real();
@@ -196,7 +196,7 @@ fn what_a_report_must_state_and_lacks_is_named() {
     undated.provenance.date = Some("next week, perhaps".into());
     assert_eq!(missing(&undated), ["the day of the test"]);
     undated.provenance.date = Some("2027-02-28".into());
-    assert_eq!(ReportStatus::of(&undated.run()), ReportStatus::Certifiable);
+    assert_eq!(ReportStatus::of(&undated.run()), ReportStatus::Issuable);
 }
 
 #[test]
@@ -247,7 +247,7 @@ fn particulars_missing(change: impl FnOnce(&mut Vec<(&'static str, String)>)) ->
 }
 
 #[test]
-fn a_report_without_what_every_report_states_is_not_certifiable_and_names_it() {
+fn a_report_without_what_every_report_states_is_not_issuable_and_names_it() {
     for (field, name) in [
         ("standard", "method"),
         ("specimen_id", "item tested"),
@@ -272,7 +272,7 @@ fn a_report_without_what_every_report_states_is_not_certifiable_and_names_it() {
     bare.plan
         .particulars
         .retain(|(field, _)| *field != "receipt_date");
-    assert_eq!(ReportStatus::of(&bare.run()), ReportStatus::Certifiable);
+    assert_eq!(ReportStatus::of(&bare.run()), ReportStatus::Issuable);
     assert!(text(&files(&bare), "report.html").contains("Not given: Condition, Item received."));
 
     bare.plan.particulars.clear();
@@ -291,7 +291,7 @@ fn a_report_without_what_every_report_states_is_not_certifiable_and_names_it() {
     let summary: serde_json::Value = serde_json::from_str(text(&files, "summary.json")).unwrap();
     assert_eq!(
         (
-            &summary["standing"],
+            &summary["report_status"],
             summary["missing"].as_array().unwrap().len()
         ),
         (&"particulars missing".into(), 8)
@@ -342,7 +342,7 @@ fn days_out_of_their_order_are_told() {
     }
     assert_eq!(
         ReportStatus::of(&near.run()),
-        ReportStatus::Certifiable,
+        ReportStatus::Issuable,
         "the days of a laboratory may be one off those of UTC"
     );
 }

@@ -8,6 +8,7 @@ use super::shown;
 use crate::cli::args::TestArguments;
 use crate::cli::exit::Failure;
 use crate::cli::files::accepted::AcceptedFolder;
+use crate::cli::files::loader::is_plan;
 use crate::files::failure::plain;
 use crate::golden::{DIAGNOSTICS, SUMMARY};
 
@@ -75,6 +76,7 @@ pub fn find(arguments: &TestArguments) -> Result<Cases, Failure> {
             folder,
         });
     }
+    refuse_shared_results(&cases)?;
     let unused = if arguments.filter.is_none() {
         unused(&whole, &cases, arguments.golden.as_deref())?
     } else {
@@ -96,11 +98,27 @@ pub fn find(arguments: &TestArguments) -> Result<Cases, Failure> {
             });
         return Err(
             Failure::command_line(format!("no plan{what} in {}", told.join(", ")))
-                .help("a plan is a `.psd` file; `psd test --list` shows them"),
+                .help("a plan is a `.psd` file, or a `.md` file with a `psd` block; `psd test --list` shows them"),
         );
     }
     told_apart(&mut cases);
     Ok(Cases { cases, unused })
+}
+
+/// `beam.psd` and `beam.md` would have the same folder of accepted results.
+fn refuse_shared_results(cases: &[Case]) -> Result<(), Failure> {
+    for pair in cases.windows(2) {
+        let same = pair[0].name == pair[1].name;
+        if same && pair[0].golden.path() == pair[1].golden.path() {
+            let [one, other] = [&pair[0], &pair[1]].map(|case| case.plan.display());
+            return Err(Failure::command_line(format!(
+                "{one} and {other} would share the accepted results in {}",
+                pair[0].golden.path().display()
+            ))
+            .help("rename one of the two plans"));
+        }
+    }
+    Ok(())
 }
 
 fn missing(path: &Path, error: &std::io::Error, nobody_said: bool) -> Failure {
@@ -120,8 +138,7 @@ fn plans_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
         let hidden = path
             .file_name()
             .is_none_or(|name| name.to_string_lossy().starts_with('.'));
-        if !hidden && path.is_file() && path.extension().is_some_and(|extension| extension == "psd")
-        {
+        if !hidden && path.is_file() && is_plan(&path) {
             plans.push(path);
         }
     }

@@ -191,7 +191,7 @@ fn line(table: &Table, column: &str) -> Option<(PlainAxis, Vec<(f64, f64)>)> {
         .filter_map(|(x, y)| Some((x?, y?)))
         .collect();
     let shown = match name {
-        _ if name == columns::TIME.name => "Virtual time",
+        _ if name == columns::TIME.name => "Simulated time",
         _ if name == columns::WALL_TIME.name => "Rig time",
         _ => "Step",
     };

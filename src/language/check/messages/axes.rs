@@ -91,7 +91,7 @@ pub fn channels(channels: usize, axes: usize, dialect: &Dialect, at: Span) -> Di
         }
     };
     let text = format!(
-        "too few channels: `{}` load cell has {has}, for {}",
+        "too few channels: `{}` load cell has {has} and must read {}",
         dialect.name(),
         axes_of(axes)
     );
@@ -118,9 +118,7 @@ pub fn too_many(axes: usize, most: usize, dialect: &Dialect, at: Span) -> Diagno
     );
     Diagnostic::new(Code::TooManyAxes, text)
         .at(at, axes_of(axes))
-        .help(
-            "use one controller behind one `link` that moves all axes together: `native` or `nees`",
-        )
+        .help("use one controller at one `link` that moves all axes together: `native` or `nees`")
 }
 
 pub fn frame_on_one_axis(specimen: &str, storeys: usize, rig: &str, span: Span) -> Diagnostic {

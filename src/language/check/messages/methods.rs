@@ -99,7 +99,7 @@ pub fn damping_twice(computed: Span, measured: Span) -> Diagnostic {
     Diagnostic::new(Code::DampingTwice, message)
         .at(computed, "computed here")
         .at(measured, "already measured here")
-        .help("remove the procedure's damping, or write only what is not measured: measured damping is divided by the time scale")
+        .help("remove the procedure's damping, or write only the part that is not measured: measured damping is divided by the time scale")
 }
 
 /// An actuator with a delay.

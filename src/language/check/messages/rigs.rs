@@ -282,7 +282,7 @@ pub fn never_settles(field: &str, span: Span) -> Diagnostic {
     .help("write a tolerance of a few times the noise of the rig")
 }
 
-pub fn not_certifiable(rig: &str, head: Span, reference: bool, due: bool) -> Diagnostic {
+pub fn not_issuable(rig: &str, head: Span, reference: bool, due: bool) -> Diagnostic {
     let (field, line) = if reference {
         (schema::CALIBRATION.name, "calibration = \"UKAS 4711\"")
     } else {

@@ -140,7 +140,10 @@ pub fn missing_partner(given: &str, missing: &str, span: Span) -> Diagnostic {
 /// Exactly one of two forms is required; `takes` names the owner and both forms, `example` shows one.
 pub fn one_way_only(takes: &str, example: &str, span: Span, given: usize) -> Diagnostic {
     let (label, help) = if given == 0 {
-        ("neither is given", format!("add `{example}`, for instance"))
+        (
+            "neither is given",
+            format!("add one of them, such as `{example}`"),
+        )
     } else {
         ("both are given", "remove one of them".to_owned())
     };

@@ -30,12 +30,9 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
         lacks(|calibration| &calibration.due),
     );
     if reference || due {
-        checker.diagnostics.push(message::not_certifiable(
-            &rig.plan.name,
-            head,
-            reference,
-            due,
-        ));
+        checker
+            .diagnostics
+            .push(message::not_issuable(&rig.plan.name, head, reference, due));
     }
     let no_day = |calibration: &Calibration| matches!(calibration.displacement, Some((_, None)));
     let of_rig = checker

@@ -2,10 +2,12 @@
 //! works on tokens, so that no text of the author is lost; `rows` finds the lines, `value` formats a
 //! value.
 
+mod document;
 mod rows;
 mod value;
 
 use super::{ast::Ast, layout, lexical::tokens::Tokens};
+pub use document::format_document;
 use rows::{Kind, Row};
 
 /// Number of spaces by which the fields of a block are indented.

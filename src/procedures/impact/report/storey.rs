@@ -179,7 +179,7 @@ fn storey_energies(procedure: &ProcedureRecord) -> Block {
     let columns = vec![
         Column::words("Energy in each storey at the end of the run, ∫V dδ", 1),
         Column::numbers("Energy"),
-        Column::numbers("Over striker energy"),
+        Column::numbers("Fraction of striker energy"),
     ];
     Block::Table(Table {
         columns,

@@ -109,8 +109,8 @@ fn curve(fit: &MultilinearFit, history: &RampHistory) -> Series {
     );
     let label = match fit.breakpoints.len() {
         0 => format!("fit, no breakpoint, K = {stiffness}"),
-        1 => format!("fit, 1 breakpoint, K = {stiffness} at first"),
-        count => format!("fit, {count} breakpoints, K = {stiffness} at first"),
+        1 => format!("fit, 1 breakpoint, initial K = {stiffness}"),
+        count => format!("fit, {count} breakpoints, initial K = {stiffness}"),
     };
     Series {
         label,

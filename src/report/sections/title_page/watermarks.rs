@@ -9,11 +9,11 @@ use crate::report::wording::status as wording;
 /// The boxes, one for each reason that the heading does not state.
 pub(in super::super) fn notices(run: &Run<'_>) -> Vec<Notice> {
     let notice = |reason| match reason {
-        ReportStatus::Certifiable
+        ReportStatus::Issuable
         | ReportStatus::Simulation
         | ReportStatus::CheckRun
         | ReportStatus::Incomplete => None,
-        ReportStatus::NotCertifiable { missing } => Some((
+        ReportStatus::NotIssuable { missing } => Some((
             vec![wording::NOT_ISSUABLE],
             wording::lacks(missing.join("; ")),
         )),
@@ -38,9 +38,9 @@ pub(in super::super) fn watermarks(run: &Run<'_>) -> Vec<&'static str> {
         ReportStatus::Simulation => Some(wording::SIMULATION),
         ReportStatus::CheckRun => Some(wording::CHECK_RUN),
         ReportStatus::Incomplete => Some(wording::INCOMPLETE),
-        ReportStatus::NotCertifiable { .. } => Some(wording::NOT_ISSUABLE),
+        ReportStatus::NotIssuable { .. } => Some(wording::NOT_ISSUABLE),
         ReportStatus::ParticularsMissing { .. } => Some(wording::PARTICULARS_MISSING),
-        ReportStatus::Certifiable => None,
+        ReportStatus::Issuable => None,
     });
     words.collect()
 }

@@ -25,7 +25,7 @@ pub(crate) const ENERGIES: Field =
 
 pub(crate) const WHILE: Field = Field::condition(
     "while",
-    "condition on the results of each impact, by their names, for the next impact to follow",
+    "the next impact follows while this condition on the results of the last one is met",
 )
 .required("while = max_displacement < 20 mm");
 

@@ -65,7 +65,7 @@ const RELAXATION_MODELS: &[Variant] = &[
     Variant::with(
         "either",
         SLOW_ENOUGH,
-        "logarithmic, or g (1 − e^(−t/τ)) of the unrelaxed force, whichever BIC prefers",
+        "logarithmic, or g (1 − e^(−t/τ)) of the unrelaxed force, by BIC",
     ),
 ];
 
@@ -180,7 +180,7 @@ pub(crate) const REQUIRED_PAUSE: ResultKind = ResultKind::measured(
 pub(crate) const RELAXATION_SHARE: ResultKind = ResultKind::measured(
     "relaxation_share",
     Dimension::NUMBER,
-    "a or g: relaxed fraction of the unrelaxed force, for a law with a fraction",
+    "a or g: relaxed fraction of the unrelaxed force; only laws with a fraction",
 );
 
 pub(crate) const REFERENCE_TIME: ResultKind = ResultKind::measured(

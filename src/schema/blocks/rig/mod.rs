@@ -127,7 +127,7 @@ pub(crate) const SPEED: Field = Field::quantity(
 pub(crate) const WATCHDOG: Field = Field::quantity(
     "watchdog",
     Dimension::TIME,
-    "longest silence between psd and rig; after it the rig must hold by itself",
+    "longest time without communication; the rig must then hold",
 )
 .or(3.0, "s")
 .above_zero_up_to(LONGEST_WAIT)
