@@ -26,11 +26,11 @@ const SMALL: &str = include_str!("../plans/01_first_blow.psd");
 /// The small plan with many more impacts and requirements, about `lines` lines long.
 fn long_plan(lines: usize) -> String {
     let mut text = SMALL.to_owned();
-    for blow in 0..lines / 9 {
+    for index in 0..lines / 9 {
         let _ = write!(
             text,
-            "\nimpact hit_{blow} {{\n  striker = hammer\n  mass = 1 kg * (1 + 0.5)\n  time_step = critical / 20\n  duration = 1 s\n}}\n\n\
-             require \"stays {blow}\" abs(hit_{blow}.max_displacement) < 20 cm\n"
+            "\nimpact hit_{index} {{\n  striker = hammer\n  mass = 1 kg * (1 + 0.5)\n  time_step = critical / 20\n  duration = 1 s\n}}\n\n\
+             require \"stays {index}\" abs(hit_{index}.max_displacement) < 20 cm\n"
         );
     }
     text

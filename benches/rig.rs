@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use psd::emulator::lines::real_time::Carrier as _;
-use psd::emulator::{Log, PseudoTerminal, Script, Stand, of_plan};
+use psd::emulator::{Log, PseudoTerminal, RigEmulator, Script, of_plan};
 use psd::language::check::{LoadError, Loader, Options, check};
 use psd::plan::{Plan, RealLink};
 use psd::record::journal::{Durability, EntryKind, Journal, Storage};
@@ -93,8 +93,8 @@ fn checked_plan(text: &str) -> Plan {
         .unwrap_or_else(|| panic!("{:?}", checked.diagnostics))
 }
 
-fn stand(plan: &Plan) -> Stand {
-    of_plan(plan, &Script::default(), Log::none(), 1, Some(1)).expect("a stand")
+fn emulator(plan: &Plan) -> RigEmulator {
+    of_plan(plan, &Script::default(), Log::none(), 1, Some(1)).expect("an emulator")
 }
 
 fn link(plan: &Plan) -> &RealLink {
@@ -111,12 +111,12 @@ fn device(plan: &Plan, port: Box<dyn Port>, clock: Box<dyn Clock>) -> Box<dyn De
     )
 }
 
-/// A stand that answers immediately. Its time passes while the host waits.
+/// An emulator that answers immediately. Its time passes while the host waits.
 #[derive(Clone)]
 struct AtOnce(Arc<Mutex<Shared>>);
 
 struct Shared {
-    stand: Stand,
+    emulator: RigEmulator,
     /// \[s\]
     now: f64,
     coming: Vec<u8>,
@@ -125,10 +125,10 @@ struct Shared {
 }
 
 impl AtOnce {
-    fn new(mut stand: Stand) -> Self {
-        stand.connect(0);
+    fn new(mut emulator: RigEmulator) -> Self {
+        emulator.connect(0);
         Self(Arc::new(Mutex::new(Shared {
-            stand,
+            emulator,
             now: 0.0,
             coming: Vec::new(),
             sent: Vec::new(),
@@ -140,11 +140,11 @@ impl AtOnce {
     }
 }
 
-/// Answer of the stand to some bytes a millisecond after it received them: by then it has reached its target.
-fn answer(stand: &mut Stand, now: f64, bytes: &[u8], answer: &mut Vec<u8>) {
-    stand.advance(now);
-    stand.give(0, bytes);
-    while let Some(piece) = stand.take(0) {
+/// Answer of the emulator to some bytes a millisecond after it received them: by then it has reached its target.
+fn answer(emulator: &mut RigEmulator, now: f64, bytes: &[u8], answer: &mut Vec<u8>) {
+    emulator.advance(now);
+    emulator.give(0, bytes);
+    while let Some(piece) = emulator.take(0) {
         answer.extend(piece);
     }
 }
@@ -154,7 +154,7 @@ impl Port for AtOnce {
         let shared = &mut *self.shared();
         shared.now += 0.001;
         shared.sent.push((shared.now, bytes.to_vec()));
-        answer(&mut shared.stand, shared.now, bytes, &mut shared.coming);
+        answer(&mut shared.emulator, shared.now, bytes, &mut shared.coming);
         Ok(())
     }
 
@@ -260,10 +260,10 @@ fn step_and_study(bencher: Bencher) {
 }
 
 fn whole_run(bencher: Bencher, plan: &Plan) {
-    let count = steps(&run(plan, &AtOnce::new(stand(plan))));
+    let count = steps(&run(plan, &AtOnce::new(emulator(plan))));
     bencher
         .counter(ItemsCount::new(count))
-        .with_inputs(|| AtOnce::new(stand(plan)))
+        .with_inputs(|| AtOnce::new(emulator(plan)))
         .bench_local_values(|line| steps(&run(plan, &line)));
 }
 
@@ -271,24 +271,24 @@ fn whole_run(bencher: Bencher, plan: &Plan) {
 #[divan::bench]
 fn step_of_the_stand_in_alone(bencher: Bencher) {
     let plan = plan();
-    let line = AtOnce::new(stand(&plan));
+    let line = AtOnce::new(emulator(&plan));
     let count = steps(&run(&plan, &line));
     let sent = std::mem::take(&mut line.shared().sent);
     let connected = || {
-        let mut stand = stand(&plan);
-        stand.connect(0);
-        stand
+        let mut emulator = emulator(&plan);
+        emulator.connect(0);
+        emulator
     };
     bencher
         .counter(ItemsCount::new(count))
         .with_inputs(connected)
-        .bench_local_values(|mut stand| {
-            let mut said = Vec::new();
+        .bench_local_values(|mut emulator| {
+            let mut reply = Vec::new();
             for (now, bytes) in &sent {
-                said.clear();
-                answer(&mut stand, *now, bytes, &mut said);
+                reply.clear();
+                answer(&mut emulator, *now, bytes, &mut reply);
             }
-            said
+            reply
         });
 }
 
@@ -306,12 +306,12 @@ fn reading_over_a_pseudo_terminal(bencher: Bencher) {
     let path = folder.path().join("rig");
     let plan = plan();
     let mut line = PseudoTerminal::linked(&path).expect("a pseudo-terminal");
-    let mut stand = stand(&plan);
+    let mut emulator = emulator(&plan);
     let over = Arc::new(AtomicBool::new(false));
     let served = Arc::clone(&over);
     let server = std::thread::spawn(move || {
-        stand.connect(0);
-        let (began, mut buffer, mut said) = (Instant::now(), [0; 512], Vec::new());
+        emulator.connect(0);
+        let (began, mut buffer, mut reply) = (Instant::now(), [0; 512], Vec::new());
         while !served.load(Ordering::Relaxed) {
             let count = line.read(&mut buffer).unwrap_or(0);
             if count == 0 {
@@ -319,14 +319,14 @@ fn reading_over_a_pseudo_terminal(bencher: Bencher) {
                 continue;
             }
             answer(
-                &mut stand,
+                &mut emulator,
                 began.elapsed().as_secs_f64(),
                 &buffer[..count],
-                &mut said,
+                &mut reply,
             );
-            while !said.is_empty() {
-                let written = line.write(&said).unwrap_or(0);
-                said.drain(..written);
+            while !reply.is_empty() {
+                let written = line.write(&reply).unwrap_or(0);
+                reply.drain(..written);
             }
         }
     });
@@ -345,21 +345,21 @@ fn reading_over_tcp(bencher: Bencher) {
     let plan = plan();
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port is free");
     let address = listener.local_addr().expect("it is bound").to_string();
-    let mut stand = stand(&plan);
+    let mut emulator = emulator(&plan);
     let server = std::thread::spawn(move || {
         let (mut stream, _) = listener.accept().expect("a client");
         stream.set_nodelay(true).expect("it can");
-        stand.connect(0);
-        let (began, mut buffer, mut said) = (Instant::now(), [0; 512], Vec::new());
+        emulator.connect(0);
+        let (began, mut buffer, mut reply) = (Instant::now(), [0; 512], Vec::new());
         while let Ok(count @ 1..) = stream.read(&mut buffer) {
-            said.clear();
+            reply.clear();
             answer(
-                &mut stand,
+                &mut emulator,
                 began.elapsed().as_secs_f64(),
                 &buffer[..count],
-                &mut said,
+                &mut reply,
             );
-            stream.write_all(&said).expect("it is taken");
+            stream.write_all(&reply).expect("it is taken");
         }
     });
     let port = TcpPort::connect(&address, Duration::from_secs(5)).expect("it connects");

@@ -68,10 +68,10 @@ fn connected() -> (TcpStream, JoinHandle<()>) {
 }
 
 /// Sends one message.
-fn tell(client: &mut TcpStream, message: &mut [u8; 8 * WORDS], words: &[f64]) {
+fn send(client: &mut TcpStream, message: &mut [u8; 8 * WORDS], words: &[f64]) {
     message.fill(0);
-    for (place, word) in message.chunks_exact_mut(8).zip(words) {
-        place.copy_from_slice(&word.to_le_bytes());
+    for (bytes, word) in message.chunks_exact_mut(8).zip(words) {
+        bytes.copy_from_slice(&word.to_le_bytes());
     }
     client.write_all(message).expect("it is taken");
 }
@@ -88,14 +88,14 @@ fn opensees_step(bencher: Bencher) {
         let trial = [3.0, displacement, 0.0, 0.0, f64::from(step)];
         for action in [14.0, 14.0, 13.0, 10.0] {
             if action == 14.0 {
-                tell(&mut client, &mut message, &trial);
+                send(&mut client, &mut message, &trial);
             }
-            tell(&mut client, &mut message, &[action]);
+            send(&mut client, &mut message, &[action]);
             client.read_exact(&mut answer).expect("it answers");
         }
-        tell(&mut client, &mut message, &[5.0]);
+        send(&mut client, &mut message, &[5.0]);
         answer[0]
     });
-    tell(&mut client, &mut message, &[99.0]);
+    send(&mut client, &mut message, &[99.0]);
     server.join().expect("it ends well");
 }

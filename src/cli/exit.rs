@@ -110,8 +110,13 @@ impl Failure {
             settings.paint_error(&head),
             escape(&self.to_string())
         );
-        if let Self::NotOpened { place, .. } = self {
-            let _ = writeln!(text, "{} {}", settings.paint_note("  at:"), escape(place));
+        if let Self::NotOpened { location, .. } = self {
+            let _ = writeln!(
+                text,
+                "{} {}",
+                settings.paint_note("  at:"),
+                escape(location)
+            );
         }
         if let Some(help) = help {
             let _ = writeln!(text, "{} {}", settings.paint_note(" help:"), escape(&help));
@@ -125,7 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn verdicts_end_as_the_reference_says() {
+    fn verdicts_end_as_the_reference_specifies() {
         let verdicts = [
             Verdict::Completed,
             Verdict::Pass,

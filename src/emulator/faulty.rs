@@ -5,8 +5,8 @@ use rand::RngExt as _;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::SeedableRng as _;
 
-use super::script::{Fault, LineFault, Place, ReplyFault, What, When};
-use super::{Bench, Firmware};
+use super::script::{Fault, GarbagePosition, LineFault, ReplyFault, What, When};
+use super::{EmulatedRig, Firmware};
 
 /// Time between the parts of a split reply, and between a reply and the hang-up after it \[s\].
 const GAP: f64 = 0.02;
@@ -73,31 +73,31 @@ impl Faulty {
         }
     }
 
-    /// Receives bytes from the host. The bench is already at the present time.
-    pub fn receive(&mut self, bytes: &[u8], bench: &mut Bench) {
-        if bench.time() < self.frozen_until {
+    /// Receives bytes from the host. The emulated rig is already at the present time.
+    pub fn receive(&mut self, bytes: &[u8], rig: &mut EmulatedRig) {
+        if rig.time() < self.frozen_until {
             self.unheard.extend_from_slice(bytes);
             return;
         }
         // One byte at a time: each answer is then one reply, and the time of a fault is exact.
         for byte in bytes {
-            self.strike_what_is_due(bench);
-            let said = self.firmware.receive(std::slice::from_ref(byte), bench);
-            self.strike_what_is_due(bench);
-            self.say(said, bench);
+            self.strike_what_is_due(rig);
+            let reply = self.firmware.receive(std::slice::from_ref(byte), rig);
+            self.strike_what_is_due(rig);
+            self.send(reply, rig);
         }
     }
 
     /// Time has passed.
-    pub fn tick(&mut self, bench: &mut Bench) {
-        self.strike_what_is_due(bench);
-        if bench.time() < self.frozen_until {
+    pub fn tick(&mut self, rig: &mut EmulatedRig) {
+        self.strike_what_is_due(rig);
+        if rig.time() < self.frozen_until {
             return;
         }
         let unheard = std::mem::take(&mut self.unheard);
-        self.receive(&unheard, bench);
-        let said = self.firmware.tick(bench);
-        self.say(said, bench);
+        self.receive(&unheard, rig);
+        let reply = self.firmware.tick(rig);
+        self.send(reply, rig);
     }
 
     /// Returns the next part of a reply that is due at `time` \[s\].
@@ -141,43 +141,43 @@ impl Faulty {
     }
 
     /// Whether a fault is due.
-    fn due(when: When, replies: u64, bench: &Bench) -> bool {
+    fn due(when: When, replies: u64, rig: &EmulatedRig) -> bool {
         match when {
-            When::At(time) => bench.time() >= time,
-            When::AfterMoves(count) => bench.moves().len() as u64 >= count,
-            When::AfterReadings(count) => bench.readings() >= count,
+            When::At(time) => rig.time() >= time,
+            When::AfterMoves(count) => rig.moves().len() as u64 >= count,
+            When::AfterReadings(count) => rig.readings() >= count,
             When::AfterReplies(count) => replies >= count,
             When::EachReply(_) | When::EachReading(_) => true,
         }
     }
 
-    /// Starts the faults of bench and line that are due. Faults of replies wait for a reply.
-    fn strike_what_is_due(&mut self, bench: &mut Bench) {
+    /// Starts the mechanical faults and those of the line that are due. Faults of replies wait for a reply.
+    fn strike_what_is_due(&mut self, rig: &mut EmulatedRig) {
         let replies = self.replies;
         let mut due = Vec::new();
         self.faults.retain(|armed| {
             let strikes = !matches!(armed.fault.what, What::Replies(..))
-                && Self::due(armed.fault.when, replies, bench);
+                && Self::due(armed.fault.when, replies, rig);
             if strikes {
                 due.push(armed.fault.clone());
             }
             !strikes
         });
         for fault in due {
-            let ram = fault.ram;
+            let actuator = fault.actuator;
             match (fault.what, fault.when) {
-                (What::Bench(fault), When::EachReading(probability)) => {
-                    bench.strike_by_chance(ram, fault, probability);
+                (What::Rig(fault), When::EachReading(probability)) => {
+                    rig.strike_by_chance(actuator, fault, probability);
                 }
-                (What::Bench(fault), _) => bench.strike(ram, fault),
+                (What::Rig(fault), _) => rig.strike(actuator, fault),
                 (What::Line(LineFault::HangUp), _) => self.hang_up(),
                 (What::Line(LineFault::StopReading), _) => self.deaf = true,
                 (What::Line(LineFault::FreezeFirmware(seconds)), _) => {
-                    self.frozen_until = bench.time() + seconds;
+                    self.frozen_until = rig.time() + seconds;
                 }
                 (What::Line(LineFault::Reboot), _) => {
-                    let said = self.firmware.reboot(bench);
-                    self.say(said, bench);
+                    let reply = self.firmware.reboot(rig);
+                    self.send(reply, rig);
                 }
                 (What::Replies(..), _) => {}
             }
@@ -185,7 +185,7 @@ impl Faulty {
     }
 
     /// Returns the faults of the next reply.
-    fn befalling(&mut self, bench: &Bench) -> Vec<ReplyFault> {
+    fn befalling(&mut self, rig: &EmulatedRig) -> Vec<ReplyFault> {
         let mut found = Vec::new();
         for armed in &mut self.faults {
             let What::Replies(fault, _) = armed.fault.what else {
@@ -196,7 +196,7 @@ impl Faulty {
             } else {
                 1.0
             };
-            if Self::due(armed.fault.when, self.replies, bench)
+            if Self::due(armed.fault.when, self.replies, rig)
                 && (chance >= 1.0 || self.generator.random::<f64>() < chance)
             {
                 armed.left = armed.left.map(|left| left.saturating_sub(1));
@@ -207,15 +207,15 @@ impl Faulty {
         found
     }
 
-    fn say(&mut self, reply: Vec<u8>, bench: &Bench) {
+    fn send(&mut self, reply: Vec<u8>, rig: &EmulatedRig) {
         if reply.is_empty() || self.hung_up {
             return;
         }
-        let befalling = self.befalling(bench);
+        let befalling = self.befalling(rig);
         self.replies += 1;
         let previous = std::mem::replace(&mut self.previous, reply.clone());
         let mut bytes = reply;
-        let (mut due, mut copies, mut split, mut ends) = (bench.time(), 1, None, false);
+        let (mut due, mut copies, mut split, mut ends) = (rig.time(), 1, None, false);
         for fault in befalling {
             match fault {
                 ReplyFault::Drop => copies = 0,
@@ -224,8 +224,12 @@ impl Faulty {
                 ReplyFault::SplitAt(_) | ReplyFault::SplitEvery(_) => split = Some(fault),
                 ReplyFault::CutAt(count) => bytes.truncate(count),
                 ReplyFault::FlipBit(bit) => self.flip(&mut bytes, bit),
-                ReplyFault::Garbage { count, byte, place } => {
-                    self.soil(&mut bytes, count, byte, place);
+                ReplyFault::Garbage {
+                    count,
+                    byte,
+                    position,
+                } => {
+                    self.soil(&mut bytes, count, byte, position);
                 }
                 ReplyFault::Delay(milliseconds) => {
                     due += std::time::Duration::from_millis(milliseconds).as_secs_f64();
@@ -269,14 +273,20 @@ impl Faulty {
         }
     }
 
-    fn soil(&mut self, bytes: &mut Vec<u8>, count: usize, byte: Option<u8>, place: Place) {
+    fn soil(
+        &mut self,
+        bytes: &mut Vec<u8>,
+        count: usize,
+        byte: Option<u8>,
+        position: GarbagePosition,
+    ) {
         let dirt: Vec<u8> = (0..count)
             .map(|_| byte.unwrap_or_else(|| self.generator.random()))
             .collect();
-        let at = match place {
-            Place::Before => 0,
-            Place::Inside => bytes.len() / 2,
-            Place::After => bytes.len(),
+        let at = match position {
+            GarbagePosition::Before => 0,
+            GarbagePosition::Inside => bytes.len() / 2,
+            GarbagePosition::After => bytes.len(),
         };
         bytes.splice(at..at, dirt);
     }
@@ -285,7 +295,7 @@ impl Faulty {
 #[cfg(test)]
 mod tests {
     use super::super::script::Script;
-    use super::super::testing::bench;
+    use super::super::testing::elastic_rig;
     use super::*;
 
     /// Returns its input at every line feed, and moves 1 mm at every `m`.
@@ -293,10 +303,10 @@ mod tests {
     struct Echo(Vec<u8>);
 
     impl Firmware for Echo {
-        fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
+        fn receive(&mut self, bytes: &[u8], rig: &mut EmulatedRig) -> Vec<u8> {
             self.0.extend_from_slice(bytes);
             if bytes.contains(&b'm') {
-                bench.go(0.001, 0.01);
+                rig.go(0.001, 0.01);
             }
             if bytes.contains(&b'\n') {
                 std::mem::take(&mut self.0)
@@ -305,11 +315,11 @@ mod tests {
             }
         }
 
-        fn tick(&mut self, _: &mut Bench) -> Vec<u8> {
+        fn tick(&mut self, _: &mut EmulatedRig) -> Vec<u8> {
             Vec::new()
         }
 
-        fn reboot(&mut self, _: &mut Bench) -> Vec<u8> {
+        fn reboot(&mut self, _: &mut EmulatedRig) -> Vec<u8> {
             self.0.clear();
             b"up\n".to_vec()
         }
@@ -322,18 +332,18 @@ mod tests {
             Script::parse(script).expect("a script").faults,
             1,
         );
-        let mut bench = bench();
+        let mut rig = elastic_rig();
         let mut answers = Vec::new();
         let mut time = 0.0;
         for line in lines {
-            bench.advance(time);
-            faulty.receive(line.as_bytes(), &mut bench);
+            rig.advance(time);
+            faulty.receive(line.as_bytes(), &mut rig);
             let mut pieces = Vec::new();
             for slice in 0_u32..10 {
-                bench.advance(time + f64::from(slice) * 0.1);
-                faulty.tick(&mut bench);
+                rig.advance(time + f64::from(slice) * 0.1);
+                faulty.tick(&mut rig);
                 pieces.extend(
-                    std::iter::from_fn(|| faulty.take(bench.time()))
+                    std::iter::from_fn(|| faulty.take(rig.time()))
                         .map(|piece| piece.escape_ascii().to_string()),
                 );
             }
@@ -348,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn each_fault_of_a_reply_does_what_it_says() {
+    fn each_fault_of_a_reply_has_its_stated_effect() {
         let lines = ["one\n", "two\n", "three\n"];
         let second = |fault: &str| talk(&format!("after 1 reply: {fault}"), &lines)[1].clone();
         assert_eq!(talk("", &lines), [["one\\n"], ["two\\n"], ["three\\n"]]);
@@ -419,10 +429,10 @@ mod tests {
                 .faults,
             1,
         );
-        let mut bench = bench();
+        let mut rig = elastic_rig();
         assert!(faulty.reads());
-        bench.advance(1.0);
-        faulty.tick(&mut bench);
+        rig.advance(1.0);
+        faulty.tick(&mut rig);
         assert!(!faulty.reads());
     }
 }

@@ -1,4 +1,4 @@
-//! The log of an emulated rig: the bytes on its lines and the moves of its bench. It can be compared with the run log of the
+//! The log of an emulated rig: the bytes on its lines and its moves. It can be compared with the run log of the
 //! host. In: bytes and moves with their times. Out: text, one event per line.
 //!
 //! ```text
@@ -13,14 +13,14 @@
 
 use std::io::{self, Write};
 
-use super::Bench;
+use super::EmulatedRig;
 
-/// Writes the events of one stand.
+/// Writes the events of one rig emulator.
 pub struct Log {
     sink: Option<Box<dyn Write + Send>>,
     /// The first write error, kept until it is read.
     failure: Option<io::Error>,
-    /// Number of moves and violations of the bench that are already written.
+    /// Number of moves and violations of the emulated rig that are already written.
     moves: usize,
     violations: usize,
 }
@@ -63,8 +63,8 @@ impl Log {
     }
 
     /// Writes the moves and violations since the last call.
-    pub fn follow(&mut self, bench: &Bench) {
-        for sent in &bench.moves()[self.moves..] {
+    pub fn follow(&mut self, rig: &EmulatedRig) {
+        for sent in &rig.moves()[self.moves..] {
             let id = sent.id.map_or_else(|| "-".to_owned(), |id| id.to_string());
             let targets: Vec<String> = sent
                 .targets
@@ -80,19 +80,19 @@ impl Log {
                 ),
             );
         }
-        for target in &bench.violations()[self.violations..] {
-            self.event(bench.time(), format_args!("bench outside {target} m"));
+        for target in &rig.violations()[self.violations..] {
+            self.event(rig.time(), format_args!("bench outside {target} m"));
         }
-        (self.moves, self.violations) = (bench.moves().len(), bench.violations().len());
+        (self.moves, self.violations) = (rig.moves().len(), rig.violations().len());
     }
 
     /// Writes the result. Returns whether it is a pass.
-    pub fn end(&mut self, bench: &Bench) -> bool {
-        self.follow(bench);
-        let (moves, violations) = (bench.moves().len(), bench.violations().len());
+    pub fn end(&mut self, rig: &EmulatedRig) -> bool {
+        self.follow(rig);
+        let (moves, violations) = (rig.moves().len(), rig.violations().len());
         if violations == 0 {
             self.event(
-                bench.time(),
+                rig.time(),
                 format_args!(
                     "end: {moves} move{}, all within the limits: ok",
                     plural(moves)
@@ -100,7 +100,7 @@ impl Log {
             );
         } else {
             self.event(
-                bench.time(),
+                rig.time(),
                 format_args!(
                     "end: {violations} target{} outside the limits: FAILED",
                     plural(violations)
@@ -131,23 +131,23 @@ const fn plural(count: usize) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{SharedText, bench};
+    use super::super::testing::{SharedText, elastic_rig};
     use super::*;
 
     #[test]
     fn every_event_is_one_line_with_its_time() {
         let text = SharedText::default();
-        let (mut log, mut bench) = (Log::to(Box::new(text.clone())), bench());
+        let (mut log, mut rig) = (Log::to(Box::new(text.clone())), elastic_rig());
         log.from_host(0.5, "actuator", b">HELLO 1*\xff\n");
         log.to_host(0.5, "actuator", b"<\0");
-        bench.advance(1.25);
-        bench.go_as(Some(17), &[0.005], 0.002);
-        bench.go(0.006, 1.0);
-        log.follow(&bench);
+        rig.advance(1.25);
+        rig.go_as(Some(17), &[0.005], 0.002);
+        rig.go(0.006, 1.0);
+        log.follow(&rig);
         log.happened(2.0, "load cell", "hung up");
-        assert!(log.end(&bench));
-        bench.refuse(0.03);
-        assert!(!log.end(&bench));
+        assert!(log.end(&rig));
+        rig.refuse(0.03);
+        assert!(!log.end(&rig));
         let expected = "\
             0.500000 actuator > >HELLO 1*\\xff\\n\n\
             0.500000 actuator < <\\x00\n\
@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn a_log_that_cannot_be_written_is_told_once() {
+    fn a_log_that_cannot_be_written_is_reported_once() {
         struct Full;
         impl Write for Full {
             fn write(&mut self, _: &[u8]) -> io::Result<usize> {

@@ -1,13 +1,13 @@
-//! Makes a stand that replaces the real rig of a checked plan. In: the plan, a script of faults. Out: a [`Stand`] with
-//! controllers for the rig's protocols, on a bench with the plan's specimen, limits and noise. It opens no line.
+//! Makes a rig emulator that replaces the real rig of a checked plan. In: the plan, a script of faults. Out: a [`RigEmulator`] with
+//! controllers for the rig's protocols, on an emulated rig with the plan's specimen, limits and noise. It opens no line.
 
 use super::firmware::{
     Grbl, Hx711, Indicator, Instron, Mark10, Mark10Gauge, Modbus, Native, NativeSettings, Nees,
     Scpi,
 };
-use super::of_ram::OfRam;
+use super::one_actuator::OneActuator;
 use super::script::Script;
-use super::{Bench, BenchSettings, Firmware, Log, RamSettings, Stand};
+use super::{ActuatorSettings, EmulatedRig, EmulatedRigSettings, Firmware, Log, RigEmulator};
 use crate::plan::{Behaviour, Behind, Datum, Dialect, Interval, Plan, RealLink, Specimen};
 
 /// The identity of an emulated controller.
@@ -37,7 +37,7 @@ pub enum NoStandIn {
     NoOwnDevice { axis: usize },
 }
 
-/// Returns the stand that replaces the plan's rig. Its lines are the actuator's and the separate load cell's, if there is one.
+/// Returns the rig emulator that replaces the plan's rig. Its lines are the actuator's and the separate load cell's, if there is one.
 /// `boot` is the boot identifier of this power-up; None: random, from the seed.
 ///
 /// # Errors
@@ -48,24 +48,27 @@ pub fn of_plan(
     log: Log,
     seed: u64,
     boot: Option<u16>,
-) -> Result<Stand, NoStandIn> {
+) -> Result<RigEmulator, NoStandIn> {
     let link = plan.rig.link.as_real().ok_or(NoStandIn::Virtual)?;
     let starts = starts(plan, link, script);
-    let bench = bench(plan, link, seed, &starts)?.standing_at(&starts);
-    let axes = bench.rams();
+    let rig = emulated_rig(plan, link, seed, &starts)?.standing_at(&starts);
+    let axes = rig.actuators();
     let named = script
         .faults
         .iter()
-        .map(|fault| fault.ram)
-        .chain(script.starts.iter().map(|(ram, _)| *ram));
-    if let Some(named) = named.map(|ram| ram + 1).find(|named| *named > axes) {
+        .map(|fault| fault.actuator)
+        .chain(script.starts.iter().map(|(actuator, _)| *actuator));
+    if let Some(named) = named
+        .map(|actuator| actuator + 1)
+        .find(|named| *named > axes)
+    {
         return Err(NoStandIn::NoSuchAxis { named, axes });
     }
     let of_role = |role: &str, behind: Vec<Behind<'_>>| -> Vec<(String, Box<dyn Firmware>)> {
         let one = |behind: Behind<'_>| {
             (
                 behind.name(role),
-                controller(plan, link, &behind, &bench, boot),
+                controller(plan, link, &behind, &rig, boot),
             )
         };
         behind.into_iter().map(one).collect()
@@ -74,7 +77,7 @@ pub fn of_plan(
     controllers.extend(of_role("load cell", link.load_cells()));
     let names: Vec<String> = controllers.iter().map(|(name, _)| name.clone()).collect();
     let nobody = |fault: &&super::script::Fault| {
-        fault.own_of.is_some() && fault.place_among(&names).is_none()
+        fault.own_of.is_some() && fault.line_index(&names).is_none()
     };
     if let Some(axis) = script
         .faults
@@ -84,7 +87,7 @@ pub fn of_plan(
     {
         return Err(NoStandIn::NoOwnDevice { axis: axis + 1 });
     }
-    Ok(Stand::of(bench, log, script, controllers))
+    Ok(RigEmulator::of(rig, log, script, controllers))
 }
 
 /// Initial position of each actuator \[m\].
@@ -100,9 +103,9 @@ fn starts(plan: &Plan, link: &RealLink, script: &Script) -> Vec<f64> {
             .iter()
             .for_each(|axis| starts[*axis] = PULLED_OFF);
     }
-    for (ram, place) in &script.starts {
-        if let Some(start) = starts.get_mut(*ram) {
-            *start = *place;
+    for (actuator, position) in &script.starts {
+        if let Some(start) = starts.get_mut(*actuator) {
+            *start = *position;
         }
     }
     starts
@@ -110,7 +113,7 @@ fn starts(plan: &Plan, link: &RealLink, script: &Script) -> Vec<f64> {
 
 /// Displacement limits of an actuator with the initial position `start` \[m\]. If the plan's zero is at that position, the
 /// limits move with it.
-fn places_at_rig(link: &RealLink, sign: f64, limits: Interval, start: f64) -> Interval {
+fn limits_at_rig(link: &RealLink, sign: f64, limits: Interval, start: f64) -> Interval {
     let Interval { low, high } = at_rig(sign, limits);
     if link.datum == Datum::Machine {
         Interval { low, high }
@@ -122,9 +125,14 @@ fn places_at_rig(link: &RealLink, sign: f64, limits: Interval, start: f64) -> In
     }
 }
 
-fn bench(plan: &Plan, link: &RealLink, seed: u64, starts: &[f64]) -> Result<Bench, NoStandIn> {
+fn emulated_rig(
+    plan: &Plan,
+    link: &RealLink,
+    seed: u64,
+    starts: &[f64],
+) -> Result<EmulatedRig, NoStandIn> {
     let specimen = specimen(plan).ok_or(NoStandIn::NoBehaviour)?;
-    let settings = |behaviour| BenchSettings {
+    let settings = |behaviour| EmulatedRigSettings {
         behaviour,
         damping: specimen.damping,
         noise: link.readings.noise,
@@ -136,14 +144,14 @@ fn bench(plan: &Plan, link: &RealLink, seed: u64, starts: &[f64]) -> Result<Benc
             .unwrap_or_else(|| capacity(link) / COUNTS),
         zero_offset: plan.rig.calibration.zero_offset,
         seed,
-        limits: places_at_rig(link, plan.rig.polarity, plan.limits.displacement, starts[0]),
+        limits: limits_at_rig(link, plan.rig.polarity, plan.limits.displacement, starts[0]),
         top_speed: plan.limits.speed.high,
     };
     if let Some(frame) = &specimen.frame {
         // The storeys replace it.
         let nothing = Behaviour::Elastic { stiffness: 0.0 };
-        let rams: Vec<RamSettings> = (0..frame.degrees_of_freedom())
-            .map(|axis| ram(plan, link, axis, starts.get(axis).copied().unwrap_or(0.0)))
+        let actuators: Vec<ActuatorSettings> = (0..frame.degrees_of_freedom())
+            .map(|axis| actuator(plan, link, axis, starts.get(axis).copied().unwrap_or(0.0)))
             .collect();
         let converter = |axis| {
             let own = plan.rig.calibration_of(axis);
@@ -153,23 +161,25 @@ fn bench(plan: &Plan, link: &RealLink, seed: u64, starts: &[f64]) -> Result<Benc
                 own.zero_offset,
             )
         };
-        let converters = (0..rams.len()).map(converter).collect();
-        return Ok(Bench::of_frame(settings(nothing), frame, &rams).with_converters(converters));
+        let converters = (0..actuators.len()).map(converter).collect();
+        return Ok(
+            EmulatedRig::of_frame(settings(nothing), frame, &actuators).with_converters(converters)
+        );
     }
     let behaviour = specimen.behaviour.clone().ok_or(NoStandIn::NoBehaviour)?;
-    Ok(Bench::new(settings(behaviour)).with_friction(specimen.coulomb))
+    Ok(EmulatedRig::new(settings(behaviour)).with_friction(specimen.coulomb))
 }
 
 /// Returns the actuator of a frame's floor.
-fn ram(plan: &Plan, link: &RealLink, axis: usize, start: f64) -> RamSettings {
+fn actuator(plan: &Plan, link: &RealLink, axis: usize, start: f64) -> ActuatorSettings {
     let (sign, readings) = (plan.rig.polarity_of(axis), link.readings_of(axis));
-    let limits = places_at_rig(
+    let limits = limits_at_rig(
         link,
         sign,
         plan.rig.limits_of(axis, &plan.limits).displacement,
         start,
     );
-    RamSettings {
+    ActuatorSettings {
         sign,
         noise: readings.noise,
         resolution: readings.resolution,
@@ -212,16 +222,18 @@ fn controller(
     plan: &Plan,
     link: &RealLink,
     behind: &Behind<'_>,
-    bench: &Bench,
+    rig: &EmulatedRig,
     boot: Option<u16>,
 ) -> Box<dyn Firmware> {
-    let firmware = firmware(plan, link, behind, bench, boot);
+    let firmware = firmware(plan, link, behind, rig, boot);
     match behind.axes.first() {
         // A device with one channel knows one actuator.
-        Some(axis) if *axis > 0 && behind.link.dialect.most_channels() == 1 => Box::new(OfRam {
-            ram: *axis,
-            firmware,
-        }),
+        Some(axis) if *axis > 0 && behind.link.dialect.most_channels() == 1 => {
+            Box::new(OneActuator {
+                actuator: *axis,
+                firmware,
+            })
+        }
         _ => firmware,
     }
 }
@@ -230,10 +242,10 @@ fn firmware(
     plan: &Plan,
     link: &RealLink,
     behind: &Behind<'_>,
-    bench: &Bench,
+    rig: &EmulatedRig,
     boot: Option<u16>,
 ) -> Box<dyn Firmware> {
-    let (device, rams) = (behind.link, behind.axes.clone());
+    let (device, actuators) = (behind.link, behind.axes.clone());
     let serial_number = device
         .serial_number
         .clone()
@@ -246,22 +258,23 @@ fn firmware(
                     plan.rig.limits_of(axis, &plan.limits).force,
                 )
             };
-            let force_limits = rams.iter().copied().map(of_axis).collect();
+            let force_limits = actuators.iter().copied().map(of_axis).collect();
             let settings = NativeSettings {
                 serial_number,
-                rams: Some(rams),
+                actuators: Some(actuators),
                 force_limits,
                 watchdog: link.watchdog,
                 boot,
             };
-            Box::new(Native::new(settings, bench))
+            Box::new(Native::new(settings, rig))
         }
         Dialect::Grbl => Box::new(Grbl::new(SIMULATED)),
         Dialect::Hx711 => Box::new(Hx711::new(HX711_RATE)),
         Dialect::Indicator => Box::new(Indicator::default()),
         Dialect::Scpi { newtons_per_unit } => Box::new(Scpi::new(
             serial_number,
-            rams.into_iter()
+            actuators
+                .into_iter()
                 .zip(newtons_per_unit.iter().copied())
                 .collect(),
         )),
@@ -270,7 +283,7 @@ fn firmware(
         Dialect::Mark10Gauge => Box::new(Mark10Gauge::new(1.0)),
         Dialect::Modbus(map) => Box::new(Modbus::new(*map)),
         Dialect::Nees { control_points } => {
-            Box::new(Nees::new(control_points.clone(), rams, link.own_speed))
+            Box::new(Nees::new(control_points.clone(), actuators, link.own_speed))
         }
     }
 }
@@ -360,7 +373,7 @@ move to_half {
         plan
     }
 
-    fn stand(plan: &Plan) -> InProcess {
+    fn emulator(plan: &Plan) -> InProcess {
         InProcess::new(of_plan(plan, &Script::default(), Log::none(), 1, None).expect("a stand"))
     }
 
@@ -387,7 +400,7 @@ move to_half {
             zero_offset: 500.0,
             ..Calibration::default()
         };
-        let shared = stand(&plan);
+        let shared = emulator(&plan);
         assert!(heard(&shared, 0, b"$J=G21G90G53X-3.000F600\n").starts_with("ok\r\n"));
         let counts = heard(&shared, 1, b"");
         assert_eq!(
@@ -398,10 +411,10 @@ move to_half {
     }
 
     #[test]
-    fn a_rig_that_counts_the_other_way_has_its_limits_turned() {
+    fn a_rig_with_opposite_polarity_has_its_limits_reversed() {
         let mut plan = plan(Dialect::Native, None);
         plan.rig.polarity = -1.0;
-        let hello = heard(&stand(&plan), 0, &sealed("HELLO 1"));
+        let hello = heard(&emulator(&plan), 0, &sealed("HELLO 1"));
         assert!(
             hello.contains(" -25.000000 1.000000 -12000.000 2000.000 10.000000 0 "),
             "{hello}"
@@ -454,11 +467,11 @@ move to_half {
         ];
         for (dialect, question, answer) in asked {
             let plan = plan(dialect.clone(), None);
-            let said = heard(&stand(&plan), 0, question);
+            let reply = heard(&emulator(&plan), 0, question);
             assert!(
-                said.contains(answer),
+                reply.contains(answer),
                 "{dialect:?}: `{}`",
-                said.escape_debug()
+                reply.escape_debug()
             );
         }
     }

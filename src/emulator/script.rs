@@ -31,7 +31,7 @@ mod fault_words;
 mod tests;
 mod words;
 
-use super::bench::fault::BenchFault;
+use super::emulated_rig::fault::MechanicalFault;
 use words::Words;
 
 /// The faults, in the order of their lines.
@@ -50,7 +50,7 @@ pub struct Fault {
     /// Index of the axis whose own device has the faulty line.
     pub own_of: Option<usize>,
     /// Index of the affected actuator, for a fault of one actuator; 0: the first.
-    pub ram: usize,
+    pub actuator: usize,
     pub when: When,
     pub what: What,
 }
@@ -73,7 +73,7 @@ pub enum What {
     /// Affects this number of replies, or all from then on.
     Replies(ReplyFault, Option<u64>),
     Line(LineFault),
-    Bench(BenchFault),
+    Rig(MechanicalFault),
 }
 
 /// A fault of a reply on the line.
@@ -91,7 +91,7 @@ pub enum ReplyFault {
     Garbage {
         count: usize,
         byte: Option<u8>,
-        place: Place,
+        position: GarbagePosition,
     },
     Repeat,
     Replay,
@@ -102,7 +102,7 @@ pub enum ReplyFault {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum GarbagePosition {
     Before,
     Inside,
     After,
@@ -149,13 +149,13 @@ impl Script {
 
     fn add(&mut self, line: &str) -> Result<(), String> {
         let mut words = Words::of(line);
-        let ram = if words.take(&["axis"]) {
+        let actuator = if words.take(&["axis"]) {
             words.axis()?
         } else {
             0
         };
         if words.take(&["stands", "at"]) {
-            self.starts.push((ram, words.amount("mm")? * 1e-3));
+            self.starts.push((actuator, words.amount("mm")? * 1e-3));
             return words.end();
         }
         self.faults.push(fault(line)?);
@@ -177,20 +177,23 @@ fn fault(line: &str) -> Result<Fault, String> {
     } else {
         None
     };
-    let ram = if words.take(&["axis"]) {
+    let actuator = if words.take(&["axis"]) {
         words.axis()?
     } else {
         0
     };
     let what = fault_words::what(&mut words)?;
     words.end()?;
-    if ram > 0 && !matches!(what, What::Bench(_)) {
+    if actuator > 0 && !matches!(what, What::Rig(_)) {
         return Err(
             "only a fault of an actuator, its specimen or its sensors can have an axis".to_owned(),
         );
     }
     match (&when, &what) {
-        (When::EachReading(_), What::Bench(BenchFault::Spike(_) | BenchFault::Number(_)))
+        (
+            When::EachReading(_),
+            What::Rig(MechanicalFault::Spike(_) | MechanicalFault::Number(_)),
+        )
         | (When::EachReply(_), What::Replies(..)) => {}
         (When::EachReading(_), _) => {
             return Err("`each reading` allows only a spike or a bad number".to_owned());
@@ -203,7 +206,7 @@ fn fault(line: &str) -> Result<Fault, String> {
     Ok(Fault {
         on_load_cell,
         own_of,
-        ram,
+        actuator,
         when,
         what,
     })
@@ -212,7 +215,7 @@ fn fault(line: &str) -> Result<Fault, String> {
 impl Fault {
     /// Returns the index of the affected controller; None if there is no such controller.
     #[must_use]
-    pub fn place_among(&self, names: &[String]) -> Option<usize> {
+    pub fn line_index(&self, names: &[String]) -> Option<usize> {
         let role = if self.on_load_cell {
             "load cell"
         } else {

@@ -1,14 +1,14 @@
-//! A plain bench for the tests of this folder.
+//! A plain emulated rig for the tests of this folder.
 
 use std::io::{self, Write};
 use std::sync::{Arc, Mutex};
 
-use super::{Bench, BenchSettings};
+use super::{EmulatedRig, EmulatedRigSettings};
 use crate::plan::{Behaviour, Interval};
 
 /// 100 kN/m without noise, −1 … 10 mm, 10 mm/s; 0.01 N per count, zero offset 1000 counts.
-pub fn bench() -> Bench {
-    Bench::new(BenchSettings {
+pub fn elastic_rig() -> EmulatedRig {
+    EmulatedRig::new(EmulatedRigSettings {
         behaviour: Behaviour::Elastic { stiffness: 1e5 },
         damping: 0.0,
         noise: 0.0,

@@ -217,10 +217,10 @@ fn lines(bytes: &[u8]) -> Option<BTreeMap<&str, &str>> {
 }
 
 fn some_of(faults: &[String]) -> String {
-    let told = faults[..faults.len().min(NAMED)].join("; ");
+    let listed = faults[..faults.len().min(NAMED)].join("; ");
     if faults.len() > NAMED {
-        format!("{told}; and {} more", faults.len() - NAMED)
+        format!("{listed}; and {} more", faults.len() - NAMED)
     } else {
-        told
+        listed
     }
 }

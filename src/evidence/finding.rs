@@ -5,15 +5,15 @@
 pub struct Finding {
     pub part: &'static str,
     pub sound: bool,
-    pub told: String,
+    pub statement: String,
 }
 
 impl Finding {
-    pub fn sound(part: &'static str, told: impl Into<String>) -> Self {
+    pub fn sound(part: &'static str, statement: impl Into<String>) -> Self {
         Self {
             part,
             sound: true,
-            told: told.into(),
+            statement: statement.into(),
         }
     }
 
@@ -21,7 +21,7 @@ impl Finding {
         Self {
             part,
             sound: false,
-            told: fault.into(),
+            statement: fault.into(),
         }
     }
 }

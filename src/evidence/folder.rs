@@ -144,8 +144,8 @@ impl Folder {
 
 /// Reads one file: a regular one, not through a link.
 fn held(path: &PathBuf, name: &str, is_read: bool) -> Result<Held, String> {
-    let said = |error: std::io::Error| plain(&error);
-    let metadata = path.symlink_metadata().map_err(said)?;
+    let plain_error = |error: std::io::Error| plain(&error);
+    let metadata = path.symlink_metadata().map_err(plain_error)?;
     if metadata.is_symlink() {
         return Err("is a link".to_owned());
     }
@@ -161,18 +161,18 @@ fn held(path: &PathBuf, name: &str, is_read: bool) -> Result<Held, String> {
         .read(true)
         .custom_flags(flags.cast_signed())
         .open(path)
-        .map_err(said)?;
+        .map_err(plain_error)?;
     let mut file = file.take(LISTED_BYTES);
     if is_read && (metadata.len() <= SIDECAR_BYTES || !is_sidecar(name)) {
         // The capacity is the file size: the buffer of a gigabyte run log must not grow by doubling.
         let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
-        file.read_to_end(&mut bytes).map_err(said)?;
+        file.read_to_end(&mut bytes).map_err(plain_error)?;
         return Ok(Held::of(name, bytes));
     }
     let mut digest = Sha256::new();
     let mut buffer = vec![0; 1 << 16];
     loop {
-        match file.read(&mut buffer).map_err(said)? {
+        match file.read(&mut buffer).map_err(plain_error)? {
             0 => {
                 return Ok(Held {
                     digest: hex(&digest.finalize()),

@@ -332,7 +332,7 @@ fn stated(plan: &Plan, field: &str) -> Option<String> {
 }
 
 fn change(plan: &mut Plan, recorded: Option<&str>, field: &'static str, text: &str) -> Change {
-    let place = |name: &str| {
+    let index = |name: &str| {
         schema::block(Kind::Plan)
             .fields
             .iter()
@@ -345,7 +345,7 @@ fn change(plan: &mut Plan, recorded: Option<&str>, field: &'static str, text: &s
         let after = plan
             .particulars
             .iter()
-            .position(|(name, _)| place(name) > place(field));
+            .position(|(name, _)| index(name) > index(field));
         plan.particulars.insert(
             after.unwrap_or(plan.particulars.len()),
             (field, text.to_owned()),

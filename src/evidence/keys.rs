@@ -132,11 +132,11 @@ pub fn make(path: &Path, password: Option<String>) -> Result<(PathBuf, PublicKey
 
 /// Refuses a secret key in the folder of its evidence: it would be copied together with the evidence.
 pub fn refuse_inside(key: &Path, run: &Path) -> Result<(), Failure> {
-    let place = |path: &Path| {
+    let canonical = |path: &Path| {
         path.canonicalize()
             .map_err(|error| Failure::file(path, plain(&error)))
     };
-    if place(key)?.starts_with(place(run)?) {
+    if canonical(key)?.starts_with(canonical(run)?) {
         return Err(
             Failure::file(key, "a secret key must not lie in the run folder")
                 .help("keep it in a folder that only you can read"),

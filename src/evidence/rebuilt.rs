@@ -234,12 +234,12 @@ impl Rebuilt {
                 | Outcome::Blocked { reason }
                 | Outcome::Faulted { reason },
             ) => {
-                let told = if reason.contains("INCOMPLETE") {
+                let statement = if reason.contains("INCOMPLETE") {
                     reason.clone()
                 } else {
                     format!("INCOMPLETE: {reason}")
                 };
-                Finding::sound("targets", format!("{}; {told}{built}", again()))
+                Finding::sound("targets", format!("{}; {statement}{built}", again()))
             }
         });
         if played.mismatch.is_some() {
@@ -252,7 +252,7 @@ impl Rebuilt {
         findings.extend(issues.and_then(|issues| {
             Some(Finding::sound(
                 "issue",
-                told(&issues.report_id, issues.all.last()?),
+                issue_text(&issues.report_id, issues.all.last()?),
             ))
         }));
         Self::with_results(findings, &played, other_build, ended)
@@ -290,7 +290,7 @@ impl Rebuilt {
 }
 
 /// The identity of this report, and the report that it was made from.
-fn told(report_id: &str, last: &Issue) -> String {
+fn issue_text(report_id: &str, last: &Issue) -> String {
     let (by, replaces) = (&last.by, &last.replaces);
     let date = last
         .date

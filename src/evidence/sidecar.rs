@@ -22,7 +22,7 @@ pub fn is_one(folder: &Folder, name: &str) -> bool {
 pub fn examine(folder: &Folder, name: &str) -> Option<Finding> {
     let (kind, of) = sidecar(name)?;
     let bytes = folder.bytes(name).unwrap_or_default();
-    let told = match kind {
+    let statement = match kind {
         SidecarKind::Token if !is_der(bytes) => Err("is not a time-stamp token".to_owned()),
         SidecarKind::Proof if !bytes.starts_with(OPEN_TIMESTAMPS) => {
             Err("is not a proof of OpenTimestamps".to_owned())
@@ -44,8 +44,8 @@ pub fn examine(folder: &Folder, name: &str) -> Option<Finding> {
                 .ok_or_else(|| format!("does not begin with `{of}`, byte for byte"))
         }
     };
-    Some(match told {
-        Ok(told) => Finding::sound("sidecar", format!("`{name}` {told}")),
+    Some(match statement {
+        Ok(statement) => Finding::sound("sidecar", format!("`{name}` {statement}")),
         Err(fault) => Finding::wrong("sidecar", format!("`{name}` {fault}")),
     })
 }

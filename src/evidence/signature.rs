@@ -24,7 +24,7 @@ const UNTRUSTED: &[&str] = &[
 ];
 
 /// Largest number of printed characters of a role or a name.
-const TOLD: usize = 200;
+const SHOWN_CHARACTERS: usize = 200;
 
 /// The content of a signature: its trusted comment, fields separated by tabs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -39,7 +39,12 @@ pub struct Statement {
 
 impl Statement {
     fn comment(&self) -> String {
-        let cut = |text: &String| one_line(text).chars().take(TOLD).collect::<String>();
+        let cut = |text: &String| {
+            one_line(text)
+                .chars()
+                .take(SHOWN_CHARACTERS)
+                .collect::<String>()
+        };
         let parts = [
             ("run", Some(self.run.clone())),
             (
@@ -83,16 +88,16 @@ pub fn file_name(role: Option<&str>, roles: &[String]) -> String {
         return format!("{MANIFEST}{SUFFIX}");
     };
     let own = plain(role);
-    let place = roles
+    let index = roles
         .iter()
         .position(|other| one_line(other) == one_line(role));
     let twin = roles
         .iter()
         .enumerate()
-        .any(|(at, other)| Some(at) != place && plain(other) == own);
-    let middle = match place {
-        _ if own.is_empty() => format!("role-{}", place.unwrap_or(0) + 1),
-        Some(place) if twin => format!("{own}-{}", place + 1),
+        .any(|(at, other)| Some(at) != index && plain(other) == own);
+    let middle = match index {
+        _ if own.is_empty() => format!("role-{}", index.unwrap_or(0) + 1),
+        Some(index) if twin => format!("{own}-{}", index + 1),
         _ => own,
     };
     format!("{MANIFEST}.{middle}{SUFFIX}")
@@ -141,13 +146,13 @@ pub fn sign(
 pub fn examine(folder: &Folder, report: Option<&Report>, keys: &[KnownKey]) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut signed: Vec<Vec<u8>> = Vec::new();
-    let mut places: Vec<&str> = Vec::new();
+    let mut names: Vec<&str> = Vec::new();
     for (name, bytes) in folder.signatures() {
         findings.push(match one(folder, name, bytes, report, keys) {
-            Ok((told, keynum)) => {
+            Ok((statement, keynum)) => {
                 signed.push(keynum);
-                places.push(name);
-                Finding::sound("signature", told)
+                names.push(name);
+                Finding::sound("signature", statement)
             }
             Err(fault) => Finding::wrong("signature", format!("`{name}`: {fault}")),
         });
@@ -171,13 +176,13 @@ pub fn examine(folder: &Folder, report: Option<&Report>, keys: &[KnownKey]) -> V
         .map_or(&[][..], |report| &report.roles);
     for role in roles
         .iter()
-        .filter(|role| !places.contains(&file_name(Some(role), roles).as_str()))
+        .filter(|role| !names.contains(&file_name(Some(role), roles).as_str()))
     {
-        let told = format!("{} has not signed", one_line(role));
+        let statement = format!("{} has not signed", one_line(role));
         findings.push(if keys.is_empty() {
-            Finding::sound("signature", told)
+            Finding::sound("signature", statement)
         } else {
-            Finding::wrong("signature", told)
+            Finding::wrong("signature", statement)
         });
     }
     if findings.is_empty() {
@@ -218,7 +223,7 @@ fn one(
             "by key {number}, which is not one of the named keys"
         ));
     }
-    let named = statement.as_ref().and_then(|said| said.key.as_ref());
+    let named = statement.as_ref().and_then(|stated| stated.key.as_ref());
     let named = named
         .map(|key| PublicKey::from_base64(key).map_err(|_| "its key cannot be read".to_owned()))
         .transpose()?;
@@ -231,12 +236,12 @@ fn one(
             .map_err(|_| format!("it does not match this manifest, or not key {number}"))?;
     }
     if let Some(statement) = &statement {
-        says_so(statement, name, report)?;
+        check_statement(statement, name, report)?;
     }
     let who = statement.map_or_else(
         || one_line(&comment),
-        |said| {
-            [said.name, said.role]
+        |stated| {
+            [stated.name, stated.role]
                 .map(Option::unwrap_or_default)
                 .join(", ")
         },
@@ -247,18 +252,22 @@ fn one(
     } else {
         format!(" by {who}")
     };
-    let told = match (known, key) {
+    let checked = match (known, key) {
         (Some(known), _) => format!("good{who}, key {number} of `{}`", known.name),
         (None, Some(_)) => {
             format!("good{who}, by key {number}; only `--key` verifies the owner of the key")
         }
         (None, None) => format!("not checked{who}, key {number}: name the key with `--key`"),
     };
-    Ok((told, signature.keynum().to_vec()))
+    Ok((checked, signature.keynum().to_vec()))
 }
 
 /// The statement must be true for this folder, and for the name of its own file.
-fn says_so(statement: &Statement, name: &str, report: Option<&Report>) -> Result<(), String> {
+fn check_statement(
+    statement: &Statement,
+    name: &str,
+    report: Option<&Report>,
+) -> Result<(), String> {
     let Some(report) = report else { return Ok(()) };
     if (&statement.run, &statement.report) != (&report.run_id, &report.id) {
         return Err(format!(

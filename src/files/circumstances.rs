@@ -13,7 +13,7 @@ pub struct Circumstances {
 
 impl Circumstances {
     /// Operator, machine and start time: they distinguish a run on a real rig from every other run.
-    pub const fn told(&self) -> [&Option<String>; 3] {
+    pub const fn identifying(&self) -> [&Option<String>; 3] {
         [&self.operator, &self.host, &self.began]
     }
 }

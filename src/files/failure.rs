@@ -40,7 +40,7 @@ pub enum Failure {
     #[error("{fault}")]
     NotOpened {
         fault: crate::rig::RigFault,
-        place: String,
+        location: String,
     },
     #[error("no check run: {0}")]
     NoCheckRun(#[from] crate::run::check_run::NoCheckRun),
@@ -69,7 +69,7 @@ impl Failure {
     }
 
     /// The position in a file where its text could not be read.
-    pub const fn place(&self) -> Option<Position> {
+    pub const fn position(&self) -> Option<Position> {
         match self {
             Self::NotAPlan { at, .. } => *at,
             _ => None,
@@ -87,10 +87,10 @@ impl Failure {
 
     /// The error of a rig that cannot be opened, with the position of its declaration in the plan.
     #[must_use]
-    pub fn in_the_plan(self, place: impl FnOnce(&str) -> Option<String>) -> Self {
+    pub fn in_the_plan(self, location: impl FnOnce(&str) -> Option<String>) -> Self {
         match self {
-            Self::Rig(fault) => match place(&fault.to_string()) {
-                Some(place) => Self::NotOpened { fault, place },
+            Self::Rig(fault) => match location(&fault.to_string()) {
+                Some(location) => Self::NotOpened { fault, location },
                 None => Self::Rig(fault),
             },
             other => other,

@@ -63,7 +63,7 @@ pub fn of_real_run(plan: &Plan, date: Option<&str>, circumstances: &Circumstance
         began,
         ..
     } = circumstances.clone();
-    let run_id = real_id(&provenance.run_id, &circumstances.told());
+    let run_id = real_id(&provenance.run_id, &circumstances.identifying());
     let date = date_of_real_run(plan, began.as_deref());
     let real = RealRun {
         operator,
@@ -91,8 +91,9 @@ pub fn recorded_id(header: &Header, plan: &Plan) -> String {
     }
 }
 
-fn real_id(planned: &str, told: &[&Option<String>; 3]) -> String {
-    let parts = std::iter::once(Some(planned)).chain(told.iter().map(|part| part.as_deref()));
+fn real_id(planned: &str, identifying: &[&Option<String>; 3]) -> String {
+    let parts =
+        std::iter::once(Some(planned)).chain(identifying.iter().map(|part| part.as_deref()));
     let text: Vec<String> = parts
         .map(|part| part.map_or("-".to_owned(), |part| format!("{}:{part}", part.len())))
         .collect();
@@ -120,7 +121,7 @@ pub fn stated_date(plan: &Plan) -> Option<String> {
 }
 
 /// A message if the test starts on a different day from the plan's; otherwise empty.
-pub fn told_of_another_day(plan: &Plan, began: Option<&str>) -> String {
+pub fn reported_another_day(plan: &Plan, began: Option<&str>) -> String {
     match (stated_date(plan), began.and_then(|began| began.get(..10))) {
         (Some(stated), Some(today)) if !same_day(Some(&stated), Some(today)) => {
             format!(

@@ -106,10 +106,10 @@ pub fn plan_of(played: &LoggedRun) -> Result<Plan, String> {
 
 /// Whether the equipment in the header agrees with plan and rig. This detects a changed calibration.
 fn fits(played: &LoggedRun, plan: &Plan) -> Result<(), String> {
-    let (Some(told), Some(rig)) = (&played.header.equipment, &played.rig) else {
+    let (Some(equipment), Some(rig)) = (&played.header.equipment, &played.rig) else {
         return Ok(());
     };
-    if *told == Equipment::of(plan, Device::of(&rig.identity, rig.noise)) {
+    if *equipment == Equipment::of(plan, Device::of(&rig.identity, rig.noise)) {
         return Ok(());
     }
     Err("rig, calibration or limits of its header differ from its plan and its rig".to_owned())

@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn a_year_forth_and_back_is_told_and_a_slow_run_is_none() {
+    fn a_jump_of_a_year_is_reported_and_a_slow_run_is_not() {
         let sample = |time, wall| line(EntryKind::Sample, time, wall);
         let steady = [
             sample(1.0, "2026-10-25T00:59:59.000Z"),

@@ -1,7 +1,7 @@
 //! Figures by their content: the curves, the text of the legend, the limits, the shaded times. Numbers in the text of a legend are
 //! results, and are compared there.
 
-use super::finding::{Change, Finding, Part, Place};
+use super::finding::{Change, Finding, Part, RowRef};
 use super::tolerance::{Rule, Tolerances};
 use super::{Truth, number};
 use crate::report::{FigureCurve, FigureData};
@@ -201,10 +201,12 @@ fn row(was: &[f64], is: &[f64], axis: Axis) -> Option<Change> {
         .zip(is)
         .map(|(was, is)| (Some(*was), Some(*is)))
         .collect();
-    number::many(&pairs, axis.dimension, axis.rule, axis.scale, |row| Place {
-        row,
-        step: None,
-        time: None,
+    number::many(&pairs, axis.dimension, axis.rule, axis.scale, |row| {
+        RowRef {
+            row,
+            step: None,
+            time: None,
+        }
     })
 }
 

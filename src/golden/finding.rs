@@ -48,7 +48,7 @@ pub enum Change {
         was: String,
         is: String,
         /// The first of several differences, in a table.
-        first: Option<(Place, Count)>,
+        first: Option<(RowRef, Count)>,
     },
     /// Accepted, but missing now.
     Gone,
@@ -73,14 +73,14 @@ pub struct Moved {
     /// Reference value of a relative tolerance, SI.
     pub scale: f64,
     /// For a column or a curve: the position of this number, the largest of the changed ones; `first` is the position of the first.
-    pub largest: Option<Place>,
-    pub first: Option<Place>,
+    pub largest: Option<RowRef>,
+    pub first: Option<RowRef>,
     pub count: Option<Count>,
 }
 
 /// A row of a table, or a point of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct RowRef {
     /// From 0.
     pub row: usize,
     pub step: Option<u64>,

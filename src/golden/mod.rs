@@ -15,7 +15,7 @@ mod tolerance;
 
 use std::collections::BTreeMap;
 
-pub use finding::{Change, Count, Finding, Moved, Part, Place};
+pub use finding::{Change, Count, Finding, Moved, Part, RowRef};
 pub use print::junit::junit;
 pub use print::tap::tap;
 pub use print::words::Words;

@@ -1,6 +1,6 @@
 //! Comparison of two rows of numbers. In: both, a rule and a scale. Out: one finding for all numbers that changed.
 
-use super::finding::{Change, Count, Moved, Place};
+use super::finding::{Change, Count, Moved, RowRef};
 use super::tolerance::Rule;
 use crate::units::Dimension;
 
@@ -35,7 +35,7 @@ pub(super) fn many(
     dimension: Dimension,
     rule: Rule,
     scale: f64,
-    place: impl Fn(usize) -> Place,
+    row_ref: impl Fn(usize) -> RowRef,
 ) -> Option<Change> {
     let mut moved = 0;
     let mut first = None;
@@ -66,8 +66,8 @@ pub(super) fn many(
         is,
         rule,
         scale,
-        largest: Some(place(row)),
-        first: first.map(place),
+        largest: Some(row_ref(row)),
+        first: first.map(row_ref),
         count,
     }))
 }

@@ -1,7 +1,7 @@
 //! Summaries of older versions. In: the text of a `summary.json`. Out: the same with the present names.
 
 use crate::schema::procedures::impact_series;
-use crate::schema::{self, Kind, Place, RENAMED};
+use crate::schema::{self, Kind, NameRole, RENAMED};
 use serde_json::{Map, Value};
 
 /// Results of runs without unloading: old and present names. A plan has them under either name, by the kind of its procedure.
@@ -64,7 +64,7 @@ fn changed(kind: &str) -> Vec<(&'static str, &'static str)> {
         .filter(|_| matches!(kind, Kind::Impact | Kind::Shake));
     let results = RENAMED
         .iter()
-        .filter(|row| matches!(row.place, Place::Result(kinds) if kinds.contains(&kind)))
+        .filter(|row| matches!(row.role, NameRole::Result(kinds) if kinds.contains(&kind)))
         .map(|row| (row.old, row.new));
     last.chain(results).collect()
 }
@@ -108,7 +108,7 @@ mod tests {
     #[test]
     fn a_result_of_an_older_version_is_read_under_its_present_name() {
         for row in RENAMED {
-            let Place::Result(kinds) = row.place else {
+            let NameRole::Result(kinds) = row.role else {
                 continue;
             };
             for kind in kinds {

@@ -163,10 +163,10 @@ impl Walk<'_> {
         if let (Some(old_names), Some(new_names)) = (old_names, new_names)
             && !(was.is_empty() && is.is_empty())
         {
-            let place = |name: &String| new_names.iter().position(|other| other == name);
+            let new_index = |name: &String| new_names.iter().position(|other| other == name);
             for (name, old) in old_names.iter().zip(was) {
                 path.push(name.clone());
-                match place(name) {
+                match new_index(name) {
                     Some(index) => self.value(path, old, &is[index]),
                     None => self.note(path, Some(Change::Gone)),
                 }
@@ -253,25 +253,25 @@ fn named(path: &[String]) -> (Part, String) {
             "requirements",
             name,
             "conditions",
-            place,
+            index,
             rest @ ("value" | "limit" | "tolerance"),
         ] => (
             Part::Other,
-            format!("require \"{name}\", condition {place}: {rest}"),
+            format!("require \"{name}\", condition {index}: {rest}"),
         ),
-        ["requirements", name, "conditions", place, rest @ ..] => (
+        ["requirements", name, "conditions", index, rest @ ..] => (
             Part::Requirement,
-            format!("require \"{name}\", condition {place}: {}", rest.join(".")),
+            format!("require \"{name}\", condition {index}: {}", rest.join(".")),
         ),
         ["requirements", name, rest @ ..] => (
             Part::Requirement,
             format!("require \"{name}\": {}", rest.join(".")),
         ),
-        ["procedures", name, "results", result, "value", place @ ..] => {
-            let places = place
+        ["procedures", name, "results", result, "value", index @ ..] => {
+            let entries = index
                 .iter()
-                .fold(String::new(), |text, place| text + "[" + place + "]");
-            (Part::Result, format!("{name}.{result}{places}"))
+                .fold(String::new(), |text, index| text + "[" + index + "]");
+            (Part::Result, format!("{name}.{result}{entries}"))
         }
         ["procedures", name, "results", rest @ ..] => {
             (Part::Result, format!("{name}.{}", rest.join(".")))
@@ -285,7 +285,7 @@ fn named(path: &[String]) -> (Part, String) {
         ["procedures", name] => (Part::Result, (*name).to_owned()),
         ["procedures", name, rest @ ..] => (Part::Result, format!("{name}: {}", rest.join("."))),
         ["parameters", name, "value"] => (Part::Other, format!("param {name}")),
-        ["events", place, rest @ ..] => (Part::Other, format!("event {place}: {}", rest.join("."))),
+        ["events", index, rest @ ..] => (Part::Other, format!("event {index}: {}", rest.join("."))),
         _ => (Part::Other, parts.join(".")),
     }
 }

@@ -1,6 +1,6 @@
 //! Tables: reading of CSV, and comparison of columns. Rows are compared by their index.
 
-use super::finding::{Change, Count, Finding, Part, Place};
+use super::finding::{Change, Count, Finding, Part, RowRef};
 use super::tolerance::Tolerances;
 use super::{Truth, number};
 use crate::procedures;
@@ -73,7 +73,7 @@ impl Table {
     }
 
     /// The identification of a row: its step, and the time of the test or of the rig.
-    fn place(&self, row: usize) -> Place {
+    fn row_ref(&self, row: usize) -> RowRef {
         let cell = |name: &str| {
             self.numbers(name)
                 .and_then(|cells| cells.get(row).copied().flatten())
@@ -83,7 +83,7 @@ impl Table {
             .iter()
             .find(|(name, _)| name == columns::STEP.name)
             .and_then(|(_, cells)| cells.get(row)?.parse().ok());
-        Place {
+        RowRef {
             row,
             step,
             time: cell(columns::TIME.name).or_else(|| cell(columns::WALL_TIME.name)),
@@ -177,7 +177,9 @@ fn compare(
                 // Rows that only one of the two has are counted above.
                 let pairs: Vec<_> = old.into_iter().zip(new).collect();
                 let rule = tolerances.column(procedure, column);
-                number::many(&pairs, dimension(column), rule, scale, |row| was.place(row))
+                number::many(&pairs, dimension(column), rule, scale, |row| {
+                    was.row_ref(row)
+                })
             }
             (_, Some(_)) => words(was, is, column),
         };
@@ -211,7 +213,7 @@ fn words(was: &Table, is: &Table, column: &str) -> Option<Change> {
     Some(Change::Text {
         was: old.clone(),
         is: new.clone(),
-        first: Some((was.place(row), count)),
+        first: Some((was.row_ref(row), count)),
     })
 }
 
@@ -278,7 +280,7 @@ mod tests {
         );
         assert_eq!(
             moved.first,
-            Some(Place {
+            Some(RowRef {
                 row: 0,
                 step: Some(0),
                 time: Some(0.0)
@@ -286,7 +288,7 @@ mod tests {
         );
         assert_eq!(
             moved.largest,
-            Some(Place {
+            Some(RowRef {
                 row: 2,
                 step: Some(2),
                 time: Some(0.2)
@@ -308,7 +310,7 @@ mod tests {
                 Change::Text {
                     was,
                     is,
-                    first: Some((place, count)),
+                    first: Some((largest, count)),
                 },
             ),
         ] = &change(&OLD.replace("contact", "limit"))[..]
@@ -316,7 +318,7 @@ mod tests {
             panic!("one text")
         };
         assert_eq!(
-            (name.as_str(), was.as_str(), is.as_str(), place.step),
+            (name.as_str(), was.as_str(), is.as_str(), largest.step),
             ("hit.state", "contact", "limit", Some(1))
         );
         assert_eq!(*count, Count { moved: 1, of: 3 });

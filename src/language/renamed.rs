@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use crate::language::check::messages::names as message;
 use crate::language::syntax::ast::{Argument, Ast, Block, Expr, ExprKind, Ident, ItemKind};
-use crate::schema::{self, Kind, Place, Renamed};
+use crate::schema::{self, Kind, NameRole, Renamed};
 use crate::text::diagnostic::Diagnostic;
 use crate::text::source::Span;
 
@@ -65,7 +65,7 @@ impl Walk<'_> {
         }
     }
 
-    fn replace(&mut self, name: &mut Ident, at: impl Fn(Place) -> bool) {
+    fn replace(&mut self, name: &mut Ident, at: impl Fn(NameRole) -> bool) {
         if let Some(row) = schema::renamed_at(&name.node, at) {
             self.report(row, name.span);
             row.new.clone_into(&mut name.node);
@@ -77,7 +77,7 @@ impl Walk<'_> {
         for entry in &mut block.fields {
             self.replace(
                 &mut entry.key,
-                |place| matches!(place, Place::Field(of) if Some(of) == kind),
+                |role| matches!(role, NameRole::Field(of) if Some(of) == kind),
             );
             self.word(&entry.key.node, &mut entry.value);
             self.expression(&mut entry.value);
@@ -86,7 +86,7 @@ impl Walk<'_> {
 
     /// The words or variants that are the value of a field.
     fn word(&mut self, field: &str, value: &mut Expr) {
-        let at = |place| matches!(place, Place::Word(fields) if fields.contains(&field));
+        let at = |role| matches!(role, NameRole::Word(fields) if fields.contains(&field));
         match &mut value.kind {
             ExprKind::Call { name, .. } => self.replace(name, at),
             ExprKind::Name(name) => {
@@ -159,7 +159,7 @@ impl Walk<'_> {
             if let Some(name) = &mut argument.name {
                 self.replace(
                     name,
-                    |place| matches!(place, Place::Argument(of) if of.contains(&variant)),
+                    |role| matches!(role, NameRole::Argument(of) if of.contains(&variant)),
                 );
             }
             self.expression(&mut argument.value);

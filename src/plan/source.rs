@@ -65,13 +65,13 @@ pub enum Source {
     /// from 0, or is 0 without impacts.
     RestReading {
         procedure: ProcedureId,
-        blow: u16,
+        impact: u16,
         reading: u16,
     },
     /// The load that remains at the unloaded position and that the readings cannot distinguish from zero.
     RestLoad {
         procedure: ProcedureId,
-        blow: u16,
+        impact: u16,
     },
     /// The resolution of the readings of a procedure, in a fitted result or list entry, beyond the part that the scatter shows.
     Rounding {

@@ -425,7 +425,7 @@ pub(crate) fn readings(history: &History, give: &mut dyn FnMut(&[f64], &[f64])) 
         }
         History::Impact(history) => common::reached::of_impact(history, give),
         History::Escalate(series) => {
-            for impact in &series.blows {
+            for impact in &series.impacts {
                 common::reached::of_impact(&impact.history, give);
             }
         }

@@ -82,7 +82,8 @@ pub struct Channel {
     /// The number at zero of the quantity.
     pub zero: f64,
     /// Resolution of a displacement \[m\], standard deviation of one force reading \[N\], as declared.
-    pub doubt: f64,
+    #[serde(rename = "doubt")]
+    pub declared_scatter: f64,
     /// Relative standard uncertainty of the factor, if it is stated.
     pub uncertainty: f64,
     /// The calibration that the factor is traced to.
@@ -150,7 +151,7 @@ impl Equipment {
     pub fn measures_otherwise(&self, now: &Self) -> Option<&'static str> {
         let scale = |channel: &Channel| {
             let resolution = if channel.measures == Measures::Displacement {
-                channel.doubt.to_bits()
+                channel.declared_scatter.to_bits()
             } else {
                 0
             };
@@ -192,7 +193,7 @@ impl Equipment {
                 .find(|limit| (limit.quantity.as_str(), limit.axis) == name)
                 .cloned()
         };
-        let told = |limit: Option<HeldLimit>| {
+        let limit_text = |limit: Option<HeldLimit>| {
             limit.map_or_else(|| "none".to_owned(), |limit| limit.describe())
         };
         let limits = named
@@ -205,19 +206,19 @@ impl Equipment {
                 format!(
                     "limit {}{axis}: {} became {}",
                     name.0,
-                    told(limit(self, name)),
-                    told(limit(now, name))
+                    limit_text(limit(self, name)),
+                    limit_text(limit(now, name))
                 )
             });
         let traced = |of: &Self| {
-            let said = |channel: &Channel| {
+            let channel_text = |channel: &Channel| {
                 (
                     channel.certificate.clone(),
                     channel.due.clone(),
                     channel.uncertainty.to_bits(),
                 )
             };
-            of.channels.iter().map(said).collect()
+            of.channels.iter().map(channel_text).collect()
         };
         let (was, is): (Vec<_>, Vec<_>) = (traced(self), traced(now));
         limits
@@ -267,7 +268,7 @@ fn channels(rig: &RigPlan, axis: usize) -> [Channel; 2] {
     };
     let (sign, calibration) = (rig.polarity_of(axis), rig.calibration_of(axis));
     let (force_given, force, zero) = match link
-        .map(|link| link.weighed_by(axis))
+        .map(|link| link.load_cell_of(axis))
         .map(|(cell, channel)| (&cell.dialect, channel))
     {
         Some((Dialect::Modbus(map), _)) => (GivenIn::Counts, map.force_unit, 0.0),
@@ -290,13 +291,13 @@ fn channels(rig: &RigPlan, axis: usize) -> [Channel; 2] {
             link.readings_of(axis).noise,
         ),
     };
-    let channel = |measures, given_in, factor: f64, zero, doubt, uncertainty| Channel {
+    let channel = |measures, given_in, factor: f64, zero, declared_scatter, uncertainty| Channel {
         axis: axis + 1,
         measures,
         given_in,
         factor: sign * factor,
         zero,
-        doubt,
+        declared_scatter,
         uncertainty,
         certificate: calibration.reference.clone(),
         due: calibration.due.clone(),

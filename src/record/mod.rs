@@ -31,7 +31,7 @@ pub use history::base_excitation::{ShakeHistory, ShakeStep};
 pub use history::cycle::{CycleHistory, CycleStep, WholeCycle};
 pub use history::floors::{FloorStep, Floors, FloorsAt, StruckFrame};
 pub use history::impact::{ImpactHistory, ImpactStep};
-pub use history::impact_series::{Blow, EscalateHistory};
+pub use history::impact_series::{EscalateHistory, SeriesImpact};
 pub use history::ramp::{RampHistory, RampStep};
 pub use history::sweep::{BroughtTogether, SweepHistory, SweepStep};
 pub use history::unload::{Rest, UnloadStep};
@@ -97,7 +97,7 @@ pub enum EventKind {
     NotHeld,
     Fault,
     /// Communication errors that were recovered: frames sent again, replies ignored, readings repeated.
-    Mended,
+    Recovered,
     /// A numerical observation: the contact was still active at the last step, a maximum was not reached, …
     Remark,
     /// The run is continued after an interruption or a stop.
@@ -118,7 +118,7 @@ impl EventKind {
             Self::Held => "held",
             Self::NotHeld => "not confirmed held",
             Self::Fault => "fault",
-            Self::Mended => "mended",
+            Self::Recovered => "mended",
             Self::Remark => "remark",
             Self::Resume => "resume",
             Self::Amendment => "amendment",

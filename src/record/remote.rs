@@ -70,9 +70,9 @@ impl Request {
                 targets: targets.to_vec(),
             },
             targets => {
-                let said: Vec<String> = targets.iter().map(f64::to_string).collect();
+                let words: Vec<String> = targets.iter().map(f64::to_string).collect();
                 Self::ProposeNoNumber {
-                    said: said.join(" "),
+                    said: words.join(" "),
                 }
             }
         }

@@ -73,7 +73,7 @@ impl Drift {
     pub fn all_beyond(&self) -> impl Iterator<Item = Beyond> {
         let several = self.axes.len();
         let axes = self.axes.iter().enumerate();
-        axes.flat_map(move |(place, axis)| self.of_axis(axis, &of_axis(named_axis(place, several))))
+        axes.flat_map(move |(index, axis)| self.of_axis(axis, &of_axis(named_axis(index, several))))
             .chain(self.grown())
     }
 
@@ -84,7 +84,7 @@ impl Drift {
             over,
             ..
         } = self.check;
-        let (forces, places) = (Dimension::FORCE, Dimension::LENGTH);
+        let (forces, lengths) = (Dimension::FORCE, Dimension::LENGTH);
         let mut found = Vec::new();
         let mut judge =
             |what: &str, change: f64, allowed: Option<f64>, of_force: bool, dimension| {
@@ -101,7 +101,7 @@ impl Drift {
                 );
                 found.push(Beyond { of_force, reason });
             };
-        if let Some((by_force, by_place)) = axis.change() {
+        if let Some((by_force, by_displacement)) = axis.change() {
             judge(
                 &format!("the zero of the force{of} drifted"),
                 by_force,
@@ -111,10 +111,10 @@ impl Drift {
             );
             judge(
                 &format!("the zero of the displacement{of} drifted"),
-                by_place,
+                by_displacement,
                 displacement,
                 false,
-                places,
+                lengths,
             );
         }
         let at_rest = |what: &str| format!("at rest the {what}{of} drifted");
@@ -130,7 +130,7 @@ impl Drift {
             axis.before.displacement_slope * over,
             displacement,
             false,
-            places,
+            lengths,
         );
         found
     }

@@ -142,7 +142,7 @@ fn a_vector_is_answered_by_a_vector_and_a_stiffness_by_a_matrix() {
 
 /// If a limit refuses the target of one floor, no floor moves. If the force of one floor exceeds its limit, the session ends.
 #[test]
-fn what_stands_in_the_way_of_one_floor_stands_in_the_way_of_all() {
+fn an_obstacle_to_one_floor_stops_all_floors() {
     for targets in [[0.001, 0.021], [0.021, 0.001], [0.001, f64::NAN]] {
         let (force, session) = served(LIMITS, |address| {
             let mut element = Element::connect(address, TWO);

@@ -166,8 +166,8 @@ fn talk(
         // Bytes that neither this answer nor an earlier one overwrites stay zero.
         answer[..8 * longest].fill(0);
         longest = longest.max(values.len());
-        for (place, value) in answer.chunks_exact_mut(8).zip(values) {
-            place.copy_from_slice(&value.to_le_bytes());
+        for (bytes, value) in answer.chunks_exact_mut(8).zip(values) {
+            bytes.copy_from_slice(&value.to_le_bytes());
         }
         connection.write(&answer, specimen)?;
     }

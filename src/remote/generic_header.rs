@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_served_says_why() {
+    fn a_client_that_cannot_be_served_is_given_the_reason() {
         for (numbers, why) in [
             ([2, 2, 2, 0, 1, 0, 0, 0, 2, 0, 256], "2 degrees of freedom"),
             ([0, 0, 0, 1, 1, 0, 0, 0, 1, 0, 256], "no displacement"),
@@ -143,8 +143,8 @@ mod tests {
                 "other byte order",
             ),
         ] {
-            let told = parse(&header(numbers), 1).unwrap_err();
-            assert!(told.contains(why), "{told}");
+            let message = parse(&header(numbers), 1).unwrap_err();
+            assert!(message.contains(why), "{message}");
         }
         let browser = b"GET / HTTP/1.1\r\nHost: 127.0.0.1:8090\r\nUser-A";
         assert!(parse(browser, 1).is_err());

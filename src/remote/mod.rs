@@ -138,7 +138,7 @@ pub fn serve(
     specimen: &mut Specimen<'_, '_>,
     once: bool,
     stop_request: &StopRequest,
-    told: &mut dyn FnMut(Event<'_>),
+    on_event: &mut dyn FnMut(Event<'_>),
 ) -> io::Result<()> {
     listener.set_nonblocking(true)?;
     let (busy, closing) = (AtomicBool::new(false), AtomicBool::new(false));
@@ -152,16 +152,16 @@ pub fn serve(
                 Err(fault) => {
                     let ended = Ended::from(fault);
                     specimen.leave(ended.parting(), ended.to_string());
-                    told(Event::Ended(&Session {
+                    on_event(Event::Ended(&Session {
                         ended,
                         driven: Driven::default(),
                     }));
                     break;
                 }
             };
-            told(Event::Connected(address));
+            on_event(Event::Connected(address));
             let session = session(stream, address, protocol, specimen, stop_request);
-            told(Event::Ended(&session));
+            on_event(Event::Ended(&session));
             if once || !session.ended.allows_another() {
                 break;
             }

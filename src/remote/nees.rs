@@ -146,11 +146,11 @@ fn talk(
 }
 
 impl State<'_> {
-    fn place_of(&self, name: &str) -> Option<usize> {
+    fn control_point_index(&self, name: &str) -> Option<usize> {
         if self.names.is_empty() {
             Some(0)
         } else {
-            nees_message::place_of(self.names, name)
+            nees_message::control_point_index(self.names, name)
         }
     }
 
@@ -198,8 +198,8 @@ impl State<'_> {
             } => {
                 self.proposed = None;
                 let refused = |reason: &str| Refusal::new(Why::Message, transaction, reason);
-                let wishes =
-                    nees_message::wishes(points, |name| self.place_of(name)).map_err(refused)?;
+                let wishes = nees_message::wishes(points, |name| self.control_point_index(name))
+                    .map_err(refused)?;
                 if !wishes.is_empty() {
                     let mut targets = specimen.commanded().to_vec();
                     for (axis, stop_request) in &wishes {
@@ -243,7 +243,7 @@ impl State<'_> {
             }
             Request::GetControlPoint { transaction, point } => {
                 let no_such = || Refusal::new(Why::Message, transaction, "no such control point");
-                let axis = self.place_of(point).ok_or_else(no_such)?;
+                let axis = self.control_point_index(point).ok_or_else(no_such)?;
                 if let Err(fault) = specimen.read() {
                     return Ok(failed(transaction, fault.into()));
                 }

@@ -102,7 +102,7 @@ impl<'a> Refusal<'a> {
 
 /// The control point among `names` that a client names: by its whole name, or by the part before a `:`.
 #[must_use]
-pub fn place_of(names: &[String], name: &str) -> Option<usize> {
+pub fn control_point_index(names: &[String], name: &str) -> Option<usize> {
     let model = name.split(':').next();
     names
         .iter()
@@ -111,27 +111,27 @@ pub fn place_of(names: &[String], name: &str) -> Option<usize> {
 }
 
 /// The requested displacement of each axis that a proposal names: one displacement of one control point each, and no point
-/// twice. Empty if it is for auxiliary devices alone. `place_of` finds a control point.
+/// twice. Empty if it is for auxiliary devices alone. `control_point_index` finds a control point.
 ///
 /// # Errors
 /// The invalid part, for the client.
 pub fn wishes<'a>(
     points: &[Point<'a>],
-    place_of: impl Fn(&str) -> Option<usize>,
+    control_point_index: impl Fn(&str) -> Option<usize>,
 ) -> Result<Vec<(usize, StopRequest<'a>)>, &'static str> {
     let mut wishes: Vec<(usize, StopRequest<'a>)> = Vec::new();
     for point in points.iter().filter(|point| !point.is_auxiliary()) {
-        let place = place_of(point.name).ok_or("no such control point")?;
+        let axis = control_point_index(point.name).ok_or("no such control point")?;
         let [wish] = *point.wishes.as_slice() else {
             return Err("a control point has one degree of freedom");
         };
         if wish.kind != "displacement" {
             return Err("a control point moves by displacement only");
         }
-        if wishes.iter().any(|(other, _)| *other == place) {
+        if wishes.iter().any(|(other, _)| *other == axis) {
             return Err("a control point is listed twice");
         }
-        wishes.push((place, wish));
+        wishes.push((axis, wish));
     }
     Ok(wishes)
 }

@@ -65,7 +65,7 @@ pub(super) fn served_on<T: Send>(
         let client = scope.spawn(move || client(address));
         let mut guard = Guard::new(rig, limits).unwrap();
         let mut sessions = Vec::new();
-        let mut told = |event: Event<'_>| {
+        let mut on_event = |event: Event<'_>| {
             if let Event::Ended(session) = event {
                 sessions.push(session.clone());
             }
@@ -78,7 +78,7 @@ pub(super) fn served_on<T: Send>(
             &mut specimen,
             true,
             &StopRequest::default(),
-            &mut told,
+            &mut on_event,
         )
         .unwrap();
         let [session] = sessions.try_into().expect("one session");
@@ -394,7 +394,7 @@ fn a_nees_session_refuses_a_proposal_beyond_a_limit_and_goes_on() {
 }
 
 #[test]
-fn a_nees_reading_beyond_a_limit_is_told_and_ends_the_session() {
+fn a_nees_reading_beyond_a_limit_is_reported_and_ends_the_session() {
     let limits = Limits {
         force: Interval {
             low: -2e3,

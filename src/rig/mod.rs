@@ -109,14 +109,14 @@ impl std::fmt::Display for LineStatistics {
             (self.ignored, "reply", "ignored"),
             (self.reread, "reading", "repeated"),
         ];
-        let said = counted.into_iter().filter(|(count, ..)| *count > 0).map(
+        let counts = counted.into_iter().filter(|(count, ..)| *count > 0).map(
             |(count, what, became)| match (count, what) {
                 (1, _) => format!("1 {what} {became}"),
                 (_, "reply") => format!("{count} replies {became}"),
                 _ => format!("{count} {what}s {became}"),
             },
         );
-        f.write_str(&said.collect::<Vec<_>>().join(", "))
+        f.write_str(&counts.collect::<Vec<_>>().join(", "))
     }
 }
 

@@ -19,23 +19,23 @@ pub(super) fn even(start: f64, instants: &Instants) -> [f64; 2] {
 
 /// The same from positions \[m\] at times \[s\], from before the motion until after it, with linear interpolation. None if
 /// there was no motion.
-pub(super) fn from_positions(places: &[(f64, f64)]) -> Option<[f64; 2]> {
-    let (start, from) = *places.first()?;
-    let way = places.last()?.1 - from;
+pub(super) fn from_positions(positions: &[(f64, f64)]) -> Option<[f64; 2]> {
+    let (start, from) = *positions.first()?;
+    let travel = positions.last()?.1 - from;
     let (mut once, mut twice) = (0.0, 0.0);
-    for pair in places.windows(2) {
+    for pair in positions.windows(2) {
         let [(before, at), (after, to)] = [pair[0], pair[1]];
         let (moved, [early, late]) = (to - at, [before - start, after - start]);
         once += moved * 0.5 * (early + late);
         twice += moved * (early * early + early * late + late * late) / 3.0;
     }
-    let mean = once / way;
-    (way != 0.0).then(|| {
+    let mean = once / travel;
+    (travel != 0.0).then(|| {
         even(
             start,
             &Instants {
                 mean: start + mean,
-                variance: twice / way - mean * mean,
+                variance: twice / travel - mean * mean,
             },
         )
     })
@@ -47,10 +47,10 @@ mod tests {
 
     #[test]
     fn an_even_motion_is_itself_and_rest_is_none() {
-        let places: Vec<(f64, f64)> = [1.0, 1.05, 1.13, 1.2, 1.4, 1.7]
+        let positions: Vec<(f64, f64)> = [1.0, 1.05, 1.13, 1.2, 1.4, 1.7]
             .map(|time: f64| (time, 2e-3 * ((time - 1.0) / 0.2).min(1.0)))
             .to_vec();
-        let [from, to] = from_positions(&places).unwrap();
+        let [from, to] = from_positions(&positions).unwrap();
         assert!(
             (from - 1.0).abs() < 1e-12 && (to - 1.2).abs() < 1e-12,
             "{from} s to {to} s"
@@ -62,20 +62,20 @@ mod tests {
     /// A first-order lag delays a ramp of T by its time constant, and adds its square to the variance T²/12.
     #[test]
     fn a_lag_is_later_and_longer() {
-        let (lag, way) = (0.05, 0.4);
+        let (lag, travel) = (0.05, 0.4);
         let behind = |time: f64| {
-            lag * (1.0 - (-time.min(way) / lag).exp()) * (-(time - way).max(0.0) / lag).exp()
+            lag * (1.0 - (-time.min(travel) / lag).exp()) * (-(time - travel).max(0.0) / lag).exp()
         };
-        let places: Vec<(f64, f64)> = (0..=4000)
+        let positions: Vec<(f64, f64)> = (0..=4000)
             .map(|index| f64::from(index) * 3e-4)
-            .map(|t| (t, t.min(way) - behind(t)))
+            .map(|t| (t, t.min(travel) - behind(t)))
             .collect();
-        let found = from_positions(&places).unwrap();
+        let found = from_positions(&positions).unwrap();
         let wanted = even(
             0.0,
             &Instants {
-                mean: 0.5 * way + lag,
-                variance: way * way / 12.0 + lag * lag,
+                mean: 0.5 * travel + lag,
+                variance: travel * travel / 12.0 + lag * lag,
             },
         );
         assert!(

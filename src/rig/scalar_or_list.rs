@@ -29,7 +29,7 @@ mod tests {
     use crate::rig::LastMove;
 
     #[test]
-    fn one_axis_is_a_number_and_several_are_a_list_both_ways() {
+    fn one_axis_is_a_number_and_several_are_a_list_in_both_directions() {
         for (targets, text) in [
             (vec![1.25e-3], r#"{"id":7,"target":0.00125}"#),
             (vec![0.1, -0.2], r#"{"id":7,"target":[0.1,-0.2]}"#),

@@ -42,7 +42,7 @@ fn leading(plan: &Plan) -> usize {
     let ramps = quiet
         .enumerate()
         .filter(|(_, procedure)| matches!(procedure.kind, ProcedureKind::StiffnessRamp(_)));
-    ramps.map(|(place, _)| place + 1).last().unwrap_or(0)
+    ramps.map(|(index, _)| index + 1).last().unwrap_or(0)
 }
 
 /// The part of the plan that a check run runs on the rig: the pre-test check and the leading stiffness ramps. It is marked as a
@@ -215,7 +215,7 @@ mod tests {
 
     /// A frame has the models of its storeys: none is measured first, and the impact is predicted with them.
     #[test]
-    fn a_blow_on_a_storey_is_predicted_on_the_storeys_of_the_plan() {
+    fn an_impact_on_a_storey_is_predicted_on_the_storeys_of_the_plan() {
         let plan = struck_frame();
         let part = measured_part(&plan).unwrap();
         assert!(part.procedures.is_empty());
@@ -231,8 +231,8 @@ mod tests {
     }
 
     fn plan() -> Plan {
-        let mut blow = impact(result_of(1, "stiffness"));
-        blow.stepping.inspect = vec![InspectTrigger::Every(1000)];
+        let mut struck = impact(result_of(1, "stiffness"));
+        struck.stepping.inspect = vec![InspectTrigger::Every(1000)];
         elastic_plan(
             320.0,
             vec![
@@ -248,7 +248,7 @@ mod tests {
                     speed: None,
                 }),
                 ProcedureKind::StiffnessRamp(ramp(2e-3)),
-                ProcedureKind::Impact(blow),
+                ProcedureKind::Impact(struck),
             ],
         )
     }
@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn the_virtual_specimen_is_as_stiff_as_the_measured_one_and_yields_where_the_plan_says() {
+    fn the_virtual_specimen_has_the_measured_stiffness_and_the_yield_point_of_the_plan() {
         let mut expected = plan();
         expected.specimens[0].behaviour = Some(Behaviour::Bilinear {
             stiffness: 400.0,

@@ -14,7 +14,7 @@ pub struct Motion {
     /// The identity of the rig that answered.
     pub identity: Identity,
     /// Its position and force, if they were read: `at 0 mm, 0.2 N`.
-    pub stands: Option<String>,
+    pub position: Option<String>,
     /// The motion, as the end of a sentence that begins with the name of the rig: `it moves to 1 mm`.
     pub does: String,
     /// The expected extent of the motion.
@@ -43,7 +43,7 @@ impl Motion {
         Self {
             rig: plan.rig.name.clone(),
             identity,
-            stands: None,
+            position: None,
             does,
             expected: Extent::default(),
             limits: plan.limits,
@@ -73,8 +73,11 @@ impl Motion {
             duration,
         } = self.expected;
         let speed = speed.map(|speed| format!("up to {}", readable(speed, Dimension::VELOCITY)));
-        let stands = self.stands.as_ref().map(|stands| row("position", stands));
-        let first = std::iter::once(row("rig", &self.who())).chain(stands);
+        let position = self
+            .position
+            .as_ref()
+            .map(|position| row("position", position));
+        let first = std::iter::once(row("rig", &self.who())).chain(position);
         let rest = [
             row("motion", &self.does),
             row(
@@ -113,12 +116,12 @@ impl Motion {
             simulated,
             ..
         } = &self.identity;
-        let said: Vec<&str> = [model.as_str(), serial.as_str()]
+        let words: Vec<&str> = [model.as_str(), serial.as_str()]
             .into_iter()
             .filter(|word| !word.is_empty())
             .collect();
         let simulated = if *simulated { ", simulated" } else { "" };
-        format!("{} ({}{simulated})", self.rig, said.join(" "))
+        format!("{} ({}{simulated})", self.rig, words.join(" "))
     }
 }
 

@@ -28,16 +28,16 @@ pub(crate) fn pass(
 ) -> Result<(), Stop> {
     let axes = session.guard.commanded().len();
     let checks: Vec<PretestCheck> = (0..axes).map(|axis| link.pretest_check_of(axis)).collect();
-    let mut ways: Vec<String> = checks
+    let mut probes: Vec<String> = checks
         .iter()
         .map(|pretest_check| stated(pretest_check.probe, Dimension::LENGTH))
         .collect();
-    ways.dedup();
-    let ways = ways.join(", ");
+    probes.dedup();
+    let probes = probes.join(", ");
     let by = if axes == 1 {
-        format!("by {ways}")
+        format!("by {probes}")
     } else {
-        format!("each of its {axes} axes in turn, {ways}")
+        format!("each of its {axes} axes in turn, {probes}")
     };
     // No motion enable is requested for a rig at a different position.
     start::check(plan, link, session, session.guard.found())?;
@@ -46,11 +46,11 @@ pub(crate) fn pass(
         plan.rig.name
     );
     let does = format!("it MOVES {by} and back (pre-test check), then {afterwards}");
-    let stands = Some(start::describe(session));
+    let position = Some(start::describe(session));
     session.release(
         &note,
         &Motion {
-            stands,
+            position,
             ..Motion::of(plan, session.identity(), does)
         },
     )?;
@@ -154,8 +154,8 @@ fn probe(
 
 /// The effect of the move of one axis (from 1) on the others.
 fn others(column: &[f64], axis: usize) -> String {
-    let felt = (1..).zip(column).filter(|(other, _)| *other != axis);
-    let told: Vec<String> = felt
+    let coupled = (1..).zip(column).filter(|(other, _)| *other != axis);
+    let listed: Vec<String> = coupled
         .map(|(other, stiffness)| {
             format!(
                 "{} in axis {other}",
@@ -163,7 +163,7 @@ fn others(column: &[f64], axis: usize) -> String {
             )
         })
         .collect();
-    format!("with {}", told.join(", "))
+    format!("with {}", listed.join(", "))
 }
 
 fn refuse<T>(reason: String) -> Result<T, Stop> {
@@ -176,7 +176,7 @@ mod tests {
     use crate::plan::Interval;
 
     #[test]
-    fn a_bent_specimen_is_told_from_a_cell_without_its_zero() {
+    fn a_loaded_specimen_is_distinguished_from_a_cell_with_a_zero_offset() {
         let pretest_check = PretestCheck {
             probe: 1e-4,
             stiffness: Interval {

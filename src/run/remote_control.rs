@@ -365,8 +365,8 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
 
     /// The outcome of an interrupted run log is a fault.
     pub(super) fn outcome(&self) -> Outcome {
-        let cut_off = |place: &str| Outcome::Faulted {
-            reason: format!("the run log ends {place}"),
+        let cut_off = |position: &str| Outcome::Faulted {
+            reason: format!("the run log ends {position}"),
         };
         match &self.worst {
             _ if self.inside => cut_off("during a session"),

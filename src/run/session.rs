@@ -122,7 +122,7 @@ impl<'run> Session<'run> {
     pub(crate) fn finish(mut self) -> Vec<Event> {
         let line_statistics = self.guard.line_statistics();
         if line_statistics != LineStatistics::default() {
-            self.event(EventKind::Mended, line_statistics.to_string());
+            self.event(EventKind::Recovered, line_statistics.to_string());
         }
         self.events
     }
@@ -238,11 +238,11 @@ impl<'run> Session<'run> {
         self.look_at_a_hold()?;
         loop {
             match ask(self.observer) {
-                Inspection::GoOn { note: said, by } => {
-                    let said = said.map_or_else(String::new, |said| format!(": {said}"));
+                Inspection::GoOn { note: remark, by } => {
+                    let remark = remark.map_or_else(String::new, |remark| format!(": {remark}"));
                     self.event(
                         EventKind::Inspection,
-                        format!("{note}{said}{}", signed(by.as_deref())),
+                        format!("{note}{remark}{}", signed(by.as_deref())),
                     );
                     self.look_at_a_hold()?;
                     self.attended = false;
@@ -359,8 +359,8 @@ impl<'run> Session<'run> {
         displacement: &[f64],
         force: &[f64],
     ) -> Result<(), Stop> {
-        let places = self.guard.commanded().iter().zip(displacement).zip(force);
-        let mut axes = places.map(|((command, displacement), force)| AxisReport {
+        let positions = self.guard.commanded().iter().zip(displacement).zip(force);
+        let mut axes = positions.map(|((command, displacement), force)| AxisReport {
             command: *command,
             displacement: *displacement,
             velocity: 0.0,
@@ -424,14 +424,14 @@ impl<'run> Session<'run> {
         }
     }
 
-    /// Moves to `place` \[m\], in one move or, if increments are limited, in equal increments.
-    pub(crate) fn go_to(&mut self, place: f64, speed: Option<f64>) -> Result<(), Stop> {
-        self.go_to_all(&[place], speed)
+    /// Moves to `position` \[m\], in one move or, if increments are limited, in equal increments.
+    pub(crate) fn go_to(&mut self, position: f64, speed: Option<f64>) -> Result<(), Stop> {
+        self.go_to_all(&[position], speed)
     }
 
     /// The same for every axis.
-    pub(crate) fn go_to_all(&mut self, places: &[f64], speed: Option<f64>) -> Result<(), Stop> {
-        for target in self.guard.increments_to(places) {
+    pub(crate) fn go_to_all(&mut self, positions: &[f64], speed: Option<f64>) -> Result<(), Stop> {
+        for target in self.guard.increments_to(positions) {
             self.guard.move_to(&target, speed)?;
         }
         Ok(())

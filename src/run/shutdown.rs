@@ -53,17 +53,19 @@ impl Session<'_> {
 
     /// Whether the operator requests unloading.
     fn may_unload(&mut self, plan: &Plan, halted: Option<&FinalHold>) -> bool {
-        let place = |places: &[f64]| {
-            places
+        let shown = |positions: &[f64]| {
+            positions
                 .iter()
-                .map(|place| readable(*place, Dimension::LENGTH))
+                .map(|position| readable(*position, Dimension::LENGTH))
                 .collect::<Vec<_>>()
                 .join(", ")
         };
         let found = halted.and_then(|halted| halted.found.as_ref());
-        let at =
-            place(found.map_or_else(|| self.guard.commanded(), |(places, _)| places.as_slice()));
-        let home = place(&self.home);
+        let at = shown(found.map_or_else(
+            || self.guard.commanded(),
+            |(positions, _)| positions.as_slice(),
+        ));
+        let home = shown(&self.home);
         let motion = self.unloading(plan, halted);
         let speed = self.guard.own_speed();
         let speed = speed.map_or_else(String::new, |speed| {
@@ -108,7 +110,10 @@ impl Session<'_> {
     /// The motion that removes the load.
     fn unloading(&self, plan: &Plan, halted: Option<&FinalHold>) -> Motion {
         let found = halted.and_then(|halted| halted.found.as_ref());
-        let from = found.map_or_else(|| self.guard.commanded(), |(places, _)| places.as_slice());
+        let from = found.map_or_else(
+            || self.guard.commanded(),
+            |(positions, _)| positions.as_slice(),
+        );
         let over = |values: &mut dyn Iterator<Item = f64>| {
             values
                 .map(|value| Interval {
@@ -120,7 +125,7 @@ impl Session<'_> {
                     high: a.high.max(b.high),
                 })
         };
-        let way = from
+        let longest = from
             .iter()
             .zip(&self.home)
             .map(|(from, to)| (to - from).abs())
@@ -130,7 +135,7 @@ impl Session<'_> {
             travel: over(&mut from.iter().chain(&self.home).copied()),
             force: found.and_then(|(_, force)| over(&mut force.iter().copied().chain([0.0]))),
             speed,
-            duration: speed.map(|speed| way / speed),
+            duration: speed.map(|speed| longest / speed),
         };
         let does = "it MOVES back to its start position".to_owned();
         Motion {

@@ -35,24 +35,24 @@ pub(super) fn check(
     plan: &Plan,
     link: &RealLink,
     session: &Session<'_>,
-    (places, forces): AtRest<'_>,
+    (positions, forces): AtRest<'_>,
 ) -> Result<(), Stop> {
     if session.guard.datum().is_none() || !failpoint::on(Guarding::PretestStart) {
         return Ok(());
     }
-    for (axis, (place, force)) in places.iter().zip(forces).enumerate() {
+    for (axis, (position, force)) in positions.iter().zip(forces).enumerate() {
         let (band, pretest_check) = (band(plan, link, axis), link.pretest_check_of(axis));
-        if (0.0..=band).contains(&place.abs()) {
+        if (0.0..=band).contains(&position.abs()) {
             continue;
         }
-        let who = named_axis(axis, places.len())
+        let who = named_axis(axis, positions.len())
             .map_or_else(|| "it".to_owned(), |axis| format!("axis {axis}"));
-        let at = readable(*place, Dimension::LENGTH);
+        let at = readable(*position, Dimension::LENGTH);
         let remedy = match link.datum {
             Datum::Machine if (0.0..=pretest_check.zero).contains(&force.abs()) => {
                 "move it there with `psd rig jog`; or, if the specimen carries no load here, write `datum = here`".to_owned()
             }
-            Datum::Machine => remedy(*place, *force, &pretest_check),
+            Datum::Machine => remedy(*position, *force, &pretest_check),
             Datum::Here | Datum::At(_) => "it is not at rest".to_owned(),
         };
         return Err(Stop::PretestCheck {
@@ -67,18 +67,18 @@ pub(super) fn check(
 
 /// The position and force of the rig, and the position in its own coordinate if the plan's zero is different.
 pub(super) fn describe(session: &Session<'_>) -> String {
-    let (places, forces) = session.guard.found();
-    let stands = format!("at {}", position_and_force(places, forces));
+    let (positions, forces) = session.guard.found();
+    let described = format!("at {}", position_and_force(positions, forces));
     let own = session.guard.datum().unwrap_or_default();
-    if own.iter().all(|place| *place == 0.0) {
-        return stands;
+    if own.iter().all(|position| *position == 0.0) {
+        return described;
     }
     let own: Vec<String> = own
         .iter()
-        .map(|place| plain(*place, Dimension::LENGTH, 6))
+        .map(|position| plain(*position, Dimension::LENGTH, 6))
         .collect();
     format!(
-        "{stands}; the plan's zero is at {} in the rig's own coordinate",
+        "{described}; the plan's zero is at {} in the rig's own coordinate",
         own.join(", ")
     )
 }
@@ -92,15 +92,15 @@ pub(super) fn log_datum(link: &RealLink, session: &mut Session<'_>) {
     else {
         return;
     };
-    let places: Vec<String> = datum
+    let positions: Vec<String> = datum
         .iter()
-        .map(|place| plain(*place, Dimension::LENGTH, 6))
+        .map(|position| plain(*position, Dimension::LENGTH, 6))
         .collect();
     session.event(
         EventKind::Note,
         format!(
             "the plan's zero is the present position of the rig: {} in its own coordinate",
-            places.join(", ")
+            positions.join(", ")
         ),
     );
 }
@@ -114,9 +114,9 @@ pub(super) fn remedy(displacement: f64, force: f64, pretest_check: &PretestCheck
         .contains(&carried)
         && displacement.abs() > pretest_check.probe;
     if bent {
-        let place = readable(displacement, Dimension::LENGTH);
+        let position = readable(displacement, Dimension::LENGTH);
         format!(
-            "it is at {place}, as after a run without a final `unload`: move it back with `psd rig jog`, or restart the rig \
+            "it is at {position}, as after a run without a final `unload`: move it back with `psd rig jog`, or restart the rig \
              emulator"
         )
     } else {

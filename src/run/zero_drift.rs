@@ -33,10 +33,10 @@ pub(crate) fn before(check: DriftCheck, session: &mut Session<'_>) -> Result<Dri
         axes,
         held: Held::default(),
     };
-    let said = drift.axes.iter().map(|axis| describe(&axis.before));
+    let texts = drift.axes.iter().map(|axis| describe(&axis.before));
     session.event(
         EventKind::Note,
-        format!("zero before the test: {}", listed(said)),
+        format!("zero before the test: {}", listed(texts)),
     );
     Ok(drift)
 }
@@ -56,11 +56,11 @@ pub(crate) fn after(
     for (axis, zero) in drift.axes.iter_mut().zip(zeros(drift.check.over, session)?) {
         axis.after = Some(zero);
     }
-    let said = drift
+    let changes = drift
         .axes
         .iter()
         .filter_map(|axis| axis.after.as_ref().zip(axis.change()));
-    let said = said.map(|(zero, (by, _))| {
+    let texts = changes.map(|(zero, (by, _))| {
         format!(
             "{}, {} from the zero before",
             describe(zero),
@@ -69,7 +69,7 @@ pub(crate) fn after(
     });
     session.event(
         EventKind::Note,
-        format!("zero after the test: {}", listed(said)),
+        format!("zero after the test: {}", listed(texts)),
     );
     Ok(())
 }
@@ -84,13 +84,14 @@ fn describe(zero: &Zero) -> String {
 }
 
 /// Joins the values of several axes, each with its number.
-fn listed(said: impl Iterator<Item = String>) -> String {
-    let said: Vec<String> = said.collect();
-    let axes = said.len();
-    let named = |(place, said): (usize, &String)| {
-        named_axis(place, axes).map_or(said.clone(), |axis| format!("axis {axis}: {said}"))
+fn listed(texts: impl Iterator<Item = String>) -> String {
+    let texts: Vec<String> = texts.collect();
+    let axes = texts.len();
+    let named = |(index, texts): (usize, &String)| {
+        named_axis(index, axes).map_or(texts.clone(), |axis| format!("axis {axis}: {texts}"))
     };
-    said.iter()
+    texts
+        .iter()
         .enumerate()
         .map(named)
         .collect::<Vec<_>>()
@@ -116,7 +117,7 @@ fn zero_of(axis: usize, target: f64, readings: &[Reading]) -> Zero {
     let time = readings.last().map_or(0.0, |reading| reading.time);
     let times: Vec<f64> = readings.iter().map(|reading| reading.time).collect();
     let forces: Vec<f64> = readings.iter().map(|reading| reading.force[axis]).collect();
-    let places: Vec<f64> = readings
+    let positions: Vec<f64> = readings
         .iter()
         .map(|reading| reading.displacement[axis] - target)
         .collect();
@@ -125,8 +126,8 @@ fn zero_of(axis: usize, target: f64, readings: &[Reading]) -> Zero {
     Zero {
         time,
         force: mean(&forces),
-        displacement: mean(&places),
+        displacement: mean(&positions),
         force_slope: slope(&forces),
-        displacement_slope: slope(&places),
+        displacement_slope: slope(&positions),
     }
 }

@@ -170,8 +170,8 @@ impl Field {
         self
     }
 
-    pub(super) const fn or_said(mut self, words: &'static str) -> Self {
-        self.need = Need::Said(words);
+    pub(super) const fn default_in_words(mut self, words: &'static str) -> Self {
+        self.need = Need::DefaultInWords(words);
         self
     }
 

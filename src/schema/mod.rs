@@ -18,7 +18,7 @@ pub(crate) use blocks::{
 pub use columns::Column;
 pub use functions::{FUNCTIONS, FunctionKind};
 pub use reference::{codes, reference};
-pub use renamed::{Place, RENAMED, Renamed, renamed_at, renamed_result};
+pub use renamed::{NameRole, RENAMED, Renamed, renamed_at, renamed_result};
 pub use types::{
     BlockKind, Field, FieldType, Kind, Naming, Need, Range, ResultKind, RigKind, Variant,
 };
@@ -49,12 +49,12 @@ const fn joined<const N: usize>(
     lists: [&'static [&'static BlockKind]; 3],
 ) -> [&'static BlockKind; N] {
     let mut all = [lists[0][0]; N];
-    let (mut place, mut list) = (0, 0);
+    let (mut position, mut list) = (0, 0);
     while list < lists.len() {
         let mut entry = 0;
         while entry < lists[list].len() {
-            all[place] = lists[list][entry];
-            (place, entry) = (place + 1, entry + 1);
+            all[position] = lists[list][entry];
+            (position, entry) = (position + 1, entry + 1);
         }
         list += 1;
     }
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn no_block_says_a_name_twice() {
+    fn no_block_declares_a_name_twice() {
         for block in BLOCKS {
             for names in [
                 block

@@ -5,7 +5,7 @@ use super::types::Kind;
 
 /// Where a name appears.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum NameRole {
     /// A field of such a block.
     Field(Kind),
     /// A named argument of these variants.
@@ -19,7 +19,7 @@ pub enum Place {
 /// One name of version 0.1.
 #[derive(Clone, Copy, Debug)]
 pub struct Renamed {
-    pub place: Place,
+    pub role: NameRole,
     pub old: &'static str,
     /// The present name. A result may have become the uncertainty of another: `breaks.u`.
     pub new: &'static str,
@@ -27,20 +27,20 @@ pub struct Renamed {
     pub alias: bool,
 }
 
-const fn renamed(place: Place, old: &'static str, new: &'static str) -> Renamed {
+const fn renamed(role: NameRole, old: &'static str, new: &'static str) -> Renamed {
     Renamed {
-        place,
+        role,
         old,
         new,
         alias: false,
     }
 }
 
-const YIELDING: Place = Place::Argument(&["bilinear", "bouc_wen", "pinching"]);
-const AXIS: Place = Place::Argument(&["axis"]);
-const RIG: Place = Place::Field(Kind::Rig);
-const RAMP: Place = Place::Result(&[Kind::StiffnessRamp]);
-const FITTED: Place = Place::Result(&[Kind::StiffnessRamp, Kind::Cycle]);
+const YIELDING: NameRole = NameRole::Argument(&["bilinear", "bouc_wen", "pinching"]);
+const AXIS: NameRole = NameRole::Argument(&["axis"]);
+const RIG: NameRole = NameRole::Field(Kind::Rig);
+const RAMP: NameRole = NameRole::Result(&[Kind::StiffnessRamp]);
+const FITTED: NameRole = NameRole::Result(&[Kind::StiffnessRamp, Kind::Cycle]);
 
 /// Every name that has changed since version 0.1.
 pub const RENAMED: &[Renamed] = &[
@@ -62,19 +62,19 @@ pub const RENAMED: &[Renamed] = &[
     renamed(RIG, "sign", "polarity"),
     renamed(AXIS, "sign", "polarity"),
     renamed(RIG, "drift", "zero_drift"),
-    renamed(Place::Argument(&["virtual"]), "drift", "zero_drift"),
-    renamed(Place::Field(Kind::Ground), "record", "file"),
-    renamed(Place::Word(&["results", "columns"]), "near", "tolerance"),
+    renamed(NameRole::Argument(&["virtual"]), "drift", "zero_drift"),
+    renamed(NameRole::Field(Kind::Ground), "record", "file"),
+    renamed(NameRole::Word(&["results", "columns"]), "near", "tolerance"),
     Renamed {
         alias: true,
-        ..renamed(Place::Word(&["mode"]), "step_and_pause", "ramp_and_hold")
+        ..renamed(NameRole::Word(&["mode"]), "step_and_pause", "ramp_and_hold")
     },
 ];
 
 /// The row of a name at a place that `at` accepts.
 #[must_use]
-pub fn renamed_at(name: &str, at: impl Fn(Place) -> bool) -> Option<&'static Renamed> {
-    RENAMED.iter().find(|row| row.old == name && at(row.place))
+pub fn renamed_at(name: &str, at: impl Fn(NameRole) -> bool) -> Option<&'static Renamed> {
+    RENAMED.iter().find(|row| row.old == name && at(row.role))
 }
 
 /// The row of a result of a procedure of this kind.
@@ -82,6 +82,6 @@ pub fn renamed_at(name: &str, at: impl Fn(Place) -> bool) -> Option<&'static Ren
 pub fn renamed_result(kind: Kind, name: &str) -> Option<&'static Renamed> {
     renamed_at(
         name,
-        |place| matches!(place, Place::Result(kinds) if kinds.contains(&kind)),
+        |role| matches!(role, NameRole::Result(kinds) if kinds.contains(&kind)),
     )
 }

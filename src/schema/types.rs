@@ -154,7 +154,7 @@ pub enum Need {
         unit: &'static str,
     },
     /// The default in the syntax of the language or in words: `rigid`, `critical / 20`, "the specimen's".
-    Said(&'static str),
+    DefaultInWords(&'static str),
     /// Required where the run is on a rig of this kind; the string describes the default on the other.
     RequiredOn(RigKind, &'static str),
 }
@@ -277,7 +277,7 @@ impl Field {
         match self.need {
             Need::Default { number, unit: "" } => Some(number.to_string()),
             Need::Default { number, unit } => Some(format!("{number} {unit}")),
-            Need::Said(words) => Some(words.to_owned()),
+            Need::DefaultInWords(words) => Some(words.to_owned()),
             Need::RequiredOn(rig, "") => Some(format!("required on a {} rig", rig.name())),
             Need::RequiredOn(rig, words) => {
                 Some(format!("{words}; required on a {} rig", rig.name()))

@@ -25,7 +25,7 @@ pub struct Definition {
     pub confidence: Confidence,
     pub collect: Vec<Collected>,
     /// Index into `Studies::studies` or `Studies::fragilities`.
-    pub place: usize,
+    pub index: usize,
     pub draws: Draws,
 }
 
@@ -67,7 +67,7 @@ impl Definition {
             .chain(studies.fragilities.iter().map(|it| it.name.as_str()))
             .collect();
         let known = || names.join(", ");
-        let place = match name {
+        let index = match name {
             Some(wanted) => names
                 .iter()
                 .position(|name| *name == wanted)
@@ -81,16 +81,16 @@ impl Definition {
                 _ => return Err(DefinitionError::Several(known())),
             },
         };
-        match studies.studies.get(place) {
-            Some(study) => Self::of_study(study, place, runs),
+        match studies.studies.get(index) {
+            Some(study) => Self::of_study(study, index, runs),
             None => {
-                let place = place - studies.studies.len();
-                Self::of_fragility(&studies.fragilities[place], place, runs)
+                let index = index - studies.studies.len();
+                Self::of_fragility(&studies.fragilities[index], index, runs)
             }
         }
     }
 
-    fn of_study(study: &Study, place: usize, runs: Option<u64>) -> Result<Self, DefinitionError> {
+    fn of_study(study: &Study, index: usize, runs: Option<u64>) -> Result<Self, DefinitionError> {
         let runs = in_bounds(runs.map_or(study.runs, |runs| with_most(study.runs, runs)))?;
         let variation = &study.variation;
         Ok(Self {
@@ -110,14 +110,14 @@ impl Definition {
                 Runs::Decided { confidence, .. } | Runs::HalfWidth { confidence, .. } => confidence,
             },
             collect: study.collect.clone(),
-            place,
+            index,
             draws: Draws::of_study(variation, runs.at_most())?,
         })
     }
 
     fn of_fragility(
         fragility: &Fragility,
-        place: usize,
+        index: usize,
         runs: Option<u64>,
     ) -> Result<Self, DefinitionError> {
         let each = runs.unwrap_or(fragility.runs);
@@ -141,7 +141,7 @@ impl Definition {
             runs: in_bounds(Runs::Fixed(all))?,
             confidence: fragility.confidence,
             collect: Vec::new(),
-            place,
+            index,
             draws: Draws::of_fragility(stripes, variation, each)?,
         })
     }

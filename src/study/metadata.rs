@@ -19,8 +19,8 @@ pub fn version() -> String {
 #[must_use]
 pub fn of(plan: &Plan, study: &Definition, readout: &Readout) -> Metadata {
     let variation = match study.kind {
-        Kind::Study(_) => Some(&plan.studies.studies[study.place].variation),
-        Kind::Fragility(_) => plan.studies.fragilities[study.place].variation.as_ref(),
+        Kind::Study(_) => Some(&plan.studies.studies[study.index].variation),
+        Kind::Fragility(_) => plan.studies.fragilities[study.index].variation.as_ref(),
     };
     let setting = |(name, text): &(String, String)| Setting {
         name: name.clone(),
@@ -53,7 +53,7 @@ pub fn of(plan: &Plan, study: &Definition, readout: &Readout) -> Metadata {
         results: readout.columns(),
         requirements: readout.decisions(plan),
         studied: match study.kind {
-            Kind::Study(_) => studied(&plan.studies.requirements, study.place),
+            Kind::Study(_) => studied(&plan.studies.requirements, study.index),
             Kind::Fragility(_) => Vec::new(),
         },
     }

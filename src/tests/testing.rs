@@ -89,7 +89,7 @@ pub(crate) fn struck_frame() -> Plan {
         )
     };
     let frame = Frame::of_storeys(vec![storey(500.0, 20.0), storey(300.0, 15.0)]);
-    let blow = Impact {
+    let struck = Impact {
         specimen: 0,
         striker: 0,
         target: ImpactTarget::Storey(StoreyTarget {
@@ -107,7 +107,7 @@ pub(crate) fn struck_frame() -> Plan {
         duration: Formula::Constant(0.25),
         until: Until::Duration,
     };
-    let mut plan = elastic_plan(1.0, vec![ProcedureKind::Impact(blow)]);
+    let mut plan = elastic_plan(1.0, vec![ProcedureKind::Impact(struck)]);
     plan.specimens[0].frame = Some(frame);
     plan.specimens[0].behaviour = None;
     plan.specimens[0].mass = 2.0;

@@ -229,7 +229,7 @@ mod tests {
 
     /// Slope and intercept of one line: every result of both has the degrees of freedom of the line, and no more.
     #[test]
-    fn what_one_scatter_tells_has_its_degrees_of_freedom() {
+    fn an_uncertainty_from_one_scatter_has_its_degrees_of_freedom() {
         let parts = [fit(0, "stiffness", 2.0), fit(0, "intercept_force", 2.0)];
         let known = known(&parts, &Two).unwrap();
         assert!((known.degrees - 4.0).abs() < 1e-12);

@@ -314,7 +314,7 @@ impl<P: Evaluate> Prepared<'_, P> {
         let evaluate = self.study.evaluate;
         let drawn = self.drawn.iter().enumerate();
         let mut shifts: Vec<(Source, f64)> = drawn
-            .map(|(place, source)| (*source, sign_of_input(trial, place)))
+            .map(|(index, source)| (*source, sign_of_input(trial, index)))
             .collect();
         if evaluate.inputs(&shifts).is_err() {
             // An input that cannot be perturbed to one side is perturbed to the other.

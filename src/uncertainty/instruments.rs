@@ -31,7 +31,7 @@ impl InstrumentUncertainty {
         let expected = matches!(
             plan.rig.link,
             Link::Virtual(VirtualLink {
-                foretold: Some(_),
+                predicted: Some(_),
                 ..
             })
         );
@@ -138,7 +138,7 @@ impl InstrumentUncertainty {
 fn reading_errors(plan: &Plan, declared: DeclaredNoise, axis: usize) -> ReadingErrors {
     let (noise, resolution, force_resolution) = match &plan.rig.link {
         Link::Virtual(VirtualLink {
-            foretold: Some(errors),
+            predicted: Some(errors),
             ..
         }) => (errors.noise, errors.resolution, errors.force_resolution),
         Link::Virtual(link) => (declared.force, declared.resolution, link.force_resolution),

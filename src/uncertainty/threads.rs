@@ -26,9 +26,9 @@ pub(super) fn in_threads<J: Sync, T: Send, E>(
             let (send, next, given_up) = (send.clone(), &next, &given_up);
             let run = move || {
                 while !given_up.load(Ordering::Relaxed) {
-                    let place = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(job) = jobs.get(place) else { break };
-                    if send.send((place, work(job))).is_err() {
+                    let index = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(job) = jobs.get(index) else { break };
+                    if send.send((index, work(job))).is_err() {
                         break;
                     }
                 }
@@ -47,8 +47,8 @@ pub(super) fn in_threads<J: Sync, T: Send, E>(
         }
         while done < jobs.len() {
             match receive.recv_timeout(MOMENT) {
-                Ok((place, value)) => {
-                    found[place] = Some(value);
+                Ok((index, value)) => {
+                    found[index] = Some(value);
                     done += 1;
                 }
                 Err(RecvTimeoutError::Timeout) => {}
@@ -71,7 +71,7 @@ mod tests {
 
     /// Every job is done once, in any order, and its result has the index of the job; the observer sees all of them, and may stop.
     #[test]
-    fn jobs_keep_their_places_in_threads() {
+    fn jobs_keep_their_order_in_threads() {
         let jobs: Vec<u64> = (0..500).collect();
         let mut most = 0;
         let slow_first =

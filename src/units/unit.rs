@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_say_where_in_the_token() {
+    fn errors_state_the_position_in_the_token() {
         assert_eq!(
             parse("N/mx"),
             Err(UnitError::Unknown {

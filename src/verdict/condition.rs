@@ -25,16 +25,16 @@ pub(crate) fn assess_condition(
         DecisionRule::Simple => (None, None),
         DecisionRule::Guarded => (distance_known, lacking.clone()),
     };
-    let told = distance_known.filter(|_| lacking.is_none());
+    let distance_uncertainty = distance_known.filter(|_| lacking.is_none());
     let conforms = known
-        .zip(told)
-        .map(|((value, bound), told)| bound.conforms(value, told));
-    let wider_than_tolerance = known
-        .zip(told)
-        .is_some_and(|((_, bound), told)| match bound {
-            Bound::Within { tolerance, .. } => told.expanded() > tolerance,
+        .zip(distance_uncertainty)
+        .map(|((value, bound), distance_uncertainty)| bound.conforms(value, distance_uncertainty));
+    let wider_than_tolerance = known.zip(distance_uncertainty).is_some_and(
+        |((_, bound), distance_uncertainty)| match bound {
+            Bound::Within { tolerance, .. } => distance_uncertainty.expanded() > tolerance,
             Bound::Compare { .. } => false,
-        });
+        },
+    );
     let guard_band = margin_known
         .filter(|_| unguarded.is_none())
         .map(Known::expanded);

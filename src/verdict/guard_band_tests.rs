@@ -154,7 +154,7 @@ fn a_guard_band_needs_an_uncertainty_that_is_known() {
 
 /// 8 with u = 0.125 (normal): at its limit 50 %, one u inside 84.1 %; between limits of ±0.125 it is 68.3 %, and U exceeds the limits.
 #[test]
-fn a_probability_of_conformity_is_told_under_either_rule() {
+fn a_probability_of_conformity_is_reported_under_either_rule() {
     let mut record = record(Outcome::Completed);
     record.procedures[0].results[0].value = ResultValue::Number {
         value: Some(8.0),

@@ -160,17 +160,17 @@ fn assess_requirement(
 
 /// Assesses a condition of an impact series against the results of the last impact, which are those of the procedure `own`. Results that
 /// are not determined, because the impact ended before its peak, are not conclusive.
-pub(crate) fn assess_on_blow(
+pub(crate) fn assess_on_impact(
     condition: &Condition,
     rule: DecisionRule,
     results: &dyn Results,
     own: ProcedureId,
-    blow: &ImpactHistory,
+    impact: &ImpactHistory,
 ) -> ConditionOutcome {
     let outcome = assess_condition(condition, rule, results);
-    let steps = (blow.time_step, blow.critical_time_step);
+    let steps = (impact.time_step, impact.critical_time_step);
     let longer = (steps.0 > steps.1).then(|| longer_than_critical("the impact", steps.0, steps.1));
-    match longer.or_else(|| unfinished_peaks::undecided_by(condition, rule, results, own, blow)) {
+    match longer.or_else(|| unfinished_peaks::undecided_by(condition, rule, results, own, impact)) {
         Some(why) => ConditionOutcome {
             verdict: Verdict::Inconclusive,
             reason: Some(why),

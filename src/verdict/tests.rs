@@ -165,7 +165,7 @@ fn what_is_equal_but_for_rounding_is_equal() {
 }
 
 #[test]
-fn a_missing_result_is_inconclusive_and_says_so() {
+fn a_missing_result_is_reported_as_inconclusive() {
     let outcome = assess_condition(
         &condition(result("stop_time"), compare(Comparison::Less, 1.0)),
         DecisionRule::Guarded,
@@ -280,9 +280,9 @@ fn what_a_scheme_made_of_its_energy_decides_nothing() {
         verdict(&with("energy_error", number(f64::NAN)), "max_displacement").verdict,
         Verdict::Inconclusive
     );
-    let blows = with("energy_errors", ResultValue::List(vec![0.01, -0.7]));
+    let impacts = with("energy_errors", ResultValue::List(vec![0.01, -0.7]));
     assert_eq!(
-        verdict(&blows, "max_displacement").verdict,
+        verdict(&impacts, "max_displacement").verdict,
         Verdict::Inconclusive
     );
 }

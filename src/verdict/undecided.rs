@@ -79,9 +79,9 @@ const BESIDE_THE_BALANCE: [&str; 6] = [
 
 /// An energy balance error of more than half of the input: the computed motion is not that of the specimen.
 fn unbalanced(read: &[Read<'_>]) -> Option<String> {
-    let told =
+    let is_unbalanced =
         |(procedure, result): &&Read<'_>| !BESIDE_THE_BALANCE.contains(result) && off(procedure);
-    let (procedure, _) = read.iter().find(told)?;
+    let (procedure, _) = read.iter().find(is_unbalanced)?;
     Some(format!(
         "the energy balance of {} is in error by more than half of the input energy",
         procedure.name
@@ -151,12 +151,12 @@ pub(super) fn beyond(record: &Record, of_interest: impl Fn(&Beyond) -> bool) -> 
 fn enters(of_force: bool, kind: &str, result: &str) -> bool {
     let given = [impact::TIME_STEP, impact::STEPS];
     let given = given.iter().any(|given| given.name == result);
-    let of_ways = [
+    let of_travel = [
         (&stiffness_ramp::BLOCK, stiffness_ramp::MAX_DISPLACEMENT),
         (&damping_sweep::BLOCK, damping_sweep::MAX_VELOCITY),
     ];
-    let of_ways = of_ways
+    let of_travel = of_travel
         .iter()
-        .any(|(block, of_ways)| block.words() == kind && of_ways.name == result);
-    !(given || (of_force && of_ways))
+        .any(|(block, of_travel)| block.words() == kind && of_travel.name == result);
+    !(given || (of_force && of_travel))
 }

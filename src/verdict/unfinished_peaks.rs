@@ -6,7 +6,7 @@ use super::ConditionOutcome;
 use super::condition::assess_condition;
 use crate::plan::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
 use crate::plan::{Condition, DecisionRule};
-use crate::record::{Blow, EscalateHistory, FloorStep, Floors, History, ImpactHistory};
+use crate::record::{EscalateHistory, FloorStep, Floors, History, ImpactHistory, SeriesImpact};
 use crate::schema::ResultKind;
 use crate::schema::procedures::{impact as schema, impact_series as series};
 use crate::uncertainty::{Contribution, Source};
@@ -30,7 +30,7 @@ pub(super) fn undecided<'a>(
     hangs_on(condition, rule, results, |reference| {
         let (history, name) = history_of(reference.procedure)?;
         match history {
-            History::Impact(history) => of_blow(Steps::of(history), reference.name, name),
+            History::Impact(history) => of_impact(Steps::of(history), reference.name, name),
             History::Escalate(history) => of_row(history, reference.name, name),
             _ => None,
         }
@@ -43,11 +43,11 @@ pub(super) fn undecided_by(
     rule: DecisionRule,
     results: &dyn Results,
     own: ProcedureId,
-    blow: &ImpactHistory,
+    impact: &ImpactHistory,
 ) -> Option<String> {
     hangs_on(condition, rule, results, |reference| {
         (reference.procedure == own)
-            .then(|| of_own(Steps::of(blow), reference.name, "the impact"))
+            .then(|| of_own(Steps::of(impact), reference.name, "the impact"))
             .flatten()
     })
 }
@@ -159,7 +159,7 @@ impl<'a> Steps<'a> {
 }
 
 /// Growth of a result of an impact. A run that continues past a largest value has reached a peak, independent of later values.
-fn of_blow(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> Option<Growth> {
+fn of_impact(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> Option<Growth> {
     let number = |growing: bool, why: String| {
         growing.then_some(Growth {
             entries: vec![0],
@@ -180,18 +180,18 @@ fn of_blow(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> Opt
                 what: &str,
                 largest: &str| {
         let entries = growing_entries(floors, of, rate);
-        let place = entries.first()? + 1;
+        let entry = entries.first()? + 1;
         Some(Growth {
-            why: still(&format!("{what} {place} was still moving"), largest),
+            why: still(&format!("{what} {entry} was still moving"), largest),
             entries,
         })
     };
     // Until the striker has stopped, the largest force may still come, even if the structure moves back meanwhile.
-    let under_way = impact.steps.len() > 1
+    let still_striking = impact.steps.len() > 1
         && impact.steps[1..]
             .iter()
             .all(|step| step.striker_velocity > 0.0);
-    if under_way
+    if still_striking
         && is(result, &PUSHED)
         && !(is(result, &[schema::MAX_DISPLACEMENT]) && impact.still_rising())
     {
@@ -302,7 +302,7 @@ fn growing_entries(
 /// Growth of a result of an impact, read by the condition of its series. If the impact ended before its peak, its final position is not
 /// determined either.
 fn of_own(steps: Steps<'_>, result: &str, name: &str) -> Option<Growth> {
-    let of = |kind: ResultKind| of_blow(steps, kind.name, name);
+    let of = |kind: ResultKind| of_impact(steps, kind.name, name);
     if is(
         result,
         &[series::RESIDUAL_DISPLACEMENT, series::FINAL_DISPLACEMENT],
@@ -315,17 +315,17 @@ fn of_own(steps: Steps<'_>, result: &str, name: &str) -> Option<Growth> {
             ..growth
         })
     } else {
-        of_blow(steps, result, name)
+        of_impact(steps, result, name)
     }
 }
 
 /// Growth of a result of an impact series: results that one impact leaves undetermined. If an inconclusive impact ended the series, this
 /// includes the last energy that passed.
 fn of_row(history: &EscalateHistory, result: &str, name: &str) -> Option<Growth> {
-    let blows = || history.blows.iter().enumerate();
-    let of = |(index, blow): (usize, &Blow), own: ResultKind| {
+    let numbered_impacts = || history.impacts.iter().enumerate();
+    let of = |(index, impact): (usize, &SeriesImpact), own: ResultKind| {
         of_own(
-            Steps::of(&blow.history),
+            Steps::of(&impact.history),
             own.name,
             &format!("impact {} of {name}", index + 1),
         )
@@ -335,9 +335,9 @@ fn of_row(history: &EscalateHistory, result: &str, name: &str) -> Option<Growth>
         ..growth
     };
     // A list with one entry per impact.
-    let by_blow = |own: ResultKind| {
-        let found: Vec<(usize, Growth)> = blows()
-            .filter_map(|(index, blow)| Some((index, of((index, blow), own)?)))
+    let by_impact = |own: ResultKind| {
+        let found: Vec<(usize, Growth)> = numbered_impacts()
+            .filter_map(|(index, impact)| Some((index, of((index, impact), own)?)))
             .collect();
         let why = found.first()?.1.why.clone();
         Some(Growth {
@@ -347,13 +347,13 @@ fn of_row(history: &EscalateHistory, result: &str, name: &str) -> Option<Growth>
     };
     if is(
         result,
-        &[series::LAST_PASSED_ENERGY, series::PASSED, series::BLOWS],
+        &[series::LAST_PASSED_ENERGY, series::PASSED, series::IMPACTS],
     ) {
-        let (index, blow) = blows()
+        let (index, impact) = numbered_impacts()
             .next_back()
-            .filter(|(_, blow)| blow.held.is_none())?;
-        let why = of((index, blow), schema::MAX_DISPLACEMENT)
-            .or_else(|| of((index, blow), schema::MAX_DRIFT))
+            .filter(|(_, impact)| impact.held.is_none())?;
+        let why = of((index, impact), schema::MAX_DISPLACEMENT)
+            .or_else(|| of((index, impact), schema::MAX_DRIFT))
             .map(|growth| growth.why);
         let reason = why.map_or_else(String::new, |why| format!(": {why}"));
         return Some(Growth {
@@ -372,24 +372,24 @@ fn of_row(history: &EscalateHistory, result: &str, name: &str) -> Option<Growth>
         series::FINAL_DRIFT,
     ];
     if let Some(kind) = of_last.into_iter().find(|kind| kind.name == result) {
-        return of(blows().next_back()?, kind);
+        return of(numbered_impacts().next_back()?, kind);
     }
     if is(result, &[series::MAX_DISPLACEMENT]) {
-        by_blow(schema::MAX_DISPLACEMENT).map(one)
+        by_impact(schema::MAX_DISPLACEMENT).map(one)
     } else if is(result, &[series::ABSORBED_ENERGY]) {
-        by_blow(schema::ABSORBED_ENERGY).map(one)
+        by_impact(schema::ABSORBED_ENERGY).map(one)
     } else if is(result, &[series::MAX_DISPLACEMENTS]) {
-        by_blow(schema::MAX_DISPLACEMENT)
+        by_impact(schema::MAX_DISPLACEMENT)
     } else if is(result, &[series::ABSORBED_ENERGIES]) {
-        by_blow(schema::ABSORBED_ENERGY)
+        by_impact(schema::ABSORBED_ENERGY)
     } else if is(
         result,
         &[series::RESIDUAL_DISPLACEMENTS, series::FINAL_DISPLACEMENTS],
     ) {
-        by_blow(series::RESIDUAL_DISPLACEMENT)
+        by_impact(series::RESIDUAL_DISPLACEMENT)
     } else if is(result, &[series::MAX_DRIFT]) {
-        let found: Vec<Growth> = blows()
-            .filter_map(|blow| of(blow, schema::MAX_DRIFT))
+        let found: Vec<Growth> = numbered_impacts()
+            .filter_map(|impact| of(impact, schema::MAX_DRIFT))
             .collect();
         let why = found.first()?.why.clone();
         let mut entries: Vec<usize> = found

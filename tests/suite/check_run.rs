@@ -66,9 +66,9 @@ report {
 }
 "#;
 
-struct Place(tempfile::TempDir);
+struct Workspace(tempfile::TempDir);
 
-impl Place {
+impl Workspace {
     /// A folder with the plan, with `force` (kN) as the highest allowed force.
     fn new(force: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
@@ -108,10 +108,10 @@ struct Simulator(Child);
 
 impl Simulator {
     /// Replaces the plan's simulated rig, with a specimen of `stiffness`.
-    fn start(place: &Place, stiffness: &str) -> Self {
+    fn start(workspace: &Workspace, stiffness: &str) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
         command
-            .current_dir(place.path())
+            .current_dir(workspace.path())
             .args(["rig", "simulate", "plan.psd", "--rig", "bench", "--set"]);
         let set = format!("bench_stiffness={stiffness}");
         let started = command
@@ -122,7 +122,7 @@ impl Simulator {
             .spawn()
             .unwrap();
         let simulator = Self(started);
-        let port = place.path().join("port");
+        let port = workspace.path().join("port");
         let since = Instant::now();
         while !port.exists() {
             assert!(
@@ -144,9 +144,10 @@ impl Drop for Simulator {
 
 #[test]
 fn a_check_run_measures_the_ramp_and_predicts_the_rest_with_its_margins() {
-    let place = Place::new("15");
-    let (code, told, log) = place.psd(&["run", "plan.psd", "--check-run", "--yes", "--out", "out"]);
-    assert_eq!(code, Some(0), "{told}{log}");
+    let workspace = Workspace::new("15");
+    let (code, output, log) =
+        workspace.psd(&["run", "plan.psd", "--check-run", "--yes", "--out", "out"]);
+    assert_eq!(code, Some(0), "{output}{log}");
     for expected in [
         "check run on rig `simulated`",
         "stiffness 29",
@@ -154,10 +155,10 @@ fn a_check_run_measures_the_ramp_and_predicts_the_rest_with_its_margins() {
         "margin",
         "Limits",
     ] {
-        assert!(told.contains(expected), "{expected} in\n{told}");
+        assert!(output.contains(expected), "{expected} in\n{output}");
     }
     assert!(log.contains("CHECK RUN"), "{log}");
-    let summary = place.summary();
+    let summary = workspace.summary();
     assert!(
         summary["procedures"]["k0"]["complete"] == true && summary["procedures"]["hit"].is_null(),
         "{summary}"
@@ -167,20 +168,20 @@ fn a_check_run_measures_the_ramp_and_predicts_the_rest_with_its_margins() {
         "Check run: k0 ran on the rig; hit did not run and was predicted on a virtual specimen."
     );
     assert!(
-        fs::read_to_string(place.path().join("out/report.html"))
+        fs::read_to_string(workspace.path().join("out/report.html"))
             .unwrap()
             .contains("CHECK RUN")
     );
-    let (code, verified, log) = place.psd(&["verify", "out"]);
+    let (code, verified, log) = workspace.psd(&["verify", "out"]);
     assert_eq!(code, Some(0), "{verified}{log}");
     // The prediction is stored, also on a page, and is reproduced from the record.
-    let kept = fs::read(place.path().join("out/check_run.json")).unwrap();
-    let foretold: Value = serde_json::from_slice(&kept).unwrap();
+    let kept = fs::read(workspace.path().join("out/check_run.json")).unwrap();
+    let prediction: Value = serde_json::from_slice(&kept).unwrap();
     assert_eq!(
-        (&foretold["schema"], &foretold["stopped"]),
+        (&prediction["schema"], &prediction["stopped"]),
         (&"psd.check_run/1".into(), &Value::Null)
     );
-    let limits = foretold["limits"].as_array().unwrap();
+    let limits = prediction["limits"].as_array().unwrap();
     let names: Vec<&str> = limits
         .iter()
         .map(|limit| limit["quantity"].as_str().unwrap())
@@ -199,22 +200,23 @@ fn a_check_run_measures_the_ramp_and_predicts_the_rest_with_its_margins() {
         *high == 15e3 && (2e3..3e3).contains(&reached) && (15e3 - reached - margin).abs() < 1e-9,
         "{force}"
     );
-    assert_eq!(foretold["requirements"][0]["verdict"], "pass");
-    let page = fs::read_to_string(place.path().join("out/report.html")).unwrap();
+    assert_eq!(prediction["requirements"][0]["verdict"], "pass");
+    let page = fs::read_to_string(workspace.path().join("out/report.html")).unwrap();
     assert!(page.contains("Prediction of the whole run") && page.contains("tracking energy error"));
-    let (code, again, log) = place.psd(&["report", "out", "--out", "again"]);
+    let (code, again, log) = workspace.psd(&["report", "out", "--out", "again"]);
     assert_eq!(code, Some(0), "{again}{log}");
-    assert!(fs::read(place.path().join("again/check_run.json")).unwrap() == kept);
+    assert!(fs::read(workspace.path().join("again/check_run.json")).unwrap() == kept);
     // The corresponding full run is a different run, and does not mention the check run.
-    let (code, ..) = place.psd(&["run", "plan.psd", "--yes", "--out", "real"]);
+    let (code, ..) = workspace.psd(&["run", "plan.psd", "--yes", "--out", "real"]);
     assert_eq!(code, Some(0));
-    let real: Value =
-        serde_json::from_str(&fs::read_to_string(place.path().join("real/summary.json")).unwrap())
-            .unwrap();
+    let real: Value = serde_json::from_str(
+        &fs::read_to_string(workspace.path().join("real/summary.json")).unwrap(),
+    )
+    .unwrap();
     assert_ne!(real["run_id"], summary["run_id"]);
-    assert!(!place.path().join("real/check_run.json").exists());
+    assert!(!workspace.path().join("real/check_run.json").exists());
     assert!(
-        !fs::read_to_string(place.path().join("real/report.html"))
+        !fs::read_to_string(workspace.path().join("real/report.html"))
             .unwrap()
             .contains("Prediction of the whole run")
     );
@@ -222,25 +224,26 @@ fn a_check_run_measures_the_ramp_and_predicts_the_rest_with_its_margins() {
 
 /// The check run itself reads no zeros. The run that it predicts does, and includes the time for it.
 #[test]
-fn a_rig_that_watches_its_zeros_is_foretold_to() {
-    let place = Place::new("15");
-    let plan = fs::read_to_string(place.path().join("plan.psd")).unwrap();
+fn a_rig_that_watches_its_zero_drift_is_predicted_to() {
+    let workspace = Workspace::new("15");
+    let plan = fs::read_to_string(workspace.path().join("plan.psd")).unwrap();
     let watched = plan.replace(
         "seed: 7)\n}",
         "seed: 7)\n  zero_drift = within(20 N, over: 5 s, after: start)\n}",
     );
     assert_ne!(watched, plan);
-    fs::write(place.path().join("plan.psd"), watched).unwrap();
-    let (code, told, log) = place.psd(&["run", "plan.psd", "--check-run", "--yes", "--out", "out"]);
-    assert_eq!(code, Some(0), "{told}{log}");
+    fs::write(workspace.path().join("plan.psd"), watched).unwrap();
+    let (code, output, log) =
+        workspace.psd(&["run", "plan.psd", "--check-run", "--yes", "--out", "out"]);
+    assert_eq!(code, Some(0), "{output}{log}");
     assert!(
-        told.contains("Zeros") && told.contains("back at its start position"),
-        "{told}"
+        output.contains("Zeros") && output.contains("back at its start position"),
+        "{output}"
     );
-    let foretold: Value =
-        serde_json::from_slice(&fs::read(place.path().join("out/check_run.json")).unwrap())
+    let prediction: Value =
+        serde_json::from_slice(&fs::read(workspace.path().join("out/check_run.json")).unwrap())
             .unwrap();
-    let zeros = &foretold["zeros"];
+    let zeros = &prediction["zeros"];
     let expected = [("allowed_force_n", 20.0), ("over_s", 5.0)];
     assert!(
         expected.iter().all(|(name, value)| zeros[name] == *value) && zeros["after"] == "start",
@@ -255,11 +258,11 @@ fn a_rig_that_watches_its_zeros_is_foretold_to() {
         "{zeros}"
     );
     assert_eq!(
-        place.summary()["zero_drift"],
+        workspace.summary()["zero_drift"],
         Value::Null,
         "the check run read none"
     );
-    let page = fs::read_to_string(place.path().join("out/report.html")).unwrap();
+    let page = fs::read_to_string(workspace.path().join("out/report.html")).unwrap();
     assert!(
         page.contains("The zeros of the rig would be read over"),
         "on the page too"
@@ -269,22 +272,23 @@ fn a_rig_that_watches_its_zeros_is_foretold_to() {
 #[test]
 fn a_limit_that_the_run_would_reach_is_exit_4_with_its_procedure_and_step() {
     // √(20 kg·300 kN/m)·1 m/s is about 2.4 kN.
-    let place = Place::new("2");
-    let (code, told, log) = place.psd(&["run", "plan.psd", "--check-run", "--yes", "--out", "out"]);
-    assert_eq!(code, Some(4), "{told}{log}");
+    let workspace = Workspace::new("2");
+    let (code, output, log) =
+        workspace.psd(&["run", "plan.psd", "--check-run", "--yes", "--out", "out"]);
+    assert_eq!(code, Some(4), "{output}{log}");
     assert!(
-        told.contains("The run would be stopped in hit, step ") && told.contains("force 2."),
-        "{told}"
+        output.contains("The run would be stopped in hit, step ") && output.contains("force 2."),
+        "{output}"
     );
     for flag in ["--check-run", "--rehearse"] {
-        assert!(place.psd(&["run", "plan.psd", flag, "--accept"]).0 == Some(2));
+        assert!(workspace.psd(&["run", "plan.psd", flag, "--accept"]).0 == Some(2));
     }
 }
 
 #[test]
 fn on_a_real_rig_the_prediction_is_of_the_stiffness_that_the_rig_shows() {
-    let place = Place::new("15");
-    let _simulator = Simulator::start(&place, "400 kN/m");
+    let workspace = Workspace::new("15");
+    let _simulator = Simulator::start(&workspace, "400 kN/m");
     let run = [
         "run",
         "plan.psd",
@@ -297,16 +301,16 @@ fn on_a_real_rig_the_prediction_is_of_the_stiffness_that_the_rig_shows() {
         "--out",
         "out",
     ];
-    let (code, told, log) = place.psd(&run);
-    assert_eq!(code, Some(0), "{told}{log}");
-    let summary = place.summary();
+    let (code, output, log) = workspace.psd(&run);
+    assert_eq!(code, Some(0), "{output}{log}");
+    let summary = workspace.summary();
     let measured = summary["procedures"]["k0"]["results"]["stiffness"]["value"]
         .as_f64()
         .unwrap();
     assert!((measured - 4e5).abs() < 0.02 * 4e5, "{measured}");
     assert!(
-        told.contains("check run on rig `bench`") && told.contains("peak displacement"),
-        "{told}"
+        output.contains("check run on rig `bench`") && output.contains("peak displacement"),
+        "{output}"
     );
     assert_eq!(
         summary["deviations"][0],
@@ -320,14 +324,14 @@ fn on_a_real_rig_the_prediction_is_of_the_stiffness_that_the_rig_shows() {
     });
     assert!(pretest_check, "{summary}");
     // The result of the plan's own virtual rig with a specimen of that stiffness, and not with that of the plan.
-    let peak = told
+    let peak = output
         .lines()
         .find(|line| line.contains("peak displacement"))
         .unwrap();
     let millimetres: f64 = peak.split_whitespace().nth(2).unwrap().parse().unwrap();
     let set = format!("bench_stiffness={measured} N/m");
     assert_eq!(
-        place
+        workspace
             .psd(&[
                 "run", "plan.psd", "--yes", "--set", &set, "--out", "virtual"
             ])
@@ -335,7 +339,7 @@ fn on_a_real_rig_the_prediction_is_of_the_stiffness_that_the_rig_shows() {
         Some(0)
     );
     let summary: Value = serde_json::from_str(
-        &fs::read_to_string(place.path().join("virtual/summary.json")).unwrap(),
+        &fs::read_to_string(workspace.path().join("virtual/summary.json")).unwrap(),
     )
     .unwrap();
     let expected = 1e3
@@ -346,5 +350,5 @@ fn on_a_real_rig_the_prediction_is_of_the_stiffness_that_the_rig_shows() {
         (millimetres - expected).abs() < 0.01 * expected,
         "{peak}, {expected} expected"
     );
-    assert_eq!(place.psd(&["verify", "out"]).0, Some(0));
+    assert_eq!(workspace.psd(&["verify", "out"]).0, Some(0));
 }

@@ -47,11 +47,11 @@ fn with_every_output() -> String {
 }
 
 /// A folder with plans, and the program run in it.
-struct Bench {
+struct Workspace {
     folder: tempfile::TempDir,
 }
 
-impl Bench {
+impl Workspace {
     fn new(plans: &[(&str, &str)]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         for (name, text) in plans {
@@ -149,8 +149,8 @@ pub fn every_file(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
 
 #[test]
 fn a_run_gives_its_folder_on_stdout_and_the_verdict_on_stderr() {
-    let bench = Bench::new(&[("plans/small.psd", &with_every_output())]);
-    let first = bench.psd(&["run", "plans/small.psd"]).with(0);
+    let workspace = Workspace::new(&[("plans/small.psd", &with_every_output())]);
+    let first = workspace.psd(&["run", "plans/small.psd"]).with(0);
     assert_eq!(first.stdout, "runs/small-1\n");
     assert!(
         first.stderr.contains("PASS") && first.stderr.contains("stays in travel"),
@@ -162,12 +162,12 @@ fn a_run_gives_its_folder_on_stdout_and_the_verdict_on_stderr() {
         "no colour and no bar in a pipe"
     );
     assert_eq!(
-        bench.psd(&["run", "plans/small.psd"]).with(0).stdout,
+        workspace.psd(&["run", "plans/small.psd"]).with(0).stdout,
         "runs/small-2\n"
     );
     let (one, two) = (
-        every_file(&bench.path("runs/small-1")),
-        every_file(&bench.path("runs/small-2")),
+        every_file(&workspace.path("runs/small-1")),
+        every_file(&workspace.path("runs/small-2")),
     );
     assert!(one.iter().any(|(path, _)| path.ends_with("summary.json")));
     assert!(one == two, "the same plan gives the same bytes");
@@ -175,8 +175,8 @@ fn a_run_gives_its_folder_on_stdout_and_the_verdict_on_stderr() {
 
 #[test]
 fn the_summary_is_the_result_where_json_is_asked() {
-    let bench = Bench::new(&[("small.psd", SOUND)]);
-    let ended = bench
+    let workspace = Workspace::new(&[("small.psd", SOUND)]);
+    let ended = workspace
         .psd(&[
             "run",
             "small.psd",
@@ -193,14 +193,14 @@ fn the_summary_is_the_result_where_json_is_asked() {
         (&"psd.summary/1".into(), &"pass".into())
     );
     assert_eq!(ended.json()["date"], "2026-05-31");
-    assert_eq!(bench.read("here/summary.json"), ended.stdout);
+    assert_eq!(workspace.read("here/summary.json"), ended.stdout);
 }
 
 #[test]
 fn a_missed_requirement_ends_with_one() {
-    let bench = Bench::new(&[("small.psd", &changed("< 0.16 m", "< 0.1 m"))]);
+    let workspace = Workspace::new(&[("small.psd", &changed("< 0.16 m", "< 0.1 m"))]);
     assert!(
-        bench
+        workspace
             .psd(&["run", "small.psd"])
             .with(1)
             .stderr
@@ -210,8 +210,8 @@ fn a_missed_requirement_ends_with_one() {
 
 #[test]
 fn a_wrong_plan_ends_with_two_and_leaves_nothing() {
-    let bench = Bench::new(&[("small.psd", &changed("velocity =", "velocty ="))]);
-    let ended = bench.psd(&["run", "small.psd"]).with(2);
+    let workspace = Workspace::new(&[("small.psd", &changed("velocity =", "velocty ="))]);
+    let ended = workspace.psd(&["run", "small.psd"]).with(2);
     assert!(
         ended.stdout.is_empty()
             && ended.stderr.contains("E202")
@@ -220,12 +220,12 @@ fn a_wrong_plan_ends_with_two_and_leaves_nothing() {
         ended.stderr
     );
     assert!(ended.stderr.contains("did you mean `velocity`?"));
-    assert!(!bench.path("runs").exists());
+    assert!(!workspace.path("runs").exists());
 }
 
 #[test]
 fn a_wrong_command_line_ends_with_two() {
-    let bench = Bench::new(&[("small.psd", SOUND)]);
+    let workspace = Workspace::new(&[("small.psd", SOUND)]);
     for wrong in [
         &["run"][..],
         &["walk"],
@@ -244,20 +244,20 @@ fn a_wrong_command_line_ends_with_two() {
         &["run", "small.psd", "--rig", "none"],
         &["explain", "E999"],
     ] {
-        let ended = bench.psd(wrong).with(2);
+        let ended = workspace.psd(wrong).with(2);
         assert!(
             ended.stdout.is_empty() && !ended.stderr.is_empty(),
             "{wrong:?}"
         );
     }
-    assert!(bench.psd(&["--help"]).with(0).stdout.contains("Usage"));
+    assert!(workspace.psd(&["--help"]).with(0).stdout.contains("Usage"));
 }
 
 #[test]
 fn a_setting_changes_the_run_and_its_id() {
-    let bench = Bench::new(&[("small.psd", SOUND)]);
+    let workspace = Workspace::new(&[("small.psd", SOUND)]);
     let id = |arguments: &[&str]| {
-        bench
+        workspace
             .psd(&[&["run", "small.psd", "--format", "json"], arguments].concat())
             .json()["run_id"]
             .clone()
@@ -267,44 +267,50 @@ fn a_setting_changes_the_run_and_its_id() {
 
 #[test]
 fn files_that_cannot_be_used_end_with_three() {
-    let bench = Bench::new(&[("small.psd", SOUND), ("full/precious.txt", "mine")]);
+    let workspace = Workspace::new(&[("small.psd", SOUND), ("full/precious.txt", "mine")]);
     assert!(
-        bench
+        workspace
             .psd(&["run", "none.psd"])
             .with(3)
             .stderr
             .contains("none.psd")
     );
-    let refused = bench.psd(&["run", "small.psd", "--out", "full"]).with(3);
+    let refused = workspace
+        .psd(&["run", "small.psd", "--out", "full"])
+        .with(3);
     assert!(
         refused.stderr.contains("new or empty"),
         "{}",
         refused.stderr
     );
-    assert_eq!(every_file(&bench.path("full")).len(), 1);
+    assert_eq!(every_file(&workspace.path("full")).len(), 1);
 }
 
 #[test]
 fn a_limit_ends_the_run_with_four_and_keeps_what_was_recorded() {
-    let bench = Bench::new(&[("small.psd", &changed(".. 0.2 m", ".. 0.1 m"))]);
-    let ended = bench.psd(&["run", "small.psd", "--out", "here"]).with(4);
+    let workspace = Workspace::new(&[("small.psd", &changed(".. 0.2 m", ".. 0.1 m"))]);
+    let ended = workspace
+        .psd(&["run", "small.psd", "--out", "here"])
+        .with(4);
     assert!(ended.stderr.contains("ABORTED"), "{}", ended.stderr);
-    let summary: Value = serde_json::from_str(&bench.read("here/summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&workspace.read("here/summary.json")).unwrap();
     assert_eq!(summary["verdict"], "aborted");
-    assert!(bench.read("here/tables/hit.csv").lines().count() > 5);
+    assert!(workspace.read("here/tables/hit.csv").lines().count() > 5);
 }
 
 #[test]
 fn check_draws_on_stderr_and_gives_json_on_stdout() {
     let wrong = changed("1 kg", "3 mm");
-    let bench = Bench::new(&[("good.psd", SOUND), ("plans/wrong.psd", &wrong)]);
-    let human = bench.psd(&["check", "good.psd", "plans/wrong.psd"]).with(2);
+    let workspace = Workspace::new(&[("good.psd", SOUND), ("plans/wrong.psd", &wrong)]);
+    let human = workspace
+        .psd(&["check", "good.psd", "plans/wrong.psd"])
+        .with(2);
     assert!(
         human.stdout.is_empty() && human.stderr.contains("plans/wrong.psd:8:"),
         "{}",
         human.stderr
     );
-    let json = bench
+    let json = workspace
         .psd(&["check", "good.psd", "plans/wrong.psd", "--format", "json"])
         .with(2);
     let document = json.json();
@@ -324,8 +330,8 @@ fn check_draws_on_stderr_and_gives_json_on_stdout() {
 
 #[test]
 fn explain_predicts_the_run_on_stdout() {
-    let bench = Bench::new(&[("small.psd", SOUND)]);
-    let text = bench
+    let workspace = Workspace::new(&[("small.psd", SOUND)]);
+    let text = workspace
         .psd(&["check", "--explain", "small.psd"])
         .with(0)
         .stdout;
@@ -340,10 +346,10 @@ fn explain_predicts_the_run_on_stdout() {
     ] {
         assert!(text.contains(expected), "{expected} in\n{text}");
     }
-    assert!(!bench.path("runs").exists());
-    let bench = Bench::new(&[("small.psd", &changed(".. 0.2 m", ".. 0.1 m"))]);
+    assert!(!workspace.path("runs").exists());
+    let workspace = Workspace::new(&[("small.psd", &changed(".. 0.2 m", ".. 0.1 m"))]);
     assert!(
-        bench
+        workspace
             .psd(&["check", "--explain", "small.psd"])
             .with(4)
             .stdout
@@ -354,69 +360,69 @@ fn explain_predicts_the_run_on_stdout() {
 #[test]
 fn fmt_shows_the_difference_or_writes_it() {
     let untidy = changed("  mass      = 1 kg", "      mass=1 kg   # equivalent");
-    let bench = Bench::new(&[
+    let workspace = Workspace::new(&[
         ("plans/untidy.psd", &untidy),
         ("plans/lib/sound.psd", SOUND),
         ("wrong.psd", "let a = (1\n"),
     ]);
-    let shown = bench.psd(&["fmt", "--check", "plans"]).with(1);
+    let shown = workspace.psd(&["fmt", "--check", "plans"]).with(1);
     assert!(
         shown.stdout.contains("-      mass=1 kg   # equivalent")
             && shown.stdout.contains("+++ plans/untidy.psd"),
         "{}",
         shown.stdout
     );
-    assert_eq!(bench.read("plans/untidy.psd"), untidy);
-    bench.psd(&["fmt", "plans"]).with(0);
+    assert_eq!(workspace.read("plans/untidy.psd"), untidy);
+    workspace.psd(&["fmt", "plans"]).with(0);
     assert!(
-        bench
+        workspace
             .read("plans/untidy.psd")
             .contains("  mass      = 1 kg  # equivalent")
-            || bench.read("plans/untidy.psd").contains("= 1 kg")
+            || workspace.read("plans/untidy.psd").contains("= 1 kg")
     );
     assert!(
-        bench
+        workspace
             .psd(&["fmt", "--check", "plans"])
             .with(0)
             .stdout
             .is_empty()
     );
-    assert_eq!(bench.read("plans/lib/sound.psd"), SOUND);
+    assert_eq!(workspace.read("plans/lib/sound.psd"), SOUND);
     assert!(
-        bench
+        workspace
             .psd(&["fmt", "wrong.psd"])
             .with(2)
             .stderr
             .contains("E102")
     );
-    assert_eq!(bench.read("wrong.psd"), "let a = (1\n");
+    assert_eq!(workspace.read("wrong.psd"), "let a = (1\n");
 }
 
 #[test]
 fn explain_gives_a_page_the_list_and_a_guess() {
-    let bench = Bench::new(&[]);
+    let workspace = Workspace::new(&[]);
     assert!(
-        bench
+        workspace
             .psd(&["explain", "e202"])
             .with(0)
             .stdout
             .starts_with("E202: ")
     );
-    let short = bench.psd(&["explain", "E301"]).with(0).stdout;
+    let short = workspace.psd(&["explain", "E301"]).with(0).stdout;
     assert!(
         short.contains("\n  - mass = 10 mm\n  + mass = 10 kg\n"),
         "{short}"
     );
-    let full = bench.psd(&["explain", "E301", "--full"]).with(0).stdout;
+    let full = workspace.psd(&["explain", "E301", "--full"]).with(0).stdout;
     assert!(full.contains("wrong:\nspecimen beam {\n"), "{full}");
-    let all = bench.psd(&["explain"]).with(0).stdout;
+    let all = workspace.psd(&["explain"]).with(0).stdout;
     assert_eq!(all.lines().count(), psd::text::diagnostic::Code::ALL.len());
     assert!(
         all.lines().all(|line| line.len() > 8),
         "every page has a title:\n{all}"
     );
     assert!(
-        bench
+        workspace
             .psd(&["explain", "E22"])
             .with(2)
             .stderr
@@ -426,7 +432,7 @@ fn explain_gives_a_page_the_list_and_a_guess() {
 
 #[test]
 fn limits_lists_the_bounds_of_every_stage() {
-    let listed = Bench::new(&[]).psd(&["limits"]).with(0).stdout;
+    let listed = Workspace::new(&[]).psd(&["limits"]).with(0).stdout;
     let has = |bound: String, of: &str| {
         listed
             .lines()
@@ -493,34 +499,34 @@ fn limits_lists_the_bounds_of_every_stage() {
 
 #[test]
 fn a_run_of_too_many_steps_does_not_begin() {
-    let bench = Bench::new(&[(
+    let workspace = Workspace::new(&[(
         "long.psd",
         &changed("time_step = 10 ms", "time_step = 0.1 us"),
     )]);
-    let told = bench.psd(&["check", "long.psd"]).with(2).stderr;
+    let output = workspace.psd(&["check", "long.psd"]).with(2).stderr;
     assert!(
-        told.contains("E653") && told.contains("10000000 steps"),
-        "{told}"
+        output.contains("E653") && output.contains("10000000 steps"),
+        "{output}"
     );
-    let told = bench
+    let output = workspace
         .psd(&["run", "long.psd", "--out", "long"])
         .with(2)
         .stderr;
     assert!(
-        told.contains("(at most 2000000)") && told.contains("increase `time_step`"),
-        "{told}"
+        output.contains("(at most 2000000)") && output.contains("increase `time_step`"),
+        "{output}"
     );
     assert!(
-        !bench.folder.path().join("long").exists(),
+        !workspace.folder.path().join("long").exists(),
         "nothing is left of it"
     );
 }
 
 #[test]
-fn colour_is_used_when_told_and_only_then() {
-    let bench = Bench::new(&[("small.psd", &changed("velocity =", "velocty ="))]);
+fn colour_is_used_only_on_request() {
+    let workspace = Workspace::new(&[("small.psd", &changed("velocity =", "velocty ="))]);
     let colored = |arguments: &[&str]| {
-        bench
+        workspace
             .psd(&[arguments, &["check", "small.psd"]].concat())
             .with(2)
             .stderr
@@ -528,7 +534,7 @@ fn colour_is_used_when_told_and_only_then() {
     };
     assert!(colored(&["--color", "always"]));
     assert!(!colored(&[]) && !colored(&["--color", "never"]));
-    let output = bench
+    let output = workspace
         .command(&["--color", "auto", "check", "small.psd"])
         .env("NO_COLOR", "1")
         .output()
@@ -538,26 +544,26 @@ fn colour_is_used_when_told_and_only_then() {
 
 #[test]
 fn accept_writes_beside_the_plans_folder() {
-    let bench = Bench::new(&[
+    let workspace = Workspace::new(&[
         ("plans/small.psd", SOUND),
         ("reports/small/stale.txt", "old"),
         ("reports/other/kept.txt", "kept"),
     ]);
-    bench
+    workspace
         .psd(&["run", "plans/small.psd", "--accept", "--out", "here"])
         .with(0);
     assert_eq!(
-        bench.read("reports/small/summary.json"),
-        bench.read("here/summary.json")
+        workspace.read("reports/small/summary.json"),
+        workspace.read("here/summary.json")
     );
     assert!(
-        bench.path("here/report.html").exists()
-            && !bench.path("reports/small/report.html").exists()
-            && bench.path("reports/small/tables/hit.csv").exists()
+        workspace.path("here/report.html").exists()
+            && !workspace.path("reports/small/report.html").exists()
+            && workspace.path("reports/small/tables/hit.csv").exists()
     );
     assert!(
-        !bench.path("reports/small/stale.txt").exists()
-            && bench.path("reports/other/kept.txt").exists()
+        !workspace.path("reports/small/stale.txt").exists()
+            && workspace.path("reports/other/kept.txt").exists()
     );
 }
 
@@ -566,8 +572,8 @@ fn ctrl_c_stops_at_the_end_of_a_step_and_keeps_the_record() {
     // The many steps ensure that the signal arrives during them, on a machine of any speed.
     let long = changed("time_step = 10 ms", "time_step = 1 us")
         .replace("duration  = 1 s", "duration  = 1 s\n  until     = duration");
-    let bench = Bench::new(&[("long.psd", &long)]);
-    let child = bench
+    let workspace = Workspace::new(&[("long.psd", &long)]);
+    let child = workspace
         .command(&["run", "long.psd", "--out", "here"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -576,7 +582,7 @@ fn ctrl_c_stops_at_the_end_of_a_step_and_keeps_the_record() {
     let started = std::time::Instant::now();
     // During the run, so that its run log contains steps.
     let recorded =
-        || std::fs::metadata(bench.path("here/journal.psdj")).map_or(0, |record| record.len());
+        || std::fs::metadata(workspace.path("here/journal.psdj")).map_or(0, |record| record.len());
     while recorded() < 50_000 && started.elapsed() < Duration::from_secs(20) {
         std::thread::sleep(Duration::from_millis(2));
     }
@@ -589,7 +595,7 @@ fn ctrl_c_stops_at_the_end_of_a_step_and_keeps_the_record() {
     );
     let ended = Ended::from(child.wait_with_output().unwrap()).with(4);
     assert!(ended.stderr.contains("ABORTED"), "{}", ended.stderr);
-    let summary: Value = serde_json::from_str(&bench.read("here/summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&workspace.read("here/summary.json")).unwrap();
     assert_eq!(
         (
             &summary["verdict"],
@@ -600,10 +606,14 @@ fn ctrl_c_stops_at_the_end_of_a_step_and_keeps_the_record() {
 }
 
 #[test]
-fn a_plan_that_cannot_be_read_is_an_error_with_its_place_among_the_others() {
-    let bench = Bench::new(&[("good.psd", SOUND)]);
-    std::fs::write(bench.path("latin.psd"), b"# a\nplan \"Pr\xfcfung\" { }\n").unwrap();
-    let json = bench
+fn an_unreadable_plan_is_an_error_with_its_location_among_the_others() {
+    let workspace = Workspace::new(&[("good.psd", SOUND)]);
+    std::fs::write(
+        workspace.path("latin.psd"),
+        b"# a\nplan \"Pr\xfcfung\" { }\n",
+    )
+    .unwrap();
+    let json = workspace
         .psd(&["check", "good.psd", "latin.psd", "--format", "json"])
         .with(2)
         .json();
@@ -613,14 +623,14 @@ fn a_plan_that_cannot_be_read_is_an_error_with_its_place_among_the_others() {
         "{json}"
     );
     let found = &json["diagnostics"][0];
-    let told = ["code", "file", "line", "column"].map(|key| found[key].to_string());
-    assert_eq!(told, ["\"E106\"", "\"latin.psd\"", "2", "9"], "{found}");
+    let located = ["code", "file", "line", "column"].map(|key| found[key].to_string());
+    assert_eq!(located, ["\"E106\"", "\"latin.psd\"", "2", "9"], "{found}");
     assert!(
         found["message"].as_str().unwrap().contains("not UTF-8"),
         "{found}"
     );
 
-    let json = bench
+    let json = workspace
         .psd(&["check", "nothere.psd", "good.psd", "--format", "json"])
         .with(3)
         .json();
@@ -634,9 +644,9 @@ fn a_plan_that_cannot_be_read_is_an_error_with_its_place_among_the_others() {
 
 #[test]
 fn a_file_that_is_not_there_ends_every_command_alike() {
-    let bench = Bench::new(&[]);
+    let workspace = Workspace::new(&[]);
     for command in ["check", "run", "fmt", "test"] {
-        let ended = bench.psd(&[command, "nothere.psd"]).with(3);
+        let ended = workspace.psd(&[command, "nothere.psd"]).with(3);
         assert!(
             ended.stderr.contains("nothere.psd: no such file"),
             "{command}: {}",
@@ -648,16 +658,16 @@ fn a_file_that_is_not_there_ends_every_command_alike() {
 #[test]
 fn a_plan_without_a_procedure_is_not_run() {
     let (specimen, _) = SOUND.split_once("striker hammer").unwrap();
-    let bench = Bench::new(&[("idle.psd", specimen), ("empty.psd", "")]);
+    let workspace = Workspace::new(&[("idle.psd", specimen), ("empty.psd", "")]);
     for plan in ["idle.psd", "empty.psd"] {
-        let ended = bench.psd(&["run", plan, "--out", "here"]).with(2);
+        let ended = workspace.psd(&["run", plan, "--out", "here"]).with(2);
         assert!(
             ended.stderr.contains("no procedure: nothing would run"),
             "{}",
             ended.stderr
         );
-        assert!(!bench.path("here").exists(), "nothing is left behind");
-        bench.psd(&["check", plan]).with(0);
+        assert!(!workspace.path("here").exists(), "nothing is left behind");
+        workspace.psd(&["check", plan]).with(0);
     }
 }
 
@@ -713,15 +723,17 @@ escalate rising {
 ";
 
 #[test]
-fn results_of_strokes_that_nobody_reads_and_of_coarse_cells_are_made_anew_too() {
-    let bench = Bench::new(&[("bracket.psd", PAST_YIELD)]);
-    bench.psd(&["run", "bracket.psd", "--out", "run"]).with(0);
-    bench.psd(&["verify", "run"]).with(0);
-    bench.psd(&["report", "run", "--out", "again"]).with(0);
+fn results_of_unread_strokes_and_of_coarse_cells_are_recomputed_too() {
+    let workspace = Workspace::new(&[("bracket.psd", PAST_YIELD)]);
+    workspace
+        .psd(&["run", "bracket.psd", "--out", "run"])
+        .with(0);
+    workspace.psd(&["verify", "run"]).with(0);
+    workspace.psd(&["report", "run", "--out", "again"]).with(0);
     let mut diff = Command::new("diff");
     let compared = diff
         .args(["-r", "run", "again"])
-        .current_dir(bench.folder.path())
+        .current_dir(workspace.folder.path())
         .output()
         .unwrap();
     assert!(
@@ -732,20 +744,23 @@ fn results_of_strokes_that_nobody_reads_and_of_coarse_cells_are_made_anew_too() 
 }
 
 #[test]
-fn results_made_anew_from_the_record_are_the_same_to_the_byte() {
-    let bench = Bench::new(&[("hit.psd", &with_every_output())]);
-    assert_eq!(bench.psd(&["run", "hit.psd", "--out", "run"]).code, Some(0));
+fn results_recomputed_from_the_record_are_byte_identical() {
+    let workspace = Workspace::new(&[("hit.psd", &with_every_output())]);
     assert_eq!(
-        bench.psd(&["report", "run"]).code,
+        workspace.psd(&["run", "hit.psd", "--out", "run"]).code,
+        Some(0)
+    );
+    assert_eq!(
+        workspace.psd(&["report", "run"]).code,
         Some(3),
         "nothing is overwritten"
     );
-    let again = bench.psd(&["report", "run", "--out", "again"]);
+    let again = workspace.psd(&["report", "run", "--out", "again"]);
     assert_eq!(again.code, Some(0), "{}", again.stderr);
     let mut diff = Command::new("diff");
     let compared = diff
         .args(["-r", "run", "again"])
-        .current_dir(bench.folder.path())
+        .current_dir(workspace.folder.path())
         .output()
         .unwrap();
     assert!(
@@ -755,23 +770,23 @@ fn results_made_anew_from_the_record_are_the_same_to_the_byte() {
     );
 
     assert_eq!(
-        bench.psd(&["verify", "again"]).code,
+        workspace.psd(&["verify", "again"]).code,
         Some(0),
         "it is a run folder like the first"
     );
 
     // A run log cut off after its last step but one; this is reported first.
-    let record = bench.read("run/journal.psdj");
+    let record = workspace.read("run/journal.psdj");
     let lines: Vec<&str> = record.lines().collect();
-    std::fs::create_dir(bench.path("cut")).unwrap();
+    std::fs::create_dir(workspace.path("cut")).unwrap();
     std::fs::write(
-        bench.path("cut/journal.psdj"),
+        workspace.path("cut/journal.psdj"),
         lines[..lines.len() - 4].join("\n") + "\n",
     )
     .unwrap();
-    assert_eq!(bench.psd(&["report", "cut"]).code, Some(3));
+    assert_eq!(workspace.psd(&["report", "cut"]).code, Some(3));
     assert!(
-        bench
+        workspace
             .read("cut/report.html")
             .contains("INCOMPLETE: the run log ends here")
     );

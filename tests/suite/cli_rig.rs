@@ -44,9 +44,9 @@ fn rig(arguments: &[&str]) -> (Option<i32>, String, String) {
 }
 
 #[test]
-fn probe_says_who_it_is_and_how_far_from_each_limit() {
-    let (code, report, told) = rig(&["probe"]);
-    assert_eq!(code, Some(0), "{told}");
+fn probe_reports_the_identity_and_the_margin_to_each_limit() {
+    let (code, report, messages) = rig(&["probe"]);
+    assert_eq!(code, Some(0), "{messages}");
     for expected in [
         "bench (simulated)",
         "virtual rig",
@@ -63,8 +63,8 @@ fn probe_says_who_it_is_and_how_far_from_each_limit() {
 
 #[test]
 fn monitor_gives_one_line_a_reading_in_a_pipe() {
-    let (code, lines, told) = rig(&["monitor", "--count", "3"]);
-    assert_eq!(code, Some(0), "{told}");
+    let (code, lines, messages) = rig(&["monitor", "--count", "3"]);
+    assert_eq!(code, Some(0), "{messages}");
     let rows: Vec<&str> = lines.lines().collect();
     assert_eq!((rows.len(), rows[0]), (4, "time_s,displacement_m,force_n"));
     assert!(
@@ -77,14 +77,22 @@ fn monitor_gives_one_line_a_reading_in_a_pipe() {
 
 #[test]
 fn jog_moves_inside_the_limits_and_only_with_a_yes() {
-    let (code, place, told) = rig(&["jog", "--to", "2.5 mm", "--speed", "1 mm/s", "--yes"]);
-    assert_eq!(code, Some(0), "three increments of at most 1 mm: {told}");
-    assert!(place.starts_with("X 2.500 mm   R 2"), "{place}");
-    let (code, place, told) = rig(&["jog", "--to", "11 mm", "--yes"]);
-    assert_eq!((code, place.as_str()), (Some(4), ""));
+    let (code, position_line, messages) =
+        rig(&["jog", "--to", "2.5 mm", "--speed", "1 mm/s", "--yes"]);
+    assert_eq!(
+        code,
+        Some(0),
+        "three increments of at most 1 mm: {messages}"
+    );
     assert!(
-        told.contains("target displacement 11 mm is outside its limit -5 mm .. 10 mm"),
-        "{told}"
+        position_line.starts_with("X 2.500 mm   R 2"),
+        "{position_line}"
+    );
+    let (code, position_line, messages) = rig(&["jog", "--to", "11 mm", "--yes"]);
+    assert_eq!((code, position_line.as_str()), (Some(4), ""));
+    assert!(
+        messages.contains("target displacement 11 mm is outside its limit -5 mm .. 10 mm"),
+        "{messages}"
     );
     for refused in [
         &["jog", "--to", "1 mm"][..],
@@ -92,7 +100,11 @@ fn jog_moves_inside_the_limits_and_only_with_a_yes() {
         &["jog", "--to", "1", "--yes"],
         &["jog", "--to", "1 N", "--yes"],
     ] {
-        let (code, place, told) = rig(refused);
-        assert_eq!((code, place.as_str()), (Some(2), ""), "{refused:?}: {told}");
+        let (code, position_line, messages) = rig(refused);
+        assert_eq!(
+            (code, position_line.as_str()),
+            (Some(2), ""),
+            "{refused:?}: {messages}"
+        );
     }
 }

@@ -118,7 +118,7 @@ fn run(case: &Case) -> Result<(), String> {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     write_plan(case, folder, ANSWERS);
-    let said = |what: &str| {
+    let with_output = |what: &str| {
         let log = |name: &str| fs::read_to_string(folder.join(name)).unwrap_or_default();
         let bytes = log("bytes.txt");
         let last = bytes
@@ -155,7 +155,7 @@ fn run(case: &Case) -> Result<(), String> {
     ];
     let mut simulator = psd(folder, "simulator.txt", &simulate);
     if !ready(folder) {
-        return Err(said("the stand-in does not begin"));
+        return Err(with_output("the stand-in does not begin"));
     }
     let mut real = psd(
         folder,
@@ -179,15 +179,15 @@ fn run(case: &Case) -> Result<(), String> {
     ] {
         match end(process) {
             Some(status) if status.success() => {}
-            Some(status) => return Err(said(&format!("the {what} ended with {status}"))),
-            None => return Err(said(&format!("the {what} does not end"))),
+            Some(status) => return Err(with_output(&format!("the {what} ended with {status}"))),
+            None => return Err(with_output(&format!("the {what} does not end"))),
         }
     }
     let summary = |name: &str| -> Value {
         let text = fs::read(folder.join(name).join("summary.json")).expect("a summary");
         serde_json::from_slice(&text).expect("JSON")
     };
-    compare(case, &summary("virtual"), &summary("real")).map_err(|fault| said(&fault))
+    compare(case, &summary("virtual"), &summary("real")).map_err(|fault| with_output(&fault))
 }
 
 fn result(summary: &Value, procedure: &str, name: &str) -> Option<f64> {

@@ -55,14 +55,14 @@ const DRIVERS: &[&str] = &[
 ];
 
 /// Files, besides the dispatch file, that still distinguish procedures or histories. The list may only shrink.
-const TELL_APART: &[&str] = &[
+const DISTINGUISHES_PROCEDURES: &[&str] = &[
     "cli/commands/explain_plan/mod.rs",
     "run/check_run.rs",
     "run/replay/compatibility.rs",
     "verdict/unfinished_peaks.rs",
 ];
 
-fn place(folder: &str) -> Option<usize> {
+fn position_in_order(folder: &str) -> Option<usize> {
     ORDER.iter().position(|line| line.contains(&folder))
 }
 
@@ -71,17 +71,19 @@ fn folder_of(file: &str) -> &str {
 }
 
 #[test]
-fn a_folder_uses_what_stands_below_it() {
+fn a_folder_uses_only_folders_to_its_left() {
     let files = rust_files("src");
     let graph = ImportGraph::of(&files);
     let mut upwards = BTreeSet::new();
     let mut drivers = BTreeSet::new();
     for (file, used) in graph.uses() {
         let folder = folder_of(file);
-        let Some(own) = place(folder) else { continue };
+        let Some(own) = position_in_order(folder) else {
+            continue;
+        };
         for used in used {
             let above = folder_of(used);
-            let up = place(above).is_some_and(|above| above >= own) && above != folder;
+            let up = position_in_order(above).is_some_and(|above| above >= own) && above != folder;
             if up && [DISPATCH, FACTS].contains(&used) && DRIVERS.contains(&file) {
                 drivers.insert(file);
             } else if up {
@@ -134,15 +136,15 @@ fn one_file_knows_which_procedures_there_are() {
             let arms = code.lines().filter(|line| line.trim().starts_with("_ =>"));
             found.extend(arms.map(|line| format!("{DISPATCH} skips variants: {}", line.trim())));
         }
-        let tells = !file.path.starts_with("procedures/")
+        let distinguishes = !file.path.starts_with("procedures/")
             && variants
                 .iter()
                 .any(|variant| names_a_variant(&code, variant));
-        let listed = TELL_APART.contains(&file.path.as_str());
-        if tells && !listed {
+        let listed = DISTINGUISHES_PROCEDURES.contains(&file.path.as_str());
+        if distinguishes && !listed {
             found.push(format!("{} tells procedures apart", file.path));
         }
-        if listed && !tells {
+        if listed && !distinguishes {
             found.push(format!(
                 "{} no longer does: remove it from the list",
                 file.path

@@ -48,15 +48,15 @@ fn links_of_the_pages_lead_somewhere() {
 
 /// Paths in code marks on these pages exist.
 #[test]
-fn places_named_on_the_pages_exist() {
+fn paths_named_on_the_pages_exist() {
     for name in ["ARCHITECTURE.md", "CONTRIBUTING.md"] {
         for quoted in page(name).split('`').skip(1).step_by(2) {
-            let is_place = quoted.starts_with("src/")
+            let is_path = quoted.starts_with("src/")
                 || quoted.starts_with("tests/")
                 || quoted.starts_with("grammar/");
             let is_pattern =
                 quoted.contains(['{', ' ']) || quoted.contains("NAME") || quoted.contains("CODE");
-            if is_place && !is_pattern {
+            if is_path && !is_pattern {
                 assert!(
                     Path::new(env!("CARGO_MANIFEST_DIR")).join(quoted).exists(),
                     "{name} names {quoted}"
@@ -86,9 +86,9 @@ fn every_part_of_the_code_is_on_the_map() {
     );
     for entry in fs::read_dir(root).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
-        let told =
+        let is_named =
             matches!(name.as_str(), "main.rs" | "lib.rs") || map.contains(&format!("`src/{name}"));
-        assert!(told, "ARCHITECTURE.md does not name src/{name}");
+        assert!(is_named, "ARCHITECTURE.md does not name src/{name}");
     }
 }
 

@@ -42,15 +42,15 @@ report {
 /// Files by their paths, with their bytes.
 type Files = Vec<(PathBuf, Vec<u8>)>;
 
-struct Bench {
+struct Workspace {
     folder: tempfile::TempDir,
 }
 
-impl Bench {
+impl Workspace {
     /// A folder with a run in `run`, as a page and as tables.
     fn new() -> Self {
         static RUN: LazyLock<Files> = LazyLock::new(|| {
-            Bench::made(&PLAN.replace(
+            Workspace::made(&PLAN.replace(
                 "formats = [html, csv, parquet, pdf]",
                 "formats = [html, csv, parquet]",
             ))
@@ -60,30 +60,30 @@ impl Bench {
 
     /// The same with a PDF, which takes longer.
     fn with_paper() -> Self {
-        static RUN: LazyLock<Files> = LazyLock::new(|| Bench::made(PLAN));
+        static RUN: LazyLock<Files> = LazyLock::new(|| Workspace::made(PLAN));
         Self::of(&RUN)
     }
 
     /// Output of a run of the plan, with the plan.
     fn made(plan: &str) -> Files {
-        let bench = Self {
+        let workspace = Self {
             folder: tempfile::tempdir().unwrap(),
         };
-        fs::write(bench.path("plan.psd"), plan).unwrap();
-        bench.ends(0, &["run", "plan.psd", "--out", "run"]);
-        every_file(bench.folder.path())
+        fs::write(workspace.path("plan.psd"), plan).unwrap();
+        workspace.ends(0, &["run", "plan.psd", "--out", "run"]);
+        every_file(workspace.folder.path())
     }
 
     fn of(files: &Files) -> Self {
-        let bench = Self {
+        let workspace = Self {
             folder: tempfile::tempdir().unwrap(),
         };
         for (name, bytes) in files {
-            let path = bench.folder.path().join(name);
+            let path = workspace.folder.path().join(name);
             fs::create_dir_all(path.parent().unwrap()).unwrap();
             fs::write(path, bytes).unwrap();
         }
-        bench
+        workspace
     }
 
     fn path(&self, path: &str) -> PathBuf {
@@ -107,9 +107,9 @@ impl Bench {
             stdout,
             stderr,
         } = self.command(arguments).output().unwrap();
-        let said = String::from_utf8(stdout).unwrap() + &String::from_utf8(stderr).unwrap();
-        assert_eq!(status.code(), Some(code), "{arguments:?}\n{said}");
-        said
+        let output = String::from_utf8(stdout).unwrap() + &String::from_utf8(stderr).unwrap();
+        assert_eq!(status.code(), Some(code), "{arguments:?}\n{output}");
+        output
     }
 
     /// Every file of a folder but its manifest, and their names.
@@ -138,15 +138,15 @@ impl Bench {
 
 #[test]
 fn a_folder_is_signed_in_each_role_once_and_proven_with_the_keys() {
-    let bench = Bench::with_paper();
-    bench.ends(0, &["keygen", "mine", "--no-password"]);
+    let workspace = Workspace::with_paper();
+    workspace.ends(0, &["keygen", "mine", "--no-password"]);
     assert!(
-        bench
+        workspace
             .ends(0, &["keygen", "yours", "--no-password"])
             .contains("has no password")
     );
     assert_eq!(
-        fs::metadata(bench.path("mine"))
+        fs::metadata(workspace.path("mine"))
             .unwrap()
             .permissions()
             .mode()
@@ -154,38 +154,38 @@ fn a_folder_is_signed_in_each_role_once_and_proven_with_the_keys() {
         0o600
     );
     assert!(
-        bench
+        workspace
             .ends(3, &["keygen", "mine", "--no-password"])
             .contains("mine"),
         "no key is overwritten"
     );
-    fs::remove_file(bench.path("mine.pub")).unwrap();
-    bench.ends(3, &["keygen", "mine", "--no-password"]);
+    fs::remove_file(workspace.path("mine.pub")).unwrap();
+    workspace.ends(3, &["keygen", "mine", "--no-password"]);
     assert!(
-        !bench.path("mine.pub").exists(),
+        !workspace.path("mine.pub").exists(),
         "no public key without its secret one"
     );
-    fs::remove_file(bench.path("mine")).unwrap();
+    fs::remove_file(workspace.path("mine")).unwrap();
     assert!(
-        !bench
+        !workspace
             .ends(0, &["keygen", "mine", "--no-password"])
             .contains("chmod")
     );
-    fs::set_permissions(bench.path("mine"), fs::Permissions::from_mode(0o644)).unwrap();
+    fs::set_permissions(workspace.path("mine"), fs::Permissions::from_mode(0o644)).unwrap();
 
-    assert!(bench.ends(0, &["verify", "run"]).contains("unsigned"));
-    bench.ends(3, &["verify", "run", "--key", "mine.pub"]);
+    assert!(workspace.ends(0, &["verify", "run"]).contains("unsigned"));
+    workspace.ends(3, &["verify", "run", "--key", "mine.pub"]);
     assert!(
-        bench
+        workspace
             .ends(2, &["sign", "run", "--key", "mine"])
             .contains("`Test engineer`, `Quality`")
     );
     assert!(
-        bench
+        workspace
             .ends(2, &["sign", "run", "--key", "mine", "--role", "Cook"])
             .contains("the plan has no role")
     );
-    let signed = bench.ends(
+    let signed = workspace.ends(
         0,
         &[
             "sign",
@@ -204,28 +204,28 @@ fn a_folder_is_signed_in_each_role_once_and_proven_with_the_keys() {
     );
     assert!(signed.contains("`chmod 600` prevents this"), "{signed}");
     assert!(
-        bench
+        workspace
             .ends(3, &["sign", "run", "--key", "yours", "--role", "Quality"])
             .contains("never overwritten")
     );
-    bench.ends(
+    workspace.ends(
         0,
         &["sign", "run", "--key", "yours", "--role", "Test engineer"],
     );
 
-    let said = bench.ends(
+    let output = workspace.ends(
         0,
         &["verify", "run", "--key", "mine.pub", "--key", "yours.pub"],
     );
     assert!(
-        said.contains("good by A. Engineer, Quality, key") && said.contains("of `yours.pub`"),
-        "{said}"
+        output.contains("good by A. Engineer, Quality, key") && output.contains("of `yours.pub`"),
+        "{output}"
     );
-    bench.ends(0, &["verify", "run"]);
-    let said = bench.ends(3, &["verify", "run", "--key", "mine.pub"]);
-    assert!(said.contains("not one of the named keys"), "{said}");
-    fs::remove_file(bench.path("run/manifest.sha256.quality.minisig")).unwrap();
-    bench.ends(
+    workspace.ends(0, &["verify", "run"]);
+    let output = workspace.ends(3, &["verify", "run", "--key", "mine.pub"]);
+    assert!(output.contains("not one of the named keys"), "{output}");
+    fs::remove_file(workspace.path("run/manifest.sha256.quality.minisig")).unwrap();
+    workspace.ends(
         3,
         &["verify", "run", "--key", "mine.pub", "--key", "yours.pub"],
     );
@@ -233,12 +233,12 @@ fn a_folder_is_signed_in_each_role_once_and_proven_with_the_keys() {
 
 #[test]
 fn a_key_has_its_password_and_never_lies_in_the_folder() {
-    let bench = Bench::new();
-    fs::write(bench.path("password"), "correct horse\n").unwrap();
-    fs::write(bench.path("wrong"), "battery staple\n").unwrap();
-    bench.ends(0, &["keygen", "key", "--password-file", "password"]);
+    let workspace = Workspace::new();
+    fs::write(workspace.path("password"), "correct horse\n").unwrap();
+    fs::write(workspace.path("wrong"), "battery staple\n").unwrap();
+    workspace.ends(0, &["keygen", "key", "--password-file", "password"]);
     let sign = |more: &[&str], code| {
-        bench.ends(
+        workspace.ends(
             code,
             &[&["sign", "run", "--role", "Quality"], more].concat(),
         )
@@ -251,16 +251,16 @@ fn a_key_has_its_password_and_never_lies_in_the_folder() {
     sign(&["--key", "key", "--password-file", "password"], 0);
 
     assert!(
-        bench
+        workspace
             .ends(3, &["keygen", "run/key", "--no-password"])
             .contains("must not lie in the run folder")
     );
     assert!(
-        bench
+        workspace
             .ends(3, &["keygen", "run/tables/key", "--no-password"])
             .contains("must not lie in the run folder")
     );
-    fs::rename(bench.path("key"), bench.path("run/key")).unwrap();
+    fs::rename(workspace.path("key"), workspace.path("run/key")).unwrap();
     assert!(
         sign(&["--key", "run/key", "--password-file", "password"], 3)
             .contains("must not lie in the run folder")
@@ -269,8 +269,8 @@ fn a_key_has_its_password_and_never_lies_in_the_folder() {
 
 #[test]
 fn what_does_not_verify_is_neither_signed_nor_amended_and_the_part_is_named() {
-    let bench = Bench::new();
-    bench.ends(0, &["keygen", "key", "--no-password"]);
+    let workspace = Workspace::new();
+    workspace.ends(0, &["keygen", "key", "--no-password"]);
     for (file, part) in [
         ("summary.json", "results"),
         ("tables/hit.csv", "results"),
@@ -280,20 +280,23 @@ fn what_does_not_verify_is_neither_signed_nor_amended_and_the_part_is_named() {
         ("manifest.sha256", "manifest"),
         ("journal.psdj", "record"),
     ] {
-        let path = bench.path("run").join(file);
+        let path = workspace.path("run").join(file);
         let own = fs::read(&path).unwrap();
         let mut changed = own.clone();
         changed[own.len() / 2] ^= 1;
         fs::write(&path, changed).unwrap();
-        let said = bench.ends(3, &["verify", "run"]);
-        let wrong: Vec<&str> = said.lines().filter(|line| line.contains("WRONG")).collect();
+        let output = workspace.ends(3, &["verify", "run"]);
+        let wrong: Vec<&str> = output
+            .lines()
+            .filter(|line| line.contains("WRONG"))
+            .collect();
         assert!(
             wrong.iter().any(|line| line.trim().starts_with(part)),
-            "{file}:\n{said}"
+            "{file}:\n{output}"
         );
         if file == "tables/hit.csv" {
-            let said = bench.ends(3, &["sign", "run", "--key", "key", "--role", "Quality"]);
-            assert!(said.contains("does not verify"), "{said}");
+            let output = workspace.ends(3, &["sign", "run", "--key", "key", "--role", "Quality"]);
+            assert!(output.contains("does not verify"), "{output}");
             let amend = [
                 "report",
                 "run",
@@ -307,31 +310,31 @@ fn what_does_not_verify_is_neither_signed_nor_amended_and_the_part_is_named() {
                 "--set-particular",
                 "customer=B",
             ];
-            assert!(bench.ends(3, &amend).contains("does not verify"));
+            assert!(workspace.ends(3, &amend).contains("does not verify"));
         }
         fs::write(&path, own).unwrap();
     }
-    fs::write(bench.path("run/more.txt"), "").unwrap();
+    fs::write(workspace.path("run/more.txt"), "").unwrap();
     assert!(
-        bench
+        workspace
             .ends(3, &["verify", "run"])
             .contains("`more.txt` is not in the manifest")
     );
-    fs::remove_file(bench.path("run/more.txt")).unwrap();
-    fs::remove_file(bench.path("run/manifest.sha256")).unwrap();
+    fs::remove_file(workspace.path("run/more.txt")).unwrap();
+    fs::remove_file(workspace.path("run/manifest.sha256")).unwrap();
     assert!(
-        bench
+        workspace
             .ends(3, &["verify", "run"])
             .contains("there are results, but no manifest")
     );
 }
 
 #[test]
-fn a_report_is_the_same_at_any_place_and_time() {
-    let bench = Bench::with_paper();
-    let own = bench.files("run");
-    fs::create_dir(bench.path("elsewhere")).unwrap();
-    let run = bench.path("run").canonicalize().unwrap();
+fn a_report_is_the_same_in_any_folder_and_at_any_time() {
+    let workspace = Workspace::with_paper();
+    let own = workspace.files("run");
+    fs::create_dir(workspace.path("elsewhere")).unwrap();
+    let run = workspace.path("run").canonicalize().unwrap();
     for (at, (zone, language)) in [
         ("Pacific/Kiritimati", "de_DE.UTF-8"),
         ("America/St_Johns", "C"),
@@ -341,14 +344,14 @@ fn a_report_is_the_same_at_any_place_and_time() {
     .enumerate()
     {
         let out = format!("again-{at}");
-        let mut command = bench.command(&[
+        let mut command = workspace.command(&[
             "report",
             run.to_str().unwrap(),
             "--out",
             &format!("../{out}"),
         ]);
         command
-            .current_dir(bench.path("elsewhere"))
+            .current_dir(workspace.path("elsewhere"))
             .env("TZ", zone)
             .env("LANG", language)
             .env("LC_ALL", language);
@@ -363,15 +366,15 @@ fn a_report_is_the_same_at_any_place_and_time() {
             "{}",
             String::from_utf8_lossy(&ended.stderr)
         );
-        let again = bench.files(&out);
+        let again = workspace.files(&out);
         assert!(again == own, "{zone} {language}");
     }
 }
 
 #[test]
 fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
-    let bench = Bench::new();
-    let before = bench.files("run");
+    let workspace = Workspace::new();
+    let before = workspace.files("run");
     let amend = |run: &str, particular: &str, code| {
         let by = [
             "report",
@@ -384,29 +387,29 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
             "--reason",
             "the name was wrong",
         ];
-        bench.ends(code, &[&by[..], &["--set-particular", particular]].concat())
+        workspace.ends(code, &[&by[..], &["--set-particular", particular]].concat())
     };
-    let said = amend("run", "customer=Somebody & Sons", 0);
+    let output = amend("run", "customer=Somebody & Sons", 0);
     assert!(
-        said.contains("run-amended-1") && said.contains("replaces report"),
-        "{said}"
+        output.contains("run-amended-1") && output.contains("replaces report"),
+        "{output}"
     );
     assert!(
-        bench.files("run") == before,
+        workspace.files("run") == before,
         "the report that is replaced stays as it is"
     );
-    let page = fs::read_to_string(bench.path("run-amended-1/report.html")).unwrap();
-    for told in [
+    let page = fs::read_to_string(workspace.path("run-amended-1/report.html")).unwrap();
+    for expected in [
         "Amendment to report",
         "B. Editor on 2026-06-12",
         "the name was wrong",
         "Somebody &amp; Sons",
         "Somebody Ltd",
     ] {
-        assert!(page.contains(told), "{told}");
+        assert!(page.contains(expected), "{expected}");
     }
     let json = |path: &str| -> serde_json::Value {
-        serde_json::from_slice(&fs::read(bench.path(path)).unwrap()).unwrap()
+        serde_json::from_slice(&fs::read(workspace.path(path)).unwrap()).unwrap()
     };
     let (own, amended) = (json("run/summary.json"), json("run-amended-1/summary.json"));
     assert_eq!(amended["issues"]["issues"][0]["replaces"], own["run_id"]);
@@ -424,18 +427,18 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
         "plan/plan.psd",
     ] {
         assert!(
-            fs::read(bench.path("run").join(same)).unwrap()
-                == fs::read(bench.path("run-amended-1").join(same)).unwrap()
+            fs::read(workspace.path("run").join(same)).unwrap()
+                == fs::read(workspace.path("run-amended-1").join(same)).unwrap()
         );
     }
     assert!(
-        bench
+        workspace
             .ends(0, &["verify", "run-amended-1"])
             .contains("amends report")
     );
     // Each report is replaced by exactly one other report.
     assert!(amend("run", "customer=Third Ltd", 3).contains("has already been replaced"));
-    assert!(!bench.path("run-amended-2").exists());
+    assert!(!workspace.path("run-amended-2").exists());
 
     // An amendment may be amended; the chain of reports is stated.
     amend("run-amended-1", "customer=", 0);
@@ -444,23 +447,23 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
         last["issues"]["issues"][1]["replaces"],
         amended["issues"]["report_id"]
     );
-    bench.ends(0, &["verify", "run-amended-2"]);
-    bench.ends(0, &["keygen", "key", "--no-password"]);
-    bench.ends(
+    workspace.ends(0, &["verify", "run-amended-2"]);
+    workspace.ends(0, &["keygen", "key", "--no-password"]);
+    workspace.ends(
         0,
         &["sign", "run-amended-2", "--key", "key", "--role", "Quality"],
     );
     assert!(
-        bench
+        workspace
             .ends(0, &["verify", "run-amended-2"])
             .contains("Test engineer has not signed")
     );
     assert!(
-        bench
+        workspace
             .ends(3, &["verify", "run-amended-2", "--key", "key.pub"])
             .contains("Test engineer has not signed")
     );
-    bench.ends(
+    workspace.ends(
         0,
         &[
             "sign",
@@ -471,32 +474,37 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
             "Test engineer",
         ],
     );
-    bench.ends(0, &["verify", "run-amended-2", "--key", "key.pub"]);
-    let signature = fs::read(bench.path("run-amended-2/manifest.sha256.quality.minisig")).unwrap();
-    fs::write(bench.path("run/manifest.sha256.quality.minisig"), signature).unwrap();
-    bench.ends(3, &["verify", "run", "--key", "key.pub"]);
+    workspace.ends(0, &["verify", "run-amended-2", "--key", "key.pub"]);
+    let signature =
+        fs::read(workspace.path("run-amended-2/manifest.sha256.quality.minisig")).unwrap();
+    fs::write(
+        workspace.path("run/manifest.sha256.quality.minisig"),
+        signature,
+    )
+    .unwrap();
+    workspace.ends(3, &["verify", "run", "--key", "key.pub"]);
 
     // The measured data and their dates are not particulars.
-    for (particular, told) in [
+    for (particular, expected) in [
         ("date=2020-01-01", "logged date"),
         ("custumer=X", "did you mean `customer`?"),
         ("title=X", "not a particular"),
     ] {
-        let said = amend("run-amended-2", particular, 2);
-        assert!(said.contains(told), "{said}");
+        let output = amend("run-amended-2", particular, 2);
+        assert!(output.contains(expected), "{output}");
     }
-    let file = bench.path("run-amended-2/issue.json");
+    let file = workspace.path("run-amended-2/issue.json");
     let text = fs::read_to_string(&file).unwrap();
     fs::write(&file, text.replace("the name was wrong", "no reason")).unwrap();
-    bench.ends(3, &["verify", "run-amended-2"]);
+    workspace.ends(3, &["verify", "run-amended-2"]);
 }
 
 #[test]
 fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
-    let bench = Bench::new();
-    let before = bench.files("run");
+    let workspace = Workspace::new();
+    let before = workspace.files("run");
     let issue = |run: &str, date: &str, more: &[&str], code| {
-        bench.ends(
+        workspace.ends(
             code,
             &[
                 &["issue", run, "--authorised-by", "Q. Head", "--date", date],
@@ -516,7 +524,7 @@ fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
         .contains("--date")
     );
     assert!(issue("run", "2026-02-30", &[], 2).contains("not a date"));
-    let said = issue(
+    let output = issue(
         "run",
         "2026-06-02",
         &[
@@ -528,12 +536,12 @@ fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
         0,
     );
     assert!(
-        said.contains("run-issued") && said.contains("issues report"),
-        "{said}"
+        output.contains("run-issued") && output.contains("issues report"),
+        "{output}"
     );
-    assert!(bench.files("run") == before, "the run stays as it is");
+    assert!(workspace.files("run") == before, "the run stays as it is");
 
-    let page = fs::read_to_string(bench.path("run-issued/report.html")).unwrap();
+    let page = fs::read_to_string(workspace.path("run-issued/report.html")).unwrap();
     for stated in [
         "2026-06-02",
         "Q. Head",
@@ -547,13 +555,13 @@ fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
         "a first issue amends nothing"
     );
     let json = |path: &str| -> serde_json::Value {
-        serde_json::from_slice(&fs::read(bench.path(path)).unwrap()).unwrap()
+        serde_json::from_slice(&fs::read(workspace.path(path)).unwrap()).unwrap()
     };
     let (own, issued) = (json("run/summary.json"), json("run-issued/summary.json"));
     assert_eq!(issued["issues"]["issues"][0]["kind"], "issue");
     assert!(own["procedures"] == issued["procedures"] && own["run_id"] == issued["run_id"]);
     assert!(
-        bench
+        workspace
             .ends(0, &["verify", "run-issued"])
             .contains("issued on 2026-06-02 by Q. Head from report")
     );
@@ -573,7 +581,7 @@ fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
             "--reason",
             "a wrong name",
         ];
-        bench.ends(
+        workspace.ends(
             code,
             &[
                 &by[..],
@@ -584,21 +592,21 @@ fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
     };
     assert!(amend("2026-06-01", 2).contains("issued on 2026-06-02"));
     amend("2026-06-12", 0);
-    let page = fs::read_to_string(bench.path("run-amended-1/report.html")).unwrap();
+    let page = fs::read_to_string(workspace.path("run-amended-1/report.html")).unwrap();
     assert!(
         page.contains("Amendment to report")
             && page.contains("issued (was “2026-06-02”, is “2026-06-12”)"),
         "{page}"
     );
-    bench.ends(0, &["keygen", "key", "--no-password"]);
+    workspace.ends(0, &["keygen", "key", "--no-password"]);
     for run in ["run-issued", "run-amended-1"] {
         for role in ["Quality", "Test engineer"] {
-            bench.ends(0, &["sign", run, "--key", "key", "--role", role]);
+            workspace.ends(0, &["sign", run, "--key", "key", "--role", role]);
         }
-        bench.ends(0, &["verify", run, "--key", "key.pub"]);
+        workspace.ends(0, &["verify", run, "--key", "key.pub"]);
     }
-    let file = bench.path("run-issued/issue.json");
+    let file = workspace.path("run-issued/issue.json");
     let text = fs::read_to_string(&file).unwrap();
     fs::write(&file, text.replace("21 °C", "20 °C")).unwrap();
-    bench.ends(3, &["verify", "run-issued"]);
+    workspace.ends(3, &["verify", "run-issued"]);
 }

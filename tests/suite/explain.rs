@@ -97,7 +97,7 @@ fn checked(code: Code, kind: &str) -> Checked {
 }
 
 /// `E202 unknown field …` of each diagnostic, for the message of a failing test.
-fn said(checked: &Checked) -> Vec<String> {
+fn diagnostics_of(checked: &Checked) -> Vec<String> {
     checked
         .diagnostics
         .iter()
@@ -114,7 +114,10 @@ fn faults_of(kind: &str, holds: impl Fn(Code, &Checked) -> bool) -> Vec<String> 
     {
         let checked = checked(code, kind);
         if !holds(code, &checked) {
-            faults.push(format!("{code}, {kind} plan: {:?}", said(&checked)));
+            faults.push(format!(
+                "{code}, {kind} plan: {:?}",
+                diagnostics_of(&checked)
+            ));
         }
     }
     faults

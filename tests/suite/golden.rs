@@ -37,7 +37,7 @@ report {
 "#;
 
 /// A folder with plans, and the program run in it.
-struct Bench(tempfile::TempDir);
+struct Workspace(tempfile::TempDir);
 
 struct Ended {
     code: Option<i32>,
@@ -45,13 +45,13 @@ struct Ended {
     stderr: String,
 }
 
-impl Bench {
+impl Workspace {
     fn new(plans: &[(&str, &str)]) -> Self {
-        let bench = Self(tempfile::tempdir().unwrap());
+        let workspace = Self(tempfile::tempdir().unwrap());
         for (name, text) in plans {
-            bench.write(&format!("plans/{name}.psd"), text);
+            workspace.write(&format!("plans/{name}.psd"), text);
         }
-        bench
+        workspace
     }
 
     fn psd(&self, arguments: &[&str]) -> Ended {
@@ -106,7 +106,7 @@ impl Ended {
     }
 
     #[track_caller]
-    fn says(self, words: &[&str]) -> Self {
+    fn prints(self, words: &[&str]) -> Self {
         for word in words {
             assert!(
                 self.stderr.contains(word),
@@ -125,72 +125,72 @@ impl Ended {
 
 #[test]
 fn a_plan_is_accepted_then_passes_and_is_not_accepted_again() {
-    let bench = Bench::new(&[("small", PLAN)]);
-    bench.psd(&["test"]).with(5).says(&[
+    let workspace = Workspace::new(&[("small", PLAN)]);
+    workspace.psd(&["test"]).with(5).prints(&[
         "FAILED    plans/small  no accepted results in reports/small",
         "--accept",
     ]);
-    bench
+    workspace
         .psd(&["test", "--accept"])
         .with(0)
-        .says(&["accepted  plans/small  new", "1 plan, 1 accepted"]);
-    bench
+        .prints(&["accepted  plans/small  new", "1 plan, 1 accepted"]);
+    workspace
         .psd(&["test"])
         .with(0)
-        .says(&["ok        plans/small  pass", "1 plan as accepted"]);
+        .prints(&["ok        plans/small  pass", "1 plan as accepted"]);
     assert!(
-        !bench.path("runs").exists(),
+        !workspace.path("runs").exists(),
         "a test that passes leaves nothing"
     );
-    let accepted = every_file(&bench.path("reports"));
-    bench
+    let accepted = every_file(&workspace.path("reports"));
+    workspace
         .psd(&["test", "--accept"])
         .with(0)
-        .says(&["same      plans/small  within tolerance: nothing written"]);
-    assert_eq!(every_file(&bench.path("reports")), accepted);
+        .prints(&["same      plans/small  within tolerance: nothing written"]);
+    assert_eq!(every_file(&workspace.path("reports")), accepted);
 
     // `psd run --accept` does the same: it writes nothing if nothing changed, and writes the same files if none exist.
-    bench
+    workspace
         .psd(&["run", "plans/small.psd", "--accept", "--out", "here"])
         .with(0)
-        .says(&["nothing written"]);
-    std::fs::remove_dir_all(bench.path("reports")).unwrap();
-    bench
+        .prints(&["nothing written"]);
+    std::fs::remove_dir_all(workspace.path("reports")).unwrap();
+    workspace
         .psd(&["run", "plans/small.psd", "--accept", "--out", "again"])
         .with(0)
-        .says(&["accepted  reports/small  new"]);
-    assert_eq!(every_file(&bench.path("reports")), accepted);
+        .prints(&["accepted  reports/small  new"]);
+    assert_eq!(every_file(&workspace.path("reports")), accepted);
     assert_eq!(
-        bench.read("reports/small/summary.json"),
-        bench.read("again/summary.json")
+        workspace.read("reports/small/summary.json"),
+        workspace.read("again/summary.json")
     );
-    bench
+    workspace
         .psd(&["run", "plans/small.psd", "--accept", "--date", "2026-05-31"])
         .with(2)
-        .says(&["as it is written"]);
+        .prints(&["as it is written"]);
 
     // A different last digit from a different machine is never written to the repository; `--anew` writes it anyway.
-    let value = serde_json::from_str::<Value>(&bench.read("reports/small/summary.json")).unwrap()["procedures"]["hit"]["results"]
-        ["max_displacement"]["value"]
+    let value = serde_json::from_str::<Value>(&workspace.read("reports/small/summary.json"))
+        .unwrap()["procedures"]["hit"]["results"]["max_displacement"]["value"]
         .as_f64()
         .unwrap();
-    bench.edit(
+    workspace.edit(
         "reports/small/summary.json",
         &value.to_string(),
         &(value * (1.0 + 1e-12)).to_string(),
     );
-    let other = every_file(&bench.path("reports"));
-    bench.psd(&["test"]).with(0);
-    bench
+    let other = every_file(&workspace.path("reports"));
+    workspace.psd(&["test"]).with(0);
+    workspace
         .psd(&["test", "--accept"])
         .with(0)
-        .says(&["nothing written"]);
-    assert_eq!(every_file(&bench.path("reports")), other);
-    bench
+        .prints(&["nothing written"]);
+    assert_eq!(every_file(&workspace.path("reports")), other);
+    workspace
         .psd(&["test", "--accept", "--anew"])
         .with(0)
-        .says(&["written again, no result changed"]);
-    assert_eq!(every_file(&bench.path("reports")), accepted);
+        .prints(&["written again, no result changed"]);
+    assert_eq!(every_file(&workspace.path("reports")), accepted);
 }
 
 #[test]
@@ -198,20 +198,20 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
     let names = [
         "column", "figure", "gone", "more", "near", "number", "rows", "same", "state", "verdict",
     ];
-    let bench = Bench::new(&names.map(|name| (name, PLAN)));
-    bench.write(
+    let workspace = Workspace::new(&names.map(|name| (name, PLAN)));
+    workspace.write(
         "plans/near.psd",
         &format!("{PLAN}\ngolden {{\n  results = [tolerance(hit.max_displacement, 0.1 mm)]\n  columns = [tolerance(hit.restoring_force_n, 0.2 %)]\n}}\n"),
     );
-    bench
+    workspace
         .psd(&["test", "--accept"])
         .with(0)
-        .says(&["10 plans, 10 accepted"]);
+        .prints(&["10 plans, 10 accepted"]);
     let table = |name: &str| format!("reports/{name}/tables/hit.csv");
     let summary = |name: &str| format!("reports/{name}/summary.json");
     let displacement = "0.15786";
-    assert!(bench.read(&summary("number")).contains(displacement));
-    let text = bench.read(&table("near"));
+    assert!(workspace.read(&summary("number")).contains(displacement));
+    let text = workspace.read(&table("near"));
     let of = |line: usize| {
         text.lines()
             .nth(line)
@@ -221,38 +221,38 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
             .collect::<Vec<String>>()
     };
     let (heads, mut cells) = (of(0), of(11));
-    let place = heads
+    let index = heads
         .iter()
         .position(|head| head == "restoring_force_n")
         .unwrap();
     let row = cells.join(",");
-    cells[place] = (cells[place].parse::<f64>().unwrap() * 1.001).to_string();
+    cells[index] = (cells[index].parse::<f64>().unwrap() * 1.001).to_string();
     let moved = cells.join(",");
     // Within the tolerance of its plan, and the same change without a tolerance.
-    bench.edit(&table("near"), &row, &moved);
-    bench.edit(&summary("near"), displacement, "0.15789");
-    bench.edit(&table("column"), &row, &moved);
-    bench.edit(&summary("number"), displacement, "0.15789");
-    bench.edit(&table("gone"), "restoring_force_n", "old_force_n");
-    let last = bench
+    workspace.edit(&table("near"), &row, &moved);
+    workspace.edit(&summary("near"), displacement, "0.15789");
+    workspace.edit(&table("column"), &row, &moved);
+    workspace.edit(&summary("number"), displacement, "0.15789");
+    workspace.edit(&table("gone"), "restoring_force_n", "old_force_n");
+    let last = workspace
         .read(&table("rows"))
         .lines()
         .last()
         .unwrap()
         .to_owned();
-    bench.edit(&table("rows"), &format!("{last}\n"), "");
-    bench.edit(
+    workspace.edit(&table("rows"), &format!("{last}\n"), "");
+    workspace.edit(
         &table("more"),
         &format!("{last}\n"),
         &format!("{last}\n{last}\n"),
     );
-    bench.edit(&table("state"), ",contact,", ",limit,");
-    bench.edit(
+    workspace.edit(&table("state"), ",contact,", ",limit,");
+    workspace.edit(
         &summary("verdict"),
         "\"verdict\": \"pass\"",
         "\"verdict\": \"fail\"",
     );
-    let figure = bench.read("reports/figure/figures.json");
+    let figure = workspace.read("reports/figure/figures.json");
     let curve = figure
         .lines()
         .find(|line| line.contains("structure X"))
@@ -264,16 +264,16 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
         .split(']')
         .next()
         .unwrap();
-    bench.edit(
+    workspace.edit(
         "reports/figure/figures.json",
         &format!("[0.1,{point}]"),
         "[0.1,0.25]",
     );
 
-    let alone = bench
+    let alone = workspace
         .psd(&["test", "--format", "json", "--jobs", "1"])
         .with(5);
-    let together = bench
+    let together = workspace
         .psd(&["test", "--format", "json", "--jobs", "4"])
         .with(5);
     assert_eq!(alone.stdout, together.stdout);
@@ -289,7 +289,7 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
             .iter()
             .find(|plan| plan["plan"] == format!("plans/{name}"))
             .unwrap();
-        let told = |found: &Value| {
+        let described = |found: &Value| {
             format!(
                 "{} {} {}",
                 found["part"].as_str().unwrap(),
@@ -301,7 +301,7 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
             .as_array()
             .unwrap()
             .iter()
-            .map(told)
+            .map(described)
             .collect()
     };
     assert_eq!(found("same"), Vec::<String>::new());
@@ -332,7 +332,7 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
     assert!((column["by_fraction"].as_f64().unwrap() + 0.001 / 1.001).abs() < 1e-6);
 
     // The remaining results to inspect, only of plans that failed.
-    let left = |path: &str| bench.path("runs/golden-failures").join(path).exists();
+    let left = |path: &str| workspace.path("runs/golden-failures").join(path).exists();
     assert!(
         left("column/hit_restoring_force_n.png")
             && left("column/hit_restoring_force_n_difference.png")
@@ -343,8 +343,8 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
             && left("number/difference.txt")
     );
     assert!(!left("same") && !left("near"));
-    let told = bench.psd(&["test", "--filter", "column"]).with(5);
-    told.says(&[
+    let output = workspace.psd(&["test", "--filter", "column"]).with(5);
+    output.prints(&[
         "FAILED    plans/column  1 difference",
         "first at step 10, 0.1000 s; 1 of 30 rows",
         "−0.0999 %",
@@ -352,21 +352,21 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
     ]);
 
     // After acceptance it passes, and its output is removed. Plans that did not run stay unchanged.
-    bench
+    workspace
         // The name of version 0.1.
         .psd(&["test", "--filter", "column", "--bless"])
         .with(0)
-        .says(&["accepted  plans/column  1 changed", "hit.restoring_force_n"]);
-    bench.psd(&["test", "--filter", "column"]).with(0);
+        .prints(&["accepted  plans/column  1 changed", "hit.restoring_force_n"]);
+    workspace.psd(&["test", "--filter", "column"]).with(0);
     assert!(!left("column") && left("number"));
 
-    let fast = bench
+    let fast = workspace
         .psd(&["test", "--fail-fast", "--jobs", "4", "--tap"])
         .with(5)
         .stdout;
     assert_eq!(
         fast,
-        bench
+        workspace
             .psd(&["test", "--fail-fast", "--jobs", "1", "--tap"])
             .with(5)
             .stdout
@@ -380,96 +380,110 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
 
 #[test]
 fn a_requirement_that_changes_its_verdict_comes_first() {
-    let bench = Bench::new(&[("small", PLAN)]);
-    bench.psd(&["test", "--accept"]).with(0);
-    bench.edit("plans/small.psd", "velocity = 1 m/s", "velocity = 1.1 m/s");
-    let told = bench.psd(&["test"]).with(5).says(&[
+    let workspace = Workspace::new(&[("small", PLAN)]);
+    workspace.psd(&["test", "--accept"]).with(0);
+    workspace.edit("plans/small.psd", "velocity = 1 m/s", "velocity = 1.1 m/s");
+    let output = workspace.psd(&["test"]).with(5).prints(&[
         "\"pass\" → \"fail\"",
         "require \"stays in travel\": verdict",
         "hit.max_displacement  ",
     ]);
-    let place = |words: &str| told.stderr.find(words).unwrap();
+    let position = |words: &str| output.stderr.find(words).unwrap();
     assert!(
-        place("  verdict ") < place("stays in travel")
-            && place("stays in travel") < place("hit.max_displacement")
+        position("  verdict ") < position("stays in travel")
+            && position("stays in travel") < position("hit.max_displacement")
     );
     // The plan that fails is also a result, once it is accepted.
-    bench.psd(&["test", "--accept"]).with(0);
-    bench
+    workspace.psd(&["test", "--accept"]).with(0);
+    workspace
         .psd(&["test"])
         .with(0)
-        .says(&["ok        plans/small  fail"]);
+        .prints(&["ok        plans/small  fail"]);
 }
 
 #[test]
 fn a_plan_that_must_fail_to_check_has_its_words_accepted() {
     let wrong = PLAN.replace("velocity = 1 m/s", "velocity = 1 m");
-    let bench = Bench::new(&[("wrong", &wrong)]);
-    bench
+    let workspace = Workspace::new(&[("wrong", &wrong)]);
+    workspace
         .psd(&["test", "--accept"])
         .with(0)
-        .says(&["accepted  plans/wrong  new"]);
-    assert!(bench.read("reports/wrong/diagnostics.txt").contains("E301"));
-    bench
+        .prints(&["accepted  plans/wrong  new"]);
+    assert!(
+        workspace
+            .read("reports/wrong/diagnostics.txt")
+            .contains("E301")
+    );
+    workspace
         .psd(&["test"])
         .with(0)
-        .says(&["ok        plans/wrong  fails to check, as accepted"]);
-    bench.edit("plans/wrong.psd", "velocity = 1 m", "velocity = 2 m");
-    bench.psd(&["test"]).with(5).says(&["diagnostics.txt"]);
-    bench.write("plans/wrong.psd", PLAN);
-    bench
+        .prints(&["ok        plans/wrong  fails to check, as accepted"]);
+    workspace.edit("plans/wrong.psd", "velocity = 1 m", "velocity = 2 m");
+    workspace
         .psd(&["test"])
         .with(5)
-        .says(&["the plan checks, but is accepted as a plan that does not"]);
-    bench.psd(&["test", "--accept"]).with(0);
-    assert!(!bench.path("reports/wrong/diagnostics.txt").exists());
+        .prints(&["diagnostics.txt"]);
+    workspace.write("plans/wrong.psd", PLAN);
+    workspace
+        .psd(&["test"])
+        .with(5)
+        .prints(&["the plan checks, but is accepted as a plan that does not"]);
+    workspace.psd(&["test", "--accept"]).with(0);
+    assert!(!workspace.path("reports/wrong/diagnostics.txt").exists());
     // The opposite change requires an explicit option.
-    bench.write("plans/wrong.psd", &wrong);
-    bench
+    workspace.write("plans/wrong.psd", &wrong);
+    workspace
         .psd(&["test"])
         .with(5)
-        .says(&["the plan fails to check"]);
-    bench
+        .prints(&["the plan fails to check"]);
+    workspace
         .psd(&["test", "--accept"])
         .with(5)
-        .says(&["delete its results folder first"]);
-    assert!(bench.path("reports/wrong/summary.json").exists());
+        .prints(&["delete its results folder first"]);
+    assert!(workspace.path("reports/wrong/summary.json").exists());
 }
 
 #[test]
 fn names_are_found_listed_and_missed() {
-    let bench = Bench::new(&[("one", PLAN), ("two", PLAN)]);
-    bench.write("plans/lib/parts.psd", "let mass = 1 kg\n");
-    bench.write("reports/old/summary.json", "{}");
-    bench.write("reports/notes/readme.txt", "no results");
-    let listed = bench.psd(&["test", "--list"]).with(0).stdout;
+    let workspace = Workspace::new(&[("one", PLAN), ("two", PLAN)]);
+    workspace.write("plans/lib/parts.psd", "let mass = 1 kg\n");
+    workspace.write("reports/old/summary.json", "{}");
+    workspace.write("reports/notes/readme.txt", "no results");
+    let listed = workspace.psd(&["test", "--list"]).with(0).stdout;
     assert_eq!(
         listed,
         "plans/one  (not accepted)\nplans/two  (not accepted)\n"
     );
-    bench
+    workspace
         .psd(&["test", "--filter", "three"])
         .with(2)
-        .says(&["no plan with `three` in its name in plans"]);
-    bench.psd(&["test", "nowhere"]).with(3).says(&["nowhere"]);
-    bench.psd(&["test", "--anew"]).with(2);
-    bench.psd(&["test", "--tap", "--format", "json"]).with(2);
-    bench
+        .prints(&["no plan with `three` in its name in plans"]);
+    workspace
+        .psd(&["test", "nowhere"])
+        .with(3)
+        .prints(&["nowhere"]);
+    workspace.psd(&["test", "--anew"]).with(2);
+    workspace
+        .psd(&["test", "--tap", "--format", "json"])
+        .with(2);
+    workspace
         .psd(&["test", "--accept", "--golden", "kept", "plans/one.psd"])
         .with(0);
-    assert!(bench.path("kept/one/summary.json").exists() && !bench.path("reports/one").exists());
-    bench
+    assert!(
+        workspace.path("kept/one/summary.json").exists() && !workspace.path("reports/one").exists()
+    );
+    workspace
         .psd(&["test", "--accept"])
         .with(0)
-        .says(&["unused    reports/old  no plan has this name"]);
-    let told = bench.psd(&["test", "plans/one.psd"]).with(0);
-    assert!(!told.stderr.contains("unused"), "{}", told.stderr);
-    assert!(!told.stderr.contains("notes"), "{}", told.stderr);
+        .prints(&["unused    reports/old  no plan has this name"]);
+    let output = workspace.psd(&["test", "plans/one.psd"]).with(0);
+    assert!(!output.stderr.contains("unused"), "{}", output.stderr);
+    assert!(!output.stderr.contains("notes"), "{}", output.stderr);
 }
 
 #[test]
 fn runs_are_laid_side_by_side_with_differences_or_with_their_spread() {
-    let bench = Bench::new(&[(
+    let workspace = Workspace::new(&[(
         "small",
         &PLAN
             .replace("mass      = 1 kg", "mass      = weight")
@@ -479,7 +493,7 @@ fn runs_are_laid_side_by_side_with_differences_or_with_their_spread() {
             ),
     )]);
     for (index, mass) in ["1 kg", "1.1 kg", "1.2 kg"].iter().enumerate() {
-        bench
+        workspace
             .psd(&[
                 "run",
                 "plans/small.psd",
@@ -490,7 +504,7 @@ fn runs_are_laid_side_by_side_with_differences_or_with_their_spread() {
             ])
             .with(0);
     }
-    let two = bench
+    let two = workspace
         .psd(&["compare", "run-1", "run-2", "--out", "two"])
         .with(0)
         .stdout;
@@ -505,12 +519,12 @@ fn runs_are_laid_side_by_side_with_differences_or_with_their_spread() {
     assert!(!two.contains("run_id") && !two.contains("Plan of"), "{two}");
     let value = |run: &str| -> f64 {
         let summary: Value =
-            serde_json::from_str(&bench.read(&format!("{run}/summary.json"))).unwrap();
+            serde_json::from_str(&workspace.read(&format!("{run}/summary.json"))).unwrap();
         summary["procedures"]["hit"]["results"]["max_displacement"]["value"]
             .as_f64()
             .unwrap()
     };
-    let table = bench.read("two/results.csv");
+    let table = workspace.read("two/results.csv");
     let row = table
         .lines()
         .find(|line| line.starts_with("hit.max_displacement,m,"))
@@ -528,16 +542,20 @@ fn runs_are_laid_side_by_side_with_differences_or_with_their_spread() {
             value("run-2") - value("run-1")
         )
     );
-    let page = bench.read("two/comparison.html");
+    let page = workspace.read("two/comparison.html");
     assert!(
         page.contains("data:image/png;base64,") && !page.contains("://"),
         "the page needs no other file"
     );
-    assert!(bench.path("two/figures/hit_displacement_1.png").exists());
+    assert!(
+        workspace
+            .path("two/figures/hit_displacement_1.png")
+            .exists()
+    );
 
     // A folder of accepted results contains the same numbers; a different plan has the same common parts.
-    bench.psd(&["test", "--accept"]).with(0);
-    let accepted = bench
+    workspace.psd(&["test", "--accept"]).with(0);
+    let accepted = workspace
         .psd(&["compare", "reports/small", "run-1"])
         .with(0)
         .stdout;
@@ -545,11 +563,11 @@ fn runs_are_laid_side_by_side_with_differences_or_with_their_spread() {
         accepted.contains("0 %") && !accepted.contains("Differences\n  hit"),
         "{accepted}"
     );
-    bench.write("plans/ramp.psd", "specimen s {\n  mass = 1 kg\n  behaviour = elastic(stiffness: 300 N/m)\n}\n\nstiffness ramp k0 {\n  displacements = 1 mm .. 5 mm step 1 mm\n}\n\nreport {\n  formats = [csv]\n}\n");
-    bench
+    workspace.write("plans/ramp.psd", "specimen s {\n  mass = 1 kg\n  behaviour = elastic(stiffness: 300 N/m)\n}\n\nstiffness ramp k0 {\n  displacements = 1 mm .. 5 mm step 1 mm\n}\n\nreport {\n  formats = [csv]\n}\n");
+    workspace
         .psd(&["run", "plans/ramp.psd", "--out", "ramp"])
         .with(0);
-    let apart = bench.psd(&["compare", "run-1", "ramp"]).with(0).stdout;
+    let apart = workspace.psd(&["compare", "run-1", "ramp"]).with(0).stdout;
     assert!(
         apart.contains("Results of some runs only")
             && !apart.contains("\nResults, ")
@@ -557,7 +575,7 @@ fn runs_are_laid_side_by_side_with_differences_or_with_their_spread() {
         "{apart}"
     );
 
-    let three = bench
+    let three = workspace
         .psd(&["compare", "run-1", "run-2", "run-3"])
         .with(0)
         .stdout;
@@ -565,12 +583,12 @@ fn runs_are_laid_side_by_side_with_differences_or_with_their_spread() {
         three.contains("deviation") && three.contains("mean"),
         "{three}"
     );
-    bench.psd(&["compare", "run-1"]).with(2);
-    bench
+    workspace.psd(&["compare", "run-1"]).with(2);
+    workspace
         .psd(&["compare", "run-1", "plans"])
         .with(3)
-        .says(&["is not a run"]);
-    bench
+        .prints(&["is not a run"]);
+    workspace
         .psd(&["compare", "run-1", "run-2", "--out", "two"])
         .with(3);
 }

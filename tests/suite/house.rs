@@ -184,7 +184,7 @@ fn what_is_named_a_test_is_built_for_tests_alone() {
 const LONG: &[&str] = &[];
 
 #[test]
-fn every_file_says_what_it_is_and_stays_short() {
+fn every_file_has_a_header_and_is_short() {
     let files = rust_files("src");
     let missing = LONG
         .iter()
@@ -226,17 +226,17 @@ fn the_arguments_of_a_function_are_few_and_have_names() {
         }
         for signature in signatures(&without_comments_and_tests(&file.text)) {
             count += 1;
-            let place = format!("{}: fn {}", file.path, signature.name);
+            let location = format!("{}: fn {}", file.path, signature.name);
             if signature.longest_run_of_numbers() >= 3 {
-                found.push(format!("{place} takes three `f64` in a row"));
+                found.push(format!("{location} takes three `f64` in a row"));
             }
             if signature.parameters.len() > MOST_ARGUMENTS {
                 found.push(format!(
-                    "{place} takes more than {MOST_ARGUMENTS} arguments"
+                    "{location} takes more than {MOST_ARGUMENTS} arguments"
                 ));
             }
             if signature.takes_a_tuple_apart() {
-                found.push(format!("{place} takes a tuple apart: give it the parts"));
+                found.push(format!("{location} takes a tuple apart: give it the parts"));
             }
         }
     }

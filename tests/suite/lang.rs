@@ -163,7 +163,7 @@ fn exit_code(played: Option<&(Record, Assessment)>) -> u8 {
 }
 
 /// The events for the snapshot: the end of the run, then each condition with its actual value.
-fn told(record: &Record, assessment: &Assessment) -> String {
+fn verdict_lines(record: &Record, assessment: &Assessment) -> String {
     let mut text = match &record.outcome {
         Outcome::Completed => "the run completed\n".to_owned(),
         Outcome::Aborted { reason } => format!("the run was aborted: {reason}\n"),
@@ -204,7 +204,7 @@ fn told(record: &Record, assessment: &Assessment) -> String {
 }
 
 #[test]
-fn cases_end_where_their_folder_says_and_say_why() {
+fn cases_end_at_the_stage_of_their_folder_with_a_reason() {
     insta::glob!("../lang", "*/*.{psd,md}", |path| {
         let case = Case::read(path);
         let checked = case.check();
@@ -216,7 +216,7 @@ fn cases_end_where_their_folder_says_and_say_why() {
             &Appearance::plain(),
         ));
         if let Some((record, assessment)) = &played {
-            text.push_str(&told(record, assessment));
+            text.push_str(&verdict_lines(record, assessment));
         }
         let exit = exit_code(played.as_ref());
         let _ = writeln!(text, "exit {exit}");
@@ -334,7 +334,7 @@ fn every_required_field_and_argument_has_a_case() {
                 Need::RequiredOn(RigKind::Real, _) => {
                     wanted.push(format!("e209_{words}_{}_on_a_real_rig", field.name));
                 }
-                Need::Optional | Need::Default { .. } | Need::Said(_) => {}
+                Need::Optional | Need::Default { .. } | Need::DefaultInWords(_) => {}
             }
             wanted.extend(argument_cases(field));
         }

@@ -84,10 +84,10 @@ fn every_rig_block_checks_in_the_plan_around_it() {
                 ..Options::default()
             },
         );
-        let said = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
+        let diagnostics = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
         assert!(
             checked.plan.is_some() && checked.diagnostics.is_empty(),
-            "{plan}\n{said}"
+            "{plan}\n{diagnostics}"
         );
     }
     for dialect in [
@@ -165,9 +165,10 @@ fn every_request_on_the_page_is_the_frame_the_driver_sends() {
                 };
                 Request::Limits(&bounds)
             }
-            ("MOVE", [id, places @ .., speed]) => {
-                let places: Vec<f64> = places.iter().map(|place| metres(place)).collect();
-                targets = native::codec::lengths(&places).expect("they can be said");
+            ("MOVE", [id, positions @ .., speed]) => {
+                let positions: Vec<f64> =
+                    positions.iter().map(|position| metres(position)).collect();
+                targets = native::codec::lengths(&positions).expect("they can be said");
                 rate = native::codec::length(metres(speed)).expect("it can be said");
                 Request::Move {
                     id: id.parse().expect("a number"),
@@ -177,7 +178,7 @@ fn every_request_on_the_page_is_the_frame_the_driver_sends() {
             }
             ("GLIDE", [id, words @ .., time]) => {
                 let end = |pair: &[&str]| End {
-                    place: metres(pair[0]),
+                    position: metres(pair[0]),
                     velocity: metres(pair[1]),
                 };
                 ends = words.chunks(2).map(end).collect::<Vec<End>>();
@@ -212,7 +213,7 @@ fn every_request_on_the_page_is_the_frame_the_driver_sends() {
 }
 
 #[test]
-fn every_reply_on_the_page_is_one_and_says_what_the_page_says() {
+fn every_reply_on_the_page_is_valid_and_has_the_meaning_on_the_page() {
     let frames = frames();
     let replies: Vec<_> = frames
         .iter()
@@ -227,15 +228,15 @@ fn every_reply_on_the_page_is_one_and_says_what_the_page_says() {
     for (line, reply) in replies {
         let reply = reply.unwrap_or_else(|broken| panic!("{line}: {broken:?}"));
         assert_eq!(reply.boot(), "7F3A");
-        let said = reply.words();
-        match (reply.kind, said.len()) {
+        let parts = reply.words();
+        match (reply.kind, parts.len()) {
             (Kind::Data, words) => {
                 let data =
-                    native::codec::data(&said).unwrap_or_else(|| panic!("{line} is no reading"));
+                    native::codec::data(&parts).unwrap_or_else(|| panic!("{line} is no reading"));
                 assert_eq!(data.axes.len(), (words - 2) / 4);
             }
             (Kind::Ack, 10 | 15) => {
-                let hello = native::codec::hello(&said).expect("who the rig is");
+                let hello = native::codec::hello(&parts).expect("who the rig is");
                 let highs: Vec<(f64, f64)> = hello
                     .bounds
                     .axes
@@ -244,7 +245,7 @@ fn every_reply_on_the_page_is_one_and_says_what_the_page_says() {
                     .collect();
                 assert_eq!(hello.bounds.top_speed, 0.12);
                 let last = hello.last.map(|last| (last.id, last.targets));
-                if said.len() == 10 {
+                if parts.len() == 10 {
                     assert_eq!((highs, last), (vec![(0.025, 12e3)], Some((16, vec![1e-3]))));
                 } else {
                     assert_eq!(
@@ -256,12 +257,12 @@ fn every_reply_on_the_page_is_one_and_says_what_the_page_says() {
                     );
                 }
             }
-            (Kind::Ack, 2) if native::codec::left(&said).is_some() => {
+            (Kind::Ack, 2) if native::codec::left(&parts).is_some() => {
                 assert!(line.contains("MOVING"), "{line}");
             }
-            (Kind::Ack, _) => assert!(native::codec::state(said[0]).is_some(), "{line}"),
+            (Kind::Ack, _) => assert!(native::codec::state(parts[0]).is_some(), "{line}"),
             (Kind::Err, _) => assert!(
-                !native::codec::refusal(&said).contains("does not know"),
+                !native::codec::refusal(&parts).contains("does not know"),
                 "{line}"
             ),
         }
@@ -279,10 +280,10 @@ fn every_refusal_on_the_page_is_one_the_driver_knows() {
         .collect();
     assert_eq!(codes.len(), 12);
     for code in codes {
-        let told = native::codec::refusal(&[code.as_str()]);
+        let line = native::codec::refusal(&[code.as_str()]);
         assert!(
-            !told.contains("for a reason unknown to psd"),
-            "{code}: {told}"
+            !line.contains("for a reason unknown to psd"),
+            "{code}: {line}"
         );
     }
     assert!(

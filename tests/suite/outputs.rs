@@ -205,7 +205,7 @@ fn the_committed_schema_is_the_generated_one_and_holds_for_a_summary() {
 }
 
 #[test]
-fn the_summary_says_what_the_language_promises() {
+fn the_summary_has_every_result_of_the_language() {
     let summary: serde_json::Value = serde_json::from_str(text(made(), "summary.json")).unwrap();
     assert_eq!(summary["schema"], "psd.summary/1");
     assert_eq!(summary["verdict"], "pass");
@@ -237,7 +237,7 @@ fn the_summary_says_what_the_language_promises() {
 }
 
 #[test]
-fn the_report_loads_and_runs_nothing_and_says_what_it_is() {
+fn the_report_loads_and_runs_nothing_and_states_its_kind() {
     let finished = hostile();
     let files = files(&finished);
     let html = text(&files, "report.html");
@@ -442,10 +442,10 @@ fn a_run_of_which_nothing_is_required_is_completed_and_never_passed() {
     assert!(html.contains("Nothing moved and no physical specimen was tested."));
     let summary: serde_json::Value = serde_json::from_str(text(&files, "summary.json")).unwrap();
     assert_eq!(summary["verdict"], "completed");
-    let told = console::verdict_text(&finished.run(), true);
+    let line = console::verdict_text(&finished.run(), true);
     assert!(
-        told.starts_with("COMPLETED  Simply supported beam") && !told.contains("PASS"),
-        "{told}"
+        line.starts_with("COMPLETED  Simply supported beam") && !line.contains("PASS"),
+        "{line}"
     );
     assert!(
         bytes(&files, "report.pdf").starts_with(b"%PDF"),

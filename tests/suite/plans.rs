@@ -300,10 +300,11 @@ fn the_accepted_reports_are_true() {
         .current_dir(root())
         .output()
         .expect("psd starts");
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{told}");
+    let messages = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{messages}");
     assert!(
-        told.contains(&format!("{} plans as accepted", plans().len())) && !told.contains("unused"),
-        "{told}"
+        messages.contains(&format!("{} plans as accepted", plans().len()))
+            && !messages.contains("unused"),
+        "{messages}"
     );
 }

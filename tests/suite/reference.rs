@@ -146,10 +146,10 @@ fn the_plans_of_the_reference_are_right() {
                 ..Options::default()
             },
         );
-        let said = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
+        let output = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
         assert!(
             checked.plan.is_some() && checked.diagnostics.is_empty(),
-            "{plan}\n{said}"
+            "{plan}\n{output}"
         );
     }
 }

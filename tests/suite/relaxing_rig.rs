@@ -51,7 +51,7 @@ impl Loader for NoFiles {
 
 /// 0.2 s of move, 0.5 s of dwell: treated as one uniform move they gave 103 of 120 kN/m.
 #[test]
-fn a_real_rig_says_when_it_moved() {
+fn a_real_rig_reports_when_it_moved() {
     let options = Options {
         rig: Some("bench".to_owned()),
         ..Options::default()

@@ -179,12 +179,12 @@ fn a_session_is_on_record_and_its_targets_come_out_again() {
         .unwrap();
     client.read_to_string(&mut String::new()).unwrap();
     server.end();
-    let (told, code) = server.verified();
-    assert_eq!(code, 0, "{told}");
+    let (output, code) = server.verified();
+    assert_eq!(code, 0, "{output}");
     // The cancelled step is in the run log and was never sent.
     assert!(
-        told.contains("all 2 recomputed, bit-identical, and 1 steps"),
-        "{told}"
+        output.contains("all 2 recomputed, bit-identical, and 1 steps"),
+        "{output}"
     );
     let run = server.folder.path().join("runs/spring-1");
     let table = std::fs::read_to_string(run.join("tables/served.csv")).unwrap();
@@ -239,8 +239,8 @@ fn a_session_on_a_frame_is_on_record_floor_by_floor() {
         "{printed}"
     );
     assert_eq!(code, 4);
-    let (told, code) = server.verified();
-    assert_eq!(code, 0, "{told}");
+    let (output, code) = server.verified();
+    assert_eq!(code, 0, "{output}");
     let run = server.folder.path().join("runs/spring-1");
     let table = std::fs::read_to_string(run.join("tables/served.csv")).unwrap();
     let rows: Vec<&str> = table.lines().collect();
@@ -274,12 +274,12 @@ fn a_coordinator_drives_the_floors_of_a_frame() {
     }
     let (printed, code) = server.end();
     assert!(code == 0 && printed.contains("targets: 1\n"), "{printed}");
-    let (told, code) = server.verified();
-    assert_eq!(code, 0, "{told}");
+    let (output, code) = server.verified();
+    assert_eq!(code, 0, "{output}");
 }
 
 #[test]
-fn settings_of_an_init_file_are_taken_and_noted() {
+fn settings_of_an_init_file_are_used_and_noted() {
     let mut server = Server::start("generic-client");
     let mut client = generic_client(&server);
     let mut setting = vec![0; 16_385];

@@ -147,8 +147,9 @@ fn the_damping_of_the_material_is_in_the_force() {
         let steps = steps(&record);
         let (mut beside, mut missed) = (0.0_f64, 0.0_f64);
         for three in steps.windows(3) {
-            let way = |floor: usize| three[2].command[floor] - three[0].command[floor];
-            let velocity = [0, 1].map(|floor: usize| way(floor) / (three[2].time - three[0].time));
+            let command_change = |floor: usize| three[2].command[floor] - three[0].command[floor];
+            let velocity =
+                [0, 1].map(|floor: usize| command_change(floor) / (three[2].time - three[0].time));
             let now = &three[1];
             let shear = |storey: usize, of: &dyn Fn(usize) -> f64| {
                 of(storey) - if storey > 0 { of(storey - 1) } else { 0.0 }
@@ -172,7 +173,7 @@ fn the_damping_of_the_material_is_in_the_force() {
 
 /// Friction dissipates its force times the path of the drifts, in either mode: the cells keep its sign through a pause.
 #[test]
-fn friction_of_the_storeys_takes_its_force_times_the_way_of_the_drifts() {
+fn friction_of_the_storeys_dissipates_its_force_times_the_travel_of_the_drifts() {
     let friction = 20.0;
     for mode in [
         continuous("2 ms"),
@@ -190,7 +191,7 @@ fn friction_of_the_storeys_takes_its_force_times_the_way_of_the_drifts() {
                 .windows(2)
                 .map(|pair| (pair[0].drift(), pair[1].drift()))
         };
-        let way: f64 = pairs()
+        let travel: f64 = pairs()
             .map(|(from, to)| {
                 from.iter()
                     .zip(to)
@@ -204,15 +205,15 @@ fn friction_of_the_storeys_takes_its_force_times_the_way_of_the_drifts() {
             .iter()
             .map(|drift| 0.5 * STIFFNESS * drift * drift)
             .sum();
-        let (taken, found) = (friction * way, last.energies.restoring - elastic);
+        let (dissipated, found) = (friction * travel, last.energies.restoring - elastic);
         assert!(
-            taken > 0.3 * last.energies.input,
-            "enough to be seen: {taken} J of {} J",
+            dissipated > 0.3 * last.energies.input,
+            "enough to be seen: {dissipated} J of {} J",
             last.energies.input
         );
         assert!(
-            (found - taken).abs() < 0.02 * taken,
-            "{mode}: {found} J of {taken} J"
+            (found - dissipated).abs() < 0.02 * dissipated,
+            "{mode}: {found} J of {dissipated} J"
         );
     }
 }

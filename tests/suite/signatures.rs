@@ -23,10 +23,10 @@ impl Signature {
 
     /// Whether a parameter is a tuple that the signature takes apart: several arguments in the place of one.
     pub fn takes_a_tuple_apart(&self) -> bool {
-        let taken_apart = |parameter: &Parameter| {
+        let destructures = |parameter: &Parameter| {
             parameter.pattern.starts_with('(') && parameter.kind.starts_with('(')
         };
-        self.parameters.iter().any(taken_apart)
+        self.parameters.iter().any(destructures)
     }
 }
 

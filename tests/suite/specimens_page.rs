@@ -48,11 +48,11 @@ fn plans() -> Vec<(String, String)> {
 /// The loop of a plan: its run must pass.
 fn drawn(name: &str, text: &str) -> Vec<u8> {
     let checked = check(&format!("{name}.psd"), text, &Docs, &Options::default());
-    let said = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
+    let output = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
     let mut plan = checked
         .plan
         .filter(|_| checked.diagnostics.is_empty())
-        .unwrap_or_else(|| panic!("{said}"));
+        .unwrap_or_else(|| panic!("{output}"));
     plan.report
         .figures
         .retain(|figure| figure.kind == FigureKind::ForceDisplacement);
@@ -89,7 +89,7 @@ fn drawn(name: &str, text: &str) -> Vec<u8> {
 
 #[test]
 fn every_plan_of_the_page_passes_and_its_loop_is_the_figure() {
-    let bless = std::env::var_os("PSD_BLESS").is_some();
+    let accepts_output = std::env::var_os("PSD_BLESS").is_some();
     for (name, text) in plans() {
         let mut sources = Sources::default();
         let file = sources.add("specimens.psd", &text);
@@ -100,7 +100,7 @@ fn every_plan_of_the_page_passes_and_its_loop_is_the_figure() {
         );
         let svg = drawn(&name, &text);
         let path = docs().join("specimens").join(format!("{name}.svg"));
-        if bless {
+        if accepts_output {
             fs::write(&path, &svg).expect("the figure can be written");
         }
         assert!(svg.len() <= 60_000, "{name}: {} bytes", svg.len());
@@ -113,7 +113,7 @@ fn every_plan_of_the_page_passes_and_its_loop_is_the_figure() {
 }
 
 #[test]
-fn every_behaviour_has_its_place_on_the_page() {
+fn every_behaviour_has_its_section_on_the_page() {
     let page = fs::read_to_string(docs().join("specimens.md")).expect("the page is there");
     let specimen = BLOCKS
         .iter()

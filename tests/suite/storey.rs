@@ -79,7 +79,7 @@ fn yielding(fields: &str) -> Record {
 }
 
 /// The frame under this number of impacts, each of 0.4 s.
-fn yielding_by(fields: &str, blows: &[&str]) -> Record {
+fn yielding_by(fields: &str, impacts: &[&str]) -> Record {
     let storeys: Vec<String> = (0..3)
         .map(|i| {
             format!(
@@ -92,7 +92,7 @@ fn yielding_by(fields: &str, blows: &[&str]) -> Record {
         "specimen frame {{ storeys = [{}] }}\nstriker truck {{\n  mass = {STRIKER} kg\n  velocity = {SPEED} m/s\n}}\n",
         storeys.join(", ")
     );
-    for name in blows {
+    for name in impacts {
         let _ = write!(
             text,
             "impact {name} {{\n  striker = truck\n  storey = 2\n  contact = hertz(stiffness: {HERTZ} N/m^1.5)\n  duration = 0.4 s\n  until = duration\n{fields}\n}}\n"
@@ -108,12 +108,12 @@ fn central_differences(times: &[f64], again: f64) -> Vec<[f64; 3]> {
     const STEP: f64 = 2e-6;
     let (mut x, mut before, mut z) = ([0.0; 3], [0.0; 3], [0.0_f64; 3]);
     let (mut striker, mut striker_before) = (0.0_f64, -SPEED * STEP);
-    let mut told = Vec::new();
+    let mut displacements = Vec::new();
     let mut step = 0_u32;
-    while told.len() < times.len() {
+    while displacements.len() < times.len() {
         let time = f64::from(step) * STEP;
-        if time >= times[told.len()] - 0.5 * STEP {
-            told.push(x);
+        if time >= times[displacements.len()] - 0.5 * STEP {
+            displacements.push(x);
         }
         if (time - again).abs() < 0.5 * STEP {
             (before, striker, striker_before) = (x, x[1], x[1] - SPEED * STEP);
@@ -141,7 +141,7 @@ fn central_differences(times: &[f64], again: f64) -> Vec<[f64; 3]> {
         (striker_before, striker) = (striker, after);
         step += 1;
     }
-    told
+    displacements
 }
 
 /// Largest difference of any floor at any step, over the largest displacement.
@@ -186,7 +186,7 @@ fn a_frame_that_yields_is_the_one_of_central_differences() {
 
 /// A run that ends before its reversal has no peak, and one that ends in contact has truncated the impact; both are reported.
 #[test]
-fn a_run_that_is_cut_says_what_is_missing() {
+fn a_truncated_run_names_what_is_missing() {
     let cut = |duration: &str, contact: &str| {
         let plan = format!(
             "specimen post {{ storeys = [storey(mass: 1 kg, stiffness: 300 N/m)] }}\nstriker s {{\n  mass = 10 kg\n  velocity = 1 m/s\n}}\nimpact hit {{\n  striker = s\n  storey = 1\n  contact = {contact}\n  time_step = 1 ms\n  duration = {duration}\n}}\n"
@@ -216,7 +216,7 @@ fn a_run_that_is_cut_says_what_is_missing() {
 
 /// A second impact hits the frame in its state after the first one: deformed, and with the memory of its storeys.
 #[test]
-fn a_second_blow_meets_the_damage_of_the_first() {
+fn a_second_impact_meets_the_damage_of_the_first() {
     let record = yielding_by("  time_step = 0.25 ms", &["first", "second"]);
     let of = |procedure: usize| match &record.procedures[procedure].history {
         History::Impact(history) => &history.frame.as_ref().expect("a frame").floors,
@@ -279,7 +279,7 @@ fn floors_that_never_stop_are_struck_as_those_that_do() {
 
 /// The energies of the storeys sum to that of the frame, and the balance closes. A rebound that the plan assumes occurs.
 #[test]
-fn results_say_of_each_storey_what_the_balance_says_of_all() {
+fn results_per_storey_add_up_to_the_balance() {
     let record = yielding("  time_step = 0.5 ms\n  damping_ratio = 2 %");
     let last = steps(&record).last().expect("steps").energies;
     // It continued past its peaks and past its impact: neither is truncated.
@@ -305,11 +305,11 @@ fn results_say_of_each_storey_what_the_balance_says_of_all() {
     assert!((0.5 * STRIKER * back * back - last.striker).abs() < 1e-9 * last.striker);
     // An impact of finite stiffness lasts 2.943 δ/u between free masses; the flexibility of the storeys has little effect.
     let reduced = STRIKER * MASSES[1] / (STRIKER + MASSES[1]);
-    let blow = 2.943 * (1.25 * reduced * SPEED * SPEED / HERTZ).powf(0.4) / SPEED;
+    let contact_time = 2.943 * (1.25 * reduced * SPEED * SPEED / HERTZ).powf(0.4) / SPEED;
     let lasted = number(&record, "contact_duration").expect("it touched");
     assert!(
-        (lasted / blow - 1.0).abs() < 0.1,
-        "{lasted} s, free masses {blow} s"
+        (lasted / contact_time - 1.0).abs() < 0.1,
+        "{lasted} s, free masses {contact_time} s"
     );
     let shear = history(&record)
         .floors
@@ -430,7 +430,7 @@ fn record_is_enough(name: &str, files: &[&str]) {
 }
 
 #[test]
-fn the_record_of_a_blow_on_a_storey_is_enough() {
+fn the_record_of_an_impact_on_a_storey_is_enough() {
     record_is_enough(
         "storey_impact.psd",
         &[
@@ -442,7 +442,7 @@ fn the_record_of_a_blow_on_a_storey_is_enough() {
 }
 
 #[test]
-fn the_record_of_rising_blows_on_a_storey_and_of_an_unloaded_frame_is_enough() {
+fn the_record_of_an_impact_series_on_a_storey_and_of_an_unloaded_frame_is_enough() {
     let tables = [
         "tables/rest.csv",
         "tables/rising.csv",

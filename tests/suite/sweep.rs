@@ -115,7 +115,7 @@ fn readings(record: &Record) -> (Vec<usize>, f64) {
     let History::Sweep(sweep) = &record.procedure("c").expect("a sweep").history else {
         panic!("a sweep")
     };
-    let ways = sweep
+    let strokes = sweep
         .steps
         .chunk_by(|one, other| one.velocity == other.velocity);
     let times = sweep
@@ -123,7 +123,7 @@ fn readings(record: &Record) -> (Vec<usize>, f64) {
         .windows(2)
         .map(|pair| pair[1].wall_time - pair[0].wall_time);
     (
-        ways.map(<[_]>::len).collect(),
+        strokes.map(<[_]>::len).collect(),
         times.fold(f64::INFINITY, f64::min),
     )
 }
@@ -138,15 +138,15 @@ fn damping_is_recovered_at_one_to_seven_milliseconds_a_reading() {
     ] {
         let record = over_a_line(baud, seed);
         assert_eq!(record.outcome, Outcome::Completed, "{:?}", record.events);
-        let (ways, least) = readings(&record);
+        let (strokes, least) = readings(&record);
         assert!(least > 0.0005 && least < 0.008, "{least} s a reading");
         assert!(
-            ways.len() == 10 && ways.iter().all(|count| *count <= 64),
-            "{ways:?}"
+            strokes.len() == 10 && strokes.iter().all(|count| *count <= 64),
+            "{strokes:?}"
         );
         assert!(
-            ways[9] < 50,
-            "50 ms hold fewer readings than were asked for: {ways:?}"
+            strokes[9] < 50,
+            "50 ms hold fewer readings than were asked for: {strokes:?}"
         );
         for (name, truth) in [("damping", DAMPING), ("coulomb_force", COULOMB)] {
             let (found, error) = result(&record, name);
@@ -168,14 +168,14 @@ fn damping_is_recovered_at_one_to_seven_milliseconds_a_reading() {
 }
 
 #[test]
-fn a_line_too_slow_for_the_fast_strokes_is_told() {
+fn a_line_too_slow_for_the_fast_strokes_is_reported() {
     // At 38400 baud a reading takes some 20 ms: the pass of 50 ms has one or two on its steady part.
     let record = over_a_line(38_400.0, 1);
     assert_eq!(record.outcome, Outcome::Completed, "{:?}", record.events);
-    let told = record.events.iter().any(|event| {
+    let is_remarked = record.events.iter().any(|event| {
         event.kind == EventKind::Remark && event.text.contains("communication too slow")
     });
-    assert!(told, "{:?}", record.events);
+    assert!(is_remarked, "{:?}", record.events);
     let (found, error) = result(&record, "damping");
     assert!((found - DAMPING).abs() <= 3.0 * error, "{found} ± {error}");
 }

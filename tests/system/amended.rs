@@ -13,7 +13,7 @@ fn stopped() -> Stage {
     stage.after_moves(8);
     signal(&run, Signal::INT);
     let run = finish(run);
-    assert_eq!(run.code, Some(4), "{}", run.told);
+    assert_eq!(run.code, Some(4), "{}", run.output);
     stage
 }
 
@@ -26,18 +26,18 @@ fn one_byte_of_the_plan_is_refused_and_amended_only_by_name() {
     fs::write(&plan, text.replace("A short run", "a short run")).unwrap();
     let greetings = stage.greetings();
     let refused = wait(&mut stage.resume_with(&["--plan", &same]));
-    assert_eq!(refused.code, Some(2), "{}", refused.told);
+    assert_eq!(refused.code, Some(2), "{}", refused.output);
     let digests = refused
-        .told
+        .output
         .split(|letter: char| !letter.is_ascii_hexdigit())
         .filter(|word| word.len() == 64)
         .count();
-    assert_eq!(digests, 2, "{}", refused.told);
+    assert_eq!(digests, 2, "{}", refused.output);
     assert_eq!(stage.greetings(), greetings, "not even the first word");
 
     let amended = wait(&mut stage.resume_with(&["--plan", &same, "--amend"]));
-    assert_eq!(amended.code, Some(0), "{}", amended.told);
-    assert_eq!(stage.verify().code, Some(0), "{}", stage.verify().told);
+    assert_eq!(amended.code, Some(0), "{}", amended.output);
+    assert_eq!(stage.verify().code, Some(0), "{}", stage.verify().output);
     for file in ["report.html", "summary.json"] {
         let text = fs::read_to_string(stage.path("run").join(file)).unwrap();
         assert!(

@@ -17,10 +17,13 @@ fn mdbook_builds_the_book() {
         println!("SKIPPED: no mdBook here");
         return;
     };
-    let said = String::from_utf8_lossy(&build.stderr).into_owned()
+    let output = String::from_utf8_lossy(&build.stderr).into_owned()
         + &String::from_utf8_lossy(&build.stdout);
-    assert!(build.status.success(), "{said}");
-    assert!(!said.contains("WARN") && !said.contains("ERROR"), "{said}");
+    assert!(build.status.success(), "{output}");
+    assert!(
+        !output.contains("WARN") && !output.contains("ERROR"),
+        "{output}"
+    );
     let page = |name: &str| fs::read_to_string(folder.path().join(name)).expect("a page");
     // The reference is included from `grammar/LANGUAGE.md`.
     assert!(page("reference/vocabulary.html").contains("max_displacement"));

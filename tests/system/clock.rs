@@ -10,12 +10,12 @@ use crate::stage::{PSD, Stage, finish, start};
 /// A run whose wall clock changes by this amount at its fifteenth move.
 fn jumped(by: &str) -> Stage {
     let stage = Stage::new();
-    let told = stage.path("clock");
-    fs::write(&told, "+0").unwrap();
+    let clock = stage.path("clock");
+    fs::write(&clock, "+0").unwrap();
     let mut command = Command::new(PSD);
     command
         .env("LD_PRELOAD", needs::FAKETIME)
-        .env("FAKETIME_TIMESTAMP_FILE", &told);
+        .env("FAKETIME_TIMESTAMP_FILE", &clock);
     command
         .env("FAKETIME_NO_CACHE", "1")
         .env("FAKETIME_DONT_FAKE_MONOTONIC", "1")
@@ -23,9 +23,9 @@ fn jumped(by: &str) -> Stage {
     stage.run_arguments(&mut command, &["--yes"]);
     let run = start(&mut command);
     stage.after_moves(15);
-    fs::write(&told, by).unwrap();
+    fs::write(&clock, by).unwrap();
     let run = finish(run);
-    assert_eq!(run.code, Some(0), "{}", run.told);
+    assert_eq!(run.code, Some(0), "{}", run.output);
     stage
 }
 
@@ -64,8 +64,8 @@ fn it_is_set_by_a_year() {
             "{times:?}"
         );
         let page = fs::read_to_string(stage.path("run").join("report.html")).unwrap();
-        let told = format!("The wall clock jumped by {sign}365");
-        assert!(page.contains(&told), "page one tells it");
+        let expected = format!("The wall clock jumped by {sign}365");
+        assert!(page.contains(&expected), "page one tells it");
         assert!(stage.proven().contains("ok"));
     }
 }

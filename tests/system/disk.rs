@@ -42,11 +42,11 @@ fn a_sync_that_fails_once_ends_the_run_and_is_not_tried_again() {
     ]);
     stage.run_arguments(&mut command, &["--yes"]);
     let ran = wait(&mut command);
-    assert_eq!(ran.code, Some(3), "{}", ran.told);
+    assert_eq!(ran.code, Some(3), "{}", ran.output);
     assert!(
-        ran.told.contains("the run log could not be written"),
+        ran.output.contains("the run log could not be written"),
         "{}",
-        ran.told
+        ran.output
     );
     held(&stage);
     let syncs = fs::read_to_string(&trace).unwrap();
@@ -76,8 +76,8 @@ fn a_limit_on_the_size_of_files_is_a_full_disk_and_no_signal_ends_the_program() 
     command.args([&format!("--fsize={}", size / 2), PSD]);
     stage.run_arguments(&mut command, &["--yes"]);
     let ran = wait(&mut command);
-    assert_eq!(ran.code, Some(3), "{}", ran.told);
-    assert!(ran.told.contains("error:"), "{}", ran.told);
+    assert_eq!(ran.code, Some(3), "{}", ran.output);
+    assert!(ran.output.contains("error:"), "{}", ran.output);
     assert!(
         stage.moves().is_empty(),
         "nothing moves where the reserve cannot be laid"
@@ -104,11 +104,11 @@ fn a_write_that_finds_no_room_holds_the_rig_and_the_run_goes_on_later() {
         ]);
         stage.run_arguments(&mut command, &["--yes"]);
         let ran = wait(&mut command);
-        assert_eq!(ran.code, Some(3), "{error}: {}", ran.told);
+        assert_eq!(ran.code, Some(3), "{error}: {}", ran.output);
         assert!(
-            ran.told.contains("the run log could not be written"),
+            ran.output.contains("the run log could not be written"),
             "{error}: {}",
-            ran.told
+            ran.output
         );
         held(&stage);
         stage.goes_on(&[]);
@@ -134,7 +134,7 @@ fn a_storm_of_interrupted_and_short_writes_loses_and_doubles_nothing() {
     ]);
     stage.run_arguments(&mut command, &["--yes"]);
     let ran = wait(&mut command);
-    assert_eq!(ran.code, Some(0), "{}", ran.told);
+    assert_eq!(ran.code, Some(0), "{}", ran.output);
     assert_eq!(stage.verify().code, Some(0));
 }
 
@@ -158,21 +158,21 @@ fn a_disk_that_lies_about_what_it_took_is_found_out_before_a_report_is_made() {
     stage.run_arguments(&mut command, &["--yes"]);
     let ran = wait(&mut command);
     assert!(
-        ran.code == Some(3) && ran.told.contains("the run log is damaged"),
+        ran.code == Some(3) && ran.output.contains("the run log is damaged"),
         "{}",
-        ran.told
+        ran.output
     );
     assert!(!stage.path("run").join("report.html").exists());
     let verified = stage.verify();
     assert!(
-        verified.code == Some(3) && verified.told.contains("WRONG"),
+        verified.code == Some(3) && verified.output.contains("WRONG"),
         "{}",
-        verified.told
+        verified.output
     );
 }
 
 #[test]
-fn a_record_that_somebody_takes_away_under_way_ends_the_run_and_proves_nothing() {
+fn a_record_deleted_during_the_run_ends_it_and_verifies_nothing() {
     for removed in [true, false] {
         let stage = Stage::new();
         let run = start(&mut stage.run_with(&["--yes"]));
@@ -186,11 +186,15 @@ fn a_record_that_somebody_takes_away_under_way_ends_the_run_and_proves_nothing()
         }
         signal(&run, Signal::CONT);
         let ran = finish(run);
-        assert_eq!(ran.code, Some(3), "{}", ran.told);
+        assert_eq!(ran.code, Some(3), "{}", ran.output);
         assert!(!stage.path("run").join("report.html").exists());
         if removed {
             held(&stage);
-            assert!(ran.told.contains("its file was deleted"), "{}", ran.told);
+            assert!(
+                ran.output.contains("its file was deleted"),
+                "{}",
+                ran.output
+            );
             assert!(
                 stage.moves().len() <= moves + 1,
                 "nothing moves that nobody records"
@@ -227,11 +231,11 @@ exit $status
             .arg(stage.path(""))
             .arg(PSD),
     );
-    assert_eq!(ran.code, Some(3), "{}", ran.told);
+    assert_eq!(ran.code, Some(3), "{}", ran.output);
     assert!(
-        ran.told.contains("the run log could not be written"),
+        ran.output.contains("the run log could not be written"),
         "{}",
-        ran.told
+        ran.output
     );
     held(&stage);
     fs::remove_dir_all(stage.path("run")).unwrap();
@@ -264,18 +268,18 @@ exit $status
             .arg(stage.path(""))
             .arg(PSD),
     );
-    assert_eq!(ran.code, Some(3), "{}", ran.told);
+    assert_eq!(ran.code, Some(3), "{}", ran.output);
     assert!(
-        ran.told.contains("error[E629]")
-            && ran.told.contains("1.0 MB of free space")
-            && ran.told.contains("nothing has moved"),
+        ran.output.contains("error[E629]")
+            && ran.output.contains("1.0 MB of free space")
+            && ran.output.contains("nothing has moved"),
         "{}",
-        ran.told
+        ran.output
     );
     assert!(
-        ran.told.trim_end().ends_with("another disk with `--out`"),
+        ran.output.trim_end().ends_with("another disk with `--out`"),
         "no folder is left: {}",
-        ran.told
+        ran.output
     );
     assert!(stage.moves().is_empty(), "{:?}", stage.moves());
 }

@@ -23,7 +23,7 @@ fn a_run_of_a_document_is_resumed_from_its_log() {
     stage.after_moves(6);
     signal(&run, Signal::INT);
     let ran = finish(run);
-    assert_eq!(ran.code, Some(4), "{}", ran.told);
+    assert_eq!(ran.code, Some(4), "{}", ran.output);
     fs::write(stage.path("procedure.md"), "# Procedure\n").unwrap();
     stage.goes_on(&[]);
     assert_eq!(

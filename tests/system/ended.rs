@@ -31,7 +31,7 @@ fn aborted(word: Signal, moves: usize) {
         run.code,
         None,
         "ended by the signal at move {moves}: {:?}",
-        run.told.lines().last()
+        run.output.lines().last()
     );
     let (done, asked) = (stage.moves().len(), stage.requests().len());
     // The line is silent after the end of the program; the watchdog of the rig trips.
@@ -52,15 +52,15 @@ fn aborted(word: Signal, moves: usize) {
 /// The number of threads that a run starts.
 fn threads_of_a_run() -> usize {
     let stage = Stage::new();
-    let told = stage.path("threads");
+    let trace = stage.path("threads");
     let mut command = Command::new("strace");
     command
         .args(["-f", "-e", "trace=clone3", "-o"])
-        .arg(&told)
+        .arg(&trace)
         .arg(PSD);
     stage.run_arguments(&mut command, &["--yes"]);
     assert_eq!(wait(&mut command).code, Some(0));
-    std::fs::read_to_string(told)
+    std::fs::read_to_string(trace)
         .expect("what strace saw")
         .matches("clone3(")
         .count()
@@ -93,9 +93,9 @@ fn by_a_panic_where_a_thread_cannot_be_started() {
             continue;
         }
         assert!(
-            ran.code == Some(101) && ran.told.contains("panicked"),
+            ran.code == Some(101) && ran.output.contains("panicked"),
             "{number}: {:?}",
-            ran.told.lines().last()
+            ran.output.lines().last()
         );
         if stage.moves().is_empty() {
             before += 1;
@@ -112,7 +112,7 @@ fn by_a_panic_where_a_thread_cannot_be_started() {
                 .arg("--out")
                 .arg(stage.path("again")),
         );
-        assert_eq!(again.code, Some(0), "{number}: {}", again.told);
+        assert_eq!(again.code, Some(0), "{number}: {}", again.output);
     }
     assert!(
         before > 0 && after > 0,

@@ -12,7 +12,7 @@ const AT_ONCE: usize = 4;
 struct Row {
     fault: String,
     code: i32,
-    said: Vec<String>,
+    expected: Vec<String>,
 }
 
 /// The words of a cell between backticks.
@@ -41,14 +41,14 @@ fn rows() -> Vec<Row> {
         let name = |word: &str| {
             word.starts_with("--") || ["psd resume", "force_range", "samples"].contains(&word)
         };
-        let said = quoted(words)
+        let expected = quoted(words)
             .into_iter()
             .filter(|word| !name(word))
             .collect();
         Row {
             fault: fault.to_owned(),
             code: code.parse().unwrap(),
-            said,
+            expected,
         }
     };
     cells.map(row).collect()
@@ -76,9 +76,9 @@ fn fault_of(row: &Row) -> Option<String> {
     // Fails if a target was outside the limits.
     stage.power_down();
     let unsaid: Vec<&String> = row
-        .said
+        .expected
         .iter()
-        .filter(|words| !ran.told.contains(*words))
+        .filter(|words| !ran.output.contains(*words))
         .collect();
     let last = |what: &str| requests.iter().rposition(|request| request.contains(what));
     let heard = !["stop reading", "hang up", "reboot", "freeze firmware"]
@@ -90,17 +90,17 @@ fn fault_of(row: &Row) -> Option<String> {
     } else if !unsaid.is_empty() {
         format!("not said: {unsaid:?}")
     } else if verified.code != Some(0) {
-        format!("the record: {}", verified.told)
+        format!("the record: {}", verified.output)
     } else if row.code > 1 && !held {
         format!("not held: {requests:#?}")
     } else {
         return None;
     };
-    Some(format!("{}: {fault}\n{}", row.fault, ran.told))
+    Some(format!("{}: {fault}\n{}", row.fault, ran.output))
 }
 
 #[test]
-fn every_fault_of_the_manual_ends_as_the_manual_says() {
+fn every_fault_of_the_manual_ends_as_specified_there() {
     let rows = rows();
     assert!(rows.len() >= 30, "{} rows", rows.len());
     let (next, faults) = (Mutex::new(rows.iter()), Mutex::new(Vec::new()));
@@ -169,9 +169,9 @@ fn every_kind_of_fault_has_its_row() {
 }
 
 #[test]
-fn a_script_that_says_nothing_known_stands_in_for_nothing() {
+fn a_script_without_known_faults_is_refused() {
     let stage = Stage::new();
-    for (script, said) in [
+    for (script, expected) in [
         (
             "after 3 moves drop reply",
             "line 1: `:` is missing between the time and the fault",
@@ -189,9 +189,9 @@ fn a_script_that_says_nothing_known_stands_in_for_nothing() {
                 .arg(stage.path("wrong")),
         );
         assert!(
-            ended.code == Some(2) && ended.told.contains(said),
+            ended.code == Some(2) && ended.output.contains(expected),
             "{}",
-            ended.told
+            ended.output
         );
     }
 }

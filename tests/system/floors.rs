@@ -12,14 +12,14 @@ use crate::stage::{Stage, wait};
 /// The text of the ground-motion plan, for two seconds, on a NEES rig at its own address.
 fn over_tcp(address: &str) -> String {
     let sine = include_str!("../../plans/two_storeys_sine.psd");
-    let bench = include_str!("../../plans/lib/two_actuator_frame.psd");
+    let library = include_str!("../../plans/lib/two_actuator_frame.psd");
     let (device, nees) = (
         "serial(port: \"/tmp/psd-frame\", dialect: native, serial_number: \"STAND-IN-2\")",
         format!(
             "tcp(address: \"{address}\", dialect: nees(\"MDL-00-01, MDL-00-02\"), reply_timeout: 2 s)"
         ),
     );
-    let rig = bench
+    let rig = library
         .replace(device, &nees)
         .replace("  noise           = 0.001 N\n", "");
     let rig = rig.replace("  safe_state ", "  watchdog        = 30 s\n  safe_state ");
@@ -79,7 +79,7 @@ fn a_frame_over_control_points_is_the_virtual_run() {
     // The requirements apply to the steady motion. A second is too short for it.
     for (rig, out) in [("ideal", "virtual"), ("bench", "run")] {
         let ended = run(rig, out);
-        assert_eq!(ended.code, Some(1), "{}", ended.told);
+        assert_eq!(ended.code, Some(1), "{}", ended.output);
     }
     stage.proven();
     let table = |out: &str| stage.path(out).join("tables/steady.csv");
@@ -171,10 +171,10 @@ fn floor(client: &mut Coordinator, point: &str) -> (f64, f64) {
     (words[6].parse().unwrap(), words[9].parse().unwrap())
 }
 
-fn is(found: (f64, f64), place: f64, force: f64) {
+fn is(found: (f64, f64), position: f64, force: f64) {
     assert!(
-        (found.0 - place).abs() < 1e-8 && (found.1 - force).abs() < 1e-2,
-        "{found:?} is not {place} m, {force} N"
+        (found.0 - position).abs() < 1e-8 && (found.1 - force).abs() < 1e-2,
+        "{found:?} is not {position} m, {force} N"
     );
 }
 
@@ -204,7 +204,7 @@ fn a_coordinator_drives_the_floors_of_a_real_rig_together_and_one_by_one() {
     let moved = served.stage.moves().len();
     assert_eq!(moved, pretest_check + 2);
     // The lower axis has its own limit. A refused target of one axis moves neither.
-    for (wish, said) in [
+    for (wish, expected) in [
         (
             "MDL-00-01\tx\tdisplacement\t0.0101\tMDL-00-02\tx\tdisplacement\t0",
             "NOT OK\t1\tt3",
@@ -227,7 +227,7 @@ fn a_coordinator_drives_the_floors_of_a_real_rig_together_and_one_by_one() {
         ),
     ] {
         let refused = client.ask(&format!("propose\tt3\t{wish}"));
-        assert!(refused.starts_with(said), "{wish}: {refused}");
+        assert!(refused.starts_with(expected), "{wish}: {refused}");
         assert!(client.ask("execute\tt3").starts_with("NOT OK\t3"), "{wish}");
     }
     assert!(
@@ -271,9 +271,9 @@ fn floors_have_the_names_that_they_are_given() {
             ],
         ));
         assert!(
-            ended.code == Some(2) && ended.told.contains("MDL-00-01, MDL-00-02"),
+            ended.code == Some(2) && ended.output.contains("MDL-00-01, MDL-00-02"),
             "{names}: {}",
-            ended.told
+            ended.output
         );
     }
     assert!(stage.requests().is_empty());

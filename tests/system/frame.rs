@@ -192,8 +192,8 @@ fn a_meter_apart_gives_the_virtual_runs_results_and_killed_it_goes_on() {
     let report = fs::read_to_string(whole.path("run").join("report.html"))
         .unwrap()
         .replace('\u{a0}', " ");
-    for told in ["scpi", "25 kN per count", "12.5 kN per count"] {
-        assert!(report.contains(told), "no {told}");
+    for expected in ["scpi", "25 kN per count", "12.5 kN per count"] {
+        assert!(report.contains(expected), "no {expected}");
     }
     // Nine digits of 25 kN are 0.1 mN.
     same_but_for(
@@ -244,7 +244,7 @@ fn two_axes_that_do_not_stop_give_the_virtual_runs_motion_and_killed_they_go_on(
 }
 
 fn succeeded(ended: &Ended) {
-    assert_eq!(ended.code, Some(0), "{}", ended.told);
+    assert_eq!(ended.code, Some(0), "{}", ended.output);
 }
 
 #[test]
@@ -256,7 +256,7 @@ fn two_axes_give_the_virtual_runs_results_and_killed_they_go_on_to_the_same_end(
         "pre-test check passed by axis 1: ",
         "pre-test check passed by axis 2: ",
     ] {
-        assert!(ran.told.contains(axis), "{}", ran.told);
+        assert!(ran.output.contains(axis), "{}", ran.output);
     }
     let proven = whole.proven();
     assert!(
@@ -264,7 +264,7 @@ fn two_axes_give_the_virtual_runs_results_and_killed_they_go_on_to_the_same_end(
         "{proven}"
     );
     let report = fs::read_to_string(whole.path("run").join("report.html")).unwrap();
-    for told in [
+    for expected in [
         "displacement 1",
         "force 2",
         "UKAS 4711",
@@ -272,7 +272,7 @@ fn two_axes_give_the_virtual_runs_results_and_killed_they_go_on_to_the_same_end(
         "UKAS 4810",
         "force 0.40\u{a0}%; zero offset of the force 1.5",
     ] {
-        assert!(report.contains(told), "{told} is not on the report");
+        assert!(report.contains(expected), "{expected} is not on the report");
     }
     // The resolution of the line is 1 nm and 1 mN. The energy error, zero on an ideal rig, is relative to the input energy.
     same_but_for(

@@ -59,14 +59,14 @@ fn junit_is_read_by_a_parser_of_xml() {
         .output()
         .unwrap();
     assert!(read.status.success(), "{}", text(&read.stderr));
-    let told = text(&read.stdout);
-    let lines: Vec<&str> = told.lines().collect();
-    assert_eq!(lines[..2], ["testsuites 2 1 0", "plans as -"], "{told}");
+    let output = text(&read.stdout);
+    let lines: Vec<&str> = output.lines().collect();
+    assert_eq!(lines[..2], ["testsuites 2 1 0", "plans as -"], "{output}");
     assert!(
         lines[2].starts_with(
             "plans moved 2 differences from the accepted results|require \"stout <&> \"sound\"\""
         ),
-        "{told}"
+        "{output}"
     );
 }
 
@@ -89,16 +89,16 @@ fn tap_is_read_by_prove() {
             .unwrap();
         (output.status.success(), text(&output.stdout))
     };
-    let (good, told) = proven("good.t", &["test", "--tap", "--filter", "plans/as"]);
+    let (good, output) = proven("good.t", &["test", "--tap", "--filter", "plans/as"]);
     assert!(
-        good && told.contains("Result: PASS") && told.contains("Tests=1"),
-        "{told}"
+        good && output.contains("Result: PASS") && output.contains("Tests=1"),
+        "{output}"
     );
-    let (good, told) = proven("bad.t", &["test", "--tap"]);
+    let (good, output) = proven("bad.t", &["test", "--tap"]);
     assert!(
-        !good && told.contains("Failed 1/2 subtests") && told.contains("Failed test:  2"),
-        "{told}"
+        !good && output.contains("Failed 1/2 subtests") && output.contains("Failed test:  2"),
+        "{output}"
     );
     // Parsed without an error: the TAP plan and its lines agree.
-    assert!(!told.contains("Parse errors"), "{told}");
+    assert!(!output.contains("Parse errors"), "{output}");
 }

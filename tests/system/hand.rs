@@ -32,30 +32,30 @@ fn a_monitor_ends_with_its_reader_and_with_each_signal() {
         });
         signal(&monitor, sent);
         let ended = finish(monitor);
-        assert_eq!(ended.code, Some(0), "{}", ended.told);
+        assert_eq!(ended.code, Some(0), "{}", ended.output);
     }
     assert!(stage.moves().is_empty());
 }
 
 #[test]
-fn a_rig_that_falls_silent_ends_the_monitor_and_is_told() {
+fn a_rig_that_falls_silent_ends_the_monitor_and_is_reported() {
     let stage = Stage::of(impatient, "after 12 replies: drop replies for ever");
     let ended = wait(&mut stage.tool("monitor", &["--every", "20 ms"]));
-    assert_eq!(ended.code, Some(3), "{}", ended.told);
+    assert_eq!(ended.code, Some(3), "{}", ended.output);
     assert!(
-        ended.told.contains("no usable answer within"),
+        ended.output.contains("no usable answer within"),
         "{}",
-        ended.told
+        ended.output
     );
     assert!(
-        ended.told.contains("time_s,displacement_m,force_n\n0."),
+        ended.output.contains("time_s,displacement_m,force_n\n0."),
         "what was read before is given: {}",
-        ended.told
+        ended.output
     );
 }
 
 #[test]
-fn a_place_beyond_a_limit_is_refused_before_any_byte_asks_for_it() {
+fn a_target_beyond_a_limit_is_refused_before_any_byte_is_sent() {
     // Ten increments would be inside the limit and the eleventh beyond it: none is executed.
     let stage = Stage::of(
         |plan| {
@@ -66,7 +66,7 @@ fn a_place_beyond_a_limit_is_refused_before_any_byte_asks_for_it() {
         },
         "",
     );
-    for (more, said) in [
+    for (more, expected) in [
         (
             &["--to", "10.001 mm"][..],
             "target displacement 10.001 mm is outside its limit -5 mm .. 10 mm",
@@ -82,9 +82,9 @@ fn a_place_beyond_a_limit_is_refused_before_any_byte_asks_for_it() {
     ] {
         let ended = wait(&mut stage.recorded_tool("jog", &[more, &["--yes"]].concat()));
         assert!(
-            ended.code == Some(4) && ended.told.contains(said),
+            ended.code == Some(4) && ended.output.contains(expected),
             "{}",
-            ended.told
+            ended.output
         );
         assert!(
             stage.proven().contains("all 0 recomputed"),
@@ -102,7 +102,7 @@ fn a_place_beyond_a_limit_is_refused_before_any_byte_asks_for_it() {
 }
 
 #[test]
-fn a_jog_goes_where_it_is_told_and_is_on_record() {
+fn a_jog_goes_to_its_target_and_is_logged() {
     let stage = Stage::of(
         |plan| {
             plan.replace(
@@ -114,11 +114,11 @@ fn a_jog_goes_where_it_is_told_and_is_on_record() {
     );
     let ended =
         wait(&mut stage.recorded_tool("jog", &["--to", "2.5 mm", "--speed", "25 mm/s", "--yes"]));
-    assert_eq!(ended.code, Some(0), "{}", ended.told);
+    assert_eq!(ended.code, Some(0), "{}", ended.output);
     assert!(
-        ended.told.contains("X 2.500 mm   R 250.0 N"),
+        ended.output.contains("X 2.500 mm   R 250.0 N"),
         "{}",
-        ended.told
+        ended.output
     );
     assert_eq!(stage.moves().len(), 3, "increments of at most 1 mm");
     assert!(
@@ -155,25 +155,25 @@ fn a_jog_counts_from_the_zero_of_the_run_that_loaded_the_specimen() {
     let stage = Stage::of(here, "stands at 3 mm");
     let out = wait(&mut stage.recorded_tool("jog", &["--to", "0.5 mm", "--yes"]));
     assert!(
-        out.code == Some(0) && out.told.contains("R 50.00 N"),
+        out.code == Some(0) && out.output.contains("R 50.00 N"),
         "{}",
-        out.told
+        out.output
     );
     let loaded = stage.path("loaded");
     std::fs::rename(stage.path("run"), &loaded).unwrap();
     // The zero reading under load would shift its limits.
     let refused = wait(&mut stage.recorded_tool("jog", &["--to", "0 mm", "--yes"]));
     assert!(
-        refused.code == Some(2) && refused.told.contains("the specimen carries 50.00 N"),
+        refused.code == Some(2) && refused.output.contains("the specimen carries 50.00 N"),
         "{}",
-        refused.told
+        refused.output
     );
     assert_eq!(stage.moves().len(), 1);
     let back = wait(&mut stage.recorded_tool(
         "jog",
         &["--datum", loaded.to_str().unwrap(), "--to", "0 mm", "--yes"],
     ));
-    assert_eq!(back.code, Some(0), "{}", back.told);
+    assert_eq!(back.code, Some(0), "{}", back.output);
     let moves: Vec<String> = stage
         .requests()
         .into_iter()
@@ -207,23 +207,23 @@ fn only_the_word_moves_and_the_end_of_the_input_is_none() {
         // Manual operation is not a run that can be resumed.
         let resumed = wait(&mut stage.resume_with(&[]));
         assert!(
-            resumed.code == Some(2) && resumed.told.contains("driven by hand"),
+            resumed.code == Some(2) && resumed.output.contains("driven by hand"),
             "{}",
-            resumed.told
+            resumed.output
         );
         std::fs::remove_dir_all(stage.path("run")).unwrap();
     }
     assert!(stage.moves().is_empty());
     let piped = wait(&mut stage.recorded_tool("jog", &["--to", "1 mm"]));
     assert!(
-        piped.code == Some(2) && piped.told.contains("no operator can be asked"),
+        piped.code == Some(2) && piped.output.contains("no operator can be asked"),
         "{}",
-        piped.told
+        piped.output
     );
 }
 
 #[test]
-fn a_sitting_goes_from_place_to_place() {
+fn a_jog_session_goes_from_position_to_position() {
     let stage = Stage::new();
     let mut terminal = Terminal::start(&mut stage.recorded_tool("jog", &[]));
     terminal.answer("at 0 mm; target?", "0.5\n");
@@ -250,9 +250,9 @@ fn a_rig_that_falls_silent_ends_the_sitting_and_the_record_is_sound() {
     let stage = Stage::of(impatient, "after 1 moves: drop replies for ever");
     let ended = wait(&mut stage.recorded_tool("jog", &["--to", "1 mm", "--yes"]));
     assert!(
-        ended.code == Some(3) && ended.told.contains("no usable answer within"),
+        ended.code == Some(3) && ended.output.contains("no usable answer within"),
         "{}",
-        ended.told
+        ended.output
     );
     assert!(stage.proven().contains("INCOMPLETE"));
 }
@@ -269,11 +269,11 @@ fn ctrl_c_holds_a_jog_whose_move_may_be_over_first() {
     stage.after_moves(1);
     signal(&jog, Signal::INT);
     let ended = finish(jog);
-    assert_eq!(ended.code, Some(4), "{}", ended.told);
+    assert_eq!(ended.code, Some(4), "{}", ended.output);
     assert!(
-        ended.told.contains("on request") && stage.is_held(),
+        ended.output.contains("on request") && stage.is_held(),
         "{}",
-        ended.told
+        ended.output
     );
     stage.proven();
 }

@@ -28,7 +28,7 @@ struct Whole {
 fn whole() -> Whole {
     let stage = Stage::new();
     let ran = wait(&mut stage.run_with(&["--yes"]));
-    assert_eq!(ran.code, Some(0), "{}", ran.told);
+    assert_eq!(ran.code, Some(0), "{}", ran.output);
     Whole {
         results: stage.results(),
         moves: stage.moves(),
@@ -57,7 +57,7 @@ fn killed(stage: &Stage, at: At, count: usize) -> bool {
         // strace ends as the program does, or with the exit code of a shell.
         None | Some(137) => true,
         Some(0) => false,
-        _ => panic!("{at:?} {count}: {}", ended.told),
+        _ => panic!("{at:?} {count}: {}", ended.output),
     }
 }
 
@@ -70,35 +70,35 @@ fn one(whole: &Whole, at: At, count: usize) -> bool {
     let resumed = wait(&mut stage.resume_with(&[]));
     if stage.moves().is_empty() {
         // Before the run log contains the rig, the run cannot be resumed, and a message says so.
-        assert_eq!(resumed.code, Some(3), "{at:?} {count}: {}", resumed.told);
+        assert_eq!(resumed.code, Some(3), "{at:?} {count}: {}", resumed.output);
         assert!(
-            resumed.told.contains("error:"),
+            resumed.output.contains("error:"),
             "{at:?} {count}: {}",
-            resumed.told
+            resumed.output
         );
         return true;
     }
     // Only the final records of a finished run can be cut off without any work left.
-    let over = resumed.told.contains("nothing is left to resume");
+    let over = resumed.output.contains("nothing is left to resume");
     assert!(
         resumed.code == Some(0) || over,
         "{at:?} {count}: {}",
-        resumed.told
+        resumed.output
     );
     if over && !stage.path("run").join("manifest.sha256").exists() {
         let gone = stage.verify();
         assert!(
-            gone.code == Some(3) && gone.told.contains("its results are missing"),
+            gone.code == Some(3) && gone.output.contains("its results are missing"),
             "{at:?} {count}: {}",
-            gone.told
+            gone.output
         );
         wait(Command::new(PSD).arg("report").arg(stage.path("run")));
     }
     let verified = stage.verify();
     assert!(
-        verified.code == Some(0) && !verified.told.contains("INCOMPLETE"),
+        verified.code == Some(0) && !verified.output.contains("INCOMPLETE"),
         "{at:?} {count}: {}",
-        verified.told
+        verified.output
     );
     assert_eq!(
         stage.moves(),

@@ -15,12 +15,12 @@ fn it_hangs_up() {
     ] {
         let stage = Stage::of(str::to_owned, script);
         let ran = wait(&mut stage.run_with(&["--yes"]));
-        assert_eq!(ran.code, Some(3), "{script}: {}", ran.told);
+        assert_eq!(ran.code, Some(3), "{script}: {}", ran.output);
         // psd neither waits for it nor polls it again.
         assert!(
-            ran.told.contains("connection lost") && !ran.told.contains("no usable answer"),
+            ran.output.contains("connection lost") && !ran.output.contains("no usable answer"),
             "{script}: {}",
-            ran.told
+            ran.output
         );
         // The same rig, not power-cycled: only its line was closed.
         stage.goes_on(&[]);
@@ -32,23 +32,23 @@ fn it_hangs_up() {
 }
 
 #[test]
-fn one_that_started_anew_since_must_be_referenced_first() {
+fn one_that_was_restarted_since_must_be_referenced_first() {
     let mut stage = Stage::of(str::to_owned, "after 1 moves: hang up");
     let ran = wait(&mut stage.run_with(&["--yes"]));
-    assert_eq!(ran.code, Some(3), "{}", ran.told);
+    assert_eq!(ran.code, Some(3), "{}", ran.output);
     stage.power_up("");
     let refused = wait(&mut stage.resume_with(&[]));
-    assert_eq!(refused.code, Some(3), "{}", refused.told);
+    assert_eq!(refused.code, Some(3), "{}", refused.output);
     assert!(
-        refused.told.contains("restarted") && refused.told.contains("--re-referenced"),
+        refused.output.contains("restarted") && refused.output.contains("--re-referenced"),
         "{}",
-        refused.told
+        refused.output
     );
     assert!(stage.moves().is_empty());
 }
 
 #[test]
-fn a_rig_that_was_referenced_again_goes_on_where_it_stands() {
+fn a_rig_that_was_referenced_again_resumes_at_its_position() {
     // Without motion enable: at rest and at zero, the position after a restart of the rig too.
     let mut stage = Stage::new();
     let mut terminal = Terminal::start(&mut stage.run_with(&[]));
@@ -57,27 +57,27 @@ fn a_rig_that_was_referenced_again_goes_on_where_it_stands() {
     stage.power_up("");
     let refused = wait(&mut stage.resume_with(&[]));
     assert!(
-        refused.code == Some(3) && refused.told.contains("--re-referenced"),
+        refused.code == Some(3) && refused.output.contains("--re-referenced"),
         "{}",
-        refused.told
+        refused.output
     );
     stage.goes_on(&["--re-referenced"]);
 }
 
 #[test]
-fn it_starts_anew_in_the_middle() {
+fn it_restarts_in_the_middle() {
     let stage = Stage::of(str::to_owned, "after 10 moves: reboot");
     let ran = wait(&mut stage.run_with(&["--yes"]));
-    assert_eq!(ran.code, Some(3), "{}", ran.told);
-    assert!(ran.told.contains("restarted"), "{}", ran.told);
+    assert_eq!(ran.code, Some(3), "{}", ran.output);
+    assert!(ran.output.contains("restarted"), "{}", ran.output);
     let moves = stage.moves().len();
-    for (said, told) in [
+    for (given, expected) in [
         (&[][..], "--re-referenced"),
         (&["--re-referenced"][..], "not referenced"),
     ] {
-        let refused = wait(&mut stage.resume_with(said));
-        assert_eq!(refused.code, Some(3), "{}", refused.told);
-        assert!(refused.told.contains(told), "{}", refused.told);
+        let refused = wait(&mut stage.resume_with(given));
+        assert_eq!(refused.code, Some(3), "{}", refused.output);
+        assert!(refused.output.contains(expected), "{}", refused.output);
         assert_eq!(stage.moves().len(), moves, "nothing moved");
     }
 }
@@ -86,7 +86,7 @@ fn it_starts_anew_in_the_middle() {
 fn it_takes_no_byte_any_more() {
     let stage = Stage::of(str::to_owned, "after 10 moves: stop reading");
     let ran = wait(&mut stage.run_with(&["--yes"]));
-    assert_eq!(ran.code, Some(3), "{}", ran.told);
+    assert_eq!(ran.code, Some(3), "{}", ran.output);
 }
 
 #[test]
@@ -104,7 +104,7 @@ fn the_program_was_away_for_longer_than_the_watchdog() {
     let moves = stage.moves().len();
     signal(&run, Signal::CONT);
     let run = finish(run);
-    assert_eq!(run.code, Some(3), "{}", run.told);
+    assert_eq!(run.code, Some(3), "{}", run.output);
     assert_eq!(stage.moves().len(), moves, "it did not go on by itself");
     stage.goes_on(&[]);
 }

@@ -33,11 +33,11 @@ fn where_nobody_can_be_asked_the_name_must_be_given() {
     for more in [&["--yes"][..], &[]] {
         for mut command in unnamed(&stage, more) {
             let ended = wait(&mut command);
-            assert_eq!(ended.code, Some(2), "{command:?}: {}", ended.told);
+            assert_eq!(ended.code, Some(2), "{command:?}: {}", ended.output);
             assert!(
-                ended.told.contains("E619") && ended.told.contains("--operator"),
+                ended.output.contains("E619") && ended.output.contains("--operator"),
                 "{}",
-                ended.told
+                ended.output
             );
         }
     }
@@ -52,7 +52,7 @@ fn a_blank_name_is_none() {
     let stage = Stage::new();
     for mut command in unnamed(&stage, &["--yes", "--operator", "  "]) {
         let ended = wait(&mut command);
-        assert_eq!(ended.code, Some(2), "{}", ended.told);
+        assert_eq!(ended.code, Some(2), "{}", ended.output);
     }
     assert!(stage.requests().is_empty());
 }
@@ -75,7 +75,7 @@ fn the_plan_may_name_who_it_always_is() {
         .args(["--rig", "bench", "--yes", "--out"])
         .arg(stage.path("run"));
     let ended = wait(&mut command);
-    assert_eq!(ended.code, Some(0), "{}", ended.told);
+    assert_eq!(ended.code, Some(0), "{}", ended.output);
     let header = std::fs::read_to_string(stage.journal()).unwrap();
     assert!(
         header

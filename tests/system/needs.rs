@@ -136,9 +136,9 @@ fn what_is_missing_and_what_is_forbidden_are_skipped_or_fail_alike() {
     );
     assert!(!skipped("false cannot trace here", false));
     let failed = std::panic::catch_unwind(|| skipped("false cannot trace here", true));
-    let told = failed.unwrap_err().downcast::<String>().unwrap();
+    let message = failed.unwrap_err().downcast::<String>().unwrap();
     assert_eq!(
-        *told,
+        *message,
         "false cannot trace here, and PSD_REQUIRE_SYSTEM=1 wants every test"
     );
 }

@@ -44,20 +44,20 @@ fn a_real_opensees_gets_the_closed_form_of_its_integrator_out_of_a_real_rig() {
     let port = served.address.rsplit(':').next().unwrap().to_owned();
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/system/opensees.py");
     let ended = wait(Command::new(python).arg(script).arg(port));
-    assert_eq!(ended.code, Some(0), "{}", ended.told);
-    let way: Vec<f64> = serde_json::from_str(
+    assert_eq!(ended.code, Some(0), "{}", ended.output);
+    let displacements: Vec<f64> = serde_json::from_str(
         ended
-            .told
+            .output
             .lines()
             .find(|line| line.starts_with('['))
             .unwrap(),
     )
     .unwrap();
-    assert_eq!(way.len(), STEPS);
+    assert_eq!(displacements.len(), STEPS);
     let angle = 2.0 * ((STIFFNESS / MASS).sqrt() * TIME_STEP / 2.0).asin();
     let amplitude = VELOCITY * TIME_STEP / angle.sin();
     let mut time = 0.0;
-    for (step, found) in (1_u32..).zip(&way) {
+    for (step, found) in (1_u32..).zip(&displacements) {
         time += TIME_STEP;
         let expected = amplitude * (f64::from(step) * angle).sin();
         let allowed = 0.5e-3 / MASS * time * time + 1e-9;
@@ -66,7 +66,7 @@ fn a_real_opensees_gets_the_closed_form_of_its_integrator_out_of_a_real_rig() {
             "step {step}: {found} is not within {allowed} of {expected}"
         );
     }
-    let largest = way.iter().copied().fold(0.0, f64::max);
+    let largest = displacements.iter().copied().fold(0.0, f64::max);
     assert!(
         (largest / ((MASS / STIFFNESS).sqrt() * VELOCITY) - 1.0).abs() < 2e-3,
         "√(M/K)·V: {largest}"
@@ -92,9 +92,9 @@ fn a_real_opensees_gets_the_closed_form_of_its_integrator_out_of_a_real_rig() {
         .map(|row| row.split(',').nth(column).unwrap().parse().unwrap())
         .collect();
     assert!(
-        way.iter().all(|place| commands
+        displacements.iter().all(|position| commands
             .iter()
-            .any(|command| (command - place).abs() <= 1e-9)),
+            .any(|command| (command - position).abs() <= 1e-9)),
         "{commands:?}"
     );
 }

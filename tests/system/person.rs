@@ -32,7 +32,7 @@ fn the_second_holds_at_once() {
     std::thread::sleep(std::time::Duration::from_millis(100));
     signal(&run, Signal::INT);
     let ran = finish(run);
-    assert_eq!(ran.code, Some(4), "{}", ran.told);
+    assert_eq!(ran.code, Some(4), "{}", ran.output);
     assert_eq!(stage.moves().len(), 3, "{}", stage.log());
     assert!(
         stage
@@ -60,7 +60,7 @@ fn the_end_of_the_input_is_no_yes() {
         &stage,
         &Ended {
             code,
-            told: terminal.shown(),
+            output: terminal.shown(),
         },
     );
 }
@@ -77,17 +77,17 @@ fn a_terminal_that_goes_away_is_no_yes() {
         &stage,
         &Ended {
             code,
-            told: terminal.shown(),
+            output: terminal.shown(),
         },
     );
 }
 
 #[test]
-fn a_record_cut_short_says_so() {
+fn a_truncated_record_is_reported() {
     let stage = Stage::new();
     assert_eq!(wait(&mut stage.run_with(&["--yes"])).code, Some(0));
     let whole = fs::read_to_string(stage.journal()).unwrap();
-    assert!(!stage.verify().told.contains("INCOMPLETE"));
+    assert!(!stage.verify().output.contains("INCOMPLETE"));
     let mut cut: Vec<&str> = whole.lines().collect();
     cut.pop();
     fs::write(stage.journal(), cut.join("\n") + "\n").unwrap();
@@ -95,14 +95,18 @@ fn a_record_cut_short_says_so() {
     fs::remove_file(stage.path("run").join("manifest.sha256")).unwrap();
     let verified = stage.verify();
     assert!(
-        verified.told.contains("INCOMPLETE") || verified.told.contains("WRONG"),
+        verified.output.contains("INCOMPLETE") || verified.output.contains("WRONG"),
         "{}",
-        verified.told
+        verified.output
     );
     cut.truncate(60);
     fs::write(stage.journal(), cut.join("\n") + "\n").unwrap();
     let verified = stage.verify();
-    assert!(verified.told.contains("INCOMPLETE"), "{}", verified.told);
+    assert!(
+        verified.output.contains("INCOMPLETE"),
+        "{}",
+        verified.output
+    );
 }
 
 /// Waits until the run pauses for longer than a step takes on a busy machine.
@@ -163,7 +167,7 @@ fn a_key_ends_a_monitor_whose_window_got_another_size() {
 }
 
 #[test]
-fn a_run_is_paused_taken_a_step_further_noted_and_gone_on_with_by_keys() {
+fn a_run_is_paused_stepped_noted_and_resumed_by_keys() {
     let stage = Stage::new();
     let mut terminal = Terminal::with_screen(&mut stage.run_with(&["--yes"]));
     stage.after_moves(3);
@@ -184,15 +188,15 @@ fn a_run_is_paused_taken_a_step_further_noted_and_gone_on_with_by_keys() {
         .iter()
         .filter_map(|event| event["text"].as_str())
         .collect();
-    let place = |text: &str| events.iter().position(|event| *event == text);
-    let said = [
+    let position = |text: &str| events.iter().position(|event| *event == text);
+    let positions = [
         "paused (A. Tester)",
         "no crack (A. Tester)",
         "went on (A. Tester)",
     ]
-    .map(place);
+    .map(position);
     assert!(
-        said.is_sorted() && said.iter().all(Option::is_some),
+        positions.is_sorted() && positions.iter().all(Option::is_some),
         "{events:#?}"
     );
     assert!(!stage.proven().contains("INCOMPLETE"));

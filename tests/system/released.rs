@@ -160,7 +160,7 @@ fn a_held_rig_stays_on_the_screen_and_goes_on_from_there() {
 }
 
 #[test]
-fn nothing_stands_before_or_beside_a_hold_that_nobody_confirms() {
+fn nothing_is_shown_before_or_beside_an_unconfirmed_hold() {
     let stage = Stage::of(str::to_owned, "after 8 moves: hang up before reply");
     let mut terminal = Terminal::with_screen(&mut stage.run_with(&["--yes"]));
     terminal.drawn("I have seen this");
@@ -184,7 +184,7 @@ fn nothing_stands_before_or_beside_a_hold_that_nobody_confirms() {
     let ran = wait(
         &mut Stage::of(str::to_owned, "after 8 moves: hang up before reply").run_with(&["--yes"]),
     );
-    assert!(!ran.told.contains("psd resume"), "{}", ran.told);
+    assert!(!ran.output.contains("psd resume"), "{}", ran.output);
 }
 
 #[test]

@@ -57,10 +57,10 @@ require "stays in travel" hit.max_displacement < 20 mm
 }
 
 /// Runs a plan in its own folder and language; returns the bytes of its PDF.
-fn paper(place: &Path, name: &str, text: &str, environment: &[(&str, &str)]) -> Vec<u8> {
-    let file = place.join("paper.psd");
+fn paper(workspace: &Path, name: &str, text: &str, environment: &[(&str, &str)]) -> Vec<u8> {
+    let file = workspace.join("paper.psd");
     fs::write(&file, text).unwrap();
-    let out = place.join(name);
+    let out = workspace.join(name);
     let run = Command::new(PSD)
         .args([
             "run",
@@ -83,10 +83,10 @@ fn output(program: &str, arguments: &[&str], file: &Path) -> String {
         .args((program == "pdftotext").then_some("-"))
         .output()
         .unwrap();
-    let told =
+    let printed =
         String::from_utf8_lossy(&done.stdout).into_owned() + &String::from_utf8_lossy(&done.stderr);
-    assert!(done.status.success(), "{program}: {told}");
-    told
+    assert!(done.status.success(), "{program}: {printed}");
+    printed
 }
 
 #[test]
@@ -102,15 +102,15 @@ fn the_paper_is_sound_and_reads_back_with_its_id_and_number_on_every_page() {
         ),
         ("", "2 mm", "SIMULATION: stopped before its end"),
     ] {
-        let place = crate::stage::folder();
-        paper(place.path(), "out", &plan(date, limit), &[]);
-        let file = place.path().join("out/report.pdf");
+        let workspace = crate::stage::folder();
+        paper(workspace.path(), "out", &plan(date, limit), &[]);
+        let file = workspace.path().join("out/report.pdf");
         assert!(
             output("qpdf", &["--check"], &file).contains("No syntax or stream encoding errors")
         );
         assert!(output("qpdf", &["--list-attachments"], &file).contains("paper.psd"));
         let summary: serde_json::Value = serde_json::from_str(
-            &fs::read_to_string(place.path().join("out/summary.json")).unwrap(),
+            &fs::read_to_string(workspace.path().join("out/summary.json")).unwrap(),
         )
         .unwrap();
         let id = summary["run_id"].as_str().unwrap();
@@ -132,7 +132,7 @@ fn the_paper_is_sound_and_reads_back_with_its_id_and_number_on_every_page() {
         );
         assert!(pages[pages.len() - 1].contains(&format!("End of report {id}")));
         let flat = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        for told in [
+        for expected in [
             "[U+8A66][U+9A13]",
             "#panic() $x$ *b* @a",
             "decision rule: guarded acceptance",
@@ -140,8 +140,8 @@ fn the_paper_is_sound_and_reads_back_with_its_id_and_number_on_every_page() {
             "stiff enough",
         ] {
             assert!(
-                flat.to_lowercase().contains(&told.to_lowercase()),
-                "{told} is not on the paper:\n{flat}"
+                flat.to_lowercase().contains(&expected.to_lowercase()),
+                "{expected} is not on the paper:\n{flat}"
             );
         }
         let stiffness = summary["procedures"]["k0"]["results"].as_object().unwrap();
@@ -157,10 +157,15 @@ fn the_paper_is_sound_and_reads_back_with_its_id_and_number_on_every_page() {
 #[test]
 fn the_paper_does_not_know_where_and_when_it_is_made() {
     let plan = plan("date = \"2026-05-31\"", "20 mm");
-    let place = crate::stage::folder();
-    let here = paper(place.path(), "here", &plan, &[("TZ", "UTC"), ("LANG", "C")]);
+    let workspace = crate::stage::folder();
+    let here = paper(
+        workspace.path(),
+        "here",
+        &plan,
+        &[("TZ", "UTC"), ("LANG", "C")],
+    );
     let there = paper(
-        place.path(),
+        workspace.path(),
         "there",
         &plan,
         &[

@@ -51,9 +51,9 @@ fn refused(stage: &Stage, more: &[&str], reason: &str) {
     let before = fs::read(stage.journal()).unwrap();
     let refused = wait(&mut stage.resume_with(more));
     assert!(
-        refused.code == Some(3) && refused.told.contains(reason),
+        refused.code == Some(3) && refused.output.contains(reason),
         "{}",
-        refused.told
+        refused.output
     );
     assert!(
         fs::read(stage.journal()).unwrap() == before,
@@ -72,7 +72,7 @@ fn a_stepper_frame_that_was_stopped_is_let_go_of_and_goes_on() {
     stage.after_moves(6);
     signal(&run, Signal::INT);
     let ran = finish(run);
-    assert_eq!(ran.code, Some(4), "{}", ran.told);
+    assert_eq!(ran.code, Some(4), "{}", ran.output);
     let moves = stage.moves();
     refused(&stage, &[], "--same-power-up");
     hold(&stage);
@@ -81,9 +81,9 @@ fn a_stepper_frame_that_was_stopped_is_let_go_of_and_goes_on() {
     assert_eq!(stage.moves(), moves, "to be let go of moves nothing");
     let ran = stage.goes_on(&["--same-power-up", "--let-go"]);
     assert!(
-        !ran.told.contains("ignored"),
+        !ran.output.contains("ignored"),
         "no answer of several lines is a fault of the line: {}",
-        ran.told
+        ran.output
     );
     let mut all = stage.moves();
     let count = all.len();
@@ -108,9 +108,9 @@ fn a_jog_lets_go_too_and_a_new_run_begins() {
     fs::rename(stage.path("run"), stage.path("first")).unwrap();
     let held = wait(&mut stage.run_with(&["--yes"]));
     assert!(
-        held.code == Some(3) && held.told.contains("`--let-go`"),
+        held.code == Some(3) && held.output.contains("`--let-go`"),
         "{}",
-        held.told
+        held.output
     );
     let _ = fs::remove_dir_all(stage.path("run"));
     // Its specimen is loaded: the zero offset is that of the run that loaded it.
@@ -124,7 +124,7 @@ fn a_jog_lets_go_too_and_a_new_run_begins() {
         "--let-go",
     ];
     let jog = wait(&mut stage.recorded_tool("jog", &back));
-    assert_eq!(jog.code, Some(0), "{}", jog.told);
+    assert_eq!(jog.code, Some(0), "{}", jog.output);
     let record = fs::read_to_string(stage.journal()).unwrap();
     assert!(
         record.contains("the hold was cleared, and the rig did not move (A. Tester)"),
@@ -133,8 +133,8 @@ fn a_jog_lets_go_too_and_a_new_run_begins() {
     stage.proven();
     fs::rename(stage.path("run"), stage.path("second")).unwrap();
     let ran = wait(&mut stage.run_with(&["--yes"]));
-    assert_eq!(ran.code, Some(0), "{}", ran.told);
-    assert!(!ran.told.contains("ignored"), "{}", ran.told);
+    assert_eq!(ran.code, Some(0), "{}", ran.output);
+    assert!(!ran.output.contains("ignored"), "{}", ran.output);
 }
 
 /// Stopped at rest and at zero, the position of a console after a power cycle too.
@@ -157,7 +157,7 @@ fn stopped_at_zero() -> Stage {
 
 #[test]
 fn a_console_that_was_switched_off_meanwhile_does_not_go_on_unsaid() {
-    for (word, told) in [
+    for (word, expected) in [
         ("--re-referenced", "it was referenced again"),
         ("--same-power-up", "it was not power-cycled since"),
     ] {
@@ -166,7 +166,7 @@ fn a_console_that_was_switched_off_meanwhile_does_not_go_on_unsaid() {
         refused(&stage, &[], "cannot report whether it was power-cycled");
         assert!(stage.moves().is_empty(), "nothing moved");
         let resumed: Ended = stage.goes_on(&[word]);
-        assert!(report(&stage).contains(told), "{}", resumed.told);
+        assert!(report(&stage).contains(expected), "{}", resumed.output);
     }
 }
 
@@ -213,8 +213,11 @@ fn a_rig_whose_safe_state_is_unload_goes_back_and_its_run_is_over() {
         terminal.shown()
     );
     assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
-    let told = fs::read_to_string(stage.path("run").join("summary.json")).unwrap();
-    assert!(told.contains("unloading to where the run began"), "{told}");
+    let summary = fs::read_to_string(stage.path("run").join("summary.json")).unwrap();
+    assert!(
+        summary.contains("unloading to where the run began"),
+        "{summary}"
+    );
     let moves = stage.moves();
     assert!(
         moves.len() > 6 && moves.last().unwrap().ends_with(" to 0"),
@@ -233,7 +236,7 @@ fn a_rig_whose_safe_state_is_unload_goes_back_and_its_run_is_over() {
 fn a_run_that_came_to_its_end_without_its_results_has_them_made_of_its_record() {
     let stage = Stage::new();
     let ran = wait(&mut stage.run_with(&["--yes"]));
-    assert_eq!(ran.code, Some(0), "{}", ran.told);
+    assert_eq!(ran.code, Some(0), "{}", ran.output);
     refused(&stage, &[], "the run is complete");
     let run = stage.path("run");
     let whole = fs::read(run.join("summary.json")).unwrap();
@@ -245,16 +248,16 @@ fn a_run_that_came_to_its_end_without_its_results_has_them_made_of_its_record() 
     refused(&stage, &[], "`psd report");
     let report = || wait(Command::new(PSD).arg("report").arg(&run));
     let made = report();
-    assert_eq!(made.code, Some(0), "{}", made.told);
+    assert_eq!(made.code, Some(0), "{}", made.output);
     assert!(
         fs::read(run.join("summary.json")).unwrap() == whole
             && !stage.proven().contains("INCOMPLETE")
     );
     let again = report();
     assert!(
-        again.code == Some(3) && again.told.contains("has results already"),
+        again.code == Some(3) && again.output.contains("has results already"),
         "{}",
-        again.told
+        again.output
     );
 }
 
@@ -263,9 +266,9 @@ fn a_restart_on_record_is_outweighed_by_nobodys_word_that_there_was_none() {
     let stage = Stage::of(stepper, "after 5 moves: reboot");
     let run = wait(&mut stage.run_with(&["--yes"]));
     assert!(
-        run.code == Some(3) && run.told.contains("restarted"),
+        run.code == Some(3) && run.output.contains("restarted"),
         "{}",
-        run.told
+        run.output
     );
     refused(
         &stage,

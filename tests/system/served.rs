@@ -37,12 +37,12 @@ impl Served {
             "serve",
             &["--protocol", protocol, "--listen", "127.0.0.1:0", "--yes"],
         );
-        let told = std::fs::File::create(stage.path("serve.told")).unwrap();
+        let log_file = std::fs::File::create(stage.path("serve.told")).unwrap();
         let mut program = command
             .args(more)
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
-            .stderr(told)
+            .stderr(log_file)
             .spawn()
             .unwrap();
         let mut stdout = BufReader::new(program.stdout.take().unwrap());
@@ -75,7 +75,7 @@ impl Served {
     }
 
     /// Waits until the program has printed this on standard error.
-    fn says(&self, words: &str) {
+    fn prints(&self, words: &str) {
         until(words, || {
             std::fs::read_to_string(self.stage.path("serve.told"))
                 .unwrap()
@@ -149,11 +149,11 @@ impl Coordinator {
     }
 
     /// Proposes a position \[m\] and executes it if it is accepted. Returns the answers.
-    fn go(&mut self, place: f64) -> Vec<String> {
+    fn go(&mut self, position: f64) -> Vec<String> {
         self.transactions += 1;
         let id = format!("trans{}", self.transactions);
         let proposed = self.ask(&format!(
-            "propose\t{id}\tMDL-00-01\tx\tdisplacement\t{place:.10E}"
+            "propose\t{id}\tMDL-00-01\tx\tdisplacement\t{position:.10E}"
         ));
         let accepted = proposed.starts_with("OK");
         let mut answers = vec![proposed];
@@ -164,7 +164,7 @@ impl Coordinator {
     }
 
     /// Displacement and force \[m, N\].
-    fn felt(&mut self) -> (f64, f64) {
+    fn position_and_force(&mut self) -> (f64, f64) {
         let answer = self.ask("get-control-point\tdummy\tMDL-00-01");
         let words: Vec<&str> = answer.split('\t').collect();
         assert_eq!(
@@ -198,8 +198,8 @@ impl Element {
     }
 
     /// The force at a position \[N\].
-    fn force_at(&mut self, place: f64) -> f64 {
-        self.send([3.0, place]);
+    fn force_at(&mut self, position: f64) -> f64 {
+        self.send([3.0, position]);
         self.force()
     }
 
@@ -229,7 +229,7 @@ fn a_coordinator_drives_it_and_is_refused_beyond_a_limit() {
     let probed = served.stage.moves().len();
     let mut client = Coordinator::come(&served);
     assert_eq!(client.go(1e-3), ["OK\t0\ttrans1", "OK\t0\ttrans1"]);
-    assert_eq!(client.felt(), (1e-3, 100.0));
+    assert_eq!(client.position_and_force(), (1e-3, 100.0));
     let refused = client.go(10.001e-3);
     assert!(
         refused[0].starts_with("NOT OK\t1\ttrans2\t") && refused[0].contains("outside its limit"),
@@ -240,7 +240,11 @@ fn a_coordinator_drives_it_and_is_refused_beyond_a_limit() {
         Some("NOT OK"),
         "what was refused cannot be executed"
     );
-    assert_eq!(client.felt(), (1e-3, 100.0), "nothing has moved");
+    assert_eq!(
+        client.position_and_force(),
+        (1e-3, 100.0),
+        "nothing has moved"
+    );
     assert_eq!(client.go(-1e-3), ["OK\t0\ttrans3", "OK\t0\ttrans3"]);
     client.close();
     let (code, printed) = served.ended();
@@ -298,7 +302,7 @@ fn each_signal_in_a_session_holds_the_rig_and_keeps_the_record() {
 }
 
 #[test]
-fn a_rig_that_falls_silent_ends_the_session_and_the_client_is_told() {
+fn a_rig_that_falls_silent_ends_the_session_and_the_client_is_informed() {
     // The pre-test check makes two moves.
     let silent = || Stage::of(impatient, "after 3 moves: drop replies for ever");
     let mut served = Served::start_on(silent(), "nees", &[]);
@@ -356,17 +360,21 @@ fn a_client_that_goes_away_leaves_it_held_and_the_next_one_goes_on() {
     first.go(1e-3);
     first.send("propose\tlast\tMDL-00-01\tx\tdisplacement\t2.0E-3");
     drop(first);
-    served.says("session ended: the client left without closing");
+    served.prints("session ended: the client left without closing");
     served.held();
     let mut second = Coordinator::come(&served);
-    assert_eq!(second.felt(), (1e-3, 100.0), "where the first one left it");
+    assert_eq!(
+        second.position_and_force(),
+        (1e-3, 100.0),
+        "where the first one left it"
+    );
     assert!(
         second.ask("execute\tlast").starts_with("NOT OK"),
         "what the first one proposed is gone with it"
     );
     second.go(0.0);
     second.close();
-    served.says("session ended: closed by the client");
+    served.prints("session ended: closed by the client");
     let (code, printed) = served.stop(Signal::INT);
     assert_eq!(code, Some(3), "the worst session counts: {printed}");
     assert_eq!(printed.matches("session: ").count(), 2, "{printed}");
@@ -396,12 +404,12 @@ fn a_client_that_goes_away_in_the_middle_of_a_move_has_the_rig_held_at_once() {
     element.send([10.0, 0.0]);
     served.stage.after_moves(3);
     drop(element);
-    served.says("session ended: the client left without closing");
+    served.prints("session ended: the client left without closing");
     served.held();
     // The next client finds it at its hold position, and is served.
     let mut next = Element::come(&served);
     next.send([99.0, 0.0]);
-    served.says("session ended: closed by the client");
+    served.prints("session ended: closed by the client");
     assert_eq!(served.stop(Signal::TERM).0, Some(3));
 
     let mut served = Served::start_on(endless(), "nees", &["--once"]);
@@ -492,7 +500,7 @@ fn garbage_is_answered_or_sent_away_and_moves_nothing() {
     // A line that does not end.
     client.lines.get_mut().write_all(&[b'x'; 5000]).unwrap();
     assert!(is_closed(client.lines.get_mut()));
-    served.says("the client cannot be served: a line of more than 4096 bytes");
+    served.prints("the client cannot be served: a line of more than 4096 bytes");
     let mut half = served.connect();
     half.write_all(b"open-session\ttest\npropose\tt1\tMDL-00-01\tx\tdisp")
         .unwrap();
@@ -511,7 +519,7 @@ fn garbage_is_answered_or_sent_away_and_moves_nothing() {
         stranger.write_all(words).unwrap();
         assert!(is_closed(&mut stranger), "{words:?}");
     }
-    served.says("the client cannot be served");
+    served.prints("the client cannot be served");
     assert_eq!(served.stop(Signal::INT).0, Some(3));
     assert_eq!(served.stage.moves().len(), moves);
 }
@@ -529,7 +537,7 @@ fn a_second_client_at_the_same_time_is_turned_away_and_disturbs_nothing() {
         );
         assert!(is_closed(&mut second));
     }
-    assert_eq!(first.felt(), (1e-3, 100.0));
+    assert_eq!(first.position_and_force(), (1e-3, 100.0));
     first.go(2e-3);
     first.close();
     let (code, printed) = served.ended();
@@ -547,16 +555,20 @@ fn a_program_that_is_killed_leaves_a_record_and_a_rig_that_holds_itself() {
     served.program.kill().unwrap();
     served.program.wait().unwrap();
     let verified = served.stage.verify();
-    assert!(verified.told.contains("INCOMPLETE"), "{}", verified.told);
     assert!(
-        verified.told.contains("3 recomputed"),
+        verified.output.contains("INCOMPLETE"),
+        "{}",
+        verified.output
+    );
+    assert!(
+        verified.output.contains("3 recomputed"),
         "two of the pre-test check, and the client's: {}",
-        verified.told
+        verified.output
     );
     let_it_trip();
     let probed = crate::stage::wait(&mut served.stage.tool("probe", &[]));
     let log = served.stage.log();
     // Bit 7 of the flags: its watchdog tripped.
-    assert!(log.contains(" HELD 0x0080*"), "{}\n{log}", probed.told);
+    assert!(log.contains(" HELD 0x0080*"), "{}\n{log}", probed.output);
     assert_eq!(served.stage.moves().len(), 3);
 }

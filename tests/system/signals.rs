@@ -161,7 +161,7 @@ fn signals_of_other_programs_do_nothing() {
         signal(&run, sent);
     }
     let ended = finish(run);
-    assert_eq!(ended.code, Some(0), "{}", ended.told);
+    assert_eq!(ended.code, Some(0), "{}", ended.output);
     stage.proven();
 }
 
@@ -212,7 +212,7 @@ fn in_a_stroke_of_a_sweep() {
 }
 
 #[test]
-fn in_a_blow() {
+fn during_an_impact() {
     each(as_it_is, true, |stage| stage.after_moves(30), |_| {});
 }
 
@@ -255,7 +255,7 @@ fn while_somebody_is_asked() {
                 let code = code(&mut terminal.child);
                 stage.held_and_sound(&Ended {
                     code,
-                    told: terminal.shown(),
+                    output: terminal.shown(),
                 });
                 assert_eq!(stage.moves().is_empty(), question == RELEASE);
             });
@@ -280,7 +280,7 @@ fn while_it_is_paused_by_a_key() {
                 let code = code(&mut terminal.child);
                 stage.held_and_sound(&Ended {
                     code,
-                    told: terminal.shown(),
+                    output: terminal.shown(),
                 });
             });
         }
@@ -294,7 +294,10 @@ fn in_the_middle_of_a_move() {
     stage.after_moves(3);
     let (mut child, shown) = terminal.dies();
     let code = code(&mut child);
-    stage.held_and_sound(&Ended { code, told: shown });
+    stage.held_and_sound(&Ended {
+        code,
+        output: shown,
+    });
 }
 
 /// A closed window: its programs get HUP, and can neither read nor write any more.
@@ -317,7 +320,10 @@ fn of_a_terminal_that_dies() {
         moment(&stage, &mut terminal);
         let (mut child, shown) = terminal.dies();
         let code = code(&mut child);
-        stage.held_and_sound(&Ended { code, told: shown });
+        stage.held_and_sound(&Ended {
+            code,
+            output: shown,
+        });
         stage.goes_on(&[]);
     };
     let in_the_ramp = |stage: &Stage, _: &mut Terminal| stage.after_moves(10);
@@ -336,7 +342,7 @@ fn of_a_terminal_that_dies() {
 }
 
 #[test]
-fn of_a_jog_on_its_way_and_while_it_asks() {
+fn during_a_jog_and_while_it_asks() {
     std::thread::scope(|scope| {
         for sent in SIGNALS {
             scope.spawn(move || {
@@ -352,9 +358,9 @@ fn of_a_jog_on_its_way_and_while_it_asks() {
                 signal(&jog, sent);
                 let ended = finish(jog);
                 assert!(
-                    ended.code == Some(4) && ended.told.contains("on request"),
+                    ended.code == Some(4) && ended.output.contains("on request"),
                     "{}",
-                    ended.told
+                    ended.output
                 );
                 assert!(stage.is_held());
                 stage.proven();
@@ -385,8 +391,8 @@ fn of_a_serving_in_its_pretest_check_and_while_a_client_is_waited_for() {
                 released(&stage);
                 signal(&serving, sent);
                 let ended = finish(serving);
-                assert_eq!(ended.code, Some(4), "{}", ended.told);
-                assert!(!ended.told.contains("ready: nees"), "{}", ended.told);
+                assert_eq!(ended.code, Some(4), "{}", ended.output);
+                assert!(!ended.output.contains("ready: nees"), "{}", ended.output);
                 assert!(stage.moves().is_empty() && stage.is_held());
                 stage.proven();
             });

@@ -58,12 +58,16 @@ fn who_has_no_psd_proves_the_folder_too() {
         return;
     }
     let root = crate::stage::folder();
-    let (bench, run) = (root.path(), root.path().join("run"));
-    fs::write(bench.join("plan.psd"), PLAN).unwrap();
-    fs::write(bench.join("password"), "correct horse\n").unwrap();
-    assert!(accepts(bench, PSD, &["run", "plan.psd", "--out", "run"]));
+    let (workspace, run) = (root.path(), root.path().join("run"));
+    fs::write(workspace.join("plan.psd"), PLAN).unwrap();
+    fs::write(workspace.join("password"), "correct horse\n").unwrap();
     assert!(accepts(
-        bench,
+        workspace,
+        PSD,
+        &["run", "plan.psd", "--out", "run"]
+    ));
+    assert!(accepts(
+        workspace,
         PSD,
         &["keygen", "psd.key", "--password-file", "password"]
     ));
@@ -77,11 +81,15 @@ fn who_has_no_psd_proves_the_folder_too() {
         "--role",
     ];
     assert!(accepts(
-        bench,
+        workspace,
         PSD,
         &[&by_psd[..], &["Prüfer", "--name", "Jörg Ä."]].concat()
     ));
-    assert!(accepts(bench, PSD, &[&by_psd[..], &["Quality"]].concat()));
+    assert!(accepts(
+        workspace,
+        PSD,
+        &[&by_psd[..], &["Quality"]].concat()
+    ));
 
     let minisign = |signature: &str| {
         accepts(
@@ -135,30 +143,46 @@ fn what_minisign_signs_with_its_own_key_psd_takes() {
         return;
     }
     let root = crate::stage::folder();
-    let bench = root.path();
-    fs::write(bench.join("plan.psd"), PLAN).unwrap();
-    assert!(accepts(bench, PSD, &["run", "plan.psd", "--out", "run"]));
+    let workspace = root.path();
+    fs::write(workspace.join("plan.psd"), PLAN).unwrap();
     assert!(accepts(
-        bench,
+        workspace,
+        PSD,
+        &["run", "plan.psd", "--out", "run"]
+    ));
+    assert!(accepts(
+        workspace,
         "minisign",
         &["-G", "-W", "-p", "own.pub", "-s", "own.key"]
     ));
     assert!(accepts(
-        bench,
+        workspace,
         "minisign",
         &["-Sm", "run/manifest.sha256", "-s", "own.key"]
     ));
-    assert!(accepts(bench, PSD, &["verify", "run"]));
+    assert!(accepts(workspace, PSD, &["verify", "run"]));
     // Valid, but for none of the roles that the plan names.
-    assert!(!accepts(bench, PSD, &["verify", "run", "--key", "own.pub"]));
+    assert!(!accepts(
+        workspace,
+        PSD,
+        &["verify", "run", "--key", "own.pub"]
+    ));
     for role in ["Quality", "Prüfer"] {
         assert!(accepts(
-            bench,
+            workspace,
             PSD,
             &["sign", "run", "--key", "own.key", "--role", role]
         ));
     }
-    assert!(accepts(bench, PSD, &["verify", "run", "--key", "own.pub"]));
-    flip(&bench.join("run/manifest.sha256.minisig"), 100);
-    assert!(!accepts(bench, PSD, &["verify", "run", "--key", "own.pub"]));
+    assert!(accepts(
+        workspace,
+        PSD,
+        &["verify", "run", "--key", "own.pub"]
+    ));
+    flip(&workspace.join("run/manifest.sha256.minisig"), 100);
+    assert!(!accepts(
+        workspace,
+        PSD,
+        &["verify", "run", "--key", "own.pub"]
+    ));
 }

@@ -107,7 +107,7 @@ fn swapped(plan: &str, words: &str, others: &str) -> String {
 pub struct Ended {
     pub code: Option<i32>,
     /// Standard error and standard output.
-    pub told: String,
+    pub output: String,
 }
 
 pub struct Stage {
@@ -174,13 +174,17 @@ impl Stage {
             .args(["--rig", "bench", "--log"])
             .arg(self.log_path());
         command.arg("--script").arg(self.path("script"));
-        let told = File::create(self.path("simulator.told")).unwrap();
-        let mut simulator = command.stdin(Stdio::null()).stderr(told).spawn().unwrap();
-        let told = self.path("simulator.told");
+        let log_file = File::create(self.path("simulator.told")).unwrap();
+        let mut simulator = command
+            .stdin(Stdio::null())
+            .stderr(log_file)
+            .spawn()
+            .unwrap();
+        let log_path = self.path("simulator.told");
         until("the emulator runs", || {
-            let told = fs::read_to_string(&told).unwrap();
-            assert!(simulator.try_wait().unwrap().is_none(), "{told}");
-            told.contains("emulates the rig")
+            let log = fs::read_to_string(&log_path).unwrap();
+            assert!(simulator.try_wait().unwrap().is_none(), "{log}");
+            log.contains("emulates the rig")
         });
         self.simulator = Some(simulator);
     }
@@ -298,8 +302,8 @@ impl Stage {
     /// Checks that the run log is valid, and that all files of the folder come from it.
     pub fn proven(&self) -> String {
         let verified = self.verify();
-        assert_eq!(verified.code, Some(0), "{}", verified.told);
-        verified.told
+        assert_eq!(verified.code, Some(0), "{}", verified.output);
+        verified.output
     }
 
     /// Whether the last motion command is the hold.
@@ -311,25 +315,25 @@ impl Stage {
 
     /// The operator stopped the run: the rig is at its hold position, and the run log is valid.
     pub fn held_and_sound(&self, ran: &Ended) {
-        assert_eq!(ran.code, Some(4), "{}", ran.told);
+        assert_eq!(ran.code, Some(4), "{}", ran.output);
         assert!(self.is_held(), "not held: {:#?}", self.requests());
         let verified = self.verify();
         assert!(
-            verified.code == Some(0) && verified.told.contains("INCOMPLETE"),
+            verified.code == Some(0) && verified.output.contains("INCOMPLETE"),
             "{}",
-            verified.told
+            verified.output
         );
     }
 
     /// Resumes the run to its end and verifies its run log.
     pub fn goes_on(&self, more: &[&str]) -> Ended {
         let resumed = wait(&mut self.resume_with(more));
-        assert_eq!(resumed.code, Some(0), "{}", resumed.told);
+        assert_eq!(resumed.code, Some(0), "{}", resumed.output);
         let verified = self.verify();
         assert!(
-            verified.code == Some(0) && !verified.told.contains("INCOMPLETE"),
+            verified.code == Some(0) && !verified.output.contains("INCOMPLETE"),
             "{}",
-            verified.told
+            verified.output
         );
         resumed
     }
@@ -406,7 +410,7 @@ pub fn finish(mut child: Child) -> Ended {
     let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
     Ended {
         code: status.code(),
-        told: text(output.stderr) + &text(output.stdout),
+        output: text(output.stderr) + &text(output.stdout),
     }
 }
 

@@ -90,7 +90,7 @@ fn send(child: Child, signal: Signal) -> Output {
     child.wait_with_output().unwrap()
 }
 
-fn told(output: &Output) -> String {
+fn messages(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
@@ -98,29 +98,33 @@ fn told(output: &Output) -> String {
 fn a_study_that_was_terminated_and_killed_has_the_bytes_of_an_undisturbed_one() {
     let [whole, hurt] = [folder(), folder()];
     let output = ended(whole.path(), &[]);
-    assert_eq!(output.status.code(), Some(0), "{}", told(&output));
-    assert!(told(&output).contains("in batches"), "{}", told(&output));
+    assert_eq!(output.status.code(), Some(0), "{}", messages(&output));
+    assert!(
+        messages(&output).contains("in batches"),
+        "{}",
+        messages(&output)
+    );
     let expected = fs::read(study(whole.path()).join("study.parquet")).unwrap();
 
     // One by one is slower, and gives the same rows.
     let alone = ["--one-by-one", "--jobs", "1"];
     for signal in [Signal::TERM, Signal::INT] {
         let output = send(begun(hurt.path(), &alone), signal);
-        assert_eq!(output.status.code(), Some(75), "{}", told(&output));
-        assert!(told(&output).contains("the same command continues"));
+        assert_eq!(output.status.code(), Some(75), "{}", messages(&output));
+        assert!(messages(&output).contains("the same command continues"));
     }
     let output = send(begun(hurt.path(), &alone), Signal::KILL);
     assert_eq!(output.status.code(), None);
     assert!(!study(hurt.path()).join("study.parquet").exists());
     let output = ended(hurt.path(), &[]);
-    assert_eq!(output.status.code(), Some(0), "{}", told(&output));
+    assert_eq!(output.status.code(), Some(0), "{}", messages(&output));
     let found = fs::read(study(hurt.path()).join("study.parquet")).unwrap();
     assert!(found == expected, "the bytes differ");
     let again = ended(hurt.path(), &[]);
     assert!(
-        told(&again).contains("all runs were there already"),
+        messages(&again).contains("all runs were there already"),
         "{}",
-        told(&again)
+        messages(&again)
     );
 }
 
@@ -128,7 +132,7 @@ fn a_study_that_was_terminated_and_killed_has_the_bytes_of_an_undisturbed_one() 
 fn shards_of_processes_are_put_together() {
     let [whole, divided] = [folder(), folder()];
     let output = ended(whole.path(), &["--one-by-one"]);
-    assert_eq!(output.status.code(), Some(0), "{}", told(&output));
+    assert_eq!(output.status.code(), Some(0), "{}", messages(&output));
     let expected = fs::read(study(whole.path()).join("study.parquet")).unwrap();
     let run = |shard: &str| ended(divided.path(), &["--shard", shard]);
     let merged = || {
@@ -140,18 +144,22 @@ fn shards_of_processes_are_put_together() {
     };
     for shard in ["3/3", "1/3"] {
         let output = run(shard);
-        assert_eq!(output.status.code(), Some(0), "{}", told(&output));
+        assert_eq!(output.status.code(), Some(0), "{}", messages(&output));
     }
     let refused = merged();
     assert_eq!(refused.status.code(), Some(3));
-    assert!(told(&refused).contains("--array=2"), "{}", told(&refused));
+    assert!(
+        messages(&refused).contains("--array=2"),
+        "{}",
+        messages(&refused)
+    );
     let by_index = psd(divided.path(), &["--shard", "env/3"])
         .env("SLURM_ARRAY_TASK_ID", "2")
         .output()
         .unwrap();
-    assert_eq!(by_index.status.code(), Some(0), "{}", told(&by_index));
+    assert_eq!(by_index.status.code(), Some(0), "{}", messages(&by_index));
     let output = merged();
-    assert_eq!(output.status.code(), Some(0), "{}", told(&output));
+    assert_eq!(output.status.code(), Some(0), "{}", messages(&output));
     let found = fs::read(study(divided.path()).join("study.parquet")).unwrap();
     assert!(found == expected, "the bytes differ");
 }

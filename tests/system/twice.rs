@@ -28,17 +28,17 @@ fn on_one_port() {
         ])
         .arg(stage.path("second"));
     let second = wait(&mut second);
-    assert_eq!(second.code, Some(3), "{}", second.told);
+    assert_eq!(second.code, Some(3), "{}", second.output);
     assert!(
-        second.told.contains("error:") && second.told.contains("rig"),
+        second.output.contains("error:") && second.output.contains("rig"),
         "{}",
-        second.told
+        second.output
     );
     assert_eq!(stage.greetings(), greetings, "not even the first word");
     assert!(!stage.path("second").exists(), "nothing is left behind");
     signal(&first, Signal::CONT);
     let first = finish(first);
-    assert_eq!(first.code, Some(0), "{}", first.told);
+    assert_eq!(first.code, Some(0), "{}", first.output);
 }
 
 #[test]
@@ -57,12 +57,12 @@ fn on_one_record() {
     signal(&resumed, Signal::STOP);
     let greetings = stage.greetings();
     let second = wait(&mut stage.resume_with(&[]));
-    assert_eq!(second.code, Some(3), "{}", second.told);
-    assert!(second.told.contains("another psd"), "{}", second.told);
+    assert_eq!(second.code, Some(3), "{}", second.output);
+    assert!(second.output.contains("another psd"), "{}", second.output);
     assert_eq!(stage.greetings(), greetings, "not even the first word");
     signal(&resumed, Signal::CONT);
     let resumed = finish(resumed);
-    assert_eq!(resumed.code, Some(0), "{}", resumed.told);
+    assert_eq!(resumed.code, Some(0), "{}", resumed.output);
     assert_eq!(stage.verify().code, Some(0));
 }
 
@@ -81,34 +81,34 @@ fn a_report_and_a_proof_of_a_run_that_is_going_on_are_refused_and_spoil_nothing(
                 .current_dir(stage.path("")),
         );
         assert!(
-            report.code == Some(3) && report.told.contains("another psd uses"),
+            report.code == Some(3) && report.output.contains("another psd uses"),
             "{}",
-            report.told
+            report.output
         );
     }
     let verified = stage.verify();
     assert!(
-        verified.code == Some(3) && verified.told.contains("another psd uses"),
+        verified.code == Some(3) && verified.output.contains("another psd uses"),
         "{}",
-        verified.told
+        verified.output
     );
     signal(&run, Signal::CONT);
     let ran = finish(run);
-    assert_eq!(ran.code, Some(0), "{}", ran.told);
+    assert_eq!(ran.code, Some(0), "{}", ran.output);
     assert!(!stage.proven().contains("INCOMPLETE") && !stage.path("elsewhere").exists());
 }
 
 #[test]
-fn results_that_somebody_else_put_there_are_not_overwritten_and_the_way_out_is_told() {
+fn foreign_results_are_not_overwritten_and_the_remedy_is_reported() {
     let stage = Stage::new();
     let run = start(&mut stage.run_with(&["--yes"]));
     stage.after_moves(8);
     fs::write(stage.path("run").join("summary.json"), "{}").unwrap();
     let ran = finish(run);
     assert!(
-        ran.code == Some(3) && ran.told.contains("`psd report RUN --out FOLDER`"),
+        ran.code == Some(3) && ran.output.contains("`psd report RUN --out FOLDER`"),
         "{}",
-        ran.told
+        ran.output
     );
     assert_eq!(
         fs::read(stage.path("run").join("summary.json")).unwrap(),
@@ -121,5 +121,5 @@ fn results_that_somebody_else_put_there_are_not_overwritten_and_the_way_out_is_t
             .arg("--out")
             .arg(stage.path("anew")),
     );
-    assert_eq!(report.code, Some(0), "{}", report.told);
+    assert_eq!(report.code, Some(0), "{}", report.output);
 }

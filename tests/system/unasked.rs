@@ -56,7 +56,12 @@ fn at_the_look(stage: &Stage, with_screen: bool) -> Terminal {
 
 /// It is at its hold position, the run log is valid, and the run is resumed from there.
 fn held_and_goes_on(stage: &Stage, moves: &[String], ran: &Ended) {
-    assert_eq!(stage.moves(), moves, "nothing moved unasked: {}", ran.told);
+    assert_eq!(
+        stage.moves(),
+        moves,
+        "nothing moved unasked: {}",
+        ran.output
+    );
     stage.held_and_sound(ran);
     assert!(
         !fs::read_to_string(stage.journal())
@@ -67,7 +72,7 @@ fn held_and_goes_on(stage: &Stage, moves: &[String], ran: &Ended) {
 }
 
 #[test]
-fn a_rig_that_may_unload_is_held_when_nobody_says_yes() {
+fn a_rig_that_may_unload_is_held_without_a_yes() {
     // `--yes` releases a rig; it does not unload after a stop.
     let stage = Stage::of(unloading, "");
     let run = start(&mut stage.run_with(&["--yes"]));
@@ -76,9 +81,9 @@ fn a_rig_that_may_unload_is_held_when_nobody_says_yes() {
     let ran = finish(run);
     let moves = stage.moves();
     assert!(
-        ran.told.contains("HELD at ") && ran.told.contains("to resume: psd resume "),
+        ran.output.contains("HELD at ") && ran.output.contains("to resume: psd resume "),
         "{}",
-        ran.told
+        ran.output
     );
     held_and_goes_on(&stage, &moves, &ran);
     let all: [(&str, &[(&str, &str)]); 6] = [
@@ -118,7 +123,7 @@ fn a_rig_that_may_unload_is_held_when_nobody_says_yes() {
             &moves,
             &Ended {
                 code,
-                told: terminal.shown(),
+                output: terminal.shown(),
             },
         );
     }
@@ -130,15 +135,15 @@ fn a_terminal_that_dies_at_a_look_leaves_the_rig_where_it_is() {
         let stage = Stage::of(unloading, "");
         let terminal = at_the_look(&stage, with_screen);
         let moves = stage.moves();
-        let (mut child, told) = terminal.dies();
+        let (mut child, output) = terminal.dies();
         signal(&child, Signal::HUP);
         let code = code(&mut child);
-        held_and_goes_on(&stage, &moves, &Ended { code, told });
+        held_and_goes_on(&stage, &moves, &Ended { code, output });
     }
 }
 
 #[test]
-fn a_yes_unloads_and_the_screen_says_that_the_rig_moves() {
+fn a_yes_unloads_and_the_screen_states_that_the_rig_moves() {
     let stage = Stage::of(
         |plan| slow(&unloading(plan)).replace("0.8 mm step 0.1 mm", "0.3 mm step 0.1 mm"),
         "",
@@ -166,7 +171,7 @@ fn a_yes_unloads_and_the_screen_says_that_the_rig_moves() {
 }
 
 #[test]
-fn a_limit_on_the_way_unloads_as_the_plan_says() {
+fn a_limit_during_the_motion_unloads_as_planned() {
     let hard = |plan: &str| {
         unloading(plan)
             .replace("velocity = 0.1 m/s", "velocity = 0.4 m/s")
@@ -175,9 +180,9 @@ fn a_limit_on_the_way_unloads_as_the_plan_says() {
     let stage = Stage::of(hard, "");
     let ran = wait(&mut stage.run_with(&["--yes"]));
     assert!(
-        ran.code == Some(4) && ran.told.contains("is outside its limit"),
+        ran.code == Some(4) && ran.output.contains("is outside its limit"),
         "{}",
-        ran.told
+        ran.output
     );
     assert!(
         stage.moves().last().unwrap().ends_with(" to 0"),
@@ -185,9 +190,9 @@ fn a_limit_on_the_way_unloads_as_the_plan_says() {
         stage.moves()
     );
     assert!(
-        ran.told.contains("unloading to where the run began"),
+        ran.output.contains("unloading to where the run began"),
         "{}",
-        ran.told
+        ran.output
     );
     stage.proven();
 }
@@ -203,9 +208,9 @@ fn a_rig_that_was_moved_by_hand_is_not_gone_on_with() {
     signal(&run, Signal::INT);
     let ran = finish(run);
     assert!(
-        ran.code == Some(4) && ran.told.contains("HELD at "),
+        ran.code == Some(4) && ran.output.contains("HELD at "),
         "{}",
-        ran.told
+        ran.output
     );
     let journal = fs::read(stage.journal()).unwrap();
     assert_eq!(
@@ -226,9 +231,9 @@ fn a_rig_that_was_moved_by_hand_is_not_gone_on_with() {
     let moves = stage.moves();
     let refused = wait(&mut stage.resume_with(&[]));
     assert!(
-        refused.code == Some(3) && refused.told.contains("its last logged position is"),
+        refused.code == Some(3) && refused.output.contains("its last logged position is"),
         "{}",
-        refused.told
+        refused.output
     );
     assert_eq!(
         stage.moves(),
@@ -292,26 +297,27 @@ fn a_resumed_rig_moves_for_somebody_who_lets_it() {
         "{record}"
     );
     let verified = stage.verify();
-    assert!(verified.code == Some(0), "{}", verified.told);
-    let told = fs::read_to_string(stage.path("run").join("summary.json")).unwrap();
+    assert!(verified.code == Some(0), "{}", verified.output);
+    let summary = fs::read_to_string(stage.path("run").join("summary.json")).unwrap();
     assert!(
-        told.contains("had been held, and the target was sent again, from "),
-        "{told}"
+        summary.contains("had been held, and the target was sent again, from "),
+        "{summary}"
     );
 }
 
 #[test]
-fn who_cannot_be_heard_is_told_to_press_the_emergency_stop() {
+fn without_communication_the_operator_is_asked_to_press_the_emergency_stop() {
     let stage = Stage::of(str::to_owned, "after 8 moves: hang up before reply");
     let ran = wait(&mut stage.run_with(&["--yes"]));
-    assert_eq!(ran.code, Some(3), "{}", ran.told);
+    assert_eq!(ran.code, Some(3), "{}", ran.output);
     assert!(
-        ran.told.contains("NOT CONFIRMED HELD") && ran.told.contains("Press the emergency stop"),
+        ran.output.contains("NOT CONFIRMED HELD")
+            && ran.output.contains("Press the emergency stop"),
         "{}",
-        ran.told
+        ran.output
     );
     let verified = stage.verify();
-    assert!(verified.code == Some(0), "{}", verified.told);
+    assert!(verified.code == Some(0), "{}", verified.output);
     let report = fs::read_to_string(stage.path("run").join("report.html")).unwrap();
     assert!(report.contains("NOT CONFIRMED HELD"));
 }

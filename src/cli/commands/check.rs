@@ -22,7 +22,7 @@ pub fn check(arguments: &CheckArguments, settings: Settings) -> Result<Exit, Fai
                 found.push(json::unreadable(
                     &path.display().to_string(),
                     &failure.to_string(),
-                    failure.place(),
+                    failure.position(),
                 ));
                 exit = exit.max(failure.exit());
                 continue;

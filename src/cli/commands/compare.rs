@@ -32,7 +32,7 @@ pub fn compare(arguments: &CompareArguments) -> Result<Exit, Failure> {
         .map(|out| RunFolder::create(Some(out), out))
         .transpose()?;
     let compared = Comparison::of(&sides);
-    print_result(&comparison::told(&compared))?;
+    print_result(&comparison::comparison_text(&compared))?;
     let Some(folder) = folder else {
         return Ok(Exit::Met);
     };

@@ -88,17 +88,18 @@ fn canonical(path: &Path, text: &str, settings: Settings) -> Option<String> {
 
 /// Writes a new file and renames it, so that the plan on disk is always complete. A link stays a link.
 fn replace(path: &Path, text: &str) -> std::io::Result<()> {
-    let place = path.canonicalize()?;
-    let temporary = place.with_file_name(format!(".{}.{}", name_of(&place), std::process::id()));
+    let canonical = path.canonicalize()?;
+    let temporary =
+        canonical.with_file_name(format!(".{}.{}", name_of(&canonical), std::process::id()));
     let write = || -> std::io::Result<()> {
         let mut file = std::fs::OpenOptions::new()
             .write(true)
             .create_new(true)
             .open(&temporary)?;
         file.write_all(text.as_bytes())?;
-        file.set_permissions(place.metadata()?.permissions())?;
+        file.set_permissions(canonical.metadata()?.permissions())?;
         file.sync_all()?;
-        std::fs::rename(&temporary, &place)
+        std::fs::rename(&temporary, &canonical)
     };
     write().inspect_err(|_| {
         // The first error is reported.

@@ -19,11 +19,11 @@ pub fn prediction(part: &Plan, record: &Record) -> Option<Prediction> {
         .as_deref()
         .filter(|_| record.outcome == Outcome::Completed)?;
     let stand_in = check_run::prediction(plan, record).ok()?;
-    Some(DryRun::on(plan, &stand_in, told(plan, &stand_in)).prediction())
+    Some(DryRun::on(plan, &stand_in, rig_and_specimen(plan, &stand_in)).prediction())
 }
 
 /// Description of the rig and specimen of the prediction.
-pub fn told(plan: &Plan, stand_in: &Plan) -> String {
+pub fn rig_and_specimen(plan: &Plan, stand_in: &Plan) -> String {
     let specimen = VirtualRig::specimen_of(stand_in);
     let storeys = specimen
         .and_then(|specimen| specimen.frame.as_ref())

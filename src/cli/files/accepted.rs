@@ -20,23 +20,23 @@ pub struct AcceptedFolder {
 impl AcceptedFolder {
     /// The folder for `plan`, which exists.
     pub fn of(plan: &Path) -> Result<Self, Failure> {
-        let place = plan
+        let path = plan
             .canonicalize()
             .map_err(|error| Failure::file(plan, plain(&error)))?;
-        match place.parent().and_then(Path::parent) {
+        match path.parent().and_then(Path::parent) {
             Some(above) => {
                 // As the operator would write it, if that is the same path.
                 let typed = plan
                     .parent()
                     .and_then(Path::parent)
-                    .filter(|typed| typed.canonicalize().is_ok_and(|place| place == above));
+                    .filter(|typed| typed.canonicalize().is_ok_and(|path| path == above));
                 let here = plan
                     .parent()
                     .is_some_and(|folder| folder.parent() == Some(Path::new("")));
                 let here = here
                     && Path::new(".")
                         .canonicalize()
-                        .is_ok_and(|place| place == above);
+                        .is_ok_and(|path| path == above);
                 Self::within(
                     &if here {
                         PathBuf::new()
@@ -44,7 +44,7 @@ impl AcceptedFolder {
                         typed.unwrap_or(above).to_owned()
                     }
                     .join("reports"),
-                    &place,
+                    &path,
                 )
             }
             None => Err(Failure::file(
@@ -75,12 +75,12 @@ impl AcceptedFolder {
     }
 
     /// Accepts the files of a run. If every number is within tolerance and the list of files is the same, nothing is written, unless
-    /// `anew` requests it. Rendered pages are written with `pages`, or if the folder already has some.
+    /// `rewrite` requests it. Rendered pages are written with `pages`, or if the folder already has some.
     pub fn accept(
         &self,
         files: &[OutputFile],
         tolerances: &Tolerances,
-        anew: bool,
+        rewrite: bool,
         pages: bool,
     ) -> Result<Accepted, Failure> {
         let (old, new) = (self.truth()?, truth_of(files));
@@ -106,7 +106,7 @@ impl AcceptedFolder {
             return Ok(Accepted::New);
         }
         let found = compare(&old, &new, tolerances);
-        if found.is_empty() && !anew && kept.iter().map(|file| &file.path).eq(&before) {
+        if found.is_empty() && !rewrite && kept.iter().map(|file| &file.path).eq(&before) {
             return Ok(Accepted::Unchanged);
         }
         self.replace(&kept)?;
@@ -244,12 +244,12 @@ mod tests {
             file("plan/beam.psd"),
             file("report.html"),
         ];
-        let accept_with = |anew, pages| {
+        let accept_with = |rewrite, pages| {
             accepted
-                .accept(&files, &Tolerances::default(), anew, pages)
+                .accept(&files, &Tolerances::default(), rewrite, pages)
                 .unwrap()
         };
-        let accept = |anew| accept_with(anew, false);
+        let accept = |rewrite| accept_with(rewrite, false);
         assert!(matches!(accept(false), Accepted::Changed(found) if !found.is_empty()));
         let read =
             |path: &str| std::fs::read_to_string(root.path().join("reports").join(path)).ok();

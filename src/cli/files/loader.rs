@@ -124,7 +124,7 @@ fn read(path: &Path) -> Result<String, Unread> {
     let bytes = bytes(path, FILE_BYTES)?;
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        let (line, column) = place(&error.as_bytes()[..at]);
+        let (line, column) = line_and_column(&error.as_bytes()[..at]);
         let reason = format!(
             "it is not UTF-8 text (byte {at}, line {line}, column {column}): save it as UTF-8"
         );
@@ -136,7 +136,7 @@ fn read(path: &Path) -> Result<String, Unread> {
 }
 
 /// Line and column, from 1, of the byte after `before`.
-fn place(before: &[u8]) -> (usize, usize) {
+fn line_and_column(before: &[u8]) -> (usize, usize) {
     let line = before
         .rsplit(|byte| *byte == b'\n')
         .next()
@@ -186,7 +186,7 @@ mod tests {
         assert!(
             refused(&loader, "bytes.psd").contains("(byte 1, line 1, column 2): save it as UTF-8")
         );
-        assert_eq!(place("a\né".as_bytes()), (2, 2));
+        assert_eq!(line_and_column("a\né".as_bytes()), (2, 2));
         assert!(refused(&loader, "large.psd").contains("1 MiB"));
     }
 }

@@ -94,7 +94,7 @@ pub fn diagnostics(checked: &Checked, path: &Path) -> Vec<Value> {
 }
 
 /// The position in the plan of a rig that cannot be opened: the field with the port that the fault names.
-pub fn place_of_link(checked: &Checked, path: &Path, fault: &str) -> Option<String> {
+pub fn location_of_link(checked: &Checked, path: &Path, fault: &str) -> Option<String> {
     let text = |span: &Span| {
         checked
             .sources

@@ -62,10 +62,10 @@ fn question(plan: &Plan, link: &RealLink, found: &Reading, decision: &ResumeDeci
 }
 
 fn next(link: &RealLink, found: &Reading, decision: &ResumeDecision) -> String {
-    let places = |places: &[f64]| {
-        places
+    let joined = |positions: &[f64]| {
+        positions
             .iter()
-            .map(|place| readable(*place, Dimension::LENGTH))
+            .map(|position| readable(*position, Dimension::LENGTH))
             .collect::<Vec<_>>()
             .join(", ")
     };
@@ -75,14 +75,14 @@ fn next(link: &RealLink, found: &Reading, decision: &ResumeDecision) -> String {
         (Some((to, speed)), TargetStatus::NotExecuted) => {
             format!(
                 "the last target did not arrive: it MOVES to {} at {}, then as the plan specifies",
-                places(to),
+                joined(to),
                 at(*speed)
             )
         }
         (Some((to, speed)), _) => {
             format!(
                 "the last target was not reached: it MOVES to {} at {}, then as the plan specifies",
-                places(to),
+                joined(to),
                 at(*speed)
             )
         }
@@ -92,10 +92,10 @@ fn next(link: &RealLink, found: &Reading, decision: &ResumeDecision) -> String {
                 .collect();
             format!(
                 "a motion was interrupted: it MOVES back to {} at {own}, then as the plan specifies",
-                places(&to)
+                joined(&to)
             )
         }
-        (None, TargetStatus::RestOfTheWay { .. }) => {
+        (None, TargetStatus::RemainingMotion { .. }) => {
             "a motion was interrupted: it MOVES on to its target from here, then as the plan specifies"
                 .to_owned()
         }

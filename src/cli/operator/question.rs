@@ -56,7 +56,7 @@ pub const WHY_RESUME: &str = "Why was the run held, and why may it continue? Wit
                               power-cycled. Both are logged.";
 
 /// Position of a rig and its measured force there.
-pub fn felt(displacement: f64, force: f64) -> String {
+pub fn position_and_force(displacement: f64, force: f64) -> String {
     format!(
         "X {}   R {}",
         readable(displacement, Dimension::LENGTH),
@@ -169,7 +169,7 @@ impl Kind {
     }
 
     /// An answer for the run log, with the remark and the name.
-    pub fn said(self, yes: bool, remark: Option<String>, by: String) -> Inspection {
+    pub fn to_inspection(self, yes: bool, remark: Option<String>, by: String) -> Inspection {
         let by = Some(by);
         if yes {
             return Inspection::GoOn { note: remark, by };

@@ -1,6 +1,6 @@
 //! The sketch for an HX711 load cell: one raw count per line, at its own rate. In: ignored. Out: counts.
 
-use crate::emulator::{Bench, Firmware};
+use crate::emulator::{EmulatedRig, Firmware};
 
 /// The firmware.
 #[derive(Debug)]
@@ -23,12 +23,12 @@ impl Hx711 {
 }
 
 impl Firmware for Hx711 {
-    fn receive(&mut self, _: &[u8], _: &mut Bench) -> Vec<u8> {
+    fn receive(&mut self, _: &[u8], _: &mut EmulatedRig) -> Vec<u8> {
         Vec::new()
     }
 
-    fn tick(&mut self, bench: &mut Bench) -> Vec<u8> {
-        let now = bench.time();
+    fn tick(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
+        let now = rig.time();
         if now < self.next {
             return Vec::new();
         }
@@ -38,31 +38,31 @@ impl Firmware for Hx711 {
         } else {
             now + self.period
         };
-        let count = bench.counts().to_string();
-        format!("{}\r\n", bench.shown(count)).into_bytes()
+        let count = rig.counts().to_string();
+        format!("{}\r\n", rig.shown(count)).into_bytes()
     }
 
-    fn reboot(&mut self, bench: &mut Bench) -> Vec<u8> {
-        self.next = bench.time() + self.period;
+    fn reboot(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
+        self.next = rig.time() + self.period;
         Vec::new()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::testing::bench;
+    use super::super::super::testing::elastic_rig;
     use super::*;
 
     #[test]
     fn counts_come_at_the_rate_of_the_converter() {
-        let (mut cell, mut bench) = (Hx711::new(80.0), bench());
-        bench.go(0.002, 0.01);
+        let (mut cell, mut rig) = (Hx711::new(80.0), elastic_rig());
+        rig.go(0.002, 0.01);
         let mut lines = Vec::new();
         for slice in 0..1000 {
-            bench.advance(f64::from(slice) * 0.001);
-            let said = cell.tick(&mut bench);
+            rig.advance(f64::from(slice) * 0.001);
+            let reply = cell.tick(&mut rig);
             lines.extend(
-                String::from_utf8(said)
+                String::from_utf8(reply)
                     .expect("text")
                     .lines()
                     .map(str::to_owned),
@@ -74,9 +74,9 @@ mod tests {
             ("1000", "-19000"),
             "0 N and 200 N at −0.01 N a count"
         );
-        bench.advance(100.0);
+        rig.advance(100.0);
         assert!(
-            !cell.tick(&mut bench).is_empty() && cell.tick(&mut bench).is_empty(),
+            !cell.tick(&mut rig).is_empty() && cell.tick(&mut rig).is_empty(),
             "no burst after a pause"
         );
     }

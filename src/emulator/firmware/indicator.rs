@@ -1,6 +1,6 @@
 //! A weighing indicator that sends its weight periodically and on request: `ST,GS,+0001234,kg`. In: `READ`. Out: weights.
 
-use crate::emulator::{Bench, Firmware};
+use crate::emulator::{EmulatedRig, Firmware};
 
 /// N per kg.
 const GRAVITY: f64 = 9.806_65;
@@ -18,10 +18,10 @@ pub struct Indicator {
 }
 
 impl Indicator {
-    fn weight(bench: &mut Bench) -> Vec<u8> {
-        let kilograms = bench.force() / GRAVITY;
+    fn weight(rig: &mut EmulatedRig) -> Vec<u8> {
+        let kilograms = rig.force() / GRAVITY;
         let within = kilograms.abs() <= CAPACITY;
-        let status = match (within, bench.moving()) {
+        let status = match (within, rig.moving()) {
             (false, _) => "OL",
             (true, true) => "US",
             (true, false) => "ST",
@@ -31,27 +31,27 @@ impl Indicator {
         } else {
             "^^^^^^^^".to_owned()
         };
-        format!("{status},GS,{},kg\r\n", bench.shown(shown)).into_bytes()
+        format!("{status},GS,{},kg\r\n", rig.shown(shown)).into_bytes()
     }
 }
 
 impl Firmware for Indicator {
-    fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
-        let mut said = Vec::new();
+    fn receive(&mut self, bytes: &[u8], rig: &mut EmulatedRig) -> Vec<u8> {
+        let mut reply = Vec::new();
         for byte in bytes {
             if matches!(byte, b'\r' | b'\n') {
                 if std::mem::take(&mut self.line) == b"READ" {
-                    said.extend(Self::weight(bench));
+                    reply.extend(Self::weight(rig));
                 }
             } else if self.line.len() < 80 {
                 self.line.push(*byte);
             }
         }
-        said
+        reply
     }
 
-    fn tick(&mut self, bench: &mut Bench) -> Vec<u8> {
-        let now = bench.time();
+    fn tick(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
+        let now = rig.time();
         if now < self.next {
             return Vec::new();
         }
@@ -60,13 +60,13 @@ impl Firmware for Indicator {
         } else {
             now + PERIOD
         };
-        Self::weight(bench)
+        Self::weight(rig)
     }
 
-    fn reboot(&mut self, bench: &mut Bench) -> Vec<u8> {
+    fn reboot(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
         *self = Self {
             line: Vec::new(),
-            next: bench.time() + PERIOD,
+            next: rig.time() + PERIOD,
         };
         Vec::new()
     }
@@ -74,32 +74,32 @@ impl Firmware for Indicator {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::testing::bench;
+    use super::super::super::testing::elastic_rig;
     use super::*;
 
     #[test]
-    fn a_weight_has_eight_places_and_says_whether_it_stands() {
-        let (mut indicator, mut bench) = (Indicator::default(), bench());
-        assert_eq!(indicator.tick(&mut bench), b"ST,GS,+0000.00,kg\r\n");
-        assert!(indicator.tick(&mut bench).is_empty());
-        bench.go(0.000_980_665, 0.000_980_665);
-        bench.advance(0.5);
+    fn a_weight_has_eight_digits_and_states_whether_it_is_stable() {
+        let (mut indicator, mut rig) = (Indicator::default(), elastic_rig());
+        assert_eq!(indicator.tick(&mut rig), b"ST,GS,+0000.00,kg\r\n");
+        assert!(indicator.tick(&mut rig).is_empty());
+        rig.go(0.000_980_665, 0.000_980_665);
+        rig.advance(0.5);
         assert_eq!(
-            indicator.receive(b"READ\r\n", &mut bench),
+            indicator.receive(b"READ\r\n", &mut rig),
             b"US,GS,+0005.00,kg\r\n",
             "49.03 N on the way"
         );
-        bench.advance(1.5);
+        rig.advance(1.5);
         assert_eq!(
-            indicator.tick(&mut bench),
+            indicator.tick(&mut rig),
             b"ST,GS,+0010.00,kg\r\n",
             "98.0665 N"
         );
-        bench.strike(0, crate::emulator::BenchFault::Spike(-1e6));
+        rig.strike(0, crate::emulator::MechanicalFault::Spike(-1e6));
         assert_eq!(
-            indicator.receive(b"READ\r\n", &mut bench),
+            indicator.receive(b"READ\r\n", &mut rig),
             b"OL,GS,^^^^^^^^,kg\r\n"
         );
-        assert!(indicator.receive(b"WRITE\r\n", &mut bench).is_empty());
+        assert!(indicator.receive(b"WRITE\r\n", &mut rig).is_empty());
     }
 }

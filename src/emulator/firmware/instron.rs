@@ -7,7 +7,7 @@
 //! Only `P909` and the panic `C23,0` need no wrapping.
 
 use super::line_buffer::LineBuffer;
-use crate::emulator::{Bench, Firmware};
+use crate::emulator::{EmulatedRig, Firmware};
 
 /// Bits of `Q22`.
 const ACTUATOR_OFF: u32 = 1 << 3;
@@ -60,9 +60,9 @@ impl Instron {
         }
     }
 
-    fn answer(&self, words: &[&str], bench: &mut Bench) -> Option<String> {
+    fn answer(&self, words: &[&str], rig: &mut EmulatedRig) -> Option<String> {
         match *words {
-            ["Q1"] => Some(self.movement(bench).to_owned()),
+            ["Q1"] => Some(self.movement(rig).to_owned()),
             ["Q22"] => {
                 let off = if self.console.actuator_off {
                     ACTUATOR_OFF
@@ -77,10 +77,10 @@ impl Instron {
             ["Q909"] => Some(u8::from(self.console.computer).to_string()),
             ["Q308", "1"] => Some(self.full_scale[0].to_string()),
             ["Q308", "2"] => Some(self.full_scale[1].to_string()),
-            ["Q134", "1", "0"] => Some(format!("{:.8}", bench.displacement() / self.full_scale[0])),
+            ["Q134", "1", "0"] => Some(format!("{:.8}", rig.displacement() / self.full_scale[0])),
             ["Q134", "2", "0"] => {
-                let raw = format!("{:.8}", bench.force() / self.full_scale[1]);
-                Some(bench.shown_force(0, raw))
+                let raw = format!("{:.8}", rig.force() / self.full_scale[1]);
+                Some(rig.shown_force(0, raw))
             }
             ["Q86", "1"] => self.console.ramp_time.map(|seconds| seconds.to_string()),
             ["Q4", "1"] => self.console.ramp_target.map(|raw| raw.to_string()),
@@ -88,15 +88,15 @@ impl Instron {
         }
     }
 
-    fn movement(&self, bench: &Bench) -> &'static str {
+    fn movement(&self, rig: &EmulatedRig) -> &'static str {
         match self.console.ramp {
             Some(_) if self.console.held => "2",
-            Some(_) if bench.moving() => "1",
+            Some(_) if rig.moving() => "1",
             _ => "0",
         }
     }
 
-    fn write(&mut self, words: &[&str], bench: &mut Bench) {
+    fn write(&mut self, words: &[&str], rig: &mut EmulatedRig) {
         let console = &mut self.console;
         match *words {
             ["P909", "1"] => {
@@ -110,7 +110,7 @@ impl Instron {
             }
             ["C23", "0"] => {
                 console.actuator_off = true;
-                stop(console, bench);
+                stop(console, rig);
                 return;
             }
             ["C904", "0", ..] if console.computer => {
@@ -122,19 +122,19 @@ impl Instron {
         if !(console.computer && console.watchdog_off) {
             console.tripped = true;
             console.actuator_off = true;
-            stop(console, bench);
+            stop(console, rig);
         } else if console.actuator_off {
             if words == ["C23", "1"] {
                 console.actuator_off = false;
                 console.tripped = false;
             }
         } else {
-            self.command(words, bench);
+            self.command(words, rig);
         }
     }
 
     /// Executes a correctly wrapped write on a console whose actuator is on.
-    fn command(&mut self, words: &[&str], bench: &mut Bench) {
+    fn command(&mut self, words: &[&str], rig: &mut EmulatedRig) {
         let console = &mut self.console;
         match *words {
             ["C300", channel] => console.position_mode = channel == "1",
@@ -149,10 +149,10 @@ impl Instron {
                 if (-1.0..=1.0).contains(&raw) {
                     console.ramp_target = Some(raw);
                 } else {
-                    bench.refuse(raw * self.full_scale[0]);
+                    rig.refuse(raw * self.full_scale[0]);
                 }
             }
-            ["C1", "0"] => stop(console, bench),
+            ["C1", "0"] => stop(console, rig),
             ["C1", "1"] => {
                 if let (true, true, Some(raw), Some(seconds)) = (
                     console.position_mode,
@@ -161,20 +161,20 @@ impl Instron {
                     console.ramp_time,
                 ) {
                     let target = raw * self.full_scale[0];
-                    let speed = (target - bench.commanded()).abs() / seconds;
+                    let speed = (target - rig.commanded()).abs() / seconds;
                     console.ramp = Some((target, speed));
                     console.held = false;
-                    bench.go(target, speed);
+                    rig.go(target, speed);
                 }
             }
             ["C1", "2"] => {
                 console.held = console.ramp.is_some();
-                bench.hold();
+                rig.hold();
             }
             ["C1", "3"] => {
                 if let Some((target, speed)) = console.ramp.filter(|_| console.held) {
                     console.held = false;
-                    bench.go(target, speed);
+                    rig.go(target, speed);
                 }
             }
             _ => {}
@@ -182,10 +182,10 @@ impl Instron {
     }
 }
 
-fn stop(console: &mut Console, bench: &mut Bench) {
+fn stop(console: &mut Console, rig: &mut EmulatedRig) {
     console.ramp = None;
     console.held = false;
-    bench.hold();
+    rig.hold();
 }
 
 /// A finite decimal number.
@@ -194,29 +194,29 @@ fn number(text: &str) -> Option<f64> {
 }
 
 impl Firmware for Instron {
-    fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
+    fn receive(&mut self, bytes: &[u8], rig: &mut EmulatedRig) -> Vec<u8> {
         let mut answers = Vec::new();
         for line in self.lines.take(bytes) {
             let words: Vec<&str> = line.split(',').map(str::trim).collect();
             if line.starts_with('Q') {
-                if let Some(answer) = self.answer(&words, bench) {
+                if let Some(answer) = self.answer(&words, rig) {
                     answers.extend(answer.bytes().chain(*b"\r\n"));
                 }
             } else {
-                self.write(&words, bench);
+                self.write(&words, rig);
             }
         }
         answers
     }
 
-    fn tick(&mut self, _: &mut Bench) -> Vec<u8> {
+    fn tick(&mut self, _: &mut EmulatedRig) -> Vec<u8> {
         Vec::new()
     }
 
-    fn reboot(&mut self, bench: &mut Bench) -> Vec<u8> {
+    fn reboot(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
         self.lines.clear();
         self.console = Console::default();
-        bench.hold();
+        rig.hold();
         Vec::new()
     }
 }
@@ -229,73 +229,69 @@ mod tests {
     const WRAPPED: &[u8] = b"P909,1\r\nC904,0\r\n";
 
     /// 100 mm and 50 kN of full scale, on a spring of 100 kN/m.
-    fn console() -> (Instron, Bench) {
+    fn console() -> (Instron, EmulatedRig) {
         (Instron::new(0.1, 5e4), spring())
     }
 
-    fn said(console: &mut Instron, bench: &mut Bench, bytes: &[u8]) -> String {
-        String::from_utf8(console.receive(bytes, bench)).unwrap()
+    fn reply_to(console: &mut Instron, rig: &mut EmulatedRig, bytes: &[u8]) -> String {
+        String::from_utf8(console.receive(bytes, rig)).unwrap()
     }
 
     /// Sets up an absolute ramp to 5 mm within 2 s and starts it.
-    fn started() -> (Instron, Bench) {
-        let (mut console, mut bench) = console();
-        assert_eq!(said(&mut console, &mut bench, WRAPPED), "");
+    fn started() -> (Instron, EmulatedRig) {
+        let (mut console, mut rig) = console();
+        assert_eq!(reply_to(&mut console, &mut rig, WRAPPED), "");
         let ramp = b"C300,1\r\nC2,1,3\r\nC86,1,2.0\r\nC4,1,0.05\r\nC1,1\r\nP909,0\r\n";
-        assert_eq!(said(&mut console, &mut bench, ramp), "");
-        (console, bench)
+        assert_eq!(reply_to(&mut console, &mut rig, ramp), "");
+        (console, rig)
     }
 
     #[test]
     fn a_ramp_arrives_in_its_time_and_the_readings_are_fractions_of_full_scale() {
-        let (mut console, mut bench) = started();
+        let (mut console, mut rig) = started();
         assert_eq!(
-            said(
-                &mut console,
-                &mut bench,
-                b"Q308,1\r\nQ308,2\r\nQ1\r\nQ22\r\n"
-            ),
+            reply_to(&mut console, &mut rig, b"Q308,1\r\nQ308,2\r\nQ1\r\nQ22\r\n"),
             "0.1\r\n50000\r\n1\r\n0\r\n"
         );
-        bench.advance(1.0);
+        rig.advance(1.0);
         // 2.5 mm of 100 mm; 250 N of 50 kN.
         assert_eq!(
-            said(&mut console, &mut bench, b"Q134,1,0\r\nQ134,2,0\r\n"),
+            reply_to(&mut console, &mut rig, b"Q134,1,0\r\nQ134,2,0\r\n"),
             "0.02500000\r\n0.00500000\r\n"
         );
-        bench.advance(2.0);
+        rig.advance(2.0);
         assert_eq!(
-            said(&mut console, &mut bench, b"Q1\r\nQ134,1,0\r\n"),
+            reply_to(&mut console, &mut rig, b"Q1\r\nQ134,1,0\r\n"),
             "0\r\n0.05000000\r\n"
         );
-        assert!(bench.violations().is_empty());
+        assert!(rig.violations().is_empty());
     }
 
     #[test]
     fn a_ramp_is_held_goes_on_and_stops() {
-        let (mut console, mut bench) = started();
-        bench.advance(1.0);
+        let (mut console, mut rig) = started();
+        rig.advance(1.0);
         assert_eq!(
-            said(
+            reply_to(
                 &mut console,
-                &mut bench,
+                &mut rig,
                 b"P909,1\r\nC904,0\r\nC1,2\r\nQ1\r\n"
             ),
             "2\r\n"
         );
-        bench.advance(5.0);
+        rig.advance(5.0);
         assert_eq!(
-            said(&mut console, &mut bench, b"Q134,1,0\r\nC1,3\r\nQ1\r\n"),
+            reply_to(&mut console, &mut rig, b"Q134,1,0\r\nC1,3\r\nQ1\r\n"),
             "0.02500000\r\n1\r\n"
         );
-        bench.advance(5.4);
+        rig.advance(5.4);
         assert_eq!(
-            said(&mut console, &mut bench, b"C1,0\r\nQ1\r\nP909,0\r\n"),
+            reply_to(&mut console, &mut rig, b"C1,0\r\nQ1\r\nP909,0\r\n"),
             "0\r\n"
         );
-        bench.advance(9.0);
+        rig.advance(9.0);
         assert_eq!(
-            said(&mut console, &mut bench, b"Q134,1,0\r\n"),
+            reply_to(&mut console, &mut rig, b"Q134,1,0\r\n"),
             "0.03500000\r\n"
         );
     }
@@ -308,22 +304,22 @@ mod tests {
             b"P909,1\r\nC1,1\r\n",
             b"P909,1\r\nC904,0\r\nP909,0\r\nC86,1,1\r\n",
         ] {
-            let (mut console, mut bench) = started();
-            bench.advance(1.0);
+            let (mut console, mut rig) = started();
+            rig.advance(1.0);
             // Bit 12, the trip, and bit 3, the actuator that is off: 4096 + 8.
-            said(&mut console, &mut bench, bare);
+            reply_to(&mut console, &mut rig, bare);
             assert_eq!(
-                said(&mut console, &mut bench, b"Q22\r\nQ1\r\n"),
+                reply_to(&mut console, &mut rig, b"Q22\r\nQ1\r\n"),
                 "4104\r\n0\r\n",
                 "{}",
                 bare.escape_ascii()
             );
-            bench.advance(3.0);
-            said(&mut console, &mut bench, WRAPPED);
-            said(&mut console, &mut bench, b"C1,1\r\n");
-            assert!(!bench.moving(), "ignored until the actuator is on again");
+            rig.advance(3.0);
+            reply_to(&mut console, &mut rig, WRAPPED);
+            reply_to(&mut console, &mut rig, b"C1,1\r\n");
+            assert!(!rig.moving(), "ignored until the actuator is on again");
             assert_eq!(
-                said(&mut console, &mut bench, b"C23,1\r\nQ22\r\nC1,1\r\nQ1\r\n"),
+                reply_to(&mut console, &mut rig, b"C23,1\r\nQ22\r\nC1,1\r\nQ1\r\n"),
                 "0\r\n1\r\n"
             );
         }
@@ -331,15 +327,15 @@ mod tests {
 
     #[test]
     fn the_panic_word_needs_no_wrapping_and_is_no_trip() {
-        let (mut console, mut bench) = started();
-        bench.advance(1.0);
+        let (mut console, mut rig) = started();
+        rig.advance(1.0);
         assert_eq!(
-            said(&mut console, &mut bench, b"C23,0\r\nQ22\r\nQ23\r\n"),
+            reply_to(&mut console, &mut rig, b"C23,0\r\nQ22\r\nQ23\r\n"),
             "8\r\n0\r\n"
         );
-        bench.advance(3.0);
+        rig.advance(3.0);
         assert_eq!(
-            said(&mut console, &mut bench, b"Q134,1,0\r\n"),
+            reply_to(&mut console, &mut rig, b"Q134,1,0\r\n"),
             "0.02500000\r\n"
         );
     }
@@ -348,8 +344,8 @@ mod tests {
     fn it_refuses_what_is_no_number_or_beyond_full_scale_and_starts_only_an_absolute_ramp_of_position()
      {
         for missing in ["C300,2", "C2,1,1", "C4,1,nan", "C4,1,1.5", "C86,1,0"] {
-            let (mut console, mut bench) = console();
-            said(&mut console, &mut bench, WRAPPED);
+            let (mut console, mut rig) = console();
+            reply_to(&mut console, &mut rig, WRAPPED);
             let words = ["C300,1", "C2,1,3", "C86,1,2", "C4,1,0.05"];
             let letter = missing.split(',').next().unwrap();
             for word in words {
@@ -358,23 +354,26 @@ mod tests {
                 } else {
                     word
                 };
-                said(&mut console, &mut bench, format!("{word}\r\n").as_bytes());
+                reply_to(&mut console, &mut rig, format!("{word}\r\n").as_bytes());
             }
-            said(&mut console, &mut bench, b"C1,1\r\n");
-            assert!(!bench.moving() && bench.targets().is_empty(), "{missing}");
+            reply_to(&mut console, &mut rig, b"C1,1\r\n");
+            assert!(!rig.moving() && rig.targets().is_empty(), "{missing}");
         }
-        let (mut console, mut bench) = console();
-        assert_eq!(said(&mut console, &mut bench, b"Q999\r\n\xff\xfe\r\n"), "");
+        let (mut console, mut rig) = console();
+        assert_eq!(
+            reply_to(&mut console, &mut rig, b"Q999\r\n\xff\xfe\r\n"),
+            ""
+        );
     }
 
     #[test]
     fn a_reboot_forgets_the_ramp_and_stays_where_it_is() {
-        let (mut console, mut bench) = started();
-        bench.advance(1.0);
-        assert!(console.reboot(&mut bench).is_empty());
-        bench.advance(3.0);
+        let (mut console, mut rig) = started();
+        rig.advance(1.0);
+        assert!(console.reboot(&mut rig).is_empty());
+        rig.advance(3.0);
         assert_eq!(
-            said(&mut console, &mut bench, b"Q1\r\nQ300\r\nQ134,1,0\r\n"),
+            reply_to(&mut console, &mut rig, b"Q1\r\nQ300\r\nQ134,1,0\r\n"),
             "0\r\n0\r\n0.02500000\r\n"
         );
     }

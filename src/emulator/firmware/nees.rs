@@ -8,7 +8,7 @@
 //! from a proposal keeps its last target.
 
 use super::line_buffer::LineBuffer;
-use crate::emulator::{Bench, Firmware};
+use crate::emulator::{EmulatedRig, Firmware};
 use crate::remote::nees_message;
 use crate::remote::nees_message::{Point, Refusal, Request, Why};
 
@@ -18,8 +18,8 @@ const AXIS: &str = "x";
 pub struct Nees {
     /// One for each of its actuators.
     control_points: Vec<String>,
-    /// The indices of its own actuators on the bench.
-    rams: Vec<usize>,
+    /// The indices of its own actuators on the emulated rig.
+    actuators: Vec<usize>,
     /// m/s
     speed: f64,
     lines: LineBuffer,
@@ -40,12 +40,12 @@ struct Session {
 
 impl Nees {
     /// A rig with a control point for each actuator. The actuator with the longest move has the speed `speed` \[m/s\]. It
-    /// refuses targets outside the bench's limits.
+    /// refuses targets outside the emulated rig's limits.
     #[must_use]
-    pub fn new(control_points: Vec<String>, rams: Vec<usize>, speed: f64) -> Self {
+    pub fn new(control_points: Vec<String>, actuators: Vec<usize>, speed: f64) -> Self {
         Self {
             control_points,
-            rams,
+            actuators,
             speed,
             lines: LineBuffer::default(),
             session: Session::default(),
@@ -53,15 +53,15 @@ impl Nees {
     }
 
     /// The answers to one line.
-    fn answer(&mut self, line: &str, bench: &mut Bench) -> Vec<String> {
-        let answered = nees_message::parse(line).and_then(|request| self.request(&request, bench));
+    fn answer(&mut self, line: &str, rig: &mut EmulatedRig) -> Vec<String> {
+        let answered = nees_message::parse(line).and_then(|request| self.request(&request, rig));
         answered.unwrap_or_else(|refusal| vec![refusal.line()])
     }
 
     fn request<'a>(
         &mut self,
         request: &Request<'a>,
-        bench: &mut Bench,
+        rig: &mut EmulatedRig,
     ) -> Result<Vec<String>, Refusal<'a>> {
         let session = &mut self.session;
         if session.open == (*request == Request::OpenSession) {
@@ -82,7 +82,7 @@ impl Nees {
             }
             Request::SetParameter => Ok(vec!["OK\t0\tparameter set".to_owned()]),
             Request::CloseSession => {
-                bench.hold_those(&self.rams);
+                rig.hold_those(&self.actuators);
                 *session = Session {
                     carriage_return: session.carriage_return,
                     ..Session::default()
@@ -98,7 +98,7 @@ impl Nees {
                 }
                 session.proposed = None;
                 let target = self
-                    .targets(points, bench)
+                    .targets(points, rig)
                     .map_err(|(why, reason)| Refusal::new(why, transaction, reason))?;
                 self.session.proposed = Some(((*transaction).to_owned(), target));
                 Ok(vec![nees_message::done(transaction)])
@@ -115,14 +115,14 @@ impl Nees {
                     ));
                 };
                 if let Some(targets) = target {
-                    bench.go_those(None, &self.rams, &targets, self.speed);
+                    rig.go_those(None, &self.actuators, &targets, self.speed);
                 }
                 session.executing = Some((*transaction).to_owned());
-                Ok(self.arrived(bench))
+                Ok(self.arrived(rig))
             }
             Request::GetControlPoint { transaction, point } => {
-                let Some(ram) = nees_message::place_of(&self.control_points, point)
-                    .map(|place| self.rams[place])
+                let Some(actuator) = nees_message::control_point_index(&self.control_points, point)
+                    .map(|axis| self.actuators[axis])
                 else {
                     return Err(Refusal::new(
                         Why::Message,
@@ -130,14 +130,14 @@ impl Nees {
                         "no such control point",
                     ));
                 };
-                let (displacement, force) = (bench.displacement_of(ram), bench.force_of(ram));
+                let (displacement, force) = (rig.displacement_of(actuator), rig.force_of(actuator));
                 let line =
                     nees_message::control_point(transaction, point, AXIS, displacement, force);
                 // The force is the last field.
                 let (before, ordinary) = line.rsplit_once('\t').unwrap_or((&line, ""));
                 Ok(vec![format!(
                     "{before}\t{}",
-                    bench.shown_force(ram, ordinary.to_owned())
+                    rig.shown_force(actuator, ordinary.to_owned())
                 )])
             }
             Request::Cancel { transaction } => {
@@ -148,7 +148,7 @@ impl Nees {
                     .executing
                     .take_if(|executing| executing == transaction);
                 let stopped = stopped.map(|_| {
-                    bench.hold_those(&self.rams);
+                    rig.hold_those(&self.actuators);
                     Refusal::new(Why::Order, transaction, "cancelled").line()
                 });
                 Ok(stopped
@@ -163,11 +163,12 @@ impl Nees {
     fn targets(
         &self,
         points: &[Point<'_>],
-        bench: &mut Bench,
+        rig: &mut EmulatedRig,
     ) -> Result<Option<Vec<f64>>, (Why, &'static str)> {
         let refused = |reason| (Why::Message, reason);
-        let place_of = |name: &str| nees_message::place_of(&self.control_points, name);
-        let wishes = nees_message::wishes(points, place_of).map_err(refused)?;
+        let control_point_index =
+            |name: &str| nees_message::control_point_index(&self.control_points, name);
+        let wishes = nees_message::wishes(points, control_point_index).map_err(refused)?;
         if wishes.iter().any(|(_, wish)| wish.axis != AXIS) {
             return Err(refused("this rig knows the direction x only"));
         }
@@ -175,29 +176,29 @@ impl Nees {
             return Ok(None);
         }
         let mut targets: Vec<f64> = self
-            .rams
+            .actuators
             .iter()
-            .map(|ram| bench.commanded_of(*ram))
+            .map(|actuator| rig.commanded_of(*actuator))
             .collect();
-        for (ram, wish) in &wishes {
-            targets[*ram] = wish.value;
+        for (actuator, wish) in &wishes {
+            targets[*actuator] = wish.value;
         }
-        let own = || self.rams.iter().zip(&targets);
-        if own().all(|(ram, target)| bench.limits_of(*ram).contains(*target)) {
+        let own = || self.actuators.iter().zip(&targets);
+        if own().all(|(actuator, target)| rig.limits_of(*actuator).contains(*target)) {
             return Ok(Some(targets));
         }
-        for (ram, target) in own() {
-            bench.refuse_of(*ram, *target);
+        for (actuator, target) in own() {
+            rig.refuse_of(*actuator, *target);
         }
         Err((Why::Limit, "beyond the limits of this rig"))
     }
 
     /// The answer to `execute`, once the motion is done.
-    fn arrived(&mut self, bench: &Bench) -> Vec<String> {
+    fn arrived(&mut self, rig: &EmulatedRig) -> Vec<String> {
         let done = self
             .session
             .executing
-            .take_if(|_| !bench.any_moving(&self.rams));
+            .take_if(|_| !rig.any_moving(&self.actuators));
         done.map(|transaction| nees_message::done(&transaction))
             .into_iter()
             .collect()
@@ -217,23 +218,23 @@ impl Nees {
 }
 
 impl Firmware for Nees {
-    fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
+    fn receive(&mut self, bytes: &[u8], rig: &mut EmulatedRig) -> Vec<u8> {
         let lines = self.lines.take(bytes);
         self.session.carriage_return |= bytes.contains(&b'\r');
         let answers = lines
             .iter()
-            .flat_map(|line| self.answer(line, bench))
+            .flat_map(|line| self.answer(line, rig))
             .collect();
         self.sent(answers)
     }
 
-    fn tick(&mut self, bench: &mut Bench) -> Vec<u8> {
-        let answers = self.arrived(bench);
+    fn tick(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
+        let answers = self.arrived(rig);
         self.sent(answers)
     }
 
-    fn reboot(&mut self, bench: &mut Bench) -> Vec<u8> {
-        bench.hold_those(&self.rams);
+    fn reboot(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
+        rig.hold_those(&self.actuators);
         self.lines.clear();
         self.session = Session::default();
         Vec::new()
@@ -245,73 +246,77 @@ mod tests {
     use super::*;
     use crate::emulator::firmware::testing::spring;
 
-    fn said(rig: &mut Nees, bench: &mut Bench, bytes: &str) -> String {
-        String::from_utf8(rig.receive(bytes.as_bytes(), bench)).unwrap()
+    fn reply_to(rig: &mut Nees, emulated: &mut EmulatedRig, bytes: &str) -> String {
+        String::from_utf8(rig.receive(bytes.as_bytes(), emulated)).unwrap()
     }
 
-    fn opened() -> (Nees, Bench) {
-        let (mut rig, mut bench) = (
+    fn opened() -> (Nees, EmulatedRig) {
+        let (mut rig, mut emulated) = (
             Nees::new(vec!["MDL-00-01".to_owned()], vec![0], 0.01),
             spring(),
         );
         assert_eq!(
-            said(&mut rig, &mut bench, "open-session\tpsd\n"),
+            reply_to(&mut rig, &mut emulated, "open-session\tpsd\n"),
             "OK\t0\tsession opened\n"
         );
-        (rig, bench)
+        (rig, emulated)
     }
 
     #[test]
     fn a_session_from_open_to_close() {
-        let (mut rig, mut bench) = opened();
+        let (mut rig, mut emulated) = opened();
         assert_eq!(
-            said(&mut rig, &mut bench, "set-parameter\tdummy\tnstep\t10\n"),
+            reply_to(&mut rig, &mut emulated, "set-parameter\tdummy\tnstep\t10\n"),
             "OK\t0\tparameter set\n"
         );
         assert_eq!(
-            said(
+            reply_to(
                 &mut rig,
-                &mut bench,
+                &mut emulated,
                 "propose\tt1\tMDL-00-01\tx\tdisplacement\t5.0000000000E-03\n"
             ),
             "OK\t0\tt1\n"
         );
-        assert!(bench.targets().is_empty(), "a proposal moves nothing");
-        assert_eq!(said(&mut rig, &mut bench, "execute\tt1\n"), "");
-        bench.advance(0.4);
-        assert!(rig.tick(&mut bench).is_empty(), "still moving");
-        bench.advance(0.5);
-        assert_eq!(rig.tick(&mut bench), b"OK\t0\tt1\n");
-        assert!(rig.tick(&mut bench).is_empty(), "answered once");
+        assert!(emulated.targets().is_empty(), "a proposal moves nothing");
+        assert_eq!(reply_to(&mut rig, &mut emulated, "execute\tt1\n"), "");
+        emulated.advance(0.4);
+        assert!(rig.tick(&mut emulated).is_empty(), "still moving");
+        emulated.advance(0.5);
+        assert_eq!(rig.tick(&mut emulated), b"OK\t0\tt1\n");
+        assert!(rig.tick(&mut emulated).is_empty(), "answered once");
         let reading =
             "OK\t0\tt1\tMDL-00-01\tx\tdisplacement\t5.0000000000E-03\tx\tforce\t5.0000000000E+02\n";
         assert_eq!(
-            said(&mut rig, &mut bench, "get-control-point\tt1\tMDL-00-01\n"),
+            reply_to(
+                &mut rig,
+                &mut emulated,
+                "get-control-point\tt1\tMDL-00-01\n"
+            ),
             reading
         );
         assert_eq!(
-            said(&mut rig, &mut bench, "execute\tt1\n")
+            reply_to(&mut rig, &mut emulated, "execute\tt1\n")
                 .split('\t')
                 .next(),
             Some("NOT OK"),
             "not twice"
         );
         assert_eq!(
-            said(&mut rig, &mut bench, "close-session\tpsd\n"),
+            reply_to(&mut rig, &mut emulated, "close-session\tpsd\n"),
             "OK\t0\tsession closed\n"
         );
-        let refused = said(
+        let refused = reply_to(
             &mut rig,
-            &mut bench,
+            &mut emulated,
             "propose\tt2\tMDL-00-01\tx\tdisplacement\t0\n",
         );
         assert_eq!(refused, "NOT OK\t3\t\tno session is open\n");
-        assert_eq!(bench.targets(), [0.005]);
+        assert_eq!(emulated.targets(), [0.005]);
     }
 
     #[test]
     fn what_it_cannot_do_it_refuses_and_does_not_move() {
-        let (mut rig, mut bench) = opened();
+        let (mut rig, mut emulated) = opened();
         for (wish, code) in [
             ("MDL-00-01\tx\tdisplacement\t0.0601", 1),
             ("MDL-00-01\tx\tdisplacement\tnan", 1),
@@ -323,16 +328,18 @@ mod tests {
                 2,
             ),
         ] {
-            let answer = said(&mut rig, &mut bench, &format!("propose\tt1\t{wish}\n"));
+            let answer = reply_to(&mut rig, &mut emulated, &format!("propose\tt1\t{wish}\n"));
             assert!(
                 answer.starts_with(&format!("NOT OK\t{code}\tt1\t")),
                 "{wish}: {answer}"
             );
-            assert!(said(&mut rig, &mut bench, "execute\tt1\n").starts_with("NOT OK\t3\tt1\t"));
+            assert!(
+                reply_to(&mut rig, &mut emulated, "execute\tt1\n").starts_with("NOT OK\t3\tt1\t")
+            );
         }
-        assert!(bench.targets().is_empty());
+        assert!(emulated.targets().is_empty());
         assert_eq!(
-            bench.violations().len(),
+            emulated.violations().len(),
             2,
             "whoever asked for it is found out"
         );
@@ -340,56 +347,56 @@ mod tests {
 
     #[test]
     fn ui_simcor_ends_its_lines_with_both_and_triggers_cameras() {
-        let (mut rig, mut bench) = opened();
+        let (mut rig, mut emulated) = opened();
         let trigger =
             "propose\ttrans1 0001\tMDL-AUX\tdisplacement\tz\t3500\r\nexecute\ttrans1 0001\r\n";
         assert_eq!(
-            said(&mut rig, &mut bench, trigger),
+            reply_to(&mut rig, &mut emulated, trigger),
             "OK\t0\ttrans1 0001\r\nOK\t0\ttrans1 0001\r\n"
         );
-        let asked = said(
+        let asked = reply_to(
             &mut rig,
-            &mut bench,
+            &mut emulated,
             "get-control-point\tdummy\tMDL-00-01:LBCB1\r\n",
         );
         assert!(
             asked.starts_with("OK\t0\tdummy\tMDL-00-01:LBCB1\tx\tdisplacement\t0.0000000000E+00\t")
                 && asked.ends_with("\r\n")
         );
-        assert!(bench.targets().is_empty());
+        assert!(emulated.targets().is_empty());
     }
 
     #[test]
     fn a_cancelled_motion_holds_where_it_is() {
-        let (mut rig, mut bench) = opened();
-        said(
+        let (mut rig, mut emulated) = opened();
+        reply_to(
             &mut rig,
-            &mut bench,
+            &mut emulated,
             "propose\tt1\tMDL-00-01\tx\tdisplacement\t0.005\nexecute\tt1\n",
         );
-        bench.advance(0.1);
+        emulated.advance(0.1);
         assert!(
-            said(
+            reply_to(
                 &mut rig,
-                &mut bench,
+                &mut emulated,
                 "propose\tt2\tMDL-00-01\tx\tdisplacement\t0\n"
             )
             .starts_with("NOT OK\t3\tt2")
         );
         assert_eq!(
-            said(&mut rig, &mut bench, "cancel\tt1\n"),
+            reply_to(&mut rig, &mut emulated, "cancel\tt1\n"),
             "NOT OK\t3\tt1\tcancelled\nOK\t0\tt1\n"
         );
-        bench.advance(5.0);
-        assert!((bench.displacement() - 0.001).abs() < 1e-12);
-        said(
+        emulated.advance(5.0);
+        assert!((emulated.displacement() - 0.001).abs() < 1e-12);
+        reply_to(
             &mut rig,
-            &mut bench,
+            &mut emulated,
             "propose\tt3\tMDL-00-01\tx\tdisplacement\t0.005\nexecute\tt3\n",
         );
-        rig.reboot(&mut bench);
-        bench.advance(9.0);
-        assert!((bench.displacement() - 0.001).abs() < 1e-12);
-        assert!(said(&mut rig, &mut bench, "execute\tt3\n").starts_with("NOT OK\t3"));
+        rig.reboot(&mut emulated);
+        emulated.advance(9.0);
+        assert!((emulated.displacement() - 0.001).abs() < 1e-12);
+        assert!(reply_to(&mut rig, &mut emulated, "execute\tt3\n").starts_with("NOT OK\t3"));
     }
 }

@@ -1,6 +1,6 @@
 //! A meter with the SCPI protocol: `*IDN?` and `READ?`. In: lines. Out: its identity; a number in its own unit.
 
-use crate::emulator::{Bench, Firmware};
+use crate::emulator::{EmulatedRig, Firmware};
 
 /// The firmware.
 #[derive(Debug)]
@@ -22,13 +22,13 @@ impl Scpi {
         }
     }
 
-    fn answer(&self, line: &[u8], bench: &mut Bench) -> Vec<u8> {
+    fn answer(&self, line: &[u8], rig: &mut EmulatedRig) -> Vec<u8> {
         match line.trim_ascii().to_ascii_uppercase().as_slice() {
             b"*IDN?" => format!("PSD,PSD-SIM,{},1.3\n", self.serial_number).into_bytes(),
             b"READ?" => {
-                let channel = |(ram, newtons): &(usize, f64)| {
-                    let shown = scientific(bench.force_of(*ram) / newtons);
-                    bench.shown_force(*ram, shown)
+                let channel = |(actuator, newtons): &(usize, f64)| {
+                    let shown = scientific(rig.force_of(*actuator) / newtons);
+                    rig.shown_force(*actuator, shown)
                 };
                 let words: Vec<String> = self.channels.iter().map(channel).collect();
                 format!("{}\n", words.join(",")).into_bytes()
@@ -49,24 +49,24 @@ fn scientific(value: f64) -> String {
 }
 
 impl Firmware for Scpi {
-    fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
-        let mut said = Vec::new();
+    fn receive(&mut self, bytes: &[u8], rig: &mut EmulatedRig) -> Vec<u8> {
+        let mut reply = Vec::new();
         for byte in bytes {
             if *byte == b'\n' {
                 let line = std::mem::take(&mut self.line);
-                said.extend(self.answer(&line, bench));
+                reply.extend(self.answer(&line, rig));
             } else if self.line.len() < 256 {
                 self.line.push(*byte);
             }
         }
-        said
+        reply
     }
 
-    fn tick(&mut self, _: &mut Bench) -> Vec<u8> {
+    fn tick(&mut self, _: &mut EmulatedRig) -> Vec<u8> {
         Vec::new()
     }
 
-    fn reboot(&mut self, _: &mut Bench) -> Vec<u8> {
+    fn reboot(&mut self, _: &mut EmulatedRig) -> Vec<u8> {
         self.line.clear();
         Vec::new()
     }
@@ -74,22 +74,25 @@ impl Firmware for Scpi {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::testing::bench;
+    use super::super::super::testing::elastic_rig;
     use super::*;
 
     #[test]
     fn it_answers_with_its_own_unit() {
-        let (mut meter, mut bench) = (Scpi::new("77".to_owned(), vec![(0, 2.0)]), bench());
+        let (mut meter, mut rig) = (Scpi::new("77".to_owned(), vec![(0, 2.0)]), elastic_rig());
         assert_eq!(
-            meter.receive(b"*IDN?\nREAD", &mut bench),
+            meter.receive(b"*IDN?\nREAD", &mut rig),
             b"PSD,PSD-SIM,77,1.3\n"
         );
-        bench.go(0.005, 0.01);
-        bench.advance(1.0);
-        assert_eq!(meter.receive(b"?\r\n", &mut bench), b"+2.50000000E+02\n");
-        assert!(meter.receive(b"*RST\n", &mut bench).is_empty());
+        rig.go(0.005, 0.01);
+        rig.advance(1.0);
+        assert_eq!(meter.receive(b"?\r\n", &mut rig), b"+2.50000000E+02\n");
+        assert!(meter.receive(b"*RST\n", &mut rig).is_empty());
         assert_eq!(scientific(-0.00125), "-1.25000000E-03");
-        bench.strike(0, crate::emulator::BenchFault::Number("9.91E37".to_owned()));
-        assert_eq!(meter.receive(b"READ?\n", &mut bench), b"9.91E37\n");
+        rig.strike(
+            0,
+            crate::emulator::MechanicalFault::Number("9.91E37".to_owned()),
+        );
+        assert_eq!(meter.receive(b"READ?\n", &mut rig), b"9.91E37\n");
     }
 }

@@ -1,11 +1,11 @@
-//! The bench for the tests of firmware: a spring, without noise and quantization.
+//! The emulated rig for the tests of firmware: a spring, without noise and quantization.
 
-use crate::emulator::{Bench, BenchSettings};
+use crate::emulator::{EmulatedRig, EmulatedRigSettings};
 use crate::plan::{Behaviour, Interval};
 
 /// 100 kN/m, −20 … 60 mm, 50 mm/s at most.
-pub fn spring() -> Bench {
-    Bench::new(BenchSettings {
+pub fn spring() -> EmulatedRig {
+    EmulatedRig::new(EmulatedRigSettings {
         behaviour: Behaviour::Elastic { stiffness: 1e5 },
         damping: 0.0,
         noise: 0.0,

@@ -1,11 +1,11 @@
-//! A stand in the same thread, without a line and without real time: ports and a clock for tests of drivers. In: bytes with a
-//! time-out. Out: bytes. The stand's time passes while the host waits.
+//! A rig emulator in the same thread, without a line and without real time: ports and a clock for tests of drivers. In: bytes with a
+//! time-out. Out: bytes. The rig emulator's time passes while the host waits.
 
 use std::io::{self, ErrorKind};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use crate::emulator::Stand;
+use crate::emulator::RigEmulator;
 use crate::rig::transport::{Clock, Emergency, Port};
 
 /// Interval between two checks of the controllers while time passes \[s\].
@@ -17,24 +17,24 @@ const BAUD: f64 = 115_200.0;
 /// Bytes that a line stores while its controller does not read.
 const LINE_BUFFER: usize = 4096;
 
-/// A stand whose ports and clock advance its time.
+/// A rig emulator whose ports and clock advance its time.
 #[derive(Clone)]
 pub struct InProcess {
-    stand: Arc<Mutex<Stand>>,
+    emulator: Arc<Mutex<RigEmulator>>,
     /// Time of one byte \[s\]. Every byte takes time, so that time passes in a polling loop.
     byte: f64,
 }
 
 impl InProcess {
     #[must_use]
-    pub fn new(stand: Stand) -> Self {
+    pub fn new(emulator: RigEmulator) -> Self {
         Self {
-            stand: Arc::new(Mutex::new(stand)),
+            emulator: Arc::new(Mutex::new(emulator)),
             byte: BITS / BAUD,
         }
     }
 
-    /// The same stand with lines of `baud` bits per second.
+    /// The same rig emulator with lines of `baud` bits per second.
     #[must_use]
     pub fn at_baud(self, baud: f64) -> Self {
         Self {
@@ -46,7 +46,7 @@ impl InProcess {
     /// Opens a line; 0 is the actuator's.
     #[must_use]
     pub fn port(&self, line: usize) -> SimulatedPort {
-        self.stand().connect(line);
+        self.lock().connect(line);
         SimulatedPort {
             shared: self.clone(),
             line,
@@ -60,26 +60,26 @@ impl InProcess {
         SimulatedClock(self.clone())
     }
 
-    /// The stand itself, between two calls of its ports. Do not keep the guard.
-    pub fn stand(&self) -> MutexGuard<'_, Stand> {
-        self.stand.lock().unwrap_or_else(PoisonError::into_inner)
+    /// The rig emulator itself, between two calls of its ports. Do not keep the guard.
+    pub fn lock(&self) -> MutexGuard<'_, RigEmulator> {
+        self.emulator.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Lets time pass.
     fn pass(&self, seconds: f64) {
-        let mut stand = self.stand();
-        let until = stand.bench().time() + seconds;
+        let mut emulator = self.lock();
+        let until = emulator.rig().time() + seconds;
         loop {
-            let next = stand.bench().time() + SLICE;
+            let next = emulator.rig().time() + SLICE;
             if next >= until {
-                return stand.advance(until);
+                return emulator.advance(until);
             }
-            stand.advance(next);
+            emulator.advance(next);
         }
     }
 
     fn now(&self) -> f64 {
-        self.stand().bench().time()
+        self.lock().rig().time()
     }
 }
 
@@ -87,7 +87,7 @@ impl InProcess {
 pub struct SimulatedPort {
     shared: InProcess,
     line: usize,
-    /// Bytes received from the stand and not yet read.
+    /// Bytes received from the rig emulator and not yet read.
     come: Vec<u8>,
     /// Number of bytes that the controller has not read.
     unread: usize,
@@ -97,13 +97,13 @@ impl SimulatedPort {
     /// Gets the bytes that the controller has for the host now. Returns whether there are any.
     fn fetch(&mut self) -> bool {
         if self.come.is_empty() {
-            self.come = self.shared.stand().take(self.line).unwrap_or_default();
+            self.come = self.shared.lock().take(self.line).unwrap_or_default();
         }
         !self.come.is_empty()
     }
 
     fn gone(&self) -> bool {
-        self.shared.stand().hung_up(self.line)
+        self.shared.lock().hung_up(self.line)
     }
 }
 
@@ -113,7 +113,7 @@ impl Port for SimulatedPort {
         if self.gone() {
             return Err(ErrorKind::BrokenPipe.into());
         }
-        if !self.shared.stand().reads(self.line) {
+        if !self.shared.lock().reads(self.line) {
             self.unread += bytes.len();
             if self.unread > LINE_BUFFER {
                 self.shared.pass(timeout.as_secs_f64());
@@ -122,7 +122,7 @@ impl Port for SimulatedPort {
             return Ok(());
         }
         self.shared.pass(bytes.len() as f64 * self.shared.byte);
-        self.shared.stand().give(self.line, bytes);
+        self.shared.lock().give(self.line, bytes);
         Ok(())
     }
 
@@ -172,14 +172,14 @@ struct SimulatedEmergency {
 
 impl Emergency for SimulatedEmergency {
     fn send(&mut self, bytes: &[u8]) {
-        let mut stand = self.shared.stand();
-        if stand.reads(self.line) {
-            stand.give(self.line, bytes);
+        let mut emulator = self.shared.lock();
+        if emulator.reads(self.line) {
+            emulator.give(self.line, bytes);
         }
     }
 }
 
-/// The stand's time.
+/// The rig emulator's time.
 pub struct SimulatedClock(InProcess);
 
 impl Clock for SimulatedClock {
@@ -202,20 +202,20 @@ impl Clock for SimulatedClock {
 mod tests {
     use super::*;
     use crate::emulator::firmware::{Native, NativeSettings, sealed};
-    use crate::emulator::testing::{SharedText, bench};
+    use crate::emulator::testing::{SharedText, elastic_rig};
     use crate::emulator::{Log, Script};
 
     const SOON: Duration = Duration::from_millis(100);
 
     fn native(script: &str, log: Log) -> InProcess {
-        let (bench, script) = (bench(), Script::parse(script).expect("a script"));
+        let (rig, script) = (elastic_rig(), Script::parse(script).expect("a script"));
         let settings = NativeSettings {
             boot: Some(0x7f3a),
             ..NativeSettings::default()
         };
-        let firmware = Native::new(settings, &bench);
-        InProcess::new(Stand::of(
-            bench,
+        let firmware = Native::new(settings, &rig);
+        InProcess::new(RigEmulator::of(
+            rig,
             log,
             &script,
             vec![("actuator".to_owned(), Box::new(firmware))],
@@ -247,7 +247,7 @@ mod tests {
         clock.sleep(0.6);
         assert!(ask("MEAS 3 1").contains(" 5.000000 500.000 "));
         assert!((0.6..0.7).contains(&clock.now()), "{}", clock.now());
-        assert!(shared.stand().end());
+        assert!(shared.lock().end());
         let text = text.text();
         for event in [
             " actuator (opened)\n",
@@ -299,10 +299,10 @@ mod tests {
         let shared = native("at 0 s: stop reading", Log::none());
         let mut port = shared.port(0);
         shared.clock().sleep(0.01);
-        let taken = (0..100)
+        let accepted = (0..100)
             .take_while(|_| port.write(&[b'x'; 96], SOON).is_ok())
             .count();
-        assert_eq!(taken, LINE_BUFFER / 96);
+        assert_eq!(accepted, LINE_BUFFER / 96);
         assert!(shared.now() >= 0.1);
     }
 
@@ -314,8 +314,8 @@ mod tests {
         port.write(&sealed("HELLO 1"), SOON).expect("sent");
         port.write(&sealed("MOVE 2 1 9.000000 1.000000"), SOON)
             .expect("sent");
-        assert!(shared.stand().bench().moving());
+        assert!(shared.lock().rig().moving());
         emergency.send(b"!");
-        assert!(!shared.stand().bench().moving());
+        assert!(!shared.lock().rig().moving());
     }
 }

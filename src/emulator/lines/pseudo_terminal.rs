@@ -149,19 +149,19 @@ mod tests {
     use super::*;
     use crate::emulator::firmware::{Native, NativeSettings, sealed};
     use crate::emulator::lines::real_time::{Until, serve};
-    use crate::emulator::testing::bench;
-    use crate::emulator::{Log, Script, Stand};
+    use crate::emulator::testing::elastic_rig;
+    use crate::emulator::{Log, RigEmulator, Script};
 
-    fn stand(script: &str) -> Stand {
-        let bench = bench();
+    fn emulator(script: &str) -> RigEmulator {
+        let rig = elastic_rig();
         let settings = NativeSettings {
             boot: Some(0x7f3a),
             watchdog: 1e9,
             ..NativeSettings::default()
         };
-        let firmware = Native::new(settings, &bench);
-        Stand::of(
-            bench,
+        let firmware = Native::new(settings, &rig);
+        RigEmulator::of(
+            rig,
             Log::none(),
             &Script::parse(script).expect("a script"),
             vec![("actuator".to_owned(), Box::new(firmware))],
@@ -206,14 +206,14 @@ mod tests {
         let link = folder.path().join("rig");
         let terminal = PseudoTerminal::linked(&link).expect("a pseudo-terminal");
         let over = AtomicBool::new(false);
-        let stand = Mutex::new(stand("after 4 replies: hang up before reply"));
+        let emulator = Mutex::new(emulator("after 4 replies: hang up before reply"));
         std::thread::scope(|scope| {
             let mut carriers: Vec<Box<dyn Carrier>> = vec![Box::new(terminal)];
             let serving = scope.spawn(|| {
                 let stopped = || over.load(Ordering::Relaxed);
-                let mut stand = stand.lock().expect("ours");
+                let mut emulator = emulator.lock().expect("ours");
                 let served = serve(
-                    &mut stand,
+                    &mut emulator,
                     &mut carriers,
                     Until {
                         last_host_left: false,
@@ -260,7 +260,7 @@ mod tests {
         });
         assert!(fs::symlink_metadata(&link).is_err(), "the link is gone");
         assert_eq!(
-            stand.into_inner().expect("ours").bench().targets(),
+            emulator.into_inner().expect("ours").rig().targets(),
             [0.0001]
         );
     }

@@ -1,10 +1,10 @@
-//! A stand in real time, for a program on the other side of a real line. It reads the bytes of the hosts and writes those of
+//! A rig emulator in real time, for a program on the other side of a real line. It reads the bytes of the hosts and writes those of
 //! the controllers until it is stopped. It knows no protocol. It accesses a line only through [`Carrier`].
 
 use std::io;
 use std::time::{Duration, Instant};
 
-use crate::emulator::Stand;
+use crate::emulator::RigEmulator;
 
 /// Interval between two checks of the lines.
 const NAP: Duration = Duration::from_millis(1);
@@ -53,12 +53,12 @@ struct Served<'a> {
     outbox: Vec<u8>,
 }
 
-/// Serves a stand, with one carrier per line.
+/// Serves a rig emulator, with one carrier per line.
 ///
 /// # Errors
 /// A line cannot be served any more.
 pub fn serve(
-    stand: &mut Stand,
+    emulator: &mut RigEmulator,
     carriers: &mut [Box<dyn Carrier>],
     until: Until<'_>,
 ) -> io::Result<()> {
@@ -73,10 +73,10 @@ pub fn serve(
         .collect();
     let mut anybody = false;
     while !(until.stopped)() {
-        stand.advance(start.elapsed().as_secs_f64());
+        emulator.advance(start.elapsed().as_secs_f64());
         let mut busy = false;
         for (at, line) in lines.iter_mut().enumerate() {
-            busy |= line.turn(stand, at)?;
+            busy |= line.turn(emulator, at)?;
             anybody |= line.present;
         }
         if until.last_host_left && anybody && lines.iter().all(|line| !line.present) {
@@ -91,26 +91,28 @@ pub fn serve(
 
 impl Served<'_> {
     /// Checks a line once. Returns whether there were any bytes.
-    fn turn(&mut self, stand: &mut Stand, at: usize) -> io::Result<bool> {
+    fn turn(&mut self, emulator: &mut RigEmulator, at: usize) -> io::Result<bool> {
         if !self.present {
             // Bytes without a host are dropped.
-            while stand.take(at).is_some() {}
+            while emulator.take(at).is_some() {}
             self.present = self.carrier.host()?;
             if self.present {
-                stand.connect(at);
+                emulator.connect(at);
             }
             return Ok(self.present);
         }
         let mut buffer = [0; 4096];
-        let read = if stand.reads(at) {
+        let read = if emulator.reads(at) {
             self.carrier.read(&mut buffer)
         } else {
             Ok(0)
         };
         let came = *read.as_ref().unwrap_or(&0);
-        stand.give(at, &buffer[..came]);
+        emulator.give(at, &buffer[..came]);
         while self.outbox.len() < OUTBOX {
-            let Some(piece) = stand.take(at) else { break };
+            let Some(piece) = emulator.take(at) else {
+                break;
+            };
             self.outbox.extend(piece);
         }
         let written = if self.outbox.is_empty() {
@@ -122,9 +124,9 @@ impl Served<'_> {
         self.outbox.drain(..went);
         let left = read.is_err() || written.is_err() || (came == 0 && !self.carrier.host()?);
         if left {
-            stand.host_left(at);
+            emulator.host_left(at);
         }
-        if left || (stand.hung_up(at) && self.outbox.is_empty()) {
+        if left || (emulator.hung_up(at) && self.outbox.is_empty()) {
             self.present = false;
             self.outbox.clear();
             self.carrier.renew()?;

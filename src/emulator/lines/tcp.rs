@@ -113,15 +113,15 @@ mod tests {
     use super::*;
     use crate::emulator::firmware::{Native, NativeSettings, sealed};
     use crate::emulator::lines::real_time::{Until, serve};
-    use crate::emulator::testing::bench;
-    use crate::emulator::{Log, Script, Stand};
+    use crate::emulator::testing::elastic_rig;
+    use crate::emulator::{Log, RigEmulator, Script};
 
     #[test]
     fn it_serves_until_its_only_host_leaves() {
-        let bench = bench();
-        let firmware = Native::new(NativeSettings::default(), &bench);
-        let mut stand = Stand::of(
-            bench,
+        let rig = elastic_rig();
+        let firmware = Native::new(NativeSettings::default(), &rig);
+        let mut emulator = RigEmulator::of(
+            rig,
             Log::none(),
             &Script::default(),
             vec![("actuator".to_owned(), Box::new(firmware))],
@@ -139,7 +139,7 @@ mod tests {
             answer
         });
         serve(
-            &mut stand,
+            &mut emulator,
             &mut carriers,
             Until {
                 last_host_left: true,

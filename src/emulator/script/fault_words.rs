@@ -2,8 +2,8 @@
 //! knows no time.
 
 use super::words::Words;
-use super::{LineFault, Place, ReplyFault, What};
-use crate::emulator::bench::fault::BenchFault;
+use super::{GarbagePosition, LineFault, ReplyFault, What};
+use crate::emulator::emulated_rig::fault::MechanicalFault;
 
 /// The fault that these words name.
 pub(super) fn what(words: &mut Words<'_>) -> Result<What, String> {
@@ -65,10 +65,10 @@ pub(super) fn what(words: &mut Words<'_>) -> Result<What, String> {
             } else {
                 None
             };
-            let place = match words.next()? {
-                "before" => Place::Before,
-                "inside" => Place::Inside,
-                "after" => Place::After,
+            let position = match words.next()? {
+                "before" => GarbagePosition::Before,
+                "inside" => GarbagePosition::Inside,
+                "after" => GarbagePosition::After,
                 other => {
                     return Err(format!(
                         "`{other}` is invalid: write before, inside or after"
@@ -81,7 +81,11 @@ pub(super) fn what(words: &mut Words<'_>) -> Result<What, String> {
                 words.replies()?
             };
             Ok(What::Replies(
-                ReplyFault::Garbage { count, byte, place },
+                ReplyFault::Garbage {
+                    count,
+                    byte,
+                    position,
+                },
                 replies,
             ))
         }
@@ -103,15 +107,15 @@ pub(super) fn what(words: &mut Words<'_>) -> Result<What, String> {
         "freeze" if words.take(&["firmware"]) => {
             Ok(What::Line(LineFault::FreezeFirmware(words.amount("s")?)))
         }
-        _ => bench_fault(verb, words).map(What::Bench),
+        _ => mechanical_fault(verb, words).map(What::Rig),
     }
 }
 
-fn bench_fault(verb: &str, words: &mut Words<'_>) -> Result<BenchFault, String> {
+fn mechanical_fault(verb: &str, words: &mut Words<'_>) -> Result<MechanicalFault, String> {
     match verb {
         "freeze" => match words.next()? {
-            "force" => Ok(BenchFault::FreezeForce),
-            "displacement" => Ok(BenchFault::FreezeDisplacement),
+            "force" => Ok(MechanicalFault::FreezeForce),
+            "displacement" => Ok(MechanicalFault::FreezeDisplacement),
             other => Err(format!(
                 "`{other}` cannot freeze: write firmware, force or displacement"
             )),
@@ -121,8 +125,8 @@ fn bench_fault(verb: &str, words: &mut Words<'_>) -> Result<BenchFault, String> 
             words.expect("by")?;
             let factor = words.number()?;
             match of {
-                "force" => Ok(BenchFault::ScaleForce(factor)),
-                "displacement" => Ok(BenchFault::ScaleDisplacement(factor)),
+                "force" => Ok(MechanicalFault::ScaleForce(factor)),
+                "displacement" => Ok(MechanicalFault::ScaleDisplacement(factor)),
                 other => Err(format!(
                     "`{other}` cannot be scaled: write force or displacement"
                 )),
@@ -131,30 +135,32 @@ fn bench_fault(verb: &str, words: &mut Words<'_>) -> Result<BenchFault, String> 
         "clip" => {
             words.expect("force")?;
             words.expect("at")?;
-            Ok(BenchFault::ClipForce(words.amount("N")?))
+            Ok(MechanicalFault::ClipForce(words.amount("N")?))
         }
         "drift" => {
             let of = words.next()?;
             match of {
-                "force" => Ok(BenchFault::Drift(words.amount("N/s")?)),
-                "displacement" => Ok(BenchFault::DriftDisplacement(words.amount("mm/s")? * 1e-3)),
+                "force" => Ok(MechanicalFault::Drift(words.amount("N/s")?)),
+                "displacement" => Ok(MechanicalFault::DriftDisplacement(
+                    words.amount("mm/s")? * 1e-3,
+                )),
                 other => Err(format!(
                     "`{other}` cannot drift: write force or displacement"
                 )),
             }
         }
-        "spike" => Ok(BenchFault::Spike(words.amount("N")?)),
-        "number" => Ok(BenchFault::Number(
+        "spike" => Ok(MechanicalFault::Spike(words.amount("N")?)),
+        "number" => Ok(MechanicalFault::Number(
             words.next()?.trim_matches('"').to_owned(),
         )),
-        "reach" => Ok(BenchFault::Reach(words.amount("%")? / 100.0)),
-        "stick" => Ok(BenchFault::Reach(0.0)),
-        "lag" => Ok(BenchFault::Lag(words.amount("s")?)),
+        "reach" => Ok(MechanicalFault::Reach(words.amount("%")? / 100.0)),
+        "stick" => Ok(MechanicalFault::Reach(0.0)),
+        "lag" => Ok(MechanicalFault::Lag(words.amount("s")?)),
         "fracture" => {
             words.expect("at")?;
             let displacement = words.amount("mm")? * 1e-3;
             words.expect("to")?;
-            Ok(BenchFault::Fracture {
+            Ok(MechanicalFault::Fracture {
                 displacement,
                 left: words.amount("%")? / 100.0,
             })

@@ -8,14 +8,14 @@ fn one(line: &str) -> Fault {
 }
 
 #[test]
-fn a_line_says_when_and_what() {
+fn a_line_states_time_and_event() {
     let fault = one("after 12 moves: drop replies 3  # and why");
     assert_eq!(
         fault,
         Fault {
             on_load_cell: false,
             own_of: None,
-            ram: 0,
+            actuator: 0,
             when: When::AfterMoves(12),
             what: What::Replies(ReplyFault::Drop, Some(3))
         }
@@ -23,14 +23,17 @@ fn a_line_says_when_and_what() {
     assert_eq!(one("at 4.5 s: hang up").when, When::At(4.5));
     assert_eq!(
         one("after 20 readings: spike 500 N").what,
-        What::Bench(BenchFault::Spike(500.0))
+        What::Rig(MechanicalFault::Spike(500.0))
     );
     assert_eq!(
         one("each reply: flip a bit with 0.01").when,
         When::EachReply(0.01)
     );
     assert_eq!(
-        (one("at 0 s: axis 2 stick").ram, one("at 0 s: stick").ram),
+        (
+            one("at 0 s: axis 2 stick").actuator,
+            one("at 0 s: stick").actuator
+        ),
         (1, 0)
     );
     assert!(one("at 0 s: load cell split replies for ever every 1 bytes").on_load_cell);
@@ -41,27 +44,30 @@ fn a_line_says_when_and_what() {
         "load cell of axis 2",
     ]
     .map(str::to_owned);
-    let place = |text: &str| one(text).place_among(&names);
+    let line_index = |text: &str| one(text).line_index(&names);
     assert_eq!(
-        (place("at 0 s: hang up"), place("at 0 s: load cell hang up")),
+        (
+            line_index("at 0 s: hang up"),
+            line_index("at 0 s: load cell hang up")
+        ),
         (Some(0), Some(2))
     );
     assert_eq!(
         (
-            place("at 0 s: actuator of axis 2 hang up"),
-            place("at 0 s: load cell of axis 2 hang up")
+            line_index("at 0 s: actuator of axis 2 hang up"),
+            line_index("at 0 s: load cell of axis 2 hang up")
         ),
         (Some(1), Some(3))
     );
-    assert_eq!(place("at 0 s: load cell of axis 3 hang up"), None);
+    assert_eq!(line_index("at 0 s: load cell of axis 3 hang up"), None);
     assert_eq!(
         one("at 1 s: number \"\"").what,
-        What::Bench(BenchFault::Number(String::new()))
+        What::Rig(MechanicalFault::Number(String::new()))
     );
     let fill = ReplyFault::Garbage {
         count: 3,
         byte: Some(255),
-        place: Place::Inside,
+        position: GarbagePosition::Inside,
     };
     assert_eq!(
         one("after 1 reply: fill 3 bytes of ff inside").what,
@@ -69,7 +75,7 @@ fn a_line_says_when_and_what() {
     );
     assert_eq!(
         one("at 1 s: fracture at 3 mm to 10 %").what,
-        What::Bench(BenchFault::Fracture {
+        What::Rig(MechanicalFault::Fracture {
             displacement: 0.003,
             left: 0.1
         })
@@ -145,7 +151,7 @@ fn a_wrong_line_is_named_with_its_reason() {
 }
 
 #[test]
-fn a_line_without_a_time_says_where_a_ram_stands() {
+fn a_line_without_a_time_states_the_position_of_an_actuator() {
     let script =
         Script::parse("stands at 3 mm\naxis 2 stands at -41.7 mm  # unloaded\nat 0 s: stick")
             .unwrap();

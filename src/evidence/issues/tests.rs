@@ -153,7 +153,7 @@ fn days_must_be_in_order_and_a_report_is_issued_once() {
 }
 
 #[test]
-fn the_file_has_one_way_to_be_written_and_an_id_that_hangs_on_all_of_it() {
+fn the_file_has_one_form_and_an_id_that_depends_on_all_of_it() {
     let file = chain(&[(OneKind::Issue, "2026-11-23", &[])]);
     assert_eq!(IssueFile::read(file.json().as_bytes()), Ok(file.clone()));
     assert!(IssueFile::read(file.json().trim_end().as_bytes()).is_err());

@@ -16,9 +16,9 @@ use crate::report::OutputFile;
 
 /// The run log as a different program would have begun it.
 fn of_another_build(journal: &[u8]) -> Vec<u8> {
-    let place = tempfile::tempdir().unwrap();
-    let path = place.path().join(JOURNAL);
-    let mut anew = Journal::create(
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(JOURNAL);
+    let mut rewritten = Journal::create(
         Box::new(FileStorage::create(&path).unwrap()),
         Durability::Buffered,
     );
@@ -33,11 +33,11 @@ fn of_another_build(journal: &[u8]) -> Vec<u8> {
                 ("0".repeat(64).into(), "riscv64, another compiler".into());
         }
         match line.kind {
-            EntryKind::End => anew.end(&body).unwrap(),
-            kind => anew.append(kind, &body).unwrap(),
+            EntryKind::End => rewritten.end(&body).unwrap(),
+            kind => rewritten.append(kind, &body).unwrap(),
         }
     }
-    drop(anew);
+    drop(rewritten);
     std::fs::read(path).unwrap()
 }
 
@@ -67,12 +67,12 @@ fn a_report_names_the_build_that_made_the_run_and_not_the_one_that_made_the_repo
         .map(|file| file.path.as_str())
         .collect();
     assert_eq!(moved, [""; 0]);
-    let told = Rebuilt::of(&with(&own, JOURNAL, Some(journal)), &prediction)
+    let statement = Rebuilt::of(&with(&own, JOURNAL, Some(journal)), &prediction)
         .report
         .unwrap()
         .other_build
         .unwrap();
-    assert!(told.contains("build 0000"), "{told}");
+    assert!(statement.contains("build 0000"), "{statement}");
     let page = String::from_utf8(run()["report.html"].clone()).unwrap();
     assert!(
         page.contains(BUILD) && page.contains(TOOLCHAIN),

@@ -38,14 +38,14 @@ fn played(journal: &[u8]) -> Result<(), String> {
     );
     if let (Some(link), Some(rig)) = (read.plan.rig.link.as_real(), &read.played.last_rig) {
         let nowhere = vec![0.0; read.plan.degrees_of_freedom()];
-        let stands = Reading {
+        let reading = Reading {
             time: 0.0,
             displacement: nowhere.clone(),
             force: nowhere,
             raw: Vec::new(),
         };
         let bands = Bands::of(&read.plan.rig, link);
-        let _ = replay::decide(&read.played, rig, &stands, &bands, true);
+        let _ = replay::decide(&read.played, rig, &reading, &bands, true);
     }
     let played = PlayedBack::of(read, None, &prediction)?;
     let PlayedBack {
@@ -72,7 +72,7 @@ fn played(journal: &[u8]) -> Result<(), String> {
 
 /// Run logs that once caused a panic or an endless replay: each gives an error with its position.
 #[test]
-fn known_damage_is_an_error_with_its_place() {
+fn known_damage_is_an_error_with_its_position() {
     let cases: [(&str, &[u8], &str); 10] = [
         (
             "schemes_245",
@@ -125,9 +125,9 @@ fn known_damage_is_an_error_with_its_place() {
             "entry 31: the run requires the end of a step",
         ),
     ];
-    for (name, journal, place) in cases {
+    for (name, journal, reason) in cases {
         let fault = played(journal).expect_err(name);
-        assert!(fault.contains(place), "{name}: {fault}");
+        assert!(fault.contains(reason), "{name}: {fault}");
         assert_eq!(
             fault.contains("is malformed: its `"),
             name != "waits_for_ever",
@@ -145,10 +145,10 @@ fn what_no_run_writes_is_malformed() {
         let sample = records.remove(sample);
         records.insert(2, sample);
     };
-    let alter = |kind, place: &'static str, value: Value| {
+    let alter = |kind, pointer: &'static str, value: Value| {
         move |records: &mut Vec<(EntryKind, Value)>| {
             let at = position(records, kind);
-            *records[at].1.pointer_mut(place).unwrap() = value.clone();
+            *records[at].1.pointer_mut(pointer).unwrap() = value.clone();
         }
     };
     let failed_pause = |records: &mut Vec<(EntryKind, Value)>| {
@@ -195,11 +195,11 @@ fn what_no_run_writes_is_malformed() {
             "entry 7 (RESUME) is malformed: it continues from entry 1,",
         ),
     ];
-    for (damage, told) in cases {
+    for (damage, expected) in cases {
         let mut damaged = records(journal);
         damage(&mut damaged);
-        let fault = played(&written(damaged)).expect_err(told);
-        assert!(fault.contains(told), "{told}: {fault}");
+        let fault = played(&written(damaged)).expect_err(expected);
+        assert!(fault.contains(expected), "{expected}: {fault}");
     }
 }
 

@@ -38,7 +38,7 @@ fn found(folder: &Folder) -> Vec<&'static str> {
 }
 
 #[test]
-fn the_record_alone_tells_device_channels_and_limits() {
+fn the_record_alone_states_device_channels_and_limits() {
     let recovered = recover(&run()[JOURNAL]).unwrap();
     let header = recovered.lines[0].body();
     assert_eq!(header["format"], 2);
@@ -62,7 +62,7 @@ fn the_record_alone_tells_device_channels_and_limits() {
 }
 
 #[test]
-fn who_tells_another_factor_certificate_limit_or_rig_is_found_out() {
+fn a_false_factor_certificate_limit_or_rig_is_found() {
     let others: [(&str, Value); 5] = [
         ("/channels/1/factor", json!(1.01)),
         ("/channels/1/certificate", json!("ACME 17")),
@@ -70,18 +70,18 @@ fn who_tells_another_factor_certificate_limit_or_rig_is_found_out() {
         ("/device/serial", json!("0147")),
         ("/device/resolution", json!(1e-6)),
     ];
-    for (place, value) in others {
-        let told =
-            retold(|header| *header["equipment"].pointer_mut(place).unwrap() = value.clone());
-        assert_eq!(found(&told), ["record"], "{place}");
+    for (pointer, value) in others {
+        let altered =
+            retold(|header| *header["equipment"].pointer_mut(pointer).unwrap() = value.clone());
+        assert_eq!(found(&altered), ["record"], "{pointer}");
     }
-    for (place, value) in [
+    for (pointer, value) in [
         ("/run_id", json!("0123456789abcdef")),
         ("/date", json!("2026-05-31")),
         ("/zzz", json!(5)),
     ] {
-        let told = retold(|header| header[&place[1..]] = value.clone());
-        assert!(found(&told).contains(&"record"), "{place}");
+        let altered = retold(|header| header[&pointer[1..]] = value.clone());
+        assert!(found(&altered).contains(&"record"), "{pointer}");
     }
     let silent = retold(|header| drop(header.as_object_mut().unwrap().remove("equipment")));
     assert_eq!(found(&silent), ["record"], "version 2 says it");
@@ -97,12 +97,12 @@ fn a_record_of_version_1_gives_the_same_results() {
         aged(header);
         header["build"] = json!("0".repeat(64));
     });
-    let told = examine(&old, &Rebuilt::of(&old, &prediction), &[]);
+    let findings = examine(&old, &Rebuilt::of(&old, &prediction), &[]);
     assert!(
-        told[0].sound
-            && told[0].told.contains("version 1")
-            && told[1].told.contains("another build"),
-        "{told:?}"
+        findings[0].sound
+            && findings[0].statement.contains("version 1")
+            && findings[1].statement.contains("another build"),
+        "{findings:?}"
     );
     assert_eq!(
         found(&retold(aged)),

@@ -172,16 +172,16 @@ fn judged(folder: &Folder, signed: &Signed) -> Vec<&'static str> {
             .map(|found| found.head().to_owned())
     };
     let same = bytes == own || head(bytes).is_some_and(|now| Some(now) == head(own));
-    let anew = (!same).then(|| Rebuilt::of(folder, &prediction));
+    let rebuilt = (!same).then(|| Rebuilt::of(folder, &prediction));
     faults(&examine(
         folder,
-        anew.as_ref().unwrap_or(&signed.rebuilt),
+        rebuilt.as_ref().unwrap_or(&signed.rebuilt),
         &signed.keys,
     ))
 }
 
 /// Every byte of a small file; for a large one regularly spaced bytes and its ends.
-fn places(length: usize) -> Vec<usize> {
+fn offsets(length: usize) -> Vec<usize> {
     let stride = if length <= 8192 { 1 } else { length / 500 };
     (0..length).step_by(stride).chain([length - 1]).collect()
 }
@@ -221,7 +221,7 @@ fn a_sound_folder_is_sound_and_names_its_parts() {
     let findings = examine(&unsigned, &signed.rebuilt, &[]);
     assert!(
         findings.iter().all(|finding| finding.sound)
-            && findings.last().unwrap().told.contains("unsigned")
+            && findings.last().unwrap().statement.contains("unsigned")
     );
     assert_eq!(
         faults(&examine(&unsigned, &signed.rebuilt, &signed.keys)),
@@ -230,15 +230,15 @@ fn a_sound_folder_is_sound_and_names_its_parts() {
 }
 
 #[test]
-fn who_has_not_signed_is_told_and_with_a_key_is_a_fault() {
+fn a_missing_signature_is_reported_and_with_a_key_is_an_error() {
     let signed = signed();
     let quality = "manifest.sha256.quality.minisig";
     let half = with(&signed.folder, quality, None);
-    let told = examine(&half, &signed.rebuilt, &[]);
+    let findings = examine(&half, &signed.rebuilt, &[]);
     assert!(
-        told.iter().all(|finding| finding.sound)
-            && told.last().unwrap().told == "Quality has not signed",
-        "{told:#?}"
+        findings.iter().all(|finding| finding.sound)
+            && findings.last().unwrap().statement == "Quality has not signed",
+        "{findings:#?}"
     );
     assert_eq!(
         faults(&examine(&half, &signed.rebuilt, &signed.keys[..1])),
@@ -247,7 +247,7 @@ fn who_has_not_signed_is_told_and_with_a_key_is_a_fault() {
 }
 
 #[test]
-fn what_has_no_place_is_found_also_where_no_manifest_lists_it() {
+fn a_foreign_file_is_found_also_if_no_manifest_lists_it() {
     let signed = signed();
     let reserve = "journal.psdj.reserve";
     for (bytes, sound) in [
@@ -281,9 +281,9 @@ fn a_flipped_byte_of_any_file_is_found() {
     );
     let mut flipped = 0;
     for (name, own) in &bytes {
-        let places = places(own.len());
-        flipped += places.len();
-        let missed: Vec<(usize, u8)> = places
+        let offsets = offsets(own.len());
+        flipped += offsets.len();
+        let missed: Vec<(usize, u8)> = offsets
             .into_par_iter()
             // Its lowest bit or its highest, alternately.
             .map(|at| (at, if at % 2 == 0 { 0x01_u8 } else { 0x80 }))
@@ -313,10 +313,14 @@ fn without_a_known_key_a_signature_still_holds_against_the_key_it_names() {
             );
         }
     }
-    let told = examine(&signed.folder, &signed.rebuilt, &[]);
+    let findings = examine(&signed.folder, &signed.rebuilt, &[]);
     assert!(
-        told.iter().all(|finding| finding.sound)
-            && told.last().unwrap().told.contains("only `--key` verifies")
+        findings.iter().all(|finding| finding.sound)
+            && findings
+                .last()
+                .unwrap()
+                .statement
+                .contains("only `--key` verifies")
     );
 }
 
@@ -374,7 +378,7 @@ fn cut_lengthened_swapped_missing_and_foreign_files_are_found() {
 
 /// Anyone who can write the folder can write its manifest. The run log then shows the change, and the signature shows that there was one.
 #[test]
-fn a_manifest_written_anew_hides_nothing() {
+fn a_rewritten_manifest_hides_nothing() {
     let signed = signed();
     let unsigned = folder(run());
     for name in run().keys().filter(|name| *name != MANIFEST) {

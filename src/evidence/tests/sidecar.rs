@@ -41,12 +41,12 @@ fn sealed() -> Vec<u8> {
 fn beside(name: &str, bytes: Vec<u8>) -> (Vec<String>, Vec<&'static str>) {
     let one_more = with(&folder(run()), name, Some(bytes));
     let found = examine(&one_more, rebuilt(), &[]);
-    let told = found
+    let statements = found
         .iter()
         .filter(|finding| finding.part == "sidecar")
-        .map(|finding| finding.told.clone())
+        .map(|finding| finding.statement.clone())
         .collect();
-    (told, faults(&found))
+    (statements, faults(&found))
 }
 
 fn rebuilt() -> &'static Rebuilt {
@@ -55,7 +55,7 @@ fn rebuilt() -> &'static Rebuilt {
 }
 
 #[test]
-fn what_is_of_a_file_as_it_lies_there_is_told_and_is_no_fault() {
+fn a_valid_sidecar_is_reported_and_is_not_an_error() {
     let sha256 = |name: &str| Sha256::digest(&run()[name]).to_vec();
     let known = [
         (
@@ -85,10 +85,10 @@ fn what_is_of_a_file_as_it_lies_there_is_told_and_is_no_fault() {
         ),
     ];
     for (name, bytes, wanted) in known {
-        let (told, wrong) = beside(name, bytes);
+        let (statements, wrong) = beside(name, bytes);
         assert!(
-            wrong.is_empty() && told.len() == 1 && told[0].contains(wanted),
-            "{name}: {told:?} {wrong:?}"
+            wrong.is_empty() && statements.len() == 1 && statements[0].contains(wanted),
+            "{name}: {statements:?} {wrong:?}"
         );
     }
 }

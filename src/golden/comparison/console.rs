@@ -10,7 +10,7 @@ const COLUMNS: usize = 6;
 
 /// The whole comparison.
 #[must_use]
-pub fn told(comparison: &Comparison) -> String {
+pub fn comparison_text(comparison: &Comparison) -> String {
     let mut text = String::new();
     let numbered = comparison
         .names

@@ -11,7 +11,7 @@ const LINES: usize = 40;
 /// Verdicts of every requirement in each run.
 pub(super) fn requirements(sides: &[Side]) -> Vec<(String, Vec<Option<String>>)> {
     let mut found: Vec<(String, Vec<Option<String>>)> = Vec::new();
-    for (place, side) in sides.iter().enumerate() {
+    for (column, side) in sides.iter().enumerate() {
         for requirement in side.summary["requirements"]
             .as_array()
             .into_iter()
@@ -23,7 +23,7 @@ pub(super) fn requirements(sides: &[Side]) -> Vec<(String, Vec<Option<String>>)>
                 found.push((name, vec![None; sides.len()]));
                 found.len() - 1
             });
-            found[index].1[place] = Some(text(&requirement["verdict"]));
+            found[index].1[column] = Some(text(&requirement["verdict"]));
         }
     }
     found
@@ -55,13 +55,14 @@ pub(super) fn facts(sides: &[Side]) -> Vec<(String, Vec<String>)> {
             .fold(&side.summary, |value, key| &value[key.as_str()]);
         quantity(value).unwrap_or_else(|| text(value))
     };
-    let told = names.into_iter().map(|path| {
+    let stated = names.into_iter().map(|path| {
         (
             path.join("."),
             sides.iter().map(|side| of(side, &path)).collect::<Vec<_>>(),
         )
     });
-    told.filter(|(_, texts)| texts.windows(2).any(|pair| pair[0] != pair[1]))
+    stated
+        .filter(|(_, texts)| texts.windows(2).any(|pair| pair[0] != pair[1]))
         .collect()
 }
 

@@ -30,7 +30,7 @@ pub fn sheets(sides: &[Side]) -> Vec<Sheet> {
             .iter()
             .enumerate()
             .filter(|(_, curve)| curve.count > 2);
-        for (place, curve) in drawn {
+        for (index, curve) in drawn {
             let of = |side: &Side| {
                 let same = side
                     .figures
@@ -38,7 +38,7 @@ pub fn sheets(sides: &[Side]) -> Vec<Sheet> {
                     .iter()
                     .find(|other| other.figure == figure.figure)?;
                 same.curves
-                    .get(place)
+                    .get(index)
                     .filter(|other| other.count > 2)
                     .cloned()
             };
@@ -61,7 +61,7 @@ pub fn sheets(sides: &[Side]) -> Vec<Sheet> {
                 curves: curves(sides, &drawn),
             };
             found.push(Sheet {
-                name: format!("{}_{}", figure.figure, place + 1),
+                name: format!("{}_{}", figure.figure, index + 1),
                 caption,
                 curves,
             });
@@ -115,12 +115,12 @@ fn mean(drawn: &[(usize, FigureCurve)]) -> Option<Curve> {
                 .zip(&first.points)
                 .all(|(a, b)| (a.0 - b.0).abs() <= 1e-9 * b.0.abs())
     });
-    let at = |place: usize| {
+    let at = |index: usize| {
         let heights: Vec<f64> = drawn
             .iter()
-            .filter_map(|(_, curve)| Some(curve.points.get(place)?.1))
+            .filter_map(|(_, curve)| Some(curve.points.get(index)?.1))
             .collect();
-        Some((first.points[place].0, Spread::of_values(&heights)?.mean))
+        Some((first.points[index].0, Spread::of_values(&heights)?.mean))
     };
     let points = (0..first.points.len())
         .map(at)
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn few_runs_are_told_apart_and_many_have_a_mean() {
+    fn few_runs_are_listed_separately_and_many_have_a_mean() {
         let few = sheets(&[side(1.0), side(2.0)]);
         assert_eq!(
             (few.len(), few[0].name.as_str(), few[0].curves.curves.len()),

@@ -10,7 +10,7 @@ mod table;
 
 use serde_json::Value;
 
-pub use console::told;
+pub use console::comparison_text;
 pub use figures::{Sheet, sheets};
 pub use statistics::{Difference, Spread};
 pub use table::{TITLES, cells, csv, heads};
@@ -91,17 +91,17 @@ impl Comparison {
 /// Every result of every run, in the order of the first occurrence.
 fn rows(sides: &[Side]) -> Vec<Row> {
     let mut rows: Vec<Row> = Vec::new();
-    for (place, side) in sides.iter().enumerate() {
+    for (column, side) in sides.iter().enumerate() {
         for (name, dimension, cell) in results(&side.summary) {
             // One name may be of different quantities in different plans.
             let known = rows
                 .iter_mut()
                 .find(|row| row.name == name && row.dimension == dimension);
             if let Some(row) = known {
-                row.cells[place] = Some(cell);
+                row.cells[column] = Some(cell);
             } else {
                 let mut cells = vec![None; sides.len()];
-                cells[place] = Some(cell);
+                cells[column] = Some(cell);
                 rows.push(Row {
                     name,
                     dimension,
@@ -116,8 +116,8 @@ fn rows(sides: &[Side]) -> Vec<Row> {
 /// The results of one run.
 fn results(summary: &Value) -> Vec<(String, Dimension, Cell)> {
     let mut found = Vec::new();
-    for (procedure, told) in summary["procedures"].as_object().into_iter().flatten() {
-        for (result, quantity) in told["results"].as_object().into_iter().flatten() {
+    for (procedure, recorded) in summary["procedures"].as_object().into_iter().flatten() {
+        for (result, quantity) in recorded["results"].as_object().into_iter().flatten() {
             let name = format!("{procedure}.{result}");
             let unit = quantity["unit"].as_str().unwrap_or_default();
             let dimension = unit::parse(unit).map_or(Dimension::NUMBER, |unit| unit.dimension);

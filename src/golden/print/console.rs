@@ -15,8 +15,8 @@ const YELLOW: &str = "33";
 
 /// One plan: a line, and its differences below.
 #[must_use]
-pub fn told(tested: &Tested, coloured: bool) -> String {
-    let (word, colour, said) = match &tested.outcome {
+pub fn summary_text(tested: &Tested, coloured: bool) -> String {
+    let (word, colour, detail) = match &tested.outcome {
         Outcome::Same {
             verdict: Some(verdict),
         } => ("ok", GREEN, (*verdict).to_owned()),
@@ -44,7 +44,7 @@ pub fn told(tested: &Tested, coloured: bool) -> String {
     } else {
         word
     };
-    let mut text = format!("{word}  {}  {said}\n", tested.name);
+    let mut text = format!("{word}  {}  {detail}\n", tested.name);
     text.push_str(&differences(tested.outcome.findings(), coloured));
     text
 }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::golden::finding::{Change, Finding, Moved, Place};
+use crate::golden::finding::{Change, Finding, Moved, RowRef};
 use crate::golden::tested::{Outcome, Report};
 use crate::text::sanitize;
 use crate::units::display::si_unit;
@@ -49,8 +49,8 @@ pub fn finding(finding: &Finding) -> Value {
     let more = match &finding.change {
         Change::Moved(moved) => number(moved),
         Change::Text { was, is, first } => {
-            let place = first.as_ref().map(|(at, _)| place(*at));
-            json!({ "kind": "text", "was": was, "is": is, "first": place, "rows": first.as_ref().map(|(_, count)| count.moved) })
+            let first_row = first.as_ref().map(|(at, _)| row_json(*at));
+            json!({ "kind": "text", "was": was, "is": is, "first": first_row, "rows": first.as_ref().map(|(_, count)| count.moved) })
         }
         Change::Gone => json!({ "kind": "gone" }),
         Change::New => json!({ "kind": "new" }),
@@ -73,13 +73,13 @@ fn number(moved: &Moved) -> Value {
         "by_fraction": moved.by_fraction(),
         "unit": si_unit(moved.dimension),
         "allowed": moved.rule.bound(moved.scale),
-        "first": moved.first.map(place),
-        "largest": moved.largest.map(place),
+        "first": moved.first.map(row_json),
+        "largest": moved.largest.map(row_json),
         "rows": moved.count.map(|count| count.moved),
         "rows_compared": moved.count.map(|count| count.of),
     })
 }
 
-fn place(at: Place) -> Value {
+fn row_json(at: RowRef) -> Value {
     json!({ "row": at.row, "step": at.step, "time_s": at.time })
 }

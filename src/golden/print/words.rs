@@ -1,7 +1,7 @@
 //! A finding as text: name, old and new value, difference, first position, count, and tolerance. In: a finding, SI. Out: text in readable
 //! units.
 
-use crate::golden::finding::{Change, Count, Finding, Moved, Place};
+use crate::golden::finding::{Change, Count, Finding, Moved, RowRef};
 use crate::units::Dimension;
 use crate::units::display::{join, minus, readable, significant, trimmed, unit};
 
@@ -25,7 +25,7 @@ impl Words {
             Change::Moved(moved) => (pair(moved), by(moved), detail(moved)),
             Change::Text { was, is, first } => {
                 let detail = first.as_ref().map_or_else(String::new, |(at, count)| {
-                    format!("first at {}; {}", place(*at), of(*count, "rows"))
+                    format!("first at {}; {}", row_text(*at), of(*count, "rows"))
                 });
                 (texts(was, is), String::new(), detail)
             }
@@ -140,12 +140,12 @@ fn detail(moved: &Moved) -> String {
     let mut parts = Vec::new();
     if let (Some(largest), Some(first)) = (moved.largest, moved.first) {
         if largest.row == first.row {
-            parts.push(format!("first at {}", place(first)));
+            parts.push(format!("first at {}", row_text(first)));
         } else {
             parts.push(format!(
                 "largest at {}, first at {}",
-                place(largest),
-                place(first)
+                row_text(largest),
+                row_text(first)
             ));
         }
     }
@@ -189,7 +189,7 @@ fn of(count: Count, what: &str) -> String {
     format!("{} of {} {what}", count.moved, count.of)
 }
 
-fn place(at: Place) -> String {
+fn row_text(at: RowRef) -> String {
     let step = at.step.map_or_else(
         || format!("point {}", at.row + 1),
         |step| format!("step {step}"),
@@ -259,16 +259,16 @@ mod tests {
 
     #[test]
     fn a_number_reads_in_the_units_of_the_lab_and_with_the_digits_that_differ() {
-        let told = words(Change::Moved(moved(
+        let worded = words(Change::Moved(moved(
             Some(0.007_88),
             Some(0.007_912),
             Dimension::LENGTH,
         )));
         assert_eq!(
-            (told.change.as_str(), told.by.as_str()),
+            (worded.change.as_str(), worded.by.as_str()),
             ("7.8800 mm → 7.9120 mm", "+32.0 µm  +0.406 %")
         );
-        assert_eq!(told.detail, "tolerance 1 × 10⁻⁹ of 7.912 mm");
+        assert_eq!(worded.detail, "tolerance 1 × 10⁻⁹ of 7.912 mm");
         let near = words(Change::Moved(moved(
             Some(1000.0),
             Some(1000.0 + 1e-4),
@@ -289,9 +289,9 @@ mod tests {
     }
 
     #[test]
-    fn a_column_says_where_and_how_many() {
+    fn a_column_states_positions_and_number_of_differences() {
         let at = |row, step, time| {
-            Some(Place {
+            Some(RowRef {
                 row,
                 step: Some(step),
                 time: Some(time),
@@ -303,13 +303,13 @@ mod tests {
             count: Some(Count { moved: 15, of: 27 }),
             ..moved(Some(-0.002), Some(-0.003), Dimension::LENGTH)
         };
-        let told = words(Change::Moved(column));
+        let worded = words(Change::Moved(column));
         assert_eq!(
-            (told.change.as_str(), told.by.as_str()),
+            (worded.change.as_str(), worded.by.as_str()),
             ("−2.000 mm → −3.000 mm", "−1.00 mm  −50.0 %")
         );
         assert_eq!(
-            told.detail,
+            worded.detail,
             "largest at step 12, 6.000 ms, first at step 3, 1.500 ms; 15 of 27 rows; tolerance 1 × 10⁻⁹ of the largest, 7.912 mm"
         );
     }

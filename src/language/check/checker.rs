@@ -97,7 +97,7 @@ pub struct Checker<'a> {
     /// Results of procedures that an expression reads, with their spans.
     pub read: Vec<(ResultReference, Span)>,
     /// Entries that are read from lists of results, by their index from 0, with their spans.
-    pub taken: Vec<(ResultReference, usize, Span)>,
+    pub list_entries_read: Vec<(ResultReference, usize, Span)>,
     /// Whether the plan comes from a run log, so that names of older versions are valid.
     pub recorded: bool,
     /// The rig of the run, if it moves a real specimen.
@@ -154,7 +154,7 @@ impl<'a> Checker<'a> {
             known,
             used,
             read: Vec::new(),
-            taken: Vec::new(),
+            list_entries_read: Vec::new(),
             recorded: false,
             real_rig: None,
             overrides: Overrides::new(),

@@ -154,11 +154,11 @@ pub fn plan(
         Findings::WarningsToo | Findings::OfStudies => declarations::study::studies(checker),
         Findings::ErrorsAlone => Some(Studies::default()),
     };
-    let by_place: Vec<Option<Procedure>> = procedures
+    let in_plan_order: Vec<Option<Procedure>> = procedures
         .iter()
         .map(|(_, procedure)| procedure.clone())
         .collect();
-    let report = declarations::report::report(checker, &by_place);
+    let report = declarations::report::report(checker, &in_plan_order);
     let golden = declarations::golden::golden(checker);
     if !has_error(checker) {
         let warns = findings == Findings::WarningsToo;
@@ -198,7 +198,7 @@ pub fn plan(
         grounds: grounds.into_iter().collect::<Option<_>>()?,
         rig: rig?.plan,
         limits: limits?.limits,
-        procedures: by_place.into_iter().collect::<Option<_>>()?,
+        procedures: in_plan_order.into_iter().collect::<Option<_>>()?,
         requirements: requirements?,
         decision_rule: declarations::plan_block::decision_rule(&particulars),
         particulars,

@@ -204,12 +204,12 @@ fn refused(
     }
     let end = base + text.len().min(offset);
     let end = base + tokens.text[base..end].trim_end().len();
-    let place = if inside.is_some() {
+    let context = if inside.is_some() {
         "the end of the line"
     } else {
         "the end of the file"
     };
-    messages::unexpected(tokens.span(end, end), place, &expected)
+    messages::unexpected(tokens.span(end, end), context, &expected)
 }
 
 /// Parses the pieces of a file with errors.

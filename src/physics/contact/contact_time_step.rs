@@ -135,7 +135,7 @@ mod tests {
     /// An impact between free masses lasts 2.943 δ/u (Hertz), and `k_c` gives ω = √(15/8)·u/δ there. It contains 2.943·√(15/8)·200/2π =
     /// 128.3 steps of a twentieth.
     #[test]
-    fn a_step_shows_a_blow_on_a_free_mass() {
+    fn a_step_shows_an_impact_on_a_free_mass() {
         let critical = HARD.critical_time_step(1.0, 300.0);
         let reduced = 10.0 / 11.0;
         let lasts = 2.943 * (1.25_f64 * reduced / 1e9).powf(0.4);

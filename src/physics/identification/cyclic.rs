@@ -57,7 +57,7 @@ pub fn loop_of(points: &[LoopPoint]) -> Option<Loop> {
     }
     let energy = points
         .windows(2)
-        .map(|pair| work(pair[0].place(), pair[1].place()))
+        .map(|pair| work(pair[0].point(), pair[1].point()))
         .sum();
     let width = right.displacement - left.displacement;
     let amplitude = 0.5 * width;
@@ -73,14 +73,14 @@ pub fn loop_of(points: &[LoopPoint]) -> Option<Loop> {
         energy,
         max_force,
         min_force,
-        ends: [left.place(), right.place()],
+        ends: [left.point(), right.point()],
         stiffness,
         damping_ratio,
     })
 }
 
 impl LoopPoint {
-    fn place(&self) -> (f64, f64) {
+    fn point(&self) -> (f64, f64) {
         (self.displacement, self.force)
     }
 }
@@ -96,11 +96,11 @@ mod tests {
     use super::*;
     use crate::specimen::{Bilinear, BilinearCurve, Elastic, RestoringForce};
 
-    fn read(place: f64, model: &mut dyn RestoringForce) -> LoopPoint {
+    fn read(position: f64, model: &mut dyn RestoringForce) -> LoopPoint {
         LoopPoint {
-            command: place,
-            displacement: place,
-            force: model.move_to(place),
+            command: position,
+            displacement: position,
+            force: model.move_to(position),
         }
     }
 

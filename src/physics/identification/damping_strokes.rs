@@ -24,7 +24,7 @@ pub struct OutAndBack {
     /// Velocity of the pass in which the position was read \[m/s\].
     pub velocity: f64,
     /// Mean of the two positions \[m\].
-    pub place: f64,
+    pub displacement: f64,
     /// Half of (outward − return) of the positions \[m\].
     pub half_apart: f64,
     /// Half of (outward − return) of the forces \[N\].
@@ -45,15 +45,15 @@ impl OutAndBack {
 /// if there are too few readings.
 #[must_use]
 pub fn change_along(stroke: &[OutAndBack], stiffness: f64) -> Option<f64> {
-    let places: Vec<f64> = stroke.iter().map(|pair| pair.place).collect();
+    let displacements: Vec<f64> = stroke.iter().map(|pair| pair.displacement).collect();
     let halves: Vec<f64> = stroke
         .iter()
         .map(|pair| pair.damping_force(stiffness))
         .collect();
-    let line = fit_line(&places, &halves)?;
+    let line = fit_line(&displacements, &halves)?;
     let most =
         |read: fn(&OutAndBack) -> f64| stroke.iter().map(read).fold(f64::NEG_INFINITY, f64::max);
-    let span = most(|pair| pair.place) + most(|pair| -pair.place);
+    let span = most(|pair| pair.displacement) + most(|pair| -pair.displacement);
     let (change, error) = ((line.slope * span).abs(), line.slope_error * span);
     #[expect(clippy::cast_precision_loss, reason = "far fewer readings than 2^53")]
     let mean = halves.iter().sum::<f64>() / halves.len() as f64;
@@ -71,7 +71,7 @@ pub fn own_stiffness<'a>(
         #[expect(clippy::cast_precision_loss, reason = "far fewer readings than 2^53")]
         let count = stroke.len() as f64;
         let sum = stroke.iter().fold((0.0, 0.0), |sum, pair| {
-            (sum.0 + pair.place, sum.1 + pair.mean)
+            (sum.0 + pair.displacement, sum.1 + pair.mean)
         });
         (sum.0 / count, sum.1 / count)
     };
@@ -83,7 +83,7 @@ pub fn own_stiffness<'a>(
                 let (x, r) = middle(stroke);
                 stroke
                     .iter()
-                    .map(move |pair| (pair.place - x, pair.mean - r))
+                    .map(move |pair| (pair.displacement - x, pair.mean - r))
             })
     };
     let (xx, xr) = away().fold((0.0, 0.0), |sum, (x, r)| (sum.0 + x * x, sum.1 + x * r));
@@ -102,20 +102,20 @@ mod tests {
 
     fn stroke(half: impl Fn(f64) -> f64, offset: f64) -> Vec<OutAndBack> {
         let pair = |index: u32| {
-            let place = 0.02 + 2e-5 * f64::from(index);
+            let displacement = 0.02 + 2e-5 * f64::from(index);
             OutAndBack {
                 velocity: 1e-3,
-                place,
+                displacement,
                 half_apart: 0.0,
-                half_difference: half(place),
-                mean: offset + 4e5 * place,
+                half_difference: half(displacement),
+                mean: offset + 4e5 * displacement,
             }
         };
         (0..40).map(pair).collect()
     }
 
     #[test]
-    fn what_resists_alike_at_every_place_does_not_change() {
+    fn uniform_damping_does_not_change_along_the_stroke() {
         assert_eq!(change_along(&stroke(|_| 3.0, 0.0), 4e5), None);
         assert_eq!(
             change_along(&stroke(|_| 0.0, 0.0), 4e5),
@@ -123,34 +123,40 @@ mod tests {
             "nor does what does not resist"
         );
         assert_eq!(
-            change_along(&stroke(|place| 3.0 + 100.0 * (place - 0.02), 0.0), 4e5),
+            change_along(
+                &stroke(|displacement| 3.0 + 100.0 * (displacement - 0.02), 0.0),
+                4e5
+            ),
             None,
             "3 %: an actuator that settles"
         );
-        let noisy = |place: f64| 0.5 + (place * 9e6).sin();
+        let noisy = |displacement: f64| 0.5 + (displacement * 9e6).sin();
         assert_eq!(change_along(&stroke(noisy, 0.0), 4e5), None);
     }
 
     /// Half of K − `K_t` over the pass.
     #[test]
-    fn a_way_back_by_another_line_does() {
-        let change =
-            change_along(&stroke(|place| 1.5 + 1.8e5 * (0.0208 - place), 0.0), 4e5).unwrap();
+    fn an_unloading_branch_by_another_line_does() {
+        let change = change_along(
+            &stroke(|displacement| 1.5 + 1.8e5 * (0.0208 - displacement), 0.0),
+            4e5,
+        )
+        .unwrap();
         assert!((change - 1.8e5 * 39.0 * 2e-5).abs() < 1e-6, "{change}");
     }
 
     /// An actuator that lags by 1 mm in both directions: 3 N of damping, from the stiffness of the passes alone.
     #[test]
-    fn readings_that_are_apart_are_brought_to_one_place() {
+    fn readings_at_different_positions_are_corrected_to_one_position() {
         let behind = 1e-3;
-        let force = |place: f64, damping: f64| 4e5 * place + damping;
+        let force = |displacement: f64, damping: f64| 4e5 * displacement + damping;
         let pair = |index: u32| {
-            let place = 0.02 + 2e-5 * f64::from(index);
-            let (out, back) = (place - behind, place + behind);
+            let displacement = 0.02 + 2e-5 * f64::from(index);
+            let (out, back) = (displacement - behind, displacement + behind);
             let (out_force, back_force) = (force(out, 3.0), force(back, -3.0));
             OutAndBack {
                 velocity: 1e-3,
-                place,
+                displacement,
                 half_apart: 0.5 * (out - back),
                 half_difference: 0.5 * (out_force - back_force),
                 mean: 0.5 * (out_force + back_force),

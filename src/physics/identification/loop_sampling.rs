@@ -34,27 +34,27 @@ pub fn left_open(points: &[(f64, f64)], noise: f64) -> f64 {
         .fold(0.0, |largest: f64, (_, force)| largest.max(force.abs()));
     // The noise of the second difference of three forces.
     let least = (SURE * 6.0_f64.sqrt() * noise).max(ROUNDING * largest);
-    let slope = |from: (f64, f64), to: (f64, f64), way: f64| {
+    let slope = |from: (f64, f64), to: (f64, f64), travel: f64| {
         let moved = to.0 - from.0;
-        (moved * way > 0.0).then(|| (to.1 - from.1) / moved)
+        (moved * travel > 0.0).then(|| (to.1 - from.1) / moved)
     };
     let of_step = |index: usize| {
         let (from, to) = (points[index], points[index + 1]);
-        let (way, rise) = (to.0 - from.0, to.1 - from.1);
+        let (travel, rise) = (to.0 - from.0, to.1 - from.1);
         let bend = |by: f64| if by.abs() > least { by } else { 0.0 };
         let before = index
             .checked_sub(1)
-            .and_then(|before| slope(points[before], from, way));
+            .and_then(|before| slope(points[before], from, travel));
         let after = points
             .get(index + 2)
-            .and_then(|after| slope(to, *after, way));
+            .and_then(|after| slope(to, *after, travel));
         // The overshoot of the line before past the end of the step, and of the line after past its begin, on the other side of the
         // chord.
         let (before, after) = (
-            before.map(|slope| bend(slope * way - rise)),
-            after.map(|slope| bend(rise - slope * way)),
+            before.map(|slope| bend(slope * travel - rise)),
+            after.map(|slope| bend(rise - slope * travel)),
         );
-        0.5 * way.abs()
+        0.5 * travel.abs()
             * match (before, after) {
                 (Some(before), Some(after)) if before * after > 0.0 => {
                     before * after / (before + after)
@@ -114,7 +114,7 @@ mod tests {
     /// Loops that yield early and late, pinched and wide ones. With 25 points per quarter the largest relative energy loss is a third of
     /// that of even steps, and for no loop more than 0.25 %.
     #[test]
-    fn points_that_stand_closer_towards_the_turns_lose_less() {
+    fn points_that_are_closer_near_the_reversals_lose_less() {
         let bilinear = |post_yield_ratio: f64| {
             Box::new(Bilinear::new(BilinearCurve {
                 stiffness: 1e6,
@@ -183,11 +183,11 @@ mod tests {
     /// energy. This energy falls with the square of the step.
     #[test]
     fn a_parallelogram_loses_no_more_than_is_left_open() {
-        for (points, place) in [2, 3, 5, 10, 25, 100]
+        for (points, trial) in [2, 3, 5, 10, 25, 100]
             .into_iter()
-            .flat_map(|points| (0..20).map(move |place| (points, place)))
+            .flat_map(|points| (0..20).map(move |trial| (points, trial)))
         {
-            let amplitude = 0.033 + 1e-4 * f64::from(place);
+            let amplitude = 0.033 + 1e-4 * f64::from(trial);
             let exact = 4.0 * 10.0 * 0.9 * (amplitude - 0.01);
             for (spacing, longest) in [(even as fn(f64) -> f64, 1.0), (spaced, 1.5)] {
                 let path = second_cycle(

@@ -121,9 +121,9 @@ impl Residuals for Breakpoints<'_> {
                 .zip(column.iter())
                 .map(|((x, _), by)| (*x, *by))
                 .collect();
-            let taken_up = Polyline::through(&changed, &line.breakpoints)?;
+            let fitted = Polyline::through(&changed, &line.breakpoints)?;
             for ((x, _), entry) in self.points.iter().zip(column.iter_mut()) {
-                *entry -= taken_up.value(*x);
+                *entry -= fitted.value(*x);
             }
         }
         Some(jacobian)

@@ -39,12 +39,12 @@ pub struct ImpactSummary {
     /// The structure was still moving outwards at the largest X: it is not a peak.
     pub still_rising: bool,
     /// The striker has stopped, and the contact was still active at the last step.
-    pub last_blow_cut: bool,
+    pub last_contact_cut: bool,
 }
 
 /// The first contact in progress.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum FirstBlow {
+enum FirstContact {
     /// Closing speed at the last step end without contact \[m/s\].
     ToCome {
         closing: f64,
@@ -61,7 +61,7 @@ enum FirstBlow {
 #[derive(Clone, Debug)]
 pub struct SummaryBuilder {
     input: ImpactInput,
-    first_blow: FirstBlow,
+    first_contact: FirstContact,
     last_velocity: f64,
     /// \[N\]
     last_contact_force: f64,
@@ -74,7 +74,7 @@ impl SummaryBuilder {
     pub fn new(input: &ImpactInput) -> Self {
         Self {
             input: *input,
-            first_blow: FirstBlow::ToCome {
+            first_contact: FirstContact::ToCome {
                 closing: input.striker_velocity,
             },
             last_velocity: 0.0,
@@ -95,7 +95,7 @@ impl SummaryBuilder {
                 striker_energy: input.striker_energy(),
                 energy_error: 0.0,
                 still_rising: false,
-                last_blow_cut: false,
+                last_contact_cut: false,
             },
         }
     }
@@ -122,20 +122,22 @@ impl SummaryBuilder {
         }
         let touching = state.state != StepState::Free;
         summary.contacts = state.contacts;
-        self.follow_first_blow(state, touching);
+        self.follow_first_contact(state, touching);
         self.last_velocity = state.velocity;
         self.last_contact_force = state.contact_force;
     }
 
     /// A contact has ended at the end of the free step that follows it: the tensile step, repeated as a free one.
-    fn follow_first_blow(&mut self, state: &ImpactState, touching: bool) {
+    fn follow_first_contact(&mut self, state: &ImpactState, touching: bool) {
         let closing_now = state.striker_velocity - state.velocity;
-        self.first_blow = match self.first_blow {
-            FirstBlow::ToCome { closing } if touching => FirstBlow::ContinuousReadings { closing },
-            FirstBlow::ToCome { .. } => FirstBlow::ToCome {
+        self.first_contact = match self.first_contact {
+            FirstContact::ToCome { closing } if touching => {
+                FirstContact::ContinuousReadings { closing }
+            }
+            FirstContact::ToCome { .. } => FirstContact::ToCome {
                 closing: closing_now,
             },
-            FirstBlow::ContinuousReadings { closing } if !touching => FirstBlow::Over {
+            FirstContact::ContinuousReadings { closing } if !touching => FirstContact::Over {
                 restitution: (closing > 0.0).then(|| -closing_now / closing),
             },
             unchanged => unchanged,
@@ -145,19 +147,19 @@ impl SummaryBuilder {
     /// The results of all steps so far.
     #[must_use]
     pub fn finish(mut self) -> ImpactSummary {
-        self.summary.restitution = match (self.input.law, self.first_blow) {
+        self.summary.restitution = match (self.input.law, self.first_contact) {
             // Located inside a step: the coefficient of the law, because the ends of the step include later contacts.
             (ContactLaw::Restitution { coefficient }, _) => {
                 (self.summary.contacts > 0).then_some(coefficient)
             }
-            (_, FirstBlow::Over { restitution }) => restitution,
+            (_, FirstContact::Over { restitution }) => restitution,
             _ => None,
         };
         self.summary.still_rising = still_rising(
             self.last_velocity,
             self.summary.final_displacement >= self.summary.max_displacement,
         );
-        self.summary.last_blow_cut =
+        self.summary.last_contact_cut =
             self.summary.stop_time.is_some() && self.last_contact_force > 0.0;
         if self.summary.max_displacement == f64::NEG_INFINITY {
             self.summary.max_displacement = 0.0;

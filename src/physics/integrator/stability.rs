@@ -225,7 +225,7 @@ mod tests {
 
     /// The closed form at z = −1, as long as no vibration gains energy: there α increases the limit.
     #[test]
-    fn alpha_moves_the_limit_as_the_closed_form_says() {
+    fn alpha_moves_the_limit_as_in_the_closed_form() {
         for (alpha, share) in [(-0.05, 0.5), (-0.1, 0.5), (-0.2, 0.25), (-0.3, 0.2)] {
             let room = (1.0_f64 - alpha).powi(2) - alpha * alpha / share;
             let exact = (4.0 / ((1.0 + 2.0 * alpha) * room) / (400.0 * share)).sqrt();

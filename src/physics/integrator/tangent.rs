@@ -162,7 +162,7 @@ mod tests {
 
     /// 10 σ/K = 10 mm: no step of 1 mm determines a slope, eleven together do. The result is the line through the last ones.
     #[test]
-    fn steps_too_short_to_tell_alone_tell_together() {
+    fn steps_too_short_to_be_significant_alone_are_significant_together() {
         let line =
             |steps: u32| (1..=steps).map(|step| (f64::from(step) * 1e-3, 0.4 * f64::from(step)));
         assert_eq!(followed(1.0, line(9)), INITIAL);
@@ -171,8 +171,11 @@ mod tests {
         let kink = |steps: u32| {
             line(20).chain((1..=steps).map(|step| (0.02 + f64::from(step) * 1e-3, 8.0)))
         };
-        let half_way = followed(1.0, kink(5));
-        assert!(half_way > 50.0 && half_way < 350.0, "{half_way}");
+        let half_followed = followed(1.0, kink(5));
+        assert!(
+            half_followed > 50.0 && half_followed < 350.0,
+            "{half_followed}"
+        );
         assert!(followed(1.0, kink(12)).abs() < 1e-9);
     }
 

@@ -321,15 +321,15 @@ mod tests {
 
     /// Load cells of 1 N: a shear of three has √3 N, so that the first storey needs 10·√3/3000 m for a slope, the third 10/1000.
     #[test]
-    fn a_change_too_small_to_tell_tells_nothing() {
-        let told = |drift: [f64; 3], storey: usize| {
+    fn a_change_below_the_resolution_gives_no_tangent() {
+        let indefinite = |drift: [f64; 3], storey: usize| {
             let mut tangents = at_rest(1.0, 0.0);
             let (displacement, force) = read(&[300.0, 200.0, 100.0], &drift);
             tangents.take(&displacement, &force);
             tangents.stiffness()[storey] != INITIAL[storey]
         };
-        assert!(!told([0.0057, 0.0, 0.0], 0) && told([0.0059, 0.0, 0.0], 0));
-        assert!(!told([0.0, 0.0, 0.0099], 2) && told([0.0, 0.0, 0.0101], 2));
+        assert!(!indefinite([0.0057, 0.0, 0.0], 0) && indefinite([0.0059, 0.0, 0.0], 0));
+        assert!(!indefinite([0.0, 0.0, 0.0099], 2) && indefinite([0.0, 0.0, 0.0101], 2));
         let mut coarse = at_rest(0.0, 1e-3);
         let (displacement, force) = read(&[300.0, 200.0, 100.0], &[1.5e-3, 1.5e-3, 2.5e-3]);
         coarse.take(&displacement, &force);

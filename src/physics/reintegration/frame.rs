@@ -39,7 +39,7 @@ pub struct FrameRun {
 
 /// A striker on one floor.
 #[derive(Clone, Copy, Debug)]
-pub struct Blow {
+pub struct FloorImpact {
     /// From 0.
     pub struck: usize,
     pub law: ContactLaw,
@@ -64,7 +64,7 @@ impl Floors {
     pub fn farthest(&self) -> f64 {
         self.max_displacement
             .iter()
-            .fold(0.0, |most, place| farther(most, *place))
+            .fold(0.0, |most, position| farther(most, *position))
     }
 }
 
@@ -81,8 +81,8 @@ pub struct FloorsOutcome {
 
 /// Results of an impact on one floor.
 #[derive(Clone, Debug, PartialEq)]
-pub struct BlowOutcome {
-    pub blow: Outcome,
+pub struct FloorImpactOutcome {
+    pub impact: Outcome,
     pub floors: FloorsOutcome,
     pub striker: StrikerOutcome,
     /// The interpolated ones at the departure of the run from the record.
@@ -95,7 +95,7 @@ pub struct StrikerOutcome {
     /// ∫ shear d(storey drift) of each storey \[J\].
     pub storey_energy: Vec<f64>,
     /// Steps in contact from the first touch on.
-    pub first_blow: u64,
+    pub first_contact_steps: u64,
     /// Final velocity of the striker \[m/s\].
     pub striker_velocity: f64,
 }
@@ -138,8 +138,8 @@ impl FrameRun {
         self.matrices.ground_load(at(0), &mut load);
         let time_step = self.time_step / f64::from(readings.finer);
         let mut solver = FrameSolver::new(&self.input(&retrace, &load, time_step))?;
-        let mut told = Peaks::new(self.matrices.order(), time_step);
-        told.take(solver.state(), 1.0);
+        let mut peaks = Peaks::new(self.matrices.order(), time_step);
+        peaks.take(solver.state(), 1.0);
         let mut passing = Passing::new(self, path);
         for step in (1..)
             .take(usize::try_from(self.steps * u64::from(readings.finer)).unwrap_or(usize::MAX))
@@ -149,14 +149,14 @@ impl FrameRun {
             let velocities = passing.predicted_velocities(&mut |to| solver.predicted_velocity(to));
             retrace.move_to(solver.predict(&load), velocities);
             if retrace.departed() {
-                told.departs();
+                peaks.departs();
             }
-            told.take(
+            peaks.take(
                 solver.complete(retrace.displacement(), retrace.force()),
                 1.0,
             );
         }
-        Ok(told.finish(passing))
+        Ok(peaks.finish(passing))
     }
 
     /// Re-integrates an impact on one floor.
@@ -165,18 +165,18 @@ impl FrameRun {
     /// As [`Self::shaken`].
     pub fn struck(
         &self,
-        blow: &Blow,
+        impact: &FloorImpact,
         path: &FramePath,
         readings: &Perturbation,
-    ) -> Result<BlowOutcome, ImpactError> {
+    ) -> Result<FloorImpactOutcome, ImpactError> {
         let mut retrace = path.retrace(readings);
         let order = self.matrices.order();
-        let Blow {
+        let FloorImpact {
             struck,
             law,
             until,
             mut body,
-        } = *blow;
+        } = *impact;
         body.time_step /= f64::from(readings.finer);
         let unloaded = vec![0.0; order];
         let setup = ImpactSetup {
@@ -195,7 +195,7 @@ impl FrameRun {
             impact: ImpactResults::new(&body, until, &start),
             peaks: Peaks::new(order, body.time_step),
             energy: StoreyWork::new(solver.structure()),
-            first_blow: 0,
+            first_contact_steps: 0,
             first_is_over: false,
             last: start,
             departed: &departed,
@@ -213,9 +213,9 @@ impl FrameRun {
         };
         let steps = self.steps * u64::from(readings.finer);
         solver.run(Some(until), steps, read, &mut found);
-        Ok(BlowOutcome {
-            blow: found.impact.finish(),
-            striker: found.energy.outcome(found.first_blow, &found.last),
+        Ok(FloorImpactOutcome {
+            impact: found.impact.finish(),
+            striker: found.energy.outcome(found.first_contact_steps, &found.last),
             before_departure: found.before_departure,
             floors: found.peaks.finish(passing),
         })
@@ -227,7 +227,7 @@ struct StruckFloors<'a> {
     impact: ImpactResults,
     peaks: Peaks,
     energy: StoreyWork,
-    first_blow: u64,
+    first_contact_steps: u64,
     first_is_over: bool,
     /// At the end of the last step.
     last: ImpactState,
@@ -241,14 +241,14 @@ impl Sink<Vec<f64>> for StruckFloors<'_> {
         if self.departed.get() && self.before_departure.is_none() {
             self.impact.departs();
             self.peaks.departs();
-            self.before_departure = Some(self.energy.outcome(self.first_blow, &self.last));
+            self.before_departure = Some(self.energy.outcome(self.first_contact_steps, &self.last));
         }
         self.impact.take(now, over);
         self.peaks.take(frame, self.impact.share());
         self.energy.take(frame, self.impact.share());
         match now.state {
-            StepState::Free => self.first_is_over |= self.first_blow > 0,
-            _ if !self.first_is_over => self.first_blow += 1,
+            StepState::Free => self.first_is_over |= self.first_contact_steps > 0,
+            _ if !self.first_is_over => self.first_contact_steps += 1,
             _ => {}
         }
         self.last = *now;
@@ -279,9 +279,9 @@ impl Passing {
         }
     }
 
-    fn predicted_velocities(&mut self, tell: &mut dyn FnMut(&mut [f64])) -> &[f64] {
+    fn predicted_velocities(&mut self, predict: &mut dyn FnMut(&mut [f64])) -> &[f64] {
         if !self.now.is_empty() {
-            tell(&mut self.now);
+            predict(&mut self.now);
         }
         if self.gathers {
             self.gathered.push(self.now.clone());
@@ -427,10 +427,10 @@ impl StoreyWork {
         (self.drift, self.shear) = (drift, shear);
     }
 
-    fn outcome(&self, first_blow: u64, end: &ImpactState) -> StrikerOutcome {
+    fn outcome(&self, first_contact_steps: u64, end: &ImpactState) -> StrikerOutcome {
         StrikerOutcome {
             storey_energy: self.storeys.clone(),
-            first_blow,
+            first_contact_steps,
             striker_velocity: end.striker_velocity,
         }
     }

@@ -381,12 +381,12 @@ mod tests {
             {
                 let off: Vec<f64> = target.iter().map(|position| position + 1e-3).collect();
                 retrace.move_to(&off, &[0.0; 3]);
-                let places: Vec<f64> = off
+                let positions: Vec<f64> = off
                     .iter()
                     .enumerate()
                     .map(|(axis, off)| readings.recorded(axis, *off))
                     .collect();
-                let by_hand = elastic(&places).force;
+                let by_hand = elastic(&positions).force;
                 for (axis, by_hand) in by_hand.iter().enumerate() {
                     let expected =
                         readings.axes[axis].force_scale * by_hand + readings.axes[axis].zero_offset;

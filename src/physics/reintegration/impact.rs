@@ -383,10 +383,10 @@ mod tests {
     }
 
     fn line() -> RecordedPath {
-        let reading = |place: f64| Reading {
-            target: place,
-            displacement: place,
-            force: STIFFNESS * place,
+        let reading = |position: f64| Reading {
+            target: position,
+            displacement: position,
+            force: STIFFNESS * position,
         };
         RecordedPath::new(
             vec![reading(0.0), reading(0.05)],
@@ -400,7 +400,7 @@ mod tests {
     /// Perfectly plastic: both continue with V = `Ms·V0/(M + Ms)`, to V/ω after a quarter period, ω = √(K/(M + Ms)). The ends of steps
     /// miss peak and stop by up to a step; the interpolated values do not.
     #[test]
-    fn peak_and_stop_are_told_between_the_ends_of_steps() {
+    fn peak_and_stop_are_interpolated_within_steps() {
         let frequency = (STIFFNESS / 11.0_f64).sqrt();
         let (peak, quarter) = (
             10.0 / 11.0 / frequency,

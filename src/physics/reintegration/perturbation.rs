@@ -107,8 +107,8 @@ const COMMON: u64 = u64::MAX >> 16;
 
 /// Signs of an input in a Monte Carlo trial, by its index among the inputs.
 #[must_use]
-pub fn sign_of_input(trial: u16, place: usize) -> f64 {
-    signs(trial, COMMON - 1 - place as u64, 0)[0]
+pub fn sign_of_input(trial: u16, input: usize) -> f64 {
+    signs(trial, COMMON - 1 - input as u64, 0)[0]
 }
 
 /// Two signs of a reading of an axis in a trial: two bits per axis; after the last bits of a word, a new word.

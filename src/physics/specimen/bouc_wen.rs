@@ -50,18 +50,18 @@ impl BoucWen {
     }
 
     /// y from `along` < 0 to 0: ∫ du/(1 + (2β − 1)|u|ⁿ) by Simpson's rule over t, |u| = `size` t³, which smooths the end.
-    fn way_to_zero(&self, along: f64) -> f64 {
+    fn travel_to_zero(&self, along: f64) -> f64 {
         let size = -along;
         let intervals = 2.0 * (STEPS * self.sharpness).ceil();
-        let value = |place: f64| {
-            let t = place / intervals;
+        let value = |interval: f64| {
+            let t = interval / intervals;
             3.0 * size * t * t / self.rate(-size * t * t * t)
         };
         let mut sum = value(intervals);
-        let mut place = 1.0;
-        while place < intervals {
-            sum += if place % 2.0 == 1.0 { 4.0 } else { 2.0 } * value(place);
-            place += 1.0;
+        let mut interval = 1.0;
+        while interval < intervals {
+            sum += if interval % 2.0 == 1.0 { 4.0 } else { 2.0 } * value(interval);
+            interval += 1.0;
         }
         sum / (3.0 * intervals)
     }
@@ -112,7 +112,7 @@ impl RestoringForce for BoucWen {
                 let to_zero = if length * self.rate(along) < -along {
                     f64::INFINITY
                 } else {
-                    self.way_to_zero(along)
+                    self.travel_to_zero(along)
                 };
                 if length < to_zero {
                     along = self.integrate(along, length);
@@ -157,11 +157,11 @@ mod tests {
     /// n = 1: z = 1 − e^(−y). n = 2: z = tanh y. Unloading with β = ½ is straight: slope 1.
     #[test]
     fn first_loading_and_unloading_in_closed_form() {
-        for place in [0.1_f64, 0.5, 1.0, 2.0, 5.0] {
-            assert!((bare(1.0, 0.7).move_to(place) - (1.0 - (-place).exp())).abs() < 1e-8);
+        for position in [0.1_f64, 0.5, 1.0, 2.0, 5.0] {
+            assert!((bare(1.0, 0.7).move_to(position) - (1.0 - (-position).exp())).abs() < 1e-8);
             assert!(
-                (bare(2.0, 0.7).move_to(place) - place.tanh()).abs() < 1e-8,
-                "{place}"
+                (bare(2.0, 0.7).move_to(position) - position.tanh()).abs() < 1e-8,
+                "{position}"
             );
         }
         let mut model = bare(1.0, 0.5);
@@ -197,7 +197,7 @@ mod tests {
     /// The right-hand side as printed in the papers, with extrapolated midpoint steps (Gragg–Bulirsch–Stoer) that share no code with the
     /// model.
     fn independent(sharpness: f64, beta: f64, path: &[f64]) -> f64 {
-        let (mut place, mut z) = (0.0_f64, 0.0_f64);
+        let (mut position, mut z) = (0.0_f64, 0.0_f64);
         let rate = |z: f64, length: f64| {
             let sign = if z * length > 0.0 {
                 1.0
@@ -210,8 +210,8 @@ mod tests {
         };
         for to in path {
             let pieces = 4000;
-            let h = (to - place).abs() / f64::from(pieces);
-            let length = (to - place).signum();
+            let h = (to - position).abs() / f64::from(pieces);
+            let length = (to - position).signum();
             for _ in 0..pieces {
                 let midpoint = |n: i32| {
                     let step = h / f64::from(n);
@@ -224,7 +224,7 @@ mod tests {
                 let (two, four) = (midpoint(2), midpoint(4));
                 z = four + (four - two) / 3.0;
             }
-            place = *to;
+            position = *to;
         }
         z
     }

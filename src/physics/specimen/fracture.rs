@@ -88,18 +88,18 @@ mod tests {
     }
 
     #[test]
-    fn it_breaks_either_way_and_stays_broken() {
+    fn it_breaks_in_either_direction_and_stays_broken() {
         for at in [Breaks::Displacement(0.02), Breaks::Force(20.0)] {
-            for way in [1.0, -1.0] {
+            for direction in [1.0, -1.0] {
                 let mut model = spring(at);
-                assert_eq!(model.move_to(way * 0.019), way * 19.0);
+                assert_eq!(model.move_to(direction * 0.019), direction * 19.0);
                 assert_eq!(model.move_to(0.0), 0.0);
                 assert_eq!(
-                    model.move_to(way * 0.02),
+                    model.move_to(direction * 0.02),
                     0.0,
                     "{at:?}: at the bound it is broken"
                 );
-                assert_eq!(model.move_to(way * 0.001), 0.0);
+                assert_eq!(model.move_to(direction * 0.001), 0.0);
             }
         }
         assert_eq!(spring(Breaks::Force(1.0)).initial_stiffness(), 1000.0);

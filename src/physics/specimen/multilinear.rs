@@ -101,12 +101,12 @@ mod tests {
         let mut turned = Multilinear::new(&CORNERS);
         let top = turned.move_to(0.010);
         for step in 1..=40 {
-            let way = f64::from(step) * 0.0005;
-            let by_masing = top - 2.0 * Multilinear::new(&CORNERS).move_to(way / 2.0);
+            let travel = f64::from(step) * 0.0005;
+            let by_masing = top - 2.0 * Multilinear::new(&CORNERS).move_to(travel / 2.0);
             let mut one = turned.clone();
             assert!(
-                (one.move_to(0.010 - way) - by_masing).abs() < 1e-8,
-                "{way} m back"
+                (one.move_to(0.010 - travel) - by_masing).abs() < 1e-8,
+                "{travel} m back"
             );
         }
         let mut straight = turned.clone();

@@ -60,14 +60,15 @@ impl Series {
         if at_near >= 0.0 {
             return near;
         }
-        let between =
-            |place: f64, near: f64, far: f64| near.min(far) < place && place < near.max(far);
+        let between = |position: f64, near: f64, far: f64| {
+            near.min(far) < position && position < near.max(far)
+        };
         let mut kept_far = None;
         for trial in 0..MOST_TRIALS {
             let width = far - near;
             let by_position = far - at_far * (width / (at_far - at_near));
-            let by_position =
-                Some(by_position).filter(|place| trial % 4 != 3 && between(*place, near, far));
+            let by_position = Some(by_position)
+                .filter(|position| trial % 4 != 3 && between(*position, near, far));
             let middle = by_position.unwrap_or(near + 0.5 * width);
             if !between(middle, near, far) {
                 break;

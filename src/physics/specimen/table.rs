@@ -114,7 +114,7 @@ impl PlasticCurve {
     #[must_use]
     pub fn new(table: Table) -> Self {
         let stiffness = table.initial_stiffness();
-        let elastic_to = |way: f64| way * elastic_to(&table, stiffness, way);
+        let elastic_to = |direction: f64| direction * elastic_to(&table, stiffness, direction);
         let farthest = [elastic_to(1.0), elastic_to(-1.0)];
         Self {
             table,
@@ -132,11 +132,11 @@ const KAPPA: f64 = 100.0;
 
 /// Displacement at which the curve first reaches its elastic strength F_e = max(g − κ (K x − g)) in one direction \[m\]. The maximum of
 /// continuous functions is continuous: similar points have similar strengths.
-fn elastic_to(table: &Table, stiffness: f64, way: f64) -> f64 {
+fn elastic_to(table: &Table, stiffness: f64, direction: f64) -> f64 {
     let mut curve: Vec<[f64; 2]> = table
         .points
         .iter()
-        .map(|[x, force]| [x * way, table.scale * force * way])
+        .map(|[x, force]| [x * direction, table.scale * force * direction])
         .filter(|[x, _]| *x > 0.0)
         .collect();
     curve.sort_by(|one, other| one[0].total_cmp(&other[0]));
@@ -240,10 +240,10 @@ mod tests {
 
     /// To 3 mm and back to zero force: the area under the curve minus the triangle of unloading.
     #[test]
-    fn energy_of_one_way_out_and_back() {
+    fn energy_of_one_cycle_out_and_back() {
         let mut model = PlasticCurve::new(table(&POINTS, Unloading::InitialStiffness));
-        let taken = energy_along(&mut model, 0.0, &[0.003, 0.001], 1e-7);
-        assert!((taken - (0.5 + 3.0 - 2.0)).abs() < 1e-6, "{taken} J");
+        let absorbed = energy_along(&mut model, 0.0, &[0.003, 0.001], 1e-7);
+        assert!((absorbed - (0.5 + 3.0 - 2.0)).abs() < 1e-6, "{absorbed} J");
         let mut elastic = AlongTheCurve {
             table: table(&POINTS, Unloading::AlongTheCurve),
         };
@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn a_toe_is_slack_after_it_was_taken_up() {
+    fn a_toe_is_slack_after_it_was_closed() {
         let points = [
             [-0.002, -1000.0],
             [-0.001, 0.0],

@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn without_noise_and_where_one_stands_out_it_is_the_largest() {
+    fn without_noise_and_with_one_dominant_term_it_is_the_largest() {
         let readings = || [1.0, 7.0, 3.0].into_iter();
         assert_eq!(NoisyLargest::of(0.0, readings()).value(), Some(7.0));
         assert!((NoisyLargest::of(0.1, readings()).value().unwrap() - 7.0).abs() < 1e-9);

@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_modes_says_why() {
+    fn without_modes_the_reason_is_given() {
         let mass = SymmetricBand::diagonal(&[1.0, 1.0]);
         let no_mass = SymmetricBand::diagonal(&[1.0, 0.0]);
         let stiffness = storey_stiffness(&[1.0, 1.0]);

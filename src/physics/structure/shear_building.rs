@@ -106,7 +106,7 @@ mod tests {
 
     /// K x equals the forces from the storey drifts.
     #[test]
-    fn drifts_and_shears_say_the_same_as_the_matrix() {
+    fn drifts_and_shears_agree_with_the_matrix() {
         let stiffnesses = [3.0, 2.0, 5.0];
         let displacement = [0.5, 0.25, 1.0];
         let (mut drift, mut shear, mut force, mut product) =

@@ -38,10 +38,10 @@ pub fn quantile(
     let middle = first(runs, |rank| number(rank) >= probability * number(runs)).max(1);
     // A run without a result counts as below all others for the lower end and as above them for the upper end.
     let at = |rank: u64| {
-        let place = rank
+        let index = rank
             .checked_sub(1)
-            .and_then(|place| usize::try_from(place).ok());
-        place.and_then(|place| results.get(place).copied())
+            .and_then(|index| usize::try_from(index).ok());
+        index.and_then(|index| results.get(index).copied())
     };
     let below = |rank: u64| at(rank.saturating_sub(no_result));
     Quantile {

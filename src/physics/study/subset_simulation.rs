@@ -134,7 +134,7 @@ impl SubsetSimulation {
             }
         };
         let mut points: Vec<Point> = (0..self.points)
-            .map(|place| responses(numbers.point(Purpose::FirstLevel, place)))
+            .map(|index| responses(numbers.point(Purpose::FirstLevel, index)))
             .collect();
         let mut levels = Vec::new();
         let mut probability = 1.0;
@@ -181,9 +181,9 @@ impl SubsetSimulation {
         let chains = seeds.len();
         let mut points = seeds;
         let mut accepted = 0;
-        for place in chains..self.points {
-            let before = &points[place - chains];
-            let move_to = numbers.point(Purpose::Level(level), place);
+        for index in chains..self.points {
+            let before = &points[index - chains];
+            let move_to = numbers.point(Purpose::Level(level), index);
             let candidate = before
                 .point
                 .iter()
@@ -195,7 +195,7 @@ impl SubsetSimulation {
                 accepted += 1;
                 candidate
             } else {
-                points[place - chains].clone()
+                points[index - chains].clone()
             };
             points.push(next);
         }
@@ -219,8 +219,8 @@ struct Numbers {
 }
 
 impl Numbers {
-    fn point(&self, purpose: Purpose, place: usize) -> Vec<f64> {
-        let run = u64::from(self.replicate) << 32 | place as u64;
+    fn point(&self, purpose: Purpose, index: usize) -> Vec<f64> {
+        let run = u64::from(self.replicate) << 32 | index as u64;
         (0..self.inputs)
             .map(|input| normal::quantile(self.stream.uniform(purpose, run, input)))
             .collect()

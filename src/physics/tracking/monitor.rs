@@ -184,13 +184,13 @@ mod tests {
         }
     }
 
-    /// One cycle of A sin ωt; the actuator moves to `place`.
-    fn cycle(amplitude: f64, place: impl Fn(f64) -> f64) -> Tracking {
+    /// One cycle of A sin ωt; the actuator moves to `position`.
+    fn cycle(amplitude: f64, position: impl Fn(f64) -> f64) -> Tracking {
         let at = |step: u32| std::f64::consts::TAU * f64::from(step) / f64::from(STEPS);
-        let mut monitor = Monitor::new(&uncorrected(0.0, place(0.0), STIFFNESS * place(0.0)));
+        let mut monitor = Monitor::new(&uncorrected(0.0, position(0.0), STIFFNESS * position(0.0)));
         for step in 1..=STEPS {
             let angle = at(step);
-            let measured = place(angle);
+            let measured = position(angle);
             monitor.take(&uncorrected(
                 amplitude * angle.sin(),
                 measured,
@@ -240,10 +240,10 @@ mod tests {
         force: impl Fn(f64) -> f64,
     ) -> Vec<f64> {
         let angle = |step: u32| std::f64::consts::TAU * f64::from(step) / f64::from(STEPS);
-        let place = |angle: f64| amplitude * (angle - phase).sin();
+        let position = |angle: f64| amplitude * (angle - phase).sin();
         let effective_force =
             |commanded: f64, measured: f64| force(measured) - operator * (measured - commanded);
-        let first = place(0.0);
+        let first = position(0.0);
         let step = |commanded: f64, measured: f64| TrackedStep {
             commanded,
             measured,
@@ -252,7 +252,7 @@ mod tests {
         };
         let mut monitor = Monitor::new(&step(0.0, first));
         let steps = (1..=2 * STEPS).map(|index| {
-            let (commanded, measured) = (amplitude * angle(index).sin(), place(angle(index)));
+            let (commanded, measured) = (amplitude * angle(index).sin(), position(angle(index)));
             monitor.take(&step(commanded, measured)).energy_error
         });
         steps.collect()
@@ -263,9 +263,9 @@ mod tests {
     #[test]
     fn what_a_spring_gives_back_is_no_error() {
         for (amplitude, phase) in [(0.01_f64, 0.1_f64), (0.01, 1.2), (0.03, -0.5)] {
-            let way = amplitude * (std::f64::consts::TAU / f64::from(STEPS)).sin();
-            let first = -0.5 * STIFFNESS * amplitude * phase.sin() * way;
-            for error in corrected(amplitude, phase, STIFFNESS, |place| STIFFNESS * place) {
+            let increment = amplitude * (std::f64::consts::TAU / f64::from(STEPS)).sin();
+            let first = -0.5 * STIFFNESS * amplitude * phase.sin() * increment;
+            for error in corrected(amplitude, phase, STIFFNESS, |position| STIFFNESS * position) {
                 assert!(
                     (error - first).abs() < 1e-12 * STIFFNESS,
                     "{phase}: {error} J, {first} J"
@@ -279,8 +279,8 @@ mod tests {
     fn what_a_correction_leaves_counts() {
         let (amplitude, phase): (f64, f64) = (0.01, 0.2);
         for share in [0.5, 0.9, 1.3] {
-            let steps = corrected(amplitude, phase, share * STIFFNESS, |place| {
-                STIFFNESS * place
+            let steps = corrected(amplitude, phase, share * STIFFNESS, |position| {
+                STIFFNESS * position
             });
             let (one, two) = (steps[STEPS as usize - 1], steps[2 * STEPS as usize - 1]);
             let exact = -std::f64::consts::PI

@@ -30,7 +30,7 @@ pub struct Rate {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActuatorMotion {
     /// \[m\]
-    pub place: f64,
+    pub position: f64,
     /// \[m/s\]
     pub velocity: f64,
     /// \[m/s²\]
@@ -43,8 +43,8 @@ impl Path {
     pub fn accelerated(start: ActuatorMotion, seconds: f64) -> Self {
         let end_velocity = start.velocity + start.acceleration * seconds;
         Self {
-            from: start.place,
-            to: start.place + 0.5 * (start.velocity + end_velocity) * seconds,
+            from: start.position,
+            to: start.position + 0.5 * (start.velocity + end_velocity) * seconds,
             start_velocity: start.velocity,
             end_velocity,
             seconds,
@@ -53,7 +53,7 @@ impl Path {
 
     /// \[m\]
     #[must_use]
-    pub fn place(&self, time: f64) -> f64 {
+    pub fn position(&self, time: f64) -> f64 {
         if time >= self.seconds {
             return self.to;
         }
@@ -118,8 +118,8 @@ impl Path {
         let sum = -(acceleration + root.copysign(acceleration));
         for turn in [sum / jerk, 2.0 * velocity / sum] {
             if turn > 0.0 && turn < self.seconds {
-                let place = self.place(turn);
-                (low, high) = (low.min(place), high.max(place));
+                let position = self.position(turn);
+                (low, high) = (low.min(position), high.max(position));
             }
         }
         (low, high)
@@ -156,10 +156,10 @@ mod tests {
 
     #[test]
     fn a_path_has_the_ends_it_was_given() {
-        assert_eq!((CUBIC.place(0.0), CUBIC.rate(0.0).velocity), (1.0, -1.0));
+        assert_eq!((CUBIC.position(0.0), CUBIC.rate(0.0).velocity), (1.0, -1.0));
         let near = CUBIC.seconds * (1.0 - 1e-12);
         assert!(
-            (CUBIC.place(near) - 2.0).abs() < 1e-11
+            (CUBIC.position(near) - 2.0).abs() < 1e-11
                 && (CUBIC.rate(near).velocity - 0.5).abs() < 1e-11
         );
     }
@@ -182,7 +182,7 @@ mod tests {
         };
         let back = Path::accelerated(
             ActuatorMotion {
-                place: 0.0,
+                position: 0.0,
                 velocity: 1.0,
                 acceleration: -2.0,
             },
@@ -192,8 +192,8 @@ mod tests {
             let times = (0..=100_000).map(|part| path.seconds * f64::from(part) / 1e5);
             let (mut low, mut high, mut fastest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
             for time in times {
-                let place = path.place(time);
-                (low, high) = (low.min(place), high.max(place));
+                let position = path.position(time);
+                (low, high) = (low.min(position), high.max(position));
                 fastest = fastest.max(path.rate(time).velocity.abs());
             }
             let reach = path.reach();
@@ -210,7 +210,7 @@ mod tests {
     fn constant_acceleration_is_a_path() {
         let path = Path::accelerated(
             ActuatorMotion {
-                place: 0.0,
+                position: 0.0,
                 velocity: 1.0,
                 acceleration: -2.0,
             },

@@ -22,7 +22,7 @@ macro_rules! damping_sweep_fields {
                     .above_zero(),
                 /// The middle of the passes \[m\]. None: they begin at the present position of the actuator.
                 about: Option<Formula> = quantity(Dimension::LENGTH, "centre of the strokes")
-                    .or_said("the start position of the actuator"),
+                    .default_in_words("the start position of the actuator"),
                 /// K of F_d = R − K·X \[N/m\].
                 stiffness: Formula = quantity(Dimension::STIFFNESS, "K of the damping force R − K·X")
                     .required("stiffness = 300 kN/m")
@@ -30,7 +30,7 @@ macro_rules! damping_sweep_fields {
                 /// Sampling rate \[Hz\]. None: at least 50 samples in the steady part of each ramp.
                 rate: Option<Formula> = quantity(Dimension::FREQUENCY, "sampling rate")
                     .above_zero()
-                    .or_said("at least 50 samples on the steady part"),
+                    .default_in_words("at least 50 samples on the steady part"),
             }
         }
     };

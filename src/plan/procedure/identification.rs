@@ -28,14 +28,14 @@ macro_rules! stiffness_ramp_fields {
                 repeats: u32 = count(1.0, 1e5, "number of repetitions of the ramp").or(1.0, ""),
                 /// Also returns to the start through the same displacements.
                 return_path as "return": bool = choice(TRUTH, "returns through the same targets")
-                    .or_said("false"),
-                fit: RampFit = choice(FITS, "curve fitted to force against displacement").or_said("linear"),
+                    .default_in_words("false"),
+                fit: RampFit = choice(FITS, "curve fitted to force against displacement").default_in_words("linear"),
                 /// Readings during the dwells of the first repetition.
                 relaxation: Option<WatchedHold> = choice(
                     RELAXATION_MODELS,
                     "relaxation law fitted to the forces in the pauses of the first repeat"
                 )
-                .or_said("nothing"),
+                .default_in_words("nothing"),
                 /// Actuator speed \[m/s\].
                 speed: Option<Formula> = speed(),
             }

@@ -108,10 +108,13 @@ mod tests {
         use crate::plan::formula::Formula;
         use crate::procedures::facts_of;
         use crate::tests::testing::{elastic_plan, impact, ramp, struck_frame};
-        let blow = ProcedureKind::Impact(impact(Formula::Constant(300.0)));
-        let mut plan = elastic_plan(300.0, vec![ProcedureKind::StiffnessRamp(ramp(1e-3)), blow]);
-        let undeclared = |plan: &Plan, place: usize| {
-            plan.undeclared(facts_of(&plan.procedures[place].kind).dependence)
+        let struck = ProcedureKind::Impact(impact(Formula::Constant(300.0)));
+        let mut plan = elastic_plan(
+            300.0,
+            vec![ProcedureKind::StiffnessRamp(ramp(1e-3)), struck],
+        );
+        let undeclared = |plan: &Plan, index: usize| {
+            plan.undeclared(facts_of(&plan.procedures[index].kind).dependence)
         };
         assert_eq!(undeclared(&plan, 0).len(), 4);
         assert_eq!(
@@ -119,8 +122,8 @@ mod tests {
             ["striker mass", "striker velocity", "specimen mass"]
         );
         plan.strikers[0].velocity_uncertainty = 0.01;
-        if let ProcedureKind::Impact(blow) = &mut plan.procedures[1].kind {
-            blow.point_mut().mass_uncertainty = 0.01;
+        if let ProcedureKind::Impact(struck) = &mut plan.procedures[1].kind {
+            struck.point_mut().mass_uncertainty = 0.01;
         }
         assert_eq!(
             undeclared(&plan, 1)[..2],

@@ -154,7 +154,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_axis_has_what_it_says_and_else_what_the_rig_says_of_all() {
+    fn an_axis_has_its_own_values_or_those_of_the_rig() {
         let text = |text: &str| Some(text.to_owned());
         let all = Calibration {
             reference: text("all"),

@@ -11,6 +11,6 @@ pub(crate) fn who(axis: Option<usize>) -> String {
 }
 
 /// The number (from 1) of the axis with this index, for a fault message; None if the rig has only one axis.
-pub(crate) fn named_axis(place: usize, axes: usize) -> Option<usize> {
-    (axes > 1).then_some(place + 1)
+pub(crate) fn named_axis(axis_index: usize, axes: usize) -> Option<usize> {
+    (axes > 1).then_some(axis_index + 1)
 }

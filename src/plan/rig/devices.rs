@@ -64,11 +64,14 @@ impl RealLink {
 
     /// The device that measures the force of the axis with this index, and the index of its channel.
     #[must_use]
-    pub fn weighed_by(&self, axis: usize) -> (&DeviceLink, usize) {
+    pub fn load_cell_of(&self, axis: usize) -> (&DeviceLink, usize) {
         let among = |behind: Vec<Behind<'_>>| {
-            behind
-                .iter()
-                .find_map(|behind| behind.axes.iter().position(|place| *place == axis))
+            behind.iter().find_map(|behind| {
+                behind
+                    .axes
+                    .iter()
+                    .position(|axis_index| *axis_index == axis)
+            })
         };
         let own = self.axes.get(axis).and_then(|own| own.load_cell.as_ref());
         match own.or(self.load_cell.as_ref()) {

@@ -107,7 +107,7 @@ impl Dialect {
 
     /// Whether the device measures the force.
     #[must_use]
-    pub const fn weighs(&self) -> bool {
+    pub const fn measures_force(&self) -> bool {
         match self {
             Self::Grbl => false,
             Self::Modbus(map) => map.force.is_some(),

@@ -66,7 +66,7 @@ macro_rules! limits_fields {
                     false,
                     "absolute tracking-error energy relative to the input energy"
                 )
-                .or_said("5 %"),
+                .default_in_words("5 %"),
                 /// Root mean square of the tracking error over that of the command.
                 nrms_error: Interval =
                     bounds(Dimension::NUMBER, false, "rms tracking error relative to rms command, of the run"),

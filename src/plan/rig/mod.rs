@@ -38,10 +38,10 @@ impl RigPlan {
     /// The same rig, with the zero of the plan's displacements from the log of an earlier session \[m\], one for each axis. None: the
     /// zero of the plan.
     #[must_use]
-    pub fn with_recorded_datum(&self, places: Option<&[f64]>) -> Self {
+    pub fn with_recorded_datum(&self, positions: Option<&[f64]>) -> Self {
         let mut rig = self.clone();
-        if let (Link::Real(link), Some(places)) = (&mut rig.link, places) {
-            link.datum = Datum::At(places.to_vec());
+        if let (Link::Real(link), Some(positions)) = (&mut rig.link, positions) {
+            link.datum = Datum::At(positions.to_vec());
         }
         rig
     }
@@ -93,7 +93,7 @@ pub struct VirtualLink {
     pub seed: u64,
     /// For a simulation on an ideal rig: the reading errors that another rig declares. The simulated readings contain none of them; the
     /// predicted uncertainty contains all.
-    pub foretold: Option<ReadingErrors>,
+    pub predicted: Option<ReadingErrors>,
 }
 
 impl VirtualLink {
@@ -101,7 +101,7 @@ impl VirtualLink {
     /// declares.
     #[must_use]
     pub fn ideal_of(rig: &RigPlan) -> Self {
-        let (seed, foretold) = match &rig.link {
+        let (seed, predicted) = match &rig.link {
             Link::Virtual(link) => {
                 let Self {
                     seed,
@@ -136,7 +136,7 @@ impl VirtualLink {
         };
         Self {
             seed,
-            foretold: Some(foretold),
+            predicted: Some(predicted),
             ..Self::default()
         }
     }

@@ -59,10 +59,10 @@ pub(crate) fn perform(
         if summary.is_some() {
             observe_imbalance(shaking.summary.energy_error(), session);
         }
-        let doubts = FrameUncertainty::of_shake(plan, whole, inputs, session);
+        let uncertainty = FrameUncertainty::of_shake(plan, whole, inputs, session);
         stop = session.evaluate_uncertainty(|tick| {
             let shake = ShakeUncertainty {
-                doubts: &doubts,
+                uncertainty: &uncertainty,
                 plan,
                 ground,
                 setting: &setting,

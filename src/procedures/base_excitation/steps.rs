@@ -119,7 +119,7 @@ impl Stepped for Shaken<'_> {
         false
     }
 
-    fn taken_at_start(&self, start: &Start) -> Vec<f64> {
+    fn effective_force_at_start(&self, start: &Start) -> Vec<f64> {
         self.solver.effective_force_at(
             &start.commanded,
             &start.reading.displacement,
@@ -127,7 +127,7 @@ impl Stepped for Shaken<'_> {
         )
     }
 
-    fn taken(&self) -> Vec<f64> {
+    fn effective_force(&self) -> Vec<f64> {
         self.solver.effective_force().to_vec()
     }
 

@@ -9,7 +9,7 @@ use crate::physics::reintegration::perturbation::Perturbation;
 use crate::physics::structure::ground::acceleration_at;
 use crate::plan::{Ground, Shake};
 use crate::procedures::common::perturbed_inputs::LEADS_ELSEWHERE;
-use crate::procedures::common::results::{Evaluated, flat, give, layout_of, place, values};
+use crate::procedures::common::results::{Evaluated, flat, give, index_of, layout_of, values};
 use crate::procedures::stepping;
 use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there};
 use crate::procedures::stepping::run::Steps;
@@ -26,7 +26,7 @@ const FINEST: u8 = FINER[1];
 /// The uncertain inputs of a ground-motion test.
 #[derive(Clone, Copy)]
 pub(crate) struct ShakeUncertainty<'a, 'run> {
-    pub doubts: &'a FrameUncertainty<'run>,
+    pub uncertainty: &'a FrameUncertainty<'run>,
     pub plan: &'a Shake,
     pub ground: &'a Ground,
     pub setting: &'a Setting,
@@ -40,7 +40,7 @@ pub(crate) fn propagate(
     tick: Tick<'_, Stop>,
 ) -> Result<(), Unknown<Stop>> {
     let ShakeUncertainty {
-        doubts,
+        uncertainty,
         plan,
         ground,
         setting,
@@ -50,7 +50,7 @@ pub(crate) fn propagate(
         displacement: step.displacement.clone(),
         force: step.restoring_force.clone(),
     };
-    let path = doubts.path(&setting.frame, history.steps.iter().map(reading).collect())?;
+    let path = uncertainty.path(&setting.frame, history.steps.iter().map(reading).collect())?;
     let Steps {
         time_step,
         count: steps,
@@ -71,7 +71,7 @@ pub(crate) fn propagate(
         path,
         length: 0,
     };
-    let floors = doubts.floors();
+    let floors = uncertainty.floors();
     let exact = Perturbation::none(floors);
     let inputs = evaluate.inputs(&[])?;
     let mut found = evaluate
@@ -80,7 +80,7 @@ pub(crate) fn propagate(
     if !leads_there(&found.ends, schema::MAX_DISPLACEMENT, results) {
         return Err(LEADS_ELSEWHERE.to_owned().into());
     }
-    evaluate.path = doubts.under_way(
+    evaluate.path = uncertainty.with_velocities(
         &setting.frame,
         evaluate.path,
         std::mem::take(&mut found.velocities),
@@ -88,17 +88,17 @@ pub(crate) fn propagate(
     let layout = layout_of(&inputs.numbers(&found.between));
     let mut reported = values(&layout, results);
     evaluate.length = reported.len();
-    if let Some(shear) = place(&layout, schema::MAX_BASE_SHEAR) {
+    if let Some(shear) = index_of(&layout, schema::MAX_BASE_SHEAR) {
         // The reported one is without the part of noise; the re-integrated one has it in finer steps as well.
         reported[shear] = found.between.max_base_shear;
     }
-    let sources = doubts.sources(
+    let sources = uncertainty.sources(
         &[&plan.scale],
         &[(Source::GroundScale(plan.ground), ground.scale_uncertainty)],
     );
     give(
         &layout,
-        doubts.contributions(&evaluate, sources, history.steps.len(), reported, tick)?,
+        uncertainty.contributions(&evaluate, sources, history.steps.len(), reported, tick)?,
         results,
     );
     Ok(())
@@ -152,13 +152,16 @@ impl Evaluate for RecordedShake<'_, '_> {
 
     fn inputs(&self, shifts: Shifts<'_>) -> Result<Inputs, String> {
         let ShakeUncertainty {
-            doubts,
+            uncertainty,
             plan,
             ground,
             setting,
         } = self.shake;
-        let (frame, damping) = (doubts.moved_frame(shifts)?, doubts.moved_damping(shifts));
-        let (properties, scale) = doubts.with_inputs(shifts, &mut |inputs| {
+        let (frame, damping) = (
+            uncertainty.moved_frame(shifts)?,
+            uncertainty.moved_damping(shifts),
+        );
+        let (properties, scale) = uncertainty.with_inputs(shifts, &mut |inputs| {
             let properties = stepping::run::properties(&frame, &damping, inputs)?;
             Ok((
                 properties,
@@ -174,7 +177,7 @@ impl Evaluate for RecordedShake<'_, '_> {
         let periods = properties.modes.periods.clone();
         let run = FrameRun {
             matrices: properties.matrices,
-            ..doubts.run(&setting.frame)
+            ..uncertainty.run(&setting.frame)
         };
         Ok(Inputs {
             run,

@@ -82,9 +82,9 @@ fn fit(checker: &mut Checker, block: usize) -> Option<Option<BreakCount>> {
     let Some((entry, _)) = checker.field(block, schema::FIT.name) else {
         return Some(None);
     };
-    let place = checker.context_of(block, entry);
+    let context = checker.context_of(block, entry);
     let chosen = checker.choice(block, schema::FIT.name)?;
-    curve::breaks(checker, &chosen, place).map(Some)
+    curve::breaks(checker, &chosen, context).map(Some)
 }
 
 /// The amplitudes in order, each with its number of cycles; None if an error was reported.
@@ -131,8 +131,8 @@ fn levels(checker: &mut Checker, block: usize) -> Option<Vec<Level>> {
             )
         }
         (None, Some((entry, _))) => {
-            let place = checker.context_of(block, entry);
-            let (amplitudes, own) = protocol(checker, block, place)?;
+            let context = checker.context_of(block, entry);
+            let (amplitudes, own) = protocol(checker, block, context)?;
             let cycles = repeats.unwrap_or(own);
             Some(
                 amplitudes
@@ -150,17 +150,17 @@ const FEMA_RATIO: f64 = 1.4;
 const FEMA_CYCLES: u32 = 2;
 
 /// The amplitudes of a protocol, and the number of cycles at each.
-fn protocol(checker: &mut Checker, block: usize, place: Context) -> Option<(Vec<Formula>, u32)> {
+fn protocol(checker: &mut Checker, block: usize, context: Context) -> Option<(Vec<Formula>, u32)> {
     let chosen = checker.choice(block, schema::PROTOCOL.name)?;
     let levels = checker
-        .constant_argument(&chosen, schema::LEVELS.name, place)
+        .constant_argument(&chosen, schema::LEVELS.name, context)
         .and_then(whole)?;
     let times = |factor: f64, of: &Formula| product(Formula::Constant(factor), of.clone());
     Some(match chosen.variant.name {
         "ramped" => {
             let (first, last) = (
-                checker.argument(&chosen, schema::FIRST.name, place)?,
-                checker.argument(&chosen, schema::LAST.name, place)?,
+                checker.argument(&chosen, schema::FIRST.name, context)?,
+                checker.argument(&chosen, schema::LAST.name, context)?,
             );
             if let (1, Some(span)) = (levels, chosen.span(schema::LAST.name)) {
                 let message = "a ramp of one level has its first amplitude alone".to_owned();
@@ -190,8 +190,8 @@ fn protocol(checker: &mut Checker, block: usize, place: Context) -> Option<(Vec<
         }
         "geometric" => {
             let (first, ratio) = (
-                checker.argument(&chosen, schema::FIRST.name, place)?,
-                checker.argument(&chosen, schema::RATIO.name, place)?,
+                checker.argument(&chosen, schema::FIRST.name, context)?,
+                checker.argument(&chosen, schema::RATIO.name, context)?,
             );
             let amplitude = |level: u32| {
                 let power = Formula::Constant(f64::from(level));
@@ -203,7 +203,7 @@ fn protocol(checker: &mut Checker, block: usize, place: Context) -> Option<(Vec<
             ((0..levels).map(amplitude).collect(), 1)
         }
         _ => {
-            let largest = checker.argument(&chosen, schema::LARGEST.name, place)?;
+            let largest = checker.argument(&chosen, schema::LARGEST.name, context)?;
             let amplitude =
                 |level: u32| times(FEMA_RATIO.powf(-f64::from(levels - 1 - level)), &largest);
             ((0..levels).map(amplitude).collect(), FEMA_CYCLES)
@@ -220,19 +220,19 @@ fn inspections(checker: &mut Checker, block: usize) -> Option<Vec<CycleInspectio
     let Some((entry, _)) = checker.field(block, schema::INSPECT.name) else {
         return Some(Vec::new());
     };
-    let place = checker.context_of(block, entry);
+    let context = checker.context_of(block, entry);
     let chosen = checker.choices(block, schema::INSPECT.name)?;
     let each = chosen.iter().map(|chosen| {
         Some(match chosen.variant.name {
             "every" => CycleInspection::Every(
                 checker
-                    .constant_argument(chosen, schema::AMPLITUDES_BETWEEN.name, place)
+                    .constant_argument(chosen, schema::AMPLITUDES_BETWEEN.name, context)
                     .and_then(whole)?,
             ),
             _ => CycleInspection::ForceDrop(checker.constant_argument(
                 chosen,
                 schema::FRACTION.name,
-                place,
+                context,
             )?),
         })
     });

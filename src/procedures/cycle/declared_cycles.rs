@@ -18,7 +18,7 @@ const BY_CYCLE: [&str; 4] = [
 
 /// An entry past the last cycle, which can never exist; called only if there is no error.
 pub fn hold_entries(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
-    for (reference, place, span) in std::mem::take(&mut checker.taken) {
+    for (reference, entry, span) in std::mem::take(&mut checker.list_entries_read) {
         let Some((_, Some(procedure))) = procedures.get(reference.procedure.0) else {
             continue;
         };
@@ -26,10 +26,10 @@ pub fn hold_entries(checker: &mut Checker, procedures: &[(usize, Option<Procedur
             continue;
         };
         let cycles = cycle.levels.iter().map(|level| level.cycles as usize).sum();
-        if BY_CYCLE.contains(&reference.name) && place >= cycles {
+        if BY_CYCLE.contains(&reference.name) && entry >= cycles {
             checker
                 .diagnostics
-                .push(fault::no_such_entry(span, place, cycles));
+                .push(fault::no_such_entry(span, entry, cycles));
         }
     }
 }

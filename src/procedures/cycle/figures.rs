@@ -98,30 +98,34 @@ fn sides(fit: &MultilinearFit, history: &CycleHistory) -> Vec<Series> {
         .iter()
         .map(|(x, _)| *x)
         .fold(0.0, f64::max);
-    let places: Vec<f64> = [0.0]
+    let displacements: Vec<f64> = [0.0]
         .into_iter()
-        .chain(fit.breakpoints.iter().map(|(place, _)| *place))
+        .chain(
+            fit.breakpoints
+                .iter()
+                .map(|(displacement, _)| *displacement),
+        )
         .chain([reach])
         .collect();
-    let went = |way: f64| {
+    let went = |direction: f64| {
         history
             .cycles
             .iter()
             .flat_map(|cycle| cycle.found.ends)
-            .any(|(x, _)| way * (x - middle) > 0.5 * reach)
+            .any(|(x, _)| direction * (x - middle) > 0.5 * reach)
     };
     let mut label = format!("fit of {} segments", fit.stiffnesses.len());
-    let side = |way: f64| Series {
+    let side = |direction: f64| Series {
         label: std::mem::take(&mut label),
-        points: places
+        points: displacements
             .iter()
-            .map(|x| (middle + way * x, way * fit.force(*x)))
+            .map(|x| (middle + direction * x, direction * fit.force(*x)))
             .collect(),
         style: Style::line(palette::GREEN, 1.6, LONG),
     };
     [1.0, -1.0]
         .into_iter()
-        .filter(|way| went(*way))
+        .filter(|direction| went(*direction))
         .map(side)
         .collect()
 }

@@ -209,7 +209,7 @@ impl Cycling {
                 self.cycle += 1;
                 let from = self.history.steps.len() - 1;
                 for (end, stretch) in plan.sides.ends().iter().zip(plan.sides.stretches()) {
-                    self.way(about + end * amplitude, *stretch, manner, session)?;
+                    self.move_along_branch(about + end * amplitude, *stretch, manner, session)?;
                 }
                 self.whole(from, repeat);
             }
@@ -235,7 +235,7 @@ impl Cycling {
     }
 
     /// Moves from the present position to `to` \[m\], which is this part of the branch from one reversal to the next.
-    fn way(
+    fn move_along_branch(
         &mut self,
         to: f64,
         [begin, end]: [f64; 2],
@@ -264,13 +264,13 @@ impl Cycling {
             } else {
                 (spaced(begin + (end - begin) * even) - first) / (last - first)
             };
-            let place = if target == targets {
+            let commanded = if target == targets {
                 to
             } else {
                 from + (to - from) * share
             };
-            session.go_to(place, manner.speed)?;
-            self.target(place, manner, session)?;
+            session.go_to(commanded, manner.speed)?;
+            self.target(commanded, manner, session)?;
         }
         Ok(())
     }

@@ -10,7 +10,7 @@ use crate::physics::reintegration::perturbation::{Perturbation, ReadingErrors};
 use crate::plan::formula::ProcedureId;
 use crate::procedures::common::fit_uncertainty::Fits;
 use crate::procedures::common::loop_sampling::{left_open_by, of_open};
-use crate::procedures::common::results::{Layout, give, place, values};
+use crate::procedures::common::results::{Layout, give, index_of, values};
 use crate::record::{CycleHistory, CycleStep, NamedResult, WholeCycle};
 use crate::schema::procedures::cycle as schema;
 use crate::uncertainty::engine::{Evaluate, Evaluation, Shifts, Study};
@@ -127,7 +127,7 @@ pub(crate) fn propagate(
     if let Ok(mut contributions) = study.contributions::<Infallible>(&mut |_, _| Ok(())) {
         for (kind, entry, amount) in of_sampling(loops.history, loops.left_open) {
             let sampling = Contribution::new(Source::LoopSampling { procedure }, amount);
-            if let Some(first) = place(&layout, kind) {
+            if let Some(first) = index_of(&layout, kind) {
                 contributions[first + entry].push(sampling);
             }
         }

@@ -103,7 +103,8 @@ impl Sweep {
             let pairs = || strokes.iter().flat_map(|(_, pairs)| pairs);
             let most = |read: fn(&OutAndBack) -> f64| pairs().map(read).fold(0.0, f64::max);
             let force = most(|pair| pair.mean.abs() + pair.half_difference.abs());
-            own > CONTRADICTS * error && own * most(|pair| pair.place.abs()) > ROUNDING * force
+            own > CONTRADICTS * error
+                && own * most(|pair| pair.displacement.abs()) > ROUNDING * force
         };
         let shown = |stiffness| readable(stiffness, Dimension::STIFFNESS);
         let ratio_of = match own_stiffness.map(|own| (own, resists(own))) {

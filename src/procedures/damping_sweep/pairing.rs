@@ -17,7 +17,7 @@ pub(super) fn paired_by_time(out: &[SweepStep], back: &[SweepStep]) -> Vec<OutAn
         .filter(|(out, back)| out.steady && back.steady);
     let pair = |(out, back): (&SweepStep, &SweepStep)| OutAndBack {
         velocity: out.velocity,
-        place: 0.5 * (out.displacement + back.displacement),
+        displacement: 0.5 * (out.displacement + back.displacement),
         half_apart: 0.5 * (out.displacement - back.displacement),
         half_difference: 0.5 * (out.restoring_force - back.restoring_force),
         mean: 0.5 * (out.restoring_force + back.restoring_force),
@@ -42,7 +42,7 @@ pub(super) fn paired_by_position(out: &[SweepStep], back: &[SweepStep]) -> Vec<O
         let other = interpolated(&dense, step.displacement)?;
         Some(OutAndBack {
             velocity: step.velocity,
-            place: step.displacement,
+            displacement: step.displacement,
             half_apart: 0.0,
             half_difference: 0.5 * (step.restoring_force - other),
             mean: 0.5 * (step.restoring_force + other),

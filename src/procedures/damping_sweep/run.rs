@@ -78,7 +78,7 @@ pub(crate) fn perform(
     let of_history = |pair: &OutAndBack| {
         (
             (pair.velocity, pair.damping_force(stiffness)),
-            [pair.place, pair.mean],
+            [pair.displacement, pair.mean],
         )
     };
     let (pairs, middles): (Vec<(f64, f64)>, Vec<[f64; 2]>) = kept()

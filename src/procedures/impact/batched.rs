@@ -149,7 +149,7 @@ fn is_ideal(plan: &Plan) -> bool {
     let limits = &plan.limits;
     let not_watched = |limit: Interval| !limit.is_bounded();
     errors.iter().all(|error| *error == 0.0)
-        && link.foretold.is_none()
+        && link.predicted.is_none()
         && plan.rig.polarity == 1.0
         && plan.rig.zero_drift.is_none()
         && plan.rig.limits_of_axes(limits).is_empty()

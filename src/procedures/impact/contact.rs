@@ -15,21 +15,21 @@ pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<Contact> {
     let Some((entry, _)) = checker.field(block, schema::CONTACT.name) else {
         return Some(Contact::Rigid);
     };
-    let place = checker.context_of(block, entry);
+    let displacement = checker.context_of(block, entry);
     let chosen = checker.choice(block, schema::CONTACT.name)?;
     Some(match chosen.variant.name {
         "limit" => Contact::Limit {
-            force: checker.argument(&chosen, schema::LIMIT_FORCE.name, place)?,
+            force: checker.argument(&chosen, schema::LIMIT_FORCE.name, displacement)?,
         },
         "restitution" => Contact::Restitution {
-            coefficient: checker.argument(&chosen, schema::COEFFICIENT.name, place)?,
+            coefficient: checker.argument(&chosen, schema::COEFFICIENT.name, displacement)?,
         },
         "hertz" => {
-            let stiffness = checker.argument(&chosen, schema::HERTZ_STIFFNESS.name, place);
-            let loss = checker.argument(&chosen, schema::LOSS.name, place);
+            let stiffness = checker.argument(&chosen, schema::HERTZ_STIFFNESS.name, displacement);
+            let loss = checker.argument(&chosen, schema::LOSS.name, displacement);
             let force_limit = match chosen.find(schema::FORCE_LIMIT.name) {
                 Some((_, Some(_))) => checker
-                    .argument(&chosen, schema::FORCE_LIMIT.name, place)
+                    .argument(&chosen, schema::FORCE_LIMIT.name, displacement)
                     .map(Some),
                 _ => Some(None),
             };

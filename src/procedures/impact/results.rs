@@ -200,7 +200,7 @@ pub(crate) fn observe(
         );
         session.event(EventKind::Remark, text);
     }
-    if summary.last_blow_cut {
+    if summary.last_contact_cut {
         session.remark(CUT.to_owned());
     }
 }

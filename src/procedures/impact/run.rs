@@ -74,7 +74,7 @@ impl<'a> UncertaintyInputs<'a> {
                 let noise = session.guard.declared_noise();
                 Self::Point(ImpactUncertainty::new(plan, point, whole, inputs, noise))
             }
-            ImpactTarget::Storey(storey) => Self::Storey(FrameUncertainty::of_blow(
+            ImpactTarget::Storey(storey) => Self::Storey(FrameUncertainty::of_impact(
                 plan, storey, whole, inputs, session,
             )),
         }
@@ -83,8 +83,8 @@ impl<'a> UncertaintyInputs<'a> {
     /// Those of impact number `index` of a series, from 0.
     pub(crate) fn of_impact(self, index: usize) -> Self {
         match self {
-            Self::Point(point) => Self::Point(point.of_blow(index)),
-            Self::Storey(storey) => Self::Storey(storey.of_blow_number(index)),
+            Self::Point(point) => Self::Point(point.of_impact(index)),
+            Self::Storey(storey) => Self::Storey(storey.of_impact_number(index)),
         }
     }
 }

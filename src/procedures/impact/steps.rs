@@ -109,21 +109,21 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
         self.solver.predicted_velocity(velocity)
     }
 
-    fn taken_at_start(&self, start: &Start) -> Vec<f64> {
+    fn effective_force_at_start(&self, start: &Start) -> Vec<f64> {
         let Reading {
             displacement,
             force,
             ..
         } = &start.reading;
-        let taken = self.solver.effective_force_at(
+        let effective_force = self.solver.effective_force_at(
             V::view_of(&start.commanded),
             V::view_of(displacement),
             V::view_of(force),
         );
-        taken.as_slice().to_vec()
+        effective_force.as_slice().to_vec()
     }
 
-    fn taken(&self) -> Vec<f64> {
+    fn effective_force(&self) -> Vec<f64> {
         V::slice_of(&self.solver.effective_force()).to_vec()
     }
 

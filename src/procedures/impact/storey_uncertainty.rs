@@ -7,13 +7,13 @@ use super::setting::Setting;
 use super::uncertainty::{at_least, no_known_force, same, striker_sources, whole_steps};
 use crate::physics::impact::ImpactInput;
 use crate::physics::impact::summary::ImpactSummary;
-use crate::physics::reintegration::frame::{Blow, Floors, FrameRun, StrikerOutcome};
+use crate::physics::reintegration::frame::{FloorImpact, Floors, FrameRun, StrikerOutcome};
 use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
 use crate::physics::reintegration::impact::ImpactValues;
 use crate::physics::reintegration::perturbation::Perturbation;
 use crate::plan::{Impact, StoreyTarget, Striker};
 use crate::procedures::common::perturbed_inputs::LEADS_ELSEWHERE;
-use crate::procedures::common::results::{Evaluated, flat, give, layout_of, place, values};
+use crate::procedures::common::results::{Evaluated, flat, give, index_of, layout_of, values};
 use crate::procedures::stepping;
 use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there};
 use crate::procedures::stepping::run::FrameSteps;
@@ -33,7 +33,7 @@ pub(crate) struct StoreyRecord<'a> {
 
 /// Gives `results` their contributions.
 pub(crate) fn propagate(
-    doubts: &FrameUncertainty<'_>,
+    uncertainty: &FrameUncertainty<'_>,
     plan: &Impact,
     recorded: StoreyRecord<'_>,
     results: &mut [NamedResult],
@@ -52,10 +52,10 @@ pub(crate) fn propagate(
     let (Some(target), Some(frame)) = (plan.storey(), setting.frame()) else {
         return Err("no floor of a frame is struck".to_owned().into());
     };
-    let path = doubts.path(frame, history.iter().map(reading).collect())?;
-    let floors = doubts.floors();
+    let path = uncertainty.path(frame, history.iter().map(reading).collect())?;
+    let floors = uncertainty.floors();
     let mut evaluate = RecordedStoreyImpact {
-        doubts,
+        uncertainty,
         plan,
         target,
         setting,
@@ -66,30 +66,30 @@ pub(crate) fn propagate(
     let inputs = evaluate.inputs(&[])?;
     let found = inputs
         .run
-        .struck(&inputs.blow, &evaluate.path, &Perturbation::none(floors))
+        .struck(&inputs.impact, &evaluate.path, &Perturbation::none(floors))
         .map_err(|error| error.to_string())?;
-    if !same(&found.blow.values.summary, summary)
+    if !same(&found.impact.values.summary, summary)
         || !leads_there(&found.floors.ends, schema::FLOOR_DISPLACEMENT, results)
     {
         return Err(LEADS_ELSEWHERE.to_owned().into());
     }
-    evaluate.path = doubts.under_way(frame, evaluate.path, found.floors.velocities)?;
+    evaluate.path = uncertainty.with_velocities(frame, evaluate.path, found.floors.velocities)?;
     let layout = layout_of(&inputs.numbers(
-        &found.blow.values,
+        &found.impact.values,
         &found.striker,
         &found.floors.between,
         inputs.run.time_step,
     ));
     let mut reported = values(&layout, results);
     evaluate.length = reported.len();
-    if let Some(shear) = place(&layout, schema::MAX_BASE_SHEAR) {
+    if let Some(shear) = index_of(&layout, schema::MAX_BASE_SHEAR) {
         // The reported one is without the part of noise; the re-integrated one has it in finer steps as well.
         reported[shear] = found.floors.between.max_base_shear;
     }
-    let stated = striker_sources(doubts.whole, plan.striker);
-    let sources = doubts.sources(&plan.contact.numbers(), &stated);
+    let stated = striker_sources(uncertainty.whole, plan.striker);
+    let sources = uncertainty.sources(&plan.contact.numbers(), &stated);
     let mut contributions =
-        doubts.contributions(&evaluate, sources, history.len(), reported, tick)?;
+        uncertainty.contributions(&evaluate, sources, history.len(), reported, tick)?;
     no_known_force(setting.input.law, summary, &layout, &mut contributions);
     let time_step = frame.steps.time_step;
     // From the beginning of a step to the end of one: two times.
@@ -97,8 +97,8 @@ pub(crate) fn propagate(
     for (kind, quantum) in whole_steps(time_step).into_iter().chain([duration]) {
         at_least(
             quantum,
-            doubts.procedure,
-            place(&layout, kind),
+            uncertainty.procedure,
+            index_of(&layout, kind),
             &mut contributions,
         );
     }
@@ -108,7 +108,7 @@ pub(crate) fn propagate(
 
 /// An impact on a storey along its recorded path.
 struct RecordedStoreyImpact<'a, 'run> {
-    doubts: &'a FrameUncertainty<'run>,
+    uncertainty: &'a FrameUncertainty<'run>,
     plan: &'a Impact,
     target: &'a StoreyTarget,
     setting: &'a Setting,
@@ -120,7 +120,7 @@ struct RecordedStoreyImpact<'a, 'run> {
 
 struct Inputs {
     run: FrameRun,
-    blow: Blow,
+    impact: FloorImpact,
     /// \[s\]
     periods: Vec<f64>,
     critical_time_step: f64,
@@ -130,19 +130,19 @@ impl Inputs {
     /// The results with their values: those of any impact, then those of a storey.
     fn numbers(
         &self,
-        blow: &ImpactValues,
+        values: &ImpactValues,
         striker: &StrikerOutcome,
         floors: &Floors,
         time_step: f64,
     ) -> Evaluated {
         let StrikerOutcome {
             storey_energy,
-            first_blow,
+            first_contact_steps,
             striker_velocity,
         } = striker;
         #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
-        let duration = if *first_blow > 0 {
-            *first_blow as f64 * time_step
+        let duration = if *first_contact_steps > 0 {
+            *first_contact_steps as f64 * time_step
         } else {
             f64::NAN
         };
@@ -151,7 +151,7 @@ impl Inputs {
         } else {
             f64::NAN
         };
-        let mut numbers = re_integrated(blow);
+        let mut numbers = re_integrated(values);
         numbers.extend([
             (schema::CONTACT_DURATION, vec![duration]),
             (schema::REBOUND_VELOCITY, vec![back]),
@@ -172,21 +172,24 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
 
     fn inputs(&self, shifts: Shifts<'_>) -> Result<Inputs, String> {
         let Self {
-            doubts,
+            uncertainty,
             plan,
             target,
             setting,
             frame: steps,
             ..
         } = self;
-        let (frame, damping) = (doubts.moved_frame(shifts)?, doubts.moved_damping(shifts));
-        let (properties, law) = doubts.with_inputs(shifts, &mut |inputs| {
+        let (frame, damping) = (
+            uncertainty.moved_frame(shifts)?,
+            uncertainty.moved_damping(shifts),
+        );
+        let (properties, law) = uncertainty.with_inputs(shifts, &mut |inputs| {
             Ok((
                 stepping::run::properties(&frame, &damping, inputs)?,
                 contact::with_numbers(&plan.contact, inputs)?,
             ))
         })?;
-        let declared = &doubts.whole.strikers[plan.striker];
+        let declared = &uncertainty.whole.strikers[plan.striker];
         let recorded_velocity = setting.input.striker_velocity;
         let mut striker = Striker {
             velocity: recorded_velocity,
@@ -220,7 +223,7 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
             law,
             ..setting.input
         };
-        let blow = Blow {
+        let impact = FloorImpact {
             struck: target.storey,
             law,
             until: plan.until,
@@ -229,33 +232,35 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
         let periods = properties.modes.periods.clone();
         let run = FrameRun {
             matrices: properties.matrices,
-            ..doubts.run(steps)
+            ..uncertainty.run(steps)
         };
         Ok(Inputs {
             run,
-            blow,
+            impact,
             periods,
             critical_time_step,
         })
     }
 
     fn evaluate(&self, readings: &Perturbation, inputs: &Inputs) -> Evaluation {
-        let Ok(found) = inputs.run.struck(&inputs.blow, &self.path, readings) else {
+        let Ok(found) = inputs.run.struck(&inputs.impact, &self.path, readings) else {
             return Evaluation::none(self.length);
         };
         let time_step = inputs.run.time_step / f64::from(readings.finer);
-        let numbers = |blow: &ImpactValues, striker: &StrikerOutcome, floors: &Floors| {
-            flat(inputs.numbers(blow, striker, floors, time_step))
+        let numbers = |values: &ImpactValues, striker: &StrikerOutcome, floors: &Floors| {
+            flat(inputs.numbers(values, striker, floors, time_step))
         };
         let before = (
-            &found.blow.before_departure,
+            &found.impact.before_departure,
             &found.before_departure,
             &found.floors.before_departure,
         );
         Evaluation {
-            values: numbers(&found.blow.values, &found.striker, &found.floors.between),
+            values: numbers(&found.impact.values, &found.striker, &found.floors.between),
             before_departure: match before {
-                (Some(blow), Some(striker), Some(floors)) => Some(numbers(blow, striker, floors)),
+                (Some(values), Some(striker), Some(floors)) => {
+                    Some(numbers(values, striker, floors))
+                }
                 _ => None,
             },
             farthest: found.floors.between.farthest(),

@@ -16,7 +16,7 @@ use crate::plan::{Impact, Mode, Plan, PointTarget, Striker};
 use crate::procedures::common::perturbed_inputs::{
     LEADS_ELSEWHERE, out_of_bounds, uncertain_inputs, with_shifts,
 };
-use crate::procedures::common::results::{Evaluated, flat, give, layout_of, place, values};
+use crate::procedures::common::results::{Evaluated, flat, give, index_of, layout_of, values};
 use crate::record::{ImpactStep, NamedResult};
 use crate::rig::DeclaredNoise;
 use crate::run::inputs::Inputs;
@@ -48,7 +48,7 @@ pub(crate) struct ImpactUncertainty<'run> {
     /// The amount by which its damping ratio was raised to zero.
     lift: f64,
     /// Index of the impact in the procedure, from 0: each impact has its own errors.
-    blow: u16,
+    impact: u16,
 }
 
 impl<'run> ImpactUncertainty<'run> {
@@ -67,14 +67,14 @@ impl<'run> ImpactUncertainty<'run> {
             procedure: inputs.procedure(),
             noise,
             lift: inputs.lift(),
-            blow: 0,
+            impact: 0,
         }
     }
 
     /// For a later impact of the same procedure, counted from 0.
-    pub(crate) fn of_blow(self, index: usize) -> Self {
+    pub(crate) fn of_impact(self, index: usize) -> Self {
         Self {
-            blow: u16::try_from(index).unwrap_or(u16::MAX),
+            impact: u16::try_from(index).unwrap_or(u16::MAX),
             ..self
         }
     }
@@ -92,7 +92,7 @@ impl<'run> ImpactUncertainty<'run> {
             .path(setting, steps)
             .ok_or_else(|| "nothing was recorded".to_owned())?;
         let mut evaluate = RecordedImpact {
-            doubts: self,
+            uncertainty: self,
             setting,
             path,
             length: 0,
@@ -107,7 +107,7 @@ impl<'run> ImpactUncertainty<'run> {
         evaluate.length = layout.len();
         let study = Study {
             procedure: self.procedure,
-            impact: self.blow,
+            impact: self.impact,
             evaluate: &evaluate,
             instruments: &InstrumentUncertainty::of(self.whole, self.noise, 1),
             inputs: self.sources(),
@@ -119,7 +119,7 @@ impl<'run> ImpactUncertainty<'run> {
             at_least(
                 quantum,
                 self.procedure,
-                place(&layout, kind),
+                index_of(&layout, kind),
                 &mut contributions,
             );
         }
@@ -190,7 +190,7 @@ pub(super) fn striker_sources(whole: &Plan, striker: usize) -> [(Source, f64); 2
 
 /// An impact along its recorded path.
 struct RecordedImpact<'a, 'run> {
-    doubts: &'a ImpactUncertainty<'run>,
+    uncertainty: &'a ImpactUncertainty<'run>,
     setting: &'a Setting,
     path: RecordedPath,
     /// Number of values of an evaluation.
@@ -201,7 +201,7 @@ impl RecordedImpact<'_, '_> {
     fn run(&self, setting: &Setting, readings: &Perturbation) -> Result<Outcome, ImpactError> {
         rerun(
             &setting.input,
-            self.doubts.plan.until,
+            self.uncertainty.plan.until,
             setting.steps().count,
             &self.path,
             readings,
@@ -223,7 +223,7 @@ impl Evaluate for RecordedImpact<'_, '_> {
             noise,
             lift,
             ..
-        } = *self.doubts;
+        } = *self.uncertainty;
         let declared = &whole.strikers[plan.striker];
         let mut striker = declared.clone();
         let mut heavier = 0.0;
@@ -282,12 +282,12 @@ pub(crate) fn whole_steps(time_step: f64) -> [(ResultKind, f64); 2] {
 pub(crate) fn at_least(
     most: f64,
     procedure: ProcedureId,
-    place: Option<usize>,
+    index: Option<usize>,
     contributions: &mut Contributions,
 ) {
     let source = Source::TimeStep { procedure };
-    let parts = place
-        .and_then(|place| contributions.get_mut(place))
+    let parts = index
+        .and_then(|index| contributions.get_mut(index))
         .into_iter()
         .flatten();
     for part in parts.filter(|part| part.source == source && part.amount.abs() < most) {
@@ -303,7 +303,7 @@ pub(crate) fn no_known_force(
     contributions: &mut Contributions,
 ) {
     if law.force_follows_the_step(recorded.max_contact_force)
-        && let Some(index) = place(layout, schema::MAX_CONTACT_FORCE)
+        && let Some(index) = index_of(layout, schema::MAX_CONTACT_FORCE)
     {
         contributions[index].clear();
     }

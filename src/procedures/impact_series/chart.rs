@@ -3,19 +3,19 @@
 use super::figures;
 use crate::plan::FigureKind;
 use crate::procedures::base_excitation;
-use crate::record::{Blow, EscalateHistory, FloorStep};
+use crate::record::{EscalateHistory, FloorStep, SeriesImpact};
 use crate::report::figures::chart::Chart;
 
 /// Figures of impacts on one degree of freedom, in the order of a report.
 pub(crate) const FIGURES: &[FigureKind] = &[
-    FigureKind::Blows,
+    FigureKind::ImpactSeries,
     FigureKind::ForceDisplacement,
     FigureKind::Displacement,
 ];
 
 /// Figures of impacts on a storey.
 pub(crate) const STOREY_FIGURES: &[FigureKind] = &[
-    FigureKind::Blows,
+    FigureKind::ImpactSeries,
     FigureKind::Drift,
     FigureKind::Hysteresis,
     FigureKind::Displacement,
@@ -27,8 +27,8 @@ pub(crate) fn chart(
     history: &EscalateHistory,
     kind: FigureKind,
 ) -> Option<(Chart, String)> {
-    let struck = |blow: &Blow| !blow.impact().steps.is_empty();
-    if !history.blows.iter().any(struck) {
+    let struck = |impact: &SeriesImpact| !impact.impact().steps.is_empty();
+    if !history.impacts.iter().any(struck) {
         return None;
     }
     Some(match kind {
@@ -44,21 +44,21 @@ pub(crate) fn chart(
                 None => format!(
                     "{name}: displacement against the simulated time of each impact; lighter lines are earlier impacts."
                 ),
-                Some(blow) => format!(
+                Some(impact) => format!(
                     "{name}: displacement of floor {} against the simulated time of each impact; lighter lines are earlier impacts.",
-                    blow.struck + 1
+                    impact.struck + 1
                 ),
             },
         ),
-        FigureKind::Blows => (
-            figures::blows(history),
+        FigureKind::ImpactSeries => (
+            figures::impact_series(history),
             match history.storeys().next() {
                 None => format!(
                     "{name}: largest displacement of each impact, and the position after it, against its energy."
                 ),
-                Some(blow) => format!(
+                Some(impact) => format!(
                     "{name}: largest displacement of floor {} in each impact, and its position after it, against its energy.",
-                    blow.struck + 1
+                    impact.struck + 1
                 ),
             },
         ),
@@ -69,7 +69,10 @@ pub(crate) fn chart(
             ),
         ),
         FigureKind::Hysteresis => {
-            let steps: Vec<&FloorStep> = history.storeys().flat_map(|blow| &blow.floors).collect();
+            let steps: Vec<&FloorStep> = history
+                .storeys()
+                .flat_map(|impact| &impact.floors)
+                .collect();
             let caption = format!(
                 "{name}: measured storey shear against drift, impact after impact; straight lines connect successive impacts."
             );

@@ -137,12 +137,12 @@ fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<V
 fn condition(checker: &mut Checker, block: usize) -> Option<Vec<Condition>> {
     let own = checker.scope.blocks[block].procedure?;
     let (entry, written) = checker.field(block, schema::WHILE.name)?;
-    let place = Context {
+    let context = Context {
         entry: Some((block, entry)),
         reads: Reads::Impact(own),
         critical: false,
     };
-    let conditions = checker.conditions_at(&written.value, place)?;
+    let conditions = checker.conditions_at(&written.value, context)?;
     let mut references = Vec::new();
     for condition in &conditions {
         condition.collect_references(&mut references);

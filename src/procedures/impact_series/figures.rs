@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use crate::procedures::base_excitation;
-use crate::record::{Blow, EscalateHistory, ImpactStep};
+use crate::record::{EscalateHistory, ImpactStep, SeriesImpact};
 use crate::report::figures::chart::{
     Chart, Colour, DASHED, Marker, Quantity, SOLID, Series, Style, palette,
 };
@@ -37,21 +37,24 @@ pub(crate) fn displacement(history: &EscalateHistory) -> Chart {
 }
 
 /// Largest displacement, and the position after the impact, against its energy.
-pub(crate) fn blows(history: &EscalateHistory) -> Chart {
-    let largest = |blow: &Blow| blow.number(schema::MAX_DISPLACEMENT.name);
+pub(crate) fn impact_series(history: &EscalateHistory) -> Chart {
+    let largest = |impact: &SeriesImpact| impact.number(schema::MAX_DISPLACEMENT.name);
     let peaks = history
-        .blows
+        .impacts
         .iter()
-        .filter_map(|blow| Some((blow.energy, largest(blow)?)))
+        .filter_map(|impact| Some((impact.energy, largest(impact)?)))
         .collect();
     let rests = history
-        .blows
+        .impacts
         .iter()
-        .filter_map(|blow| Some((blow.energy, blow.rest_of_struck()?.0)))
+        .filter_map(|impact| Some((impact.energy, impact.rest_of_struck()?.0)))
         .collect();
-    let failed = history.blows.iter().filter(|blow| blow.held == Some(false));
+    let failed = history
+        .impacts
+        .iter()
+        .filter(|impact| impact.held == Some(false));
     let failed: Points = failed
-        .filter_map(|blow| Some((blow.energy, largest(blow)?)))
+        .filter_map(|impact| Some((impact.energy, largest(impact)?)))
         .collect();
     let mut series = vec![
         Series {
@@ -95,16 +98,18 @@ pub(crate) fn drift(history: &EscalateHistory) -> Chart {
     let storeys = history
         .storeys()
         .next()
-        .and_then(|blow| blow.floors.first())
+        .and_then(|impact| impact.floors.first())
         .map_or(0, |floors| floors.computed.len());
-    let largest =
-        |blow: &Blow, storey: usize| blow.list(schema::MAX_DRIFT.name)?.get(storey).copied();
-    let stayed = |blow: &Blow, storey: usize| blow.rest.as_ref()?.drift().get(storey).copied();
-    let points = |of: &dyn Fn(&Blow, usize) -> Option<f64>, storey: usize| -> Points {
+    let largest = |impact: &SeriesImpact, storey: usize| {
+        impact.list(schema::MAX_DRIFT.name)?.get(storey).copied()
+    };
+    let stayed =
+        |impact: &SeriesImpact, storey: usize| impact.rest.as_ref()?.drift().get(storey).copied();
+    let points = |of: &dyn Fn(&SeriesImpact, usize) -> Option<f64>, storey: usize| -> Points {
         history
-            .blows
+            .impacts
             .iter()
-            .filter_map(|blow| Some((blow.energy, of(blow, storey)?)))
+            .filter_map(|impact| Some((impact.energy, of(impact, storey)?)))
             .collect()
     };
     let series = base_excitation::figures::shown(storeys)
@@ -146,7 +151,7 @@ pub(crate) fn drift(history: &EscalateHistory) -> Chart {
 fn displaced(history: &EscalateHistory) -> Cow<'static, str> {
     match history.storeys().next() {
         None => "Displacement X".into(),
-        Some(blow) => format!("Displacement of floor {}", blow.struck + 1).into(),
+        Some(impact) => format!("Displacement of floor {}", impact.struck + 1).into(),
     }
 }
 
@@ -161,23 +166,23 @@ fn over_each_other(
     y: Quantity,
     of: impl Fn(&ImpactStep) -> (f64, f64),
 ) -> Chart {
-    let last = history.blows.len().saturating_sub(1);
-    let every = history.blows.len().div_ceil(MOST_LABELS).max(1);
+    let last = history.impacts.len().saturating_sub(1);
+    let every = history.impacts.len().div_ceil(MOST_LABELS).max(1);
     // A label just before the last would overlap it.
     let labelled = |index: usize| {
         index == last || (index.is_multiple_of(every) && last - index >= every.div_ceil(2))
     };
     let series = history
-        .blows
+        .impacts
         .iter()
         .enumerate()
-        .map(|(index, blow)| Series {
+        .map(|(index, impact)| Series {
             label: if labelled(index) {
-                format!("impact {}, {}", index + 1, energy(blow))
+                format!("impact {}, {}", index + 1, energy(impact))
             } else {
                 String::new()
             },
-            points: blow.impact().steps.iter().map(&of).collect(),
+            points: impact.impact().steps.iter().map(&of).collect(),
             style: if index == last {
                 Style::line(palette::VERMILION, 2.0, SOLID)
             } else {
@@ -193,8 +198,8 @@ fn over_each_other(
     }
 }
 
-fn energy(blow: &Blow) -> String {
-    stated(blow.energy, Dimension::ENERGY)
+fn energy(impact: &SeriesImpact) -> String {
+    stated(impact.energy, Dimension::ENERGY)
 }
 
 /// From light blue for the first impact to dark blue for the last but one.

@@ -4,7 +4,7 @@ use crate::plan::formula::ResultValue;
 use crate::plan::{Frame, Impact, ProcedureKind, StoreyTarget};
 use crate::procedures::base_excitation;
 use crate::procedures::impact::contact;
-use crate::record::{Blow, EscalateHistory, ImpactHistory, ProcedureRecord, StruckFrame};
+use crate::record::{EscalateHistory, ImpactHistory, ProcedureRecord, SeriesImpact, StruckFrame};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::percent;
 use crate::report::{Run, number};
@@ -22,8 +22,8 @@ pub(crate) fn table(
     history: &EscalateHistory,
     body: &mut Vec<Block>,
 ) {
-    let blows = &history.blows;
-    if blows.is_empty() {
+    let impacts = &history.impacts;
+    if impacts.is_empty() {
         return;
     }
     let Some(ProcedureKind::Escalate(planned)) =
@@ -35,7 +35,7 @@ pub(crate) fn table(
     if let (
         Some(target),
         [
-            Blow {
+            SeriesImpact {
                 history:
                     first @ ImpactHistory {
                         frame: Some(frame), ..
@@ -44,7 +44,7 @@ pub(crate) fn table(
             },
             ..,
         ],
-    ) = (impact.storey(), &blows[..])
+    ) = (impact.storey(), &impacts[..])
     {
         body.push(Block::paragraph(struck(run, impact, target, first, frame)));
         body.extend(
@@ -54,11 +54,11 @@ pub(crate) fn table(
                 .map(|modes| base_excitation::report::mode_table(modes, &frame.damping_ratios)),
         );
     }
-    body.push(rows(procedure, blows));
-    if blows.len() > PRINTED {
+    body.push(rows(procedure, impacts));
+    if impacts.len() > PRINTED {
         body.push(Block::note(format!(
             "{} more impacts are in the table of this procedure.",
-            blows.len() - PRINTED
+            impacts.len() - PRINTED
         )));
     }
     if impact.storey().is_some() {
@@ -175,11 +175,14 @@ fn storeys(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Block {
 }
 
 /// Every number with its standard uncertainty where it has one, else in the unit of the largest of its column.
-fn rows(procedure: &ProcedureRecord, blows: &[Blow]) -> Block {
-    let energy = blows.iter().map(|blow| blow.energy).fold(0.0, f64::max);
-    let travel = blows
+fn rows(procedure: &ProcedureRecord, impacts: &[SeriesImpact]) -> Block {
+    let energy = impacts
         .iter()
-        .filter_map(|blow| blow.number(impact::MAX_DISPLACEMENT.name))
+        .map(|impact| impact.energy)
+        .fold(0.0, f64::max);
+    let travel = impacts
+        .iter()
+        .filter_map(|impact| impact.number(impact::MAX_DISPLACEMENT.name))
         .fold(0.0, |most: f64, x| most.max(x.abs()));
     let shown = |value: Option<f64>, beside: f64, dimension| {
         value.map_or_else(
@@ -195,31 +198,33 @@ fn rows(procedure: &ProcedureRecord, blows: &[Blow]) -> Block {
     } else {
         schema::FINAL_DISPLACEMENTS
     };
-    let row = |(index, blow): (usize, &Blow)| {
-        let held = match blow.held {
+    let row = |(index, impact): (usize, &SeriesImpact)| {
+        let held = match impact.held {
             Some(true) => "held",
             Some(false) => "condition false",
-            None if blow.rest.is_some() => "inconclusive",
+            None if impact.rest.is_some() => "inconclusive",
             None => "incomplete",
         };
         let known = |list: ResultKind, other: Text| {
             base_excitation::report::known_entry(procedure, list, index).unwrap_or(other)
         };
-        let rest = blow.rest_of_struck().map(|(displacement, _)| displacement);
+        let rest = impact
+            .rest_of_struck()
+            .map(|(displacement, _)| displacement);
         vec![
             Text::from((index + 1).to_string()),
             known(
                 schema::VELOCITIES,
-                number::text(blow.velocity, Dimension::VELOCITY).into(),
+                number::text(impact.velocity, Dimension::VELOCITY).into(),
             ),
             known(
-                schema::BLOW_ENERGIES,
-                shown(Some(blow.energy), energy, Dimension::ENERGY),
+                schema::IMPACT_ENERGIES,
+                shown(Some(impact.energy), energy, Dimension::ENERGY),
             ),
             known(
                 schema::MAX_DISPLACEMENTS,
                 shown(
-                    blow.number(impact::MAX_DISPLACEMENT.name),
+                    impact.number(impact::MAX_DISPLACEMENT.name),
                     travel,
                     Dimension::LENGTH,
                 ),
@@ -227,7 +232,7 @@ fn rows(procedure: &ProcedureRecord, blows: &[Blow]) -> Block {
             known(
                 schema::ABSORBED_ENERGIES,
                 shown(
-                    blow.number(impact::ABSORBED_ENERGY.name),
+                    impact.number(impact::ABSORBED_ENERGY.name),
                     energy,
                     Dimension::ENERGY,
                 ),
@@ -247,6 +252,6 @@ fn rows(procedure: &ProcedureRecord, blows: &[Blow]) -> Block {
     ];
     Block::Table(Table {
         columns,
-        rows: blows.iter().take(PRINTED).enumerate().map(row).collect(),
+        rows: impacts.iter().take(PRINTED).enumerate().map(row).collect(),
     })
 }

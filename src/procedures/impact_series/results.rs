@@ -2,19 +2,19 @@
 //! reference, with their contributions. It moves nothing.
 
 use crate::plan::Between;
-use crate::record::{Blow, EscalateHistory, NamedResult};
+use crate::record::{EscalateHistory, NamedResult, SeriesImpact};
 use crate::schema::ResultKind;
 use crate::schema::procedures::{impact, impact_series as schema};
 use crate::uncertainty::{Contribution, Source, combined, share};
 
 /// In the order of the reference.
 pub(crate) fn results(history: &EscalateHistory, between: Between) -> Vec<NamedResult> {
-    let blows = &history.blows;
+    let impacts = &history.impacts;
     let left = Left::of(between);
-    let mut results = of_series(blows, &left);
-    results.extend(of_impacts(blows, &left));
-    if blows.iter().any(|blow| blow.storey().is_some()) {
-        results.extend(of_storeys(blows, &left));
+    let mut results = of_series(impacts, &left);
+    results.extend(of_impacts(impacts, &left));
+    if impacts.iter().any(|impact| impact.storey().is_some()) {
+        results.extend(of_storeys(impacts, &left));
     }
     results
 }
@@ -44,36 +44,41 @@ impl Left {
 }
 
 /// Results of the series as a whole.
-fn of_series(blows: &[Blow], left: &Left) -> Vec<NamedResult> {
+fn of_series(impacts: &[SeriesImpact], left: &Left) -> Vec<NamedResult> {
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_IMPACTS")]
     let count = |held: Option<bool>| {
-        blows
+        impacts
             .iter()
-            .filter(|blow| held.is_none() || blow.held == held)
+            .filter(|impact| held.is_none() || impact.held == held)
             .count() as f64
     };
-    let energy = |kind, blow: Option<&Blow>, without: Option<f64>| {
-        let parts = blow.map_or_else(Vec::new, |blow| contributions(blow, impact::STRIKER_ENERGY));
-        number(kind, blow.map(|blow| blow.energy).or(without), parts)
+    let energy = |kind, impact: Option<&SeriesImpact>, without: Option<f64>| {
+        let parts = impact.map_or_else(Vec::new, |impact| {
+            contributions(impact, impact::STRIKER_ENERGY)
+        });
+        number(kind, impact.map(|impact| impact.energy).or(without), parts)
     };
-    let passed = blows.iter().rev().find(|blow| blow.held == Some(true));
-    let failed = blows.iter().find(|blow| blow.held == Some(false));
+    let passed = impacts
+        .iter()
+        .rev()
+        .find(|impact| impact.held == Some(true));
+    let failed = impacts.iter().find(|impact| impact.held == Some(false));
     // If the condition fails after the first impact, no energy was withstood; if that is inconclusive, the energy is not known.
-    let nothing = blows
+    let nothing = impacts
         .first()
         .filter(|first| first.held == Some(false))
         .map(|_| 0.0);
-    let last = blows.last();
-    let absorbed = of_each(blows, impact::ABSORBED_ENERGY)
+    let last = impacts.last();
+    let absorbed = of_each(impacts, impact::ABSORBED_ENERGY)
         .into_iter()
         .filter(|energy| energy.is_finite())
         .reduce(|sum, energy| sum + energy);
     vec![
-        schema::BLOWS.found(Some(count(None))),
+        schema::IMPACTS.found(Some(count(None))),
         schema::PASSED.found(Some(count(Some(true)))),
         energy(schema::LAST_PASSED_ENERGY, passed, nothing),
         energy(schema::FIRST_FAILED_ENERGY, failed, None),
-        largest(blows, schema::MAX_DISPLACEMENT, impact::MAX_DISPLACEMENT),
+        largest(impacts, schema::MAX_DISPLACEMENT, impact::MAX_DISPLACEMENT),
         number(
             left.displacement,
             last.and_then(position),
@@ -82,106 +87,114 @@ fn of_series(blows: &[Blow], left: &Left) -> Vec<NamedResult> {
         number(
             schema::ABSORBED_ENERGY,
             absorbed,
-            contributions_to_sum(blows, impact::ABSORBED_ENERGY),
+            contributions_to_sum(impacts, impact::ABSORBED_ENERGY),
         ),
     ]
 }
 
 /// Lists with an entry for each impact.
-fn of_impacts(blows: &[Blow], left: &Left) -> Vec<NamedResult> {
+fn of_impacts(impacts: &[SeriesImpact], left: &Left) -> Vec<NamedResult> {
     let known = |kind: ResultKind, of_impact: ResultKind| {
-        let parts = by_impact(blows, |blow| contributions(blow, of_impact));
-        list(kind, of_each(blows, of_impact), parts)
+        let parts = by_impact(impacts, |impact| contributions(impact, of_impact));
+        list(kind, of_each(impacts, of_impact), parts)
     };
-    let rests = blows
+    let rests = impacts
         .iter()
-        .map(|blow| position(blow).unwrap_or(f64::NAN))
+        .map(|impact| position(impact).unwrap_or(f64::NAN))
         .collect();
     vec![
         list(
             schema::VELOCITIES,
-            blows.iter().map(|blow| blow.velocity).collect(),
-            by_impact(blows, contributions_to_velocity),
+            impacts.iter().map(|impact| impact.velocity).collect(),
+            by_impact(impacts, contributions_to_velocity),
         ),
         list(
-            schema::BLOW_ENERGIES,
-            blows.iter().map(|blow| blow.energy).collect(),
-            by_impact(blows, |blow| contributions(blow, impact::STRIKER_ENERGY)),
+            schema::IMPACT_ENERGIES,
+            impacts.iter().map(|impact| impact.energy).collect(),
+            by_impact(impacts, |impact| {
+                contributions(impact, impact::STRIKER_ENERGY)
+            }),
         ),
         known(schema::MAX_DISPLACEMENTS, impact::MAX_DISPLACEMENT),
         list(
             left.displacements,
             rests,
-            by_impact(blows, contributions_to_position),
+            by_impact(impacts, contributions_to_position),
         ),
         known(schema::ABSORBED_ENERGIES, impact::ABSORBED_ENERGY),
         known(schema::IMPULSES, impact::IMPULSE),
         list(
             schema::ENERGY_ERRORS,
-            of_each(blows, impact::ENERGY_ERROR),
+            of_each(impacts, impact::ENERGY_ERROR),
             Vec::new(),
         ),
     ]
 }
 
 /// Lists with an entry for each storey.
-fn of_storeys(blows: &[Blow], left: &Left) -> [NamedResult; 3] {
-    let rest = blows.last().and_then(|blow| blow.rest.as_ref());
+fn of_storeys(impacts: &[SeriesImpact], left: &Left) -> [NamedResult; 3] {
+    let rest = impacts.last().and_then(|impact| impact.rest.as_ref());
     let (drift, parts) = rest
         .map(|rest| (rest.drift(), rest.drift_contributions()))
         .unwrap_or_default();
     [
-        largest_of_storeys(blows),
+        largest_of_storeys(impacts),
         list(left.drift, drift, parts),
-        sum_of_storeys(blows),
+        sum_of_storeys(impacts),
     ]
 }
 
 /// The displacement of the struck degree of freedom after an impact \[m\].
-fn position(blow: &Blow) -> Option<f64> {
-    blow.rest_of_struck().map(|(displacement, _)| displacement)
+fn position(impact: &SeriesImpact) -> Option<f64> {
+    impact
+        .rest_of_struck()
+        .map(|(displacement, _)| displacement)
 }
 
-fn contributions_to_position(blow: &Blow) -> Vec<Contribution> {
-    blow.doubts_of_rest()
+fn contributions_to_position(impact: &SeriesImpact) -> Vec<Contribution> {
+    impact
+        .rest_contributions()
         .map_or_else(Vec::new, |[position, _]| position)
 }
 
 /// A number of every impact; NaN if an impact does not have it.
-fn of_each(blows: &[Blow], kind: ResultKind) -> Vec<f64> {
-    blows
+fn of_each(impacts: &[SeriesImpact], kind: ResultKind) -> Vec<f64> {
+    impacts
         .iter()
-        .map(|blow| blow.number(kind.name).unwrap_or(f64::NAN))
+        .map(|impact| impact.number(kind.name).unwrap_or(f64::NAN))
         .collect()
 }
 
 /// The contributions to a list with an entry for each impact.
-fn by_impact(blows: &[Blow], of_impact: impl Fn(&Blow) -> Vec<Contribution>) -> Vec<Contribution> {
-    let of_entry = |(entry, blow)| {
-        of_impact(blow)
+fn by_impact(
+    impacts: &[SeriesImpact],
+    of_impact: impl Fn(&SeriesImpact) -> Vec<Contribution>,
+) -> Vec<Contribution> {
+    let of_entry = |(entry, impact)| {
+        of_impact(impact)
             .into_iter()
             .map(move |part| Contribution { entry, ..part })
     };
-    blows.iter().enumerate().flat_map(of_entry).collect()
+    impacts.iter().enumerate().flat_map(of_entry).collect()
 }
 
 /// E = ½ Ms V0²: the relative contribution of the velocity to the energy is twice that to the velocity.
-fn contributions_to_velocity(blow: &Blow) -> Vec<Contribution> {
-    let parts = contributions(blow, impact::STRIKER_ENERGY).into_iter();
+fn contributions_to_velocity(impact: &SeriesImpact) -> Vec<Contribution> {
+    let parts = contributions(impact, impact::STRIKER_ENERGY).into_iter();
     let of_speed = parts.filter(|part| matches!(part.source, Source::StrikerVelocity(_)));
     of_speed
         .map(|part| Contribution {
-            amount: part.amount * 0.5 * blow.velocity / blow.energy,
+            amount: part.amount * 0.5 * impact.velocity / impact.energy,
             ..part
         })
         .collect()
 }
 
 /// The largest drift of each storey over all impacts, with the uncertainty of its impact.
-fn largest_of_storeys(blows: &[Blow]) -> NamedResult {
-    let lists: Vec<(&[f64], &Blow)> = blows
+fn largest_of_storeys(impacts: &[SeriesImpact]) -> NamedResult {
+    let lists: Vec<(&[f64], &SeriesImpact)> = impacts
         .iter()
-        .filter_map(|blow| Some((blow.list(impact::MAX_DRIFT.name)?, blow)))
+        .filter_map(|impact| Some((impact.list(impact::MAX_DRIFT.name)?, impact)))
         .collect();
     let storeys = lists.first().map_or(0, |(values, _)| values.len());
     let (mut values, mut parts) = (Vec::new(), Vec::new());
@@ -193,12 +206,12 @@ fn largest_of_storeys(blows: &[Blow]) -> NamedResult {
                 most
             }
         });
-        let Some((found, blow)) = largest else {
+        let Some((found, impact)) = largest else {
             continue;
         };
         values.push(found[storey]);
         parts.extend(
-            contributions(blow, impact::MAX_DRIFT)
+            contributions(impact, impact::MAX_DRIFT)
                 .into_iter()
                 .filter(|part| part.entry == storey),
         );
@@ -207,39 +220,45 @@ fn largest_of_storeys(blows: &[Blow]) -> NamedResult {
 }
 
 /// The energy of each storey, summed over all impacts.
-fn sum_of_storeys(blows: &[Blow]) -> NamedResult {
-    let lists = blows
+fn sum_of_storeys(impacts: &[SeriesImpact]) -> NamedResult {
+    let lists = impacts
         .iter()
-        .filter_map(|blow| blow.list(impact::STOREY_ENERGY.name));
+        .filter_map(|impact| impact.list(impact::STOREY_ENERGY.name));
     let sum = lists
         .map(<[f64]>::to_vec)
         .reduce(|sum, next| sum.iter().zip(next).map(|(sum, next)| sum + next).collect());
-    let parts = contributions_to_sum(blows, impact::STOREY_ENERGY);
+    let parts = contributions_to_sum(impacts, impact::STOREY_ENERGY);
     list(schema::STOREY_ENERGY, sum.unwrap_or_default(), parts)
 }
 
 /// The largest value of a result over all impacts, with the uncertainty of its impact.
-fn largest(blows: &[Blow], kind: ResultKind, of_impact: ResultKind) -> NamedResult {
-    let found = blows
+fn largest(impacts: &[SeriesImpact], kind: ResultKind, of_impact: ResultKind) -> NamedResult {
+    let found = impacts
         .iter()
-        .filter_map(|blow| Some((blow.number(of_impact.name)?, blow)))
+        .filter_map(|impact| Some((impact.number(of_impact.name)?, impact)))
         .filter(|(value, _)| value.is_finite());
     let most = found.reduce(|most, next| if next.0 > most.0 { next } else { most });
-    let parts = most.map_or_else(Vec::new, |(_, blow)| contributions(blow, of_impact));
+    let parts = most.map_or_else(Vec::new, |(_, impact)| contributions(impact, of_impact));
     number(kind, most.map(|(value, _)| value), parts)
 }
 
 /// The contributions to the sum of a result over all impacts: those from a shared source are added before they are squared.
-fn contributions_to_sum(blows: &[Blow], of_impact: ResultKind) -> Vec<Contribution> {
+fn contributions_to_sum(impacts: &[SeriesImpact], of_impact: ResultKind) -> Vec<Contribution> {
     let mut parts: Vec<Contribution> = Vec::new();
-    for part in blows.iter().flat_map(|blow| contributions(blow, of_impact)) {
+    for part in impacts
+        .iter()
+        .flat_map(|impact| contributions(impact, of_impact))
+    {
         share(&mut parts, part);
     }
     parts
 }
 
-fn contributions(blow: &Blow, kind: ResultKind) -> Vec<Contribution> {
-    let found = blow.results.iter().find(|result| result.name == kind.name);
+fn contributions(impact: &SeriesImpact, kind: ResultKind) -> Vec<Contribution> {
+    let found = impact
+        .results
+        .iter()
+        .find(|result| result.name == kind.name);
     found.map_or_else(Vec::new, |result| result.contributions.clone())
 }
 

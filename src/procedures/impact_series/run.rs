@@ -10,7 +10,7 @@ use crate::procedures::impact::run::ImpactRun;
 use crate::procedures::stepping::run::above_critical;
 use crate::procedures::unload::run::{MOST_TARGETS, to_rest};
 use crate::procedures::unload::uncertainty::RestUncertainty;
-use crate::record::{Blow, EscalateHistory, EventKind, History, NamedResult, Rest};
+use crate::record::{EscalateHistory, EventKind, History, NamedResult, Rest, SeriesImpact};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
@@ -19,7 +19,7 @@ use crate::schema::procedures::impact_series as schema;
 use crate::uncertainty::{Contribution, Source};
 use crate::units::Dimension;
 use crate::units::display::readable;
-use crate::verdict::{Declared, Verdict, assess_on_blow};
+use crate::verdict::{Declared, Verdict, assess_on_impact};
 
 pub(crate) fn perform(
     plan: &Escalate,
@@ -56,7 +56,7 @@ fn run(
         .transpose()?;
     above_critical(impact.steps(), session);
     let home = session.guard.commanded().to_vec();
-    let doubts = RestUncertainty::new(whole, inputs, session);
+    let uncertainty = RestUncertainty::new(whole, inputs, session);
     let mut done = 0;
     for (index, velocity) in velocities.iter().copied().enumerate() {
         let given = energies
@@ -69,7 +69,7 @@ fn run(
             stop,
         } = impact.strike(index, velocity, done, session);
         done += steps.steps.last().map_or(0, |last| last.step);
-        history.blows.push(Blow {
+        history.impacts.push(SeriesImpact {
             velocity,
             energy,
             results,
@@ -84,15 +84,15 @@ fn run(
             plan.between,
             &home,
             impact.unloading(),
-            &doubts.of_blow(index),
+            &uncertainty.of_impact(index),
             &mut done,
             session,
         )?;
         let stated = readable(energy, Dimension::ENERGY);
-        if let Some(blow) = history.blows.last_mut() {
-            blow.rest = Some(rest);
-            let (held, reason) = decide(plan, whole, blow, inputs.results());
-            blow.held = held;
+        if let Some(struck) = history.impacts.last_mut() {
+            struck.rest = Some(rest);
+            let (held, reason) = decide(plan, whole, struck, inputs.results());
+            struck.held = held;
             let ends = match held {
                 Some(true) => None,
                 Some(false) => Some("the condition is false".to_owned()),
@@ -121,19 +121,19 @@ fn run(
 fn decide(
     plan: &Escalate,
     whole: &Plan,
-    blow: &Blow,
+    struck: &SeriesImpact,
     before: &dyn Results,
 ) -> (Option<bool>, String) {
     let of_impact = OfImpact {
         own: plan.own,
-        results: as_brought(blow, plan.between),
+        results: as_brought(struck, plan.between),
         before,
     };
     let (rule, known) = (whole.decision_rule, Declared::of(whole, &of_impact));
     let parts = plan
         .condition
         .iter()
-        .map(|part| assess_on_blow(part, rule, &known, plan.own, &blow.history));
+        .map(|part| assess_on_impact(part, rule, &known, plan.own, &struck.history));
     let worst = parts.reduce(|worst, next| {
         if next.verdict > worst.verdict {
             next
@@ -151,19 +151,19 @@ fn decide(
 }
 
 /// The results of an impact, with the position to which the specimen was brought after it, named as in the results of the series.
-fn as_brought(blow: &Blow, between: Between) -> Vec<NamedResult> {
-    let mut results = blow.results.clone();
-    let Some(rest) = &blow.rest else {
+fn as_brought(struck: &SeriesImpact, between: Between) -> Vec<NamedResult> {
+    let mut results = struck.results.clone();
+    let Some(rest) = &struck.rest else {
         return results;
     };
     let left = Left::of(between);
-    let [parts, _] = blow.doubts_of_rest().unwrap_or_default();
+    let [parts, _] = struck.rest_contributions().unwrap_or_default();
     let position = number(
         left.displacement,
-        blow.rest_of_struck().map(|(position, _)| position),
+        struck.rest_of_struck().map(|(position, _)| position),
         parts,
     );
-    let drift = blow
+    let drift = struck
         .storey()
         .map(|_| list(left.drift, rest.drift(), rest.drift_contributions()));
     for brought in [Some(position), drift].into_iter().flatten() {
@@ -183,14 +183,14 @@ fn bring(
     between: Between,
     home: &[f64],
     unloading: &Unloading,
-    doubts: &RestUncertainty<'_>,
+    uncertainty: &RestUncertainty<'_>,
     done: &mut u64,
     session: &mut Session<'_>,
 ) -> Result<Rest, Stop> {
     if between == Between::Unload {
         let mut steps = Vec::new();
         let mut rest = to_rest(unloading.clone(), None, None, *done, session, &mut steps)?;
-        doubts.unloaded(&mut rest, unloading, &steps);
+        uncertainty.unloaded(&mut rest, unloading, &steps);
         // The first step is the start.
         *done += steps.len() as u64 - 1;
         return Ok(rest);
@@ -209,7 +209,7 @@ fn bring(
         force: reading.force,
         ..Rest::default()
     };
-    doubts.brought(&mut rest);
+    uncertainty.brought(&mut rest);
     Ok(rest)
 }
 

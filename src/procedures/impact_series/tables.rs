@@ -3,7 +3,7 @@
 use std::iter::once;
 
 use crate::procedures::impact;
-use crate::record::{Blow, EscalateHistory, Rest};
+use crate::record::{EscalateHistory, Rest, SeriesImpact};
 use crate::report::tables::TableColumn::{self, Flag, Integer, Number, Optional};
 use crate::report::tables::{Table, numeric, written};
 use crate::schema::columns::{self, column};
@@ -11,46 +11,46 @@ use crate::schema::procedures::impact as results;
 use crate::schema::{Column, ResultKind};
 use crate::units::Dimension;
 
-const BLOW: Column = column("blow", Dimension::NUMBER);
+const IMPACT_NUMBER: Column = column("blow", Dimension::NUMBER);
 const REST_DISPLACEMENT: Column = column("rest_displacement_m", Dimension::LENGTH);
 const REST_FORCE: Column = column("rest_force_n", Dimension::FORCE);
 
 /// An impact and its number, from 1.
 pub(crate) struct Row<'a> {
     number: u64,
-    blow: &'a Blow,
+    impact: &'a SeriesImpact,
 }
 
 impl Row<'_> {
     fn result(&self, result: ResultKind) -> Option<f64> {
-        self.blow.number(result.name)
+        self.impact.number(result.name)
     }
 }
 
 /// A storey after an impact.
 pub(crate) struct StoreyRow<'a> {
     number: u64,
-    blow: &'a Blow,
+    impact: &'a SeriesImpact,
     /// From 0.
     storey: usize,
 }
 
 impl StoreyRow<'_> {
     fn result(&self, result: ResultKind) -> Option<f64> {
-        self.blow.list(result.name)?.get(self.storey).copied()
+        self.impact.list(result.name)?.get(self.storey).copied()
     }
 
     fn rest(&self, read: fn(&Rest) -> Vec<f64>) -> Option<f64> {
-        read(self.blow.rest.as_ref()?).get(self.storey).copied()
+        read(self.impact.rest.as_ref()?).get(self.storey).copied()
     }
 }
 
 /// One row per impact: its level, its results, the position after it. Each impact also has the table of an impact.
-pub(crate) fn blows<'a>() -> Vec<TableColumn<Row<'a>>> {
+pub(crate) fn impact_columns<'a>() -> Vec<TableColumn<Row<'a>>> {
     vec![
-        Integer(BLOW, |row| row.number),
-        Number(columns::VELOCITY, |row| row.blow.velocity),
-        Number(columns::ENERGY, |row| row.blow.energy),
+        Integer(IMPACT_NUMBER, |row| row.number),
+        Number(columns::VELOCITY, |row| row.impact.velocity),
+        Number(columns::ENERGY, |row| row.impact.energy),
         Optional(column("max_displacement_m", Dimension::LENGTH), |row| {
             row.result(results::MAX_DISPLACEMENT)
         }),
@@ -78,21 +78,21 @@ pub(crate) fn blows<'a>() -> Vec<TableColumn<Row<'a>>> {
             row.result(results::ENERGY_ERROR)
         }),
         Optional(REST_DISPLACEMENT, |row| {
-            row.blow.rest_of_struck().map(|rest| rest.0)
+            row.impact.rest_of_struck().map(|rest| rest.0)
         }),
         Optional(REST_FORCE, |row| {
-            row.blow.rest_of_struck().map(|rest| rest.1)
+            row.impact.rest_of_struck().map(|rest| rest.1)
         }),
-        Flag("held", |row| row.blow.held),
+        Flag("held", |row| row.impact.held),
     ]
 }
 
 /// One row per impact and storey: its results, the position after it. Each impact also has the table of an impact on a storey.
 pub(crate) fn storeys<'a>() -> Vec<TableColumn<StoreyRow<'a>>> {
     vec![
-        Integer(BLOW, |row| row.number),
+        Integer(IMPACT_NUMBER, |row| row.number),
         Integer(columns::STOREY, |row| row.storey as u64 + 1),
-        Number(columns::ENERGY, |row| row.blow.energy),
+        Number(columns::ENERGY, |row| row.impact.energy),
         Optional(column("floor_displacement_m", Dimension::LENGTH), |row| {
             row.result(results::FLOOR_DISPLACEMENT)
         }),
@@ -118,7 +118,7 @@ pub(crate) fn storeys<'a>() -> Vec<TableColumn<StoreyRow<'a>>> {
 /// The numeric columns of all its tables.
 pub(crate) fn columns() -> Vec<Column> {
     [
-        numeric(&blows()),
+        numeric(&impact_columns()),
         numeric(&storeys()),
         impact::tables::columns(),
     ]
@@ -127,22 +127,22 @@ pub(crate) fn columns() -> Vec<Column> {
 
 /// The table of the impacts, that of each impact under a numbered name, and that of the storeys.
 pub(crate) fn tables(name: String, history: &EscalateHistory) -> Vec<Table<'_>> {
-    let tables = history.blows.iter().zip(1..).map(|(blow, number)| {
+    let tables = history.impacts.iter().zip(1..).map(|(impact, number)| {
         let name = format!("{name}_{number}");
-        impact::tables::table(name, &blow.history)
+        impact::tables::table(name, &impact.history)
     });
     let tables: Vec<Table<'_>> = tables.collect();
     let has_storeys = history
         .storeys()
         .next()
-        .is_some_and(|blow| !blow.floors.is_empty());
+        .is_some_and(|impact| !impact.floors.is_empty());
     let of_storeys = has_storeys.then(|| {
         Table::of_steps(format!("{name}_storeys"), 1, 1, |_| {
             written(&storeys(), &storey_rows(history))
         })
     });
     once(Table::of_steps(name, 1, 1, |_| {
-        written(&blows(), &rows(history))
+        written(&impact_columns(), &rows(history))
     }))
     .chain(tables)
     .chain(of_storeys)
@@ -150,9 +150,9 @@ pub(crate) fn tables(name: String, history: &EscalateHistory) -> Vec<Table<'_>> 
 }
 
 fn rows(history: &EscalateHistory) -> Vec<Row<'_>> {
-    let numbered = (1..).zip(&history.blows);
+    let numbered = (1..).zip(&history.impacts);
     numbered
-        .map(|(number, blow)| Row { number, blow })
+        .map(|(number, impact)| Row { number, impact })
         .collect()
 }
 
@@ -160,14 +160,14 @@ fn storey_rows(history: &EscalateHistory) -> Vec<StoreyRow<'_>> {
     let storeys = history
         .storeys()
         .next()
-        .and_then(|blow| blow.floors.first())
+        .and_then(|impact| impact.floors.first())
         .map_or(0, |floors| floors.computed.len());
-    let of_blow = |(number, blow)| {
+    let rows_of = |(number, impact)| {
         (0..storeys).map(move |storey| StoreyRow {
             number,
-            blow,
+            impact,
             storey,
         })
     };
-    (1..).zip(&history.blows).flat_map(of_blow).collect()
+    (1..).zip(&history.impacts).flat_map(rows_of).collect()
 }

@@ -43,9 +43,9 @@ impl<'a> AxesState<'a> {
 pub(crate) struct Monitors(Vec<Monitor>);
 
 impl Monitors {
-    /// `taken` are the effective forces of the recursion at the commanded displacements \[N\].
-    pub(crate) fn new(commanded: &[f64], reading: &Reading, taken: &[f64]) -> Self {
-        let axes = tracked(commanded, reading, taken);
+    /// `effective_force` are the effective forces of the recursion at the commanded displacements \[N\].
+    pub(crate) fn new(commanded: &[f64], reading: &Reading, effective_force: &[f64]) -> Self {
+        let axes = tracked(commanded, reading, effective_force);
         Self(axes.map(|axis| Monitor::new(&axis)).collect())
     }
 
@@ -54,14 +54,17 @@ impl Monitors {
         self.0.iter().map(Monitor::tracking).collect()
     }
 
-    /// Adds a step; `taken` are the effective forces of the recursion at the commanded displacements \[N\].
+    /// Adds a step; `effective_force` are the effective forces of the recursion at the commanded displacements \[N\].
     pub(crate) fn take(
         &mut self,
         commanded: &[f64],
         reading: &Reading,
-        taken: &[f64],
+        effective_force: &[f64],
     ) -> Vec<Tracking> {
-        let axes = self.0.iter_mut().zip(tracked(commanded, reading, taken));
+        let axes = self
+            .0
+            .iter_mut()
+            .zip(tracked(commanded, reading, effective_force));
         axes.map(|(monitor, axis)| monitor.take(&axis)).collect()
     }
 }
@@ -70,16 +73,22 @@ impl Monitors {
 fn tracked<'a>(
     commanded: &'a [f64],
     reading: &'a Reading,
-    taken: &'a [f64],
+    effective_force: &'a [f64],
 ) -> impl Iterator<Item = TrackedStep> {
-    let read = reading.displacement.iter().zip(&reading.force).zip(taken);
+    let read = reading
+        .displacement
+        .iter()
+        .zip(&reading.force)
+        .zip(effective_force);
     let axes = commanded.iter().zip(read);
-    axes.map(|(commanded, ((measured, force), taken))| TrackedStep {
-        commanded: *commanded,
-        measured: *measured,
-        force: *force,
-        effective_force: *taken,
-    })
+    axes.map(
+        |(commanded, ((measured, force), effective_force))| TrackedStep {
+            commanded: *commanded,
+            measured: *measured,
+            force: *force,
+            effective_force: *effective_force,
+        },
+    )
 }
 
 /// The errors of a step.

@@ -37,7 +37,7 @@ pub(crate) struct FrameUncertainty<'run> {
     /// The amount by which its damping ratio was raised to zero.
     pub lift: f64,
     /// Index of the impact in the procedure, from 0: each impact has its own errors.
-    pub blow: u16,
+    pub impact: u16,
 }
 
 /// What a procedure says of its frame and its steps.
@@ -72,7 +72,7 @@ impl<'run> FrameUncertainty<'run> {
         Self::new(tested, whole, inputs, session)
     }
 
-    pub fn of_blow(
+    pub fn of_impact(
         plan: &'run Impact,
         target: &'run StoreyTarget,
         whole: &'run Plan,
@@ -119,14 +119,14 @@ impl<'run> FrameUncertainty<'run> {
             procedure: inputs.procedure(),
             noise: session.guard.declared_noise(),
             lift: inputs.lift(),
-            blow: 0,
+            impact: 0,
         }
     }
 
     /// For a later impact of the same procedure, counted from 0.
-    pub fn of_blow_number(self, index: usize) -> Self {
+    pub fn of_impact_number(self, index: usize) -> Self {
         Self {
-            blow: u16::try_from(index).unwrap_or(u16::MAX),
+            impact: u16::try_from(index).unwrap_or(u16::MAX),
             ..self
         }
     }
@@ -191,7 +191,7 @@ impl<'run> FrameUncertainty<'run> {
     ) -> Result<Contributions, Unknown<Stop>> {
         let study = Study {
             procedure: self.procedure,
-            impact: self.blow,
+            impact: self.impact,
             evaluate,
             instruments: &InstrumentUncertainty::of(self.whole, self.noise, self.floors()),
             inputs,
@@ -297,7 +297,7 @@ impl<'run> FrameUncertainty<'run> {
     }
 
     /// The recorded path with the velocities at its targets \[m/s\].
-    pub fn under_way(
+    pub fn with_velocities(
         &self,
         steps: &FrameSteps,
         path: FramePath,

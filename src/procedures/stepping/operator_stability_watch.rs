@@ -294,7 +294,7 @@ mod tests {
 
     /// 500 N/m on 2 kg: 2√(2/200) s = 0.2 s.
     #[test]
-    fn a_stiffer_specimen_is_said_once_with_the_limit_that_is_left() {
+    fn a_stiffer_specimen_is_reported_once_with_the_remaining_limit() {
         let mut stiffer = Stiffer::new(judged((0.0, 0.0)), (0.0, 0.0));
         assert_eq!(
             stiffer.judge((0.000_5, 0.15), "the specimen"),
@@ -380,29 +380,32 @@ mod tests {
                 },
                 (0.0, 0.0),
             );
-            let mut place = 0.001;
-            let told = (0..12).filter_map(|_| {
+            let mut displacement = 0.001;
+            let remarks = (0..12).filter_map(|_| {
                 let text = stiffer.judge(
-                    (place, stiffness * place + 0.1 * place.signum()),
+                    (
+                        displacement,
+                        stiffness * displacement + 0.1 * displacement.signum(),
+                    ),
                     "the specimen",
                 );
-                place *= -growth;
+                displacement *= -growth;
                 text
             });
-            told.collect::<Vec<String>>()
+            remarks.collect::<Vec<String>>()
         };
         let splitting = Integrator::AlphaOs { alpha: 0.0 };
-        let told = of(splitting, 1.3, 900.0);
+        let remarks = of(splitting, 1.3, 900.0);
         assert!(
-            told.len() == 1 && told[0].contains("900.0 N/m measured, K_I = 300.0 N/m"),
-            "{told:?}"
+            remarks.len() == 1 && remarks[0].contains("900.0 N/m measured, K_I = 300.0 N/m"),
+            "{remarks:?}"
         );
-        let told = of(Integrator::Explicit, 1.3, 900.0);
+        let remarks = of(Integrator::Explicit, 1.3, 900.0);
         assert!(
-            told.len() == 1
-                && told[0].contains("reached 900.0 N/m")
-                && told[0].contains("94.28 ms"),
-            "{told:?}"
+            remarks.len() == 1
+                && remarks[0].contains("reached 900.0 N/m")
+                && remarks[0].contains("94.28 ms"),
+            "{remarks:?}"
         );
         for (integrator, growth, stiffness) in [
             (splitting, 1.3, 300.0),
@@ -423,7 +426,7 @@ mod tests {
     fn rounding_is_no_stiffness() {
         for from in [0.1, 0.3, 1.7] {
             let friction = 1e4;
-            let read = |place: f64| (place, 300.0 * place + friction);
+            let read = |displacement: f64| (displacement, 300.0 * displacement + friction);
             let mut stiffer = Stiffer::new(judged((0.0, 0.0)), read(from));
             for step in 1..2000 {
                 assert_eq!(

@@ -63,10 +63,10 @@ impl ReadField for RampFit {
         let Some((entry, _)) = checker.field(block, field) else {
             return Some(Self::Linear);
         };
-        let place = checker.context_of(block, entry);
+        let context = checker.context_of(block, entry);
         let chosen = checker.choice(block, field)?;
         match chosen.variant.name {
-            "multilinear" => curve::breaks(checker, &chosen, place).map(Self::Multilinear),
+            "multilinear" => curve::breaks(checker, &chosen, context).map(Self::Multilinear),
             "bilinear" => Some(Self::Bilinear),
             _ => Some(Self::Linear),
         }
@@ -78,9 +78,9 @@ impl ReadField for Option<WatchedHold> {
     fn read(checker: &mut Checker<'_>, block: usize, field: &'static str) -> Option<Self> {
         match checker.field(block, field) {
             Some((entry, written)) => {
-                let place = checker.context_of(block, entry);
+                let context = checker.context_of(block, entry);
                 let chosen = checker.choice(block, field)?;
-                relaxation(checker, &chosen, place, written.value.span).map(Some)
+                relaxation(checker, &chosen, context, written.value.span).map(Some)
             }
             None => Some(None),
         }
@@ -91,11 +91,11 @@ impl ReadField for Option<WatchedHold> {
 fn relaxation<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
-    place: Context,
+    context: Context,
     span: Span,
 ) -> Option<WatchedHold> {
     let readings = checker
-        .constant_argument(chosen, schema::READINGS.name, place)
+        .constant_argument(chosen, schema::READINGS.name, context)
         .and_then(whole);
     let decay = match chosen.variant.name {
         "standard_linear_solid" => Some(RelaxationModel::StandardLinearSolid),
@@ -103,7 +103,7 @@ fn relaxation<'a>(
         _ => None,
     };
     if let Some(model) = decay {
-        let accuracy = checker.optional_argument(chosen, schema::ACCURACY.name, place);
+        let accuracy = checker.optional_argument(chosen, schema::ACCURACY.name, context);
         return Some(WatchedHold {
             model: WatchedModel::Decay {
                 model,
@@ -113,7 +113,7 @@ fn relaxation<'a>(
         });
     }
     let (rate, readings) = (
-        checker.constant_argument(chosen, schema::ALLOWED_RATE.name, place)?,
+        checker.constant_argument(chosen, schema::ALLOWED_RATE.name, context)?,
         readings?,
     );
     let law = (chosen.variant.name == "logarithmic").then_some(RelaxationLaw::Logarithmic);

@@ -24,7 +24,7 @@ pub(crate) fn watched(
     readings: u32,
     session: &mut Session<'_>,
 ) -> Result<(Vec<(f64, f64)>, f64), Stop> {
-    let mut taken = vec![(0.0, first(settled).1)];
+    let mut force_history = vec![(0.0, first(settled).1)];
     let mut last = settled.time;
     let share = |index: u32| (f64::from(index) / f64::from(readings)).powi(2);
     for index in 1..=readings {
@@ -32,10 +32,10 @@ pub(crate) fn watched(
             .guard
             .pause(pause * (share(index) - share(index - 1)))?;
         let reading = session.guard.read()?;
-        taken.push((reading.time - settled.time, first(&reading).1));
+        force_history.push((reading.time - settled.time, first(&reading).1));
         last = reading.time;
     }
-    Ok((taken, last))
+    Ok((force_history, last))
 }
 
 /// Seconds during which a rig waited, moved and settled between a reading before a move and one after it; `moved` is the observed
@@ -49,7 +49,7 @@ pub(crate) fn parts(before: f64, moved: Option<[f64; 2]>, after: f64) -> [f64; 3
 
 /// The evaluation of the dwells of a ramp.
 #[derive(Default)]
-pub(crate) struct Told {
+pub(crate) struct DwellEvaluation {
     pub relaxation: Option<RelaxationFit>,
     pub reached: Option<SuperpositionFit>,
     pub results: Vec<NamedResult>,
@@ -58,14 +58,14 @@ pub(crate) struct Told {
 
 /// `start`: displacement \[m\] and force \[N\] before the first move; `noise`: the declared noise of the cell \[N\]; `stated`: the
 /// variance of a single reading.
-pub(crate) fn told(
+pub(crate) fn evaluate_dwells(
     holds: &[Hold],
     start: (f64, f64),
     asked: Option<WatchedModel>,
     noise: Option<f64>,
     stated: StatedVariance,
-) -> Told {
-    let mut told = Told::default();
+) -> DwellEvaluation {
+    let mut evaluation = DwellEvaluation::default();
     let mut accuracy = noise;
     match asked {
         Some(WatchedModel::Decay {
@@ -75,28 +75,35 @@ pub(crate) fn told(
             accuracy = asked.or(noise);
             match fit_relaxation_stated(holds, start.0, model, stated) {
                 Ok(fit) => {
-                    told.remarks = remarks(&fit, holds, accuracy);
-                    told.relaxation = Some(fit);
+                    evaluation.remarks = remarks(&fit, holds, accuracy);
+                    evaluation.relaxation = Some(fit);
                 }
-                Err(reason) => told.remarks.push(unrelaxed(reason).to_owned()),
+                Err(reason) => evaluation.remarks.push(unrelaxed(reason).to_owned()),
             }
         }
         Some(WatchedModel::Reached { law, rate }) => {
             match fit_superposition_stated(holds, start.1, law, rate, stated) {
                 Ok(fit) => {
-                    told.remarks = reached_remarks(&fit, holds, rate, noise);
-                    told.reached = Some(fit);
+                    evaluation.remarks = reached_remarks(&fit, holds, rate, noise);
+                    evaluation.reached = Some(fit);
                 }
-                Err(reason) => told.remarks.push(unrelaxed(reason).to_owned()),
+                Err(reason) => evaluation.remarks.push(unrelaxed(reason).to_owned()),
             }
         }
         None => {}
     }
-    told.results = results(told.relaxation.as_ref(), told.reached.as_ref(), accuracy).into();
+    evaluation.results = results(
+        evaluation.relaxation.as_ref(),
+        evaluation.reached.as_ref(),
+        accuracy,
+    )
+    .into();
     if matches!(asked, Some(WatchedModel::Reached { .. })) {
-        told.results.extend(of_the_law(told.reached.as_ref()));
+        evaluation
+            .results
+            .extend(of_the_law(evaluation.reached.as_ref()));
     }
-    told
+    evaluation
 }
 
 const fn unrelaxed(reason: Unrelaxed) -> &'static str {
@@ -122,16 +129,16 @@ fn reached_remarks(
     rate: f64,
     noise: Option<f64>,
 ) -> Vec<String> {
-    let mut told = Vec::new();
+    let mut texts = Vec::new();
     let best = fit.best();
     if fit.margin().is_some_and(|margin| margin.abs() < STRONG) {
-        told.push(
+        texts.push(
             "the pauses do not distinguish exponential from logarithmic relaxation: use longer pauses, or more readings"
                 .to_owned(),
         );
     }
     if let Some(noise) = noise.filter(|noise| best.scatter > FAR * noise) {
-        told.push(format!(
+        texts.push(format!(
             "the readings in the pauses scatter by {} about the law, but the noise is {}: relaxation is not the only effect",
             readable(best.scatter, Dimension::FORCE),
             readable(noise, Dimension::FORCE),
@@ -143,7 +150,7 @@ fn reached_remarks(
             .filter_map(|hold| hold.readings.last())
             .map(|(time, _)| *time)
             .fold(0.0, f64::max);
-        told.push(format!(
+        texts.push(format!(
             "at the end of the pause of {} the force rate was {} (limit {}): a pause of {} is sufficient",
             readable(longest, Dimension::TIME),
             readable(best.rate.0, Dimension::FORCE_RATE),
@@ -151,15 +158,15 @@ fn reached_remarks(
             readable(best.required_pause.0, Dimension::TIME),
         ));
     }
-    told
+    texts
 }
 
 fn remarks(fit: &RelaxationFit, holds: &[Hold], accuracy: Option<f64>) -> Vec<String> {
-    let mut told = Vec::new();
+    let mut texts = Vec::new();
     let (tau, error) = fit.time_constant;
     if error > 0.5 * tau {
         let shown = readable(tau, Dimension::TIME);
-        told.push(format!(
+        texts.push(format!(
             "the time constant {shown} is uncertain: its standard error is more than half of it"
         ));
     }
@@ -169,7 +176,7 @@ fn remarks(fit: &RelaxationFit, holds: &[Hold], accuracy: Option<f64>) -> Vec<St
         .map(|(time, _)| *time)
         .fold(0.0, f64::max);
     if let Some(accuracy) = accuracy.filter(|accuracy| fit.remaining.0 > *accuracy) {
-        told.push(format!(
+        texts.push(format!(
             "the pause of {} leaves a relaxation of {} (limit {}): a pause of {} is sufficient",
             readable(longest, Dimension::TIME),
             readable(fit.remaining.0, Dimension::FORCE),
@@ -177,7 +184,7 @@ fn remarks(fit: &RelaxationFit, holds: &[Hold], accuracy: Option<f64>) -> Vec<St
             readable(fit.required_pause(accuracy).0, Dimension::TIME),
         ));
     }
-    told
+    texts
 }
 
 /// A result with its standard error.

@@ -42,7 +42,7 @@ pub fn hold(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
         let displacements = checker
             .field(*block, schema::NAMES.displacements)
             .map_or(head, |(_, entry)| entry.value.span);
-        if let Some((lacks, way_out)) = lacks(ramp, reference.name) {
+        if let Some((lacks, help)) = lacks(ramp, reference.name) {
             if never.insert(*block) {
                 let ramp = (procedure.name.as_str(), displacements);
                 checker.diagnostics.push(fault::never_given(
@@ -50,7 +50,7 @@ pub fn hold(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
                     span,
                     ramp,
                     &lacks,
-                    way_out,
+                    help,
                 ));
             }
         } else if FITTED.contains(&reference.name)
@@ -118,9 +118,14 @@ fn fitted_to_too_few(ramp: &StiffnessRamp) -> Option<(String, &'static str)> {
             "write more displacements; for a straight line five or more",
         ));
     }
-    let places: Option<Vec<f64>> = ramp.displacements.iter().map(Formula::constant).collect();
-    let one_place = places.is_some_and(|places| places.iter().all(|place| *place == places[0]));
-    one_place.then(|| {
+    let displacements: Option<Vec<f64>> =
+        ramp.displacements.iter().map(Formula::constant).collect();
+    let at_one_displacement = displacements.is_some_and(|displacements| {
+        displacements
+            .iter()
+            .all(|displacement| *displacement == displacements[0])
+    });
+    at_one_displacement.then(|| {
         (
             "all its steps are at one position".to_owned(),
             "write different displacements",

@@ -44,14 +44,14 @@ pub(crate) fn perform(
     let noise = Some(instruments.errors(0).noise).filter(|noise| *noise > 0.0);
     let asked = plan.relaxation.map(|asked| asked.model);
     let start = ramp.starts.first().copied();
-    let told = hold::told(
+    let evaluation = hold::evaluate_dwells(
         &ramp.holds,
         start.unwrap_or_default(),
         asked,
         noise,
         instruments.stated_variance(0, 1),
     );
-    for text in told.remarks.into_iter().filter(|_| stop.is_none()) {
+    for text in evaluation.remarks.into_iter().filter(|_| stop.is_none()) {
         session.event(EventKind::Remark, text);
     }
     let (before, readings) = (
@@ -72,7 +72,7 @@ pub(crate) fn perform(
             &mut results,
         );
     }
-    results.extend(told.results);
+    results.extend(evaluation.results);
     let Fits {
         line: fit,
         bilinear,
@@ -81,8 +81,8 @@ pub(crate) fn perform(
     } = fits;
     let (multilinear, relaxation, reached) = (
         multilinear.map(Box::new),
-        told.relaxation.map(Box::new),
-        told.reached.map(Box::new),
+        evaluation.relaxation.map(Box::new),
+        evaluation.reached.map(Box::new),
     );
     let history = RampHistory {
         start,
@@ -170,7 +170,7 @@ impl Ramp {
             ));
             let mut before = None;
             let outwards = displacements.iter().map(|command| (*command, false));
-            let way_back = displacements
+            let return_steps = displacements
                 .iter()
                 .rev()
                 .skip(1)
@@ -178,7 +178,7 @@ impl Ramp {
                 .chain(std::iter::once(home))
                 .filter(|_| plan.return_path)
                 .map(|command| (command, true));
-            for (command, returning) in outwards.chain(way_back) {
+            for (command, returning) in outwards.chain(return_steps) {
                 let target = Target {
                     command,
                     returning,
@@ -353,20 +353,22 @@ fn results(direct: &Direct, fits: &Fits) -> Vec<NamedResult> {
         ..
     } = fits;
     let (fit, bilinear, multilinear) = (fit.as_ref(), bilinear.as_ref(), multilinear.as_ref());
-    let told = |(value, error): (f64, f64)| (value, Some(error));
+    let with_error = |(value, error): (f64, f64)| (value, Some(error));
     let stiffness = fit.map(|fit| (fit.slope, fit.slope_error));
     let stiffness = stiffness.or(bilinear.map(|fit| (fit.stiffness, fit.stiffness_error)));
     let stiffness = stiffness
         .or(multilinear.map(|fit| fit.stiffnesses[0]))
-        .map(told);
+        .map(with_error);
     let intercept = fit.map(|fit| (fit.intercept, fit.intercept_error));
     let intercept = intercept.or(bilinear.map(|fit| (fit.intercept, fit.intercept_error)));
-    let intercept = intercept.or(multilinear.map(|fit| fit.intercept)).map(told);
+    let intercept = intercept
+        .or(multilinear.map(|fit| fit.intercept))
+        .map(with_error);
     let r_squared = fit
         .map(|fit| fit.r_squared)
         .or(bilinear.map(|fit| fit.r_squared));
     let r_squared = r_squared.or(multilinear.map(|fit| fit.r_squared));
-    let of = |value: fn(&BilinearFit) -> (f64, f64)| bilinear.map(value).map(told);
+    let of = |value: fn(&BilinearFit) -> (f64, f64)| bilinear.map(value).map(with_error);
     let mut results = vec![
         schema::STIFFNESS.found_with(stiffness),
         schema::SECANT_STIFFNESS.found(direct.secant_stiffness),

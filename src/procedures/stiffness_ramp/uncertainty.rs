@@ -12,7 +12,7 @@ use crate::physics::statistics::samples::mean;
 use crate::plan::StiffnessRamp;
 use crate::plan::formula::ProcedureId;
 use crate::procedures::common::loop_sampling::{left_open_by, of_open};
-use crate::procedures::common::results::{give, largest, place};
+use crate::procedures::common::results::{give, index_of, largest};
 use crate::record::{NamedResult, RampStep};
 use crate::rig::DeclaredNoise;
 use crate::schema::procedures::stiffness_ramp as schema;
@@ -189,7 +189,7 @@ pub(crate) fn propagate(
     // Inputs have no bounds here, and no one waits for progress.
     if let Ok(mut contributions) = study.contributions::<Infallible>(&mut |_, _| Ok(())) {
         let layout = DIRECT.map(|(kind, _)| (kind.name, 1));
-        if let Some(of_loops) = place(&layout, schema::LOOP_ENERGY) {
+        if let Some(of_loops) = index_of(&layout, schema::LOOP_ENERGY) {
             contributions[of_loops].push(Contribution::new(
                 Source::LoopSampling { procedure },
                 of_open(readings.left_open(plan, instruments.errors(0))),
@@ -400,7 +400,7 @@ mod tests {
     /// has none.
     #[test]
     fn a_line_through_a_bend_is_remarked_on() {
-        let says = |behaviour, noise| {
+        let has_remark = |behaviour, noise| {
             let mut plan = elastic_plan(STIFFNESS, vec![ProcedureKind::StiffnessRamp(ramp(2e-3))]);
             plan.specimens[0].behaviour = Some(behaviour);
             plan.rig.link = Link::Virtual(VirtualLink {
@@ -415,7 +415,7 @@ mod tests {
             })
         };
         for noise in [0.0, 0.1] {
-            assert!(says(
+            assert!(has_remark(
                 Behaviour::Bilinear {
                     stiffness: STIFFNESS,
                     yield_force: 10.0,
@@ -423,7 +423,7 @@ mod tests {
                 },
                 noise
             ));
-            assert!(!says(
+            assert!(!has_remark(
                 Behaviour::Elastic {
                     stiffness: STIFFNESS
                 },

@@ -19,7 +19,7 @@ use crate::uncertainty::{Contribution, InstrumentUncertainty, Source};
 /// A reading up to this many standard deviations of the cell's noise is not a load.
 pub(crate) const NOISE: f64 = 3.0;
 /// A storey shows a stiffness if its storey drift changes by more than this fraction of the largest change on the path; less is rounding.
-const TOLD: f64 = 1e-6;
+const SIGNIFICANT_FRACTION: f64 = 1e-6;
 
 /// The uncertain inputs of a position of rest.
 #[derive(Clone, Copy)]
@@ -27,7 +27,7 @@ pub(crate) struct RestUncertainty<'run> {
     whole: &'run Plan,
     noise: DeclaredNoise,
     procedure: ProcedureId,
-    blow: u16,
+    impact: u16,
 }
 
 /// Errors of one reading of an axis: standard deviations \[N\] and \[m\].
@@ -39,14 +39,14 @@ impl<'run> RestUncertainty<'run> {
             whole,
             noise: session.guard.declared_noise(),
             procedure: inputs.procedure(),
-            blow: 0,
+            impact: 0,
         }
     }
 
     /// For a later impact of the same procedure, counted from 0.
-    pub fn of_blow(self, index: usize) -> Self {
+    pub fn of_impact(self, index: usize) -> Self {
         Self {
-            blow: u16::try_from(index).unwrap_or(u16::MAX),
+            impact: u16::try_from(index).unwrap_or(u16::MAX),
             ..self
         }
     }
@@ -80,17 +80,18 @@ impl<'run> RestUncertainty<'run> {
         let most = |values: &mut dyn Iterator<Item = f64>| {
             values.fold(0.0, |most: f64, value| most.max(value.abs()))
         };
-        let told = NOISE * most(&mut errors.iter().map(|error| error.0));
-        let told = told.max(unloading.force_of(most(&mut errors.iter().map(|error| error.1))));
-        if !exact && most(&mut rest.force.iter().copied()) > told {
+        let explained = NOISE * most(&mut errors.iter().map(|error| error.0));
+        let explained =
+            explained.max(unloading.force_of(most(&mut errors.iter().map(|error| error.1))));
+        if !exact && most(&mut rest.force.iter().copied()) > explained {
             let RestUncertainty {
-                procedure, blow, ..
+                procedure, impact, ..
             } = *self;
             let force = rest.force.clone();
             moves(
                 rest,
                 &unloading,
-                Source::RestLoad { procedure, blow },
+                Source::RestLoad { procedure, impact },
                 &force,
             );
         }
@@ -114,14 +115,14 @@ impl<'run> RestUncertainty<'run> {
 
     const fn reading(&self, reading: usize) -> Source {
         let RestUncertainty {
-            procedure, blow, ..
+            procedure, impact, ..
         } = *self;
         // Three readings of each of at most MOST_STOREYS floors.
         #[expect(clippy::cast_possible_truncation, reason = "at most 3 · 64")]
         let reading = reading as u16;
         Source::RestReading {
             procedure,
-            blow,
+            impact,
             reading,
         }
     }
@@ -132,11 +133,11 @@ impl<'run> RestUncertainty<'run> {
         let (mut of_displacement, mut of_force) = (Vec::new(), Vec::new());
         for (axis, (force_error, displacement_error)) in errors.iter().enumerate() {
             let calibration = self.whole.rig.calibration_of(axis);
-            let (place, force) = (rest.displacement[axis], rest.force[axis]);
+            let (displacement, force) = (rest.displacement[axis], rest.force[axis]);
             of_displacement.push(some([
                 (
                     Source::DisplacementScale(axis),
-                    place * calibration.displacement_uncertainty,
+                    displacement * calibration.displacement_uncertainty,
                 ),
                 (self.reading(axis), *displacement_error),
             ]));
@@ -184,12 +185,12 @@ fn shown(expected: &Unloading, steps: &[UnloadStep], errors: &Errors) -> Unloadi
             .map(|pair| (loaded(&pair[0]), loaded(&pair[1])))
     };
     let change = |(from, to): (Loaded<'_>, Loaded<'_>)| {
-        let ways = from
+        let changes = from
             .displacement
             .iter()
             .zip(to.displacement)
             .map(|(from, to)| (to - from).abs());
-        ways.fold(0.0, f64::max)
+        changes.fold(0.0, f64::max)
     };
     let farthest = moves().map(change).fold(0.0, f64::max);
     // The noise of a shear is that of all cells above it; the noise of a storey drift is that of two positions.
@@ -204,8 +205,10 @@ fn shown(expected: &Unloading, steps: &[UnloadStep], errors: &Errors) -> Unloadi
     };
     for (from, to) in moves() {
         unloading.learn_where(from, to, &|storey, stiffness, moved| {
-            let (force, place) = of_storey(storey);
-            moved.abs() > (TOLD * farthest).max(NOISE_MULTIPLE * place.max(force / stiffness))
+            let (force, rest_displacement) = of_storey(storey);
+            moved.abs()
+                > (SIGNIFICANT_FRACTION * farthest)
+                    .max(NOISE_MULTIPLE * rest_displacement.max(force / stiffness))
         });
     }
     unloading

@@ -6,7 +6,7 @@ use crate::uncertainty::Contribution;
 
 /// One impact.
 #[derive(Clone, Debug)]
-pub struct Blow {
+pub struct SeriesImpact {
     /// V0, m/s
     pub velocity: f64,
     /// ½ Ms V0², J
@@ -20,7 +20,7 @@ pub struct Blow {
     pub rest: Option<Rest>,
 }
 
-impl Blow {
+impl SeriesImpact {
     /// The striker and the struck point, step by step; for a frame, the struck floor.
     #[must_use]
     pub const fn impact(&self) -> &ImpactHistory {
@@ -70,7 +70,7 @@ impl Blow {
 
     /// The uncertainty contributions of both.
     #[must_use]
-    pub fn doubts_of_rest(&self) -> Option<[Vec<Contribution>; 2]> {
+    pub fn rest_contributions(&self) -> Option<[Vec<Contribution>; 2]> {
         let struck = self.storey().map_or(0, |history| history.struck);
         self.rest
             .as_ref()
@@ -81,12 +81,12 @@ impl Blow {
 /// A series of impacts, in their order.
 #[derive(Clone, Debug, Default)]
 pub struct EscalateHistory {
-    pub blows: Vec<Blow>,
+    pub impacts: Vec<SeriesImpact>,
 }
 
 impl EscalateHistory {
     /// The impacts on a frame, one by one; none for one degree of freedom.
     pub fn storeys(&self) -> impl Iterator<Item = &StruckFrame> {
-        self.blows.iter().filter_map(Blow::storey)
+        self.impacts.iter().filter_map(SeriesImpact::storey)
     }
 }

@@ -54,14 +54,14 @@ impl History {
     /// first.
     #[must_use]
     pub fn above_critical(&self) -> Option<(f64, f64)> {
-        let of_blow = |blow: &ImpactHistory| (blow.time_step, blow.critical_time_step);
+        let steps_of = |impact: &ImpactHistory| (impact.time_step, impact.critical_time_step);
         let mut steps = match self {
-            Self::Impact(blow) => vec![of_blow(blow)],
+            Self::Impact(impact) => vec![steps_of(impact)],
             Self::Shake(history) => vec![(history.time_step, history.critical_time_step)],
             Self::Escalate(history) => history
-                .blows
+                .impacts
                 .iter()
-                .map(|blow| of_blow(&blow.history))
+                .map(|impact| steps_of(&impact.history))
                 .collect(),
             Self::Ramp(_)
             | Self::Sweep(_)

@@ -70,10 +70,13 @@ impl Rest {
     /// The largest position \[m\] and the largest remaining force \[N\] in absolute value, each with its sign.
     #[must_use]
     pub fn largest(&self) -> (f64, f64) {
-        let [place, force] = self.floors_of_largest();
+        let [of_displacement, of_force] = self.floors_of_largest();
         (
-            self.displacement.get(place).copied().unwrap_or(0.0),
-            self.force.get(force).copied().unwrap_or(0.0),
+            self.displacement
+                .get(of_displacement)
+                .copied()
+                .unwrap_or(0.0),
+            self.force.get(of_force).copied().unwrap_or(0.0),
         )
     }
 

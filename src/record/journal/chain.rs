@@ -16,11 +16,11 @@ impl Chain {
 
     /// The chain after a line with `SEQ TYPE JSON`.
     #[must_use]
-    pub fn after(&self, said: &[u8]) -> Self {
+    pub fn after(&self, chained: &[u8]) -> Self {
         const DIGITS: &[u8; 16] = b"0123456789abcdef";
         let mut hash = Sha256::new();
         hash.update(self.0);
-        hash.update(said);
+        hash.update(chained);
         let mut digits = [0; CHAIN_DIGITS];
         for (pair, byte) in digits
             .as_chunks_mut::<2>()
@@ -59,7 +59,7 @@ mod tests {
 
     /// `{ printf '0%.0s' $(seq 64); printf '1 HEADER {"format":1}'; } | sha256sum`, and the same again over its answer.
     #[test]
-    fn it_is_what_sha256sum_says() {
+    fn it_equals_that_of_sha256sum() {
         let first = Chain::START.after(br#"1 HEADER {"format":1}"#);
         assert_eq!(
             first.as_str(),

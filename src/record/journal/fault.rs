@@ -69,7 +69,7 @@ pub enum Refusal {
     Reserved(&'static str),
     /// HEADER is the first and the only one; END is written by `end`; nothing follows it.
     #[error("{} is not allowed here", .0.word())]
-    OutOfPlace(EntryKind),
+    OutOfSequence(EntryKind),
     #[error("it cannot be converted to JSON: {0}")]
     NotJson(String),
 }

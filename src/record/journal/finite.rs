@@ -200,8 +200,8 @@ impl<'a> Serializer for &'a mut Walk {
 
 /// The functions that serde requires for a list or an object: check each part, then return.
 macro_rules! parts {
-    ($($kind:ident::$part:ident($($name:ty)?) of $place:ty, up $levels:literal;)*) => {
-        $(impl ser::$kind for $place {
+    ($($kind:ident::$part:ident($($name:ty)?) of $target:ty, up $levels:literal;)*) => {
+        $(impl ser::$kind for $target {
             type Ok = ();
             type Error = Refused;
 
@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn no_number_that_is_none_passes_wherever_it_stands() {
+    fn no_invalid_number_passes_in_any_field() {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             for shape in [
                 Shape::Circle(bad),

@@ -136,7 +136,7 @@ pub struct Parts<'a> {
     pub json: &'a str,
     pub chain: &'a str,
     /// `SEQ TYPE JSON`: the input of the chain.
-    pub said: &'a [u8],
+    pub chained: &'a [u8],
 }
 
 /// The reason why a line is invalid on its own.
@@ -159,8 +159,8 @@ pub fn parse(line: &[u8]) -> Result<Parts<'_>, Unsound> {
     }
     let shape = || {
         let (before, crc) = text.rsplit_once(' ')?;
-        let (said, chain) = before.rsplit_once(' ')?;
-        let (seq, rest) = said.split_once(' ')?;
+        let (chained, chain) = before.rsplit_once(' ')?;
+        let (seq, rest) = chained.split_once(' ')?;
         let (word, json) = rest.split_once(' ')?;
         let sound = is_hexadecimal(crc, CRC_DIGITS)
             && is_hexadecimal(chain, CHAIN_DIGITS)
@@ -172,7 +172,7 @@ pub fn parse(line: &[u8]) -> Result<Parts<'_>, Unsound> {
                 word,
                 json,
                 chain,
-                said: said.as_bytes(),
+                chained: chained.as_bytes(),
             },
         ))
     };
@@ -224,13 +224,16 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_what_the_format_says() {
+    fn a_line_is_as_the_format_specifies() {
         let written = String::from_utf8(line(17, r#"{"text":"a b"}"#)).unwrap();
-        let said = r#"17 EVENT {"text":"a b"}"#;
-        let (before, end) = written.split_at(said.len() + 66);
+        let chained = r#"17 EVENT {"text":"a b"}"#;
+        let (before, end) = written.split_at(chained.len() + 66);
         assert_eq!(
             before,
-            format!("{said} {} ", Chain::START.after(said.as_bytes()).as_str())
+            format!(
+                "{chained} {} ",
+                Chain::START.after(chained.as_bytes()).as_str()
+            )
         );
         assert_eq!(
             castagnoli(b"123456789"),
@@ -245,8 +248,8 @@ mod tests {
         for seq in [1, 9, 10, u64::MAX] {
             let written = line(seq, r#"{"text":"a b"}"#);
             let whole = parse(written.strip_suffix(b"\n").unwrap()).unwrap();
-            let said = format!(r#"{seq} EVENT {{"text":"a b"}}"#);
-            let chain = Chain::START.after(said.as_bytes());
+            let chained = format!(r#"{seq} EVENT {{"text":"a b"}}"#);
+            let chain = Chain::START.after(chained.as_bytes());
             assert_eq!(
                 whole,
                 Parts {
@@ -254,7 +257,7 @@ mod tests {
                     word: "EVENT",
                     json: r#"{"text":"a b"}"#,
                     chain: chain.as_str(),
-                    said: said.as_bytes()
+                    chained: chained.as_bytes()
                 }
             );
         }
@@ -269,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_has_one_way_to_be_written() {
+    fn a_number_has_one_written_form() {
         for seq in ["0", "01", "+1", "18446744073709551616", "", "1a"] {
             let mut bad = format!("{seq} EVENT {{}}").into_bytes();
             close(&mut bad, 0, &Chain::START);

@@ -133,7 +133,7 @@ fn read_line(bytes: &[u8], found: &Recovered) -> Result<(Line, Chain), Wrong> {
             found: parts.seq,
         });
     }
-    let chain = found.chain.after(parts.said);
+    let chain = found.chain.after(parts.chained);
     if parts.chain != chain.as_str() {
         return Err(Wrong::Chain);
     }
@@ -143,7 +143,7 @@ fn read_line(bytes: &[u8], found: &Recovered) -> Result<(Line, Chain), Wrong> {
     if !body.is_object() {
         return Err(Wrong::NotAnObject);
     }
-    place(kind, &body, found)?;
+    check_position(kind, &body, found)?;
     Ok((
         Line::as_written(parts.seq, kind, &body, parts.json, found.whole),
         chain,
@@ -151,8 +151,8 @@ fn read_line(bytes: &[u8], found: &Recovered) -> Result<(Line, Chain), Wrong> {
 }
 
 /// Whether an entry may be at this position.
-fn place(kind: EntryKind, body: &Value, found: &Recovered) -> Result<(), Wrong> {
-    let said = |name: &str| {
+fn check_position(kind: EntryKind, body: &Value, found: &Recovered) -> Result<(), Wrong> {
+    let string_of = |name: &str| {
         body.get(name)
             .map_or_else(|| "missing".to_owned(), |value| short(&value.to_string()))
     };
@@ -165,7 +165,7 @@ fn place(kind: EntryKind, body: &Value, found: &Recovered) -> Result<(), Wrong> 
                 .is_some_and(|format| (OLDEST_FORMAT..=FORMAT).contains(&format)) =>
         {
             Err(Wrong::Format {
-                found: said("format"),
+                found: string_of("format"),
             })
         }
         EntryKind::Header => Ok(()),
@@ -174,8 +174,8 @@ fn place(kind: EntryKind, body: &Value, found: &Recovered) -> Result<(), Wrong> 
             if body["count"] != found.lines.len() as u64 || body["head"] != found.head() =>
         {
             Err(Wrong::EndOfAnother {
-                count: said("count"),
-                head: said("head"),
+                count: string_of("count"),
+                head: string_of("head"),
             })
         }
         _ => Ok(()),

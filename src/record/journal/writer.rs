@@ -32,7 +32,7 @@ pub struct Journal {
     /// Lines that the storage has not accepted yet, or not completely.
     buffered: Vec<u8>,
     /// Number of bytes of the lines that it has accepted.
-    taken: u64,
+    written_length: u64,
     /// Whether a part of `buffered` may lie after them.
     half_line: bool,
     fault: Option<JournalFault>,
@@ -48,7 +48,7 @@ impl Journal {
             chain: Chain::START,
             ended: false,
             buffered: Vec::new(),
-            taken: 0,
+            written_length: 0,
             half_line: false,
             fault: None,
         }
@@ -64,7 +64,7 @@ impl Journal {
         journal.count = recovered.lines.len() as u64;
         journal.chain = recovered.chain;
         journal.ended = recovered.ended;
-        journal.taken = recovered.whole;
+        journal.written_length = recovered.whole;
         journal
     }
 
@@ -76,7 +76,7 @@ impl Journal {
     pub fn append(&mut self, kind: EntryKind, body: &impl Serialize) -> Result<(), JournalFault> {
         self.healthy()?;
         if kind == EntryKind::End {
-            return Err(Refusal::OutOfPlace(kind).into());
+            return Err(Refusal::OutOfSequence(kind).into());
         }
         self.buffer(kind, body)?;
         let enough = match self.durability {
@@ -153,11 +153,11 @@ impl Journal {
                 ..
             })
         );
-        let said = self.write_final_entry(kind, body, unsynced && on(Guarding::FailedSync));
+        let ended = self.write_final_entry(kind, body, unsynced && on(Guarding::FailedSync));
         if earlier.is_some() {
             self.fault = earlier;
         }
-        said
+        ended
     }
 
     fn write_final_entry(
@@ -168,12 +168,12 @@ impl Journal {
     ) -> Result<(), JournalFault> {
         if self.half_line {
             // After an incomplete line, another line would make the file look like a forged one, so nothing is written.
-            let cut = self.storage.cut(self.taken);
+            let cut = self.storage.cut(self.written_length);
             self.record_fault(Doing::Cut, cut)?;
             self.half_line = false;
         }
         let kept = if kind == EntryKind::End {
-            Err(Refusal::OutOfPlace(kind))
+            Err(Refusal::OutOfSequence(kind))
         } else {
             self.buffer(kind, body)
         };
@@ -244,7 +244,7 @@ impl Journal {
         body: &impl Serialize,
     ) -> Result<Chain, Refusal> {
         if self.ended || (kind == EntryKind::Header) != (self.count == 0) {
-            return Err(Refusal::OutOfPlace(kind));
+            return Err(Refusal::OutOfSequence(kind));
         }
         let out = &mut self.buffered;
         line::open(out, self.count + 1, kind);
@@ -274,7 +274,7 @@ impl Journal {
         let appended = self.storage.append(&self.buffered);
         self.half_line = appended.is_err();
         self.record_fault(Doing::Append, appended)?;
-        self.taken += self.buffered.len() as u64;
+        self.written_length += self.buffered.len() as u64;
         self.buffered.clear();
         Ok(())
     }

@@ -56,7 +56,7 @@ pub(in crate::report) fn of_run(run: &Run<'_>) -> Vec<String> {
             EventKind::Held => wording::AFTER_THE_STOP,
             EventKind::NotHeld => wording::NOT_HELD,
             EventKind::Fault => wording::RIG_FAULT,
-            EventKind::Mended => wording::RECOVERED,
+            EventKind::Recovered => wording::RECOVERED,
             EventKind::Resume => wording::INTERRUPTION,
             EventKind::Amendment => wording::AMENDMENT,
             EventKind::Note if is_of_the_line(&event.text) => wording::LINE,

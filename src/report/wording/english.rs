@@ -261,7 +261,7 @@ wording! {
         fn at_every_target(subject) = "{subject} reached every target.";
         fn tracking(peak, nrms, energy) = "Tracking: largest error {peak}, NRMS error {nrms}\u{a0}%{energy}.";
         PUT_IN = "added to the test";
-        TAKEN_OUT = "removed from the test";
+        REMOVED = "removed from the test";
         fn energy(direction, percent) = ", tracking-error energy {percent}\u{a0}% of the input energy, {direction}";
         THE_ACTUATORS = "The actuators";
         COLUMNS = ["Actuator of floor", "Largest error", "NRMS error",
@@ -340,7 +340,7 @@ wording! {
         fn of_axes(axes) = ", of axes {axes}";
         ONE_READING = "one settled reading";
         fn median_of(samples) = "median of {samples} settled readings";
-        fn reading(taken, rate, frozen_after) = "{taken} at {rate}; frozen sensor after {frozen_after} equal forces in motion";
+        fn reading(reading_text, rate, frozen_after) = "{reading_text} at {rate}; frozen sensor after {frozen_after} equal forces in motion";
     }
 
     mod zero_drift {

@@ -41,11 +41,11 @@ impl Guard<'_> {
                 return Err(RigFault::Device(reason));
             }
             let (low, high) = path.reach();
-            for place in [low, high]
+            for position in [low, high]
                 .into_iter()
                 .filter(|_| on(Guarding::TargetLimits))
             {
-                self.check_target(axis, place)?;
+                self.check_target(axis, position)?;
             }
             self.check(LimitedQuantity::Speed, self.limits.speed, path.fastest())?;
         }
@@ -81,10 +81,10 @@ mod tests {
     }
 
     #[test]
-    fn paths_join_in_place_and_velocity() {
+    fn paths_join_in_position_and_velocity() {
         let first = Path::accelerated(
             ActuatorMotion {
-                place: 0.0,
+                position: 0.0,
                 velocity: 0.0,
                 acceleration: 1.0,
             },
@@ -92,7 +92,7 @@ mod tests {
         );
         let on = Path::accelerated(
             ActuatorMotion {
-                place: first.to,
+                position: first.to,
                 velocity: first.end_velocity,
                 acceleration: -1.0,
             },
@@ -119,7 +119,7 @@ mod tests {
     fn the_whole_path_is_held_against_the_limits_before_it_begins() {
         let first = Path::accelerated(
             ActuatorMotion {
-                place: 0.0,
+                position: 0.0,
                 velocity: 0.0,
                 acceleration: 1.0,
             },
@@ -127,7 +127,7 @@ mod tests {
         );
         let turn = Path::accelerated(
             ActuatorMotion {
-                place: first.to,
+                position: first.to,
                 velocity: 0.1,
                 acceleration: -2.0,
             },

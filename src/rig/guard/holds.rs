@@ -24,13 +24,13 @@ pub(super) struct Holds {
     now: Option<(Reading, Reading)>,
     /// +1 or −1 if the specimen is farther from its unloaded position than ever before, else 0.
     outward: f64,
-    told: Held,
+    completed: Held,
 }
 
 impl Holds {
     fn from(home: &[f64], least: f64) -> Self {
         let start = home.first().copied().unwrap_or(0.0);
-        let told = Held {
+        let completed = Held {
             slopes: vec![(0.0, 0.0); home.len()],
             ..Held::default()
         };
@@ -41,7 +41,7 @@ impl Holds {
             high: start,
             now: None,
             outward: 0.0,
-            told,
+            completed,
         }
     }
 
@@ -52,8 +52,8 @@ impl Holds {
             return;
         }
         self.outward = match commanded {
-            [place] if *place > self.home && *place >= self.high => 1.0,
-            [place] if *place < self.home && *place <= self.low => -1.0,
+            [position] if *position > self.home && *position >= self.high => 1.0,
+            [position] if *position < self.home && *position <= self.low => -1.0,
             _ => 0.0,
         };
         self.now = Some((reading.clone(), reading.clone()));
@@ -61,27 +61,27 @@ impl Holds {
 
     /// The rig leaves this target \[m\].
     pub(super) fn leave(&mut self, commanded: &[f64]) {
-        self.told = self.so_far();
+        self.completed = self.so_far();
         self.now = None;
-        if let Some(place) = commanded.first() {
-            (self.low, self.high) = (self.low.min(*place), self.high.max(*place));
+        if let Some(position) = commanded.first() {
+            (self.low, self.high) = (self.low.min(*position), self.high.max(*position));
         }
     }
 
     /// Includes the dwell that is still in progress.
     fn so_far(&self) -> Held {
-        let mut told = self.told.clone();
+        let mut completed = self.completed.clone();
         let Some((first, last)) = &self.now else {
-            return told;
+            return completed;
         };
         let seconds = last.time - first.time;
         if seconds.is_nan() || seconds <= 0.0 || seconds < self.least {
-            return told;
+            return completed;
         }
-        told.count += 1;
-        told.longest = told.longest.max(seconds);
+        completed.count += 1;
+        completed.longest = completed.longest.max(seconds);
         let of = |one: &[f64], other: &[f64], axis: usize| other[axis] - one[axis];
-        for (axis, (force, displacement)) in told.slopes.iter_mut().enumerate() {
+        for (axis, (force, displacement)) in completed.slopes.iter_mut().enumerate() {
             faster(force, of(&first.force, &last.force, axis) / seconds);
             faster(
                 displacement,
@@ -90,9 +90,9 @@ impl Holds {
         }
         if self.outward != 0.0 {
             let grown = self.outward * of(&first.force, &last.force, 0);
-            told.grown = Some(told.grown.map_or(grown, |most| most.max(grown)));
+            completed.grown = Some(completed.grown.map_or(grown, |most| most.max(grown)));
         }
-        told
+        completed
     }
 }
 
@@ -145,31 +145,33 @@ mod tests {
 
     /// Dwells at these positions \[m\], each of two seconds in which the force changes by this amount \[N\].
     fn held(holds: &[(f64, f64)]) -> Held {
-        let mut told = Holds::from(&[0.0], 1.0);
-        for (number, (place, change)) in (0_u32..).zip(holds) {
+        let mut dwells = Holds::from(&[0.0], 1.0);
+        for (number, (position, change)) in (0_u32..).zip(holds) {
             let time = 10.0 * f64::from(number);
             for (later, force) in [(0.0, 100.0), (1.0, 500.0), (2.0, 100.0 + change)] {
-                told.see(&[*place], &reading(time + later, force));
+                dwells.see(&[*position], &reading(time + later, force));
             }
-            told.leave(&[*place]);
+            dwells.leave(&[*position]);
         }
-        told.so_far()
+        dwells.so_far()
     }
 
     #[test]
-    fn slopes_are_told_of_every_hold_and_growth_only_where_it_is_farthest_out() {
-        let told = held(&[
+    fn slopes_are_reported_of_every_dwell_and_growth_only_at_the_largest_displacement() {
+        let dwells = held(&[
             (0.001, -4.0),
             (0.003, -1.0),
             (0.002, 7.0),
             (-0.001, 0.5),
             (0.003, 0.25),
         ]);
-        assert_eq!((told.count, told.longest), (5, 2.0));
-        assert!((told.slopes[0].0 - 3.5).abs() < 1e-12 && (told.slopes[0].1 - 1e-6).abs() < 1e-18);
+        assert_eq!((dwells.count, dwells.longest), (5, 2.0));
+        assert!(
+            (dwells.slopes[0].0 - 3.5).abs() < 1e-12 && (dwells.slopes[0].1 - 1e-6).abs() < 1e-18
+        );
         // On the other side, a force whose absolute value increases has a negative rate.
         assert_eq!(
-            told.grown,
+            dwells.grown,
             Some(0.25),
             "the one after the unloading is told only"
         );
@@ -182,19 +184,22 @@ mod tests {
     }
 
     #[test]
-    fn a_hold_that_is_short_tells_nothing_and_one_that_goes_on_does() {
-        let mut told = Holds::from(&[0.0], 1.5);
-        told.see(&[0.001], &reading(0.0, 1.0));
-        told.see(&[0.001], &reading(1.0, 2.0));
+    fn a_short_dwell_shows_nothing_and_a_longer_one_does() {
+        let mut dwells = Holds::from(&[0.0], 1.5);
+        dwells.see(&[0.001], &reading(0.0, 1.0));
+        dwells.see(&[0.001], &reading(1.0, 2.0));
         assert_eq!(
-            told.so_far(),
+            dwells.so_far(),
             Held {
                 slopes: vec![(0.0, 0.0)],
                 ..Held::default()
             }
         );
-        told.see(&[0.001], &reading(2.0, 3.0));
-        assert_eq!((told.so_far().count, told.so_far().grown), (1, Some(2.0)));
-        assert_eq!(told.so_far().count, 1, "asking changes nothing");
+        dwells.see(&[0.001], &reading(2.0, 3.0));
+        assert_eq!(
+            (dwells.so_far().count, dwells.so_far().grown),
+            (1, Some(2.0))
+        );
+        assert_eq!(dwells.so_far().count, 1, "asking changes nothing");
     }
 }

@@ -153,7 +153,7 @@ impl<'rig> Guard<'rig> {
     /// # Errors
     /// The rig fails, or no proposal can be executed.
     pub fn execute(&mut self) -> Result<(), RigFault> {
-        let Some((targets, told)) = self.proposed.take() else {
+        let Some((targets, commanded_speed)) = self.proposed.take() else {
             self.hold();
             return Err(RigFault::Device(
                 "nothing was proposed to execute".to_owned(),
@@ -163,7 +163,7 @@ impl<'rig> Guard<'rig> {
         self.going.clear();
         let executed = self.rig.execute();
         self.or_hold(executed)?;
-        self.note_speed(told);
+        self.note_speed(commanded_speed);
         self.commanded = targets;
         self.settled = true;
         Ok(())
@@ -295,18 +295,18 @@ impl<'rig> Guard<'rig> {
         }
         (0..)
             .zip(targets)
-            .try_for_each(|(place, target)| self.check_target(place, *target))
+            .try_for_each(|(index, target)| self.check_target(index, *target))
     }
 
     /// Whether the axis with this index may move to `target` \[m\].
-    pub(super) fn check_target(&mut self, place: usize, target: f64) -> Result<(), RigFault> {
-        let limit = self.own.get(place).unwrap_or(&self.limits).displacement;
+    pub(super) fn check_target(&mut self, axis: usize, target: f64) -> Result<(), RigFault> {
+        let limit = self.own.get(axis).unwrap_or(&self.limits).displacement;
         if inside(limit, target) {
             return Ok(());
         }
         Err(self.breach(
             LimitedQuantity::TargetDisplacement,
-            Some(place),
+            Some(axis),
             limit,
             target,
         ))
@@ -325,16 +325,16 @@ impl<'rig> Guard<'rig> {
         }
     }
 
-    /// `place` is the index of the axis, for a quantity of one axis.
+    /// `index` is the index of the axis, for a quantity of one axis.
     pub(super) fn breach(
         &mut self,
         quantity: LimitedQuantity,
-        place: Option<usize>,
+        index: Option<usize>,
         limit: Interval,
         value: f64,
     ) -> RigFault {
         self.hold();
-        let axis = place.and_then(|place| named_axis(place, self.commanded.len()));
+        let axis = index.and_then(|index| named_axis(index, self.commanded.len()));
         RigFault::LimitBreached {
             quantity,
             value,
@@ -363,9 +363,9 @@ fn inside(limit: Interval, value: f64) -> bool {
 
 /// The first value of a reading that is outside its limit: that of its axis, if the axis has its own.
 pub(super) fn outside(limits: &Limits, own: &[Limits], reading: &Reading) -> Option<RigFault> {
-    let of = |place: usize| own.get(place).unwrap_or(limits);
-    let places = (0..).zip(&reading.displacement);
-    let displacements = places.map(|(at, x)| {
+    let of = |index: usize| own.get(index).unwrap_or(limits);
+    let displacements_by_axis = (0..).zip(&reading.displacement);
+    let displacements = displacements_by_axis.map(|(at, x)| {
         (
             LimitedQuantity::MeasuredDisplacement,
             at,

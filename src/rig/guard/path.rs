@@ -26,11 +26,11 @@ impl Guard<'_> {
             reason = "between 1 and 1e5"
         )]
         let parts = if parts <= MOST { parts as u32 } else { 1 };
-        let way = self.increments_in(parts, targets);
+        let increments = self.increments_in(parts, targets);
         // Positions far from 0 have a coarser rounding than a short increment near 0. One more increment keeps all increments inside the
         // limit.
-        if parts == 1 || self.fits(&way) {
-            way
+        if parts == 1 || self.fits(&increments) {
+            increments
         } else {
             self.increments_in(parts + 1, targets)
         }
@@ -49,9 +49,11 @@ impl Guard<'_> {
     }
 
     /// Whether no increment is longer than the limit.
-    fn fits(&self, way: &[Vec<f64>]) -> bool {
+    fn fits(&self, increments: &[Vec<f64>]) -> bool {
         let limit = self.limits.increment;
-        let steps = std::iter::once(&self.commanded).chain(way).zip(way);
+        let steps = std::iter::once(&self.commanded)
+            .chain(increments)
+            .zip(increments);
         steps
             .flat_map(|(from, to)| from.iter().zip(to))
             .all(|(from, to)| limit.contains(increment(*from, *to)))
@@ -67,7 +69,7 @@ mod tests {
 
     /// Back to 0 from 10 mm in increments of 0.1 mm: rounding of the positions beyond 1 mm exceeds the tolerance of an increment.
     #[test]
-    fn every_way_out_and_back_fits_its_own_limit() {
+    fn every_path_out_and_back_fits_its_own_limit() {
         let plan = elastic_plan(300.0, Vec::new());
         assert!(VirtualRig::specimen_of(&plan).is_some());
         for parts in 1..200_u32 {
@@ -79,15 +81,15 @@ mod tests {
             };
             let mut guard = Guard::new(rig.as_mut(), limits).unwrap();
             for end in [0.01, 0.0, -0.01, 0.01] {
-                let way = guard.increments_to(&[end]);
+                let increments = guard.increments_to(&[end]);
                 let straight = (end - guard.commanded()[0]).abs() / high;
                 #[expect(clippy::cast_precision_loss, reason = "some hundred")]
-                let moves = way.len() as f64;
+                let moves = increments.len() as f64;
                 assert!(
                     straight.floor() <= moves && moves <= straight.ceil() + 1.0,
                     "{parts}: {moves} moves for {straight}"
                 );
-                for target in &way {
+                for target in &increments {
                     guard
                         .move_to(target, None)
                         .unwrap_or_else(|fault| panic!("{parts}: {fault}"));

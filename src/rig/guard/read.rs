@@ -48,12 +48,12 @@ impl Guard<'_> {
                 .map(|(measured, target)| (measured - target).abs())
                 .collect();
             let limit = self.limits.tracking_error;
-            if let Some(place) = errors.iter().position(|error| !limit.contains(*error)) {
+            if let Some(index) = errors.iter().position(|error| !limit.contains(*error)) {
                 return Err(self.breach(
                     LimitedQuantity::TrackingError,
-                    Some(place),
+                    Some(index),
                     limit,
-                    errors[place],
+                    errors[index],
                 ));
             }
             if let Some(holds) = &mut self.holds {

@@ -15,12 +15,12 @@ impl Guard<'_> {
     }
 
     /// Notes that a move with this commanded speed \[m/s\] is done.
-    pub(crate) fn note_speed(&mut self, told: f64) {
+    pub(crate) fn note_speed(&mut self, commanded_speed: f64) {
         let seen = self
             .rig
             .seen_speed()
-            .filter(|seen| *seen > told * (1.0 + BEYOND));
-        self.speed = Some(seen.unwrap_or(told));
+            .filter(|seen| *seen > commanded_speed * (1.0 + BEYOND));
+        self.speed = Some(seen.unwrap_or(commanded_speed));
     }
 }
 
@@ -39,7 +39,7 @@ mod tests {
     };
 
     #[test]
-    fn the_speed_is_that_of_the_last_way() {
+    fn the_speed_is_that_of_the_last_motion() {
         let limits = Limits {
             speed: Interval {
                 low: 0.0,
@@ -67,7 +67,7 @@ mod tests {
                 .glide(
                     &[Path::accelerated(
                         ActuatorMotion {
-                            place: 0.001,
+                            position: 0.001,
                             velocity: 0.0,
                             acceleration: 0.1
                         },

@@ -36,9 +36,9 @@ impl Rig for Scripted {
     }
     fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
         self.proposed.push((targets[0], speed));
-        let said = targets[0] + self.misspoken;
+        let encoded = targets[0] + self.misspoken;
         Ok(EncodedMove {
-            targets: vec![said],
+            targets: vec![encoded],
             speed: speed.unwrap_or(0.0),
             wire: Vec::new(),
             move_id: None,
@@ -144,7 +144,7 @@ fn targets_increments_and_speeds_beyond_a_limit_are_never_proposed() {
 }
 
 #[test]
-fn what_the_bytes_say_is_held_against_the_limits_too() {
+fn the_decoded_targets_are_checked_against_the_limits_too() {
     // 25 mm is allowed; the encoded value would be larger because of rounding.
     let mut rig = Scripted {
         displacement: 0.0248,

@@ -19,18 +19,18 @@ impl Coordinate {
     }
 
     /// A position of the device \[m\], in the plan's coordinate.
-    pub(super) fn in_plan(self, place: f64) -> f64 {
+    pub(super) fn in_plan(self, position: f64) -> f64 {
         // With a different zero, the zero is read as 0 and not as −0.
         if self.datum == 0.0 {
-            self.sign * place
+            self.sign * position
         } else {
-            self.sign * (place - self.datum) + 0.0
+            self.sign * (position - self.datum) + 0.0
         }
     }
 
     /// A position of the plan \[m\], in the device's coordinate.
-    pub(super) fn at_device(self, place: f64) -> f64 {
-        let turned = self.sign * place;
+    pub(super) fn at_device(self, position: f64) -> f64 {
+        let turned = self.sign * position;
         // The sum of 0 and −0 would be 0, which is encoded in different bytes.
         if self.datum == 0.0 {
             turned
@@ -50,9 +50,9 @@ impl Coordinate {
             low: ends[0].min(ends[1]),
             high: ends[0].max(ends[1]),
         };
-        let (place, force) = (limits.displacement, limits.force);
+        let (stroke, force) = (limits.displacement, limits.force);
         Limits {
-            displacement: between([place.low, place.high].map(|end| self.at_device(end))),
+            displacement: between([stroke.low, stroke.high].map(|end| self.at_device(end))),
             force: between([force.low, force.high].map(|end| self.turned(end))),
             ..*limits
         }
@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_turned_axis_with_its_zero_elsewhere_has_places_and_limits_of_its_own() {
+    fn a_reversed_axis_with_another_zero_has_its_own_positions_and_limits() {
         let axis = Coordinate {
             sign: -1.0,
             datum: -0.5,
@@ -106,10 +106,16 @@ mod tests {
     #[test]
     fn an_axis_with_its_own_zero_changes_no_bit_but_its_sign() {
         for sign in [1.0, -1.0] {
-            for place in [0.0_f64, -0.0, 1.25e-3] {
+            for position in [0.0_f64, -0.0, 1.25e-3] {
                 let axis = Coordinate::of_sign(sign);
-                assert_eq!(axis.at_device(place).to_bits(), (sign * place).to_bits());
-                assert_eq!(axis.in_plan(place).to_bits(), (sign * place).to_bits());
+                assert_eq!(
+                    axis.at_device(position).to_bits(),
+                    (sign * position).to_bits()
+                );
+                assert_eq!(
+                    axis.in_plan(position).to_bits(),
+                    (sign * position).to_bits()
+                );
             }
         }
     }

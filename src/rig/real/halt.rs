@@ -18,7 +18,9 @@ impl RealRig {
     pub(super) fn command_hold(&mut self) -> Result<(), String> {
         self.stop_request.acknowledge();
         (self.proposed, self.settled) = (None, None);
-        self.axes.iter_mut().for_each(|axis| axis.way = None);
+        self.axes
+            .iter_mut()
+            .for_each(|axis| axis.allowed_range = None);
         if !self.deaf {
             let mut heard = self.actuator.hold();
             if heard == Err(DeviceFault::Interrupted) {
@@ -64,14 +66,14 @@ impl RealRig {
         while self.clock.now() - began <= COMES_TO_REST {
             match self.actuator.sample() {
                 Ok(sample) => {
-                    let places: Vec<f64> = sample
+                    let positions: Vec<f64> = sample
                         .axes()
                         .map(|axis| axis.displacement.unwrap_or(f64::NAN))
                         .collect();
                     let stays = |before: &Vec<f64>| {
                         before
                             .iter()
-                            .zip(&places)
+                            .zip(&positions)
                             .all(|(before, now)| (before - now).abs() <= self.settle.band)
                     };
                     if sample.moving == Some(false)
@@ -79,7 +81,7 @@ impl RealRig {
                     {
                         return Ok(());
                     }
-                    before = Some(places);
+                    before = Some(positions);
                     "it is still moving".clone_into(&mut last);
                 }
                 Err(DeviceFault::Interrupted) => self.stop_request.acknowledge(),

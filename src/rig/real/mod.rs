@@ -55,7 +55,7 @@ pub struct RealRig {
     /// Mean observed speed of the last move \[m/s\].
     seen_speed: Option<f64>,
     /// Observed times (\[s\], by the clock) and positions \[m\] of the first axis during the last move.
-    seen_places: Vec<(f64, f64)>,
+    seen_positions: Vec<(f64, f64)>,
     reread: u64,
     /// It has moved since it was opened.
     moved: bool,
@@ -77,7 +77,7 @@ struct Axis {
     rules: ReadingRules,
     calibration: Calibration,
     /// A device other than the actuator measures its force.
-    weighed_apart: bool,
+    has_own_load_cell: bool,
     validator: ReadingValidator,
     /// The last reading during the motion was outside a limit.
     outside: bool,
@@ -85,7 +85,7 @@ struct Axis {
     span: f64,
     /// The range between the start and the target of the move, with the possible overshoot of an actuator \[m\]. None on a
     /// path.
-    way: Option<Interval>,
+    allowed_range: Option<Interval>,
     /// The last reading during the motion was outside this range.
     off: bool,
 }
@@ -120,11 +120,11 @@ impl RealRig {
     }
 
     /// Positions of the devices \[m\], one per axis, in the plan's coordinate.
-    fn in_plan(&self, places: &[f64]) -> Vec<f64> {
+    fn in_plan(&self, positions: &[f64]) -> Vec<f64> {
         self.axes
             .iter()
-            .zip(places)
-            .map(|(axis, place)| axis.coordinate.in_plan(*place))
+            .zip(positions)
+            .map(|(axis, position)| axis.coordinate.in_plan(*position))
             .collect()
     }
 
@@ -147,17 +147,17 @@ impl RealRig {
             ),
         };
         // Among several devices, the faulty one; the first if the faulty one is not known.
-        let place = behind.get(faulty_member.unwrap_or(0)).map_or_else(
+        let device = behind.get(faulty_member.unwrap_or(0)).map_or_else(
             || role.to_owned(),
             |behind| format!("{} on {}", behind.name(role), behind.link.port),
         );
-        let told = format!("{place}: {fault}");
+        let message = format!("{device}: {fault}");
         match fault {
             DeviceFault::Interrupted => return RigFault::Interrupted,
-            DeviceFault::Rebooted { .. } => self.untrusted = Some(told.clone()),
+            DeviceFault::Rebooted { .. } => self.untrusted = Some(message.clone()),
             _ => {}
         }
-        RigFault::Device(told)
+        RigFault::Device(message)
     }
 
     /// Holds where `result` is a fault.
@@ -179,8 +179,8 @@ fn degrees_of_freedom(count: usize) -> String {
 }
 
 /// Positions \[m\], as a list.
-fn places(places: &[f64]) -> String {
-    places
+fn millimetres(positions: &[f64]) -> String {
+    positions
         .iter()
         .map(f64::to_string)
         .collect::<Vec<_>>()
@@ -242,20 +242,20 @@ impl Rig for RealRig {
             .actuator
             .encode(&turned, speed)
             .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
-        let said = self.in_plan(&going.targets);
+        let encoded = self.in_plan(&going.targets);
         // The resolution of the devices bounds how close the decoded target can be.
-        let apt = |(axis, (said, target)): (&Axis, (&f64, &f64))| {
+        let apt = |(axis, (encoded, target)): (&Axis, (&f64, &f64))| {
             let allowed = WIRE_ROUNDING.max(axis.rules.resolution / 2.0) * (1.0 + 1e-6);
-            (said - target).abs() <= allowed
+            (encoded - target).abs() <= allowed
         };
         let apt = going.speed > 0.0
             && going.speed.is_finite()
-            && said.len() == targets.len()
-            && self.axes.iter().zip(said.iter().zip(targets)).all(apt);
+            && encoded.len() == targets.len()
+            && self.axes.iter().zip(encoded.iter().zip(targets)).all(apt);
         if on(Guarding::WireNumber) && !apt {
-            let [asked, said] = [targets, &said].map(places);
+            let [asked, encoded] = [targets, &encoded].map(millimetres);
             let reason = format!(
-                "requested: {asked} m; encoded: {said} m at {} m/s; not sent",
+                "requested: {asked} m; encoded: {encoded} m at {} m/s; not sent",
                 going.speed
             );
             return Err(RigFault::Device(reason));
@@ -266,7 +266,7 @@ impl Rig for RealRig {
             .any(|axis| axis.coordinate.datum != 0.0)
             .then(|| going.targets.clone());
         let propose = EncodedMove {
-            targets: said,
+            targets: encoded,
             speed: going.speed,
             wire: going.frames.concat(),
             move_id: going.id,
@@ -296,7 +296,8 @@ impl Rig for RealRig {
     }
 
     fn read_moved(&mut self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
-        let moved = from_positions(&self.seen_places).map(|ends| ends.map(|end| end - self.began));
+        let moved =
+            from_positions(&self.seen_positions).map(|ends| ends.map(|end| end - self.began));
         Ok((self.read()?, moved))
     }
 

@@ -13,14 +13,14 @@ use crate::units::{Dimension, display};
 /// Largest deviation of an axis from its path before it is held: a number of settling bands, and a fraction of the longest
 /// travel. The overshoot of a servo is smaller, and so is the motion that a moving neighbour causes.
 const BESIDE_BANDS: f64 = 2.0;
-const BESIDE_WAY: f64 = 0.25;
+const BESIDE_TRAVEL: f64 = 0.25;
 /// Number of standard deviations of the noise that two readings of the same force cannot differ by chance.
 const LEAP: f64 = 6.0;
 
 impl RealRig {
     /// Sends the proposed move and waits until the rig has settled.
     pub(super) fn carry_out(&mut self) -> Result<(), RigFault> {
-        let (began, told) = (
+        let (began, commanded_speed) = (
             self.clock.now(),
             self.proposed.as_ref().map(|proposed| proposed.going.speed),
         );
@@ -28,8 +28,8 @@ impl RealRig {
         let there = self.settle_at(&targets, self.clock.now() + seconds)?;
         self.settled = Some(targets);
         // The time on the line counts as part of the motion: it was not slower than this.
-        self.seen_speed = told
-            .map(|told| told * seconds / (there - began))
+        self.seen_speed = commanded_speed
+            .map(|commanded_speed| commanded_speed * seconds / (there - began))
             .filter(|speed| speed.is_finite());
         Ok(())
     }
@@ -43,7 +43,7 @@ impl RealRig {
         loop {
             let point = self.poll()?;
             let now = self.clock.now();
-            self.seen_places.push((now, point.displacement[0]));
+            self.seen_positions.push((now, point.displacement[0]));
             self.watch(&point)?;
             let astray = first_astray(&settling, &point);
             // A device that cannot report whether it moves, or reports rest before it has begun, is given the duration of
@@ -104,16 +104,16 @@ impl RealRig {
     pub(super) fn watch(&mut self, point: &Point) -> Result<(), RigFault> {
         let count = self.axes.len();
         let mut found = None;
-        for (place, axis) in self.axes.iter_mut().enumerate() {
+        for (index, axis) in self.axes.iter_mut().enumerate() {
             let displacement = (
                 LimitedQuantity::MeasuredDisplacement,
                 axis.limits.displacement,
-                point.displacement[place],
+                point.displacement[index],
             );
             let force = (
                 LimitedQuantity::Force,
                 axis.limits.force,
-                point.force[place],
+                point.force[index],
             );
             let breach = [displacement, force]
                 .into_iter()
@@ -125,7 +125,7 @@ impl RealRig {
                     value,
                     low: limit.low,
                     high: limit.high,
-                    axis: named_axis(place, count),
+                    axis: named_axis(index, count),
                 },
             ));
         }
@@ -136,19 +136,19 @@ impl RealRig {
     /// lost a limit. A single reading may be a spike.
     fn check_path_deviation(&mut self, point: &Point) -> Result<(), RigFault> {
         let count = self.axes.len();
-        for (place, axis) in self.axes.iter_mut().enumerate() {
-            let at = point.displacement[place];
-            let Some(way) = axis.way.filter(|way| !way.contains(at)) else {
+        for (index, axis) in self.axes.iter_mut().enumerate() {
+            let at = point.displacement[index];
+            let Some(range) = axis.allowed_range.filter(|range| !range.contains(at)) else {
                 axis.off = false;
                 continue;
             };
             if std::mem::replace(&mut axis.off, true) && on(Guarding::PathDeviation) {
-                let shown = |place| display::plain(place, Dimension::LENGTH, 6);
+                let shown = |position| display::plain(position, Dimension::LENGTH, 6);
                 let (who, at, low, high) = (
-                    who(named_axis(place, count)),
+                    who(named_axis(index, count)),
                     shown(at),
-                    shown(way.low),
-                    shown(way.high),
+                    shown(range.low),
+                    shown(range.high),
                 );
                 return Err(RigFault::Device(format!(
                     "{who} deviated from the commanded path: it is at {at}, outside {low} .. {high}"
@@ -186,7 +186,7 @@ impl RealRig {
             .start(&going)
             .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
         (self.deaf, self.settled) = (false, None);
-        self.seen_places = vec![(self.clock.now(), from[0])];
+        self.seen_positions = vec![(self.clock.now(), from[0])];
         for axis in &mut self.axes {
             (axis.outside, axis.span) = (false, 0.0);
         }
@@ -196,13 +196,13 @@ impl RealRig {
             .zip(&from)
             .map(|(to, from)| (to - from).abs())
             .fold(0.0, f64::max);
-        let beside = BESIDE_BANDS * self.settle.band + BESIDE_WAY * farthest;
+        let beside = BESIDE_BANDS * self.settle.band + BESIDE_TRAVEL * farthest;
         for (axis, (to, from)) in self.axes.iter_mut().zip(targets.iter().zip(&from)) {
-            let way = Interval {
+            let range = Interval {
                 low: to.min(*from) - beside,
                 high: to.max(*from) + beside,
             };
-            (axis.way, axis.off) = (Some(way), false);
+            (axis.allowed_range, axis.off) = (Some(range), false);
         }
         Ok((targets, farthest / going.speed))
     }
@@ -235,19 +235,19 @@ impl RealRig {
     }
 
     /// The rig reports that it has arrived, and the axis with this index is at a different position.
-    pub(super) fn following(&self, place: usize, point: &Point, targets: &[f64]) -> RigFault {
-        let error = (point.displacement[place] - targets[place]).abs();
+    pub(super) fn following(&self, index: usize, point: &Point, targets: &[f64]) -> RigFault {
+        let error = (point.displacement[index] - targets[index]).abs();
         RigFault::Following {
             error,
             band: self.settle.band,
-            axis: named_axis(place, self.axes.len()),
+            axis: named_axis(index, self.axes.len()),
         }
     }
 
     /// The fault for a rig that did not settle in time. The axis with this index is the first of those that delayed settling, if that is
     /// known.
-    pub(super) fn unsettled(&self, place: Option<usize>) -> RigFault {
-        let axis = place.and_then(|place| named_axis(place, self.axes.len()));
+    pub(super) fn unsettled(&self, index: Option<usize>) -> RigFault {
+        let axis = index.and_then(|index| named_axis(index, self.axes.len()));
         RigFault::NotSettled {
             timeout: self.settle.timeout,
             axis,

@@ -44,7 +44,7 @@ impl RealRig {
             settled: None,
             rested: Vec::new(),
             seen_speed: None,
-            seen_places: Vec::new(),
+            seen_positions: Vec::new(),
             reread: 0,
             moved: false,
             untrusted: None,
@@ -59,21 +59,21 @@ impl RealRig {
             Datum::Machine => {}
             Datum::Here => {
                 rig.heard_now();
-                rig.stands_still()?;
+                rig.verify_at_rest()?;
                 let here = rig.settled_reading()?.displacement;
                 let own: Vec<f64> = rig
                     .axes
                     .iter()
                     .zip(&here)
-                    .map(|(axis, place)| axis.coordinate.at_device(*place))
+                    .map(|(axis, position)| axis.coordinate.at_device(*position))
                     .collect();
                 rig.begin_at(&own)?;
             }
-            Datum::At(places) => rig.begin_at(&places)?,
+            Datum::At(positions) => rig.begin_at(&positions)?,
         }
         rig.narrow()?;
         rig.heard_now();
-        rig.stands_still()?;
+        rig.verify_at_rest()?;
         Ok(rig)
     }
 
@@ -84,21 +84,23 @@ impl RealRig {
     }
 
     /// The plan's zero is at these positions of the devices \[m\], one per axis.
-    fn begin_at(&mut self, places: &[f64]) -> Result<(), RigFault> {
-        if places.len() != self.axes.len() || !places.iter().all(|place| place.is_finite()) {
+    fn begin_at(&mut self, positions: &[f64]) -> Result<(), RigFault> {
+        if positions.len() != self.axes.len()
+            || !positions.iter().all(|position| position.is_finite())
+        {
             return Err(RigFault::Device(format!(
-                "{places:?} m is not a datum of a rig with {}",
+                "{positions:?} m is not a datum of a rig with {}",
                 degrees_of_freedom(self.axes.len())
             )));
         }
-        for (axis, place) in self.axes.iter_mut().zip(places) {
-            axis.coordinate.datum = *place;
+        for (axis, position) in self.axes.iter_mut().zip(positions) {
+            axis.coordinate.datum = *position;
         }
         Ok(())
     }
 
     /// Reads once; a rig that moves without a command is held.
-    fn stands_still(&mut self) -> Result<(), RigFault> {
+    fn verify_at_rest(&mut self) -> Result<(), RigFault> {
         if self.poll()?.moving == Some(true) {
             self.hold();
             return Err(RigFault::Device(
@@ -121,7 +123,7 @@ impl RealRig {
         };
         let fit = alone(self.link.actuators()).map_or(Ok(()), |link| pinned(&link, &actuator));
         fit.map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
-        let mut said = vec![actuator];
+        let mut identities = vec![actuator];
         let cell_link = alone(self.link.load_cells());
         if let Some(cell) = &mut self.load_cell {
             let fit = |identity: &DeviceIdentity| {
@@ -130,10 +132,13 @@ impl RealRig {
             let met = cell
                 .identify()
                 .and_then(|identity| fit(&identity).map(|()| identity));
-            said.push(met.map_err(|fault| self.device_fault(Part::LoadCell, &fault))?);
+            identities.push(met.map_err(|fault| self.device_fault(Part::LoadCell, &fault))?);
         }
-        self.identity = identity_of(&self.identity.name, &self.link, &said);
-        self.introduction = said.into_iter().flat_map(|identity| identity.raw).collect();
+        self.identity = identity_of(&self.identity.name, &self.link, &identities);
+        self.introduction = identities
+            .into_iter()
+            .flat_map(|identity| identity.raw)
+            .collect();
         Ok(())
     }
 
@@ -176,9 +181,10 @@ impl RealRig {
 }
 
 /// The identity of a rig with this name and these devices, the actuators first.
-pub(super) fn identity_of(name: &str, link: &RealLink, said: &[DeviceIdentity]) -> Identity {
+pub(super) fn identity_of(name: &str, link: &RealLink, identities: &[DeviceIdentity]) -> Identity {
     let all = |field: fn(&DeviceIdentity) -> &str| {
-        said.iter()
+        identities
+            .iter()
             .map(field)
             .filter(|text| !text.is_empty())
             .collect::<Vec<_>>()
@@ -189,7 +195,7 @@ pub(super) fn identity_of(name: &str, link: &RealLink, said: &[DeviceIdentity]) 
     } else {
         ""
     };
-    let moves = &said[..said.len().min(link.actuators().len())];
+    let moves = &identities[..identities.len().min(link.actuators().len())];
     let boots: Vec<&str> = moves
         .iter()
         .filter_map(|identity| identity.boot.as_deref())
@@ -200,26 +206,26 @@ pub(super) fn identity_of(name: &str, link: &RealLink, said: &[DeviceIdentity]) 
         serial: all(|identity| &identity.serial),
         firmware: all(|identity| &identity.firmware),
         boot: (!boots.is_empty()).then(|| boots.join(" + ")),
-        simulated: said.iter().any(|identity| identity.simulated),
+        simulated: identities.iter().any(|identity| identity.simulated),
     }
 }
 
 /// The settings of each axis in the plan.
 fn axes(plan: &RigPlan, link: &RealLink, limits: &Limits) -> Vec<Axis> {
     let count = plan.axes().unwrap_or(1);
-    let axis = |place| Axis {
-        coordinate: Coordinate::of_sign(plan.polarity_of(place)),
-        limits: plan.limits_of(place, limits),
-        rules: link.readings_of(place),
-        calibration: plan.calibration_of(place),
-        weighed_apart: link
+    let axis = |index| Axis {
+        coordinate: Coordinate::of_sign(plan.polarity_of(index)),
+        limits: plan.limits_of(index, limits),
+        rules: link.readings_of(index),
+        calibration: plan.calibration_of(index),
+        has_own_load_cell: link
             .load_cells()
             .iter()
-            .any(|cell| cell.axes.contains(&place)),
-        validator: ReadingValidator::of_axis(named_axis(place, count)),
+            .any(|cell| cell.axes.contains(&index)),
+        validator: ReadingValidator::of_axis(named_axis(index, count)),
         outside: false,
         span: 0.0,
-        way: None,
+        allowed_range: None,
         off: false,
     };
     (0..count).map(axis).collect()

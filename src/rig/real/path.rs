@@ -19,7 +19,9 @@ impl RealRig {
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
         self.proposed = None;
-        self.axes.iter_mut().for_each(|axis| axis.way = None);
+        self.axes
+            .iter_mut()
+            .for_each(|axis| axis.allowed_range = None);
         if let Some(reason) = &self.untrusted {
             return Err(RigFault::Device(format!("no further motion: {reason}")));
         }
@@ -95,8 +97,9 @@ impl RealRig {
             .encode_path(&turned)
             .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
         let ends = going.targets.iter().zip(&turned);
-        let apt = |(axis, (said, path)): (&super::Axis, (&f64, &Path))| {
-            (said - path.to).abs() <= WIRE_ROUNDING.max(axis.rules.resolution / 2.0) * (1.0 + 1e-6)
+        let apt = |(axis, (encoded, path)): (&super::Axis, (&f64, &Path))| {
+            (encoded - path.to).abs()
+                <= WIRE_ROUNDING.max(axis.rules.resolution / 2.0) * (1.0 + 1e-6)
         };
         if on(Guarding::WireNumber)
             && (going.targets.len() != paths.len() || !self.axes.iter().zip(ends).all(apt))
@@ -120,16 +123,16 @@ impl RealRig {
     /// previous one. The tracking limits check the effect of a lag on the test.
     fn keeps_up(&mut self, paths: &[Path], reading: &Reading) -> Result<(), RigFault> {
         let count = self.axes.len();
-        for (place, (axis, path)) in self.axes.iter_mut().zip(paths).enumerate() {
+        for (index, (axis, path)) in self.axes.iter_mut().zip(paths).enumerate() {
             let (low, high) = path.reach();
             let span = high - low;
             let band = self.settle.band + span + std::mem::replace(&mut axis.span, span);
-            let error = (reading.displacement[place] - path.to).abs();
+            let error = (reading.displacement[index] - path.to).abs();
             if on(Guarding::Following) && (error.is_nan() || error > band) {
                 return Err(RigFault::Following {
                     error,
                     band,
-                    axis: named_axis(place, count),
+                    axis: named_axis(index, count),
                 });
             }
         }

@@ -211,17 +211,17 @@ impl RealRig {
     fn ask(&mut self, raw: &mut Vec<Vec<u8>>) -> Result<Point, Unusable> {
         let moved = self.actuator.sample();
         let moved = self.sampled(Part::Actuator, moved, raw)?;
-        let weighed = match &mut self.load_cell {
+        let force_sample = match &mut self.load_cell {
             Some(cell) => {
-                let weighed = cell.sample();
-                Some(self.sampled(Part::LoadCell, weighed, raw)?)
+                let force_sample = cell.sample();
+                Some(self.sampled(Part::LoadCell, force_sample, raw)?)
             }
             None => None,
         };
-        let weighed = weighed.as_ref().unwrap_or(&moved);
+        let force_sample = force_sample.as_ref().unwrap_or(&moved);
         let count = self.axes.len();
-        if moved.axis_count() != count || weighed.axis_count() != count {
-            let (found, wanted) = (moved.axis_count().min(weighed.axis_count()), count);
+        if moved.axis_count() != count || force_sample.axis_count() != count {
+            let (found, wanted) = (moved.axis_count().min(force_sample.axis_count()), count);
             return Err(Unusable::Fault(RigFault::Device(format!(
                 "the answer has {found} axes, but the rig has {wanted}"
             ))));
@@ -236,33 +236,33 @@ impl RealRig {
             unsettled: false,
             raw: Vec::new(),
         };
-        for place in 0..count {
-            let (moved_axis, weighed_axis) = (moved.axis(place), weighed.axis(place));
+        for index in 0..count {
+            let (moved_axis, force_axis) = (moved.axis(index), force_sample.axis(index));
             let lacks =
                 |what: &str| Unusable::Fault(RigFault::Device(format!("the rig gives no {what}")));
             let displacement = moved_axis
                 .displacement
                 .ok_or_else(|| lacks("displacement"))?;
-            let weighed_axis = if self.axes[place].weighed_apart {
-                weighed_axis
+            let force_axis = if self.axes[index].has_own_load_cell {
+                force_axis
             } else {
                 moved_axis
             };
-            let original = weighed_axis.force.ok_or_else(|| lacks("force"))?;
-            let force = newtons(&self.axes[place].calibration, original)
+            let original = force_axis.force.ok_or_else(|| lacks("force"))?;
+            let force = newtons(&self.axes[index].calibration, original)
                 .ok_or_else(|| lacks("force in N: raw counts need a calibration"))?;
-            let flags = either(moved_axis.flags, weighed_axis.flags);
+            let flags = either(moved_axis.flags, force_axis.flags);
             // All axes have one clock: it is checked with the first axis.
-            let device_time = moved.time.filter(|_| place == 0);
-            let said = RawSample {
+            let device_time = moved.time.filter(|_| index == 0);
+            let raw_sample = RawSample {
                 displacement,
                 force,
                 original,
                 flags,
                 device_time,
             };
-            let axis = &mut self.axes[place];
-            let judged = axis.validator.validate(&said, &axis.rules);
+            let axis = &mut self.axes[index];
+            let judged = axis.validator.validate(&raw_sample, &axis.rules);
             point
                 .displacement
                 .push(axis.coordinate.in_plan(displacement));
@@ -286,17 +286,17 @@ impl RealRig {
                 Ok(sample)
             }
             Err(fault) => {
-                let told = self.device_fault(part, &fault);
+                let rig_fault = self.device_fault(part, &fault);
                 Err(match fault {
                     DeviceFault::NoReading { raw: bytes, .. } => {
                         raw.push(bytes);
-                        Unusable::AskAgain(told)
+                        Unusable::AskAgain(rig_fault)
                     }
                     DeviceFault::Impossible { raw: bytes, .. } => {
                         raw.push(bytes);
-                        Unusable::Impossible(told)
+                        Unusable::Impossible(rig_fault)
                     }
-                    _ => Unusable::Fault(told),
+                    _ => Unusable::Fault(rig_fault),
                 })
             }
         }

@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_device_that_moves_begins_the_dwell_anew() {
+    fn a_device_that_moves_restarts_the_dwell() {
         let mut settling = Settling::new(SETTLE, 0.001);
         assert!(!settling.add_reading(&SettlingReading {
             time: 0.0,

@@ -40,13 +40,13 @@ impl RealRig {
         let began = self.clock.now();
         #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
         let interval = seconds / samples as f64;
-        let (mut sample, mut taken) = (1, 0);
+        let (mut sample, mut readings_done) = (1, 0);
         while sample <= samples {
             #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
             let due = interval * sample as f64;
             self.stay_until(began + due)?;
             each(self.reading_now()?)?;
-            taken += 1;
+            readings_done += 1;
             #[expect(
                 clippy::cast_possible_truncation,
                 clippy::cast_sign_loss,
@@ -55,9 +55,9 @@ impl RealRig {
             let passed = ((self.clock.now() - began) / interval).floor() as usize;
             sample = passed.max(sample + 1);
         }
-        if taken < LEAST.min(samples) {
+        if readings_done < LEAST.min(samples) {
             let reason = format!(
-                "the readings are too slow: {taken} in a stroke of {seconds:.3} s (required: {samples})"
+                "the readings are too slow: {readings_done} in a stroke of {seconds:.3} s (required: {samples})"
             );
             return Err(RigFault::Device(reason));
         }
@@ -73,13 +73,13 @@ impl RealRig {
     ) -> Result<(), RigFault> {
         let (targets, left) = (cut_off.to, cut_off.left());
         self.propose(targets, Some(velocity.abs()))?;
-        let way = self
+        let travel = self
             .proposed
             .as_ref()
             .map_or(0.0, |Proposed { targets, from, .. }| {
                 (targets[0] - from[0]) * velocity.signum()
             });
-        if left > 0 && way > self.settle.band {
+        if left > 0 && travel > self.settle.band {
             return self.stroke(targets, velocity, left, each);
         }
         self.carry_out()?;

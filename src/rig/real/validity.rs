@@ -71,7 +71,7 @@ struct Same {
     /// \[N\]
     force: f64,
     /// Number of them at a different position from the previous one: an actuator at rest at its target does not indicate a frozen sensor.
-    places: u32,
+    repeats: u32,
     /// The last, lowest and highest of these positions \[m\].
     last: f64,
     low: f64,
@@ -88,24 +88,24 @@ impl ReadingValidator {
 
     pub(super) fn validate(
         &mut self,
-        said: &RawSample,
+        sample: &RawSample,
         rules: &ReadingRules,
     ) -> Result<(), Invalid> {
-        self.same_device(said)?;
-        whole_rig(said.flags)?;
-        let of_axis = flags(said.flags)
-            .and_then(|()| number(said))
-            .and_then(|()| saturation(said, rules));
+        self.same_device(sample)?;
+        whole_rig(sample.flags)?;
+        let of_axis = flags(sample.flags)
+            .and_then(|()| number(sample))
+            .and_then(|()| saturation(sample, rules));
         of_axis
-            .and_then(|()| self.frozen(said, rules))
+            .and_then(|()| self.frozen(sample, rules))
             .map_err(|invalid| invalid.named(self.axis))
     }
 
     /// A clock that runs backwards indicates a device that restarted.
-    fn same_device(&mut self, said: &RawSample) -> Result<(), Invalid> {
+    fn same_device(&mut self, sample: &RawSample) -> Result<(), Invalid> {
         let before = self.device_time;
-        self.device_time = said.device_time.or(before);
-        match (before, said.device_time) {
+        self.device_time = sample.device_time.or(before);
+        match (before, sample.device_time) {
             (Some(before), Some(now)) if on(Guarding::Reboot) && now < before => {
                 Err(Invalid::Untrusted(format!(
                     "its clock ran backwards from {before} s to {now} s: it restarted, and {NOT_TRUSTED}"
@@ -116,22 +116,24 @@ impl ReadingValidator {
     }
 
     /// The force stays exactly the same while the specimen is displaced.
-    fn frozen(&mut self, said: &RawSample, rules: &ReadingRules) -> Result<(), Invalid> {
-        let x = said.displacement;
+    fn frozen(&mut self, sample: &RawSample, rules: &ReadingRules) -> Result<(), Invalid> {
+        let x = sample.displacement;
         let same = match self.same {
-            Some(same) if same.force == said.force && (x - same.last).abs() <= rules.resolution => {
+            Some(same)
+                if same.force == sample.force && (x - same.last).abs() <= rules.resolution =>
+            {
                 same
             }
-            Some(same) if same.force == said.force => Same {
-                places: same.places.saturating_add(1),
+            Some(same) if same.force == sample.force => Same {
+                repeats: same.repeats.saturating_add(1),
                 last: x,
                 low: same.low.min(x),
                 high: same.high.max(x),
                 ..same
             },
             _ => Same {
-                force: said.force,
-                places: 1,
+                force: sample.force,
+                repeats: 1,
                 last: x,
                 low: x,
                 high: x,
@@ -139,13 +141,13 @@ impl ReadingValidator {
         };
         self.same = Some(same);
         let Same {
-            places, low, high, ..
+            repeats, low, high, ..
         } = same;
         let moved = high - low > FROZEN_OVER * rules.resolution;
-        if on(Guarding::Frozen) && places >= rules.frozen_after.max(2) && moved {
+        if on(Guarding::Frozen) && repeats >= rules.frozen_after.max(2) && moved {
             return Err(Invalid::Hold(format!(
-                "the force sensor is frozen: {places} readings of {} N while the displacement changed by {:.6} mm",
-                said.force,
+                "the force sensor is frozen: {repeats} readings of {} N while the displacement changed by {:.6} mm",
+                sample.force,
                 (high - low) * 1e3
             )));
         }
@@ -183,8 +185,8 @@ fn flags(flags: Flags) -> Result<(), Invalid> {
     Ok(())
 }
 
-fn number(said: &RawSample) -> Result<(), Invalid> {
-    let (x, force) = (said.displacement, said.force);
+fn number(sample: &RawSample) -> Result<(), Invalid> {
+    let (x, force) = (sample.displacement, sample.force);
     if !on(Guarding::Invalid) || x.is_finite() && force.is_finite() {
         return Ok(());
     }
@@ -194,7 +196,7 @@ fn number(said: &RawSample) -> Result<(), Invalid> {
 }
 
 /// At an end of the range of converter or cell, the true force may be anywhere beyond it. A force that is not finite is not checked here.
-fn saturation(said: &RawSample, rules: &ReadingRules) -> Result<(), Invalid> {
+fn saturation(sample: &RawSample, rules: &ReadingRules) -> Result<(), Invalid> {
     if !on(Guarding::Saturation) {
         return Ok(());
     }
@@ -203,10 +205,10 @@ fn saturation(said: &RawSample, rules: &ReadingRules) -> Result<(), Invalid> {
             "the force reading is saturated: {what}"
         )))
     };
-    if said.flags.saturated {
+    if sample.flags.saturated {
         return hold("reported by the device".to_owned());
     }
-    if let Force::Counts { count, low, high } = said.original {
+    if let Force::Counts { count, low, high } = sample.original {
         #[expect(
             clippy::cast_precision_loss,
             reason = "converters have at most 32 bits"
@@ -223,10 +225,10 @@ fn saturation(said: &RawSample, rules: &ReadingRules) -> Result<(), Invalid> {
         range.high - SATURATION * range.high.abs(),
     );
     // An end that is not given is infinite; the margin then makes it NaN, and every comparison is false.
-    if said.force <= low || said.force >= high {
+    if sample.force <= low || sample.force >= high {
         return hold(format!(
             "{} N of {} .. {} N",
-            said.force, range.low, range.high
+            sample.force, range.low, range.high
         ));
     }
     Ok(())
@@ -250,7 +252,7 @@ mod tests {
         frozen_after: 4,
     };
 
-    fn said(force: f64) -> RawSample {
+    fn raw_sample(force: f64) -> RawSample {
         RawSample {
             displacement: 0.001,
             force,
@@ -265,8 +267,8 @@ mod tests {
         let last = || {
             let mut validator = ReadingValidator::default();
             let (last, before) = readings.split_last().unwrap();
-            for said in before {
-                validator.validate(said, &rules).unwrap();
+            for sample in before {
+                validator.validate(sample, &rules).unwrap();
             }
             validator.validate(last, &rules)
         };
@@ -285,23 +287,23 @@ mod tests {
                 stale: true,
                 ..Flags::default()
             },
-            ..said(1.0)
+            ..raw_sample(1.0)
         };
         let nowhere = RawSample {
             displacement: f64::NAN,
-            ..said(1.0)
+            ..raw_sample(1.0)
         };
         assert!(matches!(
             only_caught_by(Guarding::Invalid, unbounded, &[stale]),
             Invalid::AskAgain(_)
         ));
-        for bad in [said(f64::NAN), nowhere] {
+        for bad in [raw_sample(f64::NAN), nowhere] {
             assert!(matches!(
                 only_caught_by(Guarding::Invalid, unbounded, &[bad]),
                 Invalid::Impossible(_)
             ));
         }
-        let infinite = ReadingValidator::default().validate(&said(f64::INFINITY), &unbounded);
+        let infinite = ReadingValidator::default().validate(&raw_sample(f64::INFINITY), &unbounded);
         assert!(matches!(infinite, Err(Invalid::Impossible(_))));
     }
 
@@ -313,18 +315,18 @@ mod tests {
                 low: -8_388_608,
                 high: 8_388_607,
             },
-            ..said(10.0)
+            ..raw_sample(10.0)
         };
         let flagged = RawSample {
             flags: Flags {
                 saturated: true,
                 ..Flags::default()
             },
-            ..said(1.0)
+            ..raw_sample(1.0)
         };
         for bad in [
-            said(999.1),
-            said(-5000.0),
+            raw_sample(999.1),
+            raw_sample(-5000.0),
             counts(8_388_607),
             counts(-8_380_300),
             flagged,
@@ -334,14 +336,22 @@ mod tests {
                 Invalid::Saturated(_)
             ));
         }
-        for good in [said(998.9), said(-998.9), said(0.0), counts(8_380_000)] {
+        for good in [
+            raw_sample(998.9),
+            raw_sample(-998.9),
+            raw_sample(0.0),
+            counts(8_380_000),
+        ] {
             assert_eq!(ReadingValidator::default().validate(&good, &RULES), Ok(()));
         }
     }
 
     #[test]
-    fn what_the_device_says_of_itself_holds_the_rig() {
-        let flagged = |flags| RawSample { flags, ..said(1.0) };
+    fn a_fault_flag_of_the_device_holds_the_rig() {
+        let flagged = |flags| RawSample {
+            flags,
+            ..raw_sample(1.0)
+        };
         let none = Flags::default();
         for (flags, untrusted) in [
             (
@@ -372,12 +382,16 @@ mod tests {
     }
 
     #[test]
-    fn a_clock_that_goes_back_is_that_of_a_device_that_started_anew() {
+    fn a_clock_that_goes_back_is_that_of_a_restarted_device() {
         let at = |time| RawSample {
             device_time: Some(time),
-            ..said(time)
+            ..raw_sample(time)
         };
-        let invalid = only_caught_by(Guarding::Reboot, RULES, &[at(100.0), said(3.0), at(0.5)]);
+        let invalid = only_caught_by(
+            Guarding::Reboot,
+            RULES,
+            &[at(100.0), raw_sample(3.0), at(0.5)],
+        );
         assert!(matches!(invalid, Invalid::Untrusted(_)));
     }
 
@@ -385,7 +399,7 @@ mod tests {
     fn a_force_that_stays_while_the_specimen_is_bent_is_frozen() {
         let at = |displacement, force| RawSample {
             displacement,
-            ..said(force)
+            ..raw_sample(force)
         };
         let stuck: Vec<RawSample> = (0..4).map(|i| at(f64::from(i) * 3e-6, 5.0)).collect();
         assert!(matches!(

@@ -65,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn who_stands_there_is_told_where_it_stands_or_to_stop_it() {
+    fn the_operator_is_given_the_position_or_asked_to_stop_the_rig() {
         let held = FinalHold {
             time: 1.0,
             unconfirmed: None,

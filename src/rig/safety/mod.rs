@@ -148,7 +148,7 @@ struct Pulse {
     beats: u64,
     /// \[s\]
     last: f64,
-    told: bool,
+    reported: bool,
 }
 
 impl Pulse {
@@ -157,7 +157,7 @@ impl Pulse {
             watchdog,
             beats,
             last: now,
-            told: false,
+            reported: false,
         }
     }
 
@@ -167,7 +167,7 @@ impl Pulse {
             (self.beats, self.last) = (beats, now);
         }
         let late = now - self.last > self.watchdog;
-        late && !std::mem::replace(&mut self.told, late)
+        late && !std::mem::replace(&mut self.reported, late)
     }
 }
 
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn beats_that_stay_away_are_told_once() {
+    fn missing_heartbeats_are_reported_once() {
         let mut pulse = Pulse::new(3.0, 7, 0.0);
         assert!(!pulse.stopped(7, 2.9));
         assert!(!pulse.stopped(8, 3.5), "it lives");

@@ -29,7 +29,7 @@ pub struct Inside {
     /// Added to a target when it is encoded \[m\].
     pub misspoken: f64,
     /// Whether the device reports that it moves.
-    pub tells_motion: bool,
+    pub reports_motion: bool,
     /// Duration of every reply \[s\].
     pub answer_time: f64,
     pub alter: Option<Alteration>,
@@ -70,7 +70,7 @@ impl FakeDevice {
             newtons_per_count: None,
             reaches: 1.0,
             misspoken: 0.0,
-            tells_motion: true,
+            reports_motion: true,
             answer_time: 0.01,
             alter: None,
             samples: 0,
@@ -90,12 +90,12 @@ impl FakeDevice {
     /// The present state of the device.
     pub fn inside(&self) -> MutexGuard<'_, Inside> {
         let mut inside = self.inside.lock().unwrap();
-        let way = inside.speed * (self.clock.now() - inside.time);
+        let travel = inside.speed * (self.clock.now() - inside.time);
         let left = inside.target - inside.position;
-        inside.position = if left.abs() <= way {
+        inside.position = if left.abs() <= travel {
             inside.target
         } else {
-            inside.position + way.copysign(left)
+            inside.position + travel.copysign(left)
         };
         inside.time = self.clock.now();
         inside
@@ -156,7 +156,7 @@ impl Device for FakeDevice {
             displacement: Some(inside.position),
             force: Some(force),
             moving: inside
-                .tells_motion
+                .reports_motion
                 .then(|| inside.position != inside.target),
             raw: vec![format!("sample {}", inside.samples).into_bytes()],
             ..Sample::default()

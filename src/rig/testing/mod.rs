@@ -39,7 +39,7 @@ impl Clock for VirtualClock {
 
 /// The next action of a scripted port.
 #[derive(Clone, Debug)]
-pub enum Say {
+pub enum Scripted {
     /// These bytes arrive in one piece, this many seconds after the previous piece (or after the start of the wait).
     After(f64, Vec<u8>),
     /// The other side disconnects.
@@ -50,15 +50,15 @@ pub enum Say {
 #[derive(Clone, Debug)]
 pub struct ScriptedPort {
     clock: VirtualClock,
-    shared: Arc<Mutex<Said>>,
+    shared: Arc<Mutex<ScriptState>>,
 }
 
 #[derive(Debug, Default)]
-struct Said {
+struct ScriptState {
     /// Bytes and their arrival times \[s\]; None: disconnected.
     coming: VecDeque<(f64, Option<Vec<u8>>)>,
     /// Replies to the frames, in their order.
-    replies: VecDeque<Vec<Say>>,
+    replies: VecDeque<Vec<Scripted>>,
     sent: Vec<(f64, Vec<u8>)>,
 }
 
@@ -72,26 +72,26 @@ impl ScriptedPort {
     }
 
     /// Unsolicited bytes from now on.
-    pub fn say(&self, script: &[Say]) {
+    pub fn send_unasked(&self, script: &[Scripted]) {
         let mut shared = self.shared.lock().unwrap();
         let mut at = shared
             .coming
             .back()
             .map_or(0.0, |(at, _)| *at)
             .max(self.clock.now());
-        for say in script {
-            match say {
-                Say::After(seconds, bytes) => {
+        for action in script {
+            match action {
+                Scripted::After(seconds, bytes) => {
                     at += seconds;
                     shared.coming.push_back((at, Some(bytes.clone())));
                 }
-                Say::HangUp => shared.coming.push_back((at, None)),
+                Scripted::HangUp => shared.coming.push_back((at, None)),
             }
         }
     }
 
     /// The reply to the next frame that has no reply yet.
-    pub fn reply(&self, script: &[Say]) {
+    pub fn reply(&self, script: &[Scripted]) {
         self.shared
             .lock()
             .unwrap()
@@ -113,7 +113,7 @@ impl Port for ScriptedPort {
             shared.sent.push((self.clock.now(), bytes.to_vec()));
             shared.replies.pop_front()
         };
-        self.say(&replies.unwrap_or_default());
+        self.send_unasked(&replies.unwrap_or_default());
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! A conversation, line by line. In: expected requests, each with its answer. Out: whether exactly those were sent.
 
-use super::{Say, ScriptedPort};
+use super::{Scripted, ScriptedPort};
 
 /// The expected frames, each with the line that answers it.
 pub struct Transcript {
@@ -29,7 +29,7 @@ impl Transcript {
         self.port.reply(&if answer.is_empty() {
             vec![]
         } else {
-            vec![Say::After(self.delay, bytes)]
+            vec![Scripted::After(self.delay, bytes)]
         });
         self
     }

@@ -21,21 +21,21 @@ pub(super) struct PortLock {
 /// # Errors
 /// Another program has it.
 #[cfg(target_os = "linux")]
-pub(super) fn lock(place: SocketAddr) -> io::Result<Option<PortLock>> {
+pub(super) fn lock(socket_address: SocketAddr) -> io::Result<Option<PortLock>> {
     if !on(Guarding::Lock) {
         return Ok(None);
     }
-    let ip = place.ip().to_canonical();
+    let ip = socket_address.ip().to_canonical();
     // Linux treats `0.0.0.0` as this machine; the address of a listener cannot be determined from outside.
     let host = if ip.is_loopback() || ip.is_unspecified() {
         "this machine".to_owned()
     } else {
         ip.to_string()
     };
-    let name = format!("psd rig at {host}:{}", place.port());
-    let taken = net::SocketAddr::from_abstract_name(name)
+    let name = format!("psd rig at {host}:{}", socket_address.port());
+    let port_lock = net::SocketAddr::from_abstract_name(name)
         .and_then(|name| net::UnixListener::bind_addr(&name));
-    taken.map(|name| Some(PortLock { _name: name })).map_err(|error| match error.kind() {
+    port_lock.map(|name| Some(PortLock { _name: name })).map_err(|error| match error.kind() {
         io::ErrorKind::AddrInUse => io::Error::new(
             io::ErrorKind::ResourceBusy,
             "another program on this machine uses it: end that program, because two programs cannot drive one rig",

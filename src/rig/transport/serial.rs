@@ -70,11 +70,11 @@ fn readable_error(error: &io::Error) -> io::Error {
         .any(|errno| error.raw_os_error() == Some(errno.raw_os_error()));
     let text = error.to_string();
     if busy || text.contains("lock") || text.contains("busy") {
-        let told =
+        let cause =
             "another program uses it: end that program, because two programs cannot drive one rig";
-        return io::Error::new(io::ErrorKind::ResourceBusy, told);
+        return io::Error::new(io::ErrorKind::ResourceBusy, cause);
     }
-    let told = match error.kind() {
+    let cause = match error.kind() {
         io::ErrorKind::NotFound => {
             "there is no such port: is it plugged in and switched on? `psd rig list` lists the ports"
         }
@@ -83,7 +83,7 @@ fn readable_error(error: &io::Error) -> io::Error {
         }
         _ => return io::Error::new(error.kind(), format!("it cannot be opened: {text}")),
     };
-    io::Error::new(error.kind(), told)
+    io::Error::new(error.kind(), cause)
 }
 
 impl Port for SerialPort {
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_go_both_ways_and_what_was_not_read_can_be_thrown_away() {
+    fn bytes_go_in_both_directions_and_unread_ones_can_be_discarded() {
         let (mut master, path) = pair();
         let mut port = SerialPort::open(&path, 115_200).unwrap();
         port.write(b">HELLO\n", LONG).unwrap();

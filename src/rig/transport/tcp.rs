@@ -26,26 +26,29 @@ impl TcpPort {
     /// # Errors
     /// There is no answer, or another program uses the address.
     pub fn connect(address: &str, timeout: Duration) -> io::Result<Self> {
-        let told = |error: &io::Error| {
+        let unreachable = |error: &io::Error| {
             io::Error::new(
                 error.kind(),
                 format!("`{address}` cannot be reached: {error}"),
             )
         };
         let mut last = io::Error::new(ErrorKind::NotFound, format!("invalid address: `{address}`"));
-        for place in address.to_socket_addrs().map_err(|error| told(&error))? {
+        for socket_address in address
+            .to_socket_addrs()
+            .map_err(|error| unreachable(&error))?
+        {
             // Before the first packet: some controllers end one conversation when another begins.
-            let taken = lock(place)?;
-            match TcpStream::connect_timeout(&place, timeout) {
+            let port_lock = lock(socket_address)?;
+            match TcpStream::connect_timeout(&socket_address, timeout) {
                 Ok(stream) => {
                     stream.set_nodelay(true)?;
                     stream.set_nonblocking(true)?;
                     return Ok(Self {
                         descriptor: stream.into(),
-                        _lock: taken,
+                        _lock: port_lock,
                     });
                 }
-                Err(error) => last = told(&error),
+                Err(error) => last = unreachable(&error),
             }
         }
         Err(last)
@@ -95,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_go_both_ways_and_a_hangup_gives_what_came_first() {
+    fn bytes_go_in_both_directions_and_a_hangup_gives_what_came_first() {
         let (mut peer, mut port) = pair();
         port.write(b"open-session\tpsd\n", LONG).unwrap();
         port.emergency().unwrap().send(b"!");
@@ -124,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn a_peer_that_never_reads_makes_a_write_end_in_time_and_nobody_there_is_told() {
+    fn a_write_to_a_peer_that_never_reads_ends_in_time_and_an_absent_peer_is_reported() {
         let (_peer, mut port) = pair();
         let end = (0..100_000).find_map(|_| port.write(&[b'x'; 4096], SHORT).err());
         assert_eq!(end.unwrap().kind(), ErrorKind::TimedOut);

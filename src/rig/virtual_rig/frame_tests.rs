@@ -106,7 +106,7 @@ fn lag_and_tracking_are_each_axes_own() {
 /// A branch of 1 kN/m and 2 s in the upper storey responds to the storey drift: 1 mm in 0.2 s. Strength that increases with speed
 /// responds to the velocity of the storey drift while a lagging floor still moves.
 #[test]
-fn what_relaxes_or_gains_with_speed_is_felt_storey_by_storey() {
+fn relaxation_and_rate_effects_are_measured_storey_by_storey() {
     let of = || Box::new(Behaviour::Elastic { stiffness: 2000.0 });
     let of_upper = |behaviour| {
         let lower = Storey::new(1.0, 3000.0, Behaviour::Elastic { stiffness: 3000.0 });
@@ -144,7 +144,7 @@ fn what_relaxes_or_gains_with_speed_is_felt_storey_by_storey() {
     );
     let reading = go(&mut rig, [0.001, 0.003]);
     // Each floor moves at e/lag; the storey drift is 2 mm minus its lag, after 0.3 s of motion.
-    let lagging = |way: f64| way / 0.3 * 0.1 * (1.0 - f64::exp(-3.0));
+    let lagging = |travel: f64| travel / 0.3 * 0.1 * (1.0 - f64::exp(-3.0));
     let (drift, velocity) = (0.002 - lagging(0.002), lagging(0.002) / 0.1);
     let shear = 2000.0 * drift * (1.0 + (velocity / 0.01).sqrt());
     assert!(
@@ -268,7 +268,7 @@ fn readings(link: VirtualLink, samples: usize) -> Vec<crate::rig::Reading> {
 fn storeys_are_damped_at_the_velocity_of_their_drifts() {
     for reading in readings(VirtualLink::default(), 4) {
         let time = reading.time;
-        let (x, y) = (LOWER.place(time), UPPER.place(time));
+        let (x, y) = (LOWER.position(time), UPPER.position(time));
         let (v, w) = (LOWER.rate(time).velocity, UPPER.rate(time).velocity);
         assert!(
             (reading.displacement[0] - x).abs() < 1e-15

@@ -36,17 +36,17 @@ impl Course {
         path: Path,
         sign: f64,
         actuator: &Actuator,
-        under_way: Option<Self>,
+        interrupted: Option<Self>,
     ) -> Self {
-        under_way
+        interrupted
             .filter(|course| course.path == path)
             .unwrap_or_else(|| Self::of(path, sign, actuator))
     }
 
     /// The actuator moves from one time on the path to another \[s\]. Gives the motion of the piston.
     pub(crate) fn advance(&self, actuator: &mut Actuator, from: f64, to: f64) -> Motion {
-        let place = self.sign * self.path.place(to) - (self.missed + self.drifts * to);
-        actuator.run(place, self.rate(from), self.rate(to), to - from)
+        let position = self.sign * self.path.position(to) - (self.missed + self.drifts * to);
+        actuator.run(position, self.rate(from), self.rate(to), to - from)
     }
 
     fn rate(&self, time: f64) -> Rate {
@@ -110,13 +110,13 @@ impl VirtualRig {
             return Err(self.other_order(paths.len()));
         }
         let instants = instants(paths, samples)?;
-        let before = |axis: usize| self.under_way.get(axis).copied();
+        let before = |axis: usize| self.interrupted.get(axis).copied();
         let axes = paths.iter().zip(&self.axes).enumerate();
         let course = |(number, (path, axis)): (usize, (&Path, &Axis))| {
             Course::resumed(*path, self.sign, &axis.actuator, before(number))
         };
         let courses: Vec<Course> = axes.map(course).collect();
-        self.under_way.clone_from(&courses);
+        self.interrupted.clone_from(&courses);
         let began = self.time - instants.get(done).copied().unwrap_or(0.0);
         for pair in instants.windows(2).skip(done) {
             let axes = courses.iter().zip(&mut self.axes);
@@ -162,13 +162,13 @@ mod tests {
 
     /// K X + c v + F_c during the motion, at the velocity of the path.
     #[test]
-    fn damping_is_felt_at_the_velocity_of_the_path() {
-        for (time, place, force) in readings(VirtualLink::default(), &PATH, 4) {
+    fn damping_is_measured_at_the_velocity_of_the_path() {
+        for (time, position, force) in readings(VirtualLink::default(), &PATH, 4) {
             let velocity = PATH.rate(time).velocity;
-            assert!((place - PATH.place(time)).abs() < 1e-15);
+            assert!((position - PATH.position(time)).abs() < 1e-15);
             let friction = 0.25 * velocity.signum();
             assert!(
-                (force - (1000.0 * place + 50.0 * velocity + friction)).abs() < 1e-12,
+                (force - (1000.0 * position + 50.0 * velocity + friction)).abs() < 1e-12,
                 "{time} s: {force} N"
             );
         }
@@ -183,17 +183,17 @@ mod tests {
         };
         let (few, many) = (readings(link, &PATH, 1), readings(link, &PATH, 50));
         assert!((few[0].1 - many[49].1).abs() < 1e-15);
-        let (mut place, parts) = (0.0, 20_000);
+        let (mut position, parts) = (0.0, 20_000);
         let step = PATH.seconds / f64::from(parts);
         for part in 0..parts {
             let half = 0.5 * step / 0.02;
-            place = (place * (1.0 - half)
-                + 2.0 * half * PATH.place(step * (f64::from(part) + 0.5)))
+            position = (position * (1.0 - half)
+                + 2.0 * half * PATH.position(step * (f64::from(part) + 0.5)))
                 / (1.0 + half);
         }
         assert!(
-            (few[0].1 - place).abs() < 1e-12,
-            "{} m, by steps {place} m",
+            (few[0].1 - position).abs() < 1e-12,
+            "{} m, by steps {position} m",
             few[0].1
         );
     }

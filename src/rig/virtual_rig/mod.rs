@@ -46,7 +46,7 @@ pub struct VirtualRig {
     /// Start and end of its last move.
     moved: Option<[f64; 2]>,
     /// The paths that the axes follow, or were stopped on.
-    under_way: Vec<Course>,
+    interrupted: Vec<Course>,
 }
 
 struct Axis {
@@ -98,7 +98,7 @@ impl VirtualRig {
             restoring_force,
             proposed: None,
             moved: None,
-            under_way: Vec::new(),
+            interrupted: Vec::new(),
         }
     }
 
@@ -414,7 +414,7 @@ impl Rig for VirtualRig {
         samples: usize,
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
-        self.under_way.clear();
+        self.interrupted.clear();
         self.glide_on(paths, samples, 0, each)
     }
 

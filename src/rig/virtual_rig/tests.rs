@@ -27,7 +27,7 @@ fn rig(link: VirtualLink) -> VirtualRig {
 /// A move that was interrupted when a reading was due is continued: the reading is made again, and it includes the force of a moving
 /// damper.
 #[test]
-fn a_reading_that_was_lost_is_made_again_under_way() {
+fn a_lost_reading_is_repeated_during_the_motion() {
     /// Accepts `most` readings, and is killed at the next one.
     fn up_to(read: &mut Vec<f64>, most: usize) -> impl FnMut(Reading) -> Result<(), RigFault> {
         move |reading| {
@@ -75,7 +75,7 @@ fn go(rig: &mut VirtualRig, target: f64) -> (f64, f64, f64) {
 }
 
 #[test]
-fn an_ideal_rig_is_where_it_was_told_after_the_time_the_way_takes() {
+fn an_ideal_rig_is_at_its_target_after_the_time_of_the_move() {
     let mut rig = rig(VirtualLink::default());
     assert_eq!(go(&mut rig, 0.002), (0.2, 0.002, 2.0));
     rig.pause(1.0).unwrap();

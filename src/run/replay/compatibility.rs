@@ -36,11 +36,11 @@ pub(super) fn as_it_was_run<'a>(plan: &'a Plan, logged: &LoggedRun) -> Cow<'a, P
     }
     let first = logged.header.rules < 2;
     plan.unloads_at_once |= first;
-    let said = logged.texts.iter().any(|text| text.contains("points"));
+    let stated = logged.texts.iter().any(|text| text.contains("points"));
     for procedure in &mut plan.procedures {
         if let ProcedureKind::Cycle(cycle) = &mut procedure.kind {
             cycle.evenly = logged.header.rules < 3;
-            if first && cycle.points == POINTS && !said {
+            if first && cycle.points == POINTS && !stated {
                 cycle.points = OLDER_POINTS;
             }
         }

@@ -133,18 +133,18 @@ fn written<T: DeserializeOwned + Serialize>(
 ) -> Result<(), Contradiction> {
     let read: T = body(line).map_err(|fault| at(line, fault.to_string()))?;
     let again = serde_json::to_value(&read).unwrap_or_default();
-    let said = line.body();
-    let (Some(again), Some(said)) = (again.as_object(), said.as_object()) else {
+    let logged = line.body();
+    let (Some(again), Some(logged)) = (again.as_object(), logged.as_object()) else {
         return Ok(());
     };
-    let mut names = said.keys().filter(|name| !own.contains(&name.as_str()));
-    if let Some(foreign) = names.find(|name| again.get(*name) != said.get(*name)) {
+    let mut names = logged.keys().filter(|name| !own.contains(&name.as_str()));
+    if let Some(foreign) = names.find(|name| again.get(*name) != logged.get(*name)) {
         return Err(at(
             line,
             format!("psd never writes this `{}`", foreign.escape_debug()),
         ));
     }
-    let missing = again.keys().find(|name| !said.contains_key(*name));
+    let missing = again.keys().find(|name| !logged.contains_key(*name));
     missing.map_or(Ok(()), |missing| {
         Err(at(line, format!("it has no `{missing}`")))
     })

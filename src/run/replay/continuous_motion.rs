@@ -128,7 +128,7 @@ impl RecordedRig<'_> {
                 return Ok(());
             };
             let target_status = self.state.borrow_mut().take_target_status();
-            let Some(TargetStatus::RestOfTheWay { from }) =
+            let Some(TargetStatus::RemainingMotion { from }) =
                 target_status.filter(|_| self.state.borrow().can_continue())
             else {
                 return Err(ended());
@@ -160,7 +160,7 @@ impl RecordedRig<'_> {
             return Err(ended());
         };
         // A refusal by the guard or by the run log is not a fault of the rig, and occurs again in the replay.
-        let (mut refused, mut taken) = (false, done);
+        let (mut refused, mut readings_done) = (false, done);
         let followed = goes(rig, &mut |reading| {
             let recorded = finite(Reading {
                 time: reading.time + offset,
@@ -171,7 +171,7 @@ impl RecordedRig<'_> {
                 Ok(reading)
             });
             recorded.and_then(|reading| {
-                (refused, taken) = (true, taken + 1);
+                (refused, readings_done) = (true, readings_done + 1);
                 each(reading)?;
                 refused = false;
                 Ok(())
@@ -188,7 +188,7 @@ impl RecordedRig<'_> {
                 let mut state = self.state.borrow_mut();
                 let stroke = StrokeBody {
                     t: state.time,
-                    samples: taken,
+                    samples: readings_done,
                 };
                 state.append(EntryKind::Stroke, &stroke)?;
                 state.sync_point()

@@ -392,10 +392,12 @@ pub enum TargetStatus {
     /// It never arrived: it is sent now.
     NotExecuted,
     /// The rig was held during the motion: the same absolute target is sent again.
-    HeldOnTheWay,
+    #[serde(rename = "held_on_the_way")]
+    HeldDuringMotion,
     /// A motion with readings during the motion was interrupted. It is continued from the present position: no part of it is travelled
     /// twice. Its start \[m\].
-    RestOfTheWay { from: Vec<f64> },
+    #[serde(rename = "rest_of_the_way")]
+    RemainingMotion { from: Vec<f64> },
     /// A stroke was interrupted, continued to its end, and most of its readings are missing. The rig moves back to its start (\[m\]; the
     /// axes after the first in `others`), and the stroke is repeated.
     Stroke {

@@ -184,11 +184,13 @@ fn describe(resume: &ResumeBody) -> String {
         TargetStatus::None => "no target was uncertain",
         TargetStatus::Executed => "the last target had been executed; its reading is late",
         TargetStatus::NotExecuted => "the last target had not arrived, and was sent",
-        TargetStatus::HeldOnTheWay if resume.held.is_some() => {
+        TargetStatus::HeldDuringMotion if resume.held.is_some() => {
             "the move to the last target had been held, and the target was sent again"
         }
-        TargetStatus::HeldOnTheWay => "the last target had not been reached, and was sent again",
-        TargetStatus::RestOfTheWay { .. } => {
+        TargetStatus::HeldDuringMotion => {
+            "the last target had not been reached, and was sent again"
+        }
+        TargetStatus::RemainingMotion { .. } => {
             "a motion had been interrupted, and was continued from the position of the rig"
         }
         TargetStatus::Stroke { .. } => {
@@ -208,8 +210,8 @@ fn describe(resume: &ResumeBody) -> String {
         .released
         .as_ref()
         .map_or_else(String::new, |by| format!("; released by {by}"));
-    let stood = match resume.target_status {
-        TargetStatus::HeldOnTheWay => format!(
+    let held_at = match resume.target_status {
+        TargetStatus::HeldDuringMotion => format!(
             ", from {}",
             position_and_force(&resume.found.0, &resume.found.1)
         ),
@@ -220,13 +222,13 @@ fn describe(resume: &ResumeBody) -> String {
         .as_ref()
         .map_or_else(String::new, |wall| format!(" at {wall}"));
     let assured = resume.assured.iter().map(|assured| assured.describe());
-    let said: Vec<&str> = std::iter::once(resume.reason.as_str())
+    let reasons: Vec<&str> = std::iter::once(resume.reason.as_str())
         .chain(assured)
         .collect();
     format!(
-        "resumed{when} by {}: {}; {target}{stood}{relaxed}{released}",
+        "resumed{when} by {}: {}; {target}{held_at}{relaxed}{released}",
         resume.by,
-        said.join("; ")
+        reasons.join("; ")
     )
 }
 

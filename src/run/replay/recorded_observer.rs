@@ -45,7 +45,7 @@ impl<'run, 'rig> RecordedObserver<'run, 'rig> {
     }
 
     /// Appends a statement of the operator or a client, with the time of day.
-    fn append_said(&self, said: OperatorBody) {
+    fn append_operator(&self, said: OperatorBody) {
         let wall = self.state.borrow().wall();
         self.append(EntryKind::Operator, &OperatorEntry { said, wall });
     }
@@ -123,7 +123,7 @@ impl Observer for RecordedObserver<'_, '_> {
                 Err(_) => {}
             }
         } else if !self.beyond_the_end("a request of the client") {
-            self.append_said(OperatorBody::Asked {
+            self.append_operator(OperatorBody::Asked {
                 request: request.clone(),
             });
         }
@@ -151,7 +151,7 @@ impl Observer for RecordedObserver<'_, '_> {
             } else {
                 OperatorBody::AskedToStop
             };
-            self.append_said(asked);
+            self.append_operator(asked);
         }
         asked
     }
@@ -183,7 +183,7 @@ impl Observer for RecordedObserver<'_, '_> {
         }
         let next = self.inner.next();
         if let Next::Record(text) = &next {
-            self.append_said(OperatorBody::Noted { text: text.clone() });
+            self.append_operator(OperatorBody::Noted { text: text.clone() });
         }
         next
     }
@@ -218,7 +218,7 @@ impl Observer for RecordedObserver<'_, '_> {
             .then(|| self.inner.may_unload(question, motion))
             .flatten()?;
         if answer != Inspection::Wait {
-            self.append_said(OperatorBody::AnsweredToUnload {
+            self.append_operator(OperatorBody::AnsweredToUnload {
                 question: question.to_owned(),
                 answer: answer.clone(),
             });
@@ -273,7 +273,7 @@ impl RecordedObserver<'_, '_> {
         let answer = ask(self.inner);
         self.inspecting = answer == Inspection::Wait;
         if answer != Inspection::Wait {
-            self.append_said(OperatorBody::Answered {
+            self.append_operator(OperatorBody::Answered {
                 note: note.to_owned(),
                 answer: answer.clone(),
             });

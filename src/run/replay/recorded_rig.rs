@@ -229,31 +229,33 @@ impl<'rig> RecordedRig<'rig> {
         samples: usize,
         each: EachReading<'_>,
     ) -> Result<Option<usize>, RigFault> {
-        let mut taken = 0;
+        let mut readings_done = 0;
         loop {
             if let Some(fault) = self.state.borrow_mut().logged_fault(Call::Traverse) {
                 return Err(fault);
             }
             if !self.answers_from_the_log() {
-                return Ok(Some(taken));
+                return Ok(Some(readings_done));
             }
             let mut state = self.state.borrow_mut();
             if state.next_kind() == Some(EntryKind::Stroke) {
                 let stroke: StrokeBody = state.peek(EntryKind::Stroke, "the end of a stroke")?;
-                if stroke.samples != taken {
-                    return Err(state.report_mismatch(format!("a stroke of {taken} readings")));
+                if stroke.samples != readings_done {
+                    return Err(
+                        state.report_mismatch(format!("a stroke of {readings_done} readings"))
+                    );
                 }
                 state.consume();
                 return Ok(None);
             }
             drop(state);
-            if taken == samples {
+            if readings_done == samples {
                 return Err(self
                     .state
                     .borrow_mut()
                     .report_mismatch(format!("a stroke of at most {samples} readings")));
             }
-            taken += 1;
+            readings_done += 1;
             each(self.logged_reading()?.0)?;
         }
     }
@@ -476,6 +478,6 @@ impl Rig for RecordedRig<'_> {
             // The fault of the run log was reported to the run already.
             let _ = self.count();
         }
-        self.state.borrow().mended()
+        self.state.borrow().recovered()
     }
 }

@@ -54,20 +54,20 @@ struct FirstRig {
 impl Shape<'_> {
     fn take(&mut self, line: &Line) -> Result<(), String> {
         match line.kind {
-            EntryKind::Rig => self.answered(&said(line)?, line.seq),
-            EntryKind::Intent => self.sent(&said(line)?),
+            EntryKind::Rig => self.answered(&body_of(line)?, line.seq),
+            EntryKind::Intent => self.sent(&body_of(line)?),
             EntryKind::Sample => {
-                let SampleBody { x, r, .. } = said(line)?;
+                let SampleBody { x, r, .. } = body_of(line)?;
                 self.moves(&[("x", &x), ("r", &r)])
             }
-            EntryKind::Step => self.ended(&said(line)?),
+            EntryKind::Step => self.ended(&body_of(line)?),
             EntryKind::Held => {
-                let held: HeldBody = said(line)?;
+                let held: HeldBody = body_of(line)?;
                 held.found
                     .map_or(Ok(()), |(x, r)| self.moves(&[("found", &x), ("found", &r)]))
             }
-            EntryKind::Fault => self.failed(&said(line)?),
-            EntryKind::Resume => self.resumed(&said(line)?, line.seq),
+            EntryKind::Fault => self.failed(&body_of(line)?),
+            EntryKind::Resume => self.resumed(&body_of(line)?, line.seq),
             EntryKind::Stroke | EntryKind::Operator | EntryKind::Event | EntryKind::Tally => {
                 self.rig().map(drop)
             }
@@ -188,8 +188,8 @@ impl Shape<'_> {
             TargetStatus::None
             | TargetStatus::Executed
             | TargetStatus::NotExecuted
-            | TargetStatus::HeldOnTheWay => Ok(()),
-            TargetStatus::RestOfTheWay { from } => self.moves(&[("from", from)]),
+            | TargetStatus::HeldDuringMotion => Ok(()),
+            TargetStatus::RemainingMotion { from } => self.moves(&[("from", from)]),
             TargetStatus::Stroke { back_to, others } => {
                 let back: Vec<f64> = std::iter::once(*back_to)
                     .chain(others.iter().copied())
@@ -200,7 +200,7 @@ impl Shape<'_> {
     }
 }
 
-fn said<T: DeserializeOwned>(line: &Line) -> Result<T, String> {
+fn body_of<T: DeserializeOwned>(line: &Line) -> Result<T, String> {
     line.read().map_err(|fault| fault.to_string())
 }
 

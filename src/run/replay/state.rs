@@ -55,8 +55,8 @@ pub(super) struct State<'rig> {
     ended: bool,
     interruptions: Vec<Event>,
     /// Communication errors recovered before the present rig was opened, and all of those logged so far.
-    mended_before: LineStatistics,
-    mended: LineStatistics,
+    recovered_before: LineStatistics,
+    recovered: LineStatistics,
     mismatch: Option<Mismatch>,
     fault: Option<JournalFault>,
     wall: Wall,
@@ -81,8 +81,8 @@ impl<'rig> State<'rig> {
             rig: logged.rig,
             ended: logged.ended,
             interruptions: logged.interruptions,
-            mended_before: logged.line_statistics,
-            mended: logged.line_statistics,
+            recovered_before: logged.line_statistics,
+            recovered: logged.line_statistics,
             ..Self::empty()
         }
     }
@@ -116,8 +116,8 @@ impl<'rig> State<'rig> {
             targets: 0,
             ended: false,
             interruptions: Vec::new(),
-            mended_before: LineStatistics::default(),
-            mended: LineStatistics::default(),
+            recovered_before: LineStatistics::default(),
+            recovered: LineStatistics::default(),
             mismatch: None,
             fault: None,
             wall: Box::new(|| None),
@@ -346,19 +346,19 @@ impl<'rig> State<'rig> {
     }
 
     /// Communication errors recovered so far, in all parts of the run.
-    pub(super) const fn mended(&self) -> LineStatistics {
-        self.mended
+    pub(super) const fn recovered(&self) -> LineStatistics {
+        self.recovered
     }
 
     /// Logs the communication errors recovered so far, if the present rig counts more than the run log. They are logged immediately: a
     /// run that is killed logs nothing at its end.
     pub(super) fn count(&mut self, now: LineStatistics) -> Result<(), RigFault> {
-        let mended = self.mended_before.plus(now);
-        if mended == self.mended {
+        let recovered = self.recovered_before.plus(now);
+        if recovered == self.recovered {
             return Ok(());
         }
-        self.mended = mended;
-        self.append(EntryKind::Tally, &mended)
+        self.recovered = recovered;
+        self.append(EntryKind::Tally, &recovered)
     }
 
     /// Appends an entry; a fault is kept and is final.
@@ -397,19 +397,19 @@ impl<'rig> State<'rig> {
     }
 
     fn broken(&mut self, fault: JournalFault) -> RigFault {
-        let told = unkept(&fault);
+        let message = unkept(&fault);
         if let Some(journal) = &mut self.journal {
             let words = FaultBody {
                 t: self.time,
                 call: Call::Record,
-                fault: told.clone(),
+                fault: message.clone(),
                 wall: (self.wall)(),
             };
             // The disk has failed already: the entry is attempted once.
             let _ = journal.final_entry(EntryKind::Fault, &words);
         }
         self.fault = Some(fault);
-        told
+        message
     }
 
     /// The run was completed.

@@ -68,7 +68,7 @@ const ENERGY_CAPACITY: Field = Field::quantity(
     "γ: energy at which all strength is lost, over F_y x_y",
 )
 .above_zero()
-.or_said("no loss of strength");
+.default_in_words("no loss of strength");
 
 const UNLOADING_CAPACITY: Field = Field::quantity(
     "unloading_capacity",
@@ -76,7 +76,7 @@ const UNLOADING_CAPACITY: Field = Field::quantity(
     "γ of the unloading stiffness",
 )
 .above_zero()
-.or_said("no loss");
+.default_in_words("no loss");
 
 const DETERIORATION_EXPONENT: Field = Field::quantity(
     "deterioration_exponent",
@@ -176,16 +176,16 @@ pub(crate) const BEHAVIOURS: &[Variant] = &[
             UNLOADING_CAPACITY,
             Field::quantity("reloading_capacity", Dimension::NUMBER, "γ of the reloading peak, which moves outward")
                 .above_zero()
-                .or_said("no loss"),
+                .default_in_words("no loss"),
             Field::quantity("capping_displacement", Dimension::LENGTH, "x_c, at which strength begins to fall")
                 .above_zero()
-                .or_said("never"),
+                .default_in_words("never"),
             Field::quantity("capping_slope", Dimension::NUMBER, "slope of the falling branch over the initial stiffness")
                 .or(0.1, "")
                 .above_zero_up_to(10.0),
             Field::quantity("capping_capacity", Dimension::NUMBER, "γ of the falling branch, which moves inward")
                 .above_zero()
-                .or_said("no loss"),
+                .default_in_words("no loss"),
             DETERIORATION_EXPONENT,
             RESIDUAL_STRENGTH,
         ],
@@ -221,7 +221,7 @@ pub(crate) const BEHAVIOURS: &[Variant] = &[
         &[
             Field::text("file", "CSV file of points in the plan's folder, header `displacement_m,force_n` (also `_mm`, `_kn`)")
                 .required("file: \"loop.csv\""),
-            Field::choice("unloading", UNLOADING, "unloading rule").or_said("initial_stiffness"),
+            Field::choice("unloading", UNLOADING, "unloading rule").default_in_words("initial_stiffness"),
         ],
         "measured points from a file; one-sided points apply in both directions; constant force beyond the last point",
     ),
@@ -279,7 +279,7 @@ pub(crate) const BEHAVIOURS: &[Variant] = &[
             Field::quantity("reference_time", Dimension::TIME, "t₀ of ln(1 + t/t₀)").required("reference_time: 1 s").above_zero(),
             Field::quantity("longest", Dimension::TIME, "time after which no more is lost")
                 .above_zero()
-                .or_said("10⁶ × `reference_time`")
+                .default_in_words("10⁶ × `reference_time`")
                 .advanced(),
         ],
         "the unrelaxed force falls by a ln(1 + t/t₀) of itself, superposed from each step; must be outermost, or inside a `maxwell`",
@@ -315,20 +315,20 @@ pub(crate) const BEHAVIOURS: &[Variant] = &[
             Field::quantity("stiffness", Dimension::STIFFNESS, "initial stiffness, instead of `youngs_modulus` and `second_moment`").above_zero(),
             Field::quantity("column_plastic_moment", Dimension::ENERGY, "Mp of the columns")
                 .above_zero()
-                .or_said("equal to the beam's"),
+                .default_in_words("equal to the beam's"),
             Field::quantity("column_second_moment", Dimension::SECOND_MOMENT, "second moment of area of the columns")
                 .above_zero()
-                .or_said("equal to the beam's"),
+                .default_in_words("equal to the beam's"),
             Field::quantity(
                 "mass_per_length",
                 Dimension::MASS_PER_LENGTH,
                 "of the beam; gives the mass of the specimen if `mass` is absent",
             )
             .above_zero()
-            .or_said("density * area of the specimen"),
+            .default_in_words("density * area of the specimen"),
             Field::quantity("column_mass_per_length", Dimension::MASS_PER_LENGTH, "of the columns")
                 .above_zero()
-                .or_said("equal to the beam's"),
+                .default_in_words("equal to the beam's"),
             Field::quantity("midspan_mass", Dimension::MASS, "mass at midspan").or(0.0, "kg").at_least_zero(),
             Field::quantity("corner_mass", Dimension::MASS, "mass at each corner").or(0.0, "kg").at_least_zero(),
         ],

@@ -8,7 +8,7 @@ use crate::units::Dimension;
 const MOST: f64 = MOST_BREAKS as f64;
 
 pub(crate) const BREAK_COUNT: Field =
-    Field::count("breaks", 1.0, MOST, "number of breakpoints").or_said("chosen by BIC");
+    Field::count("breaks", 1.0, MOST, "number of breakpoints").default_in_words("chosen by BIC");
 
 pub(crate) const LARGEST_BREAK_COUNT: Field = Field::count(
     "most",

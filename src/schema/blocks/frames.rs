@@ -12,7 +12,7 @@ const STOREY: &[Variant] = &[Variant::with(
             .above_zero(),
         Field {
             example: "stiffness: 3 MN/m",
-            ..STIFFNESS.or_said("that of the behaviour, or 2 × `column_stiffness`")
+            ..STIFFNESS.default_in_words("that of the behaviour, or 2 × `column_stiffness`")
         },
         Field::quantity(
             "column_stiffness",
@@ -40,7 +40,7 @@ const STOREY: &[Variant] = &[Variant::with(
             BEHAVIOURS,
             "restoring-force model of a virtual rig: storey shear against drift",
         )
-        .or_said("elastic with `stiffness`"),
+        .default_in_words("elastic with `stiffness`"),
         Field::quantity(
             "damping",
             Dimension::DAMPING,

@@ -26,7 +26,7 @@ pub(crate) const UNIT: Field = Field::quantity(
     "unit of the accelerations, if the header does not state it",
 )
 .above_zero()
-.or_said("stated in the header");
+.default_in_words("stated in the header");
 
 pub(crate) const GROUND: BlockKind = BlockKind {
     kind: Kind::Ground,

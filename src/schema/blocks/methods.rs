@@ -30,7 +30,7 @@ const INTEGRATORS: &[Variant] = &[
 ];
 
 pub(crate) const INTEGRATOR: Field = Field::choice("integrator", INTEGRATORS, "time integration")
-    .or_said("tangent; `explicit` in continuous mode");
+    .default_in_words("tangent; `explicit` in continuous mode");
 
 pub(crate) const TRUTH: &[Variant] = &[Variant::word("true", "yes"), Variant::word("false", "no")];
 
@@ -39,7 +39,7 @@ pub(crate) const I_MODIFICATION: Field = Field::choice(
     TRUTH,
     "I-modification: corrects the force to the target, r_m − K_I(d_m − d); for nearly elastic specimens",
 )
-.or_said("false; `true` in continuous mode");
+.default_in_words("false; `true` in continuous mode");
 
 pub(crate) const TIME_SCALE: Field = Field::quantity(
     "time_scale",
@@ -62,14 +62,15 @@ const MODES: &[Variant] = &[
 ];
 
 pub(crate) const MODE: Field =
-    Field::choice("mode", MODES, "motion of the actuator between targets").or_said("ramp_and_hold");
+    Field::choice("mode", MODES, "motion of the actuator between targets")
+        .default_in_words("ramp_and_hold");
 
 pub(crate) const ALLOW_UNSTABLE: Field = Field::choice(
     "allow_unstable",
     TRUTH,
     "runs beyond the stability limit of the integrator",
 )
-.or_said("false")
+.default_in_words("false")
 .advanced();
 
 pub(crate) const TIME_STEP: Field =

@@ -99,7 +99,7 @@ pub(crate) const DECISION_RULE: Field = Field::choice(
     ],
     "decision rule for requirements",
 )
-.or_said("simple");
+.default_in_words("simple");
 
 pub(crate) const PLAN: BlockKind = BlockKind {
     kind: Kind::Plan,

@@ -14,7 +14,7 @@ pub(crate) const MASS: Field = Field::quantity(
     "equivalent mass at the struck section",
 )
 .above_zero()
-.or_said(
+.default_in_words(
     "density * area * length / 2, or the elastic mass of a `portal`; must be given for a `beam`",
 );
 

@@ -21,7 +21,7 @@ pub(crate) const VELOCITY: Field = Field::quantity(
     "initial velocity, towards the structure; or `drop_height`, or `arm` and `angle`",
 )
 .above_zero()
-.or_said("sqrt(2 gn * drop_height), or sqrt(2 gn * arm * (1 - cos(angle)))");
+.default_in_words("sqrt(2 gn * drop_height), or sqrt(2 gn * arm * (1 - cos(angle)))");
 
 pub(crate) const VELOCITY_UNCERTAINTY: Field = Field::quantity(
     "velocity_uncertainty",

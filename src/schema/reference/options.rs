@@ -116,7 +116,8 @@ impl<'b> Written<'b> {
 
     /// The text that says where an argument was written before; none for a new one.
     fn origin(&self, block: &'static BlockKind, argument: &Field) -> Option<String> {
-        if argument.need == Need::Said(OF_THE_RIG) && block.field(argument.name).is_some() {
+        if argument.need == Need::DefaultInWords(OF_THE_RIG) && block.field(argument.name).is_some()
+        {
             return Some("the block, whose value is the default".to_owned());
         }
         let form = format!("{argument:?}");

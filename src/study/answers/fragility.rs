@@ -123,7 +123,7 @@ pub fn answer(
             }
         })
         .collect();
-    let ways: &[(NoResult, &str)] = if stripes.iter().all(|stripe| stripe.no_result == 0) {
+    let treatments: &[(NoResult, &str)] = if stripes.iter().all(|stripe| stripe.no_result == 0) {
         &[(NoResult::AsNotExceeded, "none")]
     } else {
         &[
@@ -131,7 +131,7 @@ pub fn answer(
             (NoResult::AsExceeded, "exceeded"),
         ]
     };
-    let fits = ways
+    let fits = treatments
         .iter()
         .map(|(counted, name)| match Fit::new(&stripes, *counted) {
             Ok(fit) => fitted(&fit, name, &stripes, confidence),

@@ -11,7 +11,7 @@ use crate::study::stopping::Looks;
 /// Counts so far.
 pub struct CountsWithLooks {
     rule: Looks,
-    pub taken: Vec<CountsAtLook>,
+    pub evaluated: Vec<CountsAtLook>,
 }
 
 /// Counts at a look.
@@ -37,7 +37,7 @@ impl CountsWithLooks {
         };
         Self {
             rule: Looks::of(runs, metadata),
-            taken: Vec::new(),
+            evaluated: Vec::new(),
         }
     }
 
@@ -47,7 +47,7 @@ impl CountsWithLooks {
         let counts = self.counts();
         if let Some(look) = look.filter(|look| look.runs == counts.runs) {
             let counts = counts.clone();
-            self.taken.push(CountsAtLook { look, counts });
+            self.evaluated.push(CountsAtLook { look, counts });
         }
     }
 

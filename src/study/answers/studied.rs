@@ -81,21 +81,21 @@ pub fn answers(metadata: &Metadata, counts: &CountsWithLooks, confidence: Confid
             look,
         }
     };
-    let look = |taken: &CountsAtLook| {
+    let look = |counted: &CountsAtLook| {
         let interval = |(requirement, event)| {
-            let outcomes = taken.counts.of(requirement, event);
-            ends(outcomes.interval(taken.look.confidence))
+            let outcomes = counted.counts.of(requirement, event);
+            ends(outcomes.interval(counted.look.confidence))
         };
         LookAnswer {
-            number: taken.look.number,
-            runs: taken.look.runs,
-            confidence: 1.0 - taken.look.confidence.error(),
+            number: counted.look.number,
+            runs: counted.look.runs,
+            confidence: 1.0 - counted.look.confidence.error(),
             intervals: probabilities(metadata).map(interval).collect(),
         }
     };
     Studied {
         answers: metadata.studied.iter().map(answer).collect(),
-        looks: counts.taken.iter().map(look).collect(),
+        looks: counts.evaluated.iter().map(look).collect(),
         complete,
     }
 }
@@ -110,12 +110,12 @@ fn decided(
         let outcomes = counts.of(studied.requirement, studied.event);
         decide(studied, outcomes.interval(confidence))
     };
-    if counts.taken.is_empty() {
+    if counts.evaluated.is_empty() {
         return (at(counts.counts(), confidence), None);
     }
-    let mut looks = counts.taken.iter().map(|taken| {
-        let decision = at(&taken.counts, taken.look.confidence);
-        (decision, Some(taken.look.number))
+    let mut looks = counts.evaluated.iter().map(|counted| {
+        let decision = at(&counted.counts, counted.look.confidence);
+        (decision, Some(counted.look.number))
     });
     let first = looks.find(|(decision, _)| *decision != Decision::Undecided);
     first.unwrap_or((Decision::Undecided, None))

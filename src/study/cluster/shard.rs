@@ -303,7 +303,7 @@ mod tests {
     }
 
     #[test]
-    fn shards_together_are_the_study_and_their_names_tell_them() {
+    fn shards_together_are_the_study_and_their_names_identify_them() {
         for (runs, of) in [(0, 3), (7, 8), (1000, 7), (10_000_000_000, 1024)] {
             let mut next = 0;
             for number in 1..=of {

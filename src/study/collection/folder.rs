@@ -15,12 +15,12 @@ const EXTENSION: &str = "parquet";
 
 /// The file of a study or of a shard, and its pieces.
 #[derive(Clone, Debug)]
-pub struct Place {
+pub struct DataSetFiles {
     folder: PathBuf,
     stem: String,
 }
 
-impl Place {
+impl DataSetFiles {
     /// The whole study, or a shard of it.
     #[must_use]
     pub fn of(folder: &Path, shard: Option<Shard>) -> Self {

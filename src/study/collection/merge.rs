@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::folder::{self, Place};
+use super::folder::{self, DataSetFiles};
 use super::joined;
 use super::same::{Difference, same};
 use crate::study::cluster::shard::Shard;
@@ -98,7 +98,7 @@ pub fn merge(folder: &Path) -> Result<(PathBuf, Metadata), MergeFault> {
             });
         }
     };
-    let path = |number| Place::of(folder, Some(Shard { number, of })).path();
+    let path = |number| DataSetFiles::of(folder, Some(Shard { number, of })).path();
     let missing: Vec<u32> = (1..=of).filter(|number| !path(*number).exists()).collect();
     if !missing.is_empty() {
         return Err(MergeFault::Missing { missing, of });
@@ -125,7 +125,7 @@ pub fn merge(folder: &Path) -> Result<(PathBuf, Metadata), MergeFault> {
             });
         }
     }
-    let study = Place::of(folder, None).path();
+    let study = DataSetFiles::of(folder, None).path();
     let merged = joined(&study, &metadata, &readers)?;
     Ok((study, merged))
 }

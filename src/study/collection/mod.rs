@@ -25,7 +25,7 @@ use crate::study::data_set::{DataSetFault, Metadata, Reader, Writer};
 use crate::study::simulation::Simulation;
 use crate::study::stopping::Looks;
 
-use folder::Place;
+use folder::DataSetFiles;
 use same::{Difference, grown, same};
 
 /// Longest time whose runs a kill may cost.
@@ -98,7 +98,7 @@ impl Collection<'_> {
         &self,
         observe: &mut dyn FnMut(&Progress<'_>) -> bool,
     ) -> Result<(Ended, Looks), CollectionFault> {
-        let place = Place::of(self.folder, self.shard);
+        let files = DataSetFiles::of(self.folder, self.shard);
         let at_most = self.runs.at_most();
         let range = match self.shard {
             None => 0..at_most,
@@ -112,13 +112,13 @@ impl Collection<'_> {
         };
         std::fs::create_dir_all(self.folder)
             .map_err(|error| DataSetFault::new(self.folder, error.to_string()))?;
-        let _lock = Lock::of(&place)?;
+        let _lock = Lock::of(&files)?;
         let runs = match self.shard {
             None => self.runs,
             Some(_) => Runs::Fixed(range.end - range.start),
         };
         let mut looks = Looks::of(runs, self.metadata);
-        let mut kept = self.kept(&place, range.start)?;
+        let mut kept = self.kept(&files, range.start)?;
         for reader in &kept {
             for row in reader.rows() {
                 looks.add(&row?);
@@ -130,7 +130,7 @@ impl Collection<'_> {
         let mut goes_on = true;
         while goes_on && !looks.are_over() {
             let first = range.start + looks.counts.runs;
-            let path = place.piece(first);
+            let path = files.piece(first);
             let mut piece = Writer::create(
                 &path,
                 &Metadata {
@@ -159,8 +159,8 @@ impl Collection<'_> {
             kept.push(Reader::open(&path)?);
         }
         let ended = if looks.are_over() {
-            self.finish(&place, &kept, range.start)?;
-            let path = place.path();
+            self.finish(&files, &kept, range.start)?;
+            let path = files.path();
             Ended::Finished { path, simulated }
         } else {
             let runs = looks.counts.runs;
@@ -170,10 +170,10 @@ impl Collection<'_> {
     }
 
     /// The data sets of the runs from `first` on that are there, one behind the other.
-    fn kept(&self, place: &Place, first: u64) -> Result<Vec<Reader>, CollectionFault> {
+    fn kept(&self, files: &DataSetFiles, first: u64) -> Result<Vec<Reader>, CollectionFault> {
         let mut kept = Vec::new();
         let mut next = first;
-        let path = place.path();
+        let path = files.path();
         if path.exists() {
             let reader = self.open(&path)?;
             let Metadata { first, end, .. } = *reader.metadata();
@@ -183,7 +183,7 @@ impl Collection<'_> {
             next = end;
             kept.push(reader);
         }
-        for path in place.pieces()? {
+        for path in files.pieces()? {
             let reader = self.open(&path)?;
             if reader.metadata().first == next {
                 next = reader.metadata().end;
@@ -221,8 +221,13 @@ impl Collection<'_> {
     }
 
     /// Makes the data set of all that is kept, and removes the pieces.
-    fn finish(&self, place: &Place, kept: &[Reader], first: u64) -> Result<(), CollectionFault> {
-        let path = place.path();
+    fn finish(
+        &self,
+        files: &DataSetFiles,
+        kept: &[Reader],
+        first: u64,
+    ) -> Result<(), CollectionFault> {
+        let path = files.path();
         let end = kept.last().map_or(first, |last| last.metadata().end);
         match kept {
             [only] if only.path() == path => {}
@@ -241,7 +246,7 @@ impl Collection<'_> {
                 joined(&path, &metadata, kept)?;
             }
         }
-        for piece in place.pieces()? {
+        for piece in files.pieces()? {
             remove(&piece)?;
         }
         Ok(())
@@ -284,8 +289,8 @@ struct Lock {
 }
 
 impl Lock {
-    fn of(place: &Place) -> Result<Self, CollectionFault> {
-        let path = place.lock();
+    fn of(files: &DataSetFiles) -> Result<Self, CollectionFault> {
+        let path = files.lock();
         let file = std::fs::OpenOptions::new()
             .create(true)
             .truncate(false)
@@ -305,8 +310,9 @@ impl Lock {
 
 /// Whether this is still the file with this name.
 fn is_at(file: &std::fs::File, path: &Path) -> bool {
-    let place = |metadata: std::fs::Metadata| (metadata.dev(), metadata.ino());
-    let [own, found] = [file.metadata(), path.metadata()].map(|found| found.ok().map(place));
+    let device_and_inode = |metadata: std::fs::Metadata| (metadata.dev(), metadata.ino());
+    let [own, found] =
+        [file.metadata(), path.metadata()].map(|found| found.ok().map(device_and_inode));
     own == found
 }
 

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::folder::{self, Place};
+use super::folder::{self, DataSetFiles};
 use crate::study::cluster::shard::Shard;
 use crate::study::data_set::{DataSetFault, Metadata, Reader};
 
@@ -76,7 +76,7 @@ fn part(
     shard: Option<Shard>,
     metadata: &mut Option<Metadata>,
 ) -> Result<Part, DataSetFault> {
-    let place = Place::of(folder, shard);
+    let files = DataSetFiles::of(folder, shard);
     let mut runs = 0;
     let mut read = |path: &Path| -> Result<(), DataSetFault> {
         let reader = Reader::open(path)?;
@@ -86,12 +86,12 @@ fn part(
         }
         Ok(())
     };
-    let path = place.path();
+    let path = files.path();
     let finished = path.exists();
     if finished {
         read(&path)?;
     } else {
-        for piece in place.pieces()? {
+        for piece in files.pieces()? {
             read(&piece)?;
         }
     }

@@ -1,6 +1,6 @@
 //! Studies on the disk: grown, stopped, continued, divided and put together, always with the same bytes; and what is refused.
 
-use super::folder::Place;
+use super::folder::DataSetFiles;
 use super::merge::{MergeFault, merge};
 use super::same::Difference;
 use super::status::status;
@@ -78,7 +78,7 @@ fn a_study_that_is_stopped_again_and_again_has_the_same_bytes() {
         match ended {
             Ended::Stopped { runs, of } => {
                 assert_eq!((runs, of), (looks.counts.runs, RUNS));
-                assert!(!Place::of(pieces.path(), None).path().exists());
+                assert!(!DataSetFiles::of(pieces.path(), None).path().exists());
                 let status = status(pieces.path()).unwrap();
                 assert_eq!(
                     (status.parts[0].runs, status.parts[0].finished),
@@ -109,8 +109,8 @@ fn what_a_killed_process_leaves_behind_does_no_harm() {
     for _ in 0..3 {
         add(&studied, None, folder, None, 1).unwrap();
     }
-    let place = Place::of(folder, None);
-    let pieces = place.pieces().unwrap();
+    let files = DataSetFiles::of(folder, None);
+    let pieces = files.pieces().unwrap();
     assert_eq!(pieces.len(), 3);
     std::fs::write(
         folder.join("study.piece-000000000192.parquet.part"),
@@ -126,7 +126,7 @@ fn what_a_killed_process_leaves_behind_does_no_harm() {
         expected,
         "a piece that is in the data set"
     );
-    assert!(place.pieces().unwrap().is_empty());
+    assert!(files.pieces().unwrap().is_empty());
 }
 
 /// The smaller study is the beginning of the larger one, which has the bytes of a study that was run at once.
@@ -140,13 +140,14 @@ fn a_study_grows_by_runs_at_its_end() {
         let studied = Studied::varied(&usual(), RUNS, variation);
         let [whole, grown] = [(); 2].map(|()| tempfile::tempdir().unwrap());
         let expected = finished(&studied, whole.path());
-        let path = Place::of(grown.path(), None).path();
+        let path = DataSetFiles::of(grown.path(), None).path();
         for runs in [60, 61, 150, RUNS] {
             let (ended, _) = add(&studied, Some(runs), grown.path(), None, u32::MAX).unwrap();
             assert!(matches!(ended, Ended::Finished { .. }));
             assert_eq!(
                 rows(&path),
-                rows(&Place::of(whole.path(), None).path())[..usize::try_from(runs).unwrap()]
+                rows(&DataSetFiles::of(whole.path(), None).path())
+                    [..usize::try_from(runs).unwrap()]
             );
         }
         assert_eq!(bytes(&path), expected);
@@ -262,7 +263,8 @@ fn shards_of_another_study_are_refused() {
         );
     }
     // A copy of the first shard under the name of the second.
-    let paths = [1, 2].map(|number| Place::of(folder.path(), Some(Shard { number, of: 2 })).path());
+    let paths =
+        [1, 2].map(|number| DataSetFiles::of(folder.path(), Some(Shard { number, of: 2 })).path());
     std::fs::copy(&paths[0], &paths[1]).unwrap();
     assert!(matches!(
         merge(folder.path()),
@@ -347,7 +349,7 @@ fn a_study_with_a_stopping_rule_ends_at_a_look() {
     });
     let [whole, stopped] = [(); 2].map(|()| tempfile::tempdir().unwrap());
     let expected = finished(&studied, whole.path());
-    let end = Reader::open(&Place::of(whole.path(), None).path())
+    let end = Reader::open(&DataSetFiles::of(whole.path(), None).path())
         .unwrap()
         .metadata()
         .end;
@@ -356,7 +358,10 @@ fn a_study_with_a_stopping_rule_ends_at_a_look() {
         add(&studied, None, stopped.path(), None, 1).unwrap().0,
         Ended::Stopped { .. }
     ) {}
-    assert_eq!(bytes(&Place::of(stopped.path(), None).path()), expected);
+    assert_eq!(
+        bytes(&DataSetFiles::of(stopped.path(), None).path()),
+        expected
+    );
     let shard = Some(Shard { number: 1, of: 2 });
     let refused = add(&studied, None, whole.path(), shard, 1);
     assert!(matches!(refused, Err(CollectionFault::UntilInShards)));

@@ -79,7 +79,7 @@ fn a_study_is_never_a_pass() {
 }
 
 #[test]
-fn an_incomplete_study_says_so_on_its_first_page() {
+fn an_incomplete_study_is_marked_on_its_first_page() {
     let (metadata, answers) = study(0.05, 500);
     let page = page(&metadata, &answers);
     assert!(page.contains("INCOMPLETE: 500 of up to 1000 runs"));

@@ -18,7 +18,7 @@ use crate::verdict::{self, Verdict};
 pub struct Readout {
     columns: Vec<ResultColumn>,
     /// Index of the study among those of the plan.
-    place: usize,
+    study_index: usize,
     /// The condition of a fragility, and its index among the fragilities of the plan.
     exceeds: Option<(usize, Requirement)>,
 }
@@ -56,17 +56,17 @@ impl Readout {
         let exceeds = match study.kind {
             Kind::Study(_) => None,
             Kind::Fragility(_) => {
-                let fragility = &plan.studies.fragilities[study.place];
+                let fragility = &plan.studies.fragilities[study.index];
                 let requirement = Requirement {
                     label: fragility.name.clone(),
                     conditions: vec![fragility.exceeds.clone()],
                 };
-                Some((study.place, requirement))
+                Some((study.index, requirement))
             }
         };
         let mut readout = Self {
             columns: Vec::new(),
-            place: study.place,
+            study_index: study.index,
             exceeds,
         };
         let requirements = readout.requirements(plan).to_vec();
@@ -121,18 +121,22 @@ impl Readout {
         let collected = self.columns.iter().any(|column| match &column.from {
             From::Condition { .. } => false,
             From::Collected(index, formula) => {
-                let study = studies.studies.get(self.place);
+                let study = studies.studies.get(self.study_index);
                 let own = study.and_then(|study| study.collect.get(*index));
                 own.is_some_and(|own| own.value != *formula)
             }
         });
-        let exceeds = self.exceeds.as_ref().is_some_and(|(place, requirement)| {
-            let fragility = studies.fragilities.get(*place);
-            let own = fragility.map(|fragility| &fragility.exceeds);
-            let formulas =
-                |condition: &Condition| -> Vec<Formula> { condition.formulas().cloned().collect() };
-            own.is_some_and(|own| formulas(own) != formulas(&requirement.conditions[0]))
-        });
+        let exceeds = self
+            .exceeds
+            .as_ref()
+            .is_some_and(|(study_index, requirement)| {
+                let fragility = studies.fragilities.get(*study_index);
+                let own = fragility.map(|fragility| &fragility.exceeds);
+                let formulas = |condition: &Condition| -> Vec<Formula> {
+                    condition.formulas().cloned().collect()
+                };
+                own.is_some_and(|own| formulas(own) != formulas(&requirement.conditions[0]))
+            });
         collected || exceeds
     }
 
@@ -180,9 +184,9 @@ impl Readout {
     /// Makes the plan of a run decide what the study decides, on the value alone.
     pub fn prepare(&self, plan: &mut Plan) {
         plan.decision_rule = DecisionRule::Simple;
-        if let Some((place, requirement)) = &self.exceeds {
+        if let Some((study_index, requirement)) = &self.exceeds {
             // The limit may be a parameter of the run.
-            let own = plan.studies.fragilities.get(*place);
+            let own = plan.studies.fragilities.get(*study_index);
             let condition = own.map_or_else(
                 || requirement.conditions[0].clone(),
                 |own| own.exceeds.clone(),
@@ -220,7 +224,7 @@ impl Readout {
                         .ok_or_else(|| outcome.reason.clone())
                 }
                 From::Collected(index, formula) => {
-                    let studies = plan.studies.studies.get(self.place);
+                    let studies = plan.studies.studies.get(self.study_index);
                     let own = studies.and_then(|study| study.collect.get(*index));
                     let formula = own.map_or(formula, |own| &own.value);
                     evaluated(formula, record).map_err(Some)

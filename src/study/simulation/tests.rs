@@ -88,7 +88,7 @@ fn runs_in_batches_are_the_runs_one_by_one() {
 /// Every example that is one impact on an ideal rig: its results in a batch are those of its run.
 #[test]
 fn every_example_that_a_batch_takes_has_the_same_results_in_it() {
-    let mut taken = Vec::new();
+    let mut paths = Vec::new();
     for entry in std::fs::read_dir("plans").unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_none_or(|extension| extension != "psd") {
@@ -117,9 +117,9 @@ fn every_example_that_a_batch_takes_has_the_same_results_in_it() {
             };
             assert_eq!(number(&found), number(&alone), "{}: {name}", path.display());
         }
-        taken.push(path);
+        paths.push(path);
     }
-    assert!(taken.len() >= 3, "{taken:?}");
+    assert!(paths.len() >= 3, "{paths:?}");
 }
 
 #[test]
@@ -190,7 +190,7 @@ fn a_run_is_reproduced_by_its_settings() {
 }
 
 #[test]
-fn a_run_without_a_result_says_why() {
+fn a_run_without_a_result_states_the_reason() {
     let row = |text: &str, speed: f64| {
         let speed = Distribution::uniform(speed, speed * 1.000_001).unwrap();
         let studied = Studied::varied(

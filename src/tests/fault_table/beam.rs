@@ -3,7 +3,7 @@
 //! results of the ideal virtual run, within the resolution of the rig. The unchanged plan runs on the one driver that reads displacement
 //! and force at one instant. For every other driver the sweep is refused, and its result is supplied instead.
 
-use super::stage::{header, open, stand};
+use super::stage::{emulator, header, open};
 use crate::emulator::Log;
 use crate::language::check::{Checked, LoadError, Loader, Options, check};
 use crate::plan::Plan;
@@ -151,15 +151,15 @@ impl Case {
 
     fn run(&self) -> Record {
         let plan = self.plan("bench");
-        let stand = stand(&plan, "", Log::none(), 1);
+        let emulator = emulator(&plan, "", Log::none(), 1);
         let mut rig =
-            open(&plan, &stand).unwrap_or_else(|fault| panic!("{}: {fault}", self.devices));
+            open(&plan, &emulator).unwrap_or_else(|fault| panic!("{}: {fault}", self.devices));
         let mut journal = Journal::create(Box::new(PowerLoss::new()), Durability::EverySyncPoint);
         replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
         let record =
             replay::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None)).record;
         assert!(
-            stand.stand().bench().violations().is_empty(),
+            emulator.lock().rig().violations().is_empty(),
             "{}",
             self.devices
         );
@@ -268,7 +268,7 @@ fn the_papers_beam_itself_gives_the_ideal_runs_results_in_every_dialect() {
 /// Reason for refusing the sweep. Without the guard of the check, the move between two readings acts as a damper. This damper is many
 /// times larger than that of the beam.
 #[test]
-fn a_sweep_whose_readings_are_apart_would_take_the_way_between_them_for_damping() {
+fn a_sweep_with_readings_at_different_times_would_count_the_travel_between_them_as_damping() {
     let case = Case {
         sweeps: true,
         ..case("link = serial(port: \"/a\", dialect: native)", 5e-4)
@@ -283,8 +283,8 @@ fn a_sweep_whose_readings_are_apart_would_take_the_way_between_them_for_damping(
         .unwrap()
         .actuator
         .clone();
-    let stand = stand(&plan, "", Log::none(), 1);
-    let mut rig = open(&plan, &stand).unwrap();
+    let emulator = emulator(&plan, "", Log::none(), 1);
+    let mut rig = open(&plan, &emulator).unwrap();
     let record = run(&plan, &mut rig, &mut Unwatched);
     assert!(
         number(&record, "c", "damping") > 100.0 * 6.0,

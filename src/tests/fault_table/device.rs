@@ -19,13 +19,13 @@ fn what_is_no_number_is_never_integrated() {
             let once = run(&plan(), &bad(*reading));
             once.sound();
             assert_eq!(once.line_statistics.reread, 1, "{word}");
-            let said = format!(" {} ", word.trim_matches('"'));
+            let bytes = format!(" {} ", word.trim_matches('"'));
             let samples = once
                 .lines
                 .iter()
                 .filter(|line| line.kind == EntryKind::Sample);
             samples
-                .filter(|line| line.body()["raw"].to_string().contains(&said))
+                .filter(|line| line.body()["raw"].to_string().contains(&bytes))
                 .count()
                 == 1
         });
@@ -117,7 +117,7 @@ fn a_spike_does_not_move_the_median() {
 }
 
 #[test]
-fn a_rig_that_starts_anew_is_held_and_not_moved_any_more() {
+fn a_rig_that_restarts_is_held_and_not_moved_any_more() {
     let ended = run(&plan(), "after 4 moves: reboot");
     ended.held();
     assert!(
@@ -126,5 +126,5 @@ fn a_rig_that_starts_anew_is_held_and_not_moved_any_more() {
         ended.reason()
     );
     assert!(ended.reason().contains("restarted"), "{}", ended.reason());
-    assert_eq!(ended.stand.stand().bench().moves().len(), 4);
+    assert_eq!(ended.emulator.lock().rig().moves().len(), 4);
 }

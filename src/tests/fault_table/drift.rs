@@ -103,11 +103,11 @@ fn a_zero_that_drifts_too_far_decides_nothing_that_the_force_enters() {
     let without = without(Guarding::ZeroDrift, || decided(&plan, &ended));
     assert_eq!(without.0, SOUND, "it is this guard that holds it up");
     // Back at the start position, unloaded.
-    assert!(ended.stand.stand().bench().commanded().abs() < 1e-6);
+    assert!(ended.emulator.lock().rig().commanded().abs() < 1e-6);
 }
 
 #[test]
-fn a_drift_within_what_is_allowed_is_told_and_decides() {
+fn an_allowed_zero_drift_is_reported_and_verdicts_remain_conclusive() {
     let plan = drifting(CHECK);
     let ended = run(&plan, "after 20 readings: drift force 0.03 N/s");
     assert_eq!(decided(&plan, &ended).0, SOUND);
@@ -205,7 +205,7 @@ fn a_free_cell_is_read_where_it_is() {
         verdicts[0] == Verdict::Inconclusive && reason.contains("drifted by 20"),
         "{reason}"
     );
-    assert!((ended.stand.stand().bench().commanded() - 2e-4).abs() < 1e-6);
+    assert!((ended.emulator.lock().rig().commanded() - 2e-4).abs() < 1e-6);
     let asked = ended.events(EventKind::Inspection);
     assert!(
         asked.last().unwrap().contains("remove the specimen"),
@@ -214,7 +214,7 @@ fn a_free_cell_is_read_where_it_is() {
 }
 
 #[test]
-fn a_rig_that_does_not_say_is_not_asked() {
+fn a_rig_that_does_not_report_it_is_not_asked() {
     let ended = run_without(Guarding::ZeroDrift, &plan(), "");
     assert!(ended.completed() && ended.record.drift.is_none());
 }

@@ -39,7 +39,7 @@ pub(super) fn judged(plan: &Plan, forged: &Recovered) -> Result<(), String> {
 }
 
 #[test]
-fn a_record_that_says_two_things_is_found_out() {
+fn a_contradictory_record_is_found() {
     for plan in [plan(), shaken("50 ms")] {
         let ended = run(&plan, "");
         assert!(ended.completed());
@@ -65,10 +65,11 @@ fn a_record_that_says_two_things_is_found_out() {
             (EntryKind::End, 0, "/outcome", json!("aborted"), "aborted"),
             (EntryKind::Header, 0, "/psd", json!(7), "invalid type"),
         ];
-        for (kind, nth, place, value, why) in cases {
-            let alter = |body: &mut Value| *body.pointer_mut(place).expect(place) = value.clone();
-            let fault = found(&plan, &ended, kind, nth, alter).expect_err(place);
-            assert!(fault.contains(why), "{kind:?} {place}: {fault}");
+        for (kind, nth, pointer, value, why) in cases {
+            let alter =
+                |body: &mut Value| *body.pointer_mut(pointer).expect(pointer) = value.clone();
+            let fault = found(&plan, &ended, kind, nth, alter).expect_err(pointer);
+            assert!(fault.contains(why), "{kind:?} {pointer}: {fault}");
         }
     }
 }
@@ -89,7 +90,7 @@ fn a_field_that_psd_does_not_write_is_found_in_every_record() {
 }
 
 #[test]
-fn what_is_taken_out_of_an_ended_record_is_missed() {
+fn a_line_removed_from_a_completed_record_is_missed() {
     let mut plan = plan();
     link(&mut plan).pretest_check.zero = 5.0;
     let ended = run(&plan, "");

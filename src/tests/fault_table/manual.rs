@@ -1,6 +1,6 @@
 //! The rigs of the manual, each with its own emulator and the noise that it declares. Every rig passes its pre-test check for every seed.
 
-use super::stage::{header, open, stand};
+use super::stage::{emulator, header, open};
 use crate::emulator::Log;
 use crate::language::check::{LoadError, Loader, Options, check};
 use crate::plan::Plan;
@@ -63,8 +63,8 @@ fn every_rig_of_the_manual_passes_its_pretest_check() {
     for plan in rigs {
         for seed in 1..=5 {
             let name = &plan.rig.name;
-            let stand = stand(&plan, "", Log::none(), seed);
-            let mut rig = open(&plan, &stand).unwrap_or_else(|fault| panic!("{name}: {fault}"));
+            let emulator = emulator(&plan, "", Log::none(), seed);
+            let mut rig = open(&plan, &emulator).unwrap_or_else(|fault| panic!("{name}: {fault}"));
             let mut journal =
                 Journal::create(Box::new(PowerLoss::new()), Durability::EverySyncPoint);
             replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();

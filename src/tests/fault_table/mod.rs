@@ -11,14 +11,14 @@
 //! | 12 | garbage, a megabyte without a line end | `line::garbage_of_any_kind_is_counted_and_none_of_it_is_used` |
 //! | 13 | every bit of a reply flipped | `line::every_flipped_bit_of_a_reply_is_seen` |
 //! | 14 | replies doubled, late, out of order | `line::a_doubled_a_late_and_an_old_reply_are_ignored`, `unnumbered::*` |
-//! | 16 | reboot | `device::a_rig_that_starts_anew_is_held_and_not_moved_any_more`, `unnumbered::a_start_of_grbl_is_seen` |
-//! | 18 | lag, stuck | `motion::a_ram_that_sticks_or_lags_is_a_following_error` |
+//! | 16 | reboot | `device::a_rig_that_restarts_is_held_and_not_moved_any_more`, `unnumbered::a_start_of_grbl_is_seen` |
+//! | 18 | lag, stuck | `motion::an_actuator_that_sticks_or_lags_is_a_following_error` |
 //! | 19 | polarity, unit, scale, offset | `pretest_check::*` |
 //! | 19 | a rig at another position, invalid numbers at rest | `start::*` |
 //! | 20 | values that are not numbers | `device::what_is_no_number_is_never_integrated` |
 //! | 21 | saturation | `device::a_clipped_force_holds_the_rig` |
 //! | 22 | frozen sensor | `device::a_frozen_sensor_holds_the_rig` |
-//! | 23 | zero drift, of force and displacement | `drift::*`, `pretest_check::the_drift_at_rest_is_told` |
+//! | 23 | zero drift, of force and displacement | `drift::*`, `pretest_check::the_drift_at_rest_is_reported` |
 //! | 24 | spike | `device::a_spike_does_not_move_the_median` |
 //! | 25 | force beyond its limit, fracture | `motion::a_force_beyond_its_limit_holds_the_rig`, `motion::a_break_is_an_event_and_no_error` |
 //! | 26 | targets beyond limits or not finite | `targets::nothing_beyond_a_limit_is_ever_on_the_wire` |

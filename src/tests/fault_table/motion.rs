@@ -10,7 +10,7 @@ use crate::rig::safety::failpoint::Guarding;
 use crate::tests::testing::{every, impact};
 
 #[test]
-fn a_ram_that_sticks_or_lags_is_a_following_error() {
+fn an_actuator_that_sticks_or_lags_is_a_following_error() {
     for fault in ["stick", "reach 40 %", "lag 20 s"] {
         let script = format!("after 5 moves: {fault}");
         let ended = run(&plan(), &script);
@@ -38,14 +38,14 @@ fn a_force_beyond_its_limit_holds_the_rig() {
         ended.record.outcome
     );
     assert_eq!(ended.events(EventKind::LimitBreach).len(), 1);
-    let stand = ended.stand.stand();
-    assert!(stand.bench().commanded() < 55.0 / STIFFNESS + 2e-4);
-    drop(stand);
+    let emulator = ended.emulator.lock();
+    assert!(emulator.rig().commanded() < 55.0 / STIFFNESS + 2e-4);
+    drop(emulator);
     assert!(run_without(Guarding::ReadingLimits, &limited, "").completed());
 }
 
 /// An impact of 1 kg at some mm/s on 2 kg: outwards at first.
-fn blow(inspect: Vec<InspectTrigger>) -> Plan {
+fn impact_plan(inspect: Vec<InspectTrigger>) -> Plan {
     let strike = Impact {
         stepping: Stepping {
             inspect,
@@ -63,7 +63,7 @@ fn blow(inspect: Vec<InspectTrigger>) -> Plan {
 
 #[test]
 fn a_break_is_an_event_and_no_error() {
-    let plan = blow(vec![InspectTrigger::ForceDrop(0.5)]);
+    let plan = impact_plan(vec![InspectTrigger::ForceDrop(0.5)]);
     let breaks = "at 0 s: fracture at 2 mm to 10 %";
     let ended = run(&plan, breaks);
     assert!(
@@ -89,7 +89,7 @@ fn a_break_is_an_event_and_no_error() {
 #[test]
 fn an_energy_error_beyond_its_limit_holds_the_rig() {
     let plan = |ratio: f64| {
-        let mut plan = blow(Vec::new());
+        let mut plan = impact_plan(Vec::new());
         plan.limits.energy_error = Interval {
             low: 0.0,
             high: 1e-3,
@@ -108,7 +108,7 @@ fn an_energy_error_beyond_its_limit_holds_the_rig() {
         "{}",
         ended.reason()
     );
-    assert!(ended.log.contains("actuator > !") && !ended.stand.stand().bench().moving());
+    assert!(ended.log.contains("actuator > !") && !ended.emulator.lock().rig().moving());
     assert!(run_without(Guarding::EnergyError, &plan(0.01), "").completed());
 }
 
@@ -116,7 +116,7 @@ fn an_energy_error_beyond_its_limit_holds_the_rig() {
 /// differs from the work along the measured positions (physics, section 11).
 #[test]
 fn tracking_that_changes_the_energy_holds_the_rig() {
-    let mut plan = blow(Vec::new());
+    let mut plan = impact_plan(Vec::new());
     plan.rig.settle.band = 5e-3;
     let short = "after 2 moves: reach 80 %";
     let ended = run(&plan, short);
@@ -127,7 +127,7 @@ fn tracking_that_changes_the_energy_holds_the_rig() {
         .find("actuator > !")
         .expect("the rig was told to hold");
     assert!(
-        !ended.log[held..].contains(" bench move ") && !ended.stand.stand().bench().moving(),
+        !ended.log[held..].contains(" bench move ") && !ended.emulator.lock().rig().moving(),
         "{}",
         ended.tail()
     );

@@ -15,18 +15,18 @@ fn refused(script: &str, why: &str, most_moves: usize) {
         reason.contains("did not pass the pre-test check") && reason.contains(why),
         "{script}: {reason}"
     );
-    let stand = ended.stand.stand();
+    let emulator = ended.emulator.lock();
     assert!(
-        ended.record.procedures.is_empty() && stand.bench().moves().len() <= most_moves,
+        ended.record.procedures.is_empty() && emulator.rig().moves().len() <= most_moves,
         "{script}"
     );
     assert!(
-        stand
-            .bench()
+        emulator
+            .rig()
             .targets()
             .iter()
             .all(|target| target.abs() <= 5.1e-5)
-            && !stand.bench().moving()
+            && !emulator.rig().moving()
     );
     assert!(ended.log.contains("actuator > !"), "{script}: held");
 }
@@ -55,7 +55,7 @@ fn a_displacement_in_another_unit_never_gets_past_the_probe() {
         ended.held();
         assert!(!past(&ended), "{scale}: {}", ended.reason());
         assert_eq!(
-            ended.stand.stand().bench().moves().len(),
+            ended.emulator.lock().rig().moves().len(),
             1,
             "{scale}: stopped at the first move, for it is not where it should be"
         );
@@ -93,7 +93,7 @@ fn past(ended: &Ended) -> bool {
 }
 
 #[test]
-fn the_drift_at_rest_is_told() {
+fn the_drift_at_rest_is_reported() {
     let ended = run(&plan(), "at 0 s: drift force 0.5 N/s");
     let notes = ended.events(EventKind::Note);
     let pretest_check = notes

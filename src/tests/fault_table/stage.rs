@@ -108,9 +108,9 @@ pub(super) const fn device_link(dialect: Dialect) -> DeviceLink {
     }
 }
 
-pub(super) const fn to(place: f64) -> ProcedureKind {
+pub(super) const fn to(displacement: f64) -> ProcedureKind {
     ProcedureKind::Move(Move {
-        to: Formula::Constant(place),
+        to: Formula::Constant(displacement),
         speed: None,
     })
 }
@@ -124,7 +124,7 @@ pub(super) struct Ended {
     pub(super) log: String,
     pub(super) line_statistics: LineStatistics,
     pub(super) trusted: bool,
-    pub(super) stand: InProcess,
+    pub(super) emulator: InProcess,
 }
 
 /// Runs a plan on its emulator with this script of faults.
@@ -138,8 +138,8 @@ pub(super) fn run_watched(
     observer: &mut dyn Observer,
 ) -> Result<Ended, RigFault> {
     let text = SharedText::default();
-    let stand = stand(plan, script, Log::to(Box::new(text.clone())), 1);
-    let mut rig = open(plan, &stand)?;
+    let emulator = emulator(plan, script, Log::to(Box::new(text.clone())), 1);
+    let mut rig = open(plan, &emulator)?;
     let disk = PowerLoss::new();
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
     replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
@@ -159,7 +159,7 @@ pub(super) fn run_watched(
     );
     let (line_statistics, trusted) = (rig.line_statistics(), rig.trusted());
     assert!(
-        stand.stand().bench().violations().is_empty()
+        emulator.lock().rig().violations().is_empty()
             || !crate::rig::safety::failpoint::on(Guarding::TargetLimits)
     );
     Ok(Ended {
@@ -169,32 +169,32 @@ pub(super) fn run_watched(
         log: text.text(),
         line_statistics,
         trusted,
-        stand,
+        emulator,
     })
 }
 
-pub(super) fn stand(plan: &Plan, script: &str, log: Log, seed: u64) -> InProcess {
+pub(super) fn emulator(plan: &Plan, script: &str, log: Log, seed: u64) -> InProcess {
     let script = Script::parse(script).unwrap_or_else(|error| panic!("{error}"));
     InProcess::new(of_plan(plan, &script, log, seed, Some(0x7f3a)).unwrap())
 }
 
 /// The plan's rig on an emulator.
-pub(super) fn open(plan: &Plan, stand: &InProcess) -> Result<RealRig, RigFault> {
-    open_through(plan, stand, &|port| Box::new(port))
+pub(super) fn open(plan: &Plan, emulator: &InProcess) -> Result<RealRig, RigFault> {
+    open_through(plan, emulator, &|port| Box::new(port))
 }
 
 /// The same, with every line wrapped by `through`.
 pub(super) fn open_through(
     plan: &Plan,
-    stand: &InProcess,
+    emulator: &InProcess,
     through: &dyn Fn(SimulatedPort) -> Box<dyn Port>,
 ) -> Result<RealRig, RigFault> {
     let link = plan.rig.link.as_real().unwrap();
     let attach = |link: &DeviceLink, line: usize| {
         controllers::open(
             link,
-            through(stand.port(line)),
-            Box::new(stand.clock()),
+            through(emulator.port(line)),
+            Box::new(emulator.clock()),
             StopRequest::default(),
             plan.rig.settle.timeout,
         )
@@ -218,7 +218,7 @@ pub(super) fn open_through(
         &plan.limits,
         actuator,
         load_cell,
-        Box::new(stand.clock()),
+        Box::new(emulator.clock()),
         StopRequest::default(),
     )
 }
@@ -272,7 +272,7 @@ impl Ended {
             "{}",
             self.tail()
         );
-        assert!(!self.stand.stand().bench().moving());
+        assert!(!self.emulator.lock().rig().moving());
         let fault = self
             .lines
             .iter()

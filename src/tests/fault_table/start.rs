@@ -6,7 +6,7 @@ use super::forged::{found, judged};
 use super::interrupted::cut_off::{GoneOn, gone_on, killed};
 use super::line::unnumbered::{grbl, modbus};
 use super::stage::{
-    Ended, STIFFNESS, device_link, link, open, plan, plan_of, run, run_without, stand, to,
+    Ended, STIFFNESS, device_link, emulator, link, open, plan, plan_of, run, run_without, to,
 };
 use crate::emulator::Log;
 use crate::plan::{Datum, Dialect, ModbusMap, ModbusNumber, Plan};
@@ -26,12 +26,12 @@ fn refused(plan: &Plan, script: &str, why: &str) -> Ended {
         "{script}: {}",
         ended.reason()
     );
-    let stand = ended.stand.stand();
+    let emulator = ended.emulator.lock();
     assert!(
-        stand.bench().moves().is_empty() && !stand.bench().moving(),
+        emulator.rig().moves().is_empty() && !emulator.rig().moving(),
         "{script}"
     );
-    drop(stand);
+    drop(emulator);
     assert_eq!(ended.count(EntryKind::Intent), 0);
     ended
 }
@@ -42,7 +42,7 @@ fn here(mut plan: Plan) -> Plan {
 }
 
 #[test]
-fn a_rig_that_stands_elsewhere_without_load_is_not_sent_to_the_plans_start() {
+fn an_unloaded_rig_elsewhere_is_not_sent_to_the_start_of_the_plan() {
     let ended = refused(&plan(), AT_3_MM, "is at 3.000 mm, but the plan starts at 0");
     assert!(
         ended.reason().contains("`datum = here`"),
@@ -54,9 +54,9 @@ fn a_rig_that_stands_elsewhere_without_load_is_not_sent_to_the_plans_start() {
     // Without this check, the first target of the plan moved the rig by 2.9 mm in the opposite direction.
     let sent = run_without(Guarding::PretestStart, &plan(), AT_3_MM);
     let least = sent
-        .stand
-        .stand()
-        .bench()
+        .emulator
+        .lock()
+        .rig()
         .targets()
         .iter()
         .copied()
@@ -68,9 +68,9 @@ fn a_rig_that_stands_elsewhere_without_load_is_not_sent_to_the_plans_start() {
 }
 
 #[test]
-fn what_a_specimen_carries_there_is_told() {
+fn the_force_of_a_specimen_at_the_start_is_reported() {
     // The specimen of an earlier run is still deformed: 0.1 mm correspond to 10 N.
-    let bent = run(&plan_of(vec![to(1e-4)]), "").stand;
+    let bent = run(&plan_of(vec![to(1e-4)]), "").emulator;
     let mut rig = open(&plan(), &bent).unwrap();
     let record = crate::run::run(&plan(), &mut rig, &mut crate::run::Unwatched);
     let Outcome::Faulted { reason } = &record.outcome else {
@@ -87,18 +87,18 @@ fn what_a_specimen_carries_there_is_told() {
         panic!("{:?}", record.outcome)
     };
     assert!(reason.contains("10.00 N at rest (limit 5 N)"), "{reason}");
-    assert_eq!(bent.stand().bench().moves().len(), 3);
+    assert_eq!(bent.lock().rig().moves().len(), 3);
 }
 
 #[test]
-fn a_plan_whose_zero_is_where_the_rig_stands_counts_from_there() {
+fn a_plan_with_its_zero_at_the_rig_position_counts_from_there() {
     for sign in [1.0, -1.0] {
-        for place in [3.0, -41.7] {
+        for displacement in [3.0, -41.7] {
             let mut plan = here(plan());
             plan.rig.polarity = sign;
-            let ended = run(&plan, &format!("stands at {place} mm"));
+            let ended = run(&plan, &format!("stands at {displacement} mm"));
             ended.sound();
-            let own = place * 1e-3;
+            let own = displacement * 1e-3;
             assert_eq!(
                 ended.body(EntryKind::Rig, 0)["datum"],
                 serde_json::json!([own])
@@ -106,8 +106,8 @@ fn a_plan_whose_zero_is_where_the_rig_stands_counts_from_there() {
             assert!(ended.events(EventKind::Note).iter().any(|note| {
                 note.starts_with("the plan's zero is the present position of the rig")
             }));
-            let stand = ended.stand.stand();
-            let targets = stand.bench().targets().to_vec();
+            let emulator = ended.emulator.lock();
+            let targets = emulator.rig().targets().to_vec();
             assert!(
                 (targets[0] - own - sign * 5e-5).abs() < 1e-12,
                 "first the probe: {targets:?}"
@@ -116,8 +116,8 @@ fn a_plan_whose_zero_is_where_the_rig_stands_counts_from_there() {
                 targets.iter().all(|target| (target - own).abs() < 1.1e-3),
                 "{targets:?}"
             );
-            assert!(stand.bench().violations().is_empty());
-            drop(stand);
+            assert!(emulator.rig().violations().is_empty());
+            drop(emulator);
             assert_eq!(judged(&plan, &ended.recovered), Ok(()));
             // Its limits are shifted with it.
             let beyond = run(&here(plan_of(vec![to(0.0101)])), AT_3_MM);
@@ -131,7 +131,7 @@ fn a_plan_whose_zero_is_where_the_rig_stands_counts_from_there() {
 }
 
 #[test]
-fn every_axis_of_several_counts_from_where_it_stands() {
+fn each_of_several_axes_counts_from_its_position() {
     let plan = shaken("0.1 s");
     let ideal = run(&plan, "");
     let ended = run(&here(plan), "stands at 30 mm\naxis 2 stands at -17 mm");
@@ -175,16 +175,16 @@ fn a_run_goes_on_from_the_zero_on_record() {
     let plan = here(plan());
     let whole = run(&plan, AT_3_MM);
     for call in (30..90).step_by(7) {
-        let (stand, disk) = (stand(&plan, AT_3_MM, Log::none(), 1), PowerLoss::new());
-        assert!(killed(&plan, &stand, &disk, (call, true)), "call {call}");
-        let GoneOn::ToItsEnd(record) = gone_on(&plan, &stand, &disk, call) else {
+        let (emulator, disk) = (emulator(&plan, AT_3_MM, Log::none(), 1), PowerLoss::new());
+        assert!(killed(&plan, &emulator, &disk, (call, true)), "call {call}");
+        let GoneOn::ToItsEnd(record) = gone_on(&plan, &emulator, &disk, call) else {
             panic!("call {call}")
         };
         assert_eq!(results(&record), results(&whole.record), "call {call}");
-        let stand = stand.stand();
-        let farthest = stand.bench().targets().iter().copied().fold(0.0, f64::max);
+        let emulator = emulator.lock();
+        let farthest = emulator.rig().targets().iter().copied().fold(0.0, f64::max);
         assert!(
-            (farthest - 4e-3).abs() < 1e-9 && stand.bench().violations().is_empty(),
+            (farthest - 4e-3).abs() < 1e-9 && emulator.rig().violations().is_empty(),
             "call {call}: {farthest}"
         );
     }
@@ -192,7 +192,7 @@ fn a_run_goes_on_from_the_zero_on_record() {
 
 /// A run log of an older version, which did not ask for the start position, is replayed unchanged.
 #[test]
-fn a_record_that_says_no_datum_is_played_back_as_it_was() {
+fn a_record_without_a_datum_replays_unchanged() {
     let sent = run_without(Guarding::PretestStart, &plan(), AT_3_MM);
     let alter = |body: &mut serde_json::Value| drop(body.as_object_mut().unwrap().remove("datum"));
     assert_eq!(found(&plan(), &sent, EntryKind::Rig, 0, alter), Ok(()));
@@ -268,8 +268,8 @@ fn a_drive_in_the_other_word_order_is_not_moved() {
                 number: swapped(map.number),
                 ..map
             }));
-            let stand = stand(&drive, start, Log::none(), 1);
-            let outcome = match open(&asked, &stand) {
+            let emulator = emulator(&drive, start, Log::none(), 1);
+            let outcome = match open(&asked, &emulator) {
                 Err(fault) => fault.to_string(),
                 Ok(mut rig) => {
                     let record = crate::run::run(&asked, &mut rig, &mut crate::run::Unwatched);
@@ -288,7 +288,7 @@ fn a_drive_in_the_other_word_order_is_not_moved() {
                 map.number
             );
             assert!(
-                stand.stand().bench().moves().is_empty(),
+                emulator.lock().rig().moves().is_empty(),
                 "{:?}, noise {noise}: {outcome}",
                 map.number
             );

@@ -9,8 +9,8 @@ use crate::record::Outcome;
 use crate::rig::safety::failpoint::Guarding;
 
 /// A plan that moves to these positions within these limits \[m\].
-fn going(places: &[f64], displacement: Interval, increment: f64) -> Plan {
-    let mut plan = plan_of(places.iter().map(|place| to(*place)).collect());
+fn going(positions: &[f64], displacement: Interval, increment: f64) -> Plan {
+    let mut plan = plan_of(positions.iter().map(|position| to(*position)).collect());
     plan.limits.displacement = displacement;
     plan.limits.increment = Interval {
         low: 0.0,
@@ -21,7 +21,7 @@ fn going(places: &[f64], displacement: Interval, increment: f64) -> Plan {
     plan
 }
 
-fn places() -> impl Strategy<Value = f64> {
+fn positions() -> impl Strategy<Value = f64> {
     prop_oneof![
         6 => -0.003..0.004_f64,
         1 => Just(0.002),
@@ -35,7 +35,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 60, failure_persistence: None, ..ProptestConfig::default() })]
     #[test]
     fn nothing_beyond_a_limit_is_ever_on_the_wire(
-        asked in prop::collection::vec(places(), 1..4),
+        asked in prop::collection::vec(positions(), 1..4),
         high in prop_oneof![Just(0.002), Just(0.000_1), Just(f64::NAN)],
         increment in prop_oneof![Just(f64::INFINITY), Just(0.001)],
     ) {
@@ -52,7 +52,7 @@ proptest! {
         for pair in targets.windows(2) {
             prop_assert!((pair[1] - pair[0]).abs() <= increment + 2e-9);
         }
-        let fits = asked.iter().all(|place| limit.contains(*place));
+        let fits = asked.iter().all(|position| limit.contains(*position));
         prop_assert_eq!(ended.record.outcome == Outcome::Completed, fits && high > 5e-5, "{:?}", ended.record.outcome);
         if !fits {
             prop_assert!(ended.log.contains("actuator > !"), "held");
@@ -81,9 +81,9 @@ fn without_the_guard_a_target_beyond_the_limits_leaves() {
         } else {
             run_without(Guarding::TargetLimits, &plan, "")
         };
-        let stand = ended.stand.stand();
+        let emulator = ended.emulator.lock();
         (
-            stand.bench().violations().to_vec(),
+            emulator.rig().violations().to_vec(),
             ended.record.outcome.clone(),
         )
     };

@@ -31,14 +31,18 @@ fn yielding(time_step: f64) -> Record {
 }
 
 #[test]
-fn a_shake_says_that_its_balance_is_off() {
-    let told = |record: &Record| {
+fn an_energy_balance_error_is_reported() {
+    let has_remark = |record: &Record| {
         record.events.iter().any(|event| {
             event.kind == EventKind::Remark && event.text.contains("energy balance error")
         })
     };
     let error = |record: &Record| number(record, 0, "energy_error").0.unwrap().abs();
     let (fine, coarse) = (yielding(1e-3), yielding(0.04));
-    assert!(error(&fine) < 0.1 && !told(&fine), "{}", error(&fine));
-    assert!(error(&coarse) > 0.1 && told(&coarse), "{}", error(&coarse));
+    assert!(error(&fine) < 0.1 && !has_remark(&fine), "{}", error(&fine));
+    assert!(
+        error(&coarse) > 0.1 && has_remark(&coarse),
+        "{}",
+        error(&coarse)
+    );
 }

@@ -105,7 +105,7 @@ fn a_yielding_specimen_spends_the_area_of_its_loop() {
 /// Friction on the cell keeps the sign of the last motion, so each cycle dissipates 4·F_c·a. At the reversals the trapezoid crosses the
 /// jump and loses F_c·h at each of the two ends. The first step back h is less than half of a regular one.
 #[test]
-fn friction_costs_its_force_times_the_way() {
+fn friction_costs_its_force_times_the_travel() {
     let energy = |points: u32| {
         let mut plan = plan(Cycle {
             points,

@@ -17,7 +17,7 @@ fn perfectly_plastic(procedures: Vec<ProcedureKind>) -> Plan {
     plan
 }
 
-fn blow() -> Impact {
+fn given_impact() -> Impact {
     Impact {
         stepping: every(2e-4),
         duration: Constant(0.4),
@@ -48,8 +48,8 @@ fn value(record: &Record, procedure: usize, name: &str) -> f64 {
 /// Without post-yield stiffness, an unloaded specimen equals a new one at a different position. The second impact equals the first,
 /// shifted by the residual displacement.
 #[test]
-fn the_second_blow_begins_where_the_first_left_the_specimen() {
-    let kind = ProcedureKind::Impact(blow());
+fn the_second_impact_begins_where_the_first_left_the_specimen() {
+    let kind = ProcedureKind::Impact(given_impact());
     let record = run_unwatched(&perfectly_plastic(vec![kind.clone(), unload(), kind]));
     let first = value(&record, 0, "max_displacement");
     assert!(first > 0.02, "it yields: {first} m");
@@ -80,7 +80,7 @@ fn the_second_blow_begins_where_the_first_left_the_specimen() {
 /// A gap is measured from the present position of the surface: the same gap takes the same time.
 #[test]
 fn a_gap_is_measured_from_where_the_surface_now_is() {
-    let kind = ProcedureKind::Impact(blow());
+    let kind = ProcedureKind::Impact(given_impact());
     let mut plan = perfectly_plastic(vec![kind.clone(), unload(), kind]);
     plan.strikers[0].gap = 0.0051;
     let record = run_unwatched(&plan);
@@ -110,13 +110,13 @@ fn a_specimen_without_load_is_not_moved() {
 #[test]
 fn a_rebound_ends_the_run_when_the_two_are_apart_for_good() {
     let of = |until, striker_mass: f64, contact: Contact| {
-        let blow = Impact {
+        let struck = Impact {
             until,
             contact,
             duration: Constant(3.0),
-            ..blow()
+            ..given_impact()
         };
-        let mut plan = elastic_plan(2e4, vec![ProcedureKind::Impact(blow)]);
+        let mut plan = elastic_plan(2e4, vec![ProcedureKind::Impact(struck)]);
         plan.strikers[0].mass = striker_mass;
         run_unwatched(&plan)
     };

@@ -69,22 +69,22 @@ fn moves(record: &Record) -> &[RampStep] {
 }
 
 /// Unloaded position on the path back from the last of these positions, with `friction` opposing the motion.
-fn truly_rests(behaviour: &Behaviour, places: &[f64], friction: f64) -> f64 {
+fn truly_rests(behaviour: &Behaviour, displacements: &[f64], friction: f64) -> f64 {
     let mut model = SpecimenModel::new(behaviour);
     let mut force = 0.0;
-    for place in places {
-        force = model.move_to(*place);
+    for displacement in displacements {
+        force = model.move_to(*displacement);
     }
-    let from = places[places.len() - 1];
+    let from = displacements[displacements.len() - 1];
     let step = 1e-5
         * force.signum()
-        * places
+        * displacements
             .iter()
-            .fold(0.0_f64, |most, place| most.max(place.abs()));
-    let felt = |force: f64| force * step.signum() - friction;
+            .fold(0.0_f64, |most, displacement| most.max(displacement.abs()));
+    let net_force = |force: f64| force * step.signum() - friction;
     (1..200_000)
         .map(|index| from - step * f64::from(index))
-        .find(|place| felt(model.move_to(*place)) <= 0.0)
+        .find(|displacement| net_force(model.move_to(*displacement)) <= 0.0)
         .unwrap()
 }
 
@@ -92,7 +92,7 @@ fn truly_rests(behaviour: &Behaviour, places: &[f64], friction: f64) -> f64 {
 /// never loads them in the opposite direction. The rest position is correct for any stated stiffness. By hand, the supports from 20 mm:
 /// 4.5 mm back at 80 kN/m, over which the friction reverses, then 3.25 mm at 40 kN/m.
 #[test]
-fn a_specimen_rests_where_it_does_whatever_its_stiffness_is_said_to_be() {
+fn the_unloaded_position_does_not_depend_on_the_stated_stiffness() {
     let beam = Behaviour::Series(vec![Behaviour::Elastic { stiffness: 3e5 }, bolted()]);
     let beside = Behaviour::Parallel(vec![bouc_wen(0.5), bolted()]);
     for (behaviour, coulomb) in [
@@ -134,7 +134,7 @@ fn a_specimen_rests_where_it_does_whatever_its_stiffness_is_said_to_be() {
 
 /// With noise, with the stiffness from a ramp and with half of it.
 #[test]
-fn noise_leaves_it_at_its_place() {
+fn noise_does_not_move_it() {
     for stiffness in [4e4, 8e4] {
         for seed in 1..30 {
             let link = VirtualLink {
@@ -156,7 +156,7 @@ fn noise_leaves_it_at_its_place() {
 
 /// A specimen at rest within its friction is not moved: one short move shows it, and an observation states the remaining load.
 #[test]
-fn a_load_within_the_friction_is_told_to_be_left() {
+fn a_load_within_the_friction_is_reported_as_remaining() {
     let record = unloaded(
         &Behaviour::Elastic { stiffness: 4e4 },
         500.0,
@@ -174,8 +174,8 @@ fn a_load_within_the_friction_is_told_to_be_left() {
 
 /// After an impact of a series, the supports rest at the position of their model on the same path. The next impact begins there.
 #[test]
-fn a_row_of_blows_rests_there_too() {
-    let blow = Impact {
+fn an_impact_series_ends_there_too() {
+    let struck = Impact {
         duration: Constant(0.2),
         ..impact(Constant(4e4))
     };
@@ -183,7 +183,7 @@ fn a_row_of_blows_rests_there_too() {
         own: ProcedureId(0),
         impact: Impact {
             stepping: testing::every(2e-4),
-            ..blow
+            ..struck
         },
         velocities: [0.8, 1.0].map(Constant).to_vec(),
         energies: None,
@@ -197,23 +197,25 @@ fn a_row_of_blows_rests_there_too() {
     let History::Escalate(history) = &record.procedures[0].history else {
         panic!()
     };
-    let mut places = Vec::new();
-    for blow in &history.blows {
-        places.extend(blow.impact().steps.iter().map(|step| step.command));
-        let rests = truly_rests(&bolted(), &places, 0.0);
-        let found = blow.rest_of_struck().unwrap().0;
+    let mut displacements = Vec::new();
+    for struck in &history.impacts {
+        displacements.extend(struck.impact().steps.iter().map(|step| step.command));
+        let rests = truly_rests(&bolted(), &displacements, 0.0);
+        let found = struck.rest_of_struck().unwrap().0;
         assert!((found - rests).abs() < 2e-5, "{found} m, not {rests} m");
-        places.push(found);
+        displacements.push(found);
     }
     assert!(
-        places.iter().any(|place| *place > 0.008),
+        displacements
+            .iter()
+            .any(|displacement| *displacement > 0.008),
         "the supports bear"
     );
 }
 
 /// Storeys with twice the stiffness on unloading come to rest, each with its own friction.
 #[test]
-fn storeys_are_never_loaded_the_other_way() {
+fn storeys_are_never_loaded_in_the_other_direction() {
     let mut plan: Plan = three(0.05);
     let frame = plan.specimens[0].frame.as_mut().unwrap();
     for (storey, coulomb) in frame.storeys.iter_mut().zip([0.0, 1e3, 0.0]) {

@@ -128,7 +128,7 @@ const SOURCES: [Source; 6] = [
     Source::DisplacementScale(0),
 ];
 
-fn doubtful(case: Case) -> Plan {
+fn uncertain(case: Case) -> Plan {
     let mut plan = plan(case);
     let storeys = &mut plan.specimens[0].frame.as_mut().unwrap().storeys;
     storeys[0].mass_uncertainty = SHARE * storeys[0].mass;
@@ -189,22 +189,22 @@ fn numbers(record: &Record) -> [f64; 7] {
     let History::Shake(history) = &record.procedures[0].history else {
         panic!("{:?}", record.outcome)
     };
-    let (mut places, mut drifts, mut shear) = (
+    let (mut displacements, mut drifts, mut shear) = (
         PeakDisplacements::new(2, TIME_STEP),
         PeakDisplacements::new(2, TIME_STEP),
         Peak::default(),
     );
     for step in &history.steps {
         let (x, v) = (&step.computed, &step.velocity);
-        places.take([(x[0], v[0]), (x[1], v[1])].into_iter());
+        displacements.take([(x[0], v[0]), (x[1], v[1])].into_iter());
         drifts.take([(x[0], v[0]), (x[1] - x[0], v[1] - v[0])].into_iter());
         shear.take(step.restoring_force.iter().sum());
     }
     let last = &history.steps.last().unwrap().computed;
-    let (places, drifts) = (places.largest(), drifts.largest());
+    let (displacements, drifts) = (displacements.largest(), drifts.largest());
     [
-        places[0],
-        places[1],
+        displacements[0],
+        displacements[1],
         drifts[0],
         drifts[1],
         last[0],
@@ -214,30 +214,30 @@ fn numbers(record: &Record) -> [f64; 7] {
 }
 
 /// A result with the reported and the true effects of its sources.
-struct Told {
+struct ReportedNumber {
     name: (&'static str, usize),
     value: f64,
     parts: Vec<(Source, Option<Contribution>, f64)>,
 }
 
-impl Told {
+impl ReportedNumber {
     /// The reported and the true standard uncertainty from all sources.
     fn uncertainties(&self) -> [f64; 2] {
         let root = |amounts: &mut dyn Iterator<Item = f64>| {
             amounts.map(|amount| amount * amount).sum::<f64>().sqrt()
         };
-        let told = |(_, told, _): &(Source, Option<Contribution>, f64)| {
-            told.map_or(0.0, |told| told.amount)
+        let reported = |(_, reported, _): &(Source, Option<Contribution>, f64)| {
+            reported.map_or(0.0, |reported| reported.amount)
         };
         [
-            root(&mut self.parts.iter().map(told)),
+            root(&mut self.parts.iter().map(reported)),
             root(&mut self.parts.iter().map(|(.., truth)| *truth)),
         ]
     }
 }
 
-fn told(case: Case) -> Vec<Told> {
-    let plan = doubtful(case);
+fn reported_numbers(case: Case) -> Vec<ReportedNumber> {
+    let plan = uncertain(case);
     let record = crate::run::run(&plan, &mut *virtual_rig(&plan), &mut Unwatched);
     assert!(
         !record
@@ -249,18 +249,18 @@ fn told(case: Case) -> Vec<Told> {
     );
     let values = numbers(&record);
     let moved = SOURCES.map(|source| [1.0, -1.0].map(|by| numbers(&moved(case, source, by))));
-    let number = |(place, name): (usize, (&'static str, usize))| {
+    let number = |(index, name): (usize, (&'static str, usize))| {
         let (_, parts) = entry(&record, name.0, name.1);
         let part = |(source, [up, down]): (Source, &[[f64; 7]; 2])| {
             (
                 source,
                 parts.iter().find(|part| part.source == source).copied(),
-                0.5 * (up[place] - down[place]),
+                0.5 * (up[index] - down[index]),
             )
         };
-        Told {
+        ReportedNumber {
             name,
-            value: values[place],
+            value: values[index],
             parts: SOURCES.into_iter().zip(&moved).map(part).collect(),
         }
     };
@@ -288,35 +288,36 @@ fn judge(kind: Kind, within: Within, links: [VirtualLink; 2], modes: &[(bool, bo
             link: links[usize::from(continuous)],
         };
         let mut smooth = 0;
-        for number in told(case) {
+        for number in reported_numbers(case) {
             let nothing = 2e-4 * number.value.abs();
-            for (source, told, truth) in &number.parts {
-                let Some(told) = told.filter(|told| told.smooth) else {
+            for (source, reported, truth) in &number.parts {
+                let Some(reported) = reported.filter(|reported| reported.smooth) else {
                     continue;
                 };
                 smooth += 1;
-                if (told.amount - truth).abs() > within.smooth * truth.abs() + nothing {
+                if (reported.amount - truth).abs() > within.smooth * truth.abs() + nothing {
                     wrong.push(format!(
                         "{:?} by {source:?}: {:e}, truly {truth:e}; {case:?}",
-                        number.name, told.amount
+                        number.name, reported.amount
                     ));
                 }
             }
-            let [told, truth] = number.uncertainties();
+            let [reported, truth] = number.uncertainties();
             // A Bouc–Wen specimen does not follow Masing's rule, so marked contributions have no guaranteed accuracy.
             let promised = kind != Kind::BoucWen
                 || number
                     .parts
                     .iter()
-                    .all(|(_, told, _)| told.is_none_or(|told| told.smooth));
+                    .all(|(_, reported, _)| reported.is_none_or(|reported| reported.smooth));
             if !promised {
                 continue;
             }
-            if told < truth * (1.0 - within.less) - nothing
-                || (number.name.0 != "final_drift" && told > truth * (1.0 + within.more) + nothing)
+            if reported < truth * (1.0 - within.less) - nothing
+                || (number.name.0 != "final_drift"
+                    && reported > truth * (1.0 + within.more) + nothing)
             {
                 wrong.push(format!(
-                    "{:?}: u = {told:e}, truly {truth:e}; {case:?}",
+                    "{:?}: u = {reported:e}, truly {truth:e}; {case:?}",
                     number.name
                 ));
             }
@@ -341,11 +342,11 @@ const IDEAL: VirtualLink = VirtualLink {
     tracking: 0.0,
     drift: 0.0,
     seed: 3,
-    foretold: None,
+    predicted: None,
 };
 
 #[test]
-fn elastic_storeys_are_told_as_they_truly_answer() {
+fn elastic_storeys_are_reported_with_their_true_response() {
     judge(
         Kind::Elastic,
         Within {
@@ -359,7 +360,7 @@ fn elastic_storeys_are_told_as_they_truly_answer() {
 }
 
 #[test]
-fn yielding_storeys_are_told_as_they_truly_answer() {
+fn yielding_storeys_are_reported_with_their_true_response() {
     judge(
         Kind::Bilinear,
         Within {
@@ -375,7 +376,7 @@ fn yielding_storeys_are_told_as_they_truly_answer() {
 /// A Bouc–Wen specimen loses the memory of its reversals during plastic flow, and does not follow Masing's rule. The unmarked
 /// contributions are still correct.
 #[test]
-fn storeys_of_bouc_and_wen_are_told_as_they_truly_answer() {
+fn bouc_wen_storeys_are_reported_with_their_true_response() {
     judge(
         Kind::BoucWen,
         Within {
@@ -390,7 +391,7 @@ fn storeys_of_bouc_and_wen_are_told_as_they_truly_answer() {
 
 /// With a resolution of 1 µm and 2 N of noise, the same in every run.
 #[test]
-fn noise_under_way_does_not_hide_what_an_input_does() {
+fn noise_during_the_motion_does_not_hide_the_effect_of_an_input() {
     let noisy = VirtualLink {
         lag: 0.02,
         resolution: 1e-6,

@@ -55,16 +55,23 @@ fn replayed(
         let [found, exact] = [link, VirtualLink::default()]
             .map(|link| run_unwatched(&plan(&behaviour, amplitude, about, link)));
         for (name, sum) in NAMES.into_iter().zip(&mut sums) {
-            let ((value, told), (truth, _)) = (number(&found, 0, name), number(&exact, 0, name));
+            let ((value, reported), (truth, _)) =
+                (number(&found, 0, name), number(&exact, 0, name));
             // The resolution of the displacement transducer does not affect a force.
-            let (error, told) = (value.unwrap() - truth.unwrap(), told.unwrap_or(0.0));
+            let (error, reported) = (value.unwrap() - truth.unwrap(), reported.unwrap_or(0.0));
             sum.0 += error * error;
-            sum.1 += told * told;
-            sum.2 += f64::from(u8::from(error.abs() <= 2.0 * told + 1e-9));
+            sum.1 += reported * reported;
+            sum.2 += f64::from(u8::from(error.abs() <= 2.0 * reported + 1e-9));
         }
     }
     let count = f64::from(runs);
-    sums.map(|(error, told, held)| ((error / count).sqrt(), (told / count).sqrt(), held / count))
+    sums.map(|(error, reported, held)| {
+        (
+            (error / count).sqrt(),
+            (reported / count).sqrt(),
+            held / count,
+        )
+    })
 }
 
 /// An elastic specimen and a yielding one. The peak force is 40 and 100 quantization steps of the cell; one rig rounds its displacement.
@@ -94,14 +101,15 @@ fn replays_on_coarse_rigs_are_held() {
         ),
     ];
     for (behaviour, link) in cases {
-        for (name, (error, told, held)) in NAMES.into_iter().zip(replayed(240, behaviour, link)) {
+        for (name, (error, reported, held)) in NAMES.into_iter().zip(replayed(240, behaviour, link))
+        {
             let case = format!(
-                "{name} by {} N and {} m: {error}, told {told}, held {held}",
+                "{name} by {} N and {} m: {error}, told {reported}, held {held}",
                 link.force_resolution, link.resolution
             );
-            assert!(held >= 0.93 && told > 0.85 * error - 1e-9, "{case}");
+            assert!(held >= 0.93 && reported > 0.85 * error - 1e-9, "{case}");
             assert!(
-                name.contains("energy") || name.contains("ratio") || told < 3.5 * error + 1e-9,
+                name.contains("energy") || name.contains("ratio") || reported < 3.5 * error + 1e-9,
                 "{case}"
             );
         }
@@ -121,11 +129,11 @@ fn a_secant_is_as_uncertain_as_its_two_readings() {
         0.0,
         link,
     ));
-    let told = number(&record, 0, "last_stiffness").1.unwrap();
+    let reported = number(&record, 0, "last_stiffness").1.unwrap();
     let by_hand = 1.0 / 0.04 / 6.0_f64.sqrt();
     assert!(
-        (told / by_hand - 1.0).abs() < 3.0 / 128.0_f64.sqrt(),
-        "{told}"
+        (reported / by_hand - 1.0).abs() < 3.0 / 128.0_f64.sqrt(),
+        "{reported}"
     );
     let parts = &record.procedures[0]
         .result("last_stiffness")

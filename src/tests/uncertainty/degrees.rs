@@ -32,7 +32,7 @@ fn plan(points: u32, seed: u64) -> Plan {
     plan
 }
 
-fn told(record: &Record, name: &'static str) -> (f64, Known) {
+fn value_and_uncertainty(record: &Record, name: &'static str) -> (f64, Known) {
     let reference = ResultReference {
         procedure: ProcedureId(0),
         name,
@@ -48,7 +48,7 @@ fn told(record: &Record, name: &'static str) -> (f64, Known) {
 /// In 95.45 % of 500 ramps each of 3, 4, 6 and 12 points, K and R₀ lie within U. With k = 2 it would be 70, 82, 88 and 93 %. The fraction
 /// of 500 scatters by 0.93 %. Five standard deviations, 4.7 %, distinguish the first three from it.
 #[test]
-fn as_many_ramps_as_it_says_hold_the_stiffness() {
+fn the_stated_fraction_of_ramps_contains_the_stiffness() {
     const RAMPS: u16 = 500;
     // Five standard deviations of a fraction of this many runs.
     let scatter = 5.0 * (LEVEL * (1.0 - LEVEL) / f64::from(RAMPS)).sqrt();
@@ -60,7 +60,7 @@ fn as_many_ramps_as_it_says_hold_the_stiffness() {
                 ("stiffness", STIFFNESS, &mut slopes),
                 ("intercept_force", 0.0, &mut intercepts),
             ] {
-                let (value, known) = told(&record, name);
+                let (value, known) = value_and_uncertainty(&record, name);
                 assert!(
                     (known.degrees - f64::from(points - 2)).abs() < 1e-9,
                     "{name}: {known:?}"
@@ -99,7 +99,7 @@ fn a_guard_band_has_the_degrees_of_freedom_of_its_ramp() {
             }],
         }];
         let record = run_unwatched(&plan);
-        let (value, known) = told(&record, "stiffness");
+        let (value, known) = value_and_uncertainty(&record, "stiffness");
         let assessment = assess(&plan, &record);
         (
             value,

@@ -30,7 +30,7 @@ fn ratio(plan: &Plan, link: VirtualLink, name: &str, runs: u32) -> f64 {
         plan.rig.link = Link::Virtual(VirtualLink { seed, ..link });
         plan
     };
-    let foretold = number(&run_unwatched(&dry(&with(1))), 0, name)
+    let predicted = number(&run_unwatched(&dry(&with(1))), 0, name)
         .1
         .expect("foretold");
     let square = |seed: u32| {
@@ -39,7 +39,7 @@ fn ratio(plan: &Plan, link: VirtualLink, name: &str, runs: u32) -> f64 {
             .expect("told")
             .powi(2)
     };
-    (0..runs).map(square).sum::<f64>() / f64::from(runs) / (foretold * foretold)
+    (0..runs).map(square).sum::<f64>() / f64::from(runs) / (predicted * predicted)
 }
 
 /// s² of ν degrees of freedom over N runs has the standard deviation √(2/(Nν)) of σ². The limit is four of these, plus `curved` for a
@@ -72,7 +72,7 @@ const NOISY: VirtualLink = VirtualLink {
     tracking: 0.0,
     drift: 0.0,
     seed: 1,
-    foretold: None,
+    predicted: None,
 };
 
 /// Ten points, twice over, of three samples each.
@@ -96,12 +96,12 @@ fn the_line_of_a_ramp_is_predicted() {
             .sum::<f64>();
     let mut noisy = plan.clone();
     noisy.rig.link = Link::Virtual(NOISY);
-    let foretold = number(&run_unwatched(&dry(&noisy)), 0, "stiffness")
+    let predicted = number(&run_unwatched(&dry(&noisy)), 0, "stiffness")
         .1
         .unwrap();
     assert!(
-        (foretold / (2.0 / 3.0_f64.sqrt() / squares.sqrt()) - 1.0).abs() < 1e-9,
-        "{foretold}"
+        (predicted / (2.0 / 3.0_f64.sqrt() / squares.sqrt()) - 1.0).abs() < 1e-9,
+        "{predicted}"
     );
     // Quantization of force and displacement, with noise and without: its scatter is not normally distributed.
     let rounded = VirtualLink {

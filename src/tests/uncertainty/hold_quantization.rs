@@ -20,9 +20,9 @@ fn elastic(stiffness: f64) -> Box<Behaviour> {
 
 /// Six holds of 8 s, each of 21 readings, `begin` \[m\] from the zero of the grids.
 fn holds(behaviour: Behaviour, begin: f64, model: WatchedModel, link: VirtualLink) -> Plan {
-    let place = |step: u32| Formula::Constant(begin + 2e-4 * f64::from(step));
+    let displacement = |step: u32| Formula::Constant(begin + 2e-4 * f64::from(step));
     let asked = StiffnessRamp {
-        displacements: (1..=6).map(place).collect(),
+        displacements: (1..=6).map(displacement).collect(),
         pause: Formula::Constant(8.0),
         relaxation: Some(WatchedHold {
             readings: 20,
@@ -36,7 +36,7 @@ fn holds(behaviour: Behaviour, begin: f64, model: WatchedModel, link: VirtualLin
     plan
 }
 
-fn told(record: &Record, name: &'static str) -> (f64, Known) {
+fn value_and_uncertainty(record: &Record, name: &'static str) -> (f64, Known) {
     let result = record.procedures[0].result(name).expect(name);
     (
         number(record, 0, name).0.expect(name),
@@ -59,7 +59,10 @@ fn replayed(
             run_unwatched(&plan(&mut same, VirtualLink::default())),
         ];
         for (name, sum) in names.iter().zip(&mut sums) {
-            let ((value, known), (truth, _)) = (told(&found, name), told(&exact, name));
+            let ((value, known), (truth, _)) = (
+                value_and_uncertainty(&found, name),
+                value_and_uncertainty(&exact, name),
+            );
             let error = value - truth;
             sum.0 += error * error;
             sum.1 += known.standard * known.standard;
@@ -67,11 +70,11 @@ fn replayed(
         }
     }
     let count = f64::from(runs);
-    let of = |(name, (error, told, held)): (&&'static str, (f64, f64, f64))| {
+    let of = |(name, (error, reported, held)): (&&'static str, (f64, f64, f64))| {
         (
             *name,
             (error / count).sqrt(),
-            (told / count).sqrt(),
+            (reported / count).sqrt(),
             held / count,
         )
     };
@@ -129,11 +132,11 @@ fn replays_of_holds_on_a_coarse_load_cell_are_held() {
                 link,
             )
         };
-        for (name, error, told, held) in replayed(40, names, link, &plan) {
+        for (name, error, reported, held) in replayed(40, names, link, &plan) {
             let case =
-                format!("{model:?}, {name} by {quantum} N: {error}, told {told}, held {held}");
+                format!("{model:?}, {name} by {quantum} N: {error}, told {reported}, held {held}");
             assert!(
-                held >= 0.9 && told > 0.75 * error && told < 6.0 * error,
+                held >= 0.9 && reported > 0.75 * error && reported < 6.0 * error,
                 "{case}"
             );
         }
@@ -167,10 +170,10 @@ fn replays_of_forces_that_relax_with_the_logarithm_are_held() {
         "relaxation_rate",
         "required_pause",
     ];
-    for (name, error, told, held) in replayed(40, &names, link, &plan) {
+    for (name, error, reported, held) in replayed(40, &names, link, &plan) {
         assert!(
-            held >= 0.9 && told > 0.75 * error && told < 6.0 * error,
-            "{name}: {error}, told {told}, held {held}"
+            held >= 0.9 && reported > 0.75 * error && reported < 6.0 * error,
+            "{name}: {error}, told {reported}, held {held}"
         );
     }
 }
@@ -202,12 +205,13 @@ fn replays_of_holds_on_a_coarse_transducer_are_held() {
                 link,
             )
         };
-        let [(_, error, told, held)] = replayed(60, &["relaxed_stiffness"], link, &plan)[..] else {
+        let [(_, error, reported, held)] = replayed(60, &["relaxed_stiffness"], link, &plan)[..]
+        else {
             panic!()
         };
         assert!(
-            held >= 0.9 && told > 0.75 * error && told < 6.0 * error,
-            "{model:?}: {error}, told {told}, held {held}"
+            held >= 0.9 && reported > 0.75 * error && reported < 6.0 * error,
+            "{model:?}: {error}, told {reported}, held {held}"
         );
     }
 }
@@ -257,22 +261,22 @@ fn a_secant_is_as_uncertain_as_its_readings() {
         },
     ];
     for link in links {
-        for (name, error, told, held) in
+        for (name, error, reported, held) in
             replayed(200, &["secant_stiffness", "tangent_stiffness"], link, &plan)
         {
             assert!(
-                held >= 0.92 && told > 0.9 * error && told < 2.5 * error,
-                "{name}, {link:?}: {error}, told {told}, held {held}"
+                held >= 0.92 && reported > 0.9 * error && reported < 2.5 * error,
+                "{name}, {link:?}: {error}, told {reported}, held {held}"
             );
         }
     }
     // By hand, with four samples of one reading and one of the other: σ√(1 + ¼)/w.
     let mut noisy = plan(&mut 5, links[0]);
-    let way = 1e-4;
+    let travel = 1e-4;
     let ProcedureKind::StiffnessRamp(asked) = &mut noisy.procedures[0].kind else {
         panic!()
     };
-    asked.displacements[0] = Formula::Constant(way);
+    asked.displacements[0] = Formula::Constant(travel);
     noisy.rig.calibration = Calibration {
         force_uncertainty: 0.01,
         ..Calibration::default()
@@ -288,7 +292,7 @@ fn a_secant_is_as_uncertain_as_its_readings() {
             .find(|part| part.source == wanted)
             .map_or(0.0, |part| part.amount)
     };
-    let by_hand = 0.5 * 1.25_f64.sqrt() / way;
+    let by_hand = 0.5 * 1.25_f64.sqrt() / travel;
     let of_trials = parts
         .iter()
         .filter(|part| matches!(part.source, Source::Readings { .. }))

@@ -50,7 +50,7 @@ fn a_matrix_moves_as_a_whole() {
     let share = [0.01, 0.02];
     let mut plan = of_matrices();
     plan.specimens[0].frame.as_mut().unwrap().matrix_uncertainty = share;
-    let told = run_unwatched(&plan);
+    let with_uncertainty = run_unwatched(&plan);
     let with = |factors: [f64; 2]| {
         let mut plan = of_matrices();
         let frame: Frame = plan.specimens[0].frame.clone().unwrap();
@@ -68,14 +68,14 @@ fn a_matrix_moves_as_a_whole() {
             [with([1.0, 1.0 + share[1]]), with([1.0, 1.0 - share[1]])],
         ),
     ] {
-        for (name, place) in NAMES {
-            let (value, parts) = entry(&told, name, place);
-            let found = 0.5 * (entry(&up, name, place).0 - entry(&down, name, place).0);
-            let foretold = from(&parts, source);
+        for (name, index) in NAMES {
+            let (value, parts) = entry(&with_uncertainty, name, index);
+            let found = 0.5 * (entry(&up, name, index).0 - entry(&down, name, index).0);
+            let predicted = from(&parts, source);
             // The re-runs report the values at the ends of steps; the values between them are reported here.
             assert!(
-                (found - foretold).abs() < 2e-4 * value.abs(),
-                "{name}[{place}] by {source:?}: {foretold}, of reruns {found}"
+                (found - predicted).abs() < 2e-4 * value.abs(),
+                "{name}[{index}] by {source:?}: {predicted}, of reruns {found}"
             );
             compared += usize::from(found.abs() > 2e-3 * value.abs());
         }
@@ -83,7 +83,7 @@ fn a_matrix_moves_as_a_whole() {
     assert!(compared >= 9, "only {compared} that are any");
     // T = 2π√(M/K) of both modes; the mass hit by the striker scales with the whole matrix.
     for mode in 0..2 {
-        let (value, parts) = entry(&told, "periods", mode);
+        let (value, parts) = entry(&with_uncertainty, "periods", mode);
         assert!((combined(&parts).unwrap() / value - 0.5 * 0.01_f64.hypot(0.02)).abs() < 1e-4);
     }
     let frame = plan.specimens[0].frame.as_ref().unwrap();
@@ -96,11 +96,11 @@ fn row(velocities: &[f64], striker: f64) -> Plan {
     let ProcedureKind::Escalate(row) = &mut plan.procedures[0].kind else {
         panic!()
     };
-    let blow = &mut row.impact;
-    blow.contact = Contact::Restitution {
+    let impact = &mut row.impact;
+    impact.contact = Contact::Restitution {
         coefficient: constant(0.0),
     };
-    blow.stepping = Stepping {
+    impact.stepping = Stepping {
         max_tangent_ratio: constant(2.0),
         ..every(2e-3)
     };
@@ -113,10 +113,10 @@ fn row(velocities: &[f64], striker: f64) -> Plan {
     plan
 }
 
-fn parts_of(record: &Record, name: &str, place: usize) -> (f64, Vec<Contribution>) {
+fn parts_of(record: &Record, name: &str, index: usize) -> (f64, Vec<Contribution>) {
     let result = record.procedures[0].result(name).unwrap();
     match &result.value {
-        ResultValue::List(_) => entry(record, name, place),
+        ResultValue::List(_) => entry(record, name, index),
         ResultValue::Number { value, .. } => (value.unwrap(), result.contributions.clone()),
     }
 }
@@ -124,12 +124,12 @@ fn parts_of(record: &Record, name: &str, place: usize) -> (f64, Vec<Contribution
 /// Every list of an impact series on a storey: half the difference between series with a heavier and a lighter striker, or with a faster
 /// and a slower one.
 #[test]
-fn the_lists_of_a_row_of_blows_are_as_uncertain_as_its_striker() {
+fn the_lists_of_an_impact_series_are_as_uncertain_as_its_striker() {
     let velocities = [0.4, 0.7, 1.0];
     let mut plan = row(&velocities, 10.0);
     plan.strikers[0].mass_uncertainty = 0.1;
     plan.strikers[0].velocity_uncertainty = 0.01;
-    let told = run_unwatched(&plan);
+    let with_uncertainty = run_unwatched(&plan);
     // The striker's stated velocity is 1 m/s: the uncertainty of each impact is proportional to its velocity.
     let faster = |by: f64| {
         run_unwatched(&row(
@@ -156,17 +156,17 @@ fn the_lists_of_a_row_of_blows_are_as_uncertain_as_its_striker() {
     let mut compared = 0;
     for (source, [up, down]) in &moved {
         for (name, count) in lists {
-            for place in 0..count {
-                let (value, parts) = parts_of(&told, name, place);
-                let found = 0.5 * (parts_of(up, name, place).0 - parts_of(down, name, place).0);
-                let foretold = from(&parts, *source);
+            for index in 0..count {
+                let (value, parts) = parts_of(&with_uncertainty, name, index);
+                let found = 0.5 * (parts_of(up, name, index).0 - parts_of(down, name, index).0);
+                let predicted = from(&parts, *source);
                 let smooth = parts
                     .iter()
                     .all(|part| part.smooth || part.amount.abs() < 1e-3 * value.abs());
                 let within = if smooth { 1e-3 } else { 1e-2 };
                 assert!(
-                    (found - foretold).abs() < within * value.abs(),
-                    "{name}[{place}] by {source:?}: {foretold}, of reruns {found}"
+                    (found - predicted).abs() < within * value.abs(),
+                    "{name}[{index}] by {source:?}: {predicted}, of reruns {found}"
                 );
                 compared += usize::from(found.abs() > 2e-3 * value.abs());
             }
@@ -174,7 +174,10 @@ fn the_lists_of_a_row_of_blows_are_as_uncertain_as_its_striker() {
     }
     assert!(compared >= 24, "only {compared} that are any");
     // The unloaded position of an elastic frame does not depend on its striker.
-    let (rest, parts) = parts_of(&told, "residual_displacements", 2);
+    let (rest, parts) = parts_of(&with_uncertainty, "residual_displacements", 2);
     assert!(rest.abs() < 1e-12 && parts.is_empty(), "{parts:?}");
-    assert_eq!(number(&told, 0, "residual_displacement").1, None);
+    assert_eq!(
+        number(&with_uncertainty, 0, "residual_displacement").1,
+        None
+    );
 }

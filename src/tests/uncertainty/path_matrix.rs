@@ -145,7 +145,7 @@ fn truth(input: &ImpactInput, until: Until, steps: u64, behaviour: &Behaviour) -
 struct Cell {
     source: Source,
     outcome: &'static str,
-    told: Contribution,
+    reported: Contribution,
     /// The larger change of the two perturbations.
     truth: f64,
     value: f64,
@@ -153,7 +153,7 @@ struct Cell {
 
 /// Intensity, duration and uncertainty of an impact.
 #[derive(Clone, Copy, Debug)]
-struct Blow {
+struct ImpactCase {
     /// \[kg\]
     striker: f64,
     /// \[m/s\]
@@ -167,24 +167,24 @@ struct Blow {
     share: f64,
 }
 
-fn cells(specimen: usize, contact: &Contact, blow: Blow) -> Vec<Cell> {
-    let Blow {
+fn cells(specimen: usize, contact: &Contact, case: ImpactCase) -> Vec<Cell> {
+    let ImpactCase {
         striker,
         velocity,
         time_step,
         duration,
         until,
         share,
-    } = blow;
+    } = case;
     let stepping = every(time_step);
-    let blow = Impact {
+    let struck = Impact {
         contact: contact.clone(),
         stepping,
         duration: constant(duration),
         until,
         ..impact(constant(300.0))
     };
-    let mut plan: Plan = elastic_plan(300.0, vec![ProcedureKind::Impact(blow.clone())]);
+    let mut plan: Plan = elastic_plan(300.0, vec![ProcedureKind::Impact(struck.clone())]);
     plan.specimens[0].behaviour = Some(specimens(1.0, 1.0)[specimen].1.clone());
     (plan.strikers[0].mass, plan.strikers[0].velocity) = (striker, velocity);
     plan.strikers[0].mass_uncertainty = share * striker;
@@ -197,8 +197,8 @@ fn cells(specimen: usize, contact: &Contact, blow: Blow) -> Vec<Cell> {
     let record = run_unwatched(&plan);
     let mut inputs = Inputs::new(&record, ProcedureId(0));
     let setting = Setting::of_point(
-        &blow,
-        blow.point().unwrap(),
+        &struck,
+        struck.point().unwrap(),
         &plan.strikers[0],
         &mut inputs,
         DeclaredNoise::default(),
@@ -228,7 +228,7 @@ fn cells(specimen: usize, contact: &Contact, blow: Blow) -> Vec<Cell> {
         for (index, (kind, values)) in nominal.iter().enumerate() {
             let (outcome, nominal) = (kind.name, values[0]);
             let result = record.procedures[0].result(outcome).unwrap();
-            let Some(told) = result
+            let Some(reported) = result
                 .contributions
                 .iter()
                 .find(|part| part.source == source)
@@ -240,7 +240,7 @@ fn cells(specimen: usize, contact: &Contact, blow: Blow) -> Vec<Cell> {
             found.push(Cell {
                 source,
                 outcome,
-                told: *told,
+                reported: *reported,
                 truth,
                 value: nominal,
             });
@@ -266,7 +266,7 @@ fn keeps_masing(specimen: usize) -> bool {
 
 /// The contribution of a smooth source equals its true effect, within −25 % and +50 %. A marked one is at least its fraction of the true
 /// effect. For specimens that do not follow Masing's rule, marked contributions are not checked.
-fn judge(blow: Blow, specimens_and_laws: &[(usize, usize)], held: Held) {
+fn judge(case: ImpactCase, specimens_and_laws: &[(usize, usize)], held: Held) {
     let (mut smooth, mut all) = (0.0, 0.0);
     for (specimen, law) in specimens_and_laws {
         let (name, _) = &specimens(1.0, 1.0)[*specimen];
@@ -274,32 +274,32 @@ fn judge(blow: Blow, specimens_and_laws: &[(usize, usize)], held: Held) {
         for Cell {
             source,
             outcome,
-            told,
+            reported,
             truth,
             value,
-        } in cells(*specimen, contact, blow)
+        } in cells(*specimen, contact, case)
         {
-            let amount = told.amount.abs();
+            let amount = reported.amount.abs();
             let nothing = 1e-6 * value.abs();
-            let (least, most) = match (told.smooth, keeps_masing(*specimen)) {
+            let (least, most) = match (reported.smooth, keeps_masing(*specimen)) {
                 (true, _) => (0.75, 1.5),
                 (false, true) => (held.marked, f64::INFINITY),
                 (false, false) => (0.0, f64::INFINITY),
             };
             assert!(
                 (least * truth - nothing..=most * truth + nothing).contains(&amount),
-                "{name}, {law}: {outcome} by {source:?} is {amount:e} ({}), truly {truth:e}; {blow:?}",
-                if told.smooth { "smooth" } else { "marked" }
+                "{name}, {law}: {outcome} by {source:?} is {amount:e} ({}), truly {truth:e}; {case:?}",
+                if reported.smooth { "smooth" } else { "marked" }
             );
             if keeps_masing(*specimen) {
                 all += 1.0;
-                smooth += f64::from(u8::from(told.smooth));
+                smooth += f64::from(u8::from(reported.smooth));
             }
         }
     }
     assert!(
         smooth >= held.smooth * all,
-        "{smooth} of {all} are smooth; {blow:?}"
+        "{smooth} of {all} are smooth; {case:?}"
     );
 }
 
@@ -309,7 +309,7 @@ fn every_specimen_by_every_law() -> Vec<(usize, usize)> {
         .collect()
 }
 
-const STRUCK: Blow = Blow {
+const STRUCK: ImpactCase = ImpactCase {
     striker: 10.0,
     velocity: 1.0,
     time_step: 1e-3,
@@ -320,7 +320,7 @@ const STRUCK: Blow = Blow {
 
 /// A heavy striker that hits repeatedly during the outward motion.
 #[test]
-fn blow_upon_blow_contributes_what_it_truly_does() {
+fn repeated_impacts_contribute_their_true_effect() {
     judge(
         STRUCK,
         &every_specimen_by_every_law(),
@@ -330,7 +330,7 @@ fn blow_upon_blow_contributes_what_it_truly_does() {
         },
     );
     judge(
-        Blow {
+        ImpactCase {
             share: 1e-2,
             ..STRUCK
         },
@@ -345,7 +345,7 @@ fn blow_upon_blow_contributes_what_it_truly_does() {
 /// A light striker. Afterwards the structure moves back through its rest position, yields in reverse and returns.
 #[test]
 fn swinging_back_contributes_what_it_truly_does() {
-    let swinging = Blow {
+    let swinging = ImpactCase {
         striker: 1.5,
         velocity: 3.0,
         duration: 1.5,
@@ -361,7 +361,7 @@ fn swinging_back_contributes_what_it_truly_does() {
         },
     );
     judge(
-        Blow {
+        ImpactCase {
             share: 1e-2,
             ..swinging
         },
@@ -376,7 +376,7 @@ fn swinging_back_contributes_what_it_truly_does() {
 /// Bilinear and degrading models with Hertz's contact, a bilinear one with restitution, in steps of a tenth.
 #[test]
 fn finer_steps_contribute_as_much() {
-    let fine = Blow {
+    let fine = ImpactCase {
         time_step: 1e-4,
         share: 2e-3,
         ..STRUCK
@@ -397,13 +397,13 @@ fn finer_steps_contribute_as_much() {
 fn noise_does_not_hide_what_an_input_does() {
     const RUNS: u64 = 40;
     let plan = |seed: u64| {
-        let blow = Impact {
+        let struck = Impact {
             contact: laws()[1].1.clone(),
             stepping: every(1e-3),
             duration: constant(0.6),
             ..impact(constant(300.0))
         };
-        let mut plan = elastic_plan(300.0, vec![ProcedureKind::Impact(blow)]);
+        let mut plan = elastic_plan(300.0, vec![ProcedureKind::Impact(struck)]);
         plan.specimens[0].behaviour = Some(specimens(1.0, 1.0)[1].1.clone());
         plan.strikers[0].velocity_uncertainty = 1e-2;
         plan.rig.link = Link::Virtual(VirtualLink {
@@ -416,7 +416,7 @@ fn noise_does_not_hide_what_an_input_does() {
     let exact = cells(
         1,
         &laws()[1].1,
-        Blow {
+        ImpactCase {
             share: 1e-2,
             ..STRUCK
         },

@@ -13,7 +13,7 @@ const STIFFNESS: f64 = 3e5;
 /// \[m\]
 const REACH: f64 = 1e-3;
 
-fn told(record: &Record, procedure: usize, name: &'static str) -> (f64, Known) {
+fn value_and_uncertainty(record: &Record, procedure: usize, name: &'static str) -> (f64, Known) {
     let reference = ResultReference {
         procedure: ProcedureId(procedure),
         name,
@@ -33,9 +33,10 @@ fn told(record: &Record, procedure: usize, name: &'static str) -> (f64, Known) {
 
 /// `points` steps to the reach from `begin` \[m\], on a specimen of `stiffness` \[N/m\].
 fn ramp_plan(points: u32, begin: f64, stiffness: f64, link: VirtualLink) -> Plan {
-    let place = |point| Formula::Constant(begin + REACH * f64::from(point) / f64::from(points));
+    let displacement =
+        |point| Formula::Constant(begin + REACH * f64::from(point) / f64::from(points));
     let kind = ProcedureKind::StiffnessRamp(StiffnessRamp {
-        displacements: (1..=points).map(place).collect(),
+        displacements: (1..=points).map(displacement).collect(),
         ..ramp(1e-4)
     });
     let mut plan = elastic_plan(stiffness, vec![kind]);
@@ -47,7 +48,7 @@ fn ramp_plan(points: u32, begin: f64, stiffness: f64, link: VirtualLink) -> Plan
 #[derive(Debug)]
 struct Replayed {
     error: f64,
-    told: f64,
+    reported: f64,
     held: f64,
 }
 
@@ -63,7 +64,7 @@ fn replayed(count: u32, mut replay: impl FnMut(&mut u64) -> (f64, Known)) -> Rep
     let mean = |sum: f64| (sum / f64::from(count)).sqrt();
     Replayed {
         error: mean(errors),
-        told: mean(squares),
+        reported: mean(squares),
         held: f64::from(held) / f64::from(count),
     }
 }
@@ -83,16 +84,20 @@ fn replays_of_a_ramp_on_a_coarse_load_cell_are_held() {
                     ..VirtualLink::default()
                 };
                 let record = run_unwatched(&ramp_plan(points, begin, stiffness, link));
-                let (value, known) = told(&record, 0, "stiffness");
+                let (value, known) = value_and_uncertainty(&record, 0, "stiffness");
                 (value - stiffness, known)
             });
-            let Replayed { error, told, held } = found;
+            let Replayed {
+                error,
+                reported,
+                held,
+            } = found;
             assert!(
                 held >= 0.94,
                 "{points} points over {quanta} quanta: {found:?}"
             );
             assert!(
-                told > 0.93 * error && told < 3.0 * error,
+                reported > 0.93 * error && reported < 3.0 * error,
                 "{points} points over {quanta} quanta: {found:?}"
             );
         }
@@ -117,19 +122,19 @@ fn replays_of_a_ramp_on_a_coarse_transducer_are_held() {
                 let ProcedureKind::StiffnessRamp(ramp) = &mut plan.procedures[0].kind else {
                     panic!()
                 };
-                for (point, place) in (1..).zip(&mut ramp.displacements) {
-                    *place = Formula::Constant(
+                for (point, displacement) in (1..).zip(&mut ramp.displacements) {
+                    *displacement = Formula::Constant(
                         begin + longer * REACH * f64::from(point) / f64::from(points),
                     );
                 }
-                let (value, known) = told(&run_unwatched(&plan), 0, name);
+                let (value, known) = value_and_uncertainty(&run_unwatched(&plan), 0, name);
                 (
                     value - if name == "stiffness" { STIFFNESS } else { 0.0 },
                     known,
                 )
             });
             assert!(
-                found.held >= 0.92 && found.told > 0.85 * found.error,
+                found.held >= 0.92 && found.reported > 0.85 * found.error,
                 "{name}, {points} over {quanta} quanta: {found:?}"
             );
         }
@@ -146,7 +151,7 @@ fn a_ramp_in_step_with_its_grid_is_not_known_to_the_last_digit() {
     };
     let plan = ramp_plan(10, 0.0, STIFFNESS, link);
     let record = run_unwatched(&plan);
-    let (value, known) = told(&record, 0, "stiffness");
+    let (value, known) = value_and_uncertainty(&record, 0, "stiffness");
     assert!((value / STIFFNESS - 1.0).abs() < 1e-9);
     // q/√12 of each of ten points, over √Σ(x − x̄)².
     let squares: f64 = (1..=10)
@@ -169,7 +174,7 @@ fn a_ramp_in_step_with_its_grid_is_not_known_to_the_last_digit() {
         }
     )));
     let ideal = run_unwatched(&ramp_plan(10, 0.0, STIFFNESS, VirtualLink::default()));
-    assert!(told(&ideal, 0, "stiffness").1.standard < 1e-6);
+    assert!(value_and_uncertainty(&ideal, 0, "stiffness").1.standard < 1e-6);
     // Figures and reports use the same uncertainty of the fit.
     let History::Ramp(ramp) = &record.procedures[0].history else {
         panic!()
@@ -183,7 +188,7 @@ fn a_ramp_in_step_with_its_grid_is_not_known_to_the_last_digit() {
         ..VirtualLink::default()
     };
     let [fine, none] = [1.0, 0.0].map(|quantum| {
-        told(
+        value_and_uncertainty(
             &run_unwatched(&ramp_plan(10, 0.0, STIFFNESS, noisy(quantum))),
             0,
             "stiffness",
@@ -223,11 +228,11 @@ fn replays_of_a_sweep_on_a_coarse_load_cell_are_held() {
                 } else {
                     plan.specimens[0].coulomb
                 };
-                let (value, known) = told(&run_unwatched(&plan), 0, name);
+                let (value, known) = value_and_uncertainty(&run_unwatched(&plan), 0, name);
                 (value - truth, known)
             });
             assert!(
-                found.held >= 0.9 && found.told > 0.8 * found.error,
+                found.held >= 0.9 && found.reported > 0.8 * found.error,
                 "{name}, {quantum} N: {found:?}"
             );
         }
@@ -255,7 +260,7 @@ fn replays_of_a_bilinear_ramp_on_a_coarse_load_cell_are_held() {
                 panic!()
             };
             ramp.fit = RampFit::Bilinear;
-            let (value, known) = told(&run_unwatched(&plan), 0, name);
+            let (value, known) = value_and_uncertainty(&run_unwatched(&plan), 0, name);
             let truth = match name {
                 "stiffness" => stiffness,
                 "post_yield_stiffness" => 0.2 * stiffness,
@@ -264,7 +269,7 @@ fn replays_of_a_bilinear_ramp_on_a_coarse_load_cell_are_held() {
             (value - truth, known)
         });
         assert!(
-            found.held >= 0.9 && found.told > 0.7 * found.error,
+            found.held >= 0.9 && found.reported > 0.7 * found.error,
             "{name}: {found:?}"
         );
     }

@@ -115,11 +115,11 @@ impl Rig for Misread {
     }
 }
 
-/// The specimen pushed through `places` (m, one entry per axis) and then unloaded by a rig with these errors.
-fn rests(plan: &Plan, places: &[&[f64]], axes: Vec<Wrong>, within: Option<f64>) -> Rest {
+/// The specimen pushed through `positions` (m, one entry per axis) and then unloaded by a rig with these errors.
+fn rests(plan: &Plan, positions: &[&[f64]], axes: Vec<Wrong>, within: Option<f64>) -> Rest {
     let mut rig = virtual_rig(plan);
-    for place in places {
-        rig.propose(place, None).unwrap();
+    for displacement in positions {
+        rig.propose(displacement, None).unwrap();
         rig.execute().unwrap();
     }
     let mut rig = Misread { rig, axes };
@@ -201,8 +201,8 @@ fn a_rig_with_calibration_errors_unloads_as_predicted() {
         let mut plan = calibrated(elastic_plan(500.0, Vec::new()));
         plan.specimens[0].behaviour = Some(behaviour);
         let at = |wrong: Wrong| rests(&plan, &[&[0.06]], vec![wrong], Some(1e-6));
-        let told = at(RIGHT);
-        let [place, force] = told.contributions_at_floor(0);
+        let reported = at(RIGHT);
+        let [of_displacement, of_force] = reported.contributions_at_floor(0);
         let cases = [
             (Source::ForceScale(0), 0.01, |by| Wrong {
                 force: 1.0 + by,
@@ -214,19 +214,19 @@ fn a_rig_with_calibration_errors_unloads_as_predicted() {
                 ..RIGHT
             }),
         ] as [(Source, f64, fn(f64) -> Wrong); 3];
-        let u = combined(&place).unwrap();
+        let u = combined(&of_displacement).unwrap();
         for (source, by, wrong) in cases {
             let found = 0.5 * (at(wrong(by)).displacement[0] - at(wrong(-by)).displacement[0]);
-            let foretold = of(&place, source);
+            let predicted = of(&of_displacement, source);
             assert!(
-                (found - foretold).abs() < 0.02 * u,
-                "{name} by {source:?}: {found} m, foretold {foretold} m of {u} m"
+                (found - predicted).abs() < 0.02 * u,
+                "{name} by {source:?}: {found} m, foretold {predicted} m of {u} m"
             );
         }
         // If the specimen carries almost no load, only the zero contributes to the uncertainty of that load.
         assert!(
-            (combined(&force).unwrap() / 0.5 - 1.0).abs() < 1e-6,
-            "{name}: {force:?}"
+            (combined(&of_force).unwrap() / 0.5 - 1.0).abs() < 1e-6,
+            "{name}: {of_force:?}"
         );
     }
 }
@@ -236,14 +236,17 @@ fn a_rig_with_calibration_errors_unloads_as_predicted() {
 #[test]
 fn a_false_zero_of_a_floor_moves_the_storeys_below_it() {
     let plan = calibrated(three(0.1));
-    let places: [f64; 3] = [0.025, -0.005, -0.001];
+    let positions: [f64; 3] = [0.025, -0.005, -0.001];
     let at = |axis: usize, zero: f64| {
         let mut axes = vec![RIGHT; 3];
         axes[axis].zero = zero;
-        rests(&plan, &[&places], axes, Some(1e-6))
+        rests(&plan, &[&positions], axes, Some(1e-6))
     };
-    let told = at(0, 0.0);
-    let (drifts, shears) = (told.drift_contributions(), told.shear_contributions());
+    let reported = at(0, 0.0);
+    let (drifts, shears) = (
+        reported.drift_contributions(),
+        reported.shear_contributions(),
+    );
     for axis in 0..3 {
         let (up, down) = (at(axis, 0.5), at(axis, -0.5));
         for (storey, stiffness) in [4e6, 2e6, 1e6].into_iter().enumerate() {
@@ -261,8 +264,8 @@ fn a_false_zero_of_a_floor_moves_the_storeys_below_it() {
                 0.0
             };
             let found = 0.5 * (up.drift()[storey] - down.drift()[storey]);
-            let foretold = of(&entry(&drifts), source);
-            close(&[found, foretold], &[by_hand; 2], 1e-6 * 0.5 / 1e6);
+            let predicted = of(&entry(&drifts), source);
+            close(&[found, predicted], &[by_hand; 2], 1e-6 * 0.5 / 1e6);
             close(
                 &[of(&entry(&shears), source)],
                 &[if axis >= storey { 0.5 } else { 0.0 }],
@@ -280,10 +283,10 @@ fn a_false_zero_of_a_floor_moves_the_storeys_below_it() {
                 .collect();
             of(&parts, Source::DisplacementScale(axis))
         };
-        let place = 0.004 * told.displacement[axis];
-        close(&[of_entry(axis)], &[place], 1e-15);
+        let displacement = 0.004 * reported.displacement[axis];
+        close(&[of_entry(axis)], &[displacement], 1e-15);
         if axis < 2 {
-            close(&[of_entry(axis + 1)], &[-place], 1e-15);
+            close(&[of_entry(axis + 1)], &[-displacement], 1e-15);
         }
     }
 }
@@ -314,12 +317,12 @@ fn unloaded_positions_scatter_as_predicted() {
         });
         rests(&plan, &[&[0.02, 0.04, 0.06]], vec![RIGHT; 3], None)
     };
-    let told = at(0);
+    let reported = at(0);
     let runs: Vec<Rest> = (1..=u64::from(RUNS)).map(&mut at).collect();
     let within = 3.0 / f64::from(2 * (RUNS - 1)).sqrt();
     for floor in 0..3 {
-        let [place, force] = told.contributions_at_floor(floor);
-        let u = combined(&place).unwrap();
+        let [of_displacement, of_force] = reported.contributions_at_floor(floor);
+        let u = combined(&of_displacement).unwrap();
         let found = scatter(
             &runs
                 .iter()
@@ -330,7 +333,7 @@ fn unloaded_positions_scatter_as_predicted() {
             (u / found - 1.0).abs() < within,
             "floor {floor}: {found} m of runs, {u} m foretold"
         );
-        assert!((combined(&force).unwrap() / 20.0 - 1.0).abs() < 1e-9);
+        assert!((combined(&of_force).unwrap() / 20.0 - 1.0).abs() < 1e-9);
     }
 }
 
@@ -351,13 +354,13 @@ fn what_was_left_counts_where_anything_is_uncertain() {
     let fine = rests(&plan, &[&[0.05, 0.1, 0.112]], vec![RIGHT; 3], Some(1e-3));
     let source = Source::RestLoad {
         procedure: ProcedureId(0),
-        blow: 0,
+        impact: 0,
     };
     assert!(
         rough.largest().1.abs() > 1.0 && fine.largest().1.abs() <= 1e-3,
         "{rough:?}"
     );
-    let mut told = 0;
+    let mut compared = 0;
     for floor in 0..3 {
         let (left, off) = (
             of(&rough.contributions_at_floor(floor)[0], source),
@@ -368,7 +371,7 @@ fn what_was_left_counts_where_anything_is_uncertain() {
             off.abs() < 4.0 * left.abs() + 1e-9 && left.abs() < 4.0 * off.abs() + 1e-9,
             "floor {floor}: {off} m, {left} m"
         );
-        told += usize::from(left != 0.0);
+        compared += usize::from(left != 0.0);
     }
-    assert!(told > 0);
+    assert!(compared > 0);
 }

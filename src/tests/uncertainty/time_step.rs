@@ -19,12 +19,12 @@ fn sticking(time_step: f64) -> Plan {
     let contact = Contact::Restitution {
         coefficient: Formula::Constant(0.0),
     };
-    let blow = Impact {
+    let struck = Impact {
         contact,
         stepping: every(time_step),
         ..impact(Formula::Constant(STIFFNESS))
     };
-    elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(blow)])
+    elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(struck)])
 }
 
 /// Contribution of the time step to a result.
@@ -68,7 +68,7 @@ fn an_expanded_uncertainty_holds_the_closed_form_at_any_step() {
 
 /// The same with noise, which the re-integrated path contains in all its steps.
 #[test]
-fn noise_is_not_taken_for_the_time_step() {
+fn noise_is_not_counted_as_an_error_of_the_time_step() {
     let mut plan = sticking(2e-3);
     plan.rig.link = Link::Virtual(VirtualLink {
         noise: 0.02,
@@ -151,10 +151,10 @@ fn a_frame_is_known_no_better_than_its_time_step_lets_it_be() {
 /// A plastic impact on a specimen whose damping is stated with an uncertainty.
 fn damped(damping: f64, uncertainty: f64) -> Record {
     let mut plan = sticking(2e-3);
-    let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind else {
+    let ProcedureKind::Impact(impact) = &mut plan.procedures[0].kind else {
         panic!("no impact")
     };
-    blow.point_mut().damping = Stated {
+    impact.point_mut().damping = Stated {
         source: Source::SpecimenMass(9),
         value: damping,
         uncertainty,
@@ -214,22 +214,26 @@ fn a_damping_that_is_not_significantly_below_none_is_none() {
         "{found}, by hand {by_hand}"
     );
     assert_eq!(number(&record, 0, "max_displacement").0, Some(peak(0.0)));
-    let (_, taken, _) = record.procedures[0]
+    let (_, of_time_step, _) = record.procedures[0]
         .inputs
         .iter()
         .find(|(name, ..)| *name == "damping")
         .unwrap();
-    assert_eq!((taken.value, taken.uncertainty), (0.0, Some(2.0)));
-    let said: Vec<&str> = record
+    assert_eq!(
+        (of_time_step.value, of_time_step.uncertainty),
+        (0.0, Some(2.0))
+    );
+    let remarks: Vec<&str> = record
         .events
         .iter()
         .filter(|event| event.kind == EventKind::Remark)
         .map(|event| event.text.as_str())
         .collect();
     assert!(
-        said.iter()
+        remarks
+            .iter()
             .any(|text| text.contains("not significantly below 0, and is set to 0")),
-        "{said:?}"
+        "{remarks:?}"
     );
     let refused = damped(-5.0, 2.0);
     assert!(refused.procedures[0].history.above_critical().is_none());

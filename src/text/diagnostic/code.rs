@@ -126,10 +126,10 @@ codes! {
     E642 LawNeedsTangent Error;
     E643 Unstable Error;
     E644 NoPathToFollow Error;
-    E645 StopsOnTheWay Error;
+    E645 StopsBetweenReadings Error;
     E646 RateWithoutSpeed Error;
     E647 NoUseWithRate Error;
-    E648 ConditionWithoutBlow Error;
+    E648 ConditionWithoutImpact Error;
     E649 BreaksTwice Error;
     E650 RelaxationWithoutHold Error;
     E651 NotTogether Error;
@@ -168,7 +168,7 @@ codes! {
     W717 NotPrinted Warning;
     W718 StifferThanOperator Warning;
     W719 TrackingStops Warning;
-    W720 BlowOnBlow Warning;
+    W720 RepeatedImpact Warning;
     W721 LevelsDoNotRise Warning;
     W722 FewDegreesOfFreedom Warning;
     W724 BeyondMechanism Warning;

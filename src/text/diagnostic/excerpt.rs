@@ -279,7 +279,7 @@ mod tests {
 
     /// An error in the middle of a large file and another at its end: no excerpt joins them.
     #[test]
-    fn an_excerpt_of_a_large_file_holds_the_lines_around_its_places_only() {
+    fn an_excerpt_of_a_large_file_has_only_the_lines_around_its_spans() {
         let mut sources = Sources::default();
         let text = "let a = 1 mm\n".repeat(80_000);
         let file = sources.add("large.psd", text.as_str());
@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn places_follow_the_escapes() {
+    fn spans_follow_the_escapes() {
         let (shown, moved) = show("a\u{1b}b c\r\nd", &[2..3, 4..5, 7..8]);
         assert_eq!(shown, "a\\u{1b}b c\nd\n");
         assert_eq!(
@@ -320,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cut_line_keeps_its_place_and_says_so() {
+    fn a_truncated_line_keeps_its_span_and_is_marked() {
         let text = format!("{}here{}", "ä".repeat(300), "z".repeat(300));
         let (shown, moved) = show(&text, std::slice::from_ref(&(600..604)));
         assert_eq!(&shown[moved[0].clone()], "here");

@@ -33,9 +33,9 @@ pub fn text(diagnostics: &[Value]) -> String {
 /// One diagnostic. `plan` names the file of a diagnostic without a span; `folder` is put before the name of every file.
 #[must_use]
 pub fn diagnostic(diagnostic: &Diagnostic, sources: &Sources, plan: &str, folder: &str) -> Value {
-    let place = diagnostic.span().map_or_else(
+    let location = diagnostic.span().map_or_else(
         || json!({ "file": format!("{folder}{plan}"), "line": null, "column": null, "end_line": null, "end_column": null, "span": null }),
-        |span| place(span, sources, folder),
+        |span| location(span, sources, folder),
     );
     let labels: Vec<Value> = diagnostic
         .labels
@@ -47,7 +47,7 @@ pub fn diagnostic(diagnostic: &Diagnostic, sources: &Sources, plan: &str, folder
         "severity": severity_name(diagnostic.severity),
         "message": diagnostic.message,
     });
-    extend(&mut value, place);
+    extend(&mut value, location);
     extend(
         &mut value,
         json!({ "labels": labels, "help": diagnostic.help }),
@@ -66,12 +66,12 @@ pub fn unreadable(file: &str, message: &str, at: Option<Position>) -> Value {
 }
 
 fn label(label: &Label, sources: &Sources, folder: &str) -> Value {
-    let mut value = place(label.span, sources, folder);
+    let mut value = location(label.span, sources, folder);
     extend(&mut value, json!({ "text": label.text }));
     value
 }
 
-fn place(span: Span, sources: &Sources, folder: &str) -> Value {
+fn location(span: Span, sources: &Sources, folder: &str) -> Value {
     let start = sources.position(span);
     let end = sources.position(Span {
         start: span.end,
@@ -99,7 +99,7 @@ mod tests {
     use crate::text::diagnostic::Code;
 
     #[test]
-    fn an_editor_gets_places_in_characters_and_in_bytes() {
+    fn an_editor_gets_positions_in_characters_and_in_bytes() {
         let mut sources = Sources::default();
         let file = sources.add("a.psd", "# ä\nlet ä = 3 mx\n");
         let fault = Diagnostic::new(Code::UnknownUnit, "no unit `mx`")

@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn an_error_shows_code_message_place_and_help() {
+    fn an_error_shows_code_message_span_and_help() {
         let mut sources = Sources::default();
         sources.add(
             "beam.psd",
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn places_in_two_files_are_both_drawn_with_their_own_lines() {
+    fn spans_in_two_files_are_both_drawn_with_their_own_lines() {
         let mut sources = Sources::default();
         sources.add("beam.psd", "use \"lib/frame.psd\"\nlet k = 2\n");
         sources.add("lib/frame.psd", "# the frame\nlet k = 1\n");
@@ -321,7 +321,7 @@ mod tests {
     }
 
     #[test]
-    fn a_very_long_line_is_cut_around_its_place() {
+    fn a_very_long_line_is_truncated_around_its_span() {
         let mut sources = Sources::default();
         sources.add(
             "a.psd",
@@ -342,7 +342,7 @@ mod tests {
     }
 
     #[test]
-    fn a_place_past_the_last_line_is_drawn_at_its_end() {
+    fn a_span_past_the_last_line_is_drawn_at_its_end() {
         let mut sources = Sources::default();
         let file = sources.add("a.psd", "let a = 1\n");
         let diagnostic =

@@ -17,7 +17,7 @@ fn docs() -> PathBuf {
 }
 
 /// Whether the tests write the expected files instead of comparing them.
-fn bless() -> bool {
+fn accepts_output() -> bool {
     std::env::var_os("PSD_BLESS").is_some()
 }
 
@@ -149,7 +149,7 @@ fn every_link_leads_to_a_page_and_a_heading() {
             if target.starts_with("https://") {
                 continue;
             }
-            let (file, place) = target.split_once('#').unwrap_or((&target, ""));
+            let (file, fragment) = target.split_once('#').unwrap_or((&target, ""));
             let there = if file.is_empty() {
                 Some(page.clone())
             } else {
@@ -163,7 +163,7 @@ fn every_link_leads_to_a_page_and_a_heading() {
                 page.display()
             );
             assert!(
-                place.is_empty() || anchors(&there).iter().any(|anchor| anchor == place),
+                fragment.is_empty() || anchors(&there).iter().any(|anchor| anchor == fragment),
                 "{}: no heading {target}",
                 page.display()
             );

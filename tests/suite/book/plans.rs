@@ -39,13 +39,13 @@ fn codes(page: &Path, plan: &str) -> (Vec<String>, String) {
         ..Options::default()
     };
     let checked = check("plan.psd", plan, &Beside(folder), &options);
-    let said = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
+    let output = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
     let codes = checked
         .diagnostics
         .iter()
         .map(|diagnostic| diagnostic.code.to_string())
         .collect();
-    (codes, said)
+    (codes, output)
 }
 
 #[test]
@@ -79,8 +79,14 @@ fn every_plan_checks_or_has_the_errors_beside_it() {
                 .split_whitespace()
                 .filter(|word| is_code(word))
                 .collect();
-            let (codes, said) = codes(&page, &block.body);
-            assert_eq!(codes, wanted, "{}:\n{}\n{said}", page.display(), block.body);
+            let (codes, output) = codes(&page, &block.body);
+            assert_eq!(
+                codes,
+                wanted,
+                "{}:\n{}\n{output}",
+                page.display(),
+                block.body
+            );
             whole += 1;
         }
     }

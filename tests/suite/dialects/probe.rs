@@ -9,13 +9,13 @@ use super::rigs::{CASES, Case, by_name};
 use super::{ANSWERS, Process, SILENT, ready, write_plan};
 
 /// Exit code and all output.
-struct Said {
+struct Ended {
     code: Option<i32>,
     out: String,
-    told: String,
+    messages: String,
 }
 
-fn psd(folder: &Path, arguments: &[&str]) -> Said {
+fn psd(folder: &Path, arguments: &[&str]) -> Ended {
     let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
     let ended = command
         .current_dir(folder)
@@ -24,10 +24,10 @@ fn psd(folder: &Path, arguments: &[&str]) -> Said {
         .output()
         .expect("psd starts");
     let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
-    Said {
+    Ended {
         code: ended.status.code(),
         out: text(ended.stdout),
-        told: text(ended.stderr),
+        messages: text(ended.stderr),
     }
 }
 
@@ -84,7 +84,7 @@ fn every_dialect_is_probed_and_watched_and_nothing_moves() {
         write_plan(case, folder, ANSWERS);
         let _simulator = stand_in(folder);
         let probed = psd(folder, &["rig", "probe", "plan.psd", "--rig", "real"]);
-        assert_eq!(probed.code, Some(0), "{}: {}", case.name, probed.told);
+        assert_eq!(probed.code, Some(0), "{}: {}", case.name, probed.messages);
         for expected in [
             "real",
             "  model ",
@@ -114,7 +114,7 @@ fn every_dialect_is_probed_and_watched_and_nothing_moves() {
                 "rig", "monitor", "plan.psd", "--rig", "real", "--count", "3", "--every", "20 ms",
             ],
         );
-        assert_eq!(watched.code, Some(0), "{}: {}", case.name, watched.told);
+        assert_eq!(watched.code, Some(0), "{}: {}", case.name, watched.messages);
         let rows: Vec<Vec<f64>> = watched.out.lines().skip(1).map(numbers).collect();
         assert!(
             watched.out.starts_with("time_s,displacement_m,force_n\n") && rows.len() == 3,
@@ -144,23 +144,23 @@ fn numbers(row: &str) -> Vec<f64> {
 }
 
 /// The message for a rig that does not understand the driver: the device and its location in the plan.
-fn not_understood(said: &Said, place: &str) {
+fn not_understood(ended: &Ended, plan_text: &str) {
     assert_eq!(
-        (said.code, said.out.as_str()),
+        (ended.code, ended.out.as_str()),
         (Some(3), ""),
         "{}",
-        said.told
+        ended.messages
     );
-    let lines: Vec<&str> = said.told.lines().collect();
+    let lines: Vec<&str> = ended.messages.lines().collect();
     let error = lines
         .iter()
         .rposition(|line| line.starts_with("error: "))
-        .unwrap_or_else(|| panic!("{}", said.told));
+        .unwrap_or_else(|| panic!("{}", ended.messages));
     let at = lines.get(error + 1).copied().unwrap_or_default();
     assert!(
-        at.starts_with("  at: plan.psd:") && at.contains(place),
+        at.starts_with("  at: plan.psd:") && at.contains(plan_text),
         "{}",
-        said.told
+        ended.messages
     );
     let silent = lines[error].contains("no usable answer");
     assert_eq!(
@@ -169,13 +169,13 @@ fn not_understood(said: &Said, place: &str) {
             .is_some_and(|line| line.starts_with(" help: the baud rate, the `dialect`")),
         silent,
         "{}",
-        said.told
+        ended.messages
     );
 }
 
 /// A device with a different protocol at the plan's port: every driver gives up, reports this, and has moved nothing.
 #[test]
-fn a_rig_of_another_dialect_is_not_taken_for_ours() {
+fn a_rig_with_another_protocol_is_not_accepted() {
     // The rig of the emulator, and the rig in the changed plan.
     let pairs = [
         ("native", "grbl with scpi", "actuator = serial"),
@@ -186,7 +186,7 @@ fn a_rig_of_another_dialect_is_not_taken_for_ours() {
         ("modbus", "native", "link = serial"),
     ];
     std::thread::scope(|scope| {
-        for (there, ours, place) in pairs {
+        for (there, ours, plan_text) in pairs {
             scope.spawn(move || {
                 let folder = tempfile::tempdir().expect("a folder");
                 let folder = folder.path();
@@ -196,8 +196,8 @@ fn a_rig_of_another_dialect_is_not_taken_for_ours() {
                 // A separate load cell has a silent line: the actuator is addressed first.
                 let _nobody =
                     psd::emulator::PseudoTerminal::linked(&folder.join("b")).expect("a line");
-                let said = psd(folder, &["rig", "probe", "plan.psd", "--rig", "real"]);
-                not_understood(&said, place);
+                let ended = psd(folder, &["rig", "probe", "plan.psd", "--rig", "real"]);
+                not_understood(&ended, plan_text);
                 assert_eq!(moves(folder), 0, "{there} for {ours}");
             });
         }
@@ -206,16 +206,16 @@ fn a_rig_of_another_dialect_is_not_taken_for_ours() {
 
 /// No device at the port, or a silent device, as with a wrong baud rate.
 #[test]
-fn a_port_that_is_not_there_and_one_that_is_silent_are_told_apart() {
+fn a_missing_port_and_a_silent_one_are_distinguished() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     write_plan(by_name("native"), folder, SILENT);
     let dead = psd(folder, &["rig", "probe", "plan.psd", "--rig", "real"]);
     not_understood(&dead, "link = serial(port: \"");
     assert!(
-        dead.told.contains("there is no such port") && dead.told.contains("psd rig list"),
+        dead.messages.contains("there is no such port") && dead.messages.contains("psd rig list"),
         "{}",
-        dead.told
+        dead.messages
     );
 
     fs::write(folder.join("silence"), "at 0 s: drop replies for ever\n").expect("a script");
@@ -235,9 +235,9 @@ fn a_port_that_is_not_there_and_one_that_is_silent_are_told_apart() {
     let silent = psd(folder, &["rig", "probe", "plan.psd", "--rig", "real"]);
     not_understood(&silent, "link = serial(port: \"");
     assert!(
-        silent.told.contains("no usable answer within"),
+        silent.messages.contains("no usable answer within"),
         "{}",
-        silent.told
+        silent.messages
     );
 
     // The message names the port of the separate load cell.
@@ -253,11 +253,11 @@ fn a_port_that_is_not_there_and_one_that_is_silent_are_told_apart() {
 
 /// No device at a TCP address.
 #[test]
-fn an_address_where_nobody_listens_says_so() {
+fn an_address_without_a_listener_is_reported() {
     let folder = tempfile::tempdir().expect("a folder");
     let folder = folder.path();
     write_plan(by_name("nees"), folder, SILENT);
     let dead = psd(folder, &["rig", "probe", "plan.psd", "--rig", "real"]);
     not_understood(&dead, "link = tcp(address: \"127.0.0.1:");
-    assert!(dead.told.contains("refused"), "{}", dead.told);
+    assert!(dead.messages.contains("refused"), "{}", dead.messages);
 }

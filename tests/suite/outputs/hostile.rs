@@ -209,9 +209,9 @@ fn no_label_steers_a_terminal_or_makes_another_line() {
     };
     let plain = lines("a plain label");
     for label in labels() {
-        let told = console::verdict_text(&run_with(&label).run(), true);
+        let shown = console::verdict_text(&run_with(&label).run(), true);
         assert_eq!(
-            steering(&sanitize::terminal(&told).replace("\u{1b}[", "")),
+            steering(&sanitize::terminal(&shown).replace("\u{1b}[", "")),
             "",
             "{label:?}"
         );
@@ -271,7 +271,7 @@ fn no_label_is_a_formula_in_a_table() {
 }
 
 #[test]
-fn no_label_is_another_place_or_another_line_of_the_manifest() {
+fn no_label_is_another_path_or_another_line_of_the_manifest() {
     for label in labels() {
         let mut finished = run_with(&label);
         finished.plan.files[0].text = "first".to_owned();
@@ -479,8 +479,8 @@ fn no_label_steers_a_terminal_from_a_diagnostic() {
                 sources,
                 ..
             } = check("plan.psd", &plan, &Nothing, &Options::default());
-            let told = render::render_all(&diagnostics, &sources, &render::Appearance::plain());
-            assert_eq!(steering(&told), "", "{label:?}: {told}");
+            let shown = render::render_all(&diagnostics, &sources, &render::Appearance::plain());
+            assert_eq!(steering(&shown), "", "{label:?}: {shown}");
             let found: Vec<_> = diagnostics
                 .iter()
                 .map(|found| json::diagnostic(found, &sources, &label, ""))

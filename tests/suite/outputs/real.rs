@@ -108,12 +108,12 @@ fn missing(finished: &Finished) -> Vec<String> {
 }
 
 #[test]
-fn a_real_run_that_lacks_nothing_is_issuable_and_says_what_it_was_made_with() {
+fn a_complete_real_run_is_issuable_and_names_its_equipment() {
     let finished = real();
     assert_eq!(ReportStatus::of(&finished.run()), ReportStatus::Issuable);
     let files = files(&finished);
     let html = text(&files, "report.html").replace('\u{a0}', " ");
-    for told in [
+    for expected in [
         "serial, 115200 baud",
         "TCP",
         "only serial number PSD-0001",
@@ -129,7 +129,7 @@ fn a_real_run_that_lacks_nothing_is_issuable_and_says_what_it_was_made_with() {
         "<td>1234</td>",
         "c0ffee",
     ] {
-        assert!(html.contains(told), "{told}");
+        assert!(html.contains(expected), "{expected}");
     }
     for secret in [
         "ttyUSB7",
@@ -200,8 +200,8 @@ fn what_a_report_must_state_and_lacks_is_named() {
 }
 
 #[test]
-fn what_lies_outside_the_range_of_its_calibration_is_told() {
-    let told = |force: [f64; 2], displacement: [f64; 2]| -> Vec<String> {
+fn readings_outside_the_calibrated_range_are_reported() {
+    let deviations_of = |force: [f64; 2], displacement: [f64; 2]| -> Vec<String> {
         let mut finished = real();
         let range = |[low, high]: [f64; 2]| Some(Interval { low, high });
         finished.plan.rig.calibration.force_calibrated = range(force);
@@ -218,10 +218,10 @@ fn what_lies_outside_the_range_of_its_calibration_is_told() {
             .collect()
     };
     // At most 157 mm and 51.6 N.
-    assert_eq!(told([10.0, 100.0], [0.0, 0.2]), [""; 0]);
+    assert_eq!(deviations_of([10.0, 100.0], [0.0, 0.2]), [""; 0]);
     let (weak, far) = (
-        told([300.0, 15e3], [0.0, 0.2]),
-        told([0.0, 100.0], [0.0, 0.1]),
+        deviations_of([300.0, 15e3], [0.0, 0.2]),
+        deviations_of([0.0, 100.0], [0.0, 0.1]),
     );
     assert!(
         weak.len() == 1
@@ -278,11 +278,11 @@ fn a_report_without_what_every_report_states_is_not_issuable_and_names_it() {
     bare.plan.particulars.clear();
     let files = files(&bare);
     let html = text(&files, "report.html");
-    for told in [
+    for expected in [
         "<div>PARTICULARS MISSING</div>",
         "7.8.2.1. Missing: laboratory; address; ",
     ] {
-        assert!(html.contains(told), "{told}");
+        assert!(html.contains(expected), "{expected}");
     }
     assert!(
         html.contains("Not given: Condition, Item received."),
@@ -296,10 +296,10 @@ fn a_report_without_what_every_report_states_is_not_issuable_and_names_it() {
         ),
         (&"particulars missing".into(), 8)
     );
-    let told = console::verdict_text(&bare.run(), false);
+    let line = console::verdict_text(&bare.run(), false);
     assert!(
-        told.contains("(PARTICULARS MISSING: laboratory, address, ") && told.contains("psd issue"),
-        "{told}"
+        line.contains("(PARTICULARS MISSING: laboratory, address, ") && line.contains("psd issue"),
+        "{line}"
     );
     // A simulation is not issuable.
     bare.record.rig.simulated = true;
@@ -310,7 +310,7 @@ fn a_report_without_what_every_report_states_is_not_issuable_and_names_it() {
 }
 
 #[test]
-fn days_out_of_their_order_are_told() {
+fn dates_out_of_order_are_reported() {
     let dated = |field: &'static str, day: &str| {
         let day = day.to_owned();
         particulars_missing(|all| {
@@ -348,7 +348,7 @@ fn days_out_of_their_order_are_told() {
 }
 
 #[test]
-fn an_amended_name_of_the_operator_stands_on_the_first_page_and_not_in_the_provenance() {
+fn an_amended_name_of_the_operator_is_on_the_first_page_and_not_in_the_provenance() {
     let mut amended = real();
     let change = Change {
         field: "operator",

@@ -219,7 +219,7 @@ fn hertz_on_free_masses() {
 /// μ v dv/(1 + λv) = −k δ^1.5 dδ. With G(v) = v/λ − ln(1 + λv)/λ², the depth follows from 0.4 k δ^2.5 = μ G(u). The bodies separate at
 /// the −v with G(−v) = G(u).
 #[test]
-fn hertz_loss_spends_what_hunt_and_crossley_say() {
+fn hertz_loss_dissipates_the_energy_of_hunt_and_crossley() {
     const LOSS: f64 = 0.3;
     let g = |v: f64| v / LOSS - (LOSS * v).ln_1p() / (LOSS * LOSS);
     let (run, restitution) = free_masses(LOSS, None);
@@ -349,7 +349,7 @@ fn a_gap_delays_the_first_contact() {
 
 /// e = 0 on a bilinear specimen stops when its energy is dissipated: ½(M+Ms)v² = ½Fy²/K + Fy p + ½hKp², X = Fy/K + p.
 #[test]
-fn a_yielding_specimen_stops_where_energy_says() {
+fn a_yielding_specimen_stops_at_the_position_from_its_energy() {
     let (yield_force, post_yield_ratio): (f64, f64) = (20.0, 0.1);
     let at = |time_step| {
         let mut specimen = Bilinear::new(BilinearCurve {
@@ -478,7 +478,7 @@ fn the_tangent_follows_a_specimen_that_yields_under_noise() {
 
 /// A cell with zero drift and noise pushes a light structure in both directions: every step still ends, free or in contact.
 #[test]
-fn restitution_stands_a_rattling_cell() {
+fn restitution_is_robust_to_a_noisy_cell() {
     struct Rattle {
         random: Pcg64Mcg,
         noise: f64,

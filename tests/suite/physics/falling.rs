@@ -92,28 +92,28 @@ fn a_weight_falls_back_and_strikes_again() {
         ..impact(1.0, 1.0, law, time_step)
     };
     let mut solver = psd::physics::impact::ImpactSolver::new(&input, 0.0, 0.0).expect("an impact");
-    let mut blows = Vec::new();
+    let mut impact_times = Vec::new();
     let mut before = StepState::Free;
     while solver.state().time < 0.45 {
         let target = solver.predict();
         let state = *solver.complete(target, target);
         if state.state == StepState::Contact && before == StepState::Free {
-            blows.push(state.time);
+            impact_times.push(state.time);
         }
         before = state.state;
     }
     let landing = (2.0 * G * drop).sqrt();
     let mut time = landing / G;
     let mut speed = landing;
-    for (index, blow) in blows.iter().take(4).enumerate() {
+    for (index, found) in impact_times.iter().take(4).enumerate() {
         assert!(
-            (blow - time).abs() < 2.0 * time_step,
-            "blow {index} at {blow} s, not {time} s"
+            (found - time).abs() < 2.0 * time_step,
+            "blow {index} at {found} s, not {time} s"
         );
         speed *= e;
         time += 2.0 * speed / G;
     }
-    assert!(blows.len() >= 4, "{blows:?}");
+    assert!(impact_times.len() >= 4, "{impact_times:?}");
 }
 
 /// Without weight the result is bit-identical.

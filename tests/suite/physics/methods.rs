@@ -159,7 +159,7 @@ fn energy_closes_under_every_integrator() {
 
 /// The rigid impact of α-OS is the paper's collision, e = Ms/(Ms + 2M), for every α.
 #[test]
-fn numerical_damping_does_not_soften_the_blow() {
+fn numerical_damping_does_not_soften_the_impact() {
     for integrator in ALL {
         let found = run(&by(
             integrator,
@@ -177,7 +177,7 @@ fn numerical_damping_does_not_soften_the_blow() {
 
 /// Just below the limit a free vibration is bounded for a thousand steps. Just above it, it diverges.
 #[test]
-fn the_stability_limits_are_where_they_are_said_to_be() {
+fn the_stability_limits_are_as_stated() {
     let (mass, stiffness): (f64, f64) = (1.0, 400.0);
     let farthest = |integrator, operator, time_step| {
         let input = ImpactInput {
@@ -243,7 +243,7 @@ fn the_stability_limits_are_where_they_are_said_to_be() {
 /// Growth of a free vibration per step, compared with the reported limit: α-OS with an operator below the specimen's stiffness, damped
 /// and undamped. Just below the limit, the growth is at most the decay from a damping ratio of 1e-4. Just above it is larger.
 #[test]
-fn splitting_with_too_little_grows_where_its_amplification_factors_say() {
+fn splitting_with_too_little_stiffness_grows_as_its_amplification_factors() {
     let (mass, stiffness): (f64, f64) = (1.0, 400.0);
     let omega = (stiffness / mass).sqrt();
     for (alpha, share, ratio) in [
@@ -331,8 +331,8 @@ fn the_tangent_form_errs_by_what_its_slope_is_late() {
             ..vibration(Integrator::Tangent, mass, 0.0, stiffness, time_step)
         };
         let mut specimen = SpecimenModel::new(&behaviour);
-        let (mut place, mut force) = (0.15, specimen.move_to(0.15));
-        let mut solver = ImpactSolver::new(&input, place, force).expect("an impact");
+        let (mut position, mut force) = (0.15, specimen.move_to(0.15));
+        let mut solver = ImpactSolver::new(&input, position, force).expect("an impact");
         let began = force * force / (2.0 * stiffness);
         let (mut slope, mut late, mut reckoned, mut largest) = (stiffness, 0.0, 0.0, 0.0_f64);
         let mut time = 0.0;
@@ -341,11 +341,11 @@ fn the_tangent_form_errs_by_what_its_slope_is_late() {
             let target = solver.predict();
             let read = specimen.move_to(target);
             solver.complete(target, read);
-            let moved = target - place;
+            let moved = target - position;
             let erred = read - force - slope * moved;
             reckoned -= 0.5 * moved * (erred + late);
             slope = ((read - force) / moved).clamp(0.0, 10.0 * stiffness);
-            (place, force, late) = (target, read, erred);
+            (position, force, late) = (target, read, erred);
             let error = solver.state().energies.error;
             assert!(
                 (error - reckoned).abs() < 1e-9 * (1.0 + reckoned.abs()),

@@ -242,10 +242,10 @@ impl Frame {
             0.0, -shear, -couple, 0.0, shear, -couple,
             0.0, couple, 2.0 * turn, 0.0, -couple, 4.0 * turn,
         ]);
-        for (end, place) in [(0, 2), (1, 5)] {
+        for (end, direction) in [(0, 2), (1, 5)] {
             if self.hinged[index][end] {
-                let column = local.column(place).clone_owned();
-                let pivot = column[place];
+                let column = local.column(direction).clone_owned();
+                let pivot = column[direction];
                 if pivot.abs() > 1e-9 * turn {
                     local -= &column * column.transpose() / pivot;
                 }
@@ -257,7 +257,7 @@ impl Frame {
     /// Displacements (x, y, turn of each node) and moments of the sections under W at C and H at B.
     fn solve(&self, beam_load: f64, sway_load: f64) -> Option<(DVector<f64>, [f64; 5])> {
         let mut whole = DMatrix::<f64>::zeros(15, 15);
-        let places = |index: usize| {
+        let degrees_of = |index: usize| {
             let (near, far, level, _) = MEMBERS[index];
             // Local (along, across) in global (x, y): a beam (x, y), a column (y, −x).
             let of = |node: usize| {
@@ -272,9 +272,9 @@ impl Frame {
             [a, b, (3 * near + 2, 1.0), c, d, (3 * far + 2, 1.0)]
         };
         for index in 0..4 {
-            let (local, places) = (self.member(index), places(index));
-            for (row, (global_row, row_sign)) in places.iter().enumerate() {
-                for (column, (global_column, column_sign)) in places.iter().enumerate() {
+            let (local, degrees) = (self.member(index), degrees_of(index));
+            for (row, (global_row, row_sign)) in degrees.iter().enumerate() {
+                for (column, (global_column, column_sign)) in degrees.iter().enumerate() {
                     whole[(*global_row, *global_column)] +=
                         row_sign * column_sign * local[(row, column)];
                 }
@@ -298,11 +298,11 @@ impl Frame {
         let mut all = DVector::<f64>::zeros(15);
         free.iter()
             .enumerate()
-            .for_each(|(place, global)| all[*global] = found[place]);
+            .for_each(|(index, global)| all[*global] = found[index]);
         let moments = SECTIONS.map(|(member, end)| {
             let moved = DVector::from_iterator(
                 6,
-                places(member)
+                degrees_of(member)
                     .iter()
                     .map(|(global, sign)| sign * all[*global]),
             );

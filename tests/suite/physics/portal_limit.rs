@@ -8,7 +8,8 @@ const SPAN: f64 = 4.0;
 const HEIGHT: f64 = 3.0;
 
 fn portal(strong: Sections, masses: FrameMasses, loads: Loads) -> Portal {
-    Portal::of_sections(SPAN, HEIGHT, strong, Sections::same(1.6e6), loads).weighing(Some(masses))
+    Portal::of_sections(SPAN, HEIGHT, strong, Sections::same(1.6e6), loads)
+        .with_masses(Some(masses))
 }
 
 fn limit(portal: &Portal) -> f64 {
@@ -52,7 +53,7 @@ fn lumped_frames_follow_any_load() {
     };
     assert_eq!(mechanism_limit(&portal(strong, BARE, both)), None);
     assert_eq!(
-        mechanism_limit(&portal(strong, BARE, Loads::Beam).weighing(None)),
+        mechanism_limit(&portal(strong, BARE, Loads::Beam).with_masses(None)),
         None
     );
 }
@@ -100,9 +101,9 @@ fn worst(frame: &Portal, load: f64) -> f64 {
     // Force across the end of the member, minus the force carried there.
     let across = load / 2.0 - carried * length * acceleration;
     let mut worst: f64 = 0.0;
-    for place in 0..POINTS {
-        let here = at(place);
-        let beyond = (place + 1..POINTS)
+    for index in 0..POINTS {
+        let here = at(index);
+        let beyond = (index + 1..POINTS)
             .map(|point| per_length * step * at(point) * acceleration * (at(point) - here))
             .sum::<f64>();
         let moment = end - across * (length - here) + beyond;
@@ -114,7 +115,7 @@ fn worst(frame: &Portal, load: f64) -> f64 {
 /// Just below the limit no section is overloaded, just above it one is: for stout columns and for weak ones, with lumped masses and
 /// without.
 #[test]
-fn the_moments_along_the_members_say_the_same() {
+fn the_moments_along_the_members_agree() {
     let lumps = FrameMasses {
         per_length: Sections {
             beam: 9.0,

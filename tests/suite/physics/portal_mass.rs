@@ -22,7 +22,7 @@ struct Given {
 impl Given {
     fn portal(self) -> Portal {
         Portal::of_sections(SPAN, HEIGHT, STRONG, self.bending, self.loads)
-            .weighing(Some(self.masses))
+            .with_masses(Some(self.masses))
     }
 
     fn reduced(self) -> EquivalentMasses {
@@ -180,11 +180,11 @@ impl Mesh {
         // The feet are built in.
         for foot in [0, 4 * n] {
             for direction in 0..3 {
-                let place = 3 * foot + direction;
-                stiffness.fill_row(place, 0.0);
-                stiffness.fill_column(place, 0.0);
-                stiffness[(place, place)] = 1.0;
-                masses[place] = 0.0;
+                let index = 3 * foot + direction;
+                stiffness.fill_row(index, 0.0);
+                stiffness.fill_column(index, 0.0);
+                stiffness[(index, index)] = 1.0;
+                masses[index] = 0.0;
             }
         }
         Self {
@@ -207,8 +207,8 @@ impl Mesh {
     fn equivalent_mass(&self, given: Given) -> f64 {
         let load = self.load(given);
         let shape = self.stiffness.clone().lu().solve(&load).expect("it stands");
-        let way = load.dot(&shape);
-        self.energy(&shape) / (way * way)
+        let work = load.dot(&shape);
+        self.energy(&shape) / (work * work)
     }
 
     fn energy(&self, shape: &DVector<f64>) -> f64 {
@@ -239,13 +239,13 @@ impl Mesh {
 
     /// The symmetric (1) or antisymmetric (−1) part of a shape.
     fn of_kind(&self, kind: f64, shape: &DVector<f64>) -> DVector<f64> {
-        let mirrored = |place: usize| {
-            let (node, direction) = (4 * self.n - place / 3, place % 3);
+        let mirrored = |index: usize| {
+            let (node, direction) = (4 * self.n - index / 3, index % 3);
             let sign = if direction == 1 { kind } else { -kind };
             sign * shape[3 * node + direction]
         };
-        DVector::from_fn(shape.len(), |place, _| {
-            0.5 * (shape[place] + mirrored(place))
+        DVector::from_fn(shape.len(), |index, _| {
+            0.5 * (shape[index] + mirrored(index))
         })
     }
 }
@@ -257,16 +257,16 @@ fn the_elastic_mass_is_that_of_finite_elements_as_they_grow_small() {
     for given in givens() {
         let found = given.reduced().elastic;
         let errors = [4, 8, 16].map(|n| Mesh::of(given, n).equivalent_mass(given) / found - 1.0);
-        let told = format!("{:?}, EI {:?}: {errors:?}", given.loads, given.bending);
+        let case = format!("{:?}, EI {:?}: {errors:?}", given.loads, given.bending);
         assert!(
             errors
                 .windows(2)
                 .all(|pair| pair[0] / pair[1] > 3.8 || pair[1].abs() < 2e-7),
-            "{told}"
+            "{case}"
         );
         // Extrapolated without the errors of second and of fourth order (Romberg).
         let [coarse, fine] = [0, 1].map(|at| (4.0 * errors[at + 1] - errors[at]) / 3.0);
-        assert!(((16.0 * fine - coarse) / 15.0).abs() < 2e-6, "{told}");
+        assert!(((16.0 * fine - coarse) / 15.0).abs() < 2e-6, "{case}");
     }
 }
 
@@ -282,8 +282,8 @@ fn stiffness_over_elastic_mass_is_just_above_the_first_frequency() {
         let exact = (4.0 * fine - coarse) / 3.0;
         let above = given.portal().stiffness / given.reduced().elastic / exact - 1.0;
         let own_mode = matches!(given.loads, Loads::Beam) && !given.masses.per_length.are_same();
-        let told = format!("{:?}, EI {:?}: {above}", given.loads, given.bending);
-        assert!(above > -1e-5 && (own_mode || above < 0.05), "{told}");
+        let case = format!("{:?}, EI {:?}: {above}", given.loads, given.bending);
+        assert!(above > -1e-5 && (own_mode || above < 0.05), "{case}");
     }
 }
 

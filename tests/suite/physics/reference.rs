@@ -160,12 +160,12 @@ fn converged() {
 #[test]
 fn rigid_force_grows_as_the_step_shrinks() {
     for time_step in [1e-2, 1e-4, 1e-6] {
-        let blow = run(&impact(1.0, 327.65, ContactLaw::Rigid, time_step)).states[1];
+        let struck = run(&impact(1.0, 327.65, ContactLaw::Rigid, time_step)).states[1];
         let velocity = 5.0 / (6.0 + 0.25 * time_step * time_step * 327.65);
-        near("velocity", blow.velocity, velocity, 1e-14);
+        near("velocity", struck.velocity, velocity, 1e-14);
         near(
             "force",
-            blow.contact_force,
+            struck.contact_force,
             10.0 * (1.0 - velocity) / time_step,
             1e-12 / time_step,
         );

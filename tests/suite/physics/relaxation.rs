@@ -107,7 +107,7 @@ fn a_lagging_piston_is_followed_in_closed_form() {
         Ok(())
     };
     stopping.glide(&[path], 3, &mut take).expect("a path");
-    let by_steps = stepped(&|time| path.place(time), 0.6);
+    let by_steps = stepped(&|time| path.position(time), 0.6);
     assert!(
         (forces[2] - by_steps).abs() < 1e-3,
         "{} N, by steps {by_steps} N",
@@ -162,12 +162,13 @@ fn a_cycle_takes_the_energy_of_the_closed_form() {
         let whole = (15.0 * TAU / seconds).ceil().max(1.0);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some hundreds
         for half in 0..2 * whole as u32 {
-            let way = if half % 2 == 0 { -velocity } else { velocity };
+            let signed_velocity = if half % 2 == 0 { -velocity } else { velocity };
             energy = if half % 2 == 0 { 0.0 } else { energy };
             for _ in 0..parts {
                 let before = branch.force();
-                branch.follow(&Motion::even(way, seconds / f64::from(parts)));
-                energy += 0.5 * (before + branch.force()) * way * seconds / f64::from(parts);
+                branch.follow(&Motion::even(signed_velocity, seconds / f64::from(parts)));
+                energy +=
+                    0.5 * (before + branch.force()) * signed_velocity * seconds / f64::from(parts);
             }
         }
         let at_the_ends = K1 * velocity * TAU * (0.5 * seconds / TAU).tanh();
@@ -220,11 +221,11 @@ fn a_yielding_specimen_relaxes_by_what_it_reached_in_every_step() {
     ];
     let (mut time, mut from, mut before) = (0.0, 0.0, 0.0);
     let mut increments: Vec<(f64, f64, f64)> = Vec::new();
-    for (place, reached) in steps {
-        let took = f64::abs(place - from) / v;
+    for (position, reached) in steps {
+        let took = f64::abs(position - from) / v;
         time += took;
         increments.push((reached - before, time, took));
-        let felt = |now: f64| {
+        let expected_force = |now: f64| {
             let lost = |(force, ended, took): &(f64, f64, f64)| {
                 force
                     * RelaxationLaw::Logarithmic
@@ -233,22 +234,22 @@ fn a_yielding_specimen_relaxes_by_what_it_reached_in_every_step() {
             };
             reached - share * increments.iter().map(lost).sum::<f64>()
         };
-        let (_, force) = go(&mut rig, place, v);
+        let (_, force) = go(&mut rig, position, v);
         assert!(
-            (force - felt(time)).abs() < 1e-6,
+            (force - expected_force(time)).abs() < 1e-6,
             "{force} N is not {} N",
-            felt(time)
+            expected_force(time)
         );
         rig.pause(0.3 * pause).expect("a pause");
         rig.pause(0.7 * pause).expect("its rest");
         time += pause;
         let (_, force) = read(&mut rig);
         assert!(
-            (force - felt(time)).abs() < 1e-6,
+            (force - expected_force(time)).abs() < 1e-6,
             "after a pause {force} N is not {} N",
-            felt(time)
+            expected_force(time)
         );
-        (from, before) = (place, reached);
+        (from, before) = (position, reached);
     }
 }
 

@@ -153,14 +153,14 @@ fn table() -> impl Strategy<Value = Behaviour> {
     (side(), side(), unloading, 0.5..1.5_f64).prop_filter_map(
         "a table has a force",
         |(ahead, behind, unloading, last)| {
-            let rising = |side: Vec<(f64, f64)>, way: f64| {
+            let rising = |side: Vec<(f64, f64)>, direction: f64| {
                 let mut at = 0.0;
                 let mut points: Vec<[f64; 2]> = Vec::new();
                 for (step, force) in side {
                     at += step;
-                    points.push([way * at, way * force]);
+                    points.push([direction * at, direction * force]);
                 }
-                points.push([way * (at + 1.0), way * last]);
+                points.push([direction * (at + 1.0), direction * last]);
                 points
             };
             let mut points = rising(behind, -1.0);
@@ -197,12 +197,12 @@ fn turns() -> impl Strategy<Value = Vec<f64>> {
 /// Apparent release of energy, by trapezia: displacement \[m\], energy \[J\], energy exchanged \[J\].
 fn given_back(behaviour: &Behaviour, turns: &[f64], pieces: u32) -> Option<[f64; 3]> {
     let mut model = SpecimenModel::new(behaviour);
-    let (mut place, mut force, mut energy, mut scale) = (0.0, model.move_to(0.0), 0.0, 0.0);
+    let (mut position, mut force, mut energy, mut scale) = (0.0, model.move_to(0.0), 0.0, 0.0);
     displacements(turns, pieces).into_iter().find_map(|to| {
         let next = model.move_to(to);
-        energy += 0.5 * (force + next) * (to - place);
-        scale += (0.5 * (force + next) * (to - place)).abs();
-        (place, force) = (to, next);
+        energy += 0.5 * (force + next) * (to - position);
+        scale += (0.5 * (force + next) * (to - position)).abs();
+        (position, force) = (to, next);
         (energy < -2e-3 * scale - 1e-12).then_some([to, energy, scale])
     })
 }
@@ -234,10 +234,10 @@ proptest! {
         prop_assert!(model.initial_stiffness() > 0.0);
         prop_assert!((model.initial_stiffness() / behaviour.initial_stiffness() - 1.0).abs() < 1e-12);
         prop_assert!(model.move_to(0.0).abs() < 1e-12);
-        for place in turns {
-            let force = model.move_to(place);
+        for position in turns {
+            let force = model.move_to(position);
             prop_assert!(force.is_finite());
-            prop_assert!(force.abs() <= bound, "{force} N at {place} m, it carries {bound} N");
+            prop_assert!(force.abs() <= bound, "{force} N at {position} m, it carries {bound} N");
         }
     }
 
@@ -246,14 +246,14 @@ proptest! {
     #[test]
     fn no_slope_is_beyond_the_largest(behaviour in any(), turns in turns()) {
         let mut model = SpecimenModel::new(&behaviour);
-        let (mut place, mut force) = (0.0, model.move_to(0.0));
+        let (mut position, mut force) = (0.0, model.move_to(0.0));
         let bound = behaviour.largest_stiffness();
         prop_assert!(bound >= behaviour.initial_stiffness() * (1.0 - 1e-12));
         for to in displacements(&turns, 40) {
             let next = model.move_to(to);
-            let most = bound * (to - place).abs() * (1.0 + 1e-6) + 1e-7;
-            prop_assert!((next - force) * (to - place).signum() <= most, "{} at {to}, at most {bound}", (next - force) / (to - place));
-            (place, force) = (to, next);
+            let most = bound * (to - position).abs() * (1.0 + 1e-6) + 1e-7;
+            prop_assert!((next - force) * (to - position).signum() <= most, "{} at {to}, at most {bound}", (next - force) / (to - position));
+            (position, force) = (to, next);
         }
     }
 
@@ -273,12 +273,12 @@ proptest! {
     #[test]
     fn large_moves_end_where_small_ones_do(behaviour in any(), turns in turns()) {
         let (mut large, mut small) = (SpecimenModel::new(&behaviour), SpecimenModel::new(&behaviour));
-        let mut small_places = displacements(&turns, 37).into_iter();
+        let mut small_displacements = displacements(&turns, 37).into_iter();
         for to in &turns {
             let by_large = large.move_to(*to);
             let mut by_small = 0.0;
-            for place in small_places.by_ref().take(37) {
-                by_small = small.move_to(place);
+            for position in small_displacements.by_ref().take(37) {
+                by_small = small.move_to(position);
             }
             prop_assert!((by_large - by_small).abs() < 1e-6, "{by_large} N is not {by_small} N at {to} m");
         }
@@ -289,8 +289,8 @@ proptest! {
     #[test]
     fn a_scaled_behaviour_is_the_same_times_a_factor(behaviour in any(), turns in turns(), factor in 0.5..2.0_f64) {
         let (mut model, mut scaled) = (SpecimenModel::new(&behaviour), SpecimenModel::new(&behaviour.scaled(factor)));
-        for place in turns {
-            let (force, times) = (model.move_to(place), scaled.move_to(place));
+        for position in turns {
+            let (force, times) = (model.move_to(position), scaled.move_to(position));
             prop_assert!((times - factor * force).abs() < 1e-8 * (1.0 + force.abs()), "{times} N is not {factor} × {force} N");
         }
     }
@@ -299,7 +299,7 @@ proptest! {
 /// Two parts in series that yield at one force can share a displacement in many combinations. A large move selects the one of small
 /// moves. Examples: at zero force, a table between its toes and a spring that has pinched; at the yield force, two equal parts.
 #[test]
-fn parts_that_give_way_at_one_force_share_a_large_move_as_small_ones() {
+fn parts_that_yield_at_one_force_share_a_large_move_as_small_ones() {
     let toes = vec![
         [-1.1, -0.5],
         [-0.1, -0.0],
@@ -342,12 +342,12 @@ fn parts_that_give_way_at_one_force_share_a_large_move_as_small_ones() {
                 SpecimenModel::new(&behaviour),
                 SpecimenModel::new(&behaviour),
             );
-            let mut small_places = displacements(&turns, 37).into_iter();
+            let mut small_displacements = displacements(&turns, 37).into_iter();
             for to in turns {
-                let by_small = small_places
+                let by_small = small_displacements
                     .by_ref()
                     .take(37)
-                    .map(|place| small.move_to(place))
+                    .map(|position| small.move_to(position))
                     .last()
                     .unwrap();
                 let by_large = large.move_to(to);

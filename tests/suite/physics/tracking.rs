@@ -13,7 +13,7 @@ const CYCLES: u32 = 10;
 const STEPS_A_CYCLE: u32 = 50;
 
 /// Position of an actuator after the command `target`, from the last target and position \[m\].
-type Actuator = fn(target: f64, last_target: f64, last_place: f64) -> f64;
+type Actuator = fn(target: f64, last_target: f64, last_position: f64) -> f64;
 
 /// Ten per cent short of its increment, measured from the last target.
 const SHORT: Actuator = |target, last, _| last + 0.9 * (target - last);
@@ -21,8 +21,8 @@ const BEYOND: Actuator = |target, last, _| last + 1.1 * (target - last);
 /// Short by 2 % of the first amplitude, against the motion.
 const BEHIND: Actuator = |target, last, _| target - 0.02 * (target - last).signum();
 /// An actuator that starts from its present position.
-const SHORT_FROM_PLACE: Actuator = |target, _, place| place + 0.9 * (target - place);
-const BEYOND_FROM_PLACE: Actuator = |target, _, place| place + 1.1 * (target - place);
+const SHORT_OF_THE_MOVE: Actuator = |target, _, position| position + 0.9 * (target - position);
+const BEYOND_THE_MOVE: Actuator = |target, _, position| position + 1.1 * (target - position);
 
 /// Largest |d| over the last of ten cycles, including its start, from 1 m at rest; and the final values of the monitor.
 fn amplitude(integrator: Integrator, i_modification: bool, actuator: Actuator) -> (f64, Tracking) {
@@ -39,13 +39,13 @@ fn amplitude(integrator: Integrator, i_modification: bool, actuator: Actuator) -
         effective_force: stiffness * measured,
     };
     let mut monitor = Monitor::new(&reached(1.0, 1.0));
-    let (mut last_target, mut place, mut largest) = (1.0, 1.0, 0.0_f64);
+    let (mut last_target, mut position, mut largest) = (1.0, 1.0, 0.0_f64);
     for step in 1..=CYCLES * STEPS_A_CYCLE {
         let target = solver.predict();
-        place = actuator(target, last_target, place);
+        position = actuator(target, last_target, position);
         last_target = target;
-        let displacement = solver.complete(place, stiffness * place).displacement;
-        monitor.take(&reached(target, place));
+        let displacement = solver.complete(position, stiffness * position).displacement;
+        monitor.take(&reached(target, position));
         if step >= (CYCLES - 1) * STEPS_A_CYCLE {
             largest = largest.max(displacement.abs());
         }
@@ -63,8 +63,8 @@ fn ten_cycles_of_tracking_error_grow_or_shrink_as_printed() {
         (SPLITTING, false, BEYOND, 0.7005, 5e-5),
         (SPLITTING, false, BEHIND, 1.7856, 5e-5),
         (SPLITTING, true, BEHIND, 0.9989, 5e-5),
-        (Integrator::Explicit, false, SHORT_FROM_PLACE, 1.549, 1e-3),
-        (Integrator::Explicit, false, BEYOND_FROM_PLACE, 0.723, 1e-3),
+        (Integrator::Explicit, false, SHORT_OF_THE_MOVE, 1.549, 1e-3),
+        (Integrator::Explicit, false, BEYOND_THE_MOVE, 0.723, 1e-3),
     ];
     for (integrator, corrected, actuator, printed, digits) in cases {
         let (found, _) = amplitude(integrator, corrected, actuator);

@@ -130,7 +130,7 @@ fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
     let played = PlayedBack::of(read, Some(&file), &prediction).map_err(Failure::command_line)?;
 
     let beside = beside(run, wanted.kind);
-    let place = RunFolder::create(Some(wanted.out.unwrap_or(&beside)), run)?;
+    let created = RunFolder::create(Some(wanted.out.unwrap_or(&beside)), run)?;
     let kept = OutputFile {
         path: JOURNAL.to_owned(),
         bytes: journal.to_vec(),
@@ -141,13 +141,13 @@ fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
     };
     [&kept, &own]
         .into_iter()
-        .try_for_each(|file| write_new(place.path(), file))?;
-    let made = Folder::read(place.path())?;
+        .try_for_each(|file| write_new(created.path(), file))?;
+    let made = Folder::read(created.path())?;
     let beside: Vec<(String, String)> = made
         .listed()
         .map(|(name, held)| (name.clone(), held.digest.clone()))
         .collect();
-    finish_replayed(place.path(), &played, &beside, settings)?;
+    finish_replayed(created.path(), &played, &beside, settings)?;
     let does = match wanted.kind {
         OneKind::Issue => "issues",
         OneKind::Amendment => "replaces",
@@ -157,7 +157,7 @@ fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
         played.provenance.report_id(),
         report.id
     ));
-    print_result(&format!("{}\n", place.path().display()))?;
+    print_result(&format!("{}\n", created.path().display()))?;
     // The exit does not depend on the verdict of the run.
     Ok(Exit::Met)
 }
@@ -167,11 +167,11 @@ fn refuse_rival(run: &Path, report: &str, manifest_sha256: &str) -> Result<(), F
     let run = run
         .canonicalize()
         .map_err(|error| Failure::file(run, plain(&error)))?;
-    let Some(shelf) = run.parent() else {
+    let Some(parent) = run.parent() else {
         return Ok(());
     };
-    let failed = |error: std::io::Error| Failure::file(shelf, plain(&error));
-    for entry in std::fs::read_dir(shelf).map_err(failed)? {
+    let failed = |error: std::io::Error| Failure::file(parent, plain(&error));
+    for entry in std::fs::read_dir(parent).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
         // A file that is not an issue is ignored.
         let Ok(bytes) = std::fs::read(path.join(ISSUE)) else {

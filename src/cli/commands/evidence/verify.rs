@@ -44,7 +44,7 @@ pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, F
             text,
             "  {:<11}  {word}  {}",
             finding.part,
-            one_line(&finding.told)
+            one_line(&finding.statement)
         );
     }
     print_result(&text)?;
@@ -60,7 +60,7 @@ pub fn refuse_unproven(run: &Path, findings: &[Finding]) -> Result<(), Failure> 
     match findings.iter().find(|finding| !finding.sound) {
         Some(finding) => Err(Failure::file(
             run,
-            format!("does not verify: {}: {}", finding.part, finding.told),
+            format!("does not verify: {}: {}", finding.part, finding.statement),
         )
         .help("see `psd verify`")),
         None => Ok(()),

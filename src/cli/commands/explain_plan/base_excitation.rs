@@ -55,8 +55,8 @@ pub fn shapes(modes: Option<&Modes>) -> Vec<Vec<String>> {
             clippy::cast_sign_loss,
             reason = "an entry is between −1 and 1"
         )]
-        let place = (REACH * (1.0 + entry.clamp(-1.0, 1.0))).round() as usize;
-        letters[place] = '●';
+        let column = (REACH * (1.0 + entry.clamp(-1.0, 1.0))).round() as usize;
+        letters[column] = '●';
         letters.iter().collect::<String>()
     };
     let head = shown
@@ -172,7 +172,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shapes_stand_on_the_ground_with_their_largest_entry_at_an_end() {
+    fn shapes_are_zero_at_the_ground_with_their_largest_entry_at_an_end() {
         let shapes = vec![vec![0.5, 1.0], vec![1.0, -0.7]];
         let rows = super::shapes(Some(&Modes {
             periods: vec![0.5, 0.2],

@@ -155,19 +155,19 @@ impl<'a> DryRun<'a> {
             .zip(&self.plan.procedures)
             .enumerate()
         {
-            if let (History::Impact(history), ProcedureKind::Impact(blow)) =
+            if let (History::Impact(history), ProcedureKind::Impact(parameters)) =
                 (&procedure.history, &planned.kind)
                 && history.frame.is_none()
                 && !history.steps.is_empty()
             {
-                let predicted = tracking::rows(self.plan, blow, procedure, history);
+                let predicted = tracking::rows(self.plan, parameters, procedure, history);
                 let energy = tracking::energy(lagging.as_ref(), index);
                 section(
                     &format!("{}, impact", procedure.name),
                     [impact::rows(history), predicted, energy].concat(),
                 );
             }
-            if let (History::Impact(history), ProcedureKind::Impact(blow)) =
+            if let (History::Impact(history), ProcedureKind::Impact(parameters)) =
                 (&procedure.history, &planned.kind)
                 && let Some(frame) = history
                     .frame
@@ -181,7 +181,8 @@ impl<'a> DryRun<'a> {
                     base_excitation::shapes(frame.modes.as_ref()),
                 );
                 let heading = format!("{}, impact on storey {}", procedure.name, frame.struck + 1);
-                let predicted = tracking::storey_rows(self.plan, blow, history.time_step, frame);
+                let predicted =
+                    tracking::storey_rows(self.plan, parameters, history.time_step, frame);
                 let energy = tracking::energy(lagging.as_ref(), index);
                 section(
                     &heading,

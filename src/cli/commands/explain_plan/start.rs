@@ -13,15 +13,15 @@ pub fn rows(plan: &Plan) -> Vec<Vec<String>> {
     };
     let axes = 0..plan.rig.axes().unwrap_or(1);
     let each = |of: &dyn Fn(usize) -> f64| {
-        let mut told: Vec<String> = axes
+        let mut datums: Vec<String> = axes
             .clone()
             .map(|axis| stated(of(axis), Dimension::LENGTH))
             .collect();
-        told.dedup();
-        told.join(", ")
+        datums.dedup();
+        datums.join(", ")
     };
     let band = each(&|axis| start::band(plan, link, axis));
-    let (zero, stands) = match link.datum {
+    let (zero, position) = match link.datum {
         Datum::Machine => (
             "the rig's own zero",
             format!(
@@ -38,7 +38,7 @@ pub fn rows(plan: &Plan) -> Vec<Vec<String>> {
     let row = |name: &str, text: String| vec![name.to_owned(), text];
     vec![
         row("zero of the displacements", zero.to_owned()),
-        row("required position of the rig", stands),
+        row("required position of the rig", position),
         row(
             "first move",
             format!("MOVES {probe} at {speed}, and back (pre-test check)"),
@@ -60,7 +60,7 @@ mod tests {
     }
 
     /// The rows of a real rig with this line in its block.
-    fn told(line: &str) -> String {
+    fn start_text(line: &str) -> String {
         let text = format!(
             "specimen beam {{
               mass      = 1 kg
@@ -97,8 +97,8 @@ mod tests {
     }
 
     #[test]
-    fn it_is_told_where_the_rig_must_stand_and_what_moves_first() {
-        let machine = told("");
+    fn the_required_start_position_and_the_first_motion_are_reported() {
+        let machine = start_text("");
         assert!(
             machine.contains("within 5 µm of the rig's own zero; otherwise the run is refused"),
             "{machine}"
@@ -107,8 +107,8 @@ mod tests {
             machine.contains("first move: MOVES 20 µm at 1 mm/s, and back"),
             "{machine}"
         );
-        assert_eq!(told("datum = machine"), machine);
-        let here = told("datum = here");
+        assert_eq!(start_text("datum = machine"), machine);
+        let here = start_text("datum = here");
         assert!(
             here.contains("the position of the rig at the start of the run")
                 && here.contains("without load"),

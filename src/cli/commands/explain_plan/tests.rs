@@ -103,7 +103,7 @@ fn a_specimen_without_behaviour_is_not_run_dry() {
 }
 
 #[test]
-fn a_limit_that_would_stop_the_run_is_said() {
+fn a_limit_that_would_stop_the_run_is_reported() {
     let plan = example(0.1);
     let dry = DryRun::of(&plan);
     assert!(

@@ -144,7 +144,7 @@ fn frame_rows<S: Floors>(
     let amplitude = steps
         .iter()
         .flat_map(S::computed)
-        .map(|place| place.abs())
+        .map(|displacement| displacement.abs())
         .fold(0.0, f64::max);
     let Some(modes) = modes.filter(|_| (late != 0.0 || unsettled != 0.0) && amplitude > 0.0) else {
         return Vec::new();
@@ -270,12 +270,12 @@ mod tests {
     /// 4δ per cycle. The difference from the bound decreases with the step.
     #[test]
     fn a_band_against_the_motion_is_the_most_it_can_be() {
-        let told = Growth {
+        let factor = Growth {
             a_cycle: 0.0,
             relative: 0.02,
         }
         .over(10.0);
-        assert!(told > 1.7856 && told < 1.01 * 1.7856, "{told}");
+        assert!(factor > 1.7856 && factor < 1.01 * 1.7856, "{factor}");
         let growing = Growth {
             a_cycle: 0.05,
             relative: 0.02,

@@ -18,10 +18,10 @@ pub fn rows(plan: &Plan, record: &Record) -> Vec<Vec<String>> {
         over,
         after,
     } = found.check;
-    let over_told = stated(over, Dimension::TIME);
+    let duration = stated(over, Dimension::TIME);
     let row = |name: &str, text: String| vec![name.to_owned(), text];
-    let also = displacement.map_or_else(String::new, |place| {
-        format!(", {} of displacement", stated(place, Dimension::LENGTH))
+    let also = displacement.map_or_else(String::new, |change| {
+        format!(", {} of displacement", stated(change, Dimension::LENGTH))
     });
     let mut rows = vec![row(
         "allowed",
@@ -29,16 +29,16 @@ pub fn rows(plan: &Plan, record: &Record) -> Vec<Vec<String>> {
     )];
     rows.push(row(
         "before the test",
-        format!("read over {over_told} at rest, before any load"),
+        format!("read over {duration} at rest, before any load"),
     ));
     let holds = match found.held.count {
-        0 => format!("none lasts {over_told}: no drift is visible between the zeros"),
+        0 => format!("none lasts {duration}: no drift is visible between the zeros"),
         1 => format!(
-            "one lasts {over_told} or more: {}",
+            "one lasts {duration} or more: {}",
             readable(found.held.longest, Dimension::TIME)
         ),
         count => format!(
-            "{count} last {over_told} or more, the longest {}",
+            "{count} last {duration} or more, the longest {}",
             readable(found.held.longest, Dimension::TIME)
         ),
     };
@@ -51,10 +51,10 @@ pub fn rows(plan: &Plan, record: &Record) -> Vec<Vec<String>> {
         )
     });
     let read = match after {
-        ZeroAfter::Start => format!("back at its start position, read over {over_told}{later}"),
+        ZeroAfter::Start => format!("back at its start position, read over {duration}{later}"),
         ZeroAfter::Free => {
             format!(
-                "the operator removes the specimen from the load cell; read over {over_told}{later}"
+                "the operator removes the specimen from the load cell; read over {duration}{later}"
             )
         }
         ZeroAfter::Nowhere => "not read again: only rest and dwells are assessed".to_owned(),
@@ -74,13 +74,13 @@ pub fn rows(plan: &Plan, record: &Record) -> Vec<Vec<String>> {
         .filter(|drift| *drift != 0.0)
     {
         let comes_to = (drift * judged).abs();
-        let told = if comes_to <= force {
+        let conclusion = if comes_to <= force {
             "within"
         } else {
             "EXCEEDS the limit: every requirement that reads the force is inconclusive"
         };
         let text = format!(
-            "{}/s results in {}: {told}",
+            "{}/s results in {}: {conclusion}",
             readable(drift, Dimension::FORCE),
             readable(comes_to, Dimension::FORCE)
         );
@@ -137,7 +137,7 @@ mod tests {
     }
 
     /// Ten dwells of 5 s, and 8 s of zero readings.
-    fn told(declared: &str, check_of: &str) -> String {
+    fn zero_drift_text(declared: &str, check_of: &str) -> String {
         let text = format!(
             "specimen beam {{\n  mass = 1 kg\n  behaviour = elastic(stiffness: 300 kN/m)\n}}\nrig r {{\n  link = virtual({declared})\n{check_of}}}\n\
              stiffness ramp k0 {{\n  displacements = 0.1 mm .. 1 mm step 0.1 mm\n  pause = 5 s\n}}\nrequire \"stiff\" k0.stiffness > 1 kN/m\n"
@@ -155,7 +155,7 @@ mod tests {
 
     #[test]
     fn what_is_declared_is_held_against_the_time_between_the_zeros() {
-        let within = told(
+        let within = zero_drift_text(
             "zero_drift: 0.02 N/s",
             "  zero_drift = within(5 N, 10 um, over: 4 s)\n",
         );
@@ -175,12 +175,12 @@ mod tests {
             within.contains("results in 1.") && within.contains(": within\n"),
             "0.02 N/s over almost a minute: {within}"
         );
-        let beyond = told(
+        let beyond = zero_drift_text(
             "zero_drift: 0.2 N/s",
             "  zero_drift = within(5 N, over: 4 s)\n",
         );
         assert!(beyond.contains("EXCEEDS the limit"), "{beyond}");
-        let nowhere = told(
+        let nowhere = zero_drift_text(
             "zero_drift: -0.2 N/s",
             "  zero_drift = within(5 N, over: 4 s, after: nowhere)\n",
         );
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rig_that_does_not_say_is_not_told_of() {
-        assert_eq!(told("zero_drift: 0.2 N/s", ""), "");
+    fn a_rig_that_does_not_report_it_is_not_listed() {
+        assert_eq!(zero_drift_text("zero_drift: 0.2 N/s", ""), "");
     }
 }

@@ -64,9 +64,9 @@ fn with_rig(
     match &plan.rig.link {
         Link::Virtual(_) => command(virtual_rig(plan).as_mut(), plan, &stop_request),
         Link::Real(_) => {
-            let place = |fault: &str| plan_file::place_of_link(&checked, path, fault);
+            let location = |fault: &str| plan_file::location_of_link(&checked, path, fault);
             let connected = connect(&plan.rig, &plan.limits, &stop_request).map_err(Failure::Rig);
-            let mut connected = connected.map_err(|failure| failure.in_the_plan(place))?;
+            let mut connected = connected.map_err(|failure| failure.in_the_plan(location))?;
             command(&mut connected.rig, plan, &stop_request)
         }
     }

@@ -39,8 +39,8 @@ pub fn probe(rig: &mut dyn Rig, plan: &Plan) -> Result<Exit, Failure> {
             .is_some_and(|link| link.datum != Datum::Machine)
     });
     print_result(&report(&identity, &axes, plan, datum.as_deref()))?;
-    let inside = |(place, axis): (usize, &Axis)| {
-        let limits = plan.rig.limits_of(place, &plan.limits);
+    let inside = |(axis_index, axis): (usize, &Axis)| {
+        let limits = plan.rig.limits_of(axis_index, &plan.limits);
         limits.displacement.contains(axis.displacement.mean)
             && limits.force.contains(axis.force.mean)
     };
@@ -104,7 +104,7 @@ impl Channel {
             * values
                 .iter()
                 .fold(0.0, |largest: f64, value| largest.max(value.abs()));
-        let told = |value: f64, over: f64| {
+        let above_rounding = |value: f64, over: f64| {
             if value.abs() * over > dust {
                 value
             } else {
@@ -113,16 +113,16 @@ impl Channel {
         };
         Self {
             mean,
-            noise: told(noise, 1.0),
-            drift: told(drift, lasted),
-            drift_error: told(drift_error, lasted),
+            noise: above_rounding(noise, 1.0),
+            drift: above_rounding(drift, lasted),
+            drift_error: above_rounding(drift_error, lasted),
         }
     }
 }
 
 impl Channel {
     /// Ten readings justify two digits.
-    fn noise_told(&self, dimension: Dimension) -> String {
+    fn noise_text(&self, dimension: Dimension) -> String {
         if self.noise > 0.0 {
             format!("noise {}", plain(self.noise, dimension, 2))
         } else {
@@ -131,7 +131,7 @@ impl Channel {
     }
 
     /// A zero drift within the noise is reported as an upper bound only.
-    fn drift_told(&self, rate: Dimension) -> String {
+    fn drift_text(&self, rate: Dimension) -> String {
         let per_second = if rate == Dimension::VELOCITY {
             ""
         } else {
@@ -153,10 +153,10 @@ impl Channel {
 
 /// Values that are too small or missing in the rig block, ready to be copied into it.
 fn advice(axes: &[Axis], plan: &Plan) -> Option<String> {
-    let said = plan.rig.link.as_real()?.readings.noise;
+    let stated = plan.rig.link.as_real()?.readings.noise;
     let noise = axes.iter().map(|axis| axis.force.noise).fold(0.0, f64::max);
     // Ten readings give the noise to about a quarter of its value.
-    let more = noise > 1.5 * said;
+    let more = noise > 1.5 * stated;
     more.then(|| {
         format!(
             "  the declared noise is too low: write noise = {}\n",
@@ -184,15 +184,15 @@ fn report(identity: &Identity, axes: &[Axis], plan: &Plan, datum: Option<&[f64]>
             let _ = writeln!(text, "  {what:<14}{}", escape(word));
         }
     }
-    if let Some(places) = datum {
-        let places: Vec<String> = places
+    if let Some(positions) = datum {
+        let positions: Vec<String> = positions
             .iter()
-            .map(|place| plain(*place, Dimension::LENGTH, 6))
+            .map(|position| plain(*position, Dimension::LENGTH, 6))
             .collect();
         let _ = writeln!(
             text,
             "  at {} in its own coordinate: a run would start there, at 0",
-            places.join(", ")
+            positions.join(", ")
         );
     }
     for (number, axis) in (1..).zip(axes) {
@@ -231,7 +231,7 @@ fn channel(
     limit: Interval,
 ) {
     let mean = channel.mean;
-    let (noise, drift) = (channel.noise_told(dimension), channel.drift_told(rate));
+    let (noise, drift) = (channel.noise_text(dimension), channel.drift_text(rate));
     let _ = writeln!(
         text,
         "  {name:<14}{:<11} {noise:<15} {drift}",
@@ -262,7 +262,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn drift_is_not_taken_for_noise() {
+    fn drift_is_not_counted_as_noise() {
         let times: Vec<f64> = (0..10).map(|index| f64::from(index) * 0.1).collect();
         let drifting: Vec<f64> = times.iter().map(|time| 5.0 + 2.0 * time).collect();
         let channel = Channel::of(&times, &drifting);
@@ -271,18 +271,18 @@ mod tests {
                 && channel.noise < 1e-9
                 && (channel.mean - 5.9).abs() < 1e-9
         );
-        assert_eq!(channel.drift_told(Dimension::FORCE), "drift 2 N/s");
+        assert_eq!(channel.drift_text(Dimension::FORCE), "drift 2 N/s");
         // Alternating ±1: scatter of about 1 about its line, with two parameters fitted to ten readings.
         let noisy: Vec<f64> = (0..10)
             .map(|index| if index % 2 == 0 { 1.0 } else { -1.0 })
             .collect();
         let channel = Channel::of(&times, &noisy);
         assert!((1.0..1.2).contains(&channel.noise), "{}", channel.noise);
-        assert_eq!(channel.noise_told(Dimension::FORCE), "noise 1.1 N");
-        let told = channel.drift_told(Dimension::FORCE);
+        assert_eq!(channel.noise_text(Dimension::FORCE), "noise 1.1 N");
+        let drift_text = channel.drift_text(Dimension::FORCE);
         assert!(
-            told.starts_with("drift below "),
-            "noise is not taken for drift: {told}"
+            drift_text.starts_with("drift below "),
+            "noise is not taken for drift: {drift_text}"
         );
         for alike in [0.1, 1.249_871e-3, -812.344] {
             let still = Channel::of(&times, &[alike; 10]);
@@ -295,15 +295,15 @@ mod tests {
         let still = Channel::of(&times, &[0.25; 10]);
         assert_eq!(
             (
-                still.noise_told(Dimension::FORCE),
-                still.drift_told(Dimension::FORCE)
+                still.noise_text(Dimension::FORCE),
+                still.drift_text(Dimension::FORCE)
             ),
             ("no noise".into(), "no drift".into())
         );
     }
 
     #[test]
-    fn columns_stand_apart_however_long_their_words() {
+    fn columns_are_separate_however_long_their_words() {
         let mut text = String::new();
         let still = Channel {
             mean: -12_345.678,

@@ -82,7 +82,7 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
             let mut opened = real_rig::open_for_client(plan, &attendance, settings, &stop_request)
                 .map_err(|failure| {
                     failure.in_the_plan(|fault| {
-                        plan_file::place_of_link(&checked, &arguments.plan, fault)
+                        plan_file::location_of_link(&checked, &arguments.plan, fault)
                     })
                 })?;
             let circumstances = real_rig::circumstances(plan, &attendance);
@@ -170,7 +170,7 @@ struct Served {
     exit: Exit,
     /// Whether the listener and standard output had no error.
     door: std::io::Result<()>,
-    told: Result<(), Failure>,
+    printed: Result<(), Failure>,
 }
 
 impl Served {
@@ -182,7 +182,7 @@ impl Served {
             steps,
             mut exit,
             door,
-            told,
+            printed,
         } = self;
         let drift = recorded.record.drift.as_ref();
         let kept = Folder::digests(folder.path())?.kept();
@@ -202,7 +202,7 @@ impl Served {
         }
         print_message(&format!("  {}\n", folder.path().display()));
         door.map_err(|error| listening(arguments, &error))?;
-        told?;
+        printed?;
         if let Some(fault) = &recorded.fault {
             print_message(&format!(
                 "  the run log could not be written to its end: {fault}\n"
@@ -248,7 +248,7 @@ fn on_record(
     );
     let journal = record_file::begin(folder.path(), plan, &header)?;
     let mut exit = Exit::Met;
-    let mut told = Ok(());
+    let mut printed = Ok(());
     let mut served = Ok(());
     let (recorded, steps) = replay::record_driven(
         plan,
@@ -261,17 +261,17 @@ fn on_record(
                 print_message(&open_door(door.address, *settings));
             }
             // The program that started this one waits for the line.
-            told = print_result(&format!(
+            printed = print_result(&format!(
                 "ready: {} on {}\n",
                 arguments.protocol.name(),
                 door.address
             ));
-            let mut tell_event = |event: Event<'_>| match event {
+            let mut print_event = |event: Event<'_>| match event {
                 Event::Connected(client) => print_message(&format!("  {client} is connected\n")),
                 Event::Ended(session) => {
                     exit = exit.max(exit_of(session));
                     let given = print_result(&summary(session));
-                    told = std::mem::replace(&mut told, Ok(())).and(given);
+                    printed = std::mem::replace(&mut printed, Ok(())).and(given);
                 }
             };
             served = remote::serve(
@@ -280,7 +280,7 @@ fn on_record(
                 specimen,
                 arguments.once,
                 stop_request,
-                &mut tell_event,
+                &mut print_event,
             );
         },
     );
@@ -291,7 +291,7 @@ fn on_record(
         steps,
         exit,
         door: served,
-        told,
+        printed,
     })
 }
 
@@ -448,7 +448,7 @@ mod tests {
     }
 
     #[test]
-    fn a_session_ends_as_the_reference_says() {
+    fn a_session_ends_as_the_reference_specifies() {
         let session = |ended, refused| Session {
             ended,
             driven: Driven {
@@ -471,12 +471,12 @@ mod tests {
             displacement: 0.008_165_08,
             force: 2449.5,
         };
-        let said = summary(&Session {
+        let text = summary(&Session {
             ended: Ended::Closed,
             driven,
         });
         assert_eq!(
-            said,
+            text,
             "session: closed by the client\ntargets: 200, 1 refused by a limit\nlargest |x|: 8.165 mm\nlargest |F|: 2.450 kN\n"
         );
     }

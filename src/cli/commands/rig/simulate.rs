@@ -12,7 +12,7 @@ use crate::cli::files::plan_file;
 use crate::cli::output::print_message;
 use crate::cli::settings::Settings;
 use crate::emulator::lines::real_time::{Carrier, Until, serve};
-use crate::emulator::{Log, PseudoTerminal, Script, Stand, TcpLine, of_plan};
+use crate::emulator::{Log, PseudoTerminal, RigEmulator, Script, TcpLine, of_plan};
 use crate::plan::{DeviceLink, Plan, PortPlan, RealLink};
 use crate::text::diagnostic::excerpt::escape;
 
@@ -42,7 +42,7 @@ pub fn simulate(arguments: &SimulateArguments, settings: Settings) -> Result<Exi
         .log
         .as_deref()
         .map_or_else(|| Ok(Log::none()), log)?;
-    let mut stand = of_plan(plan, &script, log, arguments.seed, Some(power_up()))
+    let mut emulator = of_plan(plan, &script, log, arguments.seed, Some(power_up()))
         .map_err(|error| unfit(error.to_string()))?;
 
     for (name, device) in devices(plan) {
@@ -58,10 +58,10 @@ pub fn simulate(arguments: &SimulateArguments, settings: Settings) -> Result<Exi
         last_host_left: arguments.once,
         stopped: &|| stopped.load(Ordering::Relaxed),
     };
-    let served = serve(&mut stand, &mut carriers, until);
+    let served = serve(&mut emulator, &mut carriers, until);
     // The links are removed before anything else can fail.
     drop(carriers);
-    end(&mut stand, arguments.log.as_deref(), served)
+    end(&mut emulator, arguments.log.as_deref(), served)
 }
 
 /// The devices of the plan's rig, each with its line.
@@ -126,12 +126,12 @@ fn power_up() -> u16 {
 
 /// Prints the result.
 fn end(
-    stand: &mut Stand,
+    emulator: &mut RigEmulator,
     log: Option<&Path>,
     served: std::io::Result<()>,
 ) -> Result<Exit, Failure> {
-    let sound = stand.end();
-    let (moves, violations) = (stand.bench().moves().len(), stand.bench().violations());
+    let sound = emulator.end();
+    let (moves, violations) = (emulator.rig().moves().len(), emulator.rig().violations());
     print_message(&format!(
         "  {moves} moves, {} targets outside the limits\n",
         violations.len()
@@ -139,7 +139,7 @@ fn end(
     for target in violations.iter().take(20) {
         print_message(&format!("  outside: {} mm\n", target * 1e3));
     }
-    if let Some(error) = stand.log_failure() {
+    if let Some(error) = emulator.log_failure() {
         return Err(Failure::file(
             log.map_or_else(PathBuf::new, Path::to_owned),
             error.to_string(),

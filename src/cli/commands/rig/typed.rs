@@ -65,13 +65,13 @@ mod tests {
 
     #[test]
     fn a_position_is_a_number_with_a_unit() {
-        let place = |text| number(text, Dimension::LENGTH, "--to", "1 mm").ok();
-        assert_eq!(place("1 mm"), Some(1e-3));
-        assert_eq!(place(" -2.5e1  um "), Some(-2.5e1 * 1e-6));
+        let length = |text| number(text, Dimension::LENGTH, "--to", "1 mm").ok();
+        assert_eq!(length("1 mm"), Some(1e-3));
+        assert_eq!(length(" -2.5e1  um "), Some(-2.5e1 * 1e-6));
         for wrong in [
             "1", "1 N", "mm", "nan mm", "inf mm", "1e400 m", "1 mm 2", "1,5 mm",
         ] {
-            assert_eq!(place(wrong), None, "{wrong}");
+            assert_eq!(length(wrong), None, "{wrong}");
         }
     }
 

@@ -5,7 +5,7 @@
 use super::on_rig::{End, on_its_rig};
 use crate::cli::args::{Format, RunArguments};
 use crate::cli::commands::explain_plan::DryRun;
-use crate::cli::commands::prediction::told;
+use crate::cli::commands::prediction::rig_and_specimen;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::operator::watch::Attendance;
 use crate::cli::output::{print_message, print_result};
@@ -29,7 +29,7 @@ pub fn check_run(
     let exit = finished.exit;
     let predicted = if exit <= Exit::Missed {
         let stand_in = check_run::prediction(plan, &finished.recorded.record)?;
-        let dry = DryRun::on(plan, &stand_in, told(plan, &stand_in));
+        let dry = DryRun::on(plan, &stand_in, rig_and_specimen(plan, &stand_in));
         let text = dry.text(settings);
         match arguments.format {
             Format::Human => print_result(&text)?,

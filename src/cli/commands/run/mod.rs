@@ -49,7 +49,7 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
     }
     let attendance = real_rig::named(attendance, plan)?;
     let in_the_plan = |failure: Failure| {
-        failure.in_the_plan(|fault| plan_file::place_of_link(&checked, &arguments.plan, fault))
+        failure.in_the_plan(|fault| plan_file::location_of_link(&checked, &arguments.plan, fault))
     };
     if arguments.check_run {
         return check_run(plan, arguments, &attendance, settings).map_err(in_the_plan);
@@ -78,7 +78,7 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
                 false,
                 false,
             )?);
-            print_message(&console::told(
+            print_message(&console::summary_text(
                 &Tested {
                     name: accepted.path().display().to_string(),
                     outcome,

@@ -160,7 +160,7 @@ fn on_a_real_rig(
     opened.watcher.expect(expected);
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let circumstances = real_rig::circumstances(plan, attendance);
-    print_message(&provenance::told_of_another_day(
+    print_message(&provenance::reported_another_day(
         plan,
         circumstances.began.as_deref(),
     ));

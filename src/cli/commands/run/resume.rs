@@ -275,12 +275,11 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
         return Ok((plan, read.provenance.clone(), None));
     }
     if !arguments.amend {
-        let told = differences.join("\n  ");
-        return Err(
-            Failure::command_line(format!("differs from the start of the run:\n  {told}")).help(
-                "`--amend` accepts it; name and reason are logged and appear in the test report",
-            ),
-        );
+        let listed = differences.join("\n  ");
+        return Err(Failure::command_line(format!(
+            "differs from the start of the run:\n  {listed}"
+        ))
+        .help("`--amend` accepts it; name and reason are logged and appear in the test report"));
     }
     header = Header {
         psd: env!("CARGO_PKG_VERSION").to_owned(),
@@ -318,8 +317,8 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
 
 /// The equipment that the run log states; for version 1, the equipment that plan and rig state.
 fn equipment_of(read: &ReadRecord) -> Result<Equipment, Failure> {
-    if let Some(told) = &read.played.header.equipment {
-        return Ok(told.clone());
+    if let Some(stated) = &read.played.header.equipment {
+        return Ok(stated.clone());
     }
     let rig = read
         .played
@@ -349,7 +348,7 @@ fn changed_files(recorded: &Header, now: &Header) -> Vec<String> {
         .collect();
     names.sort_unstable();
     names.dedup();
-    let told = |digest: Option<String>| digest.unwrap_or_else(|| "nothing".to_owned());
+    let digest_text = |digest: Option<String>| digest.unwrap_or_else(|| "nothing".to_owned());
     let changed = names
         .into_iter()
         .filter(|name| of(recorded, name) != of(now, name));
@@ -357,8 +356,8 @@ fn changed_files(recorded: &Header, now: &Header) -> Vec<String> {
         .map(|name| {
             format!(
                 "{name}: {} became {}",
-                told(of(recorded, name)),
-                told(of(now, name))
+                digest_text(of(recorded, name)),
+                digest_text(of(now, name))
             )
         })
         .collect()
@@ -403,14 +402,15 @@ fn settle(
 
 /// The statements for which the operator who resumes the run is responsible.
 fn assured(arguments: &ResumeArguments) -> Vec<Assurance> {
-    let said = [
+    let assurances = [
         (arguments.same_power_up, Assurance::SamePowerUp),
         (arguments.re_referenced, Assurance::ReReferenced),
         (arguments.accept_relaxation, Assurance::AcceptedRelaxation),
         (arguments.let_go, Assurance::LetGo),
     ];
-    said.into_iter()
-        .filter(|(said, _)| *said)
+    assurances
+        .into_iter()
+        .filter(|(is_given, _)| *is_given)
         .map(|(_, assured)| assured)
         .collect()
 }

@@ -13,7 +13,7 @@ use crate::cli::settings::Settings;
 use crate::files::failure::plain;
 use crate::physics::study::probability::Decision;
 use crate::study::answers::Answers;
-use crate::study::collection::folder::Place;
+use crate::study::collection::folder::DataSetFiles;
 use crate::study::data_set::Reader;
 
 use crate::study::report;
@@ -22,7 +22,7 @@ use crate::study::report;
 pub fn report(arguments: &ReportStudyArguments, settings: Settings) -> Result<Exit, Failure> {
     let given = &arguments.folder;
     let path = if given.is_dir() {
-        Place::of(given, None).path()
+        DataSetFiles::of(given, None).path()
     } else {
         given.clone()
     };

@@ -86,7 +86,7 @@ pub fn find(arguments: &TestArguments) -> Result<Cases, Failure> {
         cases.retain(|case| case.name.contains(filter.as_str()));
     }
     if cases.is_empty() {
-        let told: Vec<String> = paths
+        let names: Vec<String> = paths
             .iter()
             .map(|path| path.display().to_string())
             .collect();
@@ -97,11 +97,11 @@ pub fn find(arguments: &TestArguments) -> Result<Cases, Failure> {
                 format!(" with `{filter}` in its name")
             });
         return Err(
-            Failure::command_line(format!("no plan{what} in {}", told.join(", ")))
+            Failure::command_line(format!("no plan{what} in {}", names.join(", ")))
                 .help("a plan is a `.psd` file, or a `.md` file with a `psd` block; `psd test --list` shows them"),
         );
     }
-    told_apart(&mut cases);
+    give_distinct_names(&mut cases);
     Ok(Cases { cases, unused })
 }
 
@@ -121,9 +121,9 @@ fn refuse_shared_results(cases: &[Case]) -> Result<(), Failure> {
     Ok(())
 }
 
-fn missing(path: &Path, error: &std::io::Error, nobody_said: bool) -> Failure {
+fn missing(path: &Path, error: &std::io::Error, is_default: bool) -> Failure {
     let failure = Failure::file(path, plain(error));
-    if nobody_said {
+    if is_default {
         failure.help("name a plan, or a folder of plans")
     } else {
         failure
@@ -146,7 +146,7 @@ fn plans_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
 }
 
 /// Plans of the same name in different folders get separate folders of failures.
-fn told_apart(cases: &mut [Case]) {
+fn give_distinct_names(cases: &mut [Case]) {
     let names: Vec<String> = cases.iter().map(|case| case.folder.clone()).collect();
     for case in cases {
         if names.iter().filter(|name| **name == case.folder).count() > 1 {

@@ -51,7 +51,7 @@ pub fn write(
         &folder,
         &OutputFile {
             path: DIFFERENCE.to_owned(),
-            bytes: told(case, found).into_bytes(),
+            bytes: failure_page(case, found).into_bytes(),
         },
     )?;
     let new = folder.join("new");
@@ -69,7 +69,7 @@ pub fn write(
 }
 
 /// Every difference, one per line.
-fn told(case: &Case, found: &[Finding]) -> String {
+fn failure_page(case: &Case, found: &[Finding]) -> String {
     let mut text = format!(
         "{}: {} from {}\n",
         case.name,

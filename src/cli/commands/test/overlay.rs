@@ -56,7 +56,7 @@ fn figures(was: &Truth, is: &Truth) -> Vec<(String, Curves)> {
             .take(CURVES)
             .collect();
         let mut curves = Vec::new();
-        for (place, (old, new)) in moved.into_iter().enumerate() {
+        for (index, (old, new)) in moved.into_iter().enumerate() {
             let label = |which: &str, curve: &FigureCurve| {
                 if curve.label.is_empty() {
                     which.to_owned()
@@ -68,13 +68,13 @@ fn figures(was: &Truth, is: &Truth) -> Vec<(String, Curves)> {
                 label: label("this run", new),
                 points: new.line(),
                 dots: new.dots,
-                run: Some(2 * place),
+                run: Some(2 * index),
             });
             curves.push(Curve {
                 label: label("accepted", old),
                 points: old.line(),
                 dots: new.dots,
-                run: Some(2 * place + 1),
+                run: Some(2 * index + 1),
             });
         }
         if !curves.is_empty() {

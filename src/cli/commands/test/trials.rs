@@ -145,7 +145,7 @@ impl Printer<'_, '_> {
             if self.trials.arguments.fail_fast && self.first_bad.load(Ordering::SeqCst) < next {
                 tested.outcome = Outcome::NotRun;
             }
-            print_message(&console::told(&tested, self.trials.settings.color));
+            print_message(&console::summary_text(&tested, self.trials.settings.color));
             if matches!(tested.outcome, Outcome::Differs(_)) {
                 let folder = failures::folder(&self.trials.arguments.out, &self.cases[next]);
                 print_message(&format!("  see {}\n", folder.display()));

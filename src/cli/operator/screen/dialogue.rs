@@ -43,7 +43,7 @@ pub struct Dialogue {
     heard_from: Option<Duration>,
     /// Number of single steps requested while paused.
     single: u32,
-    said: VecDeque<String>,
+    notes: VecDeque<String>,
     answer: Option<Inspection>,
     /// The rig is to unload: its question comes next.
     unload: bool,
@@ -154,7 +154,7 @@ impl Dialogue {
                 self.paused = !self.paused;
                 self.single = 0;
                 let did = if self.paused { "paused" } else { "went on" };
-                self.said.push_back(format!("{did}{}", self.signature()));
+                self.notes.push_back(format!("{did}{}", self.signature()));
             }
             's' | ' ' if self.paused => self.single += 1,
             'i' => self.line(What::Note),
@@ -254,7 +254,7 @@ impl Dialogue {
         match what {
             What::Note if text.is_empty() => {}
             What::Note => match &self.operator {
-                Some(_) => self.say(&text),
+                Some(_) => self.record_note(&text),
                 None => self.line(What::NoteName { note: text }),
             },
             What::Answer => match (
@@ -283,7 +283,7 @@ impl Dialogue {
             }
             What::NoteName { note } => {
                 self.operator = Some(text);
-                self.say(&note);
+                self.record_note(&note);
             }
             What::AnswerName { yes } => {
                 self.operator = Some(text.clone());
@@ -300,8 +300,8 @@ impl Dialogue {
         });
     }
 
-    fn say(&mut self, note: &str) {
-        self.said.push_back(format!("{note}{}", self.signature()));
+    fn record_note(&mut self, note: &str) {
+        self.notes.push_back(format!("{note}{}", self.signature()));
     }
 
     fn signature(&self) -> String {
@@ -315,7 +315,7 @@ impl Dialogue {
         let Some(question) = self.question.take() else {
             return;
         };
-        self.answer = Some(question.kind.said(yes, self.remark.take(), name));
+        self.answer = Some(question.kind.to_inspection(yes, self.remark.take(), name));
     }
 
     fn no_answer(&mut self) {
@@ -442,8 +442,8 @@ impl Dialogue {
 
     /// The operator's request between two steps.
     pub fn next(&mut self) -> Next {
-        if let Some(said) = self.said.pop_front() {
-            return Next::Record(said);
+        if let Some(note) = self.notes.pop_front() {
+            return Next::Record(note);
         }
         self.waiting = self.paused && !self.lost && self.single == 0;
         if self.waiting {

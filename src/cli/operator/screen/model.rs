@@ -197,11 +197,11 @@ impl Model {
 
     /// |command − displacement| of the last step \[m\]; None while the rig is read during a move.
     pub fn tracking_error(&self) -> Option<f64> {
-        let on_the_way = self
+        let read_in_motion = self
             .procedure
             .as_ref()
             .is_some_and(|running| running.keyword == "damping sweep");
-        if on_the_way || self.by_hand.is_some() || self.open_loop {
+        if read_in_motion || self.by_hand.is_some() || self.open_loop {
             return None;
         }
         let errors = self
@@ -344,7 +344,7 @@ pub mod tests {
     }
 
     #[test]
-    fn limits_stand_with_value_and_margin_and_only_where_they_bound() {
+    fn limits_are_shown_with_value_and_margin_and_only_where_they_bound() {
         let mut plan = empty_plan();
         plan.limits.displacement = Interval {
             low: -0.01,

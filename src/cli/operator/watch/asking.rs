@@ -59,12 +59,12 @@ impl Person {
         }
     }
 
-    /// The run has ended early, and the rig is on hold: asks whether it is to unload. None: it stays on hold. `told` is the present state
+    /// The run has ended early, and the rig is on hold: asks whether it is to unload. None: it stays on hold. `state_lines` is the present state
     /// of the rig in lines.
     pub fn ask_to_unload(
         &mut self,
         question: &Question,
-        told: &[String],
+        state_lines: &[String],
         operator: &mut Option<String>,
     ) -> Option<Inspection> {
         if self.unload {
@@ -83,20 +83,20 @@ impl Person {
                     resume: true,
                     unload: true,
                 },
-                told,
+                state_lines,
             );
         }
         self.chosen.is_none().then_some(Inspection::Wait)
     }
 
     /// The operator's choice after the early end of the run.
-    pub fn stay(&mut self, after: After, told: &[String]) -> Stay {
+    pub fn stay(&mut self, after: After, state_lines: &[String]) -> Stay {
         // An operator who left a rig on hold has not seen that the hold is no longer confirmed.
         if after == After::NotHeld && self.state != State::Choosing(after) {
             self.chosen = None;
         }
         if self.chosen.is_none() {
-            self.choose(after, told);
+            self.choose(after, state_lines);
         }
         self.chosen.clone().unwrap_or(Stay::Wait)
     }
@@ -107,9 +107,9 @@ impl Person {
     }
 
     /// Shows the available choices, or checks for the choice.
-    fn choose(&mut self, after: After, told: &[String]) {
+    fn choose(&mut self, after: After, state_lines: &[String]) {
         if ![State::Choosing(after), State::Resuming(after)].contains(&self.state) {
-            print_message(&format!("\n  {}\n", told.join("\n  ")));
+            print_message(&format!("\n  {}\n", state_lines.join("\n  ")));
             self.typed().begin();
             self.state = State::Choosing(after);
         }
@@ -133,7 +133,11 @@ impl Person {
                     ));
                     self.state = State::Resuming(after);
                 }
-                None => print_message(&format!("  {}\n{}", told.join("\n  "), choices(after))),
+                None => print_message(&format!(
+                    "  {}\n{}",
+                    state_lines.join("\n  "),
+                    choices(after)
+                )),
             },
         }
     }
@@ -179,7 +183,7 @@ impl Person {
             return Inspection::Wait;
         };
         self.state = State::Silent;
-        kind.said(yes, self.remark.take(), by)
+        kind.to_inspection(yes, self.remark.take(), by)
     }
 }
 

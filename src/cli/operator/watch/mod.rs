@@ -150,7 +150,7 @@ impl Watcher {
             (false, false, false, _) => Asking::Nobody,
         };
         if !matches!(face, Face::Screen(_)) {
-            signals.told_in_lines(settings.stderr_terminal);
+            signals.print_signals(settings.stderr_terminal);
         }
         Self {
             face,
@@ -195,7 +195,7 @@ impl Watcher {
             }
         };
         let (stays, interrupted) = (self.stays() || alarmed, self.is_interrupted());
-        let told = self.told_of_the_rig();
+        let state_lines = self.rig_state_lines();
         match (&mut self.face, &mut self.asking) {
             (Face::Screen(screen), _) if stays => screen.stay(after),
             (face, Asking::Person(person)) => {
@@ -203,7 +203,7 @@ impl Watcher {
                 if interrupted && !alarmed {
                     person.leave();
                 }
-                person.stay(after, &told)
+                person.stay(after, &state_lines)
             }
             _ => Stay::Leave,
         }
@@ -216,15 +216,16 @@ impl Watcher {
     }
 
     /// The lines about a rig whose run has ended early: the alarm alone, or the reason of the hold and the measured forces.
-    fn told_of_the_rig(&self) -> Vec<String> {
+    fn rig_state_lines(&self) -> Vec<String> {
         if let Some(alarm) = &self.alarm {
             return vec![alarm.clone()];
         }
-        let felt = self.live.as_ref().and_then(Live::newest);
-        let of_axes = felt
+        let reading = self.live.as_ref().and_then(Live::newest);
+        let of_axes = reading
             .iter()
-            .flat_map(|felt| felt.displacement.iter().zip(&felt.force));
-        let of_axes = of_axes.map(|(displacement, force)| question::felt(*displacement, *force));
+            .flat_map(|reading| reading.displacement.iter().zip(&reading.force));
+        let of_axes = of_axes
+            .map(|(displacement, force)| question::position_and_force(*displacement, *force));
         ["HELD".to_owned()]
             .into_iter()
             .chain(self.ended.clone())
@@ -300,7 +301,7 @@ impl Observer for Watcher {
         {
             return screen.ask_to_unload(&question);
         }
-        let told = self.told_of_the_rig();
+        let state_lines = self.rig_state_lines();
         let Asking::Person(person) = &mut self.asking else {
             return None;
         };
@@ -308,7 +309,7 @@ impl Observer for Watcher {
         if interrupted {
             person.leave();
         }
-        let answer = person.ask_to_unload(&question, &told, &mut self.operator);
+        let answer = person.ask_to_unload(&question, &state_lines, &mut self.operator);
         if matches!(answer, Some(Inspection::GoOn { .. })) {
             // A Ctrl-C during a move stops that move.
             self.stops_before = None;

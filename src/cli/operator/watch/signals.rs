@@ -17,7 +17,7 @@ use crate::rig::StopRequest;
 pub struct Signals {
     handle: iterator::Handle,
     stop_request: StopRequest,
-    told: Arc<AtomicU8>,
+    output: Arc<AtomicU8>,
 }
 
 impl Signals {
@@ -50,8 +50,8 @@ impl Signals {
             iterator::Signals::new([SIGINT, SIGQUIT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGALRM])?;
         let handle = signals.handle();
         let (stop_request, theirs) = (stop_request.clone(), stop_request.clone());
-        let told = Arc::new(AtomicU8::new(SILENT));
-        let tells = Arc::clone(&told);
+        let output = Arc::new(AtomicU8::new(SILENT));
+        let their_output = Arc::clone(&output);
         std::thread::spawn(move || {
             for signal in signals.forever() {
                 match signal {
@@ -61,23 +61,23 @@ impl Signals {
                     _ => theirs.suppress_prompts(),
                 }
                 become_wish(&theirs, signal);
-                match tells.load(Ordering::SeqCst) {
+                match their_output.load(Ordering::SeqCst) {
                     SILENT => {}
-                    ON_A_TERMINAL => print_message(&format!("{CLEARED}  {}\n", said(&theirs))),
-                    _ => print_message(&format!("  {}\n", said(&theirs))),
+                    ON_A_TERMINAL => print_message(&format!("{CLEARED}  {}\n", effect(&theirs))),
+                    _ => print_message(&format!("  {}\n", effect(&theirs))),
                 }
             }
         });
         Ok(Self {
             handle,
             stop_request,
-            told,
+            output,
         })
     }
 
     /// From here on a line reports each signal: there is no screen that would show it.
-    pub fn told_in_lines(&self, terminal: bool) {
-        self.told.store(
+    pub fn print_signals(&self, terminal: bool) {
+        self.output.store(
             if terminal { ON_A_TERMINAL } else { IN_A_PIPE },
             Ordering::SeqCst,
         );
@@ -98,7 +98,7 @@ const ON_A_TERMINAL: u8 = 2;
 const CLEARED: &str = "\r\u{1b}[K";
 
 /// The effect of a signal, as a message to its sender.
-fn said(stop_request: &StopRequest) -> &'static str {
+fn effect(stop_request: &StopRequest) -> &'static str {
     if stop_request.hold_requested() {
         "holding now"
     } else {
@@ -136,11 +136,11 @@ mod tests {
         interrupt(&stop_request);
         assert!(stop_request.end_requested() && !stop_request.hold_requested());
         assert_eq!(
-            said(&stop_request),
+            effect(&stop_request),
             "stopping at the end of this step; Ctrl-C once more: hold now"
         );
         interrupt(&stop_request);
-        assert_eq!(said(&stop_request), "holding now");
+        assert_eq!(effect(&stop_request), "holding now");
         assert!(stop_request.hold_requested());
     }
 }

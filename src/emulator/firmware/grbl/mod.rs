@@ -9,7 +9,7 @@ mod tests;
 use std::collections::VecDeque;
 use std::fmt::Write as _;
 
-use crate::emulator::{Bench, Firmware};
+use crate::emulator::{EmulatedRig, Firmware};
 use jog::{Jog, number};
 
 /// Longest line, bytes.
@@ -56,22 +56,22 @@ impl Grbl {
     }
 
     /// Stops and clears the planned moves.
-    fn cancel(&mut self, bench: &mut Bench) {
-        bench.hold();
+    fn cancel(&mut self, rig: &mut EmulatedRig) {
+        rig.hold();
         self.planned.clear();
-        self.end = bench.commanded();
+        self.end = rig.commanded();
         if self.state == State::Jog {
             self.state = State::Idle;
         }
     }
 
-    fn real_time(&mut self, byte: u8, bench: &mut Bench) -> Option<String> {
+    fn real_time(&mut self, byte: u8, rig: &mut EmulatedRig) -> Option<String> {
         match byte {
-            b'?' => Some(self.status(bench)),
+            b'?' => Some(self.status(rig)),
             b'!' => {
                 // A hold cancels a jog. The board has no other motion.
                 let at_rest = self.state == State::Idle;
-                self.cancel(bench);
+                self.cancel(rig);
                 if at_rest {
                     self.state = State::Hold;
                 }
@@ -83,21 +83,21 @@ impl Grbl {
                 }
                 Some(String::new())
             }
-            0x18 => Some(self.reset(bench)),
+            0x18 => Some(self.reset(rig)),
             0x85 => {
-                self.cancel(bench);
+                self.cancel(rig);
                 Some(String::new())
             }
             _ => None,
         }
     }
 
-    fn reset(&mut self, bench: &mut Bench) -> String {
-        let in_motion = bench.moving();
-        self.cancel(bench);
+    fn reset(&mut self, rig: &mut EmulatedRig) -> String {
+        let in_motion = rig.moving();
+        self.cancel(rig);
         let owner = std::mem::take(&mut self.owner);
         *self = Self {
-            end: bench.commanded(),
+            end: rig.commanded(),
             ..Self::new(&owner)
         };
         let banner = "\r\nGrbl 1.1h ['$' for help]\r\n";
@@ -109,31 +109,27 @@ impl Grbl {
         }
     }
 
-    fn status(&self, bench: &Bench) -> String {
+    fn status(&self, rig: &EmulatedRig) -> String {
         let state = match self.state {
             State::Idle => "Idle",
             State::Jog => "Jog",
             State::Hold => "Hold:0",
             State::Alarm => "Alarm",
         };
-        let feed = if bench.moving() {
-            Self::feed(bench)
-        } else {
-            0.0
-        };
+        let feed = if rig.moving() { Self::feed(rig) } else { 0.0 };
         format!(
             "<{state}|MPos:{:.3},0.000,0.000|FS:{feed:.0},0>\r\n",
-            bench.commanded() * 1e3
+            rig.commanded() * 1e3
         )
     }
 
     /// Feed rate of the current move \[mm/min\].
-    fn feed(bench: &Bench) -> f64 {
-        bench.moves().last().map_or(0.0, |sent| sent.speed * 6e4)
+    fn feed(rig: &EmulatedRig) -> f64 {
+        rig.moves().last().map_or(0.0, |sent| sent.speed * 6e4)
     }
 
-    fn settings(bench: &Bench) -> String {
-        let settings = bench.settings();
+    fn settings(rig: &EmulatedRig) -> String {
+        let settings = rig.settings();
         let numbers = [
             (0, "10".to_owned()),
             (1, "255".to_owned()),
@@ -155,15 +151,15 @@ impl Grbl {
     }
 
     /// Executes one line and returns all answers.
-    fn carry_out(&mut self, line: &str, bench: &mut Bench) -> String {
+    fn carry_out(&mut self, line: &str, rig: &mut EmulatedRig) -> String {
         let bare: String = line
             .chars()
             .filter(|letter| !letter.is_whitespace())
             .collect::<String>()
             .to_ascii_uppercase();
-        let said = match bare.as_str() {
+        let answer = match bare.as_str() {
             "" => Ok(String::new()),
-            "$$" => Ok(Self::settings(bench)),
+            "$$" => Ok(Self::settings(rig)),
             "$I" => Ok(format!(
                 "[VER:1.1h.20190825:{}]\r\n[OPT:V,15,128]\r\n",
                 self.owner
@@ -180,7 +176,7 @@ impl Grbl {
                 })
             }
             bare => match bare.strip_prefix("$J=") {
-                Some(words) => self.jog(words, bench).map(|()| String::new()),
+                Some(words) => self.jog(words, rig).map(|()| String::new()),
                 None if bare.starts_with('$') => Err(3),
                 None if self.state == State::Alarm
                     || self.state == State::Jog && !bare.starts_with("G4P") =>
@@ -196,13 +192,13 @@ impl Grbl {
                 },
             },
         };
-        match said {
+        match answer {
             Ok(text) => text + "ok\r\n",
             Err(code) => format!("error:{code}\r\n"),
         }
     }
 
-    fn jog(&mut self, words: &str, bench: &mut Bench) -> Result<(), u32> {
+    fn jog(&mut self, words: &str, rig: &mut EmulatedRig) -> Result<(), u32> {
         if !matches!(self.state, State::Idle | State::Jog) {
             return Err(8);
         }
@@ -210,13 +206,13 @@ impl Grbl {
         // The board's numbers have 24 bits: a target on a limit is within it after rounding.
         let rounding = 2e-7 * target.abs();
         if !(-TRAVEL - rounding <= target && target <= 0.0) {
-            bench.refuse(target);
+            rig.refuse(target);
             return Err(15);
         }
         if self.planned.len() >= PLANNER {
             return Err(13);
         }
-        let limits = bench.settings().limits;
+        let limits = rig.settings().limits;
         let on_the_limit = target.clamp(limits.low, limits.high);
         self.end = if (target - on_the_limit).abs() <= rounding {
             on_the_limit
@@ -228,15 +224,15 @@ impl Grbl {
             speed,
         });
         self.state = State::Jog;
-        self.proceed(bench);
+        self.proceed(rig);
         Ok(())
     }
 
     /// Starts the next planned move once the last one is done.
-    fn proceed(&mut self, bench: &mut Bench) {
-        while self.state == State::Jog && !bench.moving() {
+    fn proceed(&mut self, rig: &mut EmulatedRig) {
+        while self.state == State::Jog && !rig.moving() {
             match self.planned.pop_front() {
-                Some(Jog { target, speed }) => bench.go(target, speed),
+                Some(Jog { target, speed }) => rig.go(target, speed),
                 None => self.state = State::Idle,
             }
         }
@@ -244,12 +240,12 @@ impl Grbl {
 }
 
 impl Firmware for Grbl {
-    fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
-        let mut said = Vec::new();
+    fn receive(&mut self, bytes: &[u8], rig: &mut EmulatedRig) -> Vec<u8> {
+        let mut reply = Vec::new();
         for byte in bytes {
-            self.proceed(bench);
-            if let Some(text) = self.real_time(*byte, bench) {
-                said.extend(text.into_bytes());
+            self.proceed(rig);
+            if let Some(text) = self.real_time(*byte, rig) {
+                reply.extend(text.into_bytes());
             } else if matches!(byte, b'\n' | b'\r') {
                 let line = std::mem::take(&mut self.line);
                 // The second byte of a line ending does not start a new line.
@@ -258,20 +254,20 @@ impl Firmware for Grbl {
                     let answer = if line.len() >= LONGEST {
                         "error:11\r\n".to_owned()
                     } else {
-                        self.carry_out(&text, bench)
+                        self.carry_out(&text, rig)
                     };
-                    said.extend(answer.into_bytes());
+                    reply.extend(answer.into_bytes());
                 }
             } else if self.line.len() < LONGEST {
                 self.line.push(*byte);
             }
         }
-        said
+        reply
     }
 
-    fn tick(&mut self, bench: &mut Bench) -> Vec<u8> {
-        self.proceed(bench);
-        let now = bench.time();
+    fn tick(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
+        self.proceed(rig);
+        let now = rig.time();
         match &mut self.dwell {
             Some((seconds, since)) if self.state != State::Jog => {
                 let over = now - *since.get_or_insert(now) >= *seconds;
@@ -286,9 +282,9 @@ impl Firmware for Grbl {
     }
 
     /// With `$22=1` it is locked after power-up until it has been homed.
-    fn reboot(&mut self, bench: &mut Bench) -> Vec<u8> {
-        bench.hold();
-        let banner = self.reset(bench);
+    fn reboot(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
+        rig.hold();
+        let banner = self.reset(rig);
         self.state = State::Alarm;
         format!("{banner}[MSG:'$H'|'$X' to unlock]\r\n").into_bytes()
     }

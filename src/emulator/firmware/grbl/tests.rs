@@ -1,38 +1,41 @@
 //! The board: jogs, limits, holds, resets, its settings and its dwell.
 
 use super::*;
-use crate::emulator::testing::bench;
+use crate::emulator::testing::elastic_rig;
 
-fn say(board: &mut (Grbl, Bench), bytes: &[u8]) -> String {
+fn replies_to(board: &mut (Grbl, EmulatedRig), bytes: &[u8]) -> String {
     String::from_utf8(board.0.receive(bytes, &mut board.1)).expect("text")
 }
 
-fn wait(board: &mut (Grbl, Bench), seconds: f64) -> String {
+fn wait(board: &mut (Grbl, EmulatedRig), seconds: f64) -> String {
     let until = board.1.time() + seconds;
     board.1.advance(until);
     String::from_utf8(board.0.tick(&mut board.1)).expect("text")
 }
 
-fn board() -> (Grbl, Bench) {
-    (Grbl::new("PSD-SIM"), bench().standing_at(&[-0.001]))
+fn board() -> (Grbl, EmulatedRig) {
+    (Grbl::new("PSD-SIM"), elastic_rig().standing_at(&[-0.001]))
 }
 
 #[test]
 fn a_jog_is_understood_at_once_and_done_later() {
     let mut board = board();
-    assert_eq!(say(&mut board, b"$J=G21G90G53X-2.2500F60.000\n"), "ok\r\n");
+    assert_eq!(
+        replies_to(&mut board, b"$J=G21G90G53X-2.2500F60.000\n"),
+        "ok\r\n"
+    );
     wait(&mut board, 0.5);
     assert_eq!(
-        say(&mut board, b"?"),
+        replies_to(&mut board, b"?"),
         "<Jog|MPos:-1.500,0.000,0.000|FS:60,0>\r\n"
     );
     wait(&mut board, 1.0);
     assert_eq!(
-        say(&mut board, b"?"),
+        replies_to(&mut board, b"?"),
         "<Idle|MPos:-2.250,0.000,0.000|FS:0,0>\r\n"
     );
     assert_eq!(
-        say(&mut board, b"$J=G91X-0.25F60\n$J=G91X-0.25F60\n"),
+        replies_to(&mut board, b"$J=G91X-0.25F60\n$J=G91X-0.25F60\n"),
         "ok\r\nok\r\n",
         "the second is planned"
     );
@@ -57,7 +60,7 @@ fn a_target_beyond_the_travel_is_refused_and_counted() {
     let mut board = board();
     for beyond in ["0.001", "-200.001", "-1000"] {
         assert_eq!(
-            say(&mut board, format!("$J=G21G90G53X{beyond}F60\n").as_bytes()),
+            replies_to(&mut board, format!("$J=G21G90G53X{beyond}F60\n").as_bytes()),
             "error:15\r\n",
             "{beyond}"
         );
@@ -66,7 +69,7 @@ fn a_target_beyond_the_travel_is_refused_and_counted() {
     assert_eq!((board.1.violations().len(), board.1.moves().len()), (2, 0));
     for within in ["0.000", "-1.000"] {
         assert_eq!(
-            say(&mut board, format!("$J=G21G90G53X{within}F60\n").as_bytes()),
+            replies_to(&mut board, format!("$J=G21G90G53X{within}F60\n").as_bytes()),
             "ok\r\n",
             "{within}"
         );
@@ -82,13 +85,13 @@ fn a_target_beyond_the_travel_is_refused_and_counted() {
         ("G1X0", "error:9"),
     ] {
         assert_eq!(
-            say(&mut board, format!("{line}\r").as_bytes()),
+            replies_to(&mut board, format!("{line}\r").as_bytes()),
             format!("{answer}\r\n"),
             "{line}"
         );
     }
     assert_eq!(
-        say(&mut board, &[[b'x'; 100].as_slice(), b"\n"].concat()),
+        replies_to(&mut board, &[[b'x'; 100].as_slice(), b"\n"].concat()),
         "error:11\r\n"
     );
 }
@@ -96,20 +99,20 @@ fn a_target_beyond_the_travel_is_refused_and_counted() {
 #[test]
 fn a_hold_cancels_the_jog_and_at_rest_stays_until_it_is_let_go() {
     let mut board = board();
-    say(&mut board, b"$J=X-6F60\n");
+    replies_to(&mut board, b"$J=X-6F60\n");
     wait(&mut board, 1.0);
     assert_eq!(
-        say(&mut board, b"!?"),
+        replies_to(&mut board, b"!?"),
         "<Idle|MPos:-2.000,0.000,0.000|FS:0,0>\r\n"
     );
     assert_eq!(
-        say(&mut board, b"!?"),
+        replies_to(&mut board, b"!?"),
         "<Hold:0|MPos:-2.000,0.000,0.000|FS:0,0>\r\n"
     );
-    assert_eq!(say(&mut board, b"$J=X-6F60\n"), "error:8\r\n");
-    assert_eq!(say(&mut board, b"~$J=X-6F60\n"), "ok\r\n");
+    assert_eq!(replies_to(&mut board, b"$J=X-6F60\n"), "error:8\r\n");
+    assert_eq!(replies_to(&mut board, b"~$J=X-6F60\n"), "ok\r\n");
     assert_eq!(
-        say(&mut board, b"\x85?"),
+        replies_to(&mut board, b"\x85?"),
         "<Idle|MPos:-2.000,0.000,0.000|FS:0,0>\r\n"
     );
 }
@@ -117,29 +120,35 @@ fn a_hold_cancels_the_jog_and_at_rest_stays_until_it_is_let_go() {
 #[test]
 fn a_reset_in_motion_is_an_alarm() {
     let mut board = board();
-    assert_eq!(say(&mut board, b"\x18"), "\r\nGrbl 1.1h ['$' for help]\r\n");
-    say(&mut board, b"$J=X-6F60\n");
-    assert!(say(&mut board, b"\x18").starts_with("ALARM:3\r\n\r\nGrbl 1.1h "));
-    assert_eq!(say(&mut board, b"$J=X-6F60\n"), "error:8\r\n");
     assert_eq!(
-        say(&mut board, b"$X\n"),
+        replies_to(&mut board, b"\x18"),
+        "\r\nGrbl 1.1h ['$' for help]\r\n"
+    );
+    replies_to(&mut board, b"$J=X-6F60\n");
+    assert!(replies_to(&mut board, b"\x18").starts_with("ALARM:3\r\n\r\nGrbl 1.1h "));
+    assert_eq!(replies_to(&mut board, b"$J=X-6F60\n"), "error:8\r\n");
+    assert_eq!(
+        replies_to(&mut board, b"$X\n"),
         "[MSG:Caution: Unlocked]\r\nok\r\n"
     );
     assert_eq!(
-        say(&mut board, b"!\x18?"),
+        replies_to(&mut board, b"!\x18?"),
         "\r\nGrbl 1.1h ['$' for help]\r\n<Idle|MPos:-1.000,0.000,0.000|FS:0,0>\r\n"
     );
     assert_eq!(
         board.0.reboot(&mut board.1),
         b"\r\nGrbl 1.1h ['$' for help]\r\n[MSG:'$H'|'$X' to unlock]\r\n"
     );
-    assert!(say(&mut board, b"?").starts_with("<Alarm|"), "not homed");
+    assert!(
+        replies_to(&mut board, b"?").starts_with("<Alarm|"),
+        "not homed"
+    );
 }
 
 #[test]
-fn it_says_how_it_is_set_up() {
+fn it_reports_how_it_is_set_up() {
     let mut board = board();
-    let settings = say(&mut board, b"$$\n");
+    let settings = replies_to(&mut board, b"$$\n");
     for setting in [
         "$1=255\r\n",
         "$13=0\r\n",
@@ -154,13 +163,13 @@ fn it_says_how_it_is_set_up() {
             "{setting} is not in\n{settings}"
         );
     }
-    assert!(say(&mut board, b"$I\n").starts_with("[VER:1.1h.20190825:PSD-SIM]\r\n"));
+    assert!(replies_to(&mut board, b"$I\n").starts_with("[VER:1.1h.20190825:PSD-SIM]\r\n"));
 }
 
 #[test]
 fn a_dwell_answers_once_the_axis_is_at_rest() {
     let mut board = board();
-    assert_eq!(say(&mut board, b"$J=X-1.5F60\nG4P0.01\n"), "ok\r\n");
+    assert_eq!(replies_to(&mut board, b"$J=X-1.5F60\nG4P0.01\n"), "ok\r\n");
     assert_eq!(wait(&mut board, 0.4), "");
     assert_eq!(wait(&mut board, 0.2), "");
     assert_eq!(wait(&mut board, 0.02), "ok\r\n");

@@ -5,7 +5,7 @@
 //! and the unit N; a peak is the absolute value since zero; `Z` has no answer.
 
 use crate::emulator::firmware::line_buffer::LineBuffer;
-use crate::emulator::{Bench, Firmware};
+use crate::emulator::{EmulatedRig, Firmware};
 
 /// A gauge with its own port.
 #[derive(Debug)]
@@ -13,14 +13,14 @@ pub struct Mark10Gauge {
     /// The polarity of a compression, +1 or −1.
     polarity: f64,
     lines: LineBuffer,
-    /// Zero offset of the bench's force \[N\].
+    /// Zero offset of the emulated rig's force \[N\].
     zero: f64,
     /// Largest reading in each direction since zero \[N\].
     peaks: [f64; 2],
 }
 
 impl Mark10Gauge {
-    /// A gauge that shows the bench's force with this polarity.
+    /// A gauge that shows the emulated rig's force with this polarity.
     #[must_use]
     pub fn new(polarity: f64) -> Self {
         Self {
@@ -32,8 +32,8 @@ impl Mark10Gauge {
     }
 
     /// Its present reading \[N\].
-    pub(super) fn reading(&mut self, bench: &mut Bench) -> f64 {
-        let reading = self.polarity * (bench.force() - self.zero);
+    pub(super) fn reading(&mut self, rig: &mut EmulatedRig) -> f64 {
+        let reading = self.polarity * (rig.force() - self.zero);
         let [compression, tension] = &mut self.peaks;
         *compression = compression.max(reading);
         *tension = tension.max(-reading);
@@ -41,14 +41,14 @@ impl Mark10Gauge {
     }
 
     /// Answers one command without its CR.
-    pub(super) fn command(&mut self, command: &str, bench: &mut Bench) -> String {
-        let reading = self.reading(bench);
+    pub(super) fn command(&mut self, command: &str, rig: &mut EmulatedRig) -> String {
+        let reading = self.reading(rig);
         match command {
-            "?" | "?C" => format!("{}\r\n", bench.shown(newtons(reading))),
+            "?" | "?C" => format!("{}\r\n", rig.shown(newtons(reading))),
             "?PC" => format!("{}\r\n", newtons(self.peaks[0])),
             "?PT" => format!("{}\r\n", newtons(-self.peaks[1])),
             "Z" => {
-                self.zero = bench.force();
+                self.zero = rig.force();
                 self.peaks = [0.0; 2];
                 String::new()
             }
@@ -63,20 +63,20 @@ fn newtons(value: f64) -> String {
 }
 
 impl Firmware for Mark10Gauge {
-    fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
+    fn receive(&mut self, bytes: &[u8], rig: &mut EmulatedRig) -> Vec<u8> {
         let commands = self.lines.take(bytes);
         commands
             .iter()
-            .flat_map(|command| self.command(command, bench).into_bytes())
+            .flat_map(|command| self.command(command, rig).into_bytes())
             .collect()
     }
 
-    fn tick(&mut self, bench: &mut Bench) -> Vec<u8> {
-        self.reading(bench);
+    fn tick(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
+        self.reading(rig);
         Vec::new()
     }
 
-    fn reboot(&mut self, _: &mut Bench) -> Vec<u8> {
+    fn reboot(&mut self, _: &mut EmulatedRig) -> Vec<u8> {
         *self = Self::new(self.polarity);
         Vec::new()
     }
@@ -87,40 +87,40 @@ mod tests {
     use super::*;
     use crate::emulator::firmware::testing::spring;
 
-    fn said(gauge: &mut Mark10Gauge, bench: &mut Bench, bytes: &[u8]) -> String {
-        String::from_utf8(gauge.receive(bytes, bench)).unwrap()
+    fn reply_to(gauge: &mut Mark10Gauge, rig: &mut EmulatedRig, bytes: &[u8]) -> String {
+        String::from_utf8(gauge.receive(bytes, rig)).unwrap()
     }
 
     #[test]
     fn it_reads_zeroes_and_keeps_its_peaks() {
-        let (mut gauge, mut bench) = (Mark10Gauge::new(1.0), spring());
-        assert_eq!(said(&mut gauge, &mut bench, b"?\r\n?"), "0.00 N\r\n");
-        bench.go(0.005_123_4, 0.01);
-        bench.advance(1.0);
+        let (mut gauge, mut rig) = (Mark10Gauge::new(1.0), spring());
+        assert_eq!(reply_to(&mut gauge, &mut rig, b"?\r\n?"), "0.00 N\r\n");
+        rig.go(0.005_123_4, 0.01);
+        rig.advance(1.0);
         // 100 N/mm × 5.1234 mm.
-        assert_eq!(said(&mut gauge, &mut bench, b"\r"), "512.34 N\r\n");
-        bench.go(-0.002, 0.01);
-        bench.advance(2.0);
+        assert_eq!(reply_to(&mut gauge, &mut rig, b"\r"), "512.34 N\r\n");
+        rig.go(-0.002, 0.01);
+        rig.advance(2.0);
         assert_eq!(
-            said(&mut gauge, &mut bench, b"?C\r?PC\r?PT\rZ\r?\r?PC\r"),
+            reply_to(&mut gauge, &mut rig, b"?C\r?PC\r?PT\rZ\r?\r?PC\r"),
             { "-200.00 N\r\n512.34 N\r\n-200.00 N\r\n0.00 N\r\n0.00 N\r\n" }
         );
-        assert_eq!(said(&mut gauge, &mut bench, b"?Q\r"), "*10\r\n");
+        assert_eq!(reply_to(&mut gauge, &mut rig, b"?Q\r"), "*10\r\n");
     }
 
     #[test]
     fn its_polarity_is_a_setting_and_peaks_are_seen_between_questions() {
-        let (mut gauge, mut bench) = (Mark10Gauge::new(-1.0), spring());
-        bench.go(0.001, 0.01);
-        bench.advance(1.0);
-        gauge.tick(&mut bench);
-        bench.go(0.0, 0.01);
-        bench.advance(2.0);
+        let (mut gauge, mut rig) = (Mark10Gauge::new(-1.0), spring());
+        rig.go(0.001, 0.01);
+        rig.advance(1.0);
+        gauge.tick(&mut rig);
+        rig.go(0.0, 0.01);
+        rig.advance(2.0);
         assert_eq!(
-            said(&mut gauge, &mut bench, b"?\r?PT\r"),
+            reply_to(&mut gauge, &mut rig, b"?\r?PT\r"),
             "0.00 N\r\n-100.00 N\r\n"
         );
-        gauge.reboot(&mut bench);
-        assert_eq!(said(&mut gauge, &mut bench, b"?PT\r"), "0.00 N\r\n");
+        gauge.reboot(&mut rig);
+        assert_eq!(reply_to(&mut gauge, &mut rig, b"?PT\r"), "0.00 N\r\n");
     }
 }

@@ -8,7 +8,7 @@
 
 mod load_cell;
 
-use crate::emulator::{Bench, Firmware};
+use crate::emulator::{EmulatedRig, Firmware};
 pub use load_cell::Mark10Gauge;
 
 /// Travel limits of the stand itself \[m\], in both directions: `u` and `d` end there in manual mode.
@@ -21,7 +21,7 @@ const MILLIMETRES_PER_INCH: f64 = 25.4;
 pub struct Mark10 {
     polarity: f64,
     gauge: Mark10Gauge,
-    stand: Stand,
+    emulator: Stand,
 }
 
 /// The state that is lost at power-off. Lengths are in m.
@@ -38,7 +38,7 @@ struct Stand {
     use_set_speed: bool,
     /// Travel limits \[m\], as set with `g` and `h`.
     limits: [Option<f64>; 2],
-    /// The bench position of zero travel \[m\].
+    /// The emulated rig position of zero travel \[m\].
     zero: f64,
 }
 
@@ -65,18 +65,18 @@ enum Side {
 }
 
 impl Mark10 {
-    /// A stand whose gauge shows the bench's force with this polarity, +1 or −1.
+    /// A stand whose gauge shows the emulated rig's force with this polarity, +1 or −1.
     #[must_use]
     pub fn new(polarity: f64) -> Self {
         Self {
             polarity,
             gauge: Mark10Gauge::new(polarity),
-            stand: Stand::default(),
+            emulator: Stand::default(),
         }
     }
 
-    fn byte(&mut self, byte: u8, bench: &mut Bench) -> String {
-        if let Some(command) = &mut self.stand.to_gauge {
+    fn byte(&mut self, byte: u8, rig: &mut EmulatedRig) -> String {
+        if let Some(command) = &mut self.emulator.to_gauge {
             let ended = matches!(byte, b'\r' | b'\n' | b'\\');
             if !ended && command.len() < 16 {
                 command.push(char::from(byte));
@@ -87,43 +87,43 @@ impl Mark10 {
                 String::new()
             };
             if byte == b'\\' {
-                self.stand.to_gauge = None;
+                self.emulator.to_gauge = None;
             }
             return if command.is_empty() {
                 String::new()
             } else {
-                self.gauge.command(&command, bench)
+                self.gauge.command(&command, rig)
             };
         }
-        if self.stand.begun.is_empty() {
+        if self.emulator.begun.is_empty() {
             match byte {
-                b'/' => self.stand.to_gauge = Some(String::new()),
-                b'e' | b'g' | b'h' => self.stand.begun.push(byte),
-                _ => return self.stand.letter(byte, bench),
+                b'/' => self.emulator.to_gauge = Some(String::new()),
+                b'e' | b'g' | b'h' => self.emulator.begun.push(byte),
+                _ => return self.emulator.letter(byte, rig),
             }
         } else {
-            self.stand.digit(byte);
+            self.emulator.digit(byte);
         }
         String::new()
     }
 }
 
 impl Stand {
-    fn letter(&mut self, letter: u8, bench: &mut Bench) -> String {
+    fn letter(&mut self, letter: u8, rig: &mut EmulatedRig) -> String {
         match letter {
-            b'u' => self.go(Side::Up, bench),
-            b'd' => self.go(Side::Down, bench),
-            b's' => bench.hold(),
+            b'u' => self.go(Side::Up, rig),
+            b'd' => self.go(Side::Down, rig),
+            b's' => rig.hold(),
             b'l' => self.limit_mode = true,
             b'm' => self.limit_mode = false,
             b'b' => self.inch = true,
             b'i' => self.inch = false,
             b'o' => self.use_set_speed = true,
-            b'z' => self.zero = bench.commanded(),
-            b'p' => return format!("{}\r\n", self.status(bench)),
-            b'v' => return self.said_limit(self.limits[1].unwrap_or(END_OF_TRAVEL)),
-            b'w' => return self.said_limit(self.limits[0].unwrap_or(-END_OF_TRAVEL)),
-            b'x' => return format!("{:.2}\r\n", self.travel(bench) / self.unit() * 1e3),
+            b'z' => self.zero = rig.commanded(),
+            b'p' => return format!("{}\r\n", self.status(rig)),
+            b'v' => return self.limit_text(self.limits[1].unwrap_or(END_OF_TRAVEL)),
+            b'w' => return self.limit_text(self.limits[0].unwrap_or(-END_OF_TRAVEL)),
+            b'x' => return format!("{:.2}\r\n", self.travel(rig) / self.unit() * 1e3),
             _ => {}
         }
         String::new()
@@ -168,7 +168,7 @@ impl Stand {
     }
 
     /// A limit \[m\] in the selected unit.
-    fn said_limit(&self, limit: f64) -> String {
+    fn limit_text(&self, limit: f64) -> String {
         format!("{:.2}\r\n", limit / self.unit() * 1e3)
     }
 
@@ -177,7 +177,7 @@ impl Stand {
         if self.inch { MILLIMETRES_PER_INCH } else { 1.0 }
     }
 
-    fn go(&self, side: Side, bench: &mut Bench) {
+    fn go(&self, side: Side, rig: &mut EmulatedRig) {
         let speed = if self.use_set_speed {
             self.set_speed
         } else {
@@ -190,32 +190,32 @@ impl Stand {
         let target = limit
             .filter(|_| self.limit_mode)
             .map_or(end, |limit| limit + self.zero);
-        let here = bench.commanded();
+        let here = rig.commanded();
         let ahead = if side == Side::Up {
             target > here
         } else {
             target < here
         };
         if ahead {
-            bench.go(target, speed);
+            rig.go(target, speed);
         } else {
-            bench.hold();
+            rig.hold();
         }
     }
 
     /// m
-    fn travel(&self, bench: &mut Bench) -> f64 {
+    fn travel(&self, rig: &mut EmulatedRig) -> f64 {
         let hundredth = 1e-5;
-        ((bench.displacement() - self.zero) / hundredth).round() * hundredth + 0.0
+        ((rig.displacement() - self.zero) / hundredth).round() * hundredth + 0.0
     }
 
-    fn status(&self, bench: &Bench) -> String {
-        let here = bench.commanded() - self.zero;
-        let left = bench
+    fn status(&self, rig: &EmulatedRig) -> String {
+        let here = rig.commanded() - self.zero;
+        let left = rig
             .moves()
             .last()
-            .filter(|_| bench.moving())
-            .map_or(0.0, |sent| sent.targets[0] - bench.commanded());
+            .filter(|_| rig.moving())
+            .map_or(0.0, |sent| sent.targets[0] - rig.commanded());
         let moving = if left > 0.0 {
             "U"
         } else if left < 0.0 {
@@ -235,22 +235,22 @@ impl Stand {
 }
 
 impl Firmware for Mark10 {
-    fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
+    fn receive(&mut self, bytes: &[u8], rig: &mut EmulatedRig) -> Vec<u8> {
         bytes
             .iter()
-            .flat_map(|byte| self.byte(*byte, bench).into_bytes())
+            .flat_map(|byte| self.byte(*byte, rig).into_bytes())
             .collect()
     }
 
-    fn tick(&mut self, bench: &mut Bench) -> Vec<u8> {
-        self.gauge.tick(bench)
+    fn tick(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
+        self.gauge.tick(rig)
     }
 
-    fn reboot(&mut self, bench: &mut Bench) -> Vec<u8> {
-        bench.hold();
+    fn reboot(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
+        rig.hold();
         *self = Self::new(self.polarity);
         // Travel is zero at the position of power-up.
-        self.stand.zero = bench.commanded();
+        self.emulator.zero = rig.commanded();
         Vec::new()
     }
 }
@@ -260,73 +260,76 @@ mod tests {
     use super::*;
     use crate::emulator::firmware::testing::spring;
 
-    fn said(stand: &mut Mark10, bench: &mut Bench, bytes: &[u8]) -> String {
-        String::from_utf8(stand.receive(bytes, bench)).unwrap()
+    fn reply_to(emulator: &mut Mark10, rig: &mut EmulatedRig, bytes: &[u8]) -> String {
+        String::from_utf8(emulator.receive(bytes, rig)).unwrap()
     }
 
     #[test]
     fn in_limit_mode_it_stops_exactly_at_the_limit() {
-        let (mut stand, mut bench) = (Mark10::new(1.0), spring());
+        let (mut emulator, mut rig) = (Mark10::new(1.0), spring());
         // 600 mm/min is 10 mm/s: 2.5 mm in a quarter of a second.
-        assert_eq!(said(&mut stand, &mut bench, b"ile0600.0oh002.50u"), "");
-        assert_eq!(said(&mut stand, &mut bench, b"p"), "UL\r\n");
-        bench.advance(0.1);
-        assert_eq!(said(&mut stand, &mut bench, b"xp"), "1.00\r\nUL\r\n");
-        bench.advance(3.0);
-        assert_eq!(said(&mut stand, &mut bench, b"xp"), "2.50\r\nSLUL\r\n");
+        assert_eq!(reply_to(&mut emulator, &mut rig, b"ile0600.0oh002.50u"), "");
+        assert_eq!(reply_to(&mut emulator, &mut rig, b"p"), "UL\r\n");
+        rig.advance(0.1);
+        assert_eq!(reply_to(&mut emulator, &mut rig, b"xp"), "1.00\r\nUL\r\n");
+        rig.advance(3.0);
+        assert_eq!(reply_to(&mut emulator, &mut rig, b"xp"), "2.50\r\nSLUL\r\n");
         assert_eq!(
-            said(&mut stand, &mut bench, b"ug-001.25dp"),
+            reply_to(&mut emulator, &mut rig, b"ug-001.25dp"),
             "DLUL\r\n",
             "still there"
         );
-        bench.advance(6.0);
-        assert_eq!(said(&mut stand, &mut bench, b"xp"), "-1.25\r\nSLDL\r\n");
-        assert_eq!(bench.targets(), [0.0025, -0.00125]);
-        assert!(bench.violations().is_empty());
+        rig.advance(6.0);
+        assert_eq!(
+            reply_to(&mut emulator, &mut rig, b"xp"),
+            "-1.25\r\nSLDL\r\n"
+        );
+        assert_eq!(rig.targets(), [0.0025, -0.00125]);
+        assert!(rig.violations().is_empty());
     }
 
     #[test]
-    fn the_set_speed_counts_only_when_told_to() {
-        let (mut stand, mut bench) = (Mark10::new(1.0), spring());
-        said(&mut stand, &mut bench, b"le0600.0h+005.00u");
-        bench.advance(6.0);
+    fn the_set_speed_counts_only_when_commanded() {
+        let (mut emulator, mut rig) = (Mark10::new(1.0), spring());
+        reply_to(&mut emulator, &mut rig, b"le0600.0h+005.00u");
+        rig.advance(6.0);
         // The panel's 10 mm/min.
-        assert_eq!(said(&mut stand, &mut bench, b"xsou"), "1.00\r\n");
-        bench.advance(6.2);
-        assert_eq!(said(&mut stand, &mut bench, b"xs"), "3.00\r\n");
-        bench.advance(9.0);
-        assert_eq!(said(&mut stand, &mut bench, b"xp"), "3.00\r\nSL\r\n");
+        assert_eq!(reply_to(&mut emulator, &mut rig, b"xsou"), "1.00\r\n");
+        rig.advance(6.2);
+        assert_eq!(reply_to(&mut emulator, &mut rig, b"xs"), "3.00\r\n");
+        rig.advance(9.0);
+        assert_eq!(reply_to(&mut emulator, &mut rig, b"xp"), "3.00\r\nSL\r\n");
     }
 
     #[test]
     fn in_manual_mode_nothing_stops_it_before_its_end() {
-        let (mut stand, mut bench) = (Mark10::new(1.0), spring());
-        said(&mut stand, &mut bench, b"h005.00up");
+        let (mut emulator, mut rig) = (Mark10::new(1.0), spring());
+        reply_to(&mut emulator, &mut rig, b"h005.00up");
         assert_eq!(
-            bench.violations(),
+            rig.violations(),
             [0.3],
             "who drives by hand must stop by hand"
         );
-        bench.advance(1.0);
-        assert_eq!(said(&mut stand, &mut bench, b"psp"), "UM\r\nSM\r\n");
+        rig.advance(1.0);
+        assert_eq!(reply_to(&mut emulator, &mut rig, b"psp"), "UM\r\nSM\r\n");
     }
 
     #[test]
     fn the_gauge_is_heard_between_the_slashes_only() {
-        let (mut stand, mut bench) = (Mark10::new(-1.0), spring());
-        said(&mut stand, &mut bench, b"le0600.0oh001.00u");
-        bench.advance(1.0);
+        let (mut emulator, mut rig) = (Mark10::new(-1.0), spring());
+        reply_to(&mut emulator, &mut rig, b"le0600.0oh001.00u");
+        rig.advance(1.0);
         assert_eq!(
-            said(&mut stand, &mut bench, b"/?\r\\x"),
+            reply_to(&mut emulator, &mut rig, b"/?\r\\x"),
             "-100.00 N\r\n1.00\r\n"
         );
-        assert_eq!(said(&mut stand, &mut bench, b"/?"), "");
+        assert_eq!(reply_to(&mut emulator, &mut rig, b"/?"), "");
         assert_eq!(
-            said(&mut stand, &mut bench, b"\\/u\\p"),
+            reply_to(&mut emulator, &mut rig, b"\\/u\\p"),
             "-100.00 N\r\n*10\r\nSLUL\r\n"
         );
         assert_eq!(
-            said(&mut stand, &mut bench, b"?\rn"),
+            reply_to(&mut emulator, &mut rig, b"?\rn"),
             "",
             "outside they are nothing to the stand"
         );
@@ -334,46 +337,49 @@ mod tests {
 
     #[test]
     fn travel_is_zeroed_and_inches_are_inches() {
-        let (mut stand, mut bench) = (Mark10::new(1.0), spring());
-        said(&mut stand, &mut bench, b"le0600.0oh002.00u");
-        bench.advance(1.0);
-        assert_eq!(said(&mut stand, &mut bench, b"zxp"), "0.00\r\nSL\r\n");
-        said(&mut stand, &mut bench, b"h001.00u");
-        bench.advance(2.0);
-        assert_eq!(said(&mut stand, &mut bench, b"x"), "1.00\r\n");
-        assert_eq!(bench.targets().last(), Some(&0.003));
+        let (mut emulator, mut rig) = (Mark10::new(1.0), spring());
+        reply_to(&mut emulator, &mut rig, b"le0600.0oh002.00u");
+        rig.advance(1.0);
+        assert_eq!(reply_to(&mut emulator, &mut rig, b"zxp"), "0.00\r\nSL\r\n");
+        reply_to(&mut emulator, &mut rig, b"h001.00u");
+        rig.advance(2.0);
+        assert_eq!(reply_to(&mut emulator, &mut rig, b"x"), "1.00\r\n");
+        assert_eq!(rig.targets().last(), Some(&0.003));
         assert_eq!(
-            said(&mut stand, &mut bench, b"bh001.00ux"),
+            reply_to(&mut emulator, &mut rig, b"bh001.00ux"),
             "0.04\r\n",
             "1 mm"
         );
-        assert!((bench.targets().last().unwrap() - 0.0274).abs() < 1e-12);
+        assert!((rig.targets().last().unwrap() - 0.0274).abs() < 1e-12);
     }
 
     #[test]
     fn its_limits_can_be_asked_for() {
-        let (mut stand, mut bench) = (Mark10::new(1.0), spring());
-        assert_eq!(said(&mut stand, &mut bench, b"vw"), "300.00\r\n-300.00\r\n");
+        let (mut emulator, mut rig) = (Mark10::new(1.0), spring());
         assert_eq!(
-            said(&mut stand, &mut bench, b"ilh002.50g-001.25vw"),
+            reply_to(&mut emulator, &mut rig, b"vw"),
+            "300.00\r\n-300.00\r\n"
+        );
+        assert_eq!(
+            reply_to(&mut emulator, &mut rig, b"ilh002.50g-001.25vw"),
             "2.50\r\n-1.25\r\n"
         );
     }
 
     #[test]
     fn a_broken_number_is_dropped_and_the_next_letter_is_heard() {
-        let (mut stand, mut bench) = (Mark10::new(1.0), spring());
-        assert_eq!(said(&mut stand, &mut bench, b"lh2.50"), "");
-        assert_eq!(said(&mut stand, &mut bench, b"p"), "SL\r\n");
-        assert_eq!(said(&mut stand, &mut bench, b"e0000.0oh000.10"), "");
-        said(&mut stand, &mut bench, b"u");
-        bench.advance(1.0);
+        let (mut emulator, mut rig) = (Mark10::new(1.0), spring());
+        assert_eq!(reply_to(&mut emulator, &mut rig, b"lh2.50"), "");
+        assert_eq!(reply_to(&mut emulator, &mut rig, b"p"), "SL\r\n");
+        assert_eq!(reply_to(&mut emulator, &mut rig, b"e0000.0oh000.10"), "");
+        reply_to(&mut emulator, &mut rig, b"u");
+        rig.advance(1.0);
         assert_eq!(
-            said(&mut stand, &mut bench, b"x"),
+            reply_to(&mut emulator, &mut rig, b"x"),
             "0.10\r\n",
             "a speed of nothing is not taken"
         );
-        stand.reboot(&mut bench);
-        assert_eq!(said(&mut stand, &mut bench, b"xp"), "0.00\r\nSM\r\n");
+        emulator.reboot(&mut rig);
+        assert_eq!(reply_to(&mut emulator, &mut rig, b"xp"), "0.00\r\nSM\r\n");
     }
 }

@@ -9,7 +9,7 @@
 mod frame;
 mod registers;
 
-use crate::emulator::{Bench, Firmware};
+use crate::emulator::{EmulatedRig, Firmware};
 use crate::plan::ModbusMap;
 use frame::{Assembler, Exception, Frame, reply};
 use registers::{decode, encode, width};
@@ -38,7 +38,7 @@ impl Modbus {
     }
 
     /// All registers, in any order: address and value.
-    fn registers(&self, bench: &mut Bench) -> Vec<(u16, u16)> {
+    fn registers(&self, rig: &mut EmulatedRig) -> Vec<(u16, u16)> {
         let map = self.map;
         let mut words = Vec::new();
         let mut number = |at: Option<u16>, value: f64| {
@@ -47,28 +47,28 @@ impl Modbus {
         };
         number(map.target, self.target.unwrap_or(0.0) / map.length_unit);
         number(map.speed, self.speed.unwrap_or(0.0) / map.speed_unit);
-        number(map.position, bench.displacement() / map.length_unit);
+        number(map.position, rig.displacement() / map.length_unit);
         if map.force.is_some() {
-            let force = bench.force() / map.force_unit;
+            let force = rig.force() / map.force_unit;
             // A fault can replace the ordinary number. A string that is not a number becomes NaN.
-            let shown = bench.shown(force.to_string()).parse().unwrap_or(f64::NAN);
+            let shown = rig.shown(force.to_string()).parse().unwrap_or(f64::NAN);
             number(map.force, shown);
         }
         words.extend(
             map.status
-                .map(|at| (at, if bench.moving() { map.moving_mask } else { 0 })),
+                .map(|at| (at, if rig.moving() { map.moving_mask } else { 0 })),
         );
         words.extend(map.command.map(|at| (at, self.command)));
         words
     }
 
-    fn answer(&mut self, frame: &Frame, bench: &mut Bench) -> Result<Vec<u8>, Exception> {
+    fn answer(&mut self, frame: &Frame, rig: &mut EmulatedRig) -> Result<Vec<u8>, Exception> {
         match *frame {
             Frame::Read { start, count, .. } => {
                 if !(1..=125).contains(&count) {
                     return Err(Exception::Value);
                 }
-                let registers = self.registers(bench);
+                let registers = self.registers(rig);
                 let word = |at: u32| {
                     registers
                         .iter()
@@ -90,7 +90,7 @@ impl Modbus {
                 ref words,
                 single,
             } => {
-                self.write(start, words, bench)?;
+                self.write(start, words, rig)?;
                 let second = if single {
                     words[0]
                 } else {
@@ -103,13 +103,13 @@ impl Modbus {
     }
 
     /// Writes consecutive registers. First it checks all values, then it writes all.
-    fn write(&mut self, start: u16, words: &[u16], bench: &mut Bench) -> Result<(), Exception> {
+    fn write(&mut self, start: u16, words: &[u16], rig: &mut EmulatedRig) -> Result<(), Exception> {
         let map = self.map;
         let (mut target, mut speed, mut command) = (None, None, None);
         let mut left = words;
         let mut at = start;
         while let Some(first) = left.first() {
-            let taken = if map.command == Some(at) {
+            let consumed = if map.command == Some(at) {
                 command = Some(*first);
                 1
             } else if map.target == Some(at) || map.speed == Some(at) {
@@ -132,11 +132,11 @@ impl Modbus {
                     Exception::Address
                 });
             };
-            left = &left[taken..];
-            at = at.wrapping_add(u16::try_from(taken).unwrap_or(1));
+            left = &left[consumed..];
+            at = at.wrapping_add(u16::try_from(consumed).unwrap_or(1));
         }
         if let Some(target) = target.filter(|target| !target.is_finite()) {
-            bench.refuse(target);
+            rig.refuse(target);
             return Err(Exception::Value);
         }
         if speed.is_some_and(|speed| !speed.is_finite()) {
@@ -147,60 +147,60 @@ impl Modbus {
         match (command, map.command) {
             (Some(word), _) => {
                 self.command = word;
-                self.obey(word, bench)
+                self.obey(word, rig)
             }
-            (None, None) if target.is_some() => self.start(bench),
+            (None, None) if target.is_some() => self.start(rig),
             _ => Ok(()),
         }
     }
 
-    fn obey(&self, word: u16, bench: &mut Bench) -> Result<(), Exception> {
+    fn obey(&self, word: u16, rig: &mut EmulatedRig) -> Result<(), Exception> {
         if word == self.map.stop_word {
-            bench.hold();
+            rig.hold();
         } else if word == self.map.start_word {
-            return self.start(bench);
+            return self.start(rig);
         }
         Ok(())
     }
 
-    fn start(&self, bench: &mut Bench) -> Result<(), Exception> {
+    fn start(&self, rig: &mut EmulatedRig) -> Result<(), Exception> {
         let speed = if self.map.speed.is_some() {
             self.speed
         } else {
-            Some(bench.settings().top_speed)
+            Some(rig.settings().top_speed)
         };
         match (self.target, speed) {
             (Some(target), Some(speed)) if speed > 0.0 => {
-                bench.go(target, speed);
+                rig.go(target, speed);
                 Ok(())
             }
             _ => Err(Exception::Failure),
         }
     }
 
-    fn answers(&mut self, frames: Vec<(u8, u8, Frame)>, bench: &mut Bench) -> Vec<u8> {
-        let mut said = Vec::new();
+    fn answers(&mut self, frames: Vec<(u8, u8, Frame)>, rig: &mut EmulatedRig) -> Vec<u8> {
+        let mut answer = Vec::new();
         let mine = self.map.unit;
         for (unit, function, frame) in frames.into_iter().filter(|(unit, ..)| *unit == mine) {
-            let body = self.answer(&frame, bench);
-            said.extend(reply(unit, function, body));
+            let body = self.answer(&frame, rig);
+            answer.extend(reply(unit, function, body));
         }
-        said
+        answer
     }
 }
 
 impl Firmware for Modbus {
-    fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
-        let frames = self.assembler.take(bytes, bench.time());
-        self.answers(frames, bench)
+    fn receive(&mut self, bytes: &[u8], rig: &mut EmulatedRig) -> Vec<u8> {
+        let frames = self.assembler.take(bytes, rig.time());
+        self.answers(frames, rig)
     }
 
-    fn tick(&mut self, _: &mut Bench) -> Vec<u8> {
+    fn tick(&mut self, _: &mut EmulatedRig) -> Vec<u8> {
         Vec::new()
     }
 
-    fn reboot(&mut self, bench: &mut Bench) -> Vec<u8> {
-        bench.hold();
+    fn reboot(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
+        rig.hold();
         *self = Self::new(self.map);
         Vec::new()
     }
@@ -234,51 +234,51 @@ mod tests {
     }
 
     /// Adds the checksum to a frame and sends it. Checks the checksum of the answer and returns the rest.
-    fn asked(drive: &mut Modbus, bench: &mut Bench, frame: &[u8]) -> Vec<u8> {
+    fn asked(drive: &mut Modbus, rig: &mut EmulatedRig, frame: &[u8]) -> Vec<u8> {
         let mut sent = frame.to_vec();
         sent.extend(checksum(frame).to_le_bytes());
-        let mut said = drive.receive(&sent, bench);
-        if !said.is_empty() {
-            let sum = said.split_off(said.len() - 2);
-            assert_eq!(sum, checksum(&said).to_le_bytes());
+        let mut answer = drive.receive(&sent, rig);
+        if !answer.is_empty() {
+            let sum = answer.split_off(answer.len() - 2);
+            assert_eq!(sum, checksum(&answer).to_le_bytes());
         }
-        said
+        answer
     }
 
     #[test]
     fn a_move_is_written_started_watched_and_stopped() {
-        let (mut drive, mut bench) = (Modbus::new(map()), spring());
+        let (mut drive, mut rig) = (Modbus::new(map()), spring());
         // 5000 µm, 250 × 10 µm/s, start: registers 10h to 12h in one write.
-        let said = asked(
+        let answer = asked(
             &mut drive,
-            &mut bench,
+            &mut rig,
             &[1, 16, 0, 0x10, 0, 3, 6, 0x13, 0x88, 0, 0xFA, 0, 1],
         );
-        assert_eq!(said, [1, 16, 0, 0x10, 0, 3]);
-        bench.advance(1.0);
+        assert_eq!(answer, [1, 16, 0, 0x10, 0, 3]);
+        rig.advance(1.0);
         // 2500 µm, 250 N in tenths, moving.
         assert_eq!(
-            asked(&mut drive, &mut bench, &[1, 3, 0, 0, 0, 3]),
+            asked(&mut drive, &mut rig, &[1, 3, 0, 0, 0, 3]),
             [1, 3, 6, 0x09, 0xC4, 0x09, 0xC4, 0, 4]
         );
         assert_eq!(
-            asked(&mut drive, &mut bench, &[1, 6, 0, 0x12, 0, 2]),
+            asked(&mut drive, &mut rig, &[1, 6, 0, 0x12, 0, 2]),
             [1, 6, 0, 0x12, 0, 2]
         );
-        bench.advance(5.0);
+        rig.advance(5.0);
         assert_eq!(
-            asked(&mut drive, &mut bench, &[1, 4, 0, 0, 0, 3]),
+            asked(&mut drive, &mut rig, &[1, 4, 0, 0, 0, 3]),
             [1, 4, 6, 0x09, 0xC4, 0x09, 0xC4, 0, 0]
         );
         // −1000 µm.
-        asked(&mut drive, &mut bench, &[1, 6, 0, 0x10, 0xFC, 0x18]);
-        asked(&mut drive, &mut bench, &[1, 6, 0, 0x12, 0, 1]);
-        bench.advance(9.0);
+        asked(&mut drive, &mut rig, &[1, 6, 0, 0x10, 0xFC, 0x18]);
+        asked(&mut drive, &mut rig, &[1, 6, 0, 0x12, 0, 1]);
+        rig.advance(9.0);
         assert_eq!(
-            asked(&mut drive, &mut bench, &[1, 4, 0, 0, 0, 1]),
+            asked(&mut drive, &mut rig, &[1, 4, 0, 0, 0, 1]),
             [1, 4, 2, 0xFC, 0x18]
         );
-        assert!(bench.violations().is_empty());
+        assert!(rig.violations().is_empty());
     }
 
     #[test]
@@ -295,7 +295,7 @@ mod tests {
             length_unit: 1e-3,
             ..map()
         };
-        let (mut drive, mut bench) = (
+        let (mut drive, mut rig) = (
             Modbus::new(ModbusMap {
                 command: None,
                 ..map
@@ -306,14 +306,14 @@ mod tests {
         assert_eq!(
             asked(
                 &mut drive,
-                &mut bench,
+                &mut rig,
                 &[1, 16, 0, 0x10, 0, 2, 4, 0, 0, 0x40, 0x20]
             ),
             [1, 16, 0, 0x10, 0, 2]
         );
-        bench.advance(1.0);
+        rig.advance(1.0);
         assert_eq!(
-            asked(&mut drive, &mut bench, &[1, 3, 0, 0, 0, 2]),
+            asked(&mut drive, &mut rig, &[1, 3, 0, 0, 0, 2]),
             [1, 3, 4, 0, 0, 0x40, 0x20]
         );
         // Half a number, its other half, and NaN (7FC0 0000).
@@ -322,14 +322,14 @@ mod tests {
             &[1, 6, 0, 0x11, 0, 1],
             &[1, 16, 0, 0x10, 0, 2, 4, 0, 0, 0x7F, 0xC0],
         ] {
-            assert_eq!(asked(&mut drive, &mut bench, bad), [1, bad[1] | 0x80, 3]);
+            assert_eq!(asked(&mut drive, &mut rig, bad), [1, bad[1] | 0x80, 3]);
         }
-        assert_eq!(bench.targets(), [0.0025]);
+        assert_eq!(rig.targets(), [0.0025]);
     }
 
     #[test]
-    fn exceptions_say_what_is_wrong() {
-        let (mut drive, mut bench) = (Modbus::new(map()), spring());
+    fn exceptions_state_the_error() {
+        let (mut drive, mut rig) = (Modbus::new(map()), spring());
         let cases: [(&[u8], u8, u8); 8] = [
             (&[1, 7], 0x87, 1),
             (&[1, 3, 0, 2, 0, 2], 0x83, 2),
@@ -343,28 +343,28 @@ mod tests {
         ];
         for (frame, function, code) in cases {
             assert_eq!(
-                asked(&mut drive, &mut bench, frame),
+                asked(&mut drive, &mut rig, frame),
                 [1, function, code],
                 "{frame:02X?}"
             );
         }
-        assert!(bench.targets().is_empty());
+        assert!(rig.targets().is_empty());
     }
 
     #[test]
     fn it_is_silent_on_a_broken_frame_and_on_one_for_another_unit() {
-        let (mut drive, mut bench) = (Modbus::new(map()), spring());
-        assert!(asked(&mut drive, &mut bench, &[2, 3, 0, 0, 0, 1]).is_empty());
+        let (mut drive, mut rig) = (Modbus::new(map()), spring());
+        assert!(asked(&mut drive, &mut rig, &[2, 3, 0, 0, 0, 1]).is_empty());
         let whole = [1, 3, 0, 0, 0, 2, 0xC4, 0x0B];
         for bit in 0..64 {
             let mut flipped = whole;
             flipped[bit / 8] ^= 1 << (bit % 8);
-            bench.advance(bench.time() + 1.0);
-            assert!(drive.receive(&flipped, &mut bench).is_empty(), "bit {bit}");
+            rig.advance(rig.time() + 1.0);
+            assert!(drive.receive(&flipped, &mut rig).is_empty(), "bit {bit}");
         }
-        bench.advance(bench.time() + 1.0);
+        rig.advance(rig.time() + 1.0);
         assert_eq!(
-            drive.receive(&whole, &mut bench).len(),
+            drive.receive(&whole, &mut rig).len(),
             9,
             "and heard again after a gap"
         );

@@ -3,7 +3,7 @@
 
 use super::NativeSettings;
 use super::frame::decimal;
-use crate::emulator::Bench;
+use crate::emulator::EmulatedRig;
 use crate::plan::Interval;
 
 /// Value that stands for an absent limit: mm and mm/s, N.
@@ -26,20 +26,24 @@ pub(super) struct AxisBounds {
 }
 
 impl Bounds {
-    /// The limits of the rig itself, as its bench and its settings state them.
-    pub(super) fn of_rig(settings: &NativeSettings, rams: &[usize], bench: &Bench) -> Self {
-        let axis = |(axis, ram): (usize, &usize)| {
-            let place = bench.limits_of(*ram);
+    /// The limits of the rig itself, as its emulated rig and its settings state them.
+    pub(super) fn of_rig(
+        settings: &NativeSettings,
+        actuators: &[usize],
+        rig: &EmulatedRig,
+    ) -> Self {
+        let axis = |(axis, actuator): (usize, &usize)| {
+            let position = rig.limits_of(*actuator);
             let own = settings.force_limits.get(axis).copied();
             let force = own.unwrap_or(Interval::ALL);
             AxisBounds {
-                displacement: (millimetres(place.low), millimetres(place.high)),
+                displacement: (millimetres(position.low), millimetres(position.high)),
                 force: (newtons(force.low), newtons(force.high)),
             }
         };
         Self {
-            axes: rams.iter().enumerate().map(axis).collect(),
-            top_speed: millimetres(bench.settings().top_speed),
+            axes: actuators.iter().enumerate().map(axis).collect(),
+            top_speed: millimetres(rig.settings().top_speed),
         }
     }
 }

@@ -2,7 +2,7 @@
 //! move, or the code of a refusal. The whole move is compared with the limits of the run before it begins.
 
 use super::{AxisBounds, Native, decimal, of_axis};
-use crate::emulator::{Bench, NoWay, WayEnd};
+use crate::emulator::{EmulatedRig, GlideRefusal, PathEnd};
 use crate::physics::tracking::trajectory::Path;
 
 /// Duration of the motion after a move without a successor \[s\]; then it holds.
@@ -17,7 +17,7 @@ impl Native {
         id: &str,
         ends: &[&str],
         time: &str,
-        bench: &mut Bench,
+        rig: &mut EmulatedRig,
     ) -> Result<f64, String> {
         let id: u64 = id.parse().ok().filter(|id| *id > 0).ok_or("ARG")?;
         let words: Option<Vec<f64>> = ends.iter().map(|word| decimal(word)).collect();
@@ -28,20 +28,20 @@ impl Native {
         if self.last_move.as_ref().is_some_and(|(last, _)| id <= *last) {
             return Err("ID".to_owned());
         }
-        let end = |pair: &[f64]| WayEnd {
-            place: pair[0] / 1e3,
+        let end = |pair: &[f64]| PathEnd {
+            position: pair[0] / 1e3,
             velocity: pair[1] / 1e3,
         };
-        let ends: Vec<WayEnd> = words.chunks_exact(2).map(end).collect();
+        let ends: Vec<PathEnd> = words.chunks_exact(2).map(end).collect();
         for (refused, code) in [(!self.referenced, "REF"), (self.held, "HELD")] {
             if refused {
                 return Err(code.to_owned());
             }
         }
         let seconds = time / 1e3;
-        let paths = bench.paths_to(&ends, seconds).map_err(|why| match why {
-            NoWay::Busy => "BUSY".to_owned(),
-            NoWay::Late => "LATE".to_owned(),
+        let paths = rig.paths_to(&ends, seconds).map_err(|why| match why {
+            GlideRefusal::Busy => "BUSY".to_owned(),
+            GlideRefusal::Late => "LATE".to_owned(),
         })?;
         let outside = |(axis, path): (&AxisBounds, &Path)| {
             let ((low, high), (least, most)) = (path.reach(), axis.displacement);
@@ -55,7 +55,7 @@ impl Native {
                     path.reach().0
                 }
             };
-            bench.refuse_all(&paths.iter().map(farthest).collect::<Vec<f64>>());
+            rig.refuse_all(&paths.iter().map(farthest).collect::<Vec<f64>>());
             return Err(of_axis("LIMIT", axis, paths.len()));
         }
         if !paths
@@ -65,20 +65,20 @@ impl Native {
             return Err("RATE".to_owned());
         }
         self.last_move = Some((id, words.chunks_exact(2).map(|pair| pair[0]).collect()));
-        Ok(bench.follow(Some(id), &paths, &ends, seconds))
+        Ok(rig.follow(Some(id), &paths, &ends, seconds))
     }
 
     /// After a move without a successor the motion continues for a short time, within its limits. Then it holds.
-    pub(super) fn coast(&mut self, bench: &mut Bench) {
-        let Some(gone_on) = bench.gone_on().filter(|_| self.has_all_of(bench)) else {
+    pub(super) fn coast(&mut self, rig: &mut EmulatedRig) {
+        let Some(gone_on) = rig.gone_on().filter(|_| self.has_all_of(rig)) else {
             return;
         };
-        let inside = |(ram, axis): (usize, &AxisBounds)| {
-            let (place, (low, high)) = (bench.commanded_of(ram) * 1e3, axis.displacement);
-            low - ROUNDING <= place && place <= high + ROUNDING
+        let inside = |(actuator, axis): (usize, &AxisBounds)| {
+            let (position, (low, high)) = (rig.commanded_of(actuator) * 1e3, axis.displacement);
+            low - ROUNDING <= position && position <= high + ROUNDING
         };
         if gone_on > GOES_ON || !self.run.axes.iter().enumerate().all(inside) {
-            self.hold(bench);
+            self.hold(rig);
         }
     }
 }

@@ -13,7 +13,7 @@ use rand::RngExt as _;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::SeedableRng as _;
 
-use crate::emulator::{Bench, Firmware};
+use crate::emulator::{EmulatedRig, Firmware};
 use crate::plan::Interval;
 use bounds::{AxisBounds, Bounds};
 #[cfg(test)]
@@ -26,12 +26,12 @@ const LONGEST_OF_SEVERAL: usize = 512;
 /// Maximum number of readings of one `MEAS`.
 const MOST_READINGS: usize = 1000;
 
-/// Settings of a native rig in addition to its bench.
+/// Settings of a native rig in addition to its emulated rig.
 #[derive(Clone, Debug)]
 pub struct NativeSettings {
     pub serial_number: String,
-    /// The indices of the actuators that are its axes; None: all of the bench.
-    pub rams: Option<Vec<usize>>,
+    /// The indices of the actuators that are its axes; None: all of the emulated rig.
+    pub actuators: Option<Vec<usize>>,
     /// One per axis \[N\]; an axis without an entry has no force limit.
     pub force_limits: Vec<Interval>,
     /// Communication time-out after which it holds \[s\].
@@ -44,7 +44,7 @@ impl Default for NativeSettings {
     fn default() -> Self {
         Self {
             serial_number: "0042".to_owned(),
-            rams: None,
+            actuators: None,
             force_limits: Vec::new(),
             watchdog: 3.0,
             boot: None,
@@ -57,7 +57,7 @@ impl Default for NativeSettings {
 pub struct Native {
     settings: NativeSettings,
     /// The index of the actuator of each axis.
-    rams: Vec<usize>,
+    actuators: Vec<usize>,
     generator: Pcg64,
     boot: u16,
     /// The received part of a line. A line that fills the buffer is not a frame.
@@ -78,16 +78,16 @@ pub struct Native {
 
 impl Native {
     #[must_use]
-    pub fn new(settings: NativeSettings, bench: &Bench) -> Self {
-        let mut generator = Pcg64::seed_from_u64(bench.settings().seed ^ 0xb007);
+    pub fn new(settings: NativeSettings, rig: &EmulatedRig) -> Self {
+        let mut generator = Pcg64::seed_from_u64(rig.settings().seed ^ 0xb007);
         let boot = settings.boot.unwrap_or_else(|| generator.random());
-        let rams = settings
-            .rams
+        let actuators = settings
+            .actuators
             .clone()
-            .unwrap_or_else(|| (0..bench.rams()).collect());
-        let own = Bounds::of_rig(&settings, &rams, bench);
+            .unwrap_or_else(|| (0..rig.actuators()).collect());
+        let own = Bounds::of_rig(&settings, &actuators, rig);
         Self {
-            rams,
+            actuators,
             settings,
             generator,
             boot,
@@ -103,36 +103,36 @@ impl Native {
         }
     }
 
-    fn hold(&mut self, bench: &mut Bench) {
-        self.stand_still(bench);
+    fn hold(&mut self, rig: &mut EmulatedRig) {
+        self.stand_still(rig);
         self.held = true;
     }
 
-    fn stand_still(&self, bench: &mut Bench) {
-        if self.has_all_of(bench) {
-            bench.hold();
+    fn stand_still(&self, rig: &mut EmulatedRig) {
+        if self.has_all_of(rig) {
+            rig.hold();
         } else {
-            bench.hold_those(&self.rams);
+            rig.hold_those(&self.actuators);
         }
     }
 
-    /// Whether it controls the whole bench. Otherwise another controller moves the rest, and it follows no smooth move.
-    const fn has_all_of(&self, bench: &Bench) -> bool {
-        self.rams.len() == bench.rams()
+    /// Whether it controls the whole emulated rig. Otherwise another controller moves the rest, and it follows no smooth move.
+    const fn has_all_of(&self, rig: &EmulatedRig) -> bool {
+        self.actuators.len() == rig.actuators()
     }
 
-    fn moves(&self, bench: &Bench) -> bool {
-        bench.any_moving(&self.rams)
+    fn moves(&self, rig: &EmulatedRig) -> bool {
+        rig.any_moving(&self.actuators)
     }
 
     /// Parses one line without its ending and returns the answer, if the line was a frame.
-    fn frame(&mut self, line: &[u8], bench: &mut Bench) -> Option<Vec<u8>> {
+    fn frame(&mut self, line: &[u8], rig: &mut EmulatedRig) -> Option<Vec<u8>> {
         let text = std::str::from_utf8(line.strip_prefix(b">")?).ok()?;
         let (body, stated) = text.rsplit_once('*')?;
         if stated != format!("{:04X}", crc(body.as_bytes())) {
             return None;
         }
-        self.heard = Some(bench.time());
+        self.heard = Some(rig.time());
         let mut words = body.split(' ');
         let verb = words.next()?;
         let sequence: u32 = words
@@ -148,7 +148,7 @@ impl Native {
                 _ => return Some(self.reply("ERR", sequence, "SEQ")),
             }
         }
-        let reply = match self.carry_out(verb, &arguments, bench) {
+        let reply = match self.carry_out(verb, &arguments, rig) {
             Ok((kind, words)) => self.reply(kind, sequence, &words),
             Err(code) => self.reply("ERR", sequence, &code),
         };
@@ -165,9 +165,9 @@ impl Native {
         &mut self,
         verb: &str,
         arguments: &[&str],
-        bench: &mut Bench,
+        rig: &mut EmulatedRig,
     ) -> Result<(&'static str, String), String> {
-        let axes = self.rams.len();
+        let axes = self.actuators.len();
         match (verb, arguments) {
             ("HELLO", []) => {
                 self.run = self.own.clone();
@@ -192,12 +192,12 @@ impl Native {
                 };
             }
             ("MOVE", [id, targets @ .., rate]) if targets.len() == axes => {
-                self.move_to(id, targets, rate, bench)?;
+                self.move_to(id, targets, rate, rig)?;
             }
-            ("GLIDE", _) if !self.has_all_of(bench) => return Err("VERB".to_owned()),
+            ("GLIDE", _) if !self.has_all_of(rig) => return Err("VERB".to_owned()),
             ("GLIDE", [id, ends @ .., time]) if ends.len() == 2 * axes => {
-                let left = self.glide(id, ends, time, bench)?;
-                return Ok(("ACK", format!("{} {:.3}", self.state(bench), left * 1e3)));
+                let left = self.glide(id, ends, time, rig)?;
+                return Ok(("ACK", format!("{} {:.3}", self.state(rig), left * 1e3)));
             }
             ("MEAS", [count]) => {
                 let count = count
@@ -205,15 +205,15 @@ impl Native {
                     .ok()
                     .filter(|count| (1..=MOST_READINGS).contains(count))
                     .ok_or("ARG")?;
-                return Ok(("DATA", self.measure(count, bench)));
+                return Ok(("DATA", self.measure(count, rig)));
             }
             ("STAT", []) => {
                 return Ok((
                     "ACK",
-                    format!("{} 0x{:04X}", self.state(bench), self.all_flags(bench)),
+                    format!("{} 0x{:04X}", self.state(rig), self.all_flags(rig)),
                 ));
             }
-            ("STOP", []) => self.hold(bench),
+            ("STOP", []) => self.hold(rig),
             ("CLR", []) => (self.held, self.watchdog_tripped) = (false, false),
             ("REF", [_]) => self.referenced = true,
             ("HELLO" | "LIM" | "MOVE" | "GLIDE" | "MEAS" | "STAT" | "STOP" | "CLR" | "REF", _) => {
@@ -221,7 +221,7 @@ impl Native {
             }
             _ => return Err("VERB".to_owned()),
         }
-        Ok(("ACK", self.state(bench).to_owned()))
+        Ok(("ACK", self.state(rig).to_owned()))
     }
 
     fn hello(&self) -> String {
@@ -257,7 +257,7 @@ impl Native {
         id: &str,
         targets: &[&str],
         rate: &str,
-        bench: &mut Bench,
+        rig: &mut EmulatedRig,
     ) -> Result<(), String> {
         let id: u64 = id.parse().ok().filter(|id| *id > 0).ok_or("ARG")?;
         let targets: Option<Vec<f64>> = targets.iter().map(|target| decimal(target)).collect();
@@ -281,8 +281,8 @@ impl Native {
             .zip(&targets)
             .position(|axis| !inside(axis))
         {
-            for (ram, target) in self.rams.iter().zip(&metres) {
-                bench.refuse_of(*ram, *target);
+            for (actuator, target) in self.actuators.iter().zip(&metres) {
+                rig.refuse_of(*actuator, *target);
             }
             return Err(of_axis("LIMIT", axis, targets.len()));
         }
@@ -290,63 +290,63 @@ impl Native {
             (!(0.0 < rate && rate <= self.run.top_speed), "RATE"),
             (!self.referenced, "REF"),
             (self.held, "HELD"),
-            (self.moves(bench), "BUSY"),
+            (self.moves(rig), "BUSY"),
         ];
         if let Some((_, code)) = refused.into_iter().find(|(refused, _)| *refused) {
             return Err(code.to_owned());
         }
         self.last_move = Some((id, targets));
-        bench.go_those(Some(id), &self.rams, &metres, rate / 1e3);
+        rig.go_those(Some(id), &self.actuators, &metres, rate / 1e3);
         Ok(())
     }
 }
 
 impl Firmware for Native {
-    fn receive(&mut self, bytes: &[u8], bench: &mut Bench) -> Vec<u8> {
-        let mut said = self.tick(bench);
-        let longest = if self.rams.len() > 1 {
+    fn receive(&mut self, bytes: &[u8], rig: &mut EmulatedRig) -> Vec<u8> {
+        let mut reply = self.tick(rig);
+        let longest = if self.actuators.len() > 1 {
             LONGEST_OF_SEVERAL
         } else {
             LONGEST
         };
         for byte in bytes {
             match byte {
-                b'!' => self.hold(bench),
+                b'!' => self.hold(rig),
                 b'\n' => {
                     let line = std::mem::take(&mut self.line);
                     if line.len() < longest {
-                        said.extend(self.frame(&line, bench).unwrap_or_default());
+                        reply.extend(self.frame(&line, rig).unwrap_or_default());
                     }
                 }
                 _ if self.line.len() < longest => self.line.push(*byte),
                 _ => {}
             }
         }
-        said
+        reply
     }
 
-    fn tick(&mut self, bench: &mut Bench) -> Vec<u8> {
-        self.coast(bench);
+    fn tick(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
+        self.coast(rig);
         if self
             .heard
-            .is_some_and(|heard| bench.time() - heard > self.settings.watchdog)
+            .is_some_and(|heard| rig.time() - heard > self.settings.watchdog)
             && !self.watchdog_tripped
         {
             self.watchdog_tripped = true;
-            self.hold(bench);
+            self.hold(rig);
         }
         Vec::new()
     }
 
-    fn reboot(&mut self, bench: &mut Bench) -> Vec<u8> {
-        self.stand_still(bench);
+    fn reboot(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
+        self.stand_still(rig);
         let was = self.boot;
         *self = Self::new(
             NativeSettings {
                 boot: None,
                 ..self.settings.clone()
             },
-            bench,
+            rig,
         );
         while self.boot == was {
             self.boot = self.generator.random();

@@ -8,7 +8,7 @@ use crate::plan::{Comparison, Condition, Requirement, Test};
 use crate::schema::procedures::impact_series::WHILE;
 use crate::units::Dimension;
 
-const PLACE: Context = Context {
+const REQUIREMENT: Context = Context {
     entry: None,
     reads: Reads::All,
     critical: false,
@@ -21,7 +21,7 @@ impl<'a> Checker<'a> {
             .map(|index| {
                 let declared = &self.scope.requirements[index];
                 let mut conditions = Vec::new();
-                self.conditions(declared.condition, PLACE, &mut conditions);
+                self.conditions(declared.condition, REQUIREMENT, &mut conditions);
                 let conditions = conditions.into_iter().collect::<Option<Vec<Condition>>>()?;
                 Some(Requirement {
                     label: declared.label.node.clone(),

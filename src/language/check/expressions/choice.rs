@@ -96,10 +96,10 @@ impl<'a> Checker<'a> {
         arguments: &'a [Argument],
         span: Span,
     ) -> Option<Chosen<'a>> {
-        let (placed, rest) = self.match_arguments(variant, arguments, span)?;
+        let (assigned, rest) = self.match_arguments(variant, arguments, span)?;
         Some(Chosen {
             variant,
-            arguments: placed,
+            arguments: assigned,
             rest,
         })
     }
@@ -110,7 +110,7 @@ impl<'a> Checker<'a> {
         arguments: &'a [Argument],
         span: Span,
     ) -> Option<(Vec<Option<&'a Expr>>, Vec<&'a Expr>)> {
-        let mut placed: Vec<Option<&'a Expr>> = vec![None; variant.arguments.len()];
+        let mut assigned: Vec<Option<&'a Expr>> = vec![None; variant.arguments.len()];
         let mut rest = Vec::new();
         let takes_many = variant
             .arguments
@@ -118,12 +118,12 @@ impl<'a> Checker<'a> {
             .is_some_and(|last| matches!(last.ty, FieldType::Inners));
         let mut faulty = false;
         for (index, argument) in arguments.iter().enumerate() {
-            if takes_many && argument.name.is_none() && index >= placed.len() {
+            if takes_many && argument.name.is_none() && index >= assigned.len() {
                 rest.push(&argument.value);
                 continue;
             }
             let position = match &argument.name {
-                None => Some(index).filter(|index| *index < placed.len()),
+                None => Some(index).filter(|index| *index < assigned.len()),
                 Some(name) => variant
                     .arguments
                     .iter()
@@ -142,7 +142,7 @@ impl<'a> Checker<'a> {
                 faulty = true;
                 continue;
             };
-            if let Some(first) = placed[position].replace(&argument.value) {
+            if let Some(first) = assigned[position].replace(&argument.value) {
                 let at = argument
                     .name
                     .as_ref()
@@ -158,14 +158,14 @@ impl<'a> Checker<'a> {
         if faulty {
             return None;
         }
-        for (field, given) in variant.arguments.iter().zip(&placed) {
+        for (field, given) in variant.arguments.iter().zip(&assigned) {
             if given.is_none() && field.need == Need::Required {
                 self.diagnostics
                     .push(message::missing_argument(variant, field, span));
                 faulty = true;
             }
         }
-        (!faulty).then_some((placed, rest))
+        (!faulty).then_some((assigned, rest))
     }
 
     /// A numeric argument, or its default. None if it has an error, or is omitted without a default.

@@ -190,7 +190,8 @@ impl<'a> Checker<'a> {
             return self.fail(values::no_such_entry(index.span, index_in_list, length));
         }
         if let Some(reference) = list.formula.as_result() {
-            self.taken.push((reference, index_in_list, index.span));
+            self.list_entries_read
+                .push((reference, index_in_list, index.span));
         }
         Some(Typed {
             shape: Shape::Number,

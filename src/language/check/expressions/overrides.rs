@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use crate::language::check::checker::{Checker, Context, Reads, Typed};
-use crate::language::check::messages::inputs::{self as message, NoPlace};
+use crate::language::check::messages::inputs::{self as message, NoInput};
 use crate::language::check::messages::{types, values};
 use crate::language::check::rig;
 use crate::language::check::scope::{Meaning, Scope, Setting};
@@ -16,7 +16,7 @@ use crate::units::Quantity;
 
 /// Where the plan writes the value of an input.
 #[derive(Clone, Copy)]
-pub enum Place<'a> {
+pub enum InputLocation<'a> {
     /// A `param`, as an index among the values.
     Parameter(usize),
     /// A field of a block, or an argument in the value of one.
@@ -29,29 +29,29 @@ pub enum Place<'a> {
 }
 
 /// The place of the input with this path.
-pub fn place<'a>(scope: &Scope<'a>, path: &[&str]) -> Result<Place<'a>, NoPlace> {
+pub fn find_input<'a>(scope: &Scope<'a>, path: &[&str]) -> Result<InputLocation<'a>, NoInput> {
     let (&owner, rest) = path.split_first().unwrap_or((&"", &[]));
     let block = match scope.meaning(owner) {
         Some(Meaning::Value(index)) if scope.values[index].keyword == "param" => {
             return match rest.first() {
-                None => Ok(Place::Parameter(index)),
-                Some(_) => Err(NoPlace::InsideANumber(owner.to_owned())),
+                None => Ok(InputLocation::Parameter(index)),
+                Some(_) => Err(NoInput::InsideANumber(owner.to_owned())),
             };
         }
-        Some(Meaning::Value(_)) => return Err(NoPlace::Let(owner.to_owned())),
+        Some(Meaning::Value(_)) => return Err(NoInput::Let(owner.to_owned())),
         Some(Meaning::Block(index)) => index,
-        Some(Meaning::Poisoned) => return Err(NoPlace::Reported),
-        None => return Err(NoPlace::Unknown(unknown(scope, owner))),
+        Some(Meaning::Poisoned) => return Err(NoInput::Reported),
+        None => return Err(NoInput::Unknown(unknown(scope, owner))),
     };
     let declared = &scope.blocks[block];
     let Some((&name, rest)) = rest.split_first() else {
-        return Err(NoPlace::Block {
+        return Err(NoInput::Block {
             name: owner.to_owned(),
             inputs: inputs_of(scope, block),
         });
     };
     let no_field = |reason: message::NoField| {
-        Err(NoPlace::NoField {
+        Err(NoInput::NoField {
             path: path.join("."),
             inputs: near(inputs_of(scope, block), path),
             reason,
@@ -79,7 +79,7 @@ pub fn place<'a>(scope: &Scope<'a>, path: &[&str]) -> Result<Place<'a>, NoPlace>
         at = at.and_then(|(field, written)| inside(field, written, &mut variants, name));
     }
     match at {
-        Some((field, written)) if is_number(field, written) => Ok(Place::Field {
+        Some((field, written)) if is_number(field, written) => Ok(InputLocation::Field {
             block,
             entry,
             field,
@@ -212,21 +212,21 @@ impl<'a> Checker<'a> {
     pub fn override_fields(&mut self, settings: &'a BTreeMap<String, Setting>) {
         for (name, setting) in settings.iter().filter(|(name, _)| name.contains('.')) {
             let path: Vec<&str> = name.split('.').collect();
-            match place(self.scope, &path) {
-                Ok(Place::Field { block, .. })
+            match find_input(self.scope, &path) {
+                Ok(InputLocation::Field { block, .. })
                     if self.scope.blocks[block].kind.kind == Kind::Rig
                         && rig::kind(self, block) == Some(RigKind::Real) =>
                 {
                     self.diagnostics.push(message::setting_of_a_real_rig(name));
                 }
-                Ok(Place::Field { written, .. }) => {
+                Ok(InputLocation::Field { written, .. }) => {
                     self.overrides
                         .insert(written.span, (name.as_str(), setting));
                 }
-                Ok(Place::Parameter(_)) => {}
+                Ok(InputLocation::Parameter(_)) => {}
                 Err(reason) => self
                     .diagnostics
-                    .push(message::setting_without_place(name, &reason)),
+                    .push(message::setting_without_input(name, &reason)),
             }
         }
     }

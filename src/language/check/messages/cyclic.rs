@@ -41,7 +41,7 @@ pub fn impact_on_moving_specimen(
     help: &str,
 ) -> Diagnostic {
     Diagnostic::new(
-        Code::BlowOnBlow,
+        Code::RepeatedImpact,
         format!(
             "loaded start: this {} begins where `{}` ended, under load and at rest",
             what.node, before.node
@@ -73,7 +73,7 @@ pub fn levels_do_not_rise(field: &str, span: Span) -> Diagnostic {
 
 pub fn condition_without_result(text: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
-        Code::ConditionWithoutBlow,
+        Code::ConditionWithoutImpact,
         format!("`{text}` reads no result of an impact: it is the same after every one"),
     )
     .at(span, "constant condition")

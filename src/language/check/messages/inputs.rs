@@ -5,7 +5,7 @@ use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::Span;
 
 /// Why a name is not an input of the plan.
-pub enum NoPlace {
+pub enum NoInput {
     Unknown(UnknownName),
     /// The name of a `let`.
     Let(String),
@@ -46,7 +46,7 @@ pub enum NoField {
     NotANumber,
 }
 
-impl NoPlace {
+impl NoInput {
     fn code(&self) -> Code {
         match self {
             Self::Unknown(_) => Code::UnknownName,
@@ -143,7 +143,7 @@ fn one_of_inputs(inputs: &[String]) -> String {
 }
 
 /// `--set beam.mas=2kg`
-pub fn setting_without_place(name: &str, reason: &NoPlace) -> Diagnostic {
+pub fn setting_without_input(name: &str, reason: &NoInput) -> Diagnostic {
     Diagnostic::new(
         Code::UnknownParameter,
         format!("`--set {name}`: {}", reason.message()),
@@ -161,8 +161,8 @@ pub fn setting_of_a_real_rig(name: &str) -> Diagnostic {
 }
 
 /// An entry of `vary`, or an intensity. None if it is reported elsewhere.
-pub fn no_input(reason: &NoPlace, span: Span) -> Option<Diagnostic> {
-    if matches!(reason, NoPlace::Reported) {
+pub fn no_input(reason: &NoInput, span: Span) -> Option<Diagnostic> {
+    if matches!(reason, NoInput::Reported) {
         return None;
     }
     Some(

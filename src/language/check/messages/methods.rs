@@ -84,9 +84,9 @@ pub fn read_apart(sweep: Span, link: Span, label: String) -> Diagnostic {
         .help("write a damping value, as in `damping = 6 N*s/m`, or use one `native` device for both readings")
 }
 
-pub fn stops_on_the_way(field: &str, span: Span, mode: Span) -> Diagnostic {
+pub fn stops_between_readings(field: &str, span: Span, mode: Span) -> Diagnostic {
     Diagnostic::new(
-        Code::StopsOnTheWay,
+        Code::StopsBetweenReadings,
         format!("`{field}` has no effect in continuous mode: the actuator never stops"),
     )
     .at(span, "requires a stop")

@@ -39,10 +39,10 @@ pub fn table_file(
     named_at: Span,
     help: &str,
 ) -> Diagnostic {
-    let place = row.map_or_else(String::new, |(line, text)| {
+    let line_text = row.map_or_else(String::new, |(line, text)| {
         format!(", line {line}, `{text}`")
     });
-    Diagnostic::new(Code::BadTableFile, format!("`{file}`{place}: {reason}"))
+    Diagnostic::new(Code::BadTableFile, format!("`{file}`{line_text}: {reason}"))
         .at(named_at, "the table")
         .help(help)
 }
@@ -60,7 +60,7 @@ pub fn breaks_counted_twice(breaks: Span, most: Span) -> Diagnostic {
 /// A backbone that descends before it yields.
 pub fn capped_before_yield(displacement: f64, yielded: f64, span: Span) -> Diagnostic {
     let [displacement, yielded] =
-        [displacement, yielded].map(|place| shown(place, Dimension::LENGTH));
+        [displacement, yielded].map(|value| shown(value, Dimension::LENGTH));
     Diagnostic::new(
         Code::CornersDoNotFit,
         format!("capping at {displacement} is before yield"),
@@ -138,7 +138,7 @@ pub fn missing_partner(given: &str, missing: &str, span: Span) -> Diagnostic {
 }
 
 /// Exactly one of two forms is required; `takes` names the owner and both forms, `example` shows one.
-pub fn one_way_only(takes: &str, example: &str, span: Span, given: usize) -> Diagnostic {
+pub fn one_form_only(takes: &str, example: &str, span: Span, given: usize) -> Diagnostic {
     let (label, help) = if given == 0 {
         (
             "neither is given",

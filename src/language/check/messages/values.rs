@@ -218,10 +218,10 @@ pub fn setting_out_of_range(
     .help(format!("write a value between {low} and {high}"))
 }
 
-pub fn no_such_entry(span: Span, place: usize, length: usize) -> Diagnostic {
+pub fn no_such_entry(span: Span, entry: usize, length: usize) -> Diagnostic {
     Diagnostic::new(
         Code::OutOfRange,
-        format!("the list has no entry {place}: its length is {length}"),
+        format!("the list has no entry {entry}: its length is {length}"),
     )
     .at(span, "past the end")
     .help(format!(
@@ -422,13 +422,13 @@ pub fn result_of_later_procedure(text: &str, span: Span, procedure: Span) -> Dia
     .help("move that procedure up: procedures run in the order written")
 }
 
-/// `read` is a ramp result that an expression reads, `lacks` why it never exists, `way_out` the remedy.
+/// `read` is a ramp result that an expression reads, `lacks` why it never exists, `help` the remedy.
 pub fn never_given(
     read: &str,
     span: Span,
     ramp: (&str, Span),
     lacks: &str,
-    way_out: &str,
+    help: &str,
 ) -> Diagnostic {
     Diagnostic::new(
         Code::NeverGiven,
@@ -436,7 +436,7 @@ pub fn never_given(
     )
     .at(span, "read here")
     .at(ramp.1, "from this ramp")
-    .help(way_out.to_owned())
+    .help(help.to_owned())
 }
 
 /// `result` is read by a requirement under the guarded rule, and never has an uncertainty.

@@ -22,7 +22,7 @@ pub fn check(
         count - axes.iter().filter(|axis| own(axis).is_some()).count()
     };
     let movers = |axis: &CheckedAxis| axis.actuator.is_some();
-    let (moved, weighed) = (
+    let (moved, measured) = (
         without(|axis| axis.actuator.as_ref()),
         without(|axis| axis.load_cell.as_ref()),
     );
@@ -38,7 +38,7 @@ pub fn check(
             device.dialect_at,
         ));
     }
-    if let Some(device) = unfit(|axis| axis.load_cell.as_ref(), Dialect::weighs) {
+    if let Some(device) = unfit(|axis| axis.load_cell.as_ref(), Dialect::measures_force) {
         return checker.fail(rigs::cannot_measure_force(
             true,
             schema::LOAD_CELL.name,
@@ -46,7 +46,7 @@ pub fn check(
             device.dialect_at,
         ));
     }
-    let idle = [(moved, Some(actuator)), (weighed, load_cell)]
+    let idle = [(moved, Some(actuator)), (measured, load_cell)]
         .into_iter()
         .find(|(left, device)| *left == 0 && device.is_some());
     if let Some((_, Some(device))) = idle {
@@ -79,11 +79,11 @@ pub fn check(
     for (behind, device) in driving {
         points(checker, behind, device)?;
     }
-    let weighing = load_cell
-        .map(|device| (weighed, device))
+    let load_cell_device = load_cell
+        .map(|device| (measured, device))
         .into_iter()
         .chain(own(|axis| axis.load_cell.as_ref()));
-    for (behind, device) in weighing {
+    for (behind, device) in load_cell_device {
         channels(checker, behind, device)?;
     }
     let cells = axes.iter().filter_map(|axis| axis.load_cell.as_ref());

@@ -286,7 +286,7 @@ fn virtual_link<'a>(
         tracking: tracking?,
         drift: drift?,
         seed,
-        foretold: None,
+        predicted: None,
     })
 }
 

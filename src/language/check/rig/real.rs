@@ -119,13 +119,20 @@ fn devices(
         schema::ACTUATOR.name
     };
     let moving = device_of(checker, block, field);
-    let weighing = match load_cell {
+    let load_cell_device = match load_cell {
         Some(_) => device_of(checker, block, schema::LOAD_CELL.name).map(Some),
         None => Some(None),
     };
-    let (moving, weighing) = (moving?, weighing?);
-    fit(checker, block, field, &moving, weighing.as_ref(), axes)?;
-    Some((moving, weighing))
+    let (moving, load_cell_device) = (moving?, load_cell_device?);
+    fit(
+        checker,
+        block,
+        field,
+        &moving,
+        load_cell_device.as_ref(),
+        axes,
+    )?;
+    Some((moving, load_cell_device))
 }
 
 fn device_of(checker: &mut Checker, block: usize, field: &str) -> Option<Device> {
@@ -141,7 +148,7 @@ fn fit(
     block: usize,
     field: &str,
     moving: &Device,
-    weighing: Option<&Device>,
+    load_cell_device: Option<&Device>,
     axes: &[CheckedAxis],
 ) -> Option<()> {
     if !moving.link.dialect.moves() {
@@ -151,10 +158,10 @@ fn fit(
             moving.dialect_at,
         ));
     }
-    let cell = weighing.unwrap_or(moving);
+    let cell = load_cell_device.unwrap_or(moving);
     let all_apart = !axes.is_empty() && axes.iter().all(|axis| axis.load_cell.is_some());
-    if !cell.link.dialect.weighs() && !all_apart {
-        let own = weighing.is_some();
+    if !cell.link.dialect.measures_force() && !all_apart {
+        let own = load_cell_device.is_some();
         return checker.fail(message::cannot_measure_force(
             own,
             field,

@@ -87,7 +87,7 @@ fn a_bound_plan_is_the_plan_of_the_same_settings() {
 }
 
 #[test]
-fn a_binding_takes_the_place_of_a_setting_and_leaves_the_others() {
+fn a_binding_replaces_a_setting_and_leaves_the_others() {
     let plan = parsed(&[("mass", "6 kg"), ("scale", "2")])
         .bind(&bound(&[("mass", 7.0, Dimension::MASS)]))
         .unwrap();

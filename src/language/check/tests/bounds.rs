@@ -3,7 +3,7 @@
 use super::{Files, checked};
 use crate::language::check::{DEEPEST_VALUES, MOST_TERMS};
 
-const BLOW: &str = "specimen beam {\n  mass = 1 kg\n  behaviour = elastic(stiffness: 300 N/m)\n}\n\
+const IMPACT: &str = "specimen beam {\n  mass = 1 kg\n  behaviour = elastic(stiffness: 300 N/m)\n}\n\
                     striker hammer {\n  mass = 10 kg\n  velocity = 1 m/s\n}\n\
                     impact hit {\n  striker = hammer\n  duration = 1 s\n}\n";
 
@@ -12,7 +12,7 @@ fn from_below(count: usize) -> String {
     let values = (1..count)
         .rev()
         .map(|value| format!("let a{value} = a{} + 1 mm\n", value - 1));
-    BLOW.to_owned()
+    IMPACT.to_owned()
         + &values.collect::<String>()
         + &format!(
             "let a0 = 1 mm\nrequire \"low\" hit.max_displacement < a{}\n",
@@ -23,7 +23,7 @@ fn from_below(count: usize) -> String {
 /// `let a1 = a0 + a0`, …, a0 a result: 2ⁿ⁺¹ − 1 terms after n doublings.
 fn doubled(doublings: usize) -> String {
     let values = (1..=doublings).map(|value| format!("let a{value} = a{0} + a{0}\n", value - 1));
-    BLOW.to_owned()
+    IMPACT.to_owned()
         + "let a0 = hit.max_displacement\n"
         + &values.collect::<String>()
         + &format!("require \"low\" a{doublings} < 1 km\n")
@@ -56,7 +56,7 @@ fn many(count: usize, each: impl Fn(usize) -> String) -> String {
 
 /// The output grows with the number of errors and not with its square: the labels and names of each are bounded, and so is a list of them.
 #[test]
-fn faults_are_counted_and_their_places_are_bounded() {
+fn errors_are_counted_and_their_spans_are_within_the_text() {
     let pair = |index: usize| {
         let specimen = format!(
             "specimen s{index} {{\n  mass      = 1 kg\n  behaviour = elastic(stiffness: 300 N/m)\n}}\n"

@@ -21,7 +21,7 @@ fn reported(more: &str) -> String {
 }
 
 #[test]
-fn each_fault_is_said_once_at_its_place() {
+fn each_error_is_reported_once_at_its_span() {
     let cases = [
         ("stifness ramp k { }", "E201 stifness ramp"),
         (
@@ -145,7 +145,7 @@ fn the_plan_as_a_whole_and_the_command_line() {
 }
 
 #[test]
-fn nothing_is_said_that_only_follows_from_another_fault() {
+fn no_follow_on_error_is_reported() {
     assert_eq!(
         reported("let a = 3 kq\nlet b = a + 2 mm\nmove m { to = b }"),
         "E204 kq"

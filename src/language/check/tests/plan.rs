@@ -129,7 +129,7 @@ fn the_whole_plan_of_the_reference_checks_to_si() {
 }
 
 #[test]
-fn a_setting_takes_the_place_of_the_parameter() {
+fn a_setting_replaces_the_parameter() {
     let (checked, reported) = checked(
         WHOLE,
         &Files(&[("lib/instron_frame.psd", FRAME)]),

@@ -81,7 +81,7 @@ fn one_device_with_all_defaults() {
 }
 
 #[test]
-fn two_devices_with_everything_said() {
+fn two_devices_with_everything_stated() {
     let rig = "actuator = serial(port: \"/dev/ttyUSB0\", dialect: grbl)\n\
         load_cell = serial(port: \"/dev/ttyUSB1\", baud: 9600, dialect: hx711, reply_timeout: 0.2 s, serial_number: \"A7\")\n\
         force_per_count = -0.0123 N\nzero_offset = -8123\npolarity = negative\nsafe_state = hold\nresolution = 1 um\nnoise = 2 N\n\

@@ -126,11 +126,14 @@ fn every_old_name_is_an_error_that_gives_the_present_one() {
 fn a_recorded_plan_with_old_names_is_the_plan_with_the_present_ones() {
     let (old, present) = (read(&written(true), true), read(&written(false), false));
     assert_eq!((errors(&old).len(), errors(&present).len()), (0, 0));
-    let said = |plan: Plan| {
+    let checked_plan = |plan: Plan| {
         let conditions = plan.requirements.iter().flat_map(|all| &all.conditions);
         let formulas: Vec<_> = conditions.flat_map(Condition::formulas).collect();
         let parts = (&plan.specimens, &plan.grounds, &plan.procedures);
         format!("{parts:?} {:?} {:?} {formulas:?}", plan.rig, plan.golden)
     };
-    assert_eq!(said(old.plan.unwrap()), said(present.plan.unwrap()));
+    assert_eq!(
+        checked_plan(old.plan.unwrap()),
+        checked_plan(present.plan.unwrap())
+    );
 }

@@ -72,14 +72,14 @@ fn impacts_on_moving_specimens(
                 continue;
             }
         };
-        if let Some((first, ended, way_out)) = before {
+        if let Some((first, ended, remedy)) = before {
             let (first, this) = (&checker.scope.blocks[first], &checker.scope.blocks[*block]);
             let name = first.name.map_or("", |name| name.node.as_str());
             let diagnostic = cyclic::impact_on_moving_specimen(
                 Spanned::new(what, this.block.head),
                 Spanned::new(name, first.block.head),
                 ended,
-                way_out,
+                remedy,
             );
             checker.diagnostics.push(diagnostic);
         }

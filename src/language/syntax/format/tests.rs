@@ -30,14 +30,14 @@ fn a_long_row_pushes_no_comment_out_of_sight() {
     let text = formatted(&format!(
         "plan \"P\" {{\n  customer = \"{name}\" # long\n  operator = \"A\" # short\n  revision = \"12\" # too\n}}\n"
     ));
-    let said = format!(
+    let line = format!(
         "  customer = \"{name}\"  # long\n  operator = \"A\"   # short\n  revision = \"12\"  # too\n"
     );
-    assert!(text.contains(&said), "{text}");
+    assert!(text.contains(&line), "{text}");
 }
 
 #[test]
-fn the_sample_plans_stand_in_columns() {
+fn the_sample_plans_are_aligned_in_columns() {
     let text = formatted(IMPACT);
     for line in [
         "  edition     = 1\n",

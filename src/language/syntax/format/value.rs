@@ -87,10 +87,10 @@ fn atoms<'a>(tokens: &Tokens<'a>, start: usize, end: usize) -> Vec<Atom<'a>> {
             }
             (Kind::Sign, ")" | "]") => {
                 let close = atoms.len();
-                if let Some(Role::Open { close: place, .. }) =
+                if let Some(Role::Open { close: closing, .. }) =
                     open.pop().map(|open| &mut atoms[open].role)
                 {
-                    *place = close;
+                    *closing = close;
                 }
                 (Role::Close, false, false, true)
             }

@@ -151,7 +151,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_word_fits_the_place_it_is_read_in() {
+    fn a_word_fits_its_context() {
         for (word, plain) in [
             ("hämmer", Some("hammer")),
             ("strіker", Some("striker")),

@@ -23,8 +23,8 @@ fn refused(text: &str, code: Code) {
     let start = processor_time();
     let (_, found, _) = read(text);
     // Not a measurement: these take well under a second, and would not end if parsing were not linear.
-    let taken = processor_time() - start;
-    assert!(taken < 60.0, "{taken} s for {} bytes", text.len());
+    let seconds = processor_time() - start;
+    assert!(seconds < 60.0, "{seconds} s for {} bytes", text.len());
     let codes: Vec<Code> = found.iter().map(|error| error.code).collect();
     assert!(codes.contains(&code), "{codes:?}");
 }

@@ -4,16 +4,20 @@ use super::{errors, outline, read};
 use crate::text::diagnostic::Code;
 use crate::text::diagnostic::Code::*;
 
-fn one(text: &str, code: Code, place: &str) {
-    assert_eq!(errors(text), [(code, place.to_owned())], "{text}");
+fn one(text: &str, code: Code, text_at_fault: &str) {
+    assert_eq!(errors(text), [(code, text_at_fault.to_owned())], "{text}");
 }
 
-fn field(value: &str, code: Code, place: &str) {
-    one(&format!("b {{\n  x = {value}\n  y = 2\n}}\n"), code, place);
+fn field(value: &str, code: Code, text_at_fault: &str) {
+    one(
+        &format!("b {{\n  x = {value}\n  y = 2\n}}\n"),
+        code,
+        text_at_fault,
+    );
 }
 
 #[test]
-fn syntax_errors_say_what_was_found_and_expected() {
+fn syntax_errors_state_what_was_found_and_expected() {
     field("", Syntax, "");
     field("1 kg 2", Syntax, "2");
     field("* 2", Syntax, "*");
@@ -131,7 +135,7 @@ fn numbers_are_decimal_with_digits_on_both_sides() {
 
 #[test]
 fn operators_keep_off_units() {
-    for (written, glued, mended) in [
+    for (written, glued, corrected) in [
         ("2 kg*3", "kg*3", "kg * 3"),
         ("2 kg*(x)", "kg*(x)", "kg * (x)"),
         ("2 kg*k0.mass", "kg*k0.mass", "kg * k0.mass"),
@@ -142,7 +146,7 @@ fn operators_keep_off_units() {
         field(written, UnitWithoutBlank, glued);
         let (_, found, _) = read(&format!("let x = {written}\n"));
         assert!(
-            found[0].help.as_ref().unwrap().contains(mended),
+            found[0].help.as_ref().unwrap().contains(corrected),
             "{:?}",
             found[0].help
         );
@@ -173,7 +177,7 @@ fn characters_that_hide_are_refused_and_shown() {
 /// Offsets stay those of the written text, and the text that is read is the one that was meant.
 #[test]
 fn what_only_looks_like_the_language_is_read_as_it_was_meant() {
-    for (written, meant, place) in [
+    for (written, meant, text_at_fault) in [
         ("b {\n  x\u{a0}= 1 kg\n}\n", "b\n  x = 1 kg\n", "\u{a0}"),
         ("b {\n  x = −1 kg\n}\n", "b\n  x = (- 1 kg)\n", "−"),
         ("b {\n  x = 2 × 3\n}\n", "b\n  x = (2 * 3)\n", "×"),
@@ -208,11 +212,11 @@ fn what_only_looks_like_the_language_is_read_as_it_was_meant() {
     ] {
         let (ast, found, sources) = read(written);
         assert_eq!(outline(&ast), meant, "{written}");
-        let places: Vec<&str> = found
+        let found_texts: Vec<&str> = found
             .iter()
             .map(|error| sources.text(error.span().unwrap()))
             .collect();
-        assert_eq!(places, [place], "{written}: {found:#?}");
+        assert_eq!(found_texts, [text_at_fault], "{written}: {found:#?}");
     }
     for sound in [
         "# “x” − //\nlet x = 1\n",
@@ -236,7 +240,7 @@ fn all_errors_of_a_file_are_found_at_once() {
     assert_eq!(
         errors(text)
             .iter()
-            .map(|(code, place)| (*code, place.as_str()))
+            .map(|(code, text_at_fault)| (*code, text_at_fault.as_str()))
             .collect::<Vec<_>>(),
         [
             (Syntax, "lib"),

@@ -210,7 +210,7 @@ fn spans_cover_the_whole_expression_and_no_blank() {
 }
 
 #[test]
-fn blocks_may_stand_on_one_line_and_lines_may_end_in_cr_lf() {
+fn a_block_can_be_on_one_line_and_lines_can_end_in_cr_lf() {
     let (ast, _) = sound(
         "a { }\r\nb {}\r\nlimits { force = 1 N .. 2 N } # why\r\nc {\r\n  x = 1\r\n  y = 2 }\r\n\r\n# end",
     );

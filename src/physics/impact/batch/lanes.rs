@@ -360,7 +360,7 @@ impl Lanes {
                 self.velocity[lane],
                 self.displacement[lane] >= self.max_displacement[lane],
             ),
-            last_blow_cut: stop_time.is_some() && self.contact_force[lane] > 0.0,
+            last_contact_cut: stop_time.is_some() && self.contact_force[lane] > 0.0,
         }
     }
 }

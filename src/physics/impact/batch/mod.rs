@@ -117,14 +117,14 @@ pub fn run(
     // Lanes differ in what their loop contains: yielding specimens, limited forces.
     let mut queues: [Vec<usize>; 4] = Default::default();
     let mut results: Vec<Option<Result<Batched, ImpactError>>> = Vec::new();
-    for (place, impact) in impacts.iter().enumerate() {
+    for (index, impact) in impacts.iter().enumerate() {
         let start = ImpactSolver::new(&impact.input, 0.0, 0.0);
         results.push(match (start, impact.lane_specimen(until)) {
             (Err(error), _) => Some(Err(error)),
             (Ok(_), Some(specimen)) if steps > 0 => {
                 let yields = matches!(specimen, LaneSpecimen::Bilinear(_));
                 let limited = impact.input.law != ContactLaw::Rigid;
-                queues[usize::from(yields) + 2 * usize::from(limited)].push(place);
+                queues[usize::from(yields) + 2 * usize::from(limited)].push(index);
                 None
             }
             (Ok(_), _) => Some(impact.run(until, steps)),
@@ -132,7 +132,7 @@ pub fn run(
     }
     let [plain, yielding, limited, both] = queues;
     let ends = until.is_some_and(|until| until == Until::StrikerStop);
-    let mut take = |place: usize, result| results[place] = Some(Ok(result));
+    let mut take = |index: usize, result| results[index] = Some(Ok(result));
     in_lanes::<false, false>(impacts, &plain, ends, steps, &mut take);
     in_lanes::<true, false>(impacts, &yielding, ends, steps, &mut take);
     in_lanes::<false, true>(impacts, &limited, ends, steps, &mut take);
@@ -156,22 +156,22 @@ fn is_finite(summary: &ImpactSummary) -> bool {
 /// Steps the impacts at these places, sixteen at a time.
 fn in_lanes<const YIELDS: bool, const LIMITED: bool>(
     impacts: &[Impact],
-    places: &[usize],
+    indices: &[usize],
     ends_at_stop: bool,
     steps: u64,
     take: &mut impl FnMut(usize, Batched),
 ) {
     let mut lanes = Lanes::new();
-    let mut waiting = places.iter().copied();
+    let mut waiting = indices.iter().copied();
     let mut running: [Option<usize>; LANES] = [None; LANES];
     let mut begin = |lanes: &mut Lanes, lane: usize| {
-        let place = waiting.next();
-        if let Some(place) = place {
-            lanes.begin(lane, &impacts[place]);
+        let index = waiting.next();
+        if let Some(index) = index {
+            lanes.begin(lane, &impacts[index]);
         } else {
             lanes.rest(lane);
         }
-        place
+        index
     };
     for (lane, running) in running.iter_mut().enumerate() {
         *running = begin(&mut lanes, lane);
@@ -183,14 +183,14 @@ fn in_lanes<const YIELDS: bool, const LIMITED: bool>(
             continue;
         }
         for (lane, running) in running.iter_mut().enumerate() {
-            if let Some(place) = *running
+            if let Some(index) = *running
                 && lanes.is_over(lane, ends_at_stop, last)
             {
                 let result = Batched {
-                    summary: lanes.summary(lane, &impacts[place].input),
+                    summary: lanes.summary(lane, &impacts[index].input),
                     reach: lanes.reach(lane),
                 };
-                take(place, result);
+                take(index, result);
                 *running = begin(&mut lanes, lane);
             }
         }

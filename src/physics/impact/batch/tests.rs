@@ -84,7 +84,7 @@ fn bits(Batched { summary, reach }: &Batched) -> Vec<Option<u64>> {
         whole(summary.striker_energy),
         whole(summary.energy_error),
         Some(u64::from(summary.still_rising)),
-        Some(u64::from(summary.last_blow_cut)),
+        Some(u64::from(summary.last_contact_cut)),
     ]
 }
 

@@ -286,11 +286,11 @@ fn damping(readings: &[Reading], velocities: &[f64]) -> f64 {
 }
 
 /// Weighted median; None for an empty list.
-fn weighted_median(weighed: &mut [(f64, f64)]) -> Option<f64> {
-    weighed.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
-    let half = 0.5 * weighed.iter().map(|(_, weight)| weight).sum::<f64>();
+fn weighted_median(weighted: &mut [(f64, f64)]) -> Option<f64> {
+    weighted.sort_unstable_by(|one, other| one.0.total_cmp(&other.0));
+    let half = 0.5 * weighted.iter().map(|(_, weight)| weight).sum::<f64>();
     let mut below = 0.0;
-    let found = weighed.iter().find(|(_, weight)| {
+    let found = weighted.iter().find(|(_, weight)| {
         below += weight;
         below >= half
     });
@@ -384,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_is_not_taken_for_damping() {
+    fn noise_is_not_counted_as_damping() {
         assert_eq!(
             read(
                 &mut Bilinear::new(BilinearCurve {

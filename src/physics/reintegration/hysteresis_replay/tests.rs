@@ -46,7 +46,7 @@ fn at_the_recorded_targets_the_recorded_readings_come_back_to_the_bit() {
 
 /// An elastic specimen stays elastic at all targets and past the end of the path.
 #[test]
-fn an_elastic_way_taken_off_its_targets_is_elastic() {
+fn an_elastic_path_off_its_targets_is_elastic() {
     let path = path(|x| 1000.0 * x, &TARGETS);
     let mut retrace = path.retrace(1);
     for (step, target) in (0..).zip(TARGETS.iter().chain(&[0.5, 0.6, -0.2])).skip(1) {
@@ -136,16 +136,16 @@ fn noise_makes_no_tangent() {
 
 /// Steps of `step` \[m\] from reversal to reversal.
 fn motion(turns: &[f64], step: f64) -> Vec<f64> {
-    let mut places = vec![turns[0]];
+    let mut positions = vec![turns[0]];
     for ends in turns.windows(2) {
         let count = ((ends[1] - ends[0]).abs() / step).round();
         let mut selected = 0.0;
         while selected < count {
             selected += 1.0;
-            places.push(ends[0] + (ends[1] - ends[0]) * selected / count);
+            positions.push(ends[0] + (ends[1] - ends[0]) * selected / count);
         }
     }
-    places
+    positions
 }
 
 fn recorded(mut model: impl RestoringForce, targets: &[f64]) -> RecordedPath {
@@ -182,7 +182,7 @@ const STEP: f64 = 2e-3;
 /// Every yield point has its correct position on the new path: exactly, if the record has a reading there. Between two recorded points a
 /// yield point is cut by K·step/4 at most. Where a loop closes, two curves may each have such a cut.
 #[test]
-fn elements_side_by_side_are_told_wherever_they_are_turned() {
+fn parallel_elements_are_identified_from_any_reversal() {
     let bilinear = || {
         Bilinear::new(BilinearCurve {
             stiffness: 1000.0,
@@ -250,7 +250,7 @@ fn turns_are_its_own() {
 
 /// Unloading where the record never unloaded: with the initial stiffness, and the departure is reported.
 #[test]
-fn a_turn_that_was_not_recorded_is_told() {
+fn an_unrecorded_reversal_is_reported() {
     let bilinear = || {
         Bilinear::new(BilinearCurve {
             stiffness: 1000.0,
@@ -284,7 +284,7 @@ fn swings(more: f64) -> Vec<f64> {
 /// Elements in parallel keep Masing's rule and never depart from their record. Specimens that pinch, degrade or follow the Bouc–Wen
 /// equation depart as soon as they reverse elsewhere. For an elastic specimen the rule has no effect.
 #[test]
-fn a_record_says_whether_it_keeps_masings_rule() {
+fn a_record_shows_whether_it_follows_masings_rule() {
     let pinching = SpecimenModel::new(&Behaviour::Pinching(Pinching {
         stiffness: 1000.0,
         yield_force: 200.0,

@@ -222,8 +222,8 @@ impl<M: TimeConstantModel> OverTimeConstant<'_, M> {
 
     /// The part of ∂R/∂τ that the linear parameters do not take up.
     fn projected(&self, by_tau: &[f64], tau: f64) -> Option<DVector<f64>> {
-        let taken_up = self.model.solve(by_tau, tau)?;
-        Some(self.model.left(by_tau, &taken_up, tau))
+        let fitted = self.model.solve(by_tau, tau)?;
+        Some(self.model.left(by_tau, &fitted, tau))
     }
 }
 

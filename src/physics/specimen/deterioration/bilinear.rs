@@ -211,13 +211,13 @@ mod tests {
     }
 
     /// Reversals of all kinds: elastic, yielding, before zero force, on either side, tiny.
-    fn ways() -> impl Iterator<Item = f64> {
-        let places = [
+    fn reversals() -> impl Iterator<Item = f64> {
+        let positions = [
             0.003, -0.002, 0.006, 0.001, 0.0055, -0.007, -0.004, -0.0065, 0.009, -0.012, 0.02,
             0.0201, 0.0, 1e-9,
         ];
         (0..200_u32).map(move |index| {
-            places[index as usize % places.len()] * (1.0 + 0.37 * f64::from(index % 11))
+            positions[index as usize % positions.len()] * (1.0 + 0.37 * f64::from(index % 11))
         })
     }
 
@@ -233,7 +233,7 @@ mod tests {
                 }),
                 spring(post_yield_ratio, NO_WEAR),
             );
-            for direction in ways() {
+            for direction in reversals() {
                 assert_eq!(
                     plain.move_to(direction).to_bits(),
                     degraded.move_to(direction).to_bits(),
@@ -264,8 +264,8 @@ mod tests {
             "it reloads with K"
         );
         assert!((model.move_to(-0.003) + weaker).abs() < 1e-9);
-        let taken = weaker * 0.007 - weaker * weaker / 1e6;
-        let forwards = 1000.0 * (1.0 - taken / (40.0 - 4.0 - taken));
+        let absorbed = weaker * 0.007 - weaker * weaker / 1e6;
+        let forwards = 1000.0 * (1.0 - absorbed / (40.0 - 4.0 - absorbed));
         assert!((model.move_to(0.003) - forwards).abs() < 1e-9);
     }
 
@@ -281,8 +281,8 @@ mod tests {
             },
         );
         assert!((model.move_to(0.005) - 1400.0).abs() < 1e-9);
-        let taken = 0.5 * 1.0 + 0.5 * (1.0 + 1.4) * 4.0 - 0.5 * 1.4 * 1.4;
-        let left = 1.0 - taken / (40.0 - taken);
+        let absorbed = 0.5 * 1.0 + 0.5 * (1.0 + 1.4) * 4.0 - 0.5 * 1.4 * 1.4;
+        let left = 1.0 - absorbed / (40.0 - absorbed);
         for displacement in [-0.004, -0.009] {
             let found = model.move_to(displacement);
             assert!(

@@ -40,11 +40,11 @@ fn strength_is_lost_by_the_energy_of_each_excursion() {
             && (model.move_to(-0.003) + weaker).abs() < 1e-9
     );
     let at_break = 0.32 * weaker;
-    let taken = 1e-3 * (0.5 * 4.0 * at_break + 0.5 * (at_break + weaker) + 2.0 * weaker)
+    let absorbed = 1e-3 * (0.5 * 4.0 * at_break + 0.5 * (at_break + weaker) + 2.0 * weaker)
         - 0.5 * weaker * weaker / 1e6;
     model.move_to(-0.003 + weaker / 1e6);
     model.move_to(0.005);
-    let forwards = 1000.0 * (1.0 - taken / (40.0 - 4.0 - taken));
+    let forwards = 1000.0 * (1.0 - absorbed / (40.0 - 4.0 - absorbed));
     let found = model.move_to(0.006);
     assert!(
         (found - forwards).abs() < 1e-9,
@@ -217,7 +217,7 @@ fn the_post_capping_line_moves_in() {
     );
 }
 
-const WAYS: [f64; 12] = [
+const REVERSALS: [f64; 12] = [
     0.003, -0.002, 0.006, 0.001, 0.0055, -0.007, -0.004, -0.0065, 0.009, -0.012, 0.02, 0.0,
 ];
 
@@ -238,7 +238,7 @@ fn without_a_capacity_nothing_wears() {
             deterioration: Some(NO_WEAR),
             ..plan
         });
-        for direction in WAYS {
+        for direction in REVERSALS {
             assert_eq!(
                 whole.move_to(direction).to_bits(),
                 unworn.move_to(direction).to_bits(),
@@ -270,9 +270,9 @@ fn modes_together_wear_it_out_within_its_capacity() {
         let (mut work, mut before) = (0.0, model.degradation);
         for cycle in 1..=60 {
             let amplitude = 1e-3 * (2.0 + 0.3 * f64::from(cycle));
-            let taken = energy_along(&mut model, 0.0, &[amplitude, -amplitude, 0.0], 1e-5);
-            assert!(taken >= 0.0, "cycle {cycle} gave back {taken} J");
-            work += taken;
+            let absorbed = energy_along(&mut model, 0.0, &[amplitude, -amplitude, 0.0], 1e-5);
+            assert!(absorbed >= 0.0, "cycle {cycle} gave back {absorbed} J");
+            work += absorbed;
             let now = model.degradation;
             let pairs = now
                 .strength

@@ -135,8 +135,8 @@ impl SymmetricBand {
             k <= self.half_bandwidth,
             "({row}, {column}) lies outside the band"
         );
-        let place = self.start(k) + row.min(column);
-        self.entries[place] = value;
+        let index = self.start(k) + row.min(column);
+        self.entries[index] = value;
     }
 
     /// Makes the band at least this wide.
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_symmetric_matrix_is_refused_with_its_place() {
+    fn an_asymmetric_matrix_is_refused_with_the_entry() {
         let mut rows = wide();
         rows[3][1] = 0.5;
         assert_eq!(

@@ -126,7 +126,7 @@ pub trait Matrix: Clone + Debug + PartialEq {
     #[must_use]
     fn at(&self, row: usize, column: usize) -> f64;
     /// Adds to a diagonal entry.
-    fn add_at(&mut self, place: usize, value: f64);
+    fn add_at(&mut self, index: usize, value: f64);
     fn become_copy(&mut self, other: &Self);
     fn multiply(&mut self, factor: f64);
     /// Adds `factor` times the other.
@@ -420,8 +420,8 @@ impl Matrix for SymmetricBand {
         self.entry(row, column)
     }
 
-    fn add_at(&mut self, place: usize, value: f64) {
-        self.band_mut(0)[place] += value;
+    fn add_at(&mut self, index: usize, value: f64) {
+        self.band_mut(0)[index] += value;
     }
 
     fn become_copy(&mut self, other: &Self) {
@@ -450,7 +450,7 @@ impl Matrix for SymmetricBand {
 
     fn quadratic(&self, x: &Vec<f64>, scratch: &mut Vec<f64>) -> f64 {
         if self.half_bandwidth() == 0 {
-            return tridiagonal::weighed(x, self.band(0));
+            return tridiagonal::weighted(x, self.band(0));
         }
         self.mul_into(x, scratch);
         tridiagonal::dot(scratch, x)

@@ -118,7 +118,7 @@ pub(crate) fn dot(x: &[f64], y: &[f64]) -> f64 {
 }
 
 /// xᵀ D x, D diagonal.
-pub(crate) fn weighed(x: &[f64], weights: &[f64]) -> f64 {
+pub(crate) fn weighted(x: &[f64], weights: &[f64]) -> f64 {
     let (x, weights) = (
         x.as_chunks::<LANES>(),
         weights[..x.len()].as_chunks::<LANES>(),

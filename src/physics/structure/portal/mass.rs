@@ -68,10 +68,10 @@ fn elastic_travel(portal: &Portal) -> Travel {
     let each = elastic_stiffnesses(portal.span, portal.height, bending(portal));
     let (on_beam, on_sway) = portal.loads.shares();
     let (deflection, sway) = (on_beam / each.beam, on_sway / each.sway);
-    let way = on_beam * deflection + on_sway * sway;
+    let work_travel = on_beam * deflection + on_sway * sway;
     Travel {
-        deflection: deflection / way,
-        sway: sway / way,
+        deflection: deflection / work_travel,
+        sway: sway / work_travel,
     }
 }
 
@@ -89,10 +89,10 @@ fn mechanism_travel(portal: &Portal) -> Travel {
         portal.height
     };
     let (on_beam, on_sway) = portal.loads.shares();
-    let way = on_beam * deflection + on_sway * sway;
+    let work_travel = on_beam * deflection + on_sway * sway;
     Travel {
-        deflection: deflection / way,
-        sway: sway / way,
+        deflection: deflection / work_travel,
+        sway: sway / work_travel,
     }
 }
 

@@ -155,7 +155,7 @@ impl Portal {
 
     /// The same portal with these masses.
     #[must_use]
-    pub const fn weighing(self, masses: Option<FrameMasses>) -> Self {
+    pub const fn with_masses(self, masses: Option<FrameMasses>) -> Self {
         Self { masses, ..self }
     }
 
@@ -169,12 +169,12 @@ impl Portal {
         let (on_beam, on_sway) = (beam * self.span / 2.0, sway * self.height);
         let Sections { beam, column } = self.plastic_moment;
         let corner = self.plastic_moment.corner();
-        let (hinges, way) = match mechanism {
+        let (hinges, work_travel) = match mechanism {
             Mechanism::Beam => (2.0 * (corner + beam), on_beam),
             Mechanism::Sway => (2.0 * (column + corner), on_sway),
             Mechanism::Combined => (2.0 * (column + beam + corner), on_beam + on_sway),
         };
-        hinges / way
+        hinges / work_travel
     }
 
     /// The mechanism with the smallest load, which governs.

@@ -45,7 +45,7 @@ struct Part {
     /// Load at the start \[N\].
     start: f64,
     /// Storey drift \[m\] and load \[N\] from which the slope is determined.
-    told_from: (f64, f64),
+    last_significant: (f64, f64),
     /// Noise of the load \[N\] and of the storey drift \[m\].
     noise: (f64, f64),
 }
@@ -58,13 +58,13 @@ impl UnloadingPath {
             force,
             resolution: displacement,
         } = noise;
-        let part = |expected: f64, told_from: (f64, f64), noise: (f64, f64)| Part {
+        let part = |expected: f64, last_significant: (f64, f64), noise: (f64, f64)| Part {
             expected,
             slope: expected,
             falls: false,
             moved: false,
-            start: told_from.1,
-            told_from,
+            start: last_significant.1,
+            last_significant,
             noise,
         };
         let parts = match unloading.storeys() {
@@ -181,7 +181,7 @@ impl UnloadingPath {
             let [before, after] = [from, to].map(|at| largest(at.force));
             let went = self.parts[0].moves(before);
             let part = &mut self.parts[0];
-            part.learn(part.told_from.0 + went, after);
+            part.learn(part.last_significant.0 + went, after);
         } else {
             for (part, (drift, shear)) in self.parts.iter_mut().zip(of_storeys(to)) {
                 part.learn(drift, shear);
@@ -211,7 +211,7 @@ impl Part {
 
     fn learn(&mut self, drift: f64, load: f64) {
         self.moved = true;
-        let (from, loaded) = self.told_from;
+        let (from, loaded) = self.last_significant;
         let went = drift - from;
         if went == 0.0
             || went.abs() <= NOISE_MULTIPLE * self.noise.1.max(self.noise.0 / self.expected)
@@ -221,7 +221,7 @@ impl Part {
         let slope =
             ((load - loaded) / went).clamp(self.expected / BELIEVED, BELIEVED * self.expected);
         (self.falls, self.slope) = (slope <= STIFFER * self.slope, slope);
-        self.told_from = (drift, load);
+        self.last_significant = (drift, load);
     }
 }
 
@@ -286,7 +286,7 @@ mod tests {
     /// First eight times as stiff as expected, or by the jump of a friction, then softer and softer: the path never passes zero load and
     /// always ends at the same position.
     #[test]
-    fn a_way_back_that_softens_is_never_passed() {
+    fn a_softening_unloading_branch_is_never_overshot() {
         let bends = |x: f64| {
             if x > 0.017 {
                 40.0 + 8e4 * (x - 0.017)
@@ -313,7 +313,7 @@ mod tests {
 
     /// A branch that stiffens as the load falls is not passed either, if its stiffest slope was expected.
     #[test]
-    fn a_way_back_that_stiffens_is_not_passed_by_its_stiffest_slope() {
+    fn a_stiffening_unloading_branch_is_not_overshot_by_its_stiffest_slope() {
         let path = followed(1e6, 5e-3, |x| {
             if x > 1e-3 {
                 1000.0 + 2.5e5 * (x - 1e-3)

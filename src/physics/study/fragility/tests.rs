@@ -97,7 +97,7 @@ fn runs_without_a_result_give_two_curves() {
 }
 
 #[test]
-fn a_study_that_no_curve_fits_says_why() {
+fn a_study_that_no_curve_fits_gives_the_reason() {
     let why = |stripes: &[Stripe]| Fit::new(stripes, NoResult::AsExceeded).err();
     assert_eq!(why(&[]), Some(NoFit::NoneExceeds));
     assert_eq!(

@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn a_half_width_is_reached_or_the_study_says_that_it_is_not() {
+    fn a_half_width_is_reached_or_the_study_reports_that_it_is_not() {
         let wide = study(&rule(Goal::HalfWidth(0.02), 100_000), 1, 0.1);
         assert!(wide.reached && wide.interval.half_width() <= 0.02);
         let narrow = rule(Goal::HalfWidth(1e-6), 1000);

@@ -45,9 +45,9 @@ impl Permutation {
     /// # Panics
     /// If there is no such place.
     #[must_use]
-    pub fn at(&self, place: u64) -> u64 {
-        assert!(place < self.count, "place {place} of {}", self.count);
-        self.rounds.iter().fold(place, |number, round| {
+    pub fn at(&self, run: u64) -> u64 {
+        assert!(run < self.count, "place {run} of {}", self.count);
+        self.rounds.iter().fold(run, |number, round| {
             let partner = if number <= round.sum {
                 round.sum - number
             } else {
@@ -77,14 +77,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_number_is_taken_once() {
+    fn every_number_is_used_once() {
         for count in [1, 2, 3, 4, 5, 16, 17, 1000, 4096, 10_000] {
             let permutation = Permutation::new(count, 99);
-            let mut taken = vec![false; usize::try_from(count).unwrap()];
-            for place in 0..count {
-                let number = usize::try_from(permutation.at(place)).unwrap();
-                assert!(!taken[number], "{number} of {count} twice");
-                taken[number] = true;
+            let mut used = vec![false; usize::try_from(count).unwrap()];
+            for run in 0..count {
+                let number = usize::try_from(permutation.at(run)).unwrap();
+                assert!(!used[number], "{number} of {count} twice");
+                used[number] = true;
             }
         }
     }
@@ -97,10 +97,10 @@ mod tests {
             let permutation = Permutation::new(5, mixed(1, key));
             let mut left: Vec<u64> = (0..5).collect();
             let mut index = 0;
-            for place in 0..5 {
+            for run in 0..5 {
                 let at = left
                     .iter()
-                    .position(|number| *number == permutation.at(place))
+                    .position(|number| *number == permutation.at(run))
                     .unwrap();
                 index = index * left.len() + at;
                 left.remove(at);

@@ -39,24 +39,24 @@ impl SobolSequence {
         Ok(Self { directions })
     }
 
-    /// The bits of a coordinate, in the upper bits of a word: point `place`, from 0.
-    fn bits(&self, mut place: u64, dimension: usize) -> u64 {
+    /// The bits of a coordinate, in the upper bits of a word: point `index`, from 0.
+    fn bits(&self, mut index: u64, dimension: usize) -> u64 {
         let directions = &self.directions[dimension];
         let mut bits = 0;
-        while place != 0 {
-            bits ^= directions[place.trailing_zeros() as usize];
-            place &= place - 1;
+        while index != 0 {
+            bits ^= directions[index.trailing_zeros() as usize];
+            index &= index - 1;
         }
         bits
     }
 
-    /// A coordinate of point `place`, under the scramble of this key: between 0 and 1, both excluded.
+    /// A coordinate of point `index`, under the scramble of this key: between 0 and 1, both excluded.
     ///
     /// # Panics
     /// If there is no such dimension, or from 2⁵² points.
     #[must_use]
-    pub fn scrambled(&self, place: u64, dimension: usize, key: u64) -> f64 {
-        unit_interval(scramble(self.bits(place, dimension), key))
+    pub fn scrambled(&self, index: u64, dimension: usize, key: u64) -> f64 {
+        unit_interval(scramble(self.bits(index, dimension), key))
     }
 }
 
@@ -75,7 +75,7 @@ fn scramble(bits: u64, key: u64) -> u64 {
 /// Of one dimension, by the recurrence of its polynomial (P. Bratley, B. L. Fox, ACM Trans. Math. Softw. 14 (1988) 88–100).
 fn direction_numbers(dimension: usize) -> [u64; BITS] {
     let mut numbers = [0; BITS];
-    let Some(row) = dimension.checked_sub(1).map(|place| ROWS[place]) else {
+    let Some(row) = dimension.checked_sub(1).map(|index| ROWS[index]) else {
         // The first dimension is van der Corput's sequence.
         return std::array::from_fn(|bit| 1 << (63 - bit));
     };
@@ -97,8 +97,8 @@ fn direction_numbers(dimension: usize) -> [u64; BITS] {
 mod tests {
     use super::*;
 
-    fn plain(sequence: &SobolSequence, place: u64, dimension: usize) -> f64 {
-        unit_interval(sequence.bits(place, dimension)) - f64::EPSILON / 2.0
+    fn plain(sequence: &SobolSequence, index: u64, dimension: usize) -> f64 {
+        unit_interval(sequence.bits(index, dimension)) - f64::EPSILON / 2.0
     }
 
     /// The first ten points in three dimensions, which Joe and Kuo publish with their program. They are in the order of Gray's code.
@@ -117,8 +117,8 @@ mod tests {
             [0.6875, 0.8125, 0.4375],
         ];
         let sequence = SobolSequence::new(3).unwrap();
-        for (place, point) in (0_u64..).zip(published) {
-            let found = [0, 1, 2].map(|dimension| plain(&sequence, place ^ place >> 1, dimension));
+        for (index, point) in (0_u64..).zip(published) {
+            let found = [0, 1, 2].map(|dimension| plain(&sequence, index ^ index >> 1, dimension));
             assert_eq!(found, point);
         }
     }
@@ -155,28 +155,28 @@ mod tests {
         let count = 256_u64;
         for key in 0..20 {
             for dimension in 0..MOST_INPUTS {
-                let mut taken = [false; 256];
-                for place in 0..count {
-                    let bits = scramble(sequence.bits(place, dimension), mixed(key, 1));
+                let mut used = [false; 256];
+                for index in 0..count {
+                    let bits = scramble(sequence.bits(index, dimension), mixed(key, 1));
                     assert!(!std::mem::replace(
-                        &mut taken[usize::try_from(bits >> 56).unwrap()],
+                        &mut used[usize::try_from(bits >> 56).unwrap()],
                         true
                     ));
                 }
             }
             for split in 0..=8 {
-                let mut taken = [false; 256];
-                for place in 0..count {
+                let mut used = [false; 256];
+                for index in 0..count {
                     let [first, second] = [0, 1].map(|dimension| {
                         scramble(
-                            sequence.bits(place, dimension),
+                            sequence.bits(index, dimension),
                             mixed(key, dimension as u64),
                         )
                     });
                     let cell = u128::from(first >> 32) >> (32 - split) << (8 - split)
                         | u128::from(second >> 32) >> (24 + split);
                     let cell = usize::try_from(cell).unwrap();
-                    assert!(!std::mem::replace(&mut taken[cell], true), "{split}");
+                    assert!(!std::mem::replace(&mut used[cell], true), "{split}");
                 }
             }
         }
@@ -191,7 +191,7 @@ mod tests {
         let mut products = 0.0;
         for key in 0..6400 {
             let [first, second] =
-                [0, 1].map(|place| sequence.scrambled(place, 1, mixed(11, key)) - 0.5);
+                [0, 1].map(|index| sequence.scrambled(index, 1, mixed(11, key)) - 0.5);
             counts
                 [usize::try_from(scramble(sequence.bits(5, 1), mixed(11, key)) >> 58).unwrap()] +=
                 1;
@@ -218,9 +218,9 @@ mod tests {
                 .map(|key| {
                     let keys = [mixed(5, 2 * key), mixed(5, 2 * key + 1)];
                     let sum: f64 = (0..u64::from(count))
-                        .map(|place| {
-                            sequence.scrambled(place, 0, keys[0])
-                                * sequence.scrambled(place, 1, keys[1])
+                        .map(|index| {
+                            sequence.scrambled(index, 0, keys[0])
+                                * sequence.scrambled(index, 1, keys[1])
                         })
                         .sum();
                     (sum / f64::from(count) - 0.25).powi(2)

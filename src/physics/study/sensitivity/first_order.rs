@@ -36,7 +36,7 @@ pub fn index(inputs: &[f64], results: &[f64], confidence: Confidence) -> Option<
     let middle = mean(results.iter().copied());
     let centred: Vec<f64> = order(inputs)
         .into_iter()
-        .map(|place| results[place] - middle)
+        .map(|run| results[run] - middle)
         .collect();
     let variance = mean(centred.iter().map(|y| y * y));
     if !(variance > 0.0 && variance.is_finite()) {

@@ -23,7 +23,7 @@ impl Index {
 
 /// The order of the values, the smallest first. Equal values stay in the order of their runs.
 fn order(values: &[f64]) -> Vec<usize> {
-    let mut places: Vec<usize> = (0..values.len()).collect();
-    places.sort_by(|first, second| values[*first].total_cmp(&values[*second]));
-    places
+    let mut indices: Vec<usize> = (0..values.len()).collect();
+    indices.sort_by(|first, second| values[*first].total_cmp(&values[*second]));
+    indices
 }

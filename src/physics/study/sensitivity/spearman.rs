@@ -49,13 +49,13 @@ fn ranks(values: &[f64]) -> Vec<f64> {
     while from < order.len() {
         let equal = order[from..]
             .iter()
-            .take_while(|place| values[**place] == values[order[from]])
+            .take_while(|index| values[**index] == values[order[from]])
             .count()
             .max(1);
         // The mean of the ranks from + 1 … from + equal.
         let rank = number(from as u64) + 0.5 * (number(equal as u64) + 1.0);
-        for place in &order[from..from + equal] {
-            ranks[*place] = rank;
+        for index in &order[from..from + equal] {
+            ranks[*index] = rank;
         }
         from += equal;
     }

@@ -108,14 +108,14 @@ fn the_lists_are_as_uncertain_as_the_numbers() {
             .unwrap()
             .entry_uncertainties()
     };
-    let told = |name: &str| number(&record, 0, name).1;
+    let reported = |name: &str| number(&record, 0, name).1;
     assert_eq!(
         listed("stiffnesses"),
-        [told("stiffness"), told("last_stiffness")]
+        [reported("stiffness"), reported("last_stiffness")]
     );
     assert_eq!(
         listed("damping_ratios")[1],
-        told("equivalent_damping_ratio")
+        reported("equivalent_damping_ratio")
     );
     let all = result_of(0, "energies");
     let sum = Formula::Call(Function::Sum, vec![all])
@@ -123,7 +123,7 @@ fn the_lists_are_as_uncertain_as_the_numbers() {
         .unwrap()
         .uncertainty
         .unwrap();
-    assert!((sum / told("dissipated_energy").unwrap() - 1.0).abs() < 1e-9);
+    assert!((sum / reported("dissipated_energy").unwrap() - 1.0).abs() < 1e-9);
     let amplitude = listed("amplitudes")[0].unwrap();
     assert!(
         (amplitude / (0.003 * 0.02) - 1.0).abs() < 1e-9,
@@ -217,11 +217,11 @@ fn what_the_points_of_a_loop_leave_open_is_in_its_uncertainty() {
             (found.unwrap() - ratio).abs() <= 2.0 * u.unwrap() + 1e-4 * ratio,
             "{points} points: {found:?} ± {u:?} of {ratio}"
         );
-        let told = record
+        let has_remark = record
             .events
             .iter()
             .any(|event| event.text.starts_with("few points"));
-        assert_eq!(told, few, "{points} points");
+        assert_eq!(has_remark, few, "{points} points");
     }
     assert!(last < 1e-4 * exact, "{last} J");
     // The default number loses 0.2 % at most.

@@ -120,12 +120,12 @@ fn storeys_damped_twice(checker: &mut Checker, block: usize, steps: &FrameSteps<
             .iter()
             .any(|ratio| ratio.constant().is_none_or(|ratio| ratio > 0.0)),
     };
-    let felt = steps
+    let is_measured = steps
         .frame
         .storeys
         .iter()
         .any(|storey| storey.damping > 0.0);
-    if computed && felt && matches!(steps.stepping.mode, Mode::Continuous { .. }) {
+    if computed && is_measured && matches!(steps.stepping.mode, Mode::Continuous { .. }) {
         let fields = [frames::DAMPING_RATIO.name, specimen::STOREYS.name];
         warn_of_damping_twice(checker, block, steps.specimen, fields);
     }

@@ -26,12 +26,12 @@ pub fn integrator(
             Integrator::Tangent
         });
     };
-    let place = checker.context_of(block, entry);
+    let context = checker.context_of(block, entry);
     let chosen = checker.choice(block, methods::INTEGRATOR.name)?;
     Some(match chosen.variant.name {
         "explicit" => Integrator::Explicit,
         "alpha_os" => Integrator::AlphaOs {
-            alpha: checker.constant_argument(&chosen, methods::ALPHA.name, place)?,
+            alpha: checker.constant_argument(&chosen, methods::ALPHA.name, context)?,
         },
         _ => Integrator::Tangent,
     })

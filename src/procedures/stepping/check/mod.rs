@@ -100,11 +100,11 @@ fn triggers(checker: &mut Checker, block: usize) -> Option<Vec<InspectTrigger>> 
     let Some((entry, _)) = checker.field(block, methods::INSPECT.name) else {
         return Some(Vec::new());
     };
-    let place = checker.context_of(block, entry);
+    let context = checker.context_of(block, entry);
     let chosen = checker.choices(block, methods::INSPECT.name)?;
     let triggers: Vec<Option<InspectTrigger>> = chosen
         .iter()
-        .map(|chosen| trigger(checker, chosen, place))
+        .map(|chosen| trigger(checker, chosen, context))
         .collect();
     triggers.into_iter().collect()
 }
@@ -112,19 +112,21 @@ fn triggers(checker: &mut Checker, block: usize) -> Option<Vec<InspectTrigger>> 
 fn trigger<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
-    place: Context,
+    context: Context,
 ) -> Option<InspectTrigger> {
     Some(match chosen.variant.name {
         "every" => InspectTrigger::Every(
             checker
-                .constant_argument(chosen, methods::STEPS_BETWEEN.name, place)
+                .constant_argument(chosen, methods::STEPS_BETWEEN.name, context)
                 .and_then(whole_number)?,
         ),
         "force_drop" => InspectTrigger::ForceDrop(checker.constant_argument(
             chosen,
             methods::FRACTION.name,
-            place,
+            context,
         )?),
-        _ => InspectTrigger::At(checker.constant_argument(chosen, methods::AT_TIME.name, place)?),
+        _ => {
+            InspectTrigger::At(checker.constant_argument(chosen, methods::AT_TIME.name, context)?)
+        }
     })
 }

@@ -16,12 +16,12 @@ pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
     let Some((entry, written)) = checker.field(block, methods::MODE.name) else {
         return Some(Mode::StepAndPause);
     };
-    let (place, at) = (checker.context_of(block, entry), written.value.span);
+    let (context, at) = (checker.context_of(block, entry), written.value.span);
     let chosen = checker.choice(block, methods::MODE.name)?;
     if chosen.variant.name == "ramp_and_hold" {
         return Some(Mode::StepAndPause);
     }
-    let time_scale = checker.constant_argument(&chosen, methods::TIME_SCALE.name, place)?;
+    let time_scale = checker.constant_argument(&chosen, methods::TIME_SCALE.name, context)?;
     if let Some(dialect) = checker
         .real_rig
         .and_then(|rig| stops_at_targets(checker, rig))
@@ -32,7 +32,7 @@ pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
         .into_iter()
         .find_map(|field| checker.field(block, field).map(|(_, entry)| (field, entry)));
     if let Some((field, entry)) = stops {
-        return checker.fail(fault::stops_on_the_way(field, entry.span, at));
+        return checker.fail(fault::stops_between_readings(field, entry.span, at));
     }
     Some(Mode::Continuous { time_scale })
 }
@@ -46,9 +46,9 @@ pub fn stops_at_targets<'a>(checker: &Checker<'a>, rig: usize) -> Option<&'a str
     let ExprKind::Call { arguments, .. } = &written.value.kind else {
         return None;
     };
-    let is_dialect = |(place, argument): &(usize, &Argument)| match &argument.name {
+    let is_dialect = |(index, argument): &(usize, &Argument)| match &argument.name {
         Some(name) => name.node == DIALECT.name,
-        None => *place == 1,
+        None => *index == 1,
     };
     let (_, dialect) = arguments.iter().enumerate().find(is_dialect)?;
     let word = match &dialect.value.kind {
@@ -68,8 +68,8 @@ pub fn damping_twice(
     specimen: Option<&Specimen>,
 ) {
     let computed = point.damping.constant().is_none_or(|damping| damping > 0.0);
-    let felt = specimen.is_some_and(|specimen| specimen.damping > 0.0);
-    if computed && felt && matches!(impact.stepping.mode, Mode::Continuous { .. }) {
+    let is_measured = specimen.is_some_and(|specimen| specimen.damping > 0.0);
+    if computed && is_measured && matches!(impact.stepping.mode, Mode::Continuous { .. }) {
         let fields = [impact::DAMPING.name, specimen::DAMPING.name];
         warn_of_damping_twice(checker, block, impact.specimen, fields);
     }

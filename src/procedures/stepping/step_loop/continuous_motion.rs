@@ -24,7 +24,7 @@ const BRAKING: f64 = 5.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Passing {
     /// \[m\]
-    pub place: f64,
+    pub position: f64,
     /// \[m/s\] of simulated time.
     pub velocity: f64,
     /// Whether a contact force contributes to the velocity.
@@ -42,11 +42,11 @@ pub(crate) struct Gliding {
 
 impl Gliding {
     /// From rest at these positions \[m\]; `time_step` in simulated time \[s\].
-    pub(crate) fn from_rest(places: &[f64], time_scale: f64, time_step: f64) -> Self {
-        let axes = places
+    pub(crate) fn from_rest(displacements: &[f64], time_scale: f64, time_step: f64) -> Self {
+        let axes = displacements
             .iter()
-            .map(|place| ActuatorMotion {
-                place: *place,
+            .map(|position| ActuatorMotion {
+                position: *position,
                 velocity: 0.0,
                 acceleration: 0.0,
             })
@@ -80,13 +80,13 @@ impl Gliding {
             let velocity = passing.velocity / self.time_scale;
             let gained = (velocity - axis.velocity) / self.step_time;
             *axis = ActuatorMotion {
-                place: passing.place,
+                position: passing.position,
                 velocity,
                 acceleration: if passing.struck { 0.0 } else { gained },
             };
             Path {
                 from: ahead.to,
-                to: passing.place,
+                to: passing.position,
                 start_velocity: ahead.end_velocity,
                 end_velocity: velocity,
                 seconds,

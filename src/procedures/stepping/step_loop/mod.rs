@@ -45,10 +45,10 @@ pub(crate) trait Stepped {
     fn predicted_velocity(&mut self, velocity: &mut [f64]) -> bool;
 
     /// Effective forces of the recursion at the start \[N\].
-    fn taken_at_start(&self, start: &Start) -> Vec<f64>;
+    fn effective_force_at_start(&self, start: &Start) -> Vec<f64>;
 
     /// Effective forces of the recursion at the targets of the last step \[N\].
-    fn taken(&self) -> Vec<f64>;
+    fn effective_force(&self) -> Vec<f64>;
 
     /// Ends the step with a reading.
     fn complete(&mut self, reading: &Reading);
@@ -87,7 +87,7 @@ pub(crate) fn run<S: Stepped>(
     let mut monitors = Monitors::new(
         &start.commanded,
         &start.reading,
-        &stepped.taken_at_start(&start),
+        &stepped.effective_force_at_start(&start),
     );
     let mut gliding = match plan.mode {
         Mode::Continuous { time_scale } => Some(Gliding::from_rest(
@@ -108,7 +108,7 @@ pub(crate) fn run<S: Stepped>(
             session.read_kept()?
         };
         stepped.complete(&reading);
-        let axes = monitors.take(stepped.axes().target, &reading, &stepped.taken());
+        let axes = monitors.take(stepped.axes().target, &reading, &stepped.effective_force());
         if let Some(stop) = broken {
             stepped.keep(&axes, session);
             return Err(stop);
@@ -147,14 +147,14 @@ pub(crate) fn run<S: Stepped>(
 
 /// The waypoint of each axis at the end of this step.
 fn passing(stepped: &mut impl Stepped) -> Vec<Passing> {
-    let places = stepped.predict();
-    let mut velocities = vec![0.0; places.len()];
+    let displacements = stepped.predict();
+    let mut velocities = vec![0.0; displacements.len()];
     let struck = stepped.predicted_velocity(&mut velocities);
-    places
+    displacements
         .into_iter()
         .zip(velocities)
-        .map(|(place, velocity)| Passing {
-            place,
+        .map(|(position, velocity)| Passing {
+            position,
             velocity,
             struck,
         })

@@ -17,7 +17,7 @@ pub(crate) fn table(fit: &MultilinearFit, reach: f64, body: &mut Vec<Block>) {
             with(*stiffness, Dimension::STIFFNESS),
             end.map_or_else(
                 || number::text(reach, Dimension::LENGTH).into(),
-                |(place, _)| with(*place, Dimension::LENGTH),
+                |(displacement, _)| with(*displacement, Dimension::LENGTH),
             ),
             end.map_or_else(
                 || number::text(fit.force(reach), Dimension::FORCE).into(),

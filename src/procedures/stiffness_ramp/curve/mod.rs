@@ -38,13 +38,13 @@ pub(crate) fn bends(points: &[(f64, f64)], line: &LineFit) -> Option<String> {
     let (x, r): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
     let fit = fit_multilinear(&x, &r, BreakCount::ByCriterion { most: 1 })
         .filter(|fit| fit.indistinct_breakpoints().is_empty())?;
-    let (place, _) = fit.breakpoints.first()?;
+    let (displacement, _) = fit.breakpoints.first()?;
     let ((first, _), (last, _)) = (fit.stiffnesses.first()?, fit.stiffnesses.last()?);
     let hidden = (last - first).abs() > HIDDEN * first.abs();
     (hidden && 1.0 - line.r_squared > MISSED).then(|| {
         format!(
             "the outward steps are nonlinear near {}: one straight line is a poor fit; use `fit = bilinear` or `fit = multilinear`",
-            readable(*place, Dimension::LENGTH)
+            readable(*displacement, Dimension::LENGTH)
         )
     })
 }
@@ -65,24 +65,24 @@ fn remarks(
             "no multilinear curve: {points} {what} are too few for a curve {wanted} (three points per segment and one more)"
         )];
     };
-    let mut told = Vec::new();
+    let mut texts = Vec::new();
     if fit.breakpoints.is_empty() {
-        told.push(format!(
+        texts.push(format!(
             "no breakpoint: by BIC one straight line is the best fit of the {what}"
         ));
     }
     if matches!(count, BreakCount::ByCriterion { most } if most > 1 && fit.breakpoints.len() == most)
     {
-        told.push(format!(
+        texts.push(format!(
             "BIC chose the largest allowed number of breakpoints ({}): the curve may be smooth",
             fit.breakpoints.len()
         ));
     }
-    told.extend(fit.indistinct_breakpoints().into_iter().map(|at| {
-        let place = readable(fit.breakpoints[at].0, Dimension::LENGTH);
-        format!("the breakpoint at {place} is weak in the {what}: its change of stiffness is less than twice its standard error")
+    texts.extend(fit.indistinct_breakpoints().into_iter().map(|at| {
+        let displacement = readable(fit.breakpoints[at].0, Dimension::LENGTH);
+        format!("the breakpoint at {displacement} is weak in the {what}: its change of stiffness is less than twice its standard error")
     }));
-    told
+    texts
 }
 
 /// The lists of a curve, in the order of the reference; empty without one.
@@ -105,14 +105,15 @@ pub(crate) fn lists(fit: Option<&MultilinearFit>) -> Vec<NamedResult> {
 
 /// The yield results of a curve, in the order of the reference: force, position, last stiffness, its ratio to the first.
 pub(crate) fn yielding(fit: Option<&MultilinearFit>) -> [NamedResult; 4] {
-    let told = |pair: (f64, f64)| (pair.0, Some(pair.1));
+    let with_error = |pair: (f64, f64)| (pair.0, Some(pair.1));
     let knee = fit.and_then(MultilinearFit::yield_point);
     let broken = fit.filter(|fit| !fit.breakpoints.is_empty());
     let last = broken.and_then(|fit| fit.stiffnesses.last()).copied();
     [
-        schema::YIELD_FORCE.found_with(knee.map(|[_, force]| told(force))),
-        schema::YIELD_DISPLACEMENT.found_with(knee.map(|[place, _]| told(place))),
-        schema::POST_YIELD_STIFFNESS.found_with(last.map(told)),
-        schema::POST_YIELD_RATIO.found_with(broken.map(|fit| told(fit.post_yield_ratio))),
+        schema::YIELD_FORCE.found_with(knee.map(|[_, force]| with_error(force))),
+        schema::YIELD_DISPLACEMENT
+            .found_with(knee.map(|[displacement, _]| with_error(displacement))),
+        schema::POST_YIELD_STIFFNESS.found_with(last.map(with_error)),
+        schema::POST_YIELD_RATIO.found_with(broken.map(|fit| with_error(fit.post_yield_ratio))),
     ]
 }

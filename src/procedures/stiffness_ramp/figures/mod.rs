@@ -95,13 +95,13 @@ fn curve(fit: &MultilinearFit, history: &RampHistory) -> Series {
             .filter(|step| !step.returning)
             .map(|step| step.displacement),
     );
-    let mut places: Vec<f64> = fit
+    let mut displacements: Vec<f64> = fit
         .breakpoints
         .iter()
-        .map(|(place, _)| *place)
+        .map(|(displacement, _)| *displacement)
         .chain([low, high])
         .collect();
-    places.sort_by(f64::total_cmp);
+    displacements.sort_by(f64::total_cmp);
     let stiffness = number::with_uncertainty(
         fit.stiffnesses[0].0,
         Some(fit.stiffnesses[0].1),
@@ -114,7 +114,10 @@ fn curve(fit: &MultilinearFit, history: &RampHistory) -> Series {
     };
     Series {
         label,
-        points: places.into_iter().map(|x| (x, fit.force(x))).collect(),
+        points: displacements
+            .into_iter()
+            .map(|x| (x, fit.force(x)))
+            .collect(),
         style: Style {
             marker: Some(Marker::Ring(5.0)),
             ..Style::line(palette::VERMILION, 1.8, SOLID)

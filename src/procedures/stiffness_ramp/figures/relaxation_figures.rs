@@ -59,9 +59,9 @@ pub(crate) fn lost(holds: &[Hold], fit: &SuperpositionFit) -> Chart {
         }
     }
     for (order, index) in chosen.iter().enumerate() {
-        let place = number::text(holds[*index].displacement, Dimension::LENGTH);
+        let displacement = number::text(holds[*index].displacement, Dimension::LENGTH);
         series.push(Series {
-            label: format!("dwell at {place}"),
+            label: format!("dwell at {displacement}"),
             points: holds[*index]
                 .readings
                 .iter()
@@ -120,9 +120,9 @@ pub(crate) fn left(history: &RampHistory, fit: &RelaxationFit) -> Chart {
     }
     for (order, index) in chosen.iter().enumerate() {
         let hold = &history.holds[*index];
-        let place = number::text(hold.displacement, Dimension::LENGTH);
+        let displacement = number::text(hold.displacement, Dimension::LENGTH);
         series.push(Series {
-            label: format!("dwell at {place}"),
+            label: format!("dwell at {displacement}"),
             points: hold
                 .readings
                 .iter()

@@ -12,7 +12,7 @@ use super::super::{Durability, EntryKind, Journal, Storage, recover};
 use super::{FileFault, FileStorage, ballast, write_whole};
 use crate::record::failpoint::{Guarding, without};
 
-fn place() -> (TempDir, PathBuf) {
+fn new_journal() -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("journal");
     (folder, path)
@@ -36,7 +36,7 @@ fn names(folder: &TempDir) -> Vec<String> {
 
 #[test]
 fn a_run_leaves_one_private_file() {
-    let (folder, path) = place();
+    let (folder, path) = new_journal();
     let mut journal = begun(&path);
     journal.sync_point().unwrap();
     assert_eq!(names(&folder), ["journal", "journal.reserve"]);
@@ -58,7 +58,7 @@ fn a_run_leaves_one_private_file() {
 
 #[test]
 fn the_second_on_one_path_is_refused() {
-    let (_folder, path) = place();
+    let (_folder, path) = new_journal();
     let first = FileStorage::create(&path).unwrap();
     let refused = FileStorage::open_existing(&path).unwrap_err();
     assert_eq!(
@@ -80,7 +80,7 @@ fn the_second_on_one_path_is_refused() {
 
 #[test]
 fn nothing_is_written_over_and_nothing_but_a_file_is_opened() {
-    let (folder, path) = place();
+    let (folder, path) = new_journal();
     fs::write(&path, "a letter").unwrap();
     assert!(
         matches!(FileStorage::create(&path), Err(FileFault::System { error, .. }) if error.kind() == ErrorKind::AlreadyExists)
@@ -113,7 +113,7 @@ fn nothing_is_written_over_and_nothing_but_a_file_is_opened() {
 
 #[test]
 fn a_torn_end_is_put_aside_and_the_journal_goes_on() {
-    let (folder, path) = place();
+    let (folder, path) = new_journal();
     drop(begun(&path));
     for round in 1..3 {
         let whole = fs::read(&path).unwrap();
@@ -144,7 +144,7 @@ fn a_torn_end_is_put_aside_and_the_journal_goes_on() {
 
 #[test]
 fn the_reserve_is_there_while_the_journal_is_open_whatever_a_killed_run_left() {
-    let (folder, path) = place();
+    let (folder, path) = new_journal();
     drop(begun(&path));
     assert_eq!(names(&folder), ["journal"]);
     let reserve = ballast::path(&path);
@@ -167,7 +167,7 @@ fn the_reserve_is_there_while_the_journal_is_open_whatever_a_killed_run_left() {
 
 #[test]
 fn a_create_without_room_for_the_reserve_leaves_nothing() {
-    let (folder, path) = place();
+    let (folder, path) = new_journal();
     // A folder instead of the reserve file; it is not removed as a file would be.
     fs::create_dir(ballast::path(&path)).unwrap();
     assert!(matches!(
@@ -179,7 +179,7 @@ fn a_create_without_room_for_the_reserve_leaves_nothing() {
 
 #[test]
 fn reading_back_is_bounded() {
-    let (_folder, path) = place();
+    let (_folder, path) = new_journal();
     let mut storage = FileStorage::create(&path).unwrap();
     storage.append(b"0123456789").unwrap();
     assert_eq!(storage.contents_up_to(10).unwrap(), b"0123456789");
@@ -198,7 +198,7 @@ fn reading_back_is_bounded() {
 
 #[test]
 fn a_cut_never_makes_the_file_longer() {
-    let (_folder, path) = place();
+    let (_folder, path) = new_journal();
     let mut storage = FileStorage::create(&path).unwrap();
     storage.append(b"0123456789").unwrap();
     storage.cut(4).unwrap();
@@ -210,7 +210,7 @@ fn a_cut_never_makes_the_file_longer() {
 
 /// Accepts a few bytes at a time, is interrupted before each part, and accepts none at the end.
 struct Reluctant {
-    taken: Vec<u8>,
+    written: Vec<u8>,
     calls: usize,
     most: usize,
 }
@@ -221,12 +221,12 @@ impl Write for Reluctant {
         if !self.calls.is_multiple_of(3) {
             return Err(ErrorKind::Interrupted.into());
         }
-        let taken = bytes
+        let written = bytes
             .len()
             .min(1 + self.calls % 5)
-            .min(self.most - self.taken.len());
-        self.taken.extend_from_slice(&bytes[..taken]);
-        Ok(taken)
+            .min(self.most - self.written.len());
+        self.written.extend_from_slice(&bytes[..written]);
+        Ok(written)
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -238,14 +238,14 @@ impl Write for Reluctant {
 fn short_and_interrupted_writes_lose_and_double_nothing() {
     let bytes: Vec<u8> = (0..=255).cycle().take(1000).collect();
     let mut out = Reluctant {
-        taken: Vec::new(),
+        written: Vec::new(),
         calls: 0,
         most: usize::MAX,
     };
     write_whole(&mut out, &bytes).unwrap();
-    assert_eq!(out.taken, bytes);
+    assert_eq!(out.written, bytes);
     let mut full = Reluctant {
-        taken: Vec::new(),
+        written: Vec::new(),
         calls: 0,
         most: 500,
     };
@@ -253,5 +253,5 @@ fn short_and_interrupted_writes_lose_and_double_nothing() {
         write_whole(&mut full, &bytes).unwrap_err().kind(),
         ErrorKind::WriteZero
     );
-    assert_eq!(full.taken, bytes[..500]);
+    assert_eq!(full.written, bytes[..500]);
 }

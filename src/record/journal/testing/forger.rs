@@ -15,13 +15,13 @@ pub(crate) fn records(journal: &[u8]) -> Vec<(EntryKind, Value)> {
 /// The run log of these entries: numbers, count, chain and checksums are correct.
 pub(crate) fn written(records: impl IntoIterator<Item = (EntryKind, Value)>) -> Vec<u8> {
     let (mut out, mut chain) = (Vec::new(), Chain::START);
-    for ((kind, mut said), seq) in records.into_iter().zip(1_u64..) {
-        if kind == EntryKind::End && said.is_object() {
-            (said["count"], said["head"]) = (json!(seq - 1), json!(chain.as_str()));
+    for ((kind, mut body), seq) in records.into_iter().zip(1_u64..) {
+        if kind == EntryKind::End && body.is_object() {
+            (body["count"], body["head"]) = (json!(seq - 1), json!(chain.as_str()));
         }
         let start = out.len();
         line::open(&mut out, seq, kind);
-        body::write(&mut out, &said).expect("a record");
+        body::write(&mut out, &body).expect("a record");
         chain = line::close(&mut out, start, &chain);
     }
     out
@@ -29,9 +29,9 @@ pub(crate) fn written(records: impl IntoIterator<Item = (EntryKind, Value)>) -> 
 
 /// The run log with each body altered by `alter`.
 pub(crate) fn forged(journal: &[u8], mut alter: impl FnMut(EntryKind, &mut Value)) -> Vec<u8> {
-    let altered = records(journal).into_iter().map(|(kind, mut said)| {
-        alter(kind, &mut said);
-        (kind, said)
+    let altered = records(journal).into_iter().map(|(kind, mut body)| {
+        alter(kind, &mut body);
+        (kind, body)
     });
     written(altered)
 }

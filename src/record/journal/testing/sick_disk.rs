@@ -70,9 +70,9 @@ impl Storage for SickDisk {
             .sickness
             .room
             .map_or(bytes.len(), |room| room.saturating_sub(disk.written.len()));
-        let taken = room.min(bytes.len());
-        disk.written.extend_from_slice(&bytes[..taken]);
-        if taken < bytes.len() {
+        let written_now = room.min(bytes.len());
+        disk.written.extend_from_slice(&bytes[..written_now]);
+        if written_now < bytes.len() {
             Err(io::ErrorKind::StorageFull.into())
         } else {
             Ok(())

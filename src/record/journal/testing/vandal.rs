@@ -66,13 +66,13 @@ impl Vandal {
 
     /// Changes a digit in a text of the plan, and the digest of that text.
     fn replan(&mut self, records: &mut Records) {
-        let Some(place) = records
+        let Some(index) = records
             .iter()
             .position(|(kind, _)| *kind == EntryKind::Plan)
         else {
             return;
         };
-        let Some(text) = records[place].1["text"].as_str() else {
+        let Some(text) = records[index].1["text"].as_str() else {
             return;
         };
         let digits: Vec<usize> = text
@@ -86,32 +86,32 @@ impl Vandal {
         }
         let at = digits[self.below(digits.len())];
         let text = format!("{}{}{}", &text[..at], self.below(10), &text[at + 1..]);
-        let file = records[place].1["file"]
+        let file = records[index].1["file"]
             .as_u64()
             .and_then(|file| usize::try_from(file).ok())
             .unwrap_or(0);
-        if let Some(told) = records[0].1.pointer_mut(&format!("/files/{file}/sha256")) {
-            *told = json!(sha256(text.as_bytes()));
+        if let Some(digest) = records[0].1.pointer_mut(&format!("/files/{file}/sha256")) {
+            *digest = json!(sha256(text.as_bytes()));
         }
-        records[place].1["text"] = json!(text);
+        records[index].1["text"] = json!(text);
     }
 
     /// Changes one random value in a body.
     fn change(&mut self, body: &mut Value, other: &Records) {
-        let mut places = Vec::new();
-        gather(body, "", &mut places);
-        if places.is_empty() {
+        let mut pointers = Vec::new();
+        gather(body, "", &mut pointers);
+        if pointers.is_empty() {
             return;
         }
-        let place = &places[self.below(places.len())];
+        let pointer = &pointers[self.below(pointers.len())];
         if self.below(8) == 0 {
-            let (above, name) = place.rsplit_once('/').unwrap_or_default();
+            let (above, name) = pointer.rsplit_once('/').unwrap_or_default();
             if let Some(Value::Object(fields)) = body.pointer_mut(above) {
                 fields.remove(name);
             }
             return;
         }
-        if let Some(value) = body.pointer_mut(place) {
+        if let Some(value) = body.pointer_mut(pointer) {
             self.spoil(value, other);
         }
     }
@@ -170,27 +170,27 @@ fn resume(records: &mut Records, at: usize) {
         .rfind(|(kind, _)| *kind == EntryKind::Sample);
     let found = reading.map_or_else(
         || json!([[0.0], [0.0]]),
-        |(_, said)| json!([said["x"], said["r"]]),
+        |(_, body)| json!([body["x"], body["r"]]),
     );
-    let told = json!({
+    let resumed = json!({
         "from": at + 1, "by": "R. T", "reason": "no power", "doubt": {"target": "none"}, "found": found, "recorded": found, "t": rig["t"],
     });
-    records.insert(at, (EntryKind::Resume, told));
+    records.insert(at, (EntryKind::Resume, resumed));
     records.insert(at, (EntryKind::Rig, rig));
 }
 
 /// The paths of all values inside a value, without the value itself.
-fn gather(value: &Value, at: &str, places: &mut Vec<String>) {
+fn gather(value: &Value, at: &str, pointers: &mut Vec<String>) {
     match value {
         Value::Object(fields) => fields.iter().for_each(|(name, field)| {
             let at = format!("{at}/{}", name.replace('~', "~0").replace('/', "~1"));
-            places.push(at.clone());
-            gather(field, &at, places);
+            pointers.push(at.clone());
+            gather(field, &at, pointers);
         }),
         Value::Array(items) => items.iter().enumerate().for_each(|(index, item)| {
             let at = format!("{at}/{index}");
-            places.push(at.clone());
-            gather(item, &at, places);
+            pointers.push(at.clone());
+            gather(item, &at, pointers);
         }),
         _ => {}
     }

@@ -5,7 +5,7 @@ use super::super::{Damage, EntryKind, Wrong, line, recover};
 use super::{is_clean, lines, small};
 
 /// A run log of these entries, each with the correct check values.
-fn said(records: &[(u64, EntryKind, &str)]) -> Vec<u8> {
+fn written(records: &[(u64, EntryKind, &str)]) -> Vec<u8> {
     let (mut out, mut chain) = (Vec::new(), Chain::START);
     for (seq, kind, json) in records {
         let start = out.len();
@@ -19,7 +19,7 @@ fn said(records: &[(u64, EntryKind, &str)]) -> Vec<u8> {
 const HEADER: (u64, EntryKind, &str) = (1, EntryKind::Header, r#"{"format":1}"#);
 
 fn damage(records: &[(u64, EntryKind, &str)]) -> Damage {
-    recover(&said(records)).expect_err("it is damaged")
+    recover(&written(records)).expect_err("it is damaged")
 }
 
 #[test]
@@ -28,17 +28,17 @@ fn no_flipped_bit_passes() {
     assert!(is_clean(&journal));
     let last = journal.len() - lines(&journal).last().unwrap().len();
     let mut torn = 0;
-    for place in 0..journal.len() {
+    for offset in 0..journal.len() {
         for bit in 0..8 {
             let mut flipped = journal.clone();
-            flipped[place] ^= 1 << bit;
+            flipped[offset] ^= 1 << bit;
             match recover(&flipped) {
                 Err(damage) => assert!(
-                    damage.offset <= place as u64,
-                    "bit {bit} of byte {place}: {damage}"
+                    damage.offset <= offset as u64,
+                    "bit {bit} of byte {offset}: {damage}"
                 ),
                 Ok(found) => {
-                    assert!(place >= last, "bit {bit} of byte {place} passes");
+                    assert!(offset >= last, "bit {bit} of byte {offset} passes");
                     assert_eq!(found.torn, Some(last as u64..journal.len() as u64));
                     torn += 1;
                 }
@@ -94,11 +94,15 @@ fn a_sequence_has_no_gaps_also_when_the_check_words_are_right() {
 
 #[test]
 fn a_record_of_another_run_is_refused() {
-    let other = said(&[
+    let other = written(&[
         (1, EntryKind::Header, r#"{"format":1,"run":"other"}"#),
         (2, EntryKind::Event, "{}"),
     ]);
-    let spliced = [lines(&said(&[HEADER]))[0].clone(), lines(&other)[1].clone()].concat();
+    let spliced = [
+        lines(&written(&[HEADER]))[0].clone(),
+        lines(&other)[1].clone(),
+    ]
+    .concat();
     assert_eq!(recover(&spliced).unwrap_err().reason, Wrong::Chain);
     let before_zeros = [&spliced[..], &[0; 100]].concat();
     assert_eq!(
@@ -110,7 +114,7 @@ fn a_record_of_another_run_is_refused() {
 
 #[test]
 fn each_check_word_is_checked_alone() {
-    let whole = String::from_utf8(said(&[
+    let whole = String::from_utf8(written(&[
         HEADER,
         (2, EntryKind::Event, "{}"),
         (3, EntryKind::Event, "{}"),
@@ -172,7 +176,7 @@ fn another_format_is_refused_by_its_number() {
 }
 
 #[test]
-fn places_are_kept_also_when_the_check_words_are_right() {
+fn sequence_is_checked_also_with_correct_checksums() {
     let event = (2, EntryKind::Event, r#"{"step":7}"#);
     let second = damage(&[HEADER, event, (3, EntryKind::Header, r#"{"format":1}"#)]);
     assert_eq!(
@@ -191,10 +195,10 @@ fn places_are_kept_also_when_the_check_words_are_right() {
         Wrong::NoHeader
     );
 
-    let head = recover(&said(&[HEADER])).unwrap().head().to_owned();
+    let head = recover(&written(&[HEADER])).unwrap().head().to_owned();
     let end = |count: u64, head: &str| format!(r#"{{"count":{count},"head":"{head}"}}"#);
     let good = end(1, &head);
-    assert!(is_clean(&said(&[HEADER, (2, EntryKind::End, &good)])));
+    assert!(is_clean(&written(&[HEADER, (2, EntryKind::End, &good)])));
     let behind = (3, EntryKind::Event, "{}");
     assert_eq!(
         damage(&[HEADER, (2, EntryKind::End, &good), behind]).reason,
@@ -231,7 +235,7 @@ fn only_objects_of_known_kinds_are_records() {
         "no stack is lost on it"
     );
 
-    let mut bytes = said(&[HEADER]);
+    let mut bytes = written(&[HEADER]);
     let (start, chain) = (bytes.len(), recover(&bytes).unwrap().chain);
     bytes.extend_from_slice(b"2 PAUSE {}");
     line::close(&mut bytes, start, &chain);

@@ -78,7 +78,7 @@ fn zeros_behind_a_record_are_torn_however_many() {
 }
 
 #[test]
-fn unwritten_blocks_are_torn_unless_a_record_stands_behind_them() {
+fn unwritten_blocks_are_torn_unless_a_record_follows_them() {
     let all = lines(&small());
     let holed =
         |behind: &[u8]| [&all[0], &all[1], &[0; 40][..], &b"\":1} 0123\n"[..], behind].concat();

@@ -19,7 +19,7 @@ fn on(disk: &(impl Storage + Clone + 'static)) -> Journal {
 fn header_is_first_and_only_and_nothing_follows_end() {
     let disk = PowerLoss::new();
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
-    let misplaced = |kind| Err(JournalFault::Refused(Refusal::OutOfPlace(kind)));
+    let misplaced = |kind| Err(JournalFault::Refused(Refusal::OutOfSequence(kind)));
     assert_eq!(
         journal.append(EntryKind::Event, &json!({})),
         misplaced(EntryKind::Event)

@@ -358,10 +358,10 @@ fn declared(resolution: f64, noise: f64, readings: &ReadingRules) -> String {
 /// Samples, rate and the check for frozen forces.
 fn reading_rule(readings: &ReadingRules) -> String {
     let rate = number::stated(readings.rate, Dimension::FREQUENCY);
-    let taken = if readings.samples > 1 {
+    let reading_text = if readings.samples > 1 {
         wording::median_of(readings.samples)
     } else {
         wording::ONE_READING.to_owned()
     };
-    wording::reading(taken, rate, readings.frozen_after)
+    wording::reading(reading_text, rate, readings.frozen_after)
 }

@@ -35,7 +35,7 @@ pub(crate) fn tracking_error(tracking: Tracking, energy: Option<f64>, subject: &
         let direction = if energy < 0.0 {
             wording::PUT_IN
         } else {
-            wording::TAKEN_OUT
+            wording::REMOVED
         };
         wording::energy(direction, percent(energy.abs()))
     });

@@ -49,11 +49,11 @@ impl Several {
         mut call: impl FnMut(usize, &mut Member) -> Result<T, DeviceFault>,
     ) -> Result<Vec<T>, DeviceFault> {
         let mut made = Vec::with_capacity(self.members.len());
-        for (place, member) in self.members.iter_mut().enumerate() {
-            match call(place, member) {
+        for (index, member) in self.members.iter_mut().enumerate() {
+            match call(index, member) {
                 Ok(value) => made.push(value),
                 Err(fault) => {
-                    self.faulty_member = Some(place);
+                    self.faulty_member = Some(index);
                     return Err(fault);
                 }
             }
@@ -63,7 +63,7 @@ impl Several {
 
     /// Proposes the move to every device. If one refuses, the move is cancelled on those that have accepted.
     fn offer_to_all(&mut self, moves: &[DeviceMove]) -> Result<(), DeviceFault> {
-        let offered = self.each(|place, member| member.device.propose(&moves[place]));
+        let offered = self.each(|index, member| member.device.propose(&moves[index]));
         if offered.is_err() {
             let accepted = self.faulty_member.unwrap_or(0);
             for (member, going) in self.members.iter_mut().zip(moves).take(accepted) {
@@ -77,8 +77,8 @@ impl Several {
 
 impl Device for Several {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
-        let said = self.each(|_, member| {
-            let said = member.device.identify()?;
+        let identities = self.each(|_, member| {
+            let identity = member.device.identify()?;
             let (has, wanted) = (member.device.axes(), member.axes.len());
             if has != wanted {
                 return Err(DeviceFault::Unfit(format!(
@@ -86,22 +86,23 @@ impl Device for Several {
                 )));
             }
             match &member.serial_number {
-                Some(wanted) if *wanted != said.serial => Err(DeviceFault::Unfit(format!(
+                Some(wanted) if *wanted != identity.serial => Err(DeviceFault::Unfit(format!(
                     "the plan requires serial number `{wanted}`; this device has `{}`",
-                    said.serial
+                    identity.serial
                 ))),
-                _ => Ok(said),
+                _ => Ok(identity),
             }
         })?;
         let all = |field: fn(&DeviceIdentity) -> &str| {
-            said.iter()
+            identities
+                .iter()
                 .map(field)
                 .filter(|text| !text.is_empty())
                 .collect::<Vec<_>>()
                 .join(" + ")
         };
-        let known = said.iter().any(|identity| identity.boot.is_some());
-        let boots: Vec<&str> = said
+        let known = identities.iter().any(|identity| identity.boot.is_some());
+        let boots: Vec<&str> = identities
             .iter()
             .map(|identity| identity.boot.as_deref().unwrap_or(NO_POWER_UP))
             .collect();
@@ -110,8 +111,11 @@ impl Device for Several {
             serial: all(|identity| &identity.serial),
             firmware: all(|identity| &identity.firmware),
             boot: known.then(|| boots.join(" + ")),
-            simulated: said.iter().any(|identity| identity.simulated),
-            raw: said.into_iter().flat_map(|identity| identity.raw).collect(),
+            simulated: identities.iter().any(|identity| identity.simulated),
+            raw: identities
+                .into_iter()
+                .flat_map(|identity| identity.raw)
+                .collect(),
         })
     }
 
@@ -131,10 +135,10 @@ impl Device for Several {
             let own: Vec<f64> = member.axes.iter().map(|axis| targets[*axis]).collect();
             member.device.encode(&own, speed)
         })?;
-        let mut said = targets.to_vec();
+        let mut commanded = targets.to_vec();
         for (member, going) in self.members.iter().zip(&moves) {
             for (axis, target) in member.axes.iter().zip(&going.targets) {
-                said[*axis] = *target;
+                commanded[*axis] = *target;
             }
         }
         let frames = moves
@@ -145,7 +149,7 @@ impl Device for Several {
         self.proposed = moves;
         Ok(DeviceMove {
             frames,
-            targets: said,
+            targets: commanded,
             speed,
             id: None,
         })
@@ -163,8 +167,8 @@ impl Device for Several {
             ));
         }
         self.offer_to_all(&moves)?;
-        self.each(|place, member| member.device.begin(&moves[place]))?;
-        self.each(|place, member| member.device.finish(&moves[place]))
+        self.each(|index, member| member.device.begin(&moves[index]))?;
+        self.each(|index, member| member.device.finish(&moves[index]))
             .map(drop)
     }
 
@@ -203,11 +207,11 @@ impl Device for Several {
     /// Every device receives the command, also if one of them does not answer.
     fn hold(&mut self) -> Result<(), DeviceFault> {
         let mut held = Ok(());
-        for (place, member) in self.members.iter_mut().enumerate() {
+        for (index, member) in self.members.iter_mut().enumerate() {
             if let Err(fault) = member.device.hold()
                 && held.is_ok()
             {
-                self.faulty_member = Some(place);
+                self.faulty_member = Some(index);
                 held = Err(fault);
             }
         }

@@ -70,8 +70,8 @@ impl Sample {
 
     /// The axis with this index, which must exist.
     #[must_use]
-    pub fn axis(&self, place: usize) -> Channel {
-        place
+    pub fn axis(&self, index: usize) -> Channel {
+        index
             .checked_sub(1)
             .map_or_else(|| self.first(), |other| self.others[other])
     }

@@ -92,21 +92,21 @@ pub struct Jog {
 /// Grbl cannot parse it, or would execute something else.
 pub fn jog(target: f64, speed: f64) -> Result<Jog, String> {
     // Numbers have no exponent; 0.1 µm is far finer than a step.
-    let place = written(target * 1e3, 4)
+    let target_text = written(target * 1e3, 4)
         .ok_or_else(|| format!("{target} m is not a valid position for Grbl"))?;
     let feed = written(speed * 6e4, 3)
         .ok_or_else(|| format!("{speed} m/s is not a valid speed for Grbl"))?;
     let heard = |text: &str, scale, meant| {
         number::read_back(text, scale, meant).ok_or_else(|| format!("`{text}` is not a number"))
     };
-    let (target, speed) = (heard(&place, 1e3, target)?, heard(&feed, 6e4, speed)?);
+    let (target, speed) = (heard(&target_text, 1e3, target)?, heard(&feed, 6e4, speed)?);
     if speed.is_nan() || speed * 6e4 < SLOWEST * (1.0 - 1e-12) {
         return Err(format!(
             "{SLOWEST} mm/min is the lowest speed of Grbl; requested: {feed} mm/min"
         ));
     }
     Ok(Jog {
-        line: format!("$J=G21G90G53X{place}F{feed}\n").into_bytes(),
+        line: format!("$J=G21G90G53X{target_text}F{feed}\n").into_bytes(),
         target,
         speed,
     })
@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn a_jog_is_absolute_in_machine_millimetres_and_says_what_it_will_do() {
+    fn a_jog_is_absolute_in_machine_millimetres_and_states_its_effect() {
         let jog = jog(1.25e-3, 0.5e-3).unwrap();
         assert_eq!(jog.line, b"$J=G21G90G53X1.2500F30.000\n");
         assert_eq!((jog.target, jog.speed), (1.25e-3, 0.5e-3));
@@ -263,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn what_grbl_would_not_hear_as_it_is_meant_is_not_said() {
+    fn targets_that_grbl_would_round_are_not_sent() {
         for (target, speed) in [
             (f64::NAN, 1e-3),
             (f64::INFINITY, 1e-3),
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn glued_lines_are_taken_apart_and_a_start_in_the_middle_is_seen() {
+    fn joined_lines_are_split_and_a_start_in_the_middle_is_detected() {
         let idle = Word::Status(Status {
             state: State::Idle,
             position: 0.0,
@@ -339,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn a_broken_line_says_nothing() {
+    fn a_damaged_line_has_no_meaning() {
         for line in [
             "<Idle|MPos:1.250,0.000",
             "<Idle|MPos:1.2 50,0.000,0.000>",

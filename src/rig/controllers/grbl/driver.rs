@@ -214,8 +214,8 @@ impl GrblDevice {
 }
 
 /// The identity of a controller from the line with its version; the line before it, if there is one, is its start banner.
-pub(crate) fn introduced(said: &[u8]) -> Option<DeviceIdentity> {
-    let words: Vec<Word> = said
+pub(crate) fn introduced(welcome: &[u8]) -> Option<DeviceIdentity> {
+    let words: Vec<Word> = welcome
         .split(|byte| *byte == b'\n')
         .flat_map(grbl::codec::words)
         .collect();
@@ -234,7 +234,7 @@ pub(crate) fn introduced(said: &[u8]) -> Option<DeviceIdentity> {
         firmware,
         boot,
         simulated,
-        raw: vec![said.to_vec()],
+        raw: vec![welcome.to_vec()],
     })
 }
 

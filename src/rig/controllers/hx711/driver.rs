@@ -67,7 +67,7 @@ impl LoadCell for Hx711Device {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
+    use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
 
     fn device() -> (Hx711Device, ScriptedPort, VirtualClock) {
         let clock = VirtualClock::default();
@@ -83,8 +83,8 @@ mod tests {
         )
     }
 
-    fn say(port: &ScriptedPort, seconds: f64, bytes: &str) {
-        port.say(&[Say::After(seconds, bytes.as_bytes().to_vec())]);
+    fn script_reply(port: &ScriptedPort, seconds: f64, bytes: &str) {
+        port.send_unasked(&[Scripted::After(seconds, bytes.as_bytes().to_vec())]);
     }
 
     fn count(sample: &Sample) -> i64 {
@@ -99,10 +99,10 @@ mod tests {
     }
 
     #[test]
-    fn a_count_is_taken_that_was_begun_after_it_was_wanted() {
+    fn only_a_count_that_began_after_the_request_is_used() {
         let (mut device, port, clock) = device();
         for second in 0..20 {
-            say(&port, 0.1, &format!("{second}\r\n"));
+            script_reply(&port, 0.1, &format!("{second}\r\n"));
         }
         clock.advance(1.05);
         let sample = device.sample().unwrap();
@@ -117,13 +117,13 @@ mod tests {
     #[test]
     fn half_a_count_is_never_a_count() {
         let (mut device, port, clock) = device();
-        say(&port, 0.0, "-81");
+        script_reply(&port, 0.0, "-81");
         clock.advance(0.05);
-        say(&port, 0.01, "2344\r\n");
-        say(&port, 0.1, "-8123");
-        say(&port, 0.1, "45\r\n");
+        script_reply(&port, 0.01, "2344\r\n");
+        script_reply(&port, 0.1, "-8123");
+        script_reply(&port, 0.1, "45\r\n");
         assert_eq!(count(&device.sample().unwrap()), -812_345);
-        say(&port, 0.1, "7\r\n81");
+        script_reply(&port, 0.1, "7\r\n81");
         assert_eq!(
             device.sample(),
             Err(DeviceFault::Silent { seconds: 0.5 }),
@@ -135,12 +135,12 @@ mod tests {
     fn the_rails_are_saturated_and_anything_else_is_no_reading() {
         for (line, saturated) in [("8388607", true), ("-8388608", true), ("8388606", false)] {
             let (mut device, port, _) = device();
-            say(&port, 0.1, &format!("\n{line}\r\n"));
+            script_reply(&port, 0.1, &format!("\n{line}\r\n"));
             assert_eq!(device.sample().unwrap().flags.saturated, saturated);
         }
         for line in ["8388608", "nan", "12.5", "", "HX711 ready"] {
             let (mut device, port, _) = device();
-            say(&port, 0.1, &format!("\n{line}\r\n"));
+            script_reply(&port, 0.1, &format!("\n{line}\r\n"));
             assert!(
                 matches!(device.sample(), Err(DeviceFault::NoReading { .. })),
                 "{line}"

@@ -7,7 +7,7 @@ use crate::rig::controllers::number;
 pub const READ: &[u8] = b"READ\r\n";
 
 /// Characters of every value, including its sign and leading spaces.
-const PLACES: usize = 8;
+const DIGITS: usize = 8;
 /// Standard gravity \[m/s²\].
 const GRAVITY: f64 = 9.806_65;
 
@@ -57,7 +57,7 @@ pub fn weight(line: &[u8]) -> Result<Weight, &'static str> {
     }
     let newtons = newtons_per(trimmed(unit)).ok_or("not in kg, g, t, lb, N or kN")?;
     // A line that has lost a digit has the wrong length for a weight.
-    if value.len() != PLACES && !status.is_out_of_range() {
+    if value.len() != DIGITS && !status.is_out_of_range() {
         return Err("its value does not have the 8 characters of a weight");
     }
     let force = number::fixed(without_blanks_before(value)).map(|value| value * newtons);
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_indicator_says_of_it_is_kept() {
+    fn the_flags_of_the_indicator_are_kept() {
         let status = |line: &[u8]| weight(line).unwrap().status;
         assert_eq!(status(b"US,GS,+0001234,kg"), Status::Unstable);
         assert_eq!(

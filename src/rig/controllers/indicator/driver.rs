@@ -99,7 +99,7 @@ impl LoadCell for IndicatorDevice {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
+    use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
 
     fn device() -> (IndicatorDevice, ScriptedPort) {
         let clock = VirtualClock::default();
@@ -115,7 +115,7 @@ mod tests {
     }
 
     fn reply(port: &ScriptedPort, seconds: f64, line: &str) {
-        port.reply(&[Say::After(seconds, format!("{line}\r\n").into_bytes())]);
+        port.reply(&[Scripted::After(seconds, format!("{line}\r\n").into_bytes())]);
     }
 
     fn newtons(sample: &Sample) -> f64 {
@@ -130,7 +130,7 @@ mod tests {
         let (mut device, port) = device();
         reply(&port, 0.1, "ST,GS,+0001234,kg");
         device.identify().unwrap();
-        port.say(&[Say::After(0.0, b"ST,GS,   666.0, N\r\n".to_vec())]);
+        port.send_unasked(&[Scripted::After(0.0, b"ST,GS,   666.0, N\r\n".to_vec())]);
         reply(&port, 0.1, "US,GS,   512.5, N");
         let sample = device.sample().unwrap();
         assert_eq!(
@@ -155,7 +155,7 @@ mod tests {
     fn an_indicator_that_sends_by_itself_is_never_asked() {
         let (mut device, port) = device();
         for value in 0..8 {
-            port.say(&[Say::After(
+            port.send_unasked(&[Scripted::After(
                 0.1,
                 format!("ST,GS,{value:>8},kg\r\n").into_bytes(),
             )]);
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn a_late_answer_is_not_taken_for_a_fresh_one() {
+    fn a_late_answer_is_not_accepted_as_a_fresh_one() {
         let (mut device, port) = device();
         reply(&port, 0.8, "ST,GS,   666.0,N");
         reply(&port, 0.1, "ST,GS,   512.5,N");

@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn every_order_stands_between_taking_control_and_giving_it_back() {
+    fn every_command_is_between_taking_control_and_returning_it() {
         let ramp = ramp(-0.123_456_789, 2.0).unwrap();
         assert_eq!(
             text(&ramp),
@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_ramp_says_is_read_back_from_its_bytes() {
+    fn the_values_of_a_ramp_are_decoded_from_its_bytes() {
         assert_eq!(
             decoded_ramp(&ramp(0.5, 0.250_1).unwrap()),
             Some((0.5, 0.251))
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn status_words_say_what_tripped() {
+    fn status_words_state_what_tripped() {
         let status_of = |word: u32| status(word.to_string().as_bytes()).unwrap();
         for fine in [0, 0x1E00] {
             assert_eq!(

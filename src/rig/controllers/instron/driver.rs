@@ -205,19 +205,19 @@ impl Instron {
             return Ok(true);
         }
         let here = self.feedback(Channel::Position, &mut raw)?;
-        let way = self.last.map_or(0.0, |last| (target - last).abs());
-        Ok((target - here).abs() <= (way / 2.0).max(SAME_TARGET * self.position.full_scale))
+        let travel = self.last.map_or(0.0, |last| (target - last).abs());
+        Ok((target - here).abs() <= (travel / 2.0).max(SAME_TARGET * self.position.full_scale))
     }
 }
 
 impl Device for Instron {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         let mut raw = Vec::new();
-        for (place, channel) in [Channel::Position, Channel::Load].into_iter().enumerate() {
+        for (index, channel) in [Channel::Position, Channel::Load].into_iter().enumerate() {
             self.wait_for_poll()?;
             let full_scale = self.number_twice_if_zero(Question::FullScale(channel), &mut raw)?;
             // If one of the two readings is a false zero, the other number is kept.
-            raw.drain(place..raw.len() - 1);
+            raw.drain(index..raw.len() - 1);
             if !(0.0 < full_scale && full_scale.is_finite()) {
                 return Err(DeviceFault::Unfit(format!(
                     "the full scale of its {channel:?} channel is {full_scale}"
@@ -250,13 +250,13 @@ impl Device for Instron {
         let full_scale = self.position.full_scale;
         let rounded = instron::codec::ramp(target / full_scale, 0.0).ok_or_else(unsayable)?;
         let (fraction, _) = instron::codec::decoded_ramp(&rounded).ok_or_else(unsayable)?;
-        let way = (fraction * full_scale - from).abs();
-        let mut frames = instron::codec::ramp(fraction, way / speed).ok_or_else(unsayable)?;
+        let travel = (fraction * full_scale - from).abs();
+        let mut frames = instron::codec::ramp(fraction, travel / speed).ok_or_else(unsayable)?;
         let (fraction, seconds) = instron::codec::decoded_ramp(&frames).ok_or_else(unsayable)?;
         frames.extend(instron::codec::start());
         // The time was rounded up.
-        let speed = if way > 0.0 {
-            (way / seconds).min(speed)
+        let speed = if travel > 0.0 {
+            (travel / seconds).min(speed)
         } else {
             speed
         };
@@ -336,11 +336,11 @@ pub(crate) fn introduced(raw: Vec<Vec<u8>>) -> DeviceIdentity {
 }
 
 /// The target \[m\] of a ramp from its bytes: a difference in the last bit of the float is ignored.
-fn meant_by(said: f64, target: f64) -> f64 {
-    if (said - target).abs() <= 4.0 * f64::EPSILON * target.abs() {
+fn meant_by(decoded: f64, target: f64) -> f64 {
+    if (decoded - target).abs() <= 4.0 * f64::EPSILON * target.abs() {
         target
     } else {
-        said
+        decoded
     }
 }
 

@@ -84,12 +84,12 @@ pub fn write(value: f64, decimals: usize) -> Option<String> {
 /// rounding of the unit conversion is ignored.
 #[must_use]
 pub fn read_back(written: &str, scale: f64, meant: f64) -> Option<f64> {
-    let said = fixed(written.as_bytes())? / scale;
+    let decoded = fixed(written.as_bytes())? / scale;
     let rounding = 4.0 * f64::EPSILON * meant.abs();
-    Some(if (said - meant).abs() <= rounding {
+    Some(if (decoded - meant).abs() <= rounding {
         meant
     } else {
-        said
+        decoded
     })
 }
 

@@ -85,7 +85,7 @@ impl RequestReply {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
+    use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
 
     fn client() -> (LineClient, ScriptedPort) {
         let clock = VirtualClock::default();
@@ -103,15 +103,15 @@ mod tests {
         request_reply.ask(client, b"?", |line| Answer::Take(line.to_vec()), Vec::eq)
     }
 
-    fn say(port: &ScriptedPort, seconds: f64, line: &[u8]) {
-        port.reply(&[Say::After(seconds, line.to_vec())]);
+    fn script_reply(port: &ScriptedPort, seconds: f64, line: &[u8]) {
+        port.reply(&[Scripted::After(seconds, line.to_vec())]);
     }
 
     #[test]
     fn what_came_before_the_question_is_no_answer_to_it() {
         let (mut client, port) = client();
-        port.say(&[Say::After(0.0, b"old\n".to_vec())]);
-        say(&port, 0.1, b"new\n");
+        port.send_unasked(&[Scripted::After(0.0, b"old\n".to_vec())]);
+        script_reply(&port, 0.1, b"new\n");
         assert_eq!(
             ask(&mut RequestReply::default(), &mut client).unwrap(),
             b"new"
@@ -122,12 +122,12 @@ mod tests {
     fn an_answer_that_is_late_by_less_than_a_timeout_is_thrown_away() {
         let (mut client, port) = client();
         let mut request_reply = RequestReply::default();
-        say(&port, 0.7, b"old\n");
-        say(&port, 0.1, b"new\n");
-        say(&port, 0.1, b"new\n");
+        script_reply(&port, 0.7, b"old\n");
+        script_reply(&port, 0.1, b"new\n");
+        script_reply(&port, 0.1, b"new\n");
         assert_eq!(ask(&mut request_reply, &mut client).unwrap(), b"new");
         assert_eq!((port.sent().len(), client.line_statistics().resent), (3, 1));
-        say(&port, 0.1, b"one\n");
+        script_reply(&port, 0.1, b"one\n");
         assert_eq!(
             ask(&mut request_reply, &mut client).unwrap(),
             b"one",
@@ -138,10 +138,10 @@ mod tests {
     #[test]
     fn an_answer_that_is_later_still_does_not_agree_with_the_next() {
         let (mut client, port) = client();
-        say(&port, 1.05, b"old\n");
-        say(&port, 0.1, b"new\n");
+        script_reply(&port, 1.05, b"old\n");
+        script_reply(&port, 0.1, b"new\n");
         for _ in 0..3 {
-            say(&port, 0.1, b"new\n");
+            script_reply(&port, 0.1, b"new\n");
         }
         assert_eq!(
             ask(&mut RequestReply::default(), &mut client).unwrap(),

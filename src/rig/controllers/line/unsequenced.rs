@@ -27,7 +27,7 @@ pub fn fresh<T>(
     let began = client.now();
     match ask(client) {
         Err(DeviceFault::Silent { .. }) if on(Guarding::Resend) => {}
-        said => return said,
+        answer => return answer,
     }
     for _ in 0..AGAIN {
         client.line_statistics_mut().resent += 1;
@@ -36,7 +36,7 @@ pub fn fresh<T>(
             client.until_quiet(silence)?;
             match ask(client) {
                 Err(DeviceFault::Silent { .. }) => continue,
-                said => said?,
+                answer => answer?,
             };
             if more(client, silence)? {
                 client.line_statistics_mut().ignored += 1;
@@ -45,7 +45,7 @@ pub fn fresh<T>(
         }
         match ask(client) {
             Err(DeviceFault::Silent { .. }) => {}
-            said => return said,
+            answer => return answer,
         }
     }
     Err(DeviceFault::Silent {
@@ -66,7 +66,7 @@ pub fn order<T>(
                 let silence = client.reply_timeout();
                 client.until_quiet(silence)?;
             }
-            said => return said,
+            answer => return answer,
         }
     }
     give(client).map_err(|fault| match fault {

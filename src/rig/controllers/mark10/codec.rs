@@ -68,8 +68,8 @@ pub fn limit(side: Side, target: f64) -> Option<(Vec<u8>, f64)> {
         Side::Lower => 'g',
         Side::Upper => 'h',
     };
-    let said = number::read_back(&format!("{sign}{digits:0>6}"), MILLIMETRES, target)?;
-    Some((format!("{letter}{sign}{digits:0>6}").into_bytes(), said))
+    let encoded = number::read_back(&format!("{sign}{digits:0>6}"), MILLIMETRES, target)?;
+    Some((format!("{letter}{sign}{digits:0>6}").into_bytes(), encoded))
 }
 
 /// The setting of the speed \[m/s\], never above the requested one, and its decoded value. None if it does not fit its
@@ -82,8 +82,8 @@ pub fn speed(speed: f64) -> Option<(Vec<u8>, f64)> {
         return None;
     }
     let written = format!("{:06.1}", tenths / 10.0);
-    let said = number::read_back(&written, MILLIMETRES_A_MINUTE, speed)?;
-    Some((format!("e{written}").into_bytes(), said))
+    let encoded = number::read_back(&written, MILLIMETRES_A_MINUTE, speed)?;
+    Some((format!("e{written}").into_bytes(), encoded))
 }
 
 #[must_use]
@@ -141,24 +141,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_limit_says_what_its_digits_say() {
-        let said = |side, target| {
-            limit(side, target).map(|(bytes, said)| (String::from_utf8(bytes).unwrap(), said))
+    fn a_limit_is_the_value_of_its_digits() {
+        let encoded_text = |side, target| {
+            limit(side, target).map(|(bytes, encoded)| (String::from_utf8(bytes).unwrap(), encoded))
         };
         assert_eq!(
-            said(Side::Lower, -0.007_52),
+            encoded_text(Side::Lower, -0.007_52),
             Some(("g-007.52".to_owned(), -0.007_52))
         );
         assert_eq!(
-            said(Side::Upper, 0.010_7),
+            encoded_text(Side::Upper, 0.010_7),
             Some(("h010.70".to_owned(), 0.010_7))
         );
         assert_eq!(
-            said(Side::Upper, 0.001_234_6),
+            encoded_text(Side::Upper, 0.001_234_6),
             Some(("h001.23".to_owned(), 0.001_23))
         );
         assert_eq!(
-            said(Side::Lower, -0.000_001),
+            encoded_text(Side::Lower, -0.000_001),
             Some(("g000.00".to_owned(), 0.0)),
             "no minus of nothing"
         );
@@ -173,10 +173,11 @@ mod tests {
 
     #[test]
     fn a_speed_is_rounded_down() {
-        let said =
-            |asked| speed(asked).map(|(bytes, said)| (String::from_utf8(bytes).unwrap(), said));
-        assert_eq!(said(0.01), Some(("e0600.0".to_owned(), 0.01)));
-        let (bytes, slower) = said(0.000_012_3).unwrap();
+        let encoded_text = |asked| {
+            speed(asked).map(|(bytes, encoded)| (String::from_utf8(bytes).unwrap(), encoded))
+        };
+        assert_eq!(encoded_text(0.01), Some(("e0600.0".to_owned(), 0.01)));
+        let (bytes, slower) = encoded_text(0.000_012_3).unwrap();
         assert_eq!(bytes, "e0000.7");
         assert!(slower <= 0.000_012_3);
         for asked in [0.0, 1e-6, 0.17, -0.01, f64::NAN] {
@@ -189,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn status_says_motion_mode_and_limit() {
+    fn status_states_motion_mode_and_limit() {
         let still = Status {
             moving: false,
             limit_mode: true,

@@ -66,7 +66,7 @@ impl Mark10 {
         for _ in 1..TRIES {
             match ask(self) {
                 Err(DeviceFault::NoReading { .. }) => self.client.line_statistics_mut().reread += 1,
-                said => return said,
+                answer => return answer,
             }
         }
         ask(self)
@@ -207,9 +207,9 @@ impl Device for Mark10 {
     }
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
-        let (status, said_status) = self.ask_status()?;
+        let (status, status_bytes) = self.ask_status()?;
         self.in_limit_mode(status)?;
-        let (travel, said_travel) = self.ask_travel(mark10::codec::ASK_TRAVEL)?;
+        let (travel, travel_bytes) = self.ask_travel(mark10::codec::ASK_TRAVEL)?;
         self.last = Some(travel);
         let past = self.going.is_some_and(|(side, target)| match side {
             Side::Lower => travel < target - OVERRUN,
@@ -221,8 +221,8 @@ impl Device for Mark10 {
                 "the stand passed its travel limit".to_owned(),
             ));
         }
-        let said_force = self.ask(mark10::codec::ASK_FORCE_THROUGH_STAND)?;
-        let force = newtons(&said_force)?;
+        let force_bytes = self.ask(mark10::codec::ASK_FORCE_THROUGH_STAND)?;
+        let force = newtons(&force_bytes)?;
         Ok(Sample {
             time: None,
             displacement: Some(travel),
@@ -230,7 +230,7 @@ impl Device for Mark10 {
             moving: Some(status.moving),
             // Its limits are its targets: a reached limit means that it has arrived.
             flags: Flags::default(),
-            raw: vec![said_status, said_travel, said_force],
+            raw: vec![status_bytes, travel_bytes, force_bytes],
             others: Vec::new(),
         })
     }

@@ -47,11 +47,11 @@ pub(crate) fn introduced() -> DeviceIdentity {
 }
 
 /// The force of its answer.
-pub(crate) fn decoded(said: Vec<u8>) -> Result<Sample, DeviceFault> {
-    let force = newtons(&said)?;
+pub(crate) fn decoded(reply: Vec<u8>) -> Result<Sample, DeviceFault> {
+    let force = newtons(&reply)?;
     Ok(Sample {
         force: Some(force),
-        raw: vec![said],
+        raw: vec![reply],
         ..Sample::default()
     })
 }

@@ -100,8 +100,8 @@ pub fn answer_length(question: &[u8], received: &[u8]) -> Result<Option<usize>, 
     match received {
         [from, ..] if *from != unit => Err(Fault::Broken("another unit answered")),
         [] | [_] => Ok(None),
-        [_, said, ..] if *said == function | REFUSED => Ok(Some(EXCEPTION_LENGTH)),
-        [_, said, ..] if *said != function => Err(Fault::Broken("another function was answered")),
+        [_, found, ..] if *found == function | REFUSED => Ok(Some(EXCEPTION_LENGTH)),
+        [_, found, ..] if *found != function => Err(Fault::Broken("another function was answered")),
         _ if writes(question) => Ok(Some(ECHO_LENGTH)),
         [_, _] => Ok(None),
         [_, _, bytes, ..] if usize::from(*bytes) != asked_bytes(question) => Err(Fault::Broken(
@@ -320,19 +320,19 @@ mod tests {
     }
 
     #[test]
-    fn a_float_without_its_low_word_is_next_to_nothing_the_other_way_round() {
+    fn a_float_without_its_low_word_is_almost_zero_in_the_other_word_order() {
         let turned = ModbusNumber::Float32 {
             high_word_first: false,
         };
         for value in [1.0, 1.1, 0.5, 1.999_999_9, 3e-4, 250.0] {
-            let said = without_low_word(value);
+            let found = without_low_word(value);
             assert!(
-                said <= value && said > 0.99 * value,
-                "{value} became {said}"
+                found <= value && found > 0.99 * value,
+                "{value} became {found}"
             );
-            let words = to_words(FLOAT, said).unwrap();
-            assert_eq!(from_words(FLOAT, &words), Some(said));
-            assert!(from_words(turned, &words).unwrap().abs() < 1e-38, "{said}");
+            let words = to_words(FLOAT, found).unwrap();
+            assert_eq!(from_words(FLOAT, &words), Some(found));
+            assert!(from_words(turned, &words).unwrap().abs() < 1e-38, "{found}");
         }
     }
 

@@ -88,7 +88,7 @@ impl Modbus {
         let (holding, input) = (asked(Table::Holding), asked(Table::Input));
         let table = match self.words(&holding) {
             Err(DeviceFault::Refused { .. }) => self.words(&input).map(|_| Table::Input)?,
-            said => said.map(|_| Table::Holding)?,
+            answer => answer.map(|_| Table::Holding)?,
         };
         Ok(Some(Register { address, table }))
     }
@@ -251,11 +251,11 @@ fn frames_at_speed(map: &ModbusMap, target: f64, speed: f64) -> Result<DeviceMov
     };
     // Before the target, because some drives start as soon as they receive one.
     if let Some(register) = map.speed {
-        let (words, said) = say_speed(map, speed)?;
+        let (words, encoded) = encode_speed(map, speed)?;
         going
             .frames
             .push(modbus::codec::write(map.unit, register, &words));
-        going.speed = said;
+        going.speed = encoded;
     }
     going.frames.push(target_frame);
     if let Some(command) = map.command {
@@ -270,8 +270,8 @@ fn target_frame(map: &ModbusMap, target: f64) -> Result<(Vec<u8>, f64), DeviceFa
     let register = map
         .target
         .ok_or_else(|| unfit("it has no target register: it cannot move"))?;
-    let (words, said) = encode_quantity(map.number, target, map.length_unit, f64::round)?;
-    Ok((modbus::codec::write(map.unit, register, &words), said))
+    let (words, encoded) = encode_quantity(map.number, target, map.length_unit, f64::round)?;
+    Ok((modbus::codec::write(map.unit, register, &words), encoded))
 }
 
 /// The registers of a quantity, and their decoded value; `whole` rounds for integer registers.
@@ -289,19 +289,26 @@ fn encode_quantity(
     };
     let words = modbus::codec::to_words(number, value)
         .ok_or_else(|| unfit("its registers cannot hold the number"))?;
-    let said = modbus::codec::from_words(number, &words)
+    let encoded = modbus::codec::from_words(number, &words)
         .ok_or_else(|| unfit("its registers cannot hold the number"))?
         * unit;
     // A difference in the last bit by the unit conversion is ignored.
-    Ok((words, if same(said, quantity) { quantity } else { said }))
+    Ok((
+        words,
+        if same(encoded, quantity) {
+            quantity
+        } else {
+            encoded
+        },
+    ))
 }
 
 /// Registers of a speed that does not exceed the requested one.
-fn say_speed(map: &ModbusMap, speed: f64) -> Result<(Vec<u16>, f64), DeviceFault> {
-    let (words, said) = encode_quantity(map.number, speed, map.speed_unit, f64::floor)?;
-    if said <= speed {
-        return if said > 0.0 {
-            Ok((words, said))
+fn encode_speed(map: &ModbusMap, speed: f64) -> Result<(Vec<u16>, f64), DeviceFault> {
+    let (words, encoded) = encode_quantity(map.number, speed, map.speed_unit, f64::floor)?;
+    if encoded <= speed {
+        return if encoded > 0.0 {
+            Ok((words, encoded))
         } else {
             Err(unfit("its registers cannot hold a speed so low"))
         };

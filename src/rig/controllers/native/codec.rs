@@ -117,9 +117,9 @@ impl Reply {
     /// every repeated request, so this is an invalid reading, not a broken line. A missing word is empty, and not a number.
     #[must_use]
     pub fn words(&self) -> Vec<&str> {
-        let said = &self.line[self.boot + BOOT_DIGITS..self.line.len() - CHECK_LENGTH];
+        let body = &self.line[self.boot + BOOT_DIGITS..self.line.len() - CHECK_LENGTH];
         let mut words = Vec::with_capacity(USUAL_WORDS);
-        words.extend(said.split(|byte| *byte == b' ').skip(1).map(text));
+        words.extend(body.split(|byte| *byte == b' ').skip(1).map(text));
         words
     }
 }

@@ -54,7 +54,7 @@ pub fn propose(transaction: &str, displacements: &[(&str, f64)]) -> Option<(Vec<
         .iter()
         .map(|(_, value)| ten_digits(*value))
         .collect::<Option<_>>()?;
-    let said = written
+    let encoded = written
         .iter()
         .map(|written| number::scientific(written.as_bytes()))
         .collect::<Option<_>>()?;
@@ -68,7 +68,7 @@ pub fn propose(transaction: &str, displacements: &[(&str, f64)]) -> Option<(Vec<
                 .chain(fields)
                 .collect::<Vec<_>>(),
         ),
-        said,
+        encoded,
     ))
 }
 
@@ -173,17 +173,18 @@ mod tests {
 
     #[test]
     fn requests_are_those_of_the_specification() {
-        let (bytes, said) = propose("t1", &[("MDL-00-01", 0.001_25)]).unwrap();
+        let (bytes, encoded) = propose("t1", &[("MDL-00-01", 0.001_25)]).unwrap();
         assert_eq!(
             bytes,
             b"propose\tt1\tMDL-00-01\tx\tdisplacement\t1.2500000000E-03\n"
         );
-        assert_eq!(said, [0.001_25]);
-        let (bytes, said) = propose("t1", &[("MDL-00-01", 0.001_25), ("MDL-00-02", -0.5)]).unwrap();
+        assert_eq!(encoded, [0.001_25]);
+        let (bytes, encoded) =
+            propose("t1", &[("MDL-00-01", 0.001_25), ("MDL-00-02", -0.5)]).unwrap();
         let expected =
             b"propose\tt1\tMDL-00-01\tx\tdisplacement\t1.2500000000E-03\tMDL-00-02\tx\tdisplacement\t-5.0000000000E-01\n";
         assert_eq!(
-            (bytes.as_slice(), said.as_slice()),
+            (bytes.as_slice(), encoded.as_slice()),
             (expected.as_slice(), [0.001_25, -0.5].as_slice())
         );
         assert_eq!(execute("t1"), b"execute\tt1\n");
@@ -203,9 +204,9 @@ mod tests {
     }
 
     #[test]
-    fn a_target_is_what_its_eleven_digits_say() {
-        let (_, said) = propose("t", &[("p", 1.0 / 3.0)]).unwrap();
-        assert_eq!(said, [0.333_333_333_33]);
+    fn a_target_is_the_value_of_its_eleven_digits() {
+        let (_, encoded) = propose("t", &[("p", 1.0 / 3.0)]).unwrap();
+        assert_eq!(encoded, [0.333_333_333_33]);
         for none in [f64::NAN, f64::INFINITY] {
             assert_eq!(propose("t", &[("p", 0.0), ("q", none)]), None);
         }

@@ -251,13 +251,13 @@ impl Device for Nees {
     fn finish(&mut self, going: &DeviceMove) -> Result<(), DeviceFault> {
         let (.., transaction) = proposed(going)?;
         let wait = self.client.reply_timeout();
-        let way = going
+        let travel = going
             .targets
             .iter()
             .zip(&self.last)
             .map(|(to, from)| (to - from).abs())
             .fold(0.0, f64::max);
-        let motion = 2.0 * way / going.speed + self.settling.max(wait);
+        let motion = 2.0 * travel / going.speed + self.settling.max(wait);
         self.answered(Some(&transaction), motion)?;
         self.executing = None;
         Ok(())
@@ -299,10 +299,10 @@ impl Device for Nees {
 
 /// The identity of a site from its answer to the opening of a session.
 pub(crate) fn introduced(control_points: &[String], welcome: &[u8]) -> Option<DeviceIdentity> {
-    let Reply::Done(said) = nees::codec::reply(welcome) else {
+    let Reply::Done(welcome_text) = nees::codec::reply(welcome) else {
         return None;
     };
-    let model = said
+    let model = welcome_text
         .first()
         .filter(|text| !text.is_empty())
         .map_or_else(String::new, |text| format!(": {text}"));

@@ -101,13 +101,13 @@ mod tests {
 
     #[test]
     fn an_identification_has_four_fields() {
-        let said = identification(b"Maker Ltd,DMM 7, 1234,A.02").unwrap();
+        let identity = identification(b"Maker Ltd,DMM 7, 1234,A.02").unwrap();
         assert_eq!(
-            (said.maker.as_str(), said.model.as_str()),
+            (identity.maker.as_str(), identity.model.as_str()),
             ("Maker Ltd", "DMM 7")
         );
         assert_eq!(
-            (said.serial.as_str(), said.firmware.as_str()),
+            (identity.serial.as_str(), identity.firmware.as_str()),
             ("1234", "A.02")
         );
         for line in [

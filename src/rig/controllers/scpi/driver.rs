@@ -33,7 +33,7 @@ impl ScpiDevice {
     }
 
     /// Requests its identity; every other line is discarded.
-    fn say_name(&mut self) -> Result<Vec<u8>, DeviceFault> {
+    fn send_identification(&mut self) -> Result<Vec<u8>, DeviceFault> {
         let expected = std::mem::take(&mut self.name);
         let named = self.client.exchange(scpi::codec::IDENTIFY, b"\n", |line| {
             let line = stripped(line);
@@ -53,7 +53,7 @@ impl ScpiDevice {
     fn catch_up(&mut self) -> Result<(), DeviceFault> {
         self.client.drain()?;
         let before = self.client.line_statistics().resent;
-        self.say_name()?;
+        self.send_identification()?;
         if self.client.line_statistics().resent > before {
             self.client.until_quiet(self.client.reply_timeout())?;
         }
@@ -129,7 +129,7 @@ pub(crate) fn decoded(line: Vec<u8>, newtons_per_unit: &[f64]) -> Result<Sample,
         return Err(DeviceFault::NoReading { raw: line, reason });
     }
     let mut channels = Vec::with_capacity(words.len());
-    for (place, (word, newtons)) in words.iter().zip(newtons_per_unit).enumerate() {
+    for (index, (word, newtons)) in words.iter().zip(newtons_per_unit).enumerate() {
         let (value, saturated) = match scpi::codec::answer(if words.len() > 1 {
             word.trim_ascii()
         } else {
@@ -147,7 +147,7 @@ pub(crate) fn decoded(line: Vec<u8>, newtons_per_unit: &[f64]) -> Result<Sample,
             ),
             Err(reason) => {
                 let of = if words.len() > 1 {
-                    format!("channel {}: {reason}", place + 1)
+                    format!("channel {}: {reason}", index + 1)
                 } else {
                     reason.to_owned()
                 };
@@ -202,7 +202,7 @@ impl LoadCell for ScpiDevice {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
+    use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
 
     const NAME: &str = "PSD-SIM,DMM 7,1234,A.02";
 
@@ -219,7 +219,7 @@ mod tests {
     }
 
     fn reply(port: &ScriptedPort, seconds: f64, line: &str) {
-        port.reply(&[Say::After(seconds, format!("{line}\r\n").into_bytes())]);
+        port.reply(&[Scripted::After(seconds, format!("{line}\r\n").into_bytes())]);
     }
 
     fn identified() -> (ScpiDevice, ScriptedPort) {
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn it_says_who_it_is_and_what_it_reads() {
+    fn it_states_its_identity_and_its_quantity() {
         let (mut device, port) = device();
         reply(&port, 0.1, NAME);
         let identity = device.identify().unwrap();
@@ -320,12 +320,12 @@ mod tests {
             [false, true]
         );
         assert_eq!(device.axes(), 2);
-        for (said, why) in [
+        for (bytes, why) in [
             ("+1.5E+00", "it has 1 numbers, but the meter has 2 channels"),
             ("1.0,OVL", "channel 2: it is not a number"),
             ("1,5,2,5", "it has 4 numbers, but the meter has 2 channels"),
         ] {
-            reply(&port, 0.1, said);
+            reply(&port, 0.1, bytes);
             assert!(
                 matches!(device.sample(), Err(DeviceFault::NoReading { reason, .. }) if reason == why),
                 "{why}"

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use crate::emulator::firmware::testing::spring;
-use crate::emulator::{Bench, Firmware, firmware};
+use crate::emulator::{EmulatedRig, Firmware, firmware};
 use crate::plan::{ModbusMap, ModbusNumber};
 use crate::rig::StopRequest;
 use crate::rig::controllers::instron::driver::Instron;
@@ -30,19 +30,19 @@ struct Controller {
 
 struct Shared {
     firmware: Box<dyn Firmware>,
-    bench: Bench,
+    rig: EmulatedRig,
     /// Bytes that were sent and not yet read.
     coming: Vec<u8>,
 }
 
 impl Controller {
     fn new(firmware: Box<dyn Firmware>) -> Self {
-        let bench = spring();
+        let rig = spring();
         Self {
             clock: VirtualClock::default(),
             shared: Arc::new(Mutex::new(Shared {
                 firmware,
-                bench,
+                rig,
                 coming: Vec::new(),
             })),
         }
@@ -55,8 +55,8 @@ impl Controller {
 
     fn targets(&self) -> Vec<f64> {
         let shared = self.shared.lock().unwrap();
-        assert!(shared.bench.violations().is_empty());
-        shared.bench.targets().to_vec()
+        assert!(shared.rig.violations().is_empty());
+        shared.rig.targets().to_vec()
     }
 }
 
@@ -64,25 +64,25 @@ impl Port for Controller {
     fn write(&mut self, bytes: &[u8], _: Duration) -> io::Result<()> {
         let Shared {
             firmware,
-            bench,
+            rig,
             coming,
         } = &mut *self.shared.lock().unwrap();
-        bench.advance(self.clock.now());
-        coming.extend(firmware.tick(bench));
-        coming.extend(firmware.receive(bytes, bench));
+        rig.advance(self.clock.now());
+        coming.extend(firmware.tick(rig));
+        coming.extend(firmware.receive(bytes, rig));
         Ok(())
     }
 
     fn read(&mut self, buffer: &mut [u8], timeout: Duration) -> io::Result<usize> {
         let Shared {
             firmware,
-            bench,
+            rig,
             coming,
         } = &mut *self.shared.lock().unwrap();
         if coming.is_empty() {
             self.clock.advance(timeout.as_secs_f64());
-            bench.advance(self.clock.now());
-            coming.extend(firmware.tick(bench));
+            rig.advance(self.clock.now());
+            coming.extend(firmware.tick(rig));
         }
         let count = coming.len().min(buffer.len());
         buffer[..count].copy_from_slice(&coming[..count]);
@@ -194,7 +194,7 @@ fn the_mark_10_stand_and_the_gauge_alone() {
     goes_there_and_back(&mut device, &controller, 1e-9);
     stays_where_it_is_stopped(&mut device, &controller);
     let alone = Controller::new(Box::new(firmware::Mark10Gauge::new(-1.0)));
-    alone.shared.lock().unwrap().bench.go(0.001, 0.01);
+    alone.shared.lock().unwrap().rig.go(0.001, 0.01);
     alone.clock.advance(1.0);
     let sample = Mark10Gauge::new(alone.client()).sample().unwrap();
     assert_eq!(
@@ -243,13 +243,13 @@ fn a_nees_rig() {
     let mut device = Nees::new(controller.client(), vec!["MDL-00-01".to_owned()], 5.0);
     goes_there_and_back(&mut device, &controller, 1e-12);
     let beyond = device.encode(&[0.07], 0.001).unwrap();
-    let targets = controller.shared.lock().unwrap().bench.targets().len();
+    let targets = controller.shared.lock().unwrap().rig.targets().len();
     assert!(matches!(
         device.start(&beyond),
         Err(DeviceFault::Refused { .. })
     ));
     assert_eq!(
-        controller.shared.lock().unwrap().bench.targets().len(),
+        controller.shared.lock().unwrap().rig.targets().len(),
         targets,
         "the rig itself refuses, and nothing moves"
     );

@@ -6,7 +6,7 @@ use crate::rig::controllers::*;
 use crate::rig::testing::{ScriptedPort, VirtualClock};
 
 #[test]
-fn what_the_plan_says_moves_can_be_told_to_and_nothing_is_sent_by_opening() {
+fn actuators_of_the_plan_accept_moves_and_opening_sends_nothing() {
     let clock = VirtualClock::default();
     let scpi = Dialect::Scpi {
         newtons_per_unit: vec![1.0],

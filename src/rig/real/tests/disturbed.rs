@@ -67,10 +67,10 @@ impl Device for Coupled {
             [0.0; 2]
         };
         let [first, other] = [0, 1].map(|axis| {
-            let place = self.targets[axis] + errors[axis];
+            let position = self.targets[axis] + errors[axis];
             Channel {
-                displacement: Some(place),
-                force: Some(Force::Newtons(1e4 * place)),
+                displacement: Some(position),
+                force: Some(Force::Newtons(1e4 * position)),
                 ..Channel::default()
             }
         });
@@ -220,7 +220,7 @@ fn an_axis_that_another_disturbs_after_it_had_settled_is_waited_for() {
 }
 
 #[test]
-fn a_reading_in_which_one_axis_has_left_its_place_counts_for_none() {
+fn a_reading_in_which_one_axis_has_moved_does_not_count() {
     let (time, errors) = read(pushed).unwrap();
     assert!(
         within(time, 1.62 + 0.5, 2.5) && inside(errors),

@@ -6,7 +6,7 @@ use crate::rig::controllers::DeviceFault;
 use crate::rig::{FinalHold, Rig as _};
 
 /// A rig that has moved towards 2 mm at 1 mm/s for one second, and the result of its final hold.
-fn halted_on_the_way(mut stand: Stand) -> (Stand, FinalHold) {
+fn halted_in_motion(mut stand: Stand) -> (Stand, FinalHold) {
     stand.rig.propose(&[0.002], Some(0.001)).unwrap();
     let stop_request = stand.stop_request.clone();
     stand.device.alter(move |sample, _| {
@@ -23,10 +23,10 @@ fn halted_on_the_way(mut stand: Stand) -> (Stand, FinalHold) {
 
 #[test]
 fn it_is_held_where_it_was_seen_at_rest_and_read_there_once() {
-    for tells_motion in [true, false] {
+    for reports_motion in [true, false] {
         let stand = stand();
-        stand.device.inside().tells_motion = tells_motion;
-        let (stand, halted) = halted_on_the_way(stand);
+        stand.device.inside().reports_motion = reports_motion;
+        let (stand, halted) = halted_in_motion(stand);
         let position = stand.device.inside().position;
         assert!((0.5e-3..1.5e-3).contains(&position), "{position}");
         assert!(halted.is_held(), "{halted}");
@@ -46,12 +46,13 @@ fn a_hold_that_found_no_ear_is_called_none() {
     stand.rig.execute().unwrap_err();
     let halted = stand.rig.halt().unwrap();
     assert!(!halted.is_held() && halted.found.is_none(), "{halted:?}");
-    let told = halted.to_string();
+    let message = halted.to_string();
     assert!(
-        told.starts_with("NOT CONFIRMED HELD (actuator on rig:1: no usable answer within 2.81 s)"),
-        "{told}"
+        message
+            .starts_with("NOT CONFIRMED HELD (actuator on rig:1: no usable answer within 2.81 s)"),
+        "{message}"
     );
-    assert!(told.ends_with("Press the emergency stop"), "{told}");
+    assert!(message.ends_with("Press the emergency stop"), "{message}");
 }
 
 #[test]
@@ -82,7 +83,7 @@ fn a_rig_that_goes_on_is_not_called_held_and_is_not_waited_for_for_ever() {
 }
 
 #[test]
-fn what_is_read_on_the_way_is_seen_beside_the_run() {
+fn readings_during_a_move_are_shown_beside_the_run() {
     let mut stand = stand();
     let live = stand.rig.live();
     let before = live.newest().unwrap();

@@ -203,9 +203,9 @@ fn many_short_stays_leave_no_silence_longer_than_the_watchdog() {
 }
 
 #[test]
-fn a_device_that_cannot_say_whether_it_moves_is_given_the_time_of_the_way() {
+fn a_device_that_cannot_report_motion_is_given_the_time_of_the_move() {
     let mut stand = stand();
-    stand.device.inside().tells_motion = false;
+    stand.device.inside().reports_motion = false;
     assert_eq!(stand.go(0.002), Ok((0.002, 200.0)));
 }
 
@@ -290,7 +290,7 @@ fn without_the_guard_of_settling_a_reading_comes_too_early() {
 }
 
 #[test]
-fn a_ram_that_stops_short_is_a_following_error() {
+fn an_actuator_that_stops_short_is_a_following_error() {
     let fault = || {
         let stand = stand();
         stand.device.inside().reaches = 0.9;
@@ -309,7 +309,7 @@ fn a_ram_that_stops_short_is_a_following_error() {
 }
 
 #[test]
-fn bytes_that_say_another_number_are_not_sent() {
+fn bytes_that_decode_to_another_number_are_not_sent() {
     let fault = || {
         let stand = stand();
         stand.device.inside().misspoken = 5e-6;
@@ -343,7 +343,7 @@ impl RealRig {
 }
 
 #[test]
-fn a_wish_to_hold_ends_a_move_within_a_slice_and_the_rig_stands() {
+fn a_hold_request_ends_a_move_within_a_slice_and_the_rig_is_at_rest() {
     let mut stand = stand();
     let (stop_request, clock) = (stand.stop_request.clone(), stand.clock.clone());
     stand.device.alter(move |number, _| {
@@ -353,10 +353,13 @@ fn a_wish_to_hold_ends_a_move_within_a_slice_and_the_rig_stands() {
         Ok(())
     });
     assert_eq!(stand.go(0.002), Err(RigFault::Interrupted));
-    let stood = stand.device.inside().position;
-    assert!(stood > 1e-4 && stood < 1e-3, "in mid-move, {stood}");
+    let stopped_at = stand.device.inside().position;
+    assert!(
+        stopped_at > 1e-4 && stopped_at < 1e-3,
+        "in mid-move, {stopped_at}"
+    );
     clock.advance(1.0);
-    assert_eq!(stand.device.inside().position, stood);
+    assert_eq!(stand.device.inside().position, stopped_at);
     assert_eq!(stand.device.inside().holds, 1);
     assert!(
         stand.rig.read().is_ok() && stand.stop_request.end_requested(),
@@ -365,14 +368,14 @@ fn a_wish_to_hold_ends_a_move_within_a_slice_and_the_rig_stands() {
 }
 
 #[test]
-fn a_force_beyond_its_limit_stops_a_move_on_the_way_and_a_lone_spike_does_not() {
-    let stands_at = || {
+fn a_force_beyond_its_limit_stops_a_move_and_a_single_spike_does_not() {
+    let fault_and_position = || {
         let mut stand = stand();
         stand.device.inside().stiffness = 1e6;
         let fault = stand.go(0.008).err();
         (fault, stand.device.inside().position)
     };
-    let (fault, stood) = stands_at();
+    let (fault, stopped_at) = fault_and_position();
     assert!(
         matches!(
             fault,
@@ -383,8 +386,11 @@ fn a_force_beyond_its_limit_stops_a_move_on_the_way_and_a_lone_spike_does_not() 
         ),
         "{fault:?}"
     );
-    assert!((0.005..0.0052).contains(&stood), "{stood}");
-    assert_eq!(without(Guarding::ReadingLimits, stands_at), (None, 0.008));
+    assert!((0.005..0.0052).contains(&stopped_at), "{stopped_at}");
+    assert_eq!(
+        without(Guarding::ReadingLimits, fault_and_position),
+        (None, 0.008)
+    );
     let mut spiked = stand();
     spiked.device.alter(|number, sample| {
         if number == 8 {
@@ -396,7 +402,7 @@ fn a_force_beyond_its_limit_stops_a_move_on_the_way_and_a_lone_spike_does_not() 
 }
 
 #[test]
-fn a_device_that_says_it_rests_before_it_has_begun_is_waited_for() {
+fn a_device_that_reports_rest_before_it_has_begun_is_waited_for() {
     let mut stand = stand();
     stand.device.alter(|number, sample| {
         if number < 4 {
@@ -408,7 +414,7 @@ fn a_device_that_says_it_rests_before_it_has_begun_is_waited_for() {
 }
 
 #[test]
-fn a_rig_that_moves_before_it_is_told_to_is_held() {
+fn a_rig_that_moves_before_a_command_is_held() {
     let moving = |device: &FakeDevice| {
         let mut inside = device.inside();
         (inside.target, inside.speed) = (0.01, 0.001);

@@ -108,7 +108,7 @@ fn a_frozen_a_saturated_and_a_flagged_reading_hold_the_rig() {
 }
 
 #[test]
-fn a_rig_that_started_anew_is_not_moved_any_more() {
+fn a_restarted_rig_is_not_moved_any_more() {
     let went_back = caught_by(Guarding::Reboot, || {
         |number, sample: &mut Sample| {
             sample.time = Some(if number < 5 { 100.0 } else { 0.1 });
@@ -151,7 +151,7 @@ fn a_program_that_was_away_does_not_go_on_by_itself() {
 }
 
 #[test]
-fn a_load_cell_of_its_own_gives_the_force_and_an_open_loop_says_so() {
+fn a_separate_load_cell_gives_the_force_and_an_open_loop_is_reported() {
     let clock = VirtualClock::default();
     let (frame, cell) = (FakeDevice::new(&clock), FakeDevice::new(&clock));
     frame.alter(|_, sample| {

@@ -17,7 +17,7 @@ fn a_move_is_seen_no_faster_than_it_went_and_a_little_slower() {
 }
 
 #[test]
-fn a_ram_that_is_faster_than_it_was_told_is_seen_to_be() {
+fn an_actuator_faster_than_commanded_is_detected() {
     let mut stand = stand();
     let device = stand.device.clone();
     let mut guard = Guard::new(&mut stand.rig, LIMITS).unwrap();

@@ -12,37 +12,40 @@ fn sent(reaches: f64) -> (f64, Option<String>) {
     stand.device.inside().reaches = reaches;
     stand.rig.propose(&[0.002], Some(0.001)).unwrap();
     let fault = stand.rig.execute().err().map(|fault| fault.to_string());
-    let stood = stand.device.inside().position;
-    (stood, fault)
+    let stopped_at = stand.device.inside().position;
+    (stopped_at, fault)
 }
 
 /// 2 mm plus a quarter of it, plus two bands of 10 µm.
 const BEYOND: f64 = 2.52e-3;
 
 #[test]
-fn an_axis_that_goes_past_its_target_is_held_on_the_way() {
-    let (stood, fault) = sent(5.0);
+fn an_axis_that_goes_past_its_target_is_held_during_the_move() {
+    let (stopped_at, fault) = sent(5.0);
     let fault = fault.expect("held");
     assert!(
         fault.starts_with("the rig deviated from the commanded path: it is at 2.5"),
         "{fault}"
     );
     // Two readings, 50 ms apart at 1 mm/s.
-    assert!((BEYOND..BEYOND + 2e-4).contains(&stood), "{stood}");
-    let (stood, fault) = without(Guarding::PathDeviation, || sent(5.0));
     assert!(
-        stood > 6e-3 && fault.is_some_and(|fault| fault.contains("settle")),
-        "it alone catches it on the way: {stood}"
+        (BEYOND..BEYOND + 2e-4).contains(&stopped_at),
+        "{stopped_at}"
+    );
+    let (stopped_at, fault) = without(Guarding::PathDeviation, || sent(5.0));
+    assert!(
+        stopped_at > 6e-3 && fault.is_some_and(|fault| fault.contains("settle")),
+        "it alone catches it on the way: {stopped_at}"
     );
 }
 
 #[test]
-fn an_axis_that_goes_the_other_way_is_held() {
-    let (stood, fault) = sent(-0.4);
+fn an_axis_that_goes_in_the_other_direction_is_held() {
+    let (stopped_at, fault) = sent(-0.4);
     assert!(
         fault.is_some_and(|fault| fault.contains("deviated"))
-            && (-7.2e-4..=-5.2e-4).contains(&stood),
-        "{stood}"
+            && (-7.2e-4..=-5.2e-4).contains(&stopped_at),
+        "{stopped_at}"
     );
 }
 
@@ -80,7 +83,7 @@ fn read_with(lost: u64) -> Result<f64, RigFault> {
 }
 
 #[test]
-fn a_force_that_nothing_leads_to_is_read_anew() {
+fn an_isolated_jump_of_force_is_read_again() {
     assert_eq!(read_with(1), Ok(200.0), "the median");
     assert_eq!(read_with(2), Ok(200.0));
     assert_eq!(without(Guarding::ForceJump, || read_with(2)), Ok(20.0));

@@ -49,11 +49,11 @@ fn a_stroke_stops_at_a_refused_reading() {
         }
     });
     assert_eq!((refused, count), (Err(RigFault::Interrupted), 3));
-    let stood = stand.device.inside().position;
-    assert!((0.003..0.0031).contains(&stood) && stand.device.inside().target == stood);
+    let stopped_at = stand.device.inside().position;
+    assert!((0.003..0.0031).contains(&stopped_at) && stand.device.inside().target == stopped_at);
     // The remaining travel begins there; at the end only the missing reading is made.
     let mut on = |done| {
-        let mut places = Vec::new();
+        let mut positions = Vec::new();
         let cut_off = CutOff {
             from: &[0.0],
             to: &[0.008],
@@ -61,14 +61,14 @@ fn a_stroke_stops_at_a_refused_reading() {
             done,
         };
         let rest = stand.rig.traverse_on(&cut_off, 0.001, &mut |reading| {
-            places.push(reading.displacement[0]);
+            positions.push(reading.displacement[0]);
             Ok(())
         });
-        rest.map(|()| places).unwrap()
+        rest.map(|()| positions).unwrap()
     };
     let rest = on(2);
     assert!(
-        rest.len() == 6 && rest[0] > stood && rest.is_sorted() && rest[5] == 0.008,
+        rest.len() == 6 && rest[0] > stopped_at && rest.is_sorted() && rest[5] == 0.008,
         "{rest:?}"
     );
     assert_eq!((on(7), on(8)), (vec![0.008], Vec::new()));

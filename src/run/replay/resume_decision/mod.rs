@@ -72,7 +72,7 @@ pub fn decide(
     let Some(last) = lines.last() else {
         return Err(ResumeRefusal::NothingRecorded);
     };
-    let place = FoundPosition {
+    let found_position = FoundPosition {
         positions: &found.displacement,
         bands: &bands.displacement,
     };
@@ -90,7 +90,7 @@ pub fn decide(
     };
     if let Some((held_at, _)) = &held {
         // A later motion is not logged: the specimen has a different history.
-        place.expect_at(held_at)?;
+        found_position.expect_at(held_at)?;
         check_relaxation(held.as_ref(), found, bands, accept_relaxation)?;
     }
 
@@ -99,7 +99,7 @@ pub fn decide(
         let start = recorded
             .as_ref()
             .map_or_else(|| vec![0.0; found.displacement.len()], |(x, _)| x.clone());
-        place.expect_at(&start)?;
+        found_position.expect_at(&start)?;
         check_relaxation(recorded.as_ref(), found, bands, accept_relaxation)?;
         return Ok(decision(last.seq + 1, TargetStatus::None));
     };
@@ -111,33 +111,36 @@ pub fn decide(
             .iter()
             .all(|line| line.kind != EntryKind::Stroke)
     {
-        let taken = lines[at..]
+        let readings_done = lines[at..]
             .iter()
             .filter(|line| line.kind == EntryKind::Sample)
             .count();
-        let reached = if taken > 0 {
+        let reached = if readings_done > 0 {
             recorded.as_ref().map_or(&before, |(x, _)| x)
         } else {
             &before
         };
         let samples = intent.samples.unwrap_or(0);
-        let way = InterruptedMotion {
+        let motion = InterruptedMotion {
             reached,
             target: &target,
             paths: intent.path.as_deref(),
             samples,
-            taken,
+            readings_done,
         };
-        return Ok(match way.target_status(place, &before)? {
+        return Ok(match motion.target_status(found_position, &before)? {
             target_status @ TargetStatus::Stroke { .. } => decision(lines[at].seq, target_status),
             target_status => decision(last.seq + 1, target_status),
         });
     }
     if at + 1 < lines.len()
-        && let Some(paths) = intent.path.as_ref().filter(|_| !place.is_at(&target))
+        && let Some(paths) = intent
+            .path
+            .as_ref()
+            .filter(|_| !found_position.is_at(&target))
     {
         // It passed its target at the velocity of the path, and held. After it is moved back, it continues from rest.
-        place.expect_past(paths)?;
+        found_position.expect_past(paths)?;
         return Ok(decision(
             last.seq + 1,
             TargetStatus::Stroke {
@@ -147,7 +150,7 @@ pub fn decide(
         ));
     }
     if at + 1 < lines.len() {
-        place.expect_at(&target)?;
+        found_position.expect_at(&target)?;
         check_relaxation(recorded.as_ref(), found, bands, accept_relaxation)?;
         return Ok(decision(last.seq + 1, TargetStatus::None));
     }
@@ -159,24 +162,26 @@ pub fn decide(
     }
     let target_status = match (&rig.last_move, intent.id) {
         (Some(moved), Some(id))
-            if moved.id >= id && place.is_at(&moved.targets) && place.is_at(&target) =>
+            if moved.id >= id
+                && found_position.is_at(&moved.targets)
+                && found_position.is_at(&target) =>
         {
             TargetStatus::Executed
         }
         (Some(moved), Some(id)) if moved.id < id => {
-            place.expect_at(&before)?;
+            found_position.expect_at(&before)?;
             TargetStatus::NotExecuted
         }
-        (Some(_), Some(_)) => place.expect_between(&before, &target)?,
+        (Some(_), Some(_)) => found_position.expect_between(&before, &target)?,
         // Without a memory of moves only the position decides; if both are equally near, the same target is requested
         // again.
-        _ if place.is_at(&before) => TargetStatus::NotExecuted,
-        _ if place.is_at(&target) => TargetStatus::Executed,
-        _ => place.expect_between(&before, &target)?,
+        _ if found_position.is_at(&before) => TargetStatus::NotExecuted,
+        _ if found_position.is_at(&target) => TargetStatus::Executed,
+        _ => found_position.expect_between(&before, &target)?,
     };
     let sends = matches!(
         target_status,
-        TargetStatus::NotExecuted | TargetStatus::HeldOnTheWay
+        TargetStatus::NotExecuted | TargetStatus::HeldDuringMotion
     )
     .then_some((target, intent.rate));
     Ok(ResumeDecision {
@@ -252,13 +257,13 @@ pub(super) fn undecided_stroke(lines: &[Line]) -> Result<Option<u64>, Unreadable
         && lines[at..]
             .iter()
             .all(|line| line.kind != EntryKind::Stroke);
-    let taken = lines[at..]
+    let readings_done = lines[at..]
         .iter()
         .filter(|line| line.kind == EntryKind::Sample)
         .count();
     let lost = intent
         .samples
-        .is_some_and(|samples| mostly_lost(samples, taken));
+        .is_some_and(|samples| mostly_lost(samples, readings_done));
     Ok((is_cut && lost).then_some(lines[at].seq))
 }
 

@@ -46,8 +46,8 @@ fn band(bands: &[f64], axis: usize) -> f64 {
 }
 
 /// A single missing reading is made late, at the end of the stroke.
-pub(super) const fn mostly_lost(samples: usize, taken: usize) -> bool {
-    taken + 1 < samples && 2 * taken < samples
+pub(super) const fn mostly_lost(samples: usize, readings_done: usize) -> bool {
+    readings_done + 1 < samples && 2 * readings_done < samples
 }
 
 /// A relaxation beyond its band must be accepted by the operator.
@@ -63,7 +63,7 @@ pub(super) fn check_relaxation(
     let inside = |(axis, (recorded, found)): (usize, (&f64, &f64))| {
         (found - recorded).abs() <= band(&bands.force, axis)
     };
-    let Some(place) = recorded
+    let Some(axis_index) = recorded
         .iter()
         .zip(&found.force)
         .enumerate()
@@ -72,12 +72,12 @@ pub(super) fn check_relaxation(
         return Ok(());
     };
     let (axis, band) = (
-        named_axis(place, found.force.len()),
-        band(&bands.force, place),
+        named_axis(axis_index, found.force.len()),
+        band(&bands.force, axis_index),
     );
     Err(ResumeRefusal::Relaxed {
-        recorded: recorded[place],
-        found: found.force[place],
+        recorded: recorded[axis_index],
+        found: found.force[axis_index],
         band,
         axis,
     })
@@ -92,7 +92,7 @@ pub(super) struct InterruptedMotion<'a> {
     pub(super) paths: Option<&'a [Path]>,
     /// Readings that were requested, and those that were logged.
     pub(super) samples: usize,
-    pub(super) taken: usize,
+    pub(super) readings_done: usize,
 }
 
 impl InterruptedMotion<'_> {
@@ -100,17 +100,17 @@ impl InterruptedMotion<'_> {
     /// continued to its end and most of its readings are missing.
     pub(super) fn target_status(
         &self,
-        place: FoundPosition<'_>,
+        found: FoundPosition<'_>,
         before: &[f64],
     ) -> Result<TargetStatus, ResumeRefusal> {
         match self.paths {
             Some(paths) => {
                 let (low, high): (Vec<f64>, Vec<f64>) = paths.iter().map(possible_hold).unzip();
-                place.expect_between(&low, &high)?;
+                found.expect_between(&low, &high)?;
             }
-            None if mostly_lost(self.samples, self.taken)
-                && place.is_at(self.target)
-                && !place.is_at(self.reached) =>
+            None if mostly_lost(self.samples, self.readings_done)
+                && found.is_at(self.target)
+                && !found.is_at(self.reached) =>
             {
                 return Ok(TargetStatus::Stroke {
                     back_to: before[0],
@@ -118,10 +118,10 @@ impl InterruptedMotion<'_> {
                 });
             }
             None => {
-                place.expect_between(self.reached, self.target)?;
+                found.expect_between(self.reached, self.target)?;
             }
         }
-        Ok(TargetStatus::RestOfTheWay {
+        Ok(TargetStatus::RemainingMotion {
             from: before.to_vec(),
         })
     }
@@ -147,36 +147,37 @@ pub(super) struct FoundPosition<'a> {
 }
 
 impl FoundPosition<'_> {
-    pub(super) fn is_at(self, place: &[f64]) -> bool {
-        self.first_axis_off(place).is_none()
+    pub(super) fn is_at(self, recorded: &[f64]) -> bool {
+        self.first_axis_off(recorded).is_none()
     }
 
-    /// The first axis that is not at its position in `place`. An axis without a position counts as not there.
-    fn first_axis_off(self, place: &[f64]) -> Option<usize> {
-        let near =
-            |axis, place: &f64, position: &f64| (position - place).abs() <= band(self.bands, axis);
+    /// The first axis that is not at its position in `recorded`. An axis without a position counts as not there.
+    fn first_axis_off(self, recorded: &[f64]) -> Option<usize> {
+        let near = |axis, recorded: &f64, position: &f64| {
+            (position - recorded).abs() <= band(self.bands, axis)
+        };
         let at = |(axis, position): (usize, &f64)| {
-            place
+            recorded
                 .get(axis)
-                .is_some_and(|place| near(axis, place, position))
+                .is_some_and(|recorded| near(axis, recorded, position))
         };
         self.positions.iter().enumerate().position(|axis| !at(axis))
     }
 
     pub(super) fn expect_at(self, recorded: &[f64]) -> Result<(), ResumeRefusal> {
-        let Some(place) = self.first_axis_off(recorded) else {
+        let Some(axis_index) = self.first_axis_off(recorded) else {
             return Ok(());
         };
         let (found, recorded) = (
-            self.positions[place],
-            recorded.get(place).copied().unwrap_or(f64::NAN),
+            self.positions[axis_index],
+            recorded.get(axis_index).copied().unwrap_or(f64::NAN),
         );
-        let band = band(self.bands, place);
+        let band = band(self.bands, axis_index);
         Err(ResumeRefusal::Elsewhere {
             recorded,
             found,
             band,
-            axis: named_axis(place, self.positions.len()),
+            axis: named_axis(axis_index, self.positions.len()),
         })
     }
 
@@ -195,12 +196,12 @@ impl FoundPosition<'_> {
         from: &[f64],
         to: &[f64],
     ) -> Result<TargetStatus, ResumeRefusal> {
-        let ways = self.positions.iter().zip(from.iter().zip(to));
-        for (place, (found, (from, to))) in ways.enumerate() {
-            let band = band(self.bands, place);
+        let axes = self.positions.iter().zip(from.iter().zip(to));
+        for (axis_index, (found, (from, to))) in axes.enumerate() {
+            let band = band(self.bands, axis_index);
             let (low, high) = (from.min(*to) - band, from.max(*to) + band);
             if !(low <= *found && *found <= high) {
-                let axis = named_axis(place, self.positions.len());
+                let axis = named_axis(axis_index, self.positions.len());
                 return Err(ResumeRefusal::Lost {
                     from: *from,
                     to: *to,
@@ -209,6 +210,6 @@ impl FoundPosition<'_> {
                 });
             }
         }
-        Ok(TargetStatus::HeldOnTheWay)
+        Ok(TargetStatus::HeldDuringMotion)
     }
 }

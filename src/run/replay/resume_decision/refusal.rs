@@ -26,9 +26,9 @@ pub enum ResumeRefusal {
     )]
     PowerUpUnknown,
     #[error(
-        "the run log shows that the rig restarted during the run ({told}): reference it, then confirm with --re-referenced"
+        "the run log shows that the rig restarted during the run ({fault}): reference it, then confirm with --re-referenced"
     )]
-    Restarted { told: String },
+    Restarted { fault: String },
     #[error(
         "the firmware of the rig differs from the run log ({recorded} became {found}): check that its meaning is the same, \
          reference the rig, then confirm with --re-referenced"

@@ -45,11 +45,11 @@ pub fn same_rig(
     let (before, now): (Vec<&str>, Vec<&str>) =
         (was.split(" + ").collect(), is.split(" + ").collect());
     let pairs = || before.iter().copied().zip(now.iter().copied());
-    let anew = |(before, now): (&str, &str)| {
+    let restarted = |(before, now): (&str, &str)| {
         now == JUST_STARTED || before != now && (before, now) != (JUST_STARTED, NO_POWER_UP)
     };
-    if before.len() != now.len() || pairs().any(anew) {
-        let told = |word: &str| {
+    if before.len() != now.len() || pairs().any(restarted) {
+        let shown = |word: &str| {
             if word == NO_POWER_UP {
                 "none".to_owned()
             } else {
@@ -57,8 +57,8 @@ pub fn same_rig(
             }
         };
         return Err(ResumeRefusal::Rebooted {
-            recorded: told(&was),
-            found: told(&is),
+            recorded: shown(&was),
+            found: shown(&is),
         });
     }
     if on(Guarding::PowerUp)
@@ -83,11 +83,11 @@ pub fn not_restarted(logged: &LoggedRun, assured: &[Assurance]) -> Result<(), Re
         .lines
         .iter()
         .filter(|line| line.kind == EntryKind::Fault);
-    let told = faults
+    let messages = faults
         .filter_map(|line| body::<FaultBody>(line).ok())
         .map(|fault| fault.fault.to_string());
-    match { told }.find(|told| told.contains(NOT_TRUSTED)) {
-        Some(told) => Err(ResumeRefusal::Restarted { told }),
+    match { messages }.find(|fault| fault.contains(NOT_TRUSTED)) {
+        Some(fault) => Err(ResumeRefusal::Restarted { fault }),
         None => Ok(()),
     }
 }

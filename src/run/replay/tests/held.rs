@@ -17,7 +17,7 @@ use crate::run::{Inspection, Motion};
 use crate::tests::testing::{elastic_plan, header, ramp};
 
 /// The operator stops the rig on the path to a target, at 40 % of the path.
-struct HeldOnTheWay {
+struct HeldDuringMotion {
     rig: Standing,
     target: f64,
     moves: u32,
@@ -27,7 +27,7 @@ struct HeldOnTheWay {
     at_a_look: Option<Rc<Cell<bool>>>,
 }
 
-impl Rig for HeldOnTheWay {
+impl Rig for HeldDuringMotion {
     fn identity(&self) -> Identity {
         Identity {
             simulated: self.at_a_look.is_none(),
@@ -85,7 +85,7 @@ impl Rig for HeldOnTheWay {
     }
     fn halt(&mut self) -> Option<FinalHold> {
         let unconfirmed = (!self.heard).then(|| "connection lost".to_owned());
-        let found = self.heard.then(|| (vec![place()], vec![force()]));
+        let found = self.heard.then(|| (vec![position()], vec![force()]));
         Some(FinalHold {
             time: self.time() + 0.25,
             unconfirmed,
@@ -99,12 +99,12 @@ impl Rig for HeldOnTheWay {
 }
 
 /// A position between the second and the third target of the ramp \[m\]; below, its force \[N\].
-fn place() -> f64 {
+fn position() -> f64 {
     2.4e-4
 }
 
 fn force() -> f64 {
-    300.0 * place()
+    300.0 * position()
 }
 
 fn plan() -> Plan {
@@ -114,7 +114,7 @@ fn plan() -> Plan {
 /// The run and the run log after the operator stopped the rig there.
 fn held(heard: bool) -> (Recorded, Vec<u8>) {
     let (plan, disk) = (plan(), PowerLoss::new());
-    let mut rig = HeldOnTheWay {
+    let mut rig = HeldDuringMotion {
         rig: Standing::new(&plan),
         target: 0.0,
         moves: 0,
@@ -129,7 +129,7 @@ fn held(heard: bool) -> (Recorded, Vec<u8>) {
 
 #[test]
 fn what_became_of_the_rig_plays_back() {
-    for (heard, kind, told) in [
+    for (heard, kind, text) in [
         (true, EventKind::Held, "HELD at 0.2400 mm, 0.07200 N"),
         (
             false,
@@ -139,7 +139,7 @@ fn what_became_of_the_rig_plays_back() {
     ] {
         let (recorded, bytes) = held(heard);
         let last = recorded.record.events.last().unwrap();
-        assert_eq!((last.kind, last.text.as_str()), (kind, told));
+        assert_eq!((last.kind, last.text.as_str()), (kind, text));
         let (lines, again) = logged(&bytes);
         assert_eq!(
             lines
@@ -181,7 +181,7 @@ fn a_hold_at_a_look_behind_a_step_is_played_back_as_one_at_the_look() {
     );
     let looks = Rc::new(Cell::new(false));
     let at_a_look = Some(Rc::clone(&looks));
-    let mut rig = HeldOnTheWay {
+    let mut rig = HeldDuringMotion {
         rig: Standing::new(&plan),
         target: 0.0,
         moves: 0,
@@ -215,7 +215,7 @@ fn a_hold_requested_while_a_release_is_asked_releases_nothing() {
         elastic_plan(300.0, vec![ProcedureKind::StiffnessRamp(ramp(1e-4))]),
         Rc::new(Cell::new(false)),
     );
-    let mut rig = HeldOnTheWay {
+    let mut rig = HeldDuringMotion {
         rig: Standing::new(&plan),
         target: 0.0,
         moves: 0,
@@ -260,25 +260,25 @@ fn decided(
 }
 
 #[test]
-fn a_rig_that_stands_as_it_was_held_is_sent_to_its_target_anew() {
-    let decision = decided(true, place(), force(), false).unwrap();
+fn a_rig_where_it_was_held_is_sent_to_its_target_again() {
+    let decision = decided(true, position(), force(), false).unwrap();
     assert_eq!(
         (&decision.target_status, decision.held.clone()),
         (
-            &TargetStatus::HeldOnTheWay,
-            Some((vec![place()], vec![force()]))
+            &TargetStatus::HeldDuringMotion,
+            Some((vec![position()], vec![force()]))
         )
     );
     let (to, speed) = decision.sends.clone().unwrap();
     assert!((to[0] - 3e-4).abs() < 1e-12 && speed > 0.0, "{to:?}");
     let found = Reading {
         time: 0.0,
-        displacement: vec![place()],
+        displacement: vec![position()],
         force: vec![force()],
         raw: Vec::new(),
     };
     let resumption = decision.resumption("A", "so", &found, 1.0);
-    assert_eq!(resumption.held, Some((vec![place()], vec![force()])));
+    assert_eq!(resumption.held, Some((vec![position()], vec![force()])));
 }
 
 #[test]
@@ -293,25 +293,25 @@ fn a_rig_that_was_moved_or_let_go_of_since_is_refused() {
     }
     assert!(
         matches!(
-            decided(true, place(), 0.0, false),
+            decided(true, position(), 0.0, false),
             Err(ResumeRefusal::Relaxed { .. })
         ),
         "the specimen was taken out"
     );
     assert!(
-        decided(true, place(), 0.0, true).is_ok(),
+        decided(true, position(), 0.0, true).is_ok(),
         "somebody answers for the force"
     );
     // The position at rest is not known: only the position on the path is logged, and the operator is asked.
     let decision = decided(false, 2.1e-4, 0.0, false).unwrap();
     assert_eq!(
         (decision.target_status, decision.held),
-        (TargetStatus::HeldOnTheWay, None)
+        (TargetStatus::HeldDuringMotion, None)
     );
 }
 
 #[test]
-fn a_record_that_does_not_say_where_it_was_held_plays_back_as_before() {
+fn a_record_without_the_held_position_replays_as_before() {
     let (_, bytes) = held(true);
     let (_, whole) = logged(&bytes);
     let lines = whole.lines.iter().filter(|line| {

@@ -9,7 +9,7 @@ fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end() {
 
 /// An impact on a storey: targets and readings of two axes.
 #[test]
-fn killed_at_every_write_a_blow_on_a_storey_goes_on_to_the_same_end() {
+fn killed_at_every_write_an_impact_on_a_storey_resumes_to_the_same_end() {
     killed_everywhere(&struck_frame(), 60);
 }
 
@@ -108,16 +108,16 @@ fn go_on_and_compare(
         resumed.record.events
     );
     assert_eq!(measured(&resumed.record), expected, "call {call}");
-    let mended = resumed
+    let recovered_events = resumed
         .record
         .events
         .iter()
-        .find(|event| event.kind == EventKind::Mended)
+        .find(|event| event.kind == EventKind::Recovered)
         .map(|event| event.text.clone());
     let both = Some(before.line_statistics.plus(rig.line_statistics()))
         .filter(|line_statistics| *line_statistics != LineStatistics::default());
     assert_eq!(
-        mended,
+        recovered_events,
         both.map(|line_statistics| line_statistics.to_string()),
         "call {call}: what was mended before counts too"
     );

@@ -6,14 +6,14 @@ use crate::record::{History, ImpactHistory, Record};
 
 /// The measured and computed values of a run, without their times.
 pub(super) fn measured(record: &Record) -> String {
-    let mut told = String::new();
+    let mut text = String::new();
     for procedure in &record.procedures {
-        writeln!(told, "{} {:?}", procedure.name, procedure.results).unwrap();
+        writeln!(text, "{} {:?}", procedure.name, procedure.results).unwrap();
         match &procedure.history {
             History::Ramp(history) => {
                 for step in &history.steps {
                     writeln!(
-                        told,
+                        text,
                         "{:?} {:?} {:?}",
                         step.command, step.displacement, step.restoring_force
                     )
@@ -27,7 +27,7 @@ pub(super) fn measured(record: &Record) -> String {
             }) => {
                 for (step, floors) in steps.iter().zip(&frame.floors) {
                     writeln!(
-                        told,
+                        text,
                         "{:?} {:?} {:?}",
                         step.striker_velocity, step.energies, floors
                     )
@@ -37,7 +37,7 @@ pub(super) fn measured(record: &Record) -> String {
             History::Impact(history) => {
                 for step in &history.steps {
                     writeln!(
-                        told,
+                        text,
                         "{:?} {:?} {:?} {:?}",
                         step.command, step.velocity, step.restoring_force, step.energies
                     )
@@ -46,11 +46,11 @@ pub(super) fn measured(record: &Record) -> String {
             }
             History::Sweep(history) => {
                 for step in &history.steps {
-                    writeln!(told, "{:?} {:?}", step.displacement, step.restoring_force).unwrap();
+                    writeln!(text, "{:?} {:?}", step.displacement, step.restoring_force).unwrap();
                 }
             }
             History::Move(steps) => writeln!(
-                told,
+                text,
                 "{:?}",
                 steps.iter().map(|step| step.command).collect::<Vec<_>>()
             )
@@ -58,7 +58,7 @@ pub(super) fn measured(record: &Record) -> String {
             History::FrameUnload(steps) => {
                 for step in steps {
                     writeln!(
-                        told,
+                        text,
                         "{:?} {:?} {:?}",
                         step.command, step.displacement, step.restoring_force
                     )
@@ -67,12 +67,12 @@ pub(super) fn measured(record: &Record) -> String {
             }
             History::Escalate(history) => {
                 writeln!(
-                    told,
+                    text,
                     "{:?}",
                     history
-                        .blows
+                        .impacts
                         .iter()
-                        .map(|blow| (&blow.results, &blow.rest))
+                        .map(|impact| (&impact.results, &impact.rest))
                         .collect::<Vec<_>>()
                 )
                 .unwrap();
@@ -80,7 +80,7 @@ pub(super) fn measured(record: &Record) -> String {
             History::Cycle(history) => {
                 for step in &history.steps {
                     writeln!(
-                        told,
+                        text,
                         "{:?} {:?} {:?}",
                         step.command, step.displacement, step.restoring_force
                     )
@@ -90,7 +90,7 @@ pub(super) fn measured(record: &Record) -> String {
             History::Shake(history) => {
                 for step in &history.steps {
                     writeln!(
-                        told,
+                        text,
                         "{:?} {:?} {:?}",
                         step.command, step.displacement, step.restoring_force
                     )
@@ -105,7 +105,7 @@ pub(super) fn measured(record: &Record) -> String {
             .axes
             .iter()
             .map(|axis| (axis.before.force, axis.after.map(|after| after.force)));
-        writeln!(told, "{:?}", zeros.collect::<Vec<_>>()).unwrap();
+        writeln!(text, "{:?}", zeros.collect::<Vec<_>>()).unwrap();
     }
-    told
+    text
 }

@@ -245,8 +245,8 @@ fn plan() -> Plan {
         stiffness: result_of(0, "stiffness"),
         rate: Some(crate::plan::formula::Formula::Constant(60.0)),
     };
-    let mut blow = impact(result_of(0, "stiffness"));
-    blow.stepping.inspect = vec![InspectTrigger::Every(7)];
+    let mut struck = impact(result_of(0, "stiffness"));
+    struck.stepping.inspect = vec![InspectTrigger::Every(7)];
     let home = Move {
         to: crate::plan::formula::Formula::Constant(0.0),
         speed: None,
@@ -262,7 +262,7 @@ fn plan() -> Plan {
             ProcedureKind::Inspect {
                 note: "before the blow".to_owned(),
             },
-            ProcedureKind::Impact(blow),
+            ProcedureKind::Impact(struck),
             ProcedureKind::Move(home),
         ],
     )
@@ -311,15 +311,15 @@ fn played_back_it_is_the_same_run() {
         format!("{:?}", whole.record),
         "to the last bit"
     );
-    let told: Vec<&str> = replayed
+    let texts: Vec<&str> = replayed
         .record
         .events
         .iter()
         .map(|event| event.text.as_str())
         .collect();
     assert!(
-        told[0].contains("no crack") && told[0].contains("A. Witness"),
-        "{told:?}"
+        texts[0].contains("no crack") && texts[0].contains("A. Witness"),
+        "{texts:?}"
     );
 }
 
@@ -371,7 +371,7 @@ fn what_the_run_would_not_have_done_is_found_out() {
 }
 
 #[test]
-fn what_a_person_said_has_its_time_of_day_and_plays_back_without_a_clock() {
+fn an_answer_of_the_operator_has_its_time_of_day_and_replays_without_a_clock() {
     let (plan, disk) = (plan(), PowerLoss::new());
     let mut journal = journal(disk.clone());
     begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
@@ -384,17 +384,17 @@ fn what_a_person_said_has_its_time_of_day_and_plays_back_without_a_clock() {
         wall,
     );
     let (recovered, logged) = logged(&disk.written());
-    let said: Vec<_> = recovered
+    let operator_lines: Vec<_> = recovered
         .lines
         .iter()
         .filter(|line| line.kind == EntryKind::Operator)
         .collect();
     assert!(
-        said.len() > 2
-            && said
+        operator_lines.len() > 2
+            && operator_lines
                 .iter()
                 .all(|line| line.body()["wall"] == "2026-05-31T10:00:00.000Z"),
-        "{said:?}"
+        "{operator_lines:?}"
     );
     check_consistency(&recovered, &logged, &plan).unwrap();
     let replayed = replay(&plan, logged);

@@ -13,9 +13,9 @@ use crate::units::Dimension;
 
 pub(super) const CONTINUOUS: Mode = Mode::Continuous { time_scale: 100.0 };
 
-pub(super) fn to(place: f64) -> ProcedureKind {
+pub(super) fn to(displacement: f64) -> ProcedureKind {
     ProcedureKind::Move(Move {
-        to: Constant(place),
+        to: Constant(displacement),
         speed: None,
     })
 }
@@ -151,10 +151,10 @@ pub(super) fn unloading() -> Plan {
 }
 
 /// The upper floor is struck, and the actuators never stop.
-pub(super) fn struck_on_the_way() -> Plan {
+pub(super) fn struck_without_a_stop() -> Plan {
     let mut plan = struck_frame();
-    if let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind {
-        (blow.stepping.mode, blow.duration) = (CONTINUOUS, Constant(0.05));
+    if let ProcedureKind::Impact(impact) = &mut plan.procedures[0].kind {
+        (impact.stepping.mode, impact.duration) = (CONTINUOUS, Constant(0.05));
     }
     plan
 }
@@ -207,8 +207,8 @@ pub(super) fn frame_row() -> Plan {
         panic!()
     };
     escalate.inspect_between = true;
-    let blow = &mut escalate.impact;
-    blow.duration = Constant(0.03);
+    let impact = &mut escalate.impact;
+    impact.duration = Constant(0.03);
     let unload = ProcedureKind::FrameUnload(FrameUnload {
         specimen: 0,
         within: Some(Constant(1e-6)),
@@ -250,7 +250,7 @@ pub(super) fn plans() -> Vec<(&'static str, Plan)> {
         ("drift", drifting()),
         ("shake", shaken(Mode::StepAndPause)),
         ("shake without a stop", shaken(CONTINUOUS)),
-        ("storey without a stop", struck_on_the_way()),
+        ("storey without a stop", struck_without_a_stop()),
         ("unload", unloading()),
         ("escalate on a storey", frame_row()),
         ("watched", watched()),

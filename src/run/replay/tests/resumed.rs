@@ -46,7 +46,7 @@ fn killed(name: &str) {
 }
 
 #[test]
-fn a_continuous_blow() {
+fn a_continuous_impact() {
     killed("continuous");
 }
 
@@ -57,12 +57,12 @@ fn cycles() {
 }
 
 #[test]
-fn rising_blows() {
+fn a_rising_series() {
     killed("escalate");
 }
 
 #[test]
-fn rising_blows_on_a_storey() {
+fn a_rising_series_on_a_storey() {
     killed("escalate on a storey");
 }
 
@@ -81,7 +81,7 @@ fn a_shake_of_two_floors() {
 }
 
 #[test]
-fn a_blow_on_a_storey_without_a_stop() {
+fn an_impact_on_a_storey_without_a_stop() {
     killed("storey without a stop");
 }
 
@@ -92,7 +92,7 @@ fn pauses_that_are_watched() {
 
 /// No reading is made during plastic deformation, and the readings follow the same line on the return: there is no damper.
 #[test]
-fn a_sweep_about_a_place_past_yield() {
+fn a_sweep_about_a_position_past_yield() {
     let (_, whole, _) = recorded(&swept_past_yield());
     let (damping, _) = crate::tests::testing::number(&whole.record, 0, "damping");
     assert!(damping.unwrap().abs() < 1e-9, "{damping:?}");
@@ -120,7 +120,7 @@ fn an_unloading() {
 }
 
 #[test]
-fn each_is_played_back_to_the_last_bit_and_told_at_the_same_times_without_a_record() {
+fn each_replays_bit_identically_and_is_reported_at_the_same_times_without_a_record() {
     let ramped = StiffnessRamp {
         pause: Constant(0.1),
         ..ramp(1e-4)
@@ -167,7 +167,7 @@ fn each_is_played_back_to_the_last_bit_and_told_at_the_same_times_without_a_reco
 }
 
 #[test]
-fn a_restart_on_record_needs_a_reference_whatever_else_is_said() {
+fn a_logged_restart_requires_a_reference_whatever_else_is_stated() {
     let plan = crate::tests::testing::empty_plan();
     let fault = DeviceFault::Rebooted {
         was: "running".to_owned(),
@@ -212,13 +212,13 @@ fn a_restart_on_record_needs_a_reference_whatever_else_is_said() {
 }
 
 #[test]
-fn a_rig_that_cannot_say_that_it_was_not_switched_off_needs_the_word_of_a_person() {
+fn a_rig_that_cannot_report_a_power_cycle_requires_the_statement_of_the_operator() {
     let plan = crate::tests::testing::empty_plan();
     let of = |boot: Option<&str>| Identity {
         boot: boot.map(str::to_owned),
         ..Standing::new(&plan).identity()
     };
-    let (nothing, word, anew) = (
+    let (nothing, word, restarted) = (
         &[][..],
         &[Assurance::SamePowerUp][..],
         &[Assurance::ReReferenced][..],
@@ -235,7 +235,10 @@ fn a_rig_that_cannot_say_that_it_was_not_switched_off_needs_the_word_of_a_person
             "{mute:?}"
         );
         assert_eq!(
-            (refused(mute.0, mute.1, word), refused(mute.0, mute.1, anew)),
+            (
+                refused(mute.0, mute.1, word),
+                refused(mute.0, mute.1, restarted)
+            ),
             (None, None),
             "{mute:?}"
         );
@@ -263,6 +266,6 @@ fn a_rig_that_cannot_say_that_it_was_not_switched_off_needs_the_word_of_a_person
                 "no word outweighs what it says: {was:?} {is:?}"
             );
         }
-        assert_eq!(refused(was, is, anew), None, "{was:?} {is:?}");
+        assert_eq!(refused(was, is, restarted), None, "{was:?} {is:?}");
     }
 }

@@ -3,14 +3,14 @@
 use crate::schema::types::{BlockKind, Field, FieldType, Kind, Naming, Variant};
 
 pub(crate) const TITLE: Field =
-    Field::text("title", "title of the test report").or_said("the plan's");
+    Field::text("title", "title of the test report").default_in_words("the plan's");
 
 pub(crate) const RESULTS: Field = Field::of_type(
     "results",
     FieldType::ResultNames,
     "results on the second page, beside those that a requirement reads",
 )
-.or_said("the headline results of the procedures, six at most");
+.default_in_words("the headline results of the procedures, six at most");
 
 pub(crate) const ANNEXES: Field = Field::choices(
     "annexes",
@@ -24,13 +24,13 @@ pub(crate) const ANNEXES: Field = Field::choices(
     ],
     "annexes after the first two pages; `[]`: none",
 )
-.or_said("every annex without `plan`");
+.default_in_words("every annex without `plan`");
 
 pub(crate) const FIGURES: Field = Field::figures(
     "figures",
     "figures, each as `figure(procedure)`, or `figure(one, other)` for several procedures on one chart",
 )
-.or_said("all figures");
+.default_in_words("all figures");
 
 pub(crate) const FORMATS: Field = Field::choices(
     "formats",
@@ -42,7 +42,7 @@ pub(crate) const FORMATS: Field = Field::choices(
     ],
     "file formats",
 )
-.or_said("all formats");
+.default_in_words("all formats");
 
 pub(crate) const LOGO: Field = Field::text(
     "logo",

@@ -26,10 +26,10 @@ pub(crate) const CV: Field = Field::quantity(
 .above_zero();
 
 pub(crate) const MEAN: Field =
-    Field::of_type("mean", FieldType::OfInput, "mean").or_said("the value of the plan");
+    Field::of_type("mean", FieldType::OfInput, "mean").default_in_words("the value of the plan");
 
 pub(crate) const MODE: Field = Field::of_type("mode", FieldType::OfInput, "most probable value")
-    .or_said("the value of the plan");
+    .default_in_words("the value of the plan");
 
 pub(crate) const BETWEEN: Field = Field::of_type(
     "between",
@@ -51,7 +51,7 @@ pub(crate) const UNIT: Field = Field::of_type(
     FieldType::OfInput,
     "unit of the values, if the name of the column does not end in it, such as `mass_kg`, `speed_m_per_s`",
 )
-.or_said("that of the column")
+.default_in_words("that of the column")
 .above_zero();
 
 const BY_SPREAD: &[Field] = &[SD, CV, MEAN, BETWEEN];
@@ -119,7 +119,7 @@ pub(crate) const RULE_CONFIDENCE: Field = Field::quantity(
     "confidence over all looks at the runs",
 )
 .within(0.5, 0.999_999)
-.or_said("the study's");
+.default_in_words("the study's");
 
 #[expect(clippy::cast_precision_loss, reason = "far below 2^53")]
 pub(crate) const AT_MOST: Field =
@@ -168,7 +168,7 @@ pub(crate) const SAMPLING: Field = Field::choice(
     ],
     "points of the runs",
 )
-.or_said("random");
+.default_in_words("random");
 
 #[expect(clippy::cast_precision_loss, reason = "2^53")]
 pub(crate) const SEED: Field = Field::count(
@@ -184,7 +184,7 @@ pub(crate) const COLLECT: Field = Field::of_type(
     FieldType::ResultNames,
     "results that are kept for every run, or numbers from them such as `max(quake.max_drift)`, beside those that a requirement reads",
 )
-.or_said("none");
+.default_in_words("none");
 
 pub(crate) const FIRST: Field =
     Field::of_type("first", FieldType::InputName, "an input of `vary`").required("impact_speed");
@@ -209,7 +209,7 @@ pub(crate) const CORRELATE: Field = Field::choices(
     )],
     "rank correlations of inputs; the others are independent",
 )
-.or_said("none");
+.default_in_words("none");
 
 pub(crate) const INTENSITY: Field = Field::of_type(
     "intensity",

@@ -81,11 +81,11 @@ pub(crate) const BLOCK: BlockKind = BlockKind {
         methods::MODE,
         methods::TIME_STEP
             .described("Δt; can use `critical`, a tenth of the shortest period")
-            .or_said("critical / 5"),
+            .default_in_words("critical / 5"),
         SCALE,
         methods::DURATION
             .described("simulated time; after the record the ground is at rest")
-            .or_said("to the end of the record"),
+            .default_in_words("to the end of the record"),
         methods::PAUSE,
         methods::MAX_TANGENT_RATIO,
         methods::INSPECT,

@@ -165,12 +165,12 @@ pub(crate) const GIVEN_AMPLITUDES: Field = Field::quantities(
     "amplitudes of the cycles, in order; or `protocol`",
 )
 .above_zero()
-.or_said("the protocol's");
+.default_in_words("the protocol's");
 
 pub(crate) const PROTOCOL: Field = Field::choice("protocol", PROTOCOLS, "rule for the amplitudes");
 
-pub(crate) const REPEATS: Field =
-    Field::count("repeats", 1.0, 1e5, "cycles at each amplitude").or_said("1, or the protocol's");
+pub(crate) const REPEATS: Field = Field::count("repeats", 1.0, 1e5, "cycles at each amplitude")
+    .default_in_words("1, or the protocol's");
 
 pub(crate) const SIDES: Field = Field::choice(
     "sides",
@@ -181,7 +181,7 @@ pub(crate) const SIDES: Field = Field::choice(
     ],
     "direction of the cycles",
 )
-.or_said("both");
+.default_in_words("both");
 
 pub(crate) const ABOUT: Field =
     Field::quantity("about", Dimension::LENGTH, "centre of the cycles").or(0.0, "mm");
@@ -211,7 +211,7 @@ pub(crate) const RATE: Field = Field::quantity(
     "sampling rate of cycles without stops; requires `speed`",
 )
 .above_zero()
-.or_said("ramp-and-hold");
+.default_in_words("ramp-and-hold");
 
 pub(crate) const AMPLITUDES_BETWEEN: Field =
     Field::count("amplitudes", 1.0, 1e5, "amplitudes between inspections").required("1");
@@ -246,7 +246,7 @@ pub(crate) const FIT: Field = Field::choice(
     &[curves::MULTILINEAR],
     "curve fitted to the backbone: the ends of the first cycles, both directions together",
 )
-.or_said("nothing");
+.default_in_words("nothing");
 
 pub(crate) const BLOCK: BlockKind = BlockKind {
     kind: Kind::Cycle,

@@ -271,7 +271,7 @@ pub(crate) const STOREY: Field = Field::count(
 
 pub(crate) const MASS: Field = Field::quantity("mass", Dimension::MASS, "M of eqs. 4 and 5")
     .above_zero()
-    .or_said("the specimen's");
+    .default_in_words("the specimen's");
 
 pub(crate) const DAMPING: Field =
     Field::quantity("damping", Dimension::DAMPING, "C of eqs. 4 and 5")
@@ -279,7 +279,7 @@ pub(crate) const DAMPING: Field =
         .at_least_zero();
 
 pub(crate) const CONTACT: Field =
-    Field::choice("contact", CONTACT_LAWS, "contact law").or_said("rigid");
+    Field::choice("contact", CONTACT_LAWS, "contact law").default_in_words("rigid");
 
 pub(crate) const UNTIL: Field = Field::choice(
     "until",
@@ -293,7 +293,7 @@ pub(crate) const UNTIL: Field = Field::choice(
     ],
     "end condition",
 )
-.or_said("striker_stop");
+.default_in_words("striker_stop");
 
 pub(crate) const BLOCK: BlockKind = BlockKind {
     kind: Kind::Impact,
@@ -319,7 +319,7 @@ pub(crate) const BLOCK: BlockKind = BlockKind {
                 "Δt; can use `critical`: Δt of eq. 7; under `hertz`, a tenth of the shortest \
                  period in contact",
             )
-            .or_said("critical / 20"),
+            .default_in_words("critical / 20"),
         methods::DURATION
             .described("upper bound of simulated time")
             .required("duration = 50 ms"),

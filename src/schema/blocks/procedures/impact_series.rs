@@ -11,7 +11,7 @@ pub(crate) const SPEEDS: Field = Field::quantities(
     "striker velocity of each impact; or `drop_heights`, or `energies`",
 )
 .above_zero()
-.or_said("from heights or energies");
+.default_in_words("from heights or energies");
 
 pub(crate) const DROP_HEIGHTS: Field = Field::quantities(
     "drop_heights",
@@ -41,14 +41,14 @@ pub(crate) const BETWEEN: Field = Field::choice(
     ],
     "position of the specimen between impacts, and after the last",
 )
-.or_said("unload");
+.default_in_words("unload");
 
 pub(crate) const INSPECT_BETWEEN: Field = Field::choice(
     "inspect_between",
     TRUTH,
     "asks the operator to inspect the specimen between impacts",
 )
-.or_said("false");
+.default_in_words("false");
 
 /// What an `escalate` has besides the fields of an impact.
 const OWN: [Field; 6] = [
@@ -74,7 +74,7 @@ const FIELDS: [Field; OWN.len() + impact::BLOCK.fields.len()] = {
     all
 };
 
-pub(crate) const BLOWS: ResultKind = ResultKind::count(
+pub(crate) const IMPACTS: ResultKind = ResultKind::count(
     "blows",
     "number of impacts, including one that failed or was inconclusive",
 );
@@ -126,7 +126,7 @@ pub(crate) const VELOCITIES: ResultKind = ResultKind::measured_list(
     "striker velocity of each impact",
 );
 
-pub(crate) const BLOW_ENERGIES: ResultKind = ResultKind::measured_list(
+pub(crate) const IMPACT_ENERGIES: ResultKind = ResultKind::measured_list(
     "blow_energies",
     Dimension::ENERGY,
     "striker energy of each impact",
@@ -195,7 +195,7 @@ pub(crate) const STOREY_ENERGY: ResultKind = ResultKind::measured_list(
 
 /// What it leaves, in the order of the tables and of `summary.json`.
 pub(crate) const RESULTS: &[ResultKind] = &[
-    BLOWS,
+    IMPACTS,
     PASSED,
     LAST_PASSED_ENERGY,
     FIRST_FAILED_ENERGY,
@@ -204,7 +204,7 @@ pub(crate) const RESULTS: &[ResultKind] = &[
     FINAL_DISPLACEMENT,
     ABSORBED_ENERGY,
     VELOCITIES,
-    BLOW_ENERGIES,
+    IMPACT_ENERGIES,
     MAX_DISPLACEMENTS,
     RESIDUAL_DISPLACEMENTS,
     FINAL_DISPLACEMENTS,

@@ -48,13 +48,13 @@ impl Field {
     /// The specimen that a procedure tests.
     pub(crate) const fn specimen(name: &'static str) -> Self {
         Self::reference(name, Kind::Specimen, "specimen under test")
-            .or_said("the only one declared")
+            .default_in_words("the only one declared")
     }
 
     /// The speed of the actuators.
     pub(crate) const fn speed(name: &'static str) -> Self {
         Self::quantity(name, Dimension::VELOCITY, "actuator speed")
             .above_zero()
-            .or_said("the rig's own")
+            .default_in_words("the rig's own")
     }
 }

@@ -13,7 +13,7 @@ pub(crate) const ACCURACY: Field = Field::quantity(
     "force accuracy wanted; determines the required dwell time",
 )
 .above_zero()
-.or_said("`noise` of the load cell");
+.default_in_words("`noise` of the load cell");
 
 pub(crate) const ALLOWED_RATE: Field = Field::quantity(
     "rate",

@@ -52,7 +52,7 @@ pub(crate) const WITHIN: Field = Field::quantity(
     "largest force that counts as zero; of a frame, on a floor",
 )
 .above_zero()
-.or_said("0.1 % of the initial force, or the smallest detectable force if larger");
+.default_in_words("0.1 % of the initial force, or the smallest detectable force if larger");
 
 pub(crate) const BLOCK: BlockKind = BlockKind {
     kind: Kind::Unload,

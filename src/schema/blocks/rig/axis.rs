@@ -22,33 +22,33 @@ pub(super) const AXIS: &[Variant] = &[Variant::with(
             POLARITIES,
             "polarity of displacement and force",
         )
-        .or_said("the rig's"),
+        .default_in_words("the rig's"),
         Field::choice(
             PRETEST_CHECK.name,
             PRETEST_CHECKS,
             "pre-test check of the axis",
         )
-        .or_said("the rig's"),
+        .default_in_words("the rig's"),
         Field::choice(
             ACTUATOR.name,
             &[SERIAL, TCP],
             "device that moves the axis, if it is a separate one",
         )
-        .or_said("the rig's"),
+        .default_in_words("the rig's"),
         Field::choice(
             LOAD_CELL.name,
             &[SERIAL, TCP],
             "device that reads the force, if it is a separate one",
         )
-        .or_said("the rig's"),
+        .default_in_words("the rig's"),
         Field::quantity(
             FORCE_PER_COUNT.name,
             Dimension::FORCE,
             "scale factor of a load cell that gives raw counts; not 0",
         )
-        .or_said("the rig's"),
+        .default_in_words("the rig's"),
         Field::quantity(ZERO_OFFSET.name, Dimension::NUMBER, "count at zero force")
-            .or_said("the rig's"),
+            .default_in_words("the rig's"),
         Field::bounds(
             limits::NAMES.displacement,
             Dimension::LENGTH,
@@ -67,78 +67,79 @@ pub(super) const AXIS: &[Variant] = &[Variant::with(
             "resolution of its displacement reading",
         )
         .at_least_zero()
-        .or_said("the rig's"),
+        .default_in_words("the rig's"),
         Field::quantity(
             NOISE.name,
             Dimension::FORCE,
             "standard deviation of a single force reading",
         )
         .at_least_zero()
-        .or_said("the rig's"),
+        .default_in_words("the rig's"),
         Field::bounds(
             FORCE_RANGE.name,
             Dimension::FORCE,
             true,
             "measuring range of the load cell",
         )
-        .or_said("the rig's"),
+        .default_in_words("the rig's"),
         Field::text(
             CALIBRATION.name,
             "calibration reference; of the force only if the displacement has its own",
         )
-        .or_said("the rig's"),
-        Field::text(CALIBRATION_DUE.name, "calibration due date").or_said("the rig's"),
-        Field::text(FORCE_CLASS.name, "class of its force measurement").or_said("the rig's"),
+        .default_in_words("the rig's"),
+        Field::text(CALIBRATION_DUE.name, "calibration due date").default_in_words("the rig's"),
+        Field::text(FORCE_CLASS.name, "class of its force measurement")
+            .default_in_words("the rig's"),
         Field::bounds(
             FORCE_CALIBRATION_RANGE.name,
             Dimension::FORCE,
             false,
             "calibrated range of absolute force",
         )
-        .or_said("the rig's"),
+        .default_in_words("the rig's"),
         Field::text(
             DISPLACEMENT_CALIBRATION.name,
             "calibration reference of the displacement",
         )
-        .or_said("the rig's"),
+        .default_in_words("the rig's"),
         Field::text(
             DISPLACEMENT_CALIBRATION_DUE.name,
             "due date of the displacement calibration",
         )
-        .or_said("the rig's"),
+        .default_in_words("the rig's"),
         Field::text(
             DISPLACEMENT_CLASS.name,
             "class of its displacement measurement",
         )
-        .or_said("the rig's"),
+        .default_in_words("the rig's"),
         Field::bounds(
             DISPLACEMENT_CALIBRATION_RANGE.name,
             Dimension::LENGTH,
             false,
             "calibrated range of absolute displacement",
         )
-        .or_said("the rig's"),
+        .default_in_words("the rig's"),
         Field::quantity(
             FORCE_UNCERTAINTY.name,
             Dimension::NUMBER,
             "relative standard uncertainty of the force calibration",
         )
         .within(0.0, 0.2)
-        .or_said("the rig's"),
+        .default_in_words("the rig's"),
         Field::quantity(
             DISPLACEMENT_UNCERTAINTY.name,
             Dimension::NUMBER,
             "relative standard uncertainty of the displacement calibration",
         )
         .within(0.0, 0.2)
-        .or_said("the rig's"),
+        .default_in_words("the rig's"),
         Field::quantity(
             ZERO_UNCERTAINTY.name,
             Dimension::FORCE,
             "standard uncertainty of the zero reading of the load cell",
         )
         .at_least_zero()
-        .or_said("the rig's"),
+        .default_in_words("the rig's"),
     ],
     "actuator with its load cell",
 )];

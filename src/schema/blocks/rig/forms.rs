@@ -161,7 +161,7 @@ pub(crate) const DISPLACEMENT_DRIFT: Field = Field::quantity(
     "largest allowed change of (displacement − target), absolute",
 )
 .above_zero()
-.or_said("reported, not checked");
+.default_in_words("reported, not checked");
 
 pub(crate) const OVER: Field = Field::quantity(
     "over",
@@ -176,7 +176,7 @@ pub(crate) const AFTER: Field = Field::choice(
     ZERO_READINGS,
     "where the zero is read after the test",
 )
-.or_said("start");
+.default_in_words("start");
 
 pub(super) const ZERO_DRIFTS: &[Variant] = &[Variant::with(
     "within",

@@ -88,7 +88,7 @@ pub(crate) const ZERO_DRIFT: Field = Field::choice(
     ZERO_DRIFTS,
     "largest zero drift during a run, and how zeros are read",
 )
-.or_said("not checked");
+.default_in_words("not checked");
 
 pub(crate) const LIMITS: Field = Field::reference(
     "limits",
@@ -101,18 +101,19 @@ pub(crate) const AXES: Field = Field::choices(
     AXIS,
     "actuators with their load cells, one per storey from the ground up",
 )
-.or_said("one axis")
+.default_in_words("one axis")
 .of_real_rigs();
 
 pub(crate) const POLARITY: Field =
-    Field::choice("polarity", POLARITIES, "polarity of displacement and force").or_said("positive");
+    Field::choice("polarity", POLARITIES, "polarity of displacement and force")
+        .default_in_words("positive");
 
 pub(crate) const DATUM: Field = Field::choice(
     "datum",
     DATUMS,
     "position at which the plan's displacement is zero",
 )
-.or_said("machine")
+.default_in_words("machine")
 .of_real_rigs();
 
 pub(crate) const SPEED: Field = Field::quantity(
@@ -248,7 +249,7 @@ pub(crate) const FORCE_CALIBRATION_RANGE: Field = Field::bounds(
     false,
     "calibrated range of absolute force; required for a test report",
 )
-.or_said("not stated");
+.default_in_words("not stated");
 
 pub(crate) const DISPLACEMENT_CALIBRATION: Field = Field::text(
     "displacement_calibration",
@@ -271,7 +272,7 @@ pub(crate) const DISPLACEMENT_CALIBRATION_RANGE: Field = Field::bounds(
     false,
     "calibrated range of absolute displacement; required for a test report",
 )
-.or_said("not stated");
+.default_in_words("not stated");
 
 pub(crate) const RIG: BlockKind = BlockKind {
     kind: Kind::Rig,

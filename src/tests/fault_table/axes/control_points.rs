@@ -7,7 +7,7 @@ use crate::rig::LineStatistics;
 use crate::tests::fault_table::stage::{Ended, run};
 
 const SINE: &str = include_str!("../../../../plans/two_storeys_sine.psd");
-const BENCH: &str = include_str!("../../../../plans/lib/two_actuator_frame.psd");
+const LIBRARY: &str = include_str!("../../../../plans/lib/two_actuator_frame.psd");
 
 /// Eleven digits represent a position to 1e-13 m and a force to 1e-7 N. The line resolves a target to the value below \[m\].
 const NEAR: f64 = 1e-10;
@@ -26,9 +26,9 @@ fn text() -> String {
     assert!(
         [device, noise, resolution]
             .iter()
-            .all(|text| BENCH.contains(text))
+            .all(|text| LIBRARY.contains(text))
     );
-    let rig = BENCH
+    let rig = LIBRARY
         .replace(device, nees)
         .replace(noise, "")
         .replace(resolution, "");
@@ -64,7 +64,7 @@ fn two_storeys_over_two_control_points_are_the_virtual_run() {
             .all(|line| line.contains("MDL-00-01:lower\\tx") && line.contains("MDL-00-02\\tx")),
         "{proposals:#?}"
     );
-    assert_eq!(proposals.len(), ended.stand.stand().bench().moves().len());
+    assert_eq!(proposals.len(), ended.emulator.lock().rig().moves().len());
 }
 
 fn held(ended: &Ended, why: &str) {
@@ -73,7 +73,7 @@ fn held(ended: &Ended, why: &str) {
         "{}",
         ended.reason()
     );
-    assert!(!ended.stand.stand().bench().moving());
+    assert!(!ended.emulator.lock().rig().moving());
 }
 
 #[test]
@@ -98,7 +98,7 @@ fn what_one_floor_does_not_do_holds_them_all() {
 
 /// A reply to a different floor is not accepted for this floor.
 #[test]
-fn a_reply_that_is_late_or_twice_is_not_taken_for_another_floors() {
+fn a_late_or_repeated_reply_is_not_accepted_for_another_floor() {
     let ended = run(
         &plan(),
         "after 40 moves: repeat replies 6\nafter 60 moves: repeat replies 5",

@@ -58,10 +58,10 @@ require "stays in travel" hit.max_displacement < 25 mm
 /// the virtual motion. The reported raw forces and their work contain this error.
 fn as_near_as(near: f64) -> impl Fn(&str, f64) -> f64 {
     move |name, size| {
-        let told = ["energy", "error", "indicator", "force", "shear", "impulse"]
+        let from_raw_force = ["energy", "error", "indicator", "force", "shear", "impulse"]
             .iter()
             .any(|word| name.contains(word));
-        if told {
+        if from_raw_force {
             5e-4 + 3e-3 * size
         } else {
             near + 1e-5 * size
@@ -76,21 +76,21 @@ fn axes_that_do_not_stop_give_what_the_virtual_run_gives() {
     assert!(ended.completed(), "{}\n{}", ended.reason(), ended.tail());
     assert_eq!(ended.line_statistics, LineStatistics::default());
     same(&results(&ended.record), &ideal(&text), as_near_as(1e-7));
-    let ways: Vec<&str> = ended
+    let glides: Vec<&str> = ended
         .log
         .lines()
         .filter(|line| line.contains(">GLIDE "))
         .collect();
     assert!(
-        ways.len() > 100,
+        glides.len() > 100,
         "two ways a step, and a brake: {}",
-        ways.len()
+        glides.len()
     );
-    assert!(!ended.stand.stand().bench().moving(), "braked at its end");
+    assert!(!ended.emulator.lock().rig().moving(), "braked at its end");
 }
 
 #[test]
-fn a_blow_that_does_not_stop_is_the_virtual_one() {
+fn an_impact_without_a_stop_equals_the_virtual_one() {
     let ended = run(&checked(IMPACT, "bench"), "");
     assert!(ended.completed(), "{}\n{}", ended.reason(), ended.tail());
     same(&results(&ended.record), &ideal(IMPACT), as_near_as(1e-7));
@@ -115,15 +115,15 @@ fn an_axis_that_does_not_follow_holds_them_all() {
 }
 
 #[test]
-fn what_the_line_does_is_mended_or_holds_the_rig() {
+fn faults_of_the_line_are_corrected_or_hold_the_rig() {
     let plan = plan("0.3 s");
-    for mended in [
+    for correctable in [
         "after 20 moves: drop reply",
         "after 20 moves: delay reply 0.04 s",
         "after 20 moves: flip a bit",
     ] {
-        let ended = run(&plan, mended);
-        assert!(ended.completed(), "{mended}: {}", ended.reason());
+        let ended = run(&plan, correctable);
+        assert!(ended.completed(), "{correctable}: {}", ended.reason());
     }
     for (script, why) in [
         (
@@ -144,7 +144,7 @@ fn what_the_line_does_is_mended_or_holds_the_rig() {
             ended.reason()
         );
         assert!(
-            !ended.stand.stand().bench().moving()
+            !ended.emulator.lock().rig().moving()
                 || why.contains("connection lost")
                 || why.contains("no usable"),
             "{script}"
@@ -183,9 +183,9 @@ fn cut_off_anywhere_it_is_brought_back_and_goes_on_to_the_same_end() {
     let whole = run(&plan, "");
     assert!(whole.completed(), "{}", whole.reason());
     // Without communication the rig continues for a moment, and then holds automatically.
-    let left_alone = |stand: &InProcess| {
-        stand.clock().sleep(4.0);
-        assert!(!stand.stand().bench().moving());
+    let left_alone = |emulator: &InProcess| {
+        emulator.clock().sleep(4.0);
+        assert!(!emulator.lock().rig().moving());
     };
     cut_off_anywhere(&plan, 60, left_alone, |resumed, disk| {
         same(&results(resumed), &results(&whole.record), as_near_as(1e-6));

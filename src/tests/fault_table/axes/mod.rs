@@ -7,7 +7,7 @@ mod several;
 pub(super) mod two_axes;
 
 use super::interrupted::cut_off::{GoneOn, gone_on, killed};
-use super::stage::{Ended, link, open, run, run_watched, run_without, stand};
+use super::stage::{Ended, emulator, link, open, run, run_watched, run_without};
 use crate::emulator::Log;
 use crate::plan::{Interval, Plan};
 use crate::record::journal::recover;
@@ -93,7 +93,7 @@ pub(super) fn stopped(ended: &Ended) {
     assert!(
         !ended.completed()
             && !ended.log[held..].contains(" bench move ")
-            && !ended.stand.stand().bench().moving()
+            && !ended.emulator.lock().rig().moving()
     );
 }
 
@@ -112,7 +112,7 @@ fn caught(guard: Guarding, plan: &Plan, script: &str, why: &str) -> Ended {
 }
 
 #[test]
-fn a_fault_of_one_axis_holds_them_all_and_is_said_of_that_axis() {
+fn a_fault_of_one_axis_holds_all_axes_and_names_that_axis() {
     let plan = shaken("0.4 s");
     let mut clipped = plan.clone();
     upper(&mut clipped).force_range = Some(Interval {
@@ -187,7 +187,7 @@ fn the_pretest_check_names_the_axis_that_is_wrong_and_moves_no_other() {
         "axis 2: −7.160 N at rest (limit 5 N)",
     );
     let refused = run(&plan, mirrored);
-    let moves = refused.stand.stand().bench().moves().len();
+    let moves = refused.emulator.lock().rig().moves().len();
     assert_eq!(
         (refused.record.procedures.len(), moves),
         (0, 4),
@@ -211,14 +211,14 @@ fn a_limit_of_one_axis_is_its_own() {
         ended.reason()
     );
     // The controller has the same limit, so nothing depends on the guard alone.
-    let told = ended
+    let output = ended
         .log
         .lines()
         .find(|line| line.contains(">LIM "))
         .unwrap();
     assert!(
-        told.contains(" -40.000000 40.000000 -20000.000 20000.000 -1.000000 2.000000 "),
-        "{told}"
+        output.contains(" -40.000000 40.000000 -20000.000 20000.000 -1.000000 2.000000 "),
+        "{output}"
     );
     assert!(
         run_without(Guarding::TargetLimits, &plan, "")
@@ -229,14 +229,14 @@ fn a_limit_of_one_axis_is_its_own() {
 
 #[test]
 fn a_controller_of_another_number_of_axes_is_refused_before_anything_is_asked_of_it() {
-    let opened = |plan: &Plan, stands_for: &Plan| {
-        let stand = stand(stands_for, "", Log::none(), 1);
-        open(plan, &stand).map(|rig| rig.degrees_of_freedom())
+    let opened = |plan: &Plan, emulated_plan: &Plan| {
+        let emulator = emulator(emulated_plan, "", Log::none(), 1);
+        open(plan, &emulator).map(|rig| rig.degrees_of_freedom())
     };
     let (two, one) = (shaken("50 ms"), super::stage::plan());
     assert_eq!(opened(&two, &two), Ok(2));
-    for (plan, stands_for, axes) in [(&two, &one, 1), (&one, &two, 2)] {
-        let Err(RigFault::Device(reason)) = opened(plan, stands_for) else {
+    for (plan, emulated_plan, axes) in [(&two, &one, 1), (&one, &two, 2)] {
+        let Err(RigFault::Device(reason)) = opened(plan, emulated_plan) else {
             panic!("refused")
         };
         assert!(
@@ -247,10 +247,10 @@ fn a_controller_of_another_number_of_axes_is_refused_before_anything_is_asked_of
 }
 
 /// Target of every move, by its number.
-fn moves(stand: &crate::emulator::InProcess) -> Vec<(Option<u64>, Vec<f64>)> {
-    stand
-        .stand()
-        .bench()
+fn moves(emulator: &crate::emulator::InProcess) -> Vec<(Option<u64>, Vec<f64>)> {
+    emulator
+        .lock()
+        .rig()
         .moves()
         .iter()
         .map(|sent| (sent.id, sent.targets.clone()))
@@ -262,27 +262,27 @@ fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end_with_no_targe
     let plan = shaken("60 ms");
     let whole = run_watched(&plan, "", &mut Unwatched).unwrap();
     assert!(whole.completed());
-    let once = moves(&whole.stand);
+    let once = moves(&whole.emulator);
     let mut kills = 0;
     for call in 4.. {
         for after in [false, true] {
-            let (stand, disk) = (stand(&plan, "", Log::none(), 1), PowerLoss::new());
-            if !killed(&plan, &stand, &disk, (call, after)) {
+            let (emulator, disk) = (emulator(&plan, "", Log::none(), 1), PowerLoss::new());
+            if !killed(&plan, &emulator, &disk, (call, after)) {
                 assert!(kills > 80, "{kills}");
                 return;
             }
             kills += 1;
-            let resumed = match gone_on(&plan, &stand, &disk, call) {
+            let resumed = match gone_on(&plan, &emulator, &disk, call) {
                 GoneOn::ToItsEnd(record) => record,
                 GoneOn::Ended => continue,
                 GoneOn::NeverBegun => {
-                    assert!(moves(&stand).is_empty());
+                    assert!(moves(&emulator).is_empty());
                     continue;
                 }
             };
             assert_eq!(results(&resumed), results(&whole.record), "call {call}");
             assert_eq!(
-                moves(&stand),
+                moves(&emulator),
                 once,
                 "call {call}: no target twice, none left out"
             );
@@ -299,12 +299,12 @@ fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end_with_no_targe
 
 /// Cut off after this number of disk calls: the run log, and the replies of the rig on the same emulator afterwards.
 fn cut_off(plan: &Plan, call: usize) -> (LoggedRun, RigBody, Reading) {
-    let (stand, disk) = (stand(plan, "", Log::none(), 1), PowerLoss::new());
+    let (emulator, disk) = (emulator(plan, "", Log::none(), 1), PowerLoss::new());
     assert!(
-        killed(plan, &stand, &disk, (call, true)),
+        killed(plan, &emulator, &disk, (call, true)),
         "it was to be killed"
     );
-    let mut rig = open(plan, &stand).unwrap();
+    let mut rig = open(plan, &emulator).unwrap();
     let found = rig.read().unwrap();
     (played(&disk).1, RigBody::of(&rig), found)
 }

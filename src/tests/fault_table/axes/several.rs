@@ -93,11 +93,11 @@ fn held(ended: &Ended, why: &str) {
         "{why}: {}",
         ended.reason()
     );
-    assert!(!ended.stand.stand().bench().moving(), "{why}");
+    assert!(!ended.emulator.lock().rig().moving(), "{why}");
 }
 
 #[test]
-fn what_a_load_cell_does_is_said_of_it_and_holds_every_axis() {
+fn a_fault_of_a_load_cell_names_it_and_holds_every_axis() {
     let numbers: Vec<String> = (60..180)
         .map(|reading| format!("after {reading} readings: axis 2 number OVL"))
         .collect();
@@ -190,7 +190,7 @@ fn a_site_that_is_silent_stops_every_other() {
         "{}",
         gone.reason()
     );
-    assert!(!gone.stand.stand().bench().any_moving(&[1]));
+    assert!(!gone.emulator.lock().rig().any_moving(&[1]));
     held(
         &run(&plan(&sites("0.3 s")), "after 60 moves: axis 2 stick"),
         "following error of axis 2",

@@ -13,18 +13,18 @@ use crate::run::Unwatched;
 use crate::run::replay;
 use crate::run::replay::{Bands, RigBody};
 use crate::tests::fault_table::axes::played;
-use crate::tests::fault_table::stage::{header, open, stand};
+use crate::tests::fault_table::stage::{emulator, header, open};
 
 /// Runs the plan until the given write or sync of its run log. psd is killed there, before the write or `after` it. Returns whether psd
 /// was killed.
 pub(crate) fn killed(
     plan: &Plan,
-    stand: &InProcess,
+    emulator: &InProcess,
     disk: &PowerLoss,
     (call, after): (usize, bool),
 ) -> bool {
     let ended = catch_unwind(AssertUnwindSafe(|| {
-        let mut rig = open(plan, stand).unwrap();
+        let mut rig = open(plan, emulator).unwrap();
         let mut journal = Journal::create(
             Box::new(Killed::at(disk, call, after)),
             Durability::EverySyncPoint,
@@ -45,7 +45,7 @@ pub(crate) enum GoneOn {
 }
 
 /// Resumes the run on this disk, from its run log and the replies of the rig.
-pub(crate) fn gone_on(plan: &Plan, stand: &InProcess, disk: &PowerLoss, call: usize) -> GoneOn {
+pub(crate) fn gone_on(plan: &Plan, emulator: &InProcess, disk: &PowerLoss, call: usize) -> GoneOn {
     let (recovered, before) = played(disk);
     if before.ended {
         return GoneOn::Ended;
@@ -55,7 +55,7 @@ pub(crate) fn gone_on(plan: &Plan, stand: &InProcess, disk: &PowerLoss, call: us
         rig: plan.rig.with_recorded_datum(datum.as_deref()),
         ..plan.clone()
     };
-    let mut rig = open(&at_its_datum, stand).unwrap();
+    let mut rig = open(&at_its_datum, emulator).unwrap();
     let (found, about) = (rig.read().unwrap(), RigBody::of(&rig));
     let bands = Bands::of(&plan.rig, plan.rig.link.as_real().unwrap());
     let decision = match replay::decide(&before, &about, &found, &bands, false) {
@@ -104,13 +104,13 @@ pub(crate) fn cut_off_anywhere(
     whole: impl Fn(&Record, &PowerLoss),
 ) {
     for (kills, call) in (first..).step_by(3).enumerate() {
-        let (stand, disk) = (stand(plan, "", Log::none(), 1), PowerLoss::new());
-        if !killed(plan, &stand, &disk, (call, call % 2 == 0)) {
+        let (emulator, disk) = (emulator(plan, "", Log::none(), 1), PowerLoss::new());
+        if !killed(plan, &emulator, &disk, (call, call % 2 == 0)) {
             assert!(kills > 10, "{kills}");
             return;
         }
-        meanwhile(&stand);
-        match gone_on(plan, &stand, &disk, call) {
+        meanwhile(&emulator);
+        match gone_on(plan, &emulator, &disk, call) {
             GoneOn::ToItsEnd(record) => whole(&record, &disk),
             GoneOn::Ended => {}
             GoneOn::NeverBegun => panic!("call {call}: the rig was opened before it"),

@@ -12,7 +12,7 @@ use crate::record::journal::{Durability, Journal, Line, Storage};
 use crate::record::{EventKind, History, Outcome};
 use crate::rig::LineStatistics;
 use crate::run::{Unwatched, replay};
-use crate::tests::fault_table::stage::{STIFFNESS, header, link, open, plan_of, stand};
+use crate::tests::fault_table::stage::{STIFFNESS, emulator, header, link, open, plan_of};
 use crate::tests::testing::ramp;
 
 /// Steps out and back: 20 000 in all. A memory leak per step shows in the memory of this many steps: 400 bytes per step are 7 MB.
@@ -115,11 +115,11 @@ fn very_many_steps_with_faults_by_chance_lose_no_sample_and_hold_on_to_nothing()
             .env(ALONE, "1")
             .output()
             .unwrap();
-        let told = String::from_utf8_lossy(&ended.stdout).into_owned()
+        let output = String::from_utf8_lossy(&ended.stdout).into_owned()
             + &String::from_utf8_lossy(&ended.stderr);
         assert!(
-            ended.status.success() && told.contains("1 passed"),
-            "{told}"
+            ended.status.success() && output.contains("1 passed"),
+            "{output}"
         );
         return;
     }
@@ -134,8 +134,8 @@ fn very_many_steps_with_faults_by_chance_lose_no_sample_and_hold_on_to_nothing()
         each reading: number OVL with 0.0005";
     let plan = long_plan(STEPS);
     let seed = 20_070_319;
-    let stand = stand(&plan, script, Log::none(), seed);
-    let mut rig = open(&plan, &stand).unwrap_or_else(|fault| panic!("seed {seed}: {fault}"));
+    let emulator = emulator(&plan, script, Log::none(), seed);
+    let mut rig = open(&plan, &emulator).unwrap_or_else(|fault| panic!("seed {seed}: {fault}"));
     let counted = Counted::default();
     let mut journal = Journal::create(Box::new(counted.clone()), Durability::EverySyncPoint);
     replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
@@ -185,12 +185,12 @@ fn very_many_steps_with_faults_by_chance_lose_no_sample_and_hold_on_to_nothing()
         record
             .events
             .last()
-            .is_some_and(|event| event.kind == EventKind::Mended),
+            .is_some_and(|event| event.kind == EventKind::Recovered),
         "seed {seed}"
     );
-    assert!(stand.stand().bench().violations().is_empty(), "seed {seed}");
+    assert!(emulator.lock().rig().violations().is_empty(), "seed {seed}");
     assert_eq!(
-        stand.stand().bench().moves().len(),
+        emulator.lock().rig().moves().len(),
         2 * STEPS as usize + 2,
         "seed {seed}: each target was carried out once"
     );
@@ -200,8 +200,8 @@ fn very_many_steps_with_faults_by_chance_lose_no_sample_and_hold_on_to_nothing()
 fn a_wall_clock_that_jumps_changes_no_duration() {
     let times = |wall: replay::Wall| {
         let plan = long_plan(20);
-        let stand = stand(&plan, "", Log::none(), 1);
-        let mut rig = open(&plan, &stand).unwrap();
+        let emulator = emulator(&plan, "", Log::none(), 1);
+        let mut rig = open(&plan, &emulator).unwrap();
         let disk = crate::record::journal::testing::PowerLoss::new();
         let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
         replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();

@@ -14,20 +14,20 @@ use crate::record::journal::testing::PowerLoss;
 use crate::record::journal::{Durability, Journal};
 use crate::rig::transport::{Emergency, Port};
 use crate::run::{Unwatched, replay};
-use crate::tests::fault_table::stage::{header, open_through, plan_of, run, stand};
+use crate::tests::fault_table::stage::{emulator, header, open_through, plan_of, run};
 use crate::tests::testing::ramp;
 
 /// A line on which psd is killed at one command.
 struct Dying {
     line: SimulatedPort,
-    said: Arc<AtomicUsize>,
+    count: Arc<AtomicUsize>,
     word: usize,
     after: bool,
 }
 
 impl Port for Dying {
     fn write(&mut self, bytes: &[u8], timeout: Duration) -> io::Result<()> {
-        let now = self.said.fetch_add(1, Ordering::SeqCst) == self.word;
+        let now = self.count.fetch_add(1, Ordering::SeqCst) == self.word;
         assert!(!now || self.after, "killed before it");
         let written = self.line.write(bytes, timeout);
         assert!(!now, "killed after it");
@@ -48,18 +48,18 @@ impl Port for Dying {
 }
 
 /// Whether psd was killed there.
-fn killed(plan: &Plan, stand: &InProcess, disk: &PowerLoss, word: usize, after: bool) -> bool {
-    let said = Arc::new(AtomicUsize::new(0));
+fn killed(plan: &Plan, emulator: &InProcess, disk: &PowerLoss, word: usize, after: bool) -> bool {
+    let count = Arc::new(AtomicUsize::new(0));
     let through = |line| -> Box<dyn Port> {
         Box::new(Dying {
             line,
-            said: Arc::clone(&said),
+            count: Arc::clone(&count),
             word,
             after,
         })
     };
     let ended = catch_unwind(AssertUnwindSafe(|| {
-        let mut rig = open_through(plan, stand, &through).unwrap();
+        let mut rig = open_through(plan, emulator, &through).unwrap();
         let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
         replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
         replay::record(plan, &mut rig, &mut Unwatched, journal, Box::new(|| None))
@@ -82,21 +82,21 @@ fn plan() -> Plan {
 fn killed_at_every_word_it_goes_on_to_the_same_end_and_no_target_is_carried_out_twice() {
     let plan = plan();
     let whole = run(&plan, "");
-    let targets = |stand: &InProcess| {
-        stand
-            .stand()
-            .bench()
+    let targets = |emulator: &InProcess| {
+        emulator
+            .lock()
+            .rig()
             .moves()
             .iter()
             .map(|sent| sent.targets.clone())
             .collect::<Vec<_>>()
     };
-    let moves = targets(&whole.stand);
+    let moves = targets(&whole.emulator);
     for after in [false, true] {
         let mut kills = 0;
         loop {
-            let (stand, disk) = (stand(&plan, "", Log::none(), 1), PowerLoss::new());
-            if !killed(&plan, &stand, &disk, kills, after) {
+            let (emulator, disk) = (emulator(&plan, "", Log::none(), 1), PowerLoss::new());
+            if !killed(&plan, &emulator, &disk, kills, after) {
                 break;
             }
             kills += 1;
@@ -104,10 +104,10 @@ fn killed_at_every_word_it_goes_on_to_the_same_end_and_no_target_is_carried_out_
             if disk.written().is_empty() {
                 continue;
             }
-            match gone_on(&plan, &stand, &disk, kills) {
+            match gone_on(&plan, &emulator, &disk, kills) {
                 GoneOn::ToItsEnd(record) => {
                     assert_eq!(
-                        targets(&stand),
+                        targets(&emulator),
                         moves,
                         "word {kills}, {after}: each target once, in order"
                     );

@@ -3,7 +3,9 @@
 
 pub(super) mod unnumbered;
 
-use super::stage::{Ended, REPLY_TIMEOUT, link, open, plan, plan_of, run, run_without, stand, to};
+use super::stage::{
+    Ended, REPLY_TIMEOUT, emulator, link, open, plan, plan_of, run, run_without, to,
+};
 use crate::emulator::Log;
 use crate::record::EventKind;
 use crate::rig::controllers::LONGEST_LINE;
@@ -61,7 +63,7 @@ fn a_reply_that_never_comes_is_asked_for_at_t_2t_and_4t_and_then_the_rig_is_held
         (last - third.0) / REPLY_TIMEOUT
     );
     assert_eq!(
-        ended.stand.stand().bench().moves().len(),
+        ended.emulator.lock().rig().moves().len(),
         3,
         "the move itself was begun once"
     );
@@ -76,8 +78,8 @@ fn a_reply_that_never_comes_is_asked_for_at_t_2t_and_4t_and_then_the_rig_is_held
             ..LineStatistics::default()
         }
     );
-    assert_eq!(once.events(EventKind::Mended), ["1 frame sent again"]);
-    assert!(run(&plan(), "").events(EventKind::Mended).is_empty());
+    assert_eq!(once.events(EventKind::Recovered), ["1 frame sent again"]);
+    assert!(run(&plan(), "").events(EventKind::Recovered).is_empty());
     run_without(Guarding::Resend, &plan(), "after 3 moves: drop reply").held();
 }
 
@@ -127,10 +129,12 @@ fn garbage_of_any_kind_is_counted_and_none_of_it_is_used() {
         "fill 3 bytes of 0a",
         "fill 600 bytes of 41",
     ] {
-        for place in ["before", "inside", "after"] {
+        for where_in_reply in ["before", "inside", "after"] {
             let ended = run(
                 &plan(),
-                &format!("after 10 replies: {dirt} {place}\nafter 20 replies: {dirt} {place}"),
+                &format!(
+                    "after 10 replies: {dirt} {where_in_reply}\nafter 20 replies: {dirt} {where_in_reply}"
+                ),
             );
             ended.sound();
             let LineStatistics {
@@ -138,7 +142,7 @@ fn garbage_of_any_kind_is_counted_and_none_of_it_is_used() {
             } = ended.line_statistics;
             assert!(
                 resent + ignored > 0 || dirt.contains("0a"),
-                "{dirt} {place}"
+                "{dirt} {where_in_reply}"
             );
         }
     }
@@ -165,15 +169,15 @@ fn every_flipped_bit_of_a_reply_is_seen() {
     // The reading of a rig at rest, from its first byte to the last byte before the line end.
     let reading = |bit: Option<usize>| {
         let text = crate::emulator::testing::SharedText::default();
-        let stand = stand(&plan, "", Log::to(Box::new(text.clone())), 1);
-        let mut rig = open(&plan, &stand).unwrap();
+        let emulator = emulator(&plan, "", Log::to(Box::new(text.clone())), 1);
+        let mut rig = open(&plan, &emulator).unwrap();
         let replies = text.text().matches(" actuator < ").count();
         drop(rig);
         let script = bit.map_or_else(String::new, |bit| {
             format!("after {replies} replies: flip bit {bit}")
         });
-        let stand = self::stand(&plan, &script, Log::none(), 1);
-        rig = open(&plan, &stand).unwrap();
+        let emulator = self::emulator(&plan, &script, Log::none(), 1);
+        rig = open(&plan, &emulator).unwrap();
         rig.propose(&[2e-4], None)
             .and_then(|_| rig.execute())
             .and_then(|()| rig.read())
@@ -182,7 +186,7 @@ fn every_flipped_bit_of_a_reply_is_seen() {
     let (sound, line_statistics) = reading(None).unwrap();
     assert_eq!(line_statistics, LineStatistics::default());
     let bits = 8 * (sound.raw[0].len() + 1);
-    let mut taken = 0;
+    let mut accepted = 0;
     for bit in 0..bits {
         let (flipped, line_statistics) =
             reading(Some(bit)).unwrap_or_else(|fault| panic!("bit {bit}: {fault}"));
@@ -195,7 +199,7 @@ fn every_flipped_bit_of_a_reply_is_seen() {
             line_statistics.resent + line_statistics.ignored > 0,
             "bit {bit} was not seen"
         );
-        taken += without(Guarding::Checksum, || {
+        accepted += without(Guarding::Checksum, || {
             usize::from(
                 reading(Some(bit))
                     .is_ok_and(|(_, line_statistics)| line_statistics == LineStatistics::default()),
@@ -203,8 +207,8 @@ fn every_flipped_bit_of_a_reply_is_seen() {
         });
     }
     assert!(
-        bits > 300 && taken > 30,
-        "without the checksum {taken} of {bits} are taken for good"
+        bits > 300 && accepted > 30,
+        "without the checksum {accepted} of {bits} are taken for good"
     );
 }
 

@@ -74,14 +74,14 @@ fn lost_doubled_and_late_answers_leave_the_same_numbers() {
                     "{fault}: {:?}",
                     ended.record.outcome
                 );
-                assert!(!ended.stand.stand().bench().moving(), "{fault}");
+                assert!(!ended.emulator.lock().rig().moving(), "{fault}");
             }
         }
     }
 }
 
 #[test]
-fn a_late_answer_is_not_taken_for_that_to_the_next_question() {
+fn a_late_answer_is_not_accepted_for_the_next_request() {
     let late = "after 100 replies: delay replies 2 0.12 s";
     let ended = run(&modbus(), late);
     assert!(
@@ -105,6 +105,6 @@ fn a_start_of_grbl_is_seen() {
         "{:?}",
         ended.record.outcome
     );
-    assert_eq!(ended.stand.stand().bench().moves().len(), 4);
+    assert_eq!(ended.emulator.lock().rig().moves().len(), 4);
     assert!(!ended.trusted, "{}", ended.reason());
 }

@@ -120,7 +120,7 @@ fn an_impact_series_on_a_storey_equals_its_impacts_one_by_one() {
         .collect();
     let apart = run_unwatched(&plan);
     assert_eq!(apart.outcome, Outcome::Completed);
-    for (index, impact) in impacts(&series).blows.iter().enumerate() {
+    for (index, impact) in impacts(&series).impacts.iter().enumerate() {
         assert_eq!(
             impact.results,
             as_of(0, &apart.procedures[2 * index].results),
@@ -129,7 +129,7 @@ fn an_impact_series_on_a_storey_equals_its_impacts_one_by_one() {
         let rest = impact.rest.as_ref().unwrap();
         assert_eq!(rest.drift(), list(&apart, 2 * index + 1, "residual_drift"));
         // The next impact begins there; no elastic deformation is left.
-        if let Some(next) = impacts(&series).blows.get(index + 1) {
+        if let Some(next) = impacts(&series).impacts.get(index + 1) {
             let start = &next.storey().unwrap().floors[0];
             close(&start.computed, &rest.displacement, 1e-15);
             assert!(
@@ -139,11 +139,15 @@ fn an_impact_series_on_a_storey_equals_its_impacts_one_by_one() {
                     .all(|force| force.abs() < 1e-10),
                 "{start:?}"
             );
-            assert!(rest.displacement.iter().any(|place| place.abs() > 1e-3));
+            assert!(
+                rest.displacement
+                    .iter()
+                    .any(|displacement| displacement.abs() > 1e-3)
+            );
         }
     }
     // Maximum over the impacts, the final position, and the energy that each storey absorbed.
-    let last = impacts(&series).blows.last().unwrap();
+    let last = impacts(&series).impacts.last().unwrap();
     assert_eq!(
         list(&series, 0, "residual_drift"),
         last.rest.as_ref().unwrap().drift()
@@ -151,7 +155,7 @@ fn an_impact_series_on_a_storey_equals_its_impacts_one_by_one() {
     for storey in 0..2 {
         let of = |name: &str| {
             impacts(&series)
-                .blows
+                .impacts
                 .iter()
                 .map(|impact| impact.list(name).unwrap()[storey])
                 .collect::<Vec<f64>>()
@@ -175,19 +179,19 @@ fn the_residual_drift_of_a_series_has_the_uncertainty_of_the_zero_offsets() {
     plan.rig.calibration.zero_uncertainty = 0.05;
     let record = run_unwatched(&plan);
     let result = record.procedures[0].result("residual_drift").unwrap();
-    let told = result.entry_uncertainties();
+    let uncertainties = result.entry_uncertainties();
     for (storey, stiffness) in [500.0, 300.0].into_iter().enumerate() {
         let floors: f64 = if storey == 0 { 2.0 } else { 1.0 };
         let by_hand = 0.05 * floors.sqrt() / stiffness;
         assert!(
-            (told[storey].unwrap() / by_hand - 1.0).abs() < 1e-6,
-            "storey {storey}: {told:?}, by hand {by_hand}"
+            (uncertainties[storey].unwrap() / by_hand - 1.0).abs() < 1e-6,
+            "storey {storey}: {uncertainties:?}, by hand {by_hand}"
         );
     }
     assert_eq!(
         result.contributions,
         impacts(&record)
-            .blows
+            .impacts
             .last()
             .unwrap()
             .rest
@@ -204,13 +208,13 @@ fn a_series_on_a_storey_ends_with_the_first_failed_impact() {
     let all = run_unwatched(&within(&velocities, 10.0));
     assert!(
         impacts(&all)
-            .blows
+            .impacts
             .iter()
             .all(|impact| impact.held == Some(true)),
         "each has its peak"
     );
     let peaks: Vec<f64> = impacts(&all)
-        .blows
+        .impacts
         .iter()
         .map(|impact| {
             impact
@@ -228,7 +232,7 @@ fn a_series_on_a_storey_ends_with_the_first_failed_impact() {
     let some = run_unwatched(&within(&velocities, 0.5 * (peaks[1] + peaks[2])));
     assert_eq!(
         impacts(&some)
-            .blows
+            .impacts
             .iter()
             .map(|impact| impact.held)
             .collect::<Vec<_>>(),
@@ -243,12 +247,12 @@ fn a_series_on_a_storey_ends_with_the_first_failed_impact() {
     let home = run_unwatched(&rising(&velocities, Between::Home));
     assert!(
         impacts(&home)
-            .blows
+            .impacts
             .iter()
             .all(|impact| impact.rest.as_ref().unwrap().displacement == [0.0, 0.0])
     );
     let stay = run_unwatched(&rising(&velocities, Between::Stay));
-    let (first, next) = (&impacts(&stay).blows[0], &impacts(&stay).blows[1]);
+    let (first, next) = (&impacts(&stay).impacts[0], &impacts(&stay).impacts[1]);
     assert_eq!(
         first.rest.as_ref().unwrap().force,
         next.storey().unwrap().floors[0].restoring_force

@@ -63,15 +63,15 @@ pub(super) fn unloaded(
     let mut watched = Unwatched;
     let mut session = Session::begin(plan, rig.as_mut(), &mut watched)
         .unwrap_or_else(|_| panic!("the rig is refused"));
-    let mut place = 0.0;
-    let places: Vec<f64> = drifts
+    let mut displacement = 0.0;
+    let displacements: Vec<f64> = drifts
         .iter()
         .map(|drift| {
-            place += drift;
-            place
+            displacement += drift;
+            displacement
         })
         .collect();
-    session.go_to_all(&places, None).unwrap();
+    session.go_to_all(&displacements, None).unwrap();
     let unloading = of_frame(plan.specimens[0].frame.as_ref().unwrap()).unwrap();
     let mut steps = Vec::new();
     let rest = to_rest(unloading, within, None, 0, &mut session, &mut steps).unwrap();

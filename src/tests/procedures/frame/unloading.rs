@@ -86,8 +86,8 @@ fn all_floors_move_together_inside_the_limits() {
         let mut watched = Unwatched;
         let mut session = Session::begin(&plan, rig.as_mut(), &mut watched)
             .unwrap_or_else(|_| panic!("the rig is refused"));
-        for place in [0.05, 0.03] {
-            session.go_to_all(&[place; 3], None).unwrap();
+        for displacement in [0.05, 0.03] {
+            session.go_to_all(&[displacement; 3], None).unwrap();
         }
     }
     plan.limits.displacement = Interval {
@@ -106,7 +106,7 @@ fn all_floors_move_together_inside_the_limits() {
                 .guard
                 .commanded()
                 .iter()
-                .all(|place| (0.03..0.033).contains(place))
+                .all(|displacement| (0.03..0.033).contains(displacement))
     );
 }
 

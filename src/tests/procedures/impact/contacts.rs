@@ -17,20 +17,20 @@ fn bouncing(contact: &Contact, time_step: f64, framed: bool) -> Plan {
         let mut plan = struck_frame();
         let storey = Storey::new(HEAVY, HEAVY, Behaviour::Elastic { stiffness: HEAVY });
         plan.specimens[0].frame = Some(Frame::of_storeys(vec![storey]));
-        let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind else {
+        let ProcedureKind::Impact(impact) = &mut plan.procedures[0].kind else {
             panic!()
         };
-        *blow = Impact {
+        *impact = Impact {
             contact: contact.clone(),
             stepping: every(time_step),
             duration: Constant(0.5),
             until: Until::Duration,
-            ..blow.clone()
+            ..impact.clone()
         }
         .with_storey(|storey| storey.storey = 0);
         plan
     } else {
-        let blow = Impact {
+        let struck = Impact {
             contact: contact.clone(),
             stepping: every(time_step),
             duration: Constant(0.5),
@@ -38,7 +38,7 @@ fn bouncing(contact: &Contact, time_step: f64, framed: bool) -> Plan {
             ..impact(Constant(HEAVY))
         }
         .with_point(|point| point.mass = Constant(HEAVY));
-        elastic_plan(HEAVY, vec![ProcedureKind::Impact(blow)])
+        elastic_plan(HEAVY, vec![ProcedureKind::Impact(struck)])
     };
     plan.strikers[0].gravity = 9.806_65;
     plan
@@ -46,7 +46,7 @@ fn bouncing(contact: &Contact, time_step: f64, framed: bool) -> Plan {
 
 fn steps(record: &Record, procedure: usize) -> &[ImpactStep] {
     match &record.procedures[procedure].history {
-        History::Impact(blow) => &blow.steps,
+        History::Impact(impact) => &impact.steps,
         other => panic!("{other:?}"),
     }
 }
@@ -63,7 +63,7 @@ fn runs_in_contact(steps: &[ImpactStep]) -> usize {
 /// After the n-th impact a ball is in flight for 2eⁿu/g. The impacts are followed until this time is a thousandth of a step, however many
 /// impacts one step contains.
 #[test]
-fn blows_inside_a_step_are_blows() {
+fn impacts_inside_a_step_are_impacts() {
     for coefficient in [0.0, 0.5, 0.7] {
         for time_step in [0.05, 0.01] {
             for framed in [false, true] {
@@ -71,9 +71,9 @@ fn blows_inside_a_step_are_blows() {
                     coefficient: Constant(coefficient),
                 };
                 let record = run_unwatched(&bouncing(&contact, time_step, framed));
-                let away = |blow: i32| 2.0 * f64::powi(coefficient, blow) / 9.806_65;
+                let away = |impact: i32| 2.0 * f64::powi(coefficient, impact) / 9.806_65;
                 let by_hand = (1..100)
-                    .find(|blow| away(*blow) <= 1e-3 * time_step)
+                    .find(|impact| away(*impact) <= 1e-3 * time_step)
                     .unwrap();
                 let found = number(&record, 0, "contacts").0.unwrap();
                 assert!(
@@ -114,7 +114,7 @@ fn a_surface_that_closes_inside_a_step_is_struck() {
 
 /// Under the step-by-step laws, consecutive steps in contact are one impact.
 #[test]
-fn steps_in_contact_one_after_the_other_are_one_blow() {
+fn consecutive_steps_in_contact_are_one_impact() {
     for contact in [
         Contact::Rigid,
         Contact::Limit {
@@ -126,17 +126,17 @@ fn steps_in_contact_one_after_the_other_are_one_blow() {
                 integrator,
                 ..every(0.002)
             };
-            let blow = Impact {
+            let struck = Impact {
                 contact: contact.clone(),
                 stepping: stepping.clone(),
                 ..impact(Constant(327.65))
             };
-            let alone = run_unwatched(&elastic_plan(327.65, vec![ProcedureKind::Impact(blow)]));
+            let alone = run_unwatched(&elastic_plan(327.65, vec![ProcedureKind::Impact(struck)]));
             let mut plan = struck_frame();
-            let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind else {
+            let ProcedureKind::Impact(struck) = &mut plan.procedures[0].kind else {
                 panic!()
             };
-            (blow.contact, blow.stepping) = (contact.clone(), stepping);
+            (struck.contact, struck.stepping) = (contact.clone(), stepping);
             for record in [alone, run_unwatched(&plan)] {
                 let runs = runs_in_contact(steps(&record, 0));
                 assert!(runs > 1, "{contact:?}");
@@ -156,13 +156,13 @@ fn at_a_load(mut plan: Plan, to: f64, time_step: f64) -> Plan {
         ..every(time_step)
     };
     match &mut plan.procedures[0].kind {
-        ProcedureKind::Impact(blow) => {
-            *blow = Impact {
+        ProcedureKind::Impact(impact) => {
+            *impact = Impact {
                 stepping,
                 duration: Constant(1.0),
                 until: Until::Duration,
                 contact: Contact::Rigid,
-                ..blow.clone()
+                ..impact.clone()
             };
         }
         other => panic!("{other:?}"),
@@ -198,11 +198,11 @@ fn errors_are_shares_of_all_that_was_put_in() {
         let storey = Storey::new(1.0, stiffness, Behaviour::Elastic { stiffness });
         plan.specimens[0].frame = Some(Frame::of_storeys(vec![storey]));
         plan.specimens[0].behaviour = Some(Behaviour::Elastic { stiffness });
-        let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind else {
+        let ProcedureKind::Impact(impact) = &mut plan.procedures[0].kind else {
             panic!()
         };
-        blow.storey_mut().storey = 0;
-        blow.storey_mut().damping = crate::plan::ShakeDamping::Rayleigh(Constant(0.0));
+        impact.storey_mut().storey = 0;
+        impact.storey_mut().damping = crate::plan::ShakeDamping::Rayleigh(Constant(0.0));
         plan
     };
     for plan in [&alone as &dyn Fn() -> Plan, &framed] {
@@ -232,14 +232,14 @@ fn errors_are_shares_of_all_that_was_put_in() {
 #[test]
 fn the_work_of_a_weight_is_put_in() {
     let of = |gravity: f64| {
-        let blow = Impact {
+        let struck = Impact {
             stepping: Stepping {
                 integrator: Integrator::Explicit,
                 ..every(0.01)
             },
             ..impact(Constant(327.65))
         };
-        let mut plan = elastic_plan(327.65, vec![ProcedureKind::Impact(blow)]);
+        let mut plan = elastic_plan(327.65, vec![ProcedureKind::Impact(struck)]);
         plan.strikers[0].gravity = gravity;
         let record = run_unwatched(&plan);
         let error = steps(&record, 0).last().unwrap().energies.error;

@@ -32,7 +32,7 @@ fn below(limit: f64) -> Condition {
     }
 }
 
-fn blow() -> Impact {
+fn given_impact() -> Impact {
     Impact {
         stepping: every(2e-4),
         duration: Constant(0.4),
@@ -43,7 +43,7 @@ fn blow() -> Impact {
 fn rising(velocities: &[f64], limit: f64, between: Between) -> Escalate {
     Escalate {
         own: ProcedureId(0),
-        impact: blow(),
+        impact: given_impact(),
         velocities: velocities.iter().copied().map(Constant).collect(),
         energies: None,
         condition: vec![below(limit)],
@@ -73,12 +73,12 @@ fn history(record: &Record) -> &EscalateHistory {
 /// An observation that applies to every impact is reported after the first, with the number of the others at the end. A series of one
 /// adds nothing.
 #[test]
-fn what_is_so_of_every_blow_is_said_once() {
+fn a_remark_on_every_impact_is_made_once() {
     let of = |velocities: &[f64]| {
         let short = Impact {
             duration: Constant(4e-3),
             until: Until::Duration,
-            ..blow()
+            ..given_impact()
         };
         // No requirement on their results: a condition on their peak would end the series with the first.
         let row = Escalate {
@@ -88,12 +88,12 @@ fn what_is_so_of_every_blow_is_said_once() {
         };
         let record = run_unwatched(&yielding(vec![ProcedureKind::Escalate(row)]));
         assert_eq!(record.outcome, Outcome::Completed);
-        let told = record
+        let remarks = record
             .events
             .into_iter()
             .map(|event| event.text)
             .filter(|text| text.contains("not reached within the run"));
-        told.collect::<Vec<String>>()
+        remarks.collect::<Vec<String>>()
     };
     let text =
         "maximum displacement not reached within the run: the structure was still moving outward";
@@ -110,7 +110,7 @@ fn what_is_so_of_every_blow_is_said_once() {
 
 /// Each impact is the impact that the plan could have written out, one unloading after the other.
 #[test]
-fn every_blow_is_an_impact_of_its_own() {
+fn every_impact_of_a_series_equals_a_single_one() {
     let velocities = [0.3, 0.6, 0.9];
     let record = run_unwatched(&yielding(vec![ProcedureKind::Escalate(rising(
         &velocities,
@@ -126,7 +126,7 @@ fn every_blow_is_an_impact_of_its_own() {
     });
     let mut written = Vec::new();
     for _ in velocities {
-        written.extend([ProcedureKind::Impact(blow()), unload.clone()]);
+        written.extend([ProcedureKind::Impact(given_impact()), unload.clone()]);
     }
     let mut plan = yielding(written);
     for (index, velocity) in velocities.into_iter().enumerate() {
@@ -135,19 +135,19 @@ fn every_blow_is_an_impact_of_its_own() {
             ..plan.strikers[0].clone()
         };
         plan.strikers.push(striker);
-        if let ProcedureKind::Impact(blow) = &mut plan.procedures[2 * index].kind {
-            blow.striker = index + 1;
+        if let ProcedureKind::Impact(impact) = &mut plan.procedures[2 * index].kind {
+            impact.striker = index + 1;
         }
     }
     let apart = run_unwatched(&plan);
-    for (index, blow) in history(&record).blows.iter().enumerate() {
+    for (index, impact) in history(&record).impacts.iter().enumerate() {
         assert_eq!(
-            blow.results,
+            impact.results,
             as_of(0, &apart.procedures[2 * index].results),
             "blow {index}"
         );
         let rest = number(&apart, 2 * index + 1, "residual_displacement").0;
-        assert_eq!(blow.rest_of_struck().map(|rest| rest.0), rest);
+        assert_eq!(impact.rest_of_struck().map(|rest| rest.0), rest);
     }
     assert_eq!(list(&record, 0, "velocities"), velocities);
     let peaks = list(&record, 0, "max_displacements");
@@ -157,13 +157,16 @@ fn every_blow_is_an_impact_of_its_own() {
 
 /// An elastic specimen in a plastic impact: X = v Ms/√(K(M + Ms)), so the level that fails can be calculated.
 #[test]
-fn it_ends_with_the_first_blow_that_fails() {
+fn it_ends_with_the_first_impact_that_fails() {
     let velocities = [0.2, 0.4, 0.6, 0.8, 1.0];
     let mut plan = rising(&velocities, 0.0150, Between::Home);
     let contact = crate::plan::Contact::Restitution {
         coefficient: Constant(0.0),
     };
-    plan.impact = Impact { contact, ..blow() };
+    plan.impact = Impact {
+        contact,
+        ..given_impact()
+    };
     let record = run_unwatched(&elastic_plan(2e4, vec![ProcedureKind::Escalate(plan)]));
     let reckoned = |velocity: f64| velocity * 10.0 / (2e4_f64 * 11.0).sqrt();
     let fails = velocities
@@ -226,7 +229,7 @@ fn the_list_bounds_it() {
 }
 
 #[test]
-fn a_person_looks_between_two_blows() {
+fn the_operator_inspects_between_two_impacts() {
     let plan = Escalate {
         inspect_between: true,
         ..rising(&[0.1, 0.2, 0.3], 1.0, Between::Unload)
@@ -244,7 +247,7 @@ fn a_person_looks_between_two_blows() {
 }
 
 #[test]
-fn a_limit_in_a_blow_ends_it_and_keeps_what_there_is() {
+fn a_limit_in_an_impact_ends_it_and_keeps_the_steps() {
     let mut plan = yielding(vec![ProcedureKind::Escalate(rising(
         &[0.3, 2.0],
         1.0,
@@ -256,9 +259,9 @@ fn a_limit_in_a_blow_ends_it_and_keeps_what_there_is() {
     };
     let record = run_unwatched(&plan);
     assert!(matches!(record.outcome, Outcome::Aborted { .. }));
-    let blows = &history(&record).blows;
+    let impacts = &history(&record).impacts;
     assert_eq!(
-        (blows.len(), blows[0].held, blows[1].held),
+        (impacts.len(), impacts[0].held, impacts[1].held),
         (2, Some(true), None)
     );
     assert_eq!(number(&record, 0, "passed").0, Some(1.0));
@@ -285,7 +288,7 @@ impl Observer for Counting {
 
 /// The moves between impacts are steps too. If the impacts continue to their duration, the bound is reached and never exceeded.
 #[test]
-fn no_more_steps_come_than_were_foretold() {
+fn no_more_steps_come_than_were_predicted() {
     for (between, exact) in [
         (Between::Home, true),
         (Between::Unload, false),
@@ -295,7 +298,7 @@ fn no_more_steps_come_than_were_foretold() {
         rising.impact = Impact {
             until: Until::Duration,
             duration: Constant(0.1),
-            ..blow()
+            ..given_impact()
         };
         let plan = yielding(vec![ProcedureKind::Escalate(rising)]);
         let mut counting = Counting::default();
@@ -314,7 +317,7 @@ fn no_more_steps_come_than_were_foretold() {
 /// However early its impacts end, a series neither confirms nor rejects a result that complete impacts do not. K 20 kN/m and 11 kg
 /// reverse after some 37 ms. With complete impacts the third is the first beyond 20 mm.
 #[test]
-fn a_row_of_cut_blows_decides_nothing_that_whole_ones_do_not() {
+fn a_series_of_truncated_impacts_concludes_nothing_that_complete_ones_do_not() {
     let requirement = |energy: f64| {
         let value = Formula::Result(ResultReference {
             procedure: ProcedureId(0),
@@ -340,7 +343,7 @@ fn a_row_of_cut_blows_decides_nothing_that_whole_ones_do_not() {
         let mut row = rising(&[0.3, 0.6, 0.9, 1.2], 0.02, Between::Unload);
         row.impact = Impact {
             duration: Constant(duration),
-            ..blow()
+            ..given_impact()
         };
         let mut plan = yielding(vec![ProcedureKind::Escalate(row)]);
         plan.requirements = [0.45, 1.8, 4.05].map(requirement).to_vec();
@@ -353,7 +356,7 @@ fn a_row_of_cut_blows_decides_nothing_that_whole_ones_do_not() {
         (
             verdicts,
             number(&record, 0, "passed").0,
-            history(&record).blows.last().unwrap().held,
+            history(&record).impacts.last().unwrap().held,
         )
     };
     let whole = of(0.4);
@@ -401,9 +404,9 @@ fn a_row_goes_by_where_the_specimen_rests() {
     let record = run_unwatched(&elastic_plan(2e4, vec![ProcedureKind::Escalate(row)]));
     assert!(
         history(&record)
-            .blows
+            .impacts
             .iter()
-            .all(|blow| blow.number("final_displacement").unwrap() > 1e-3)
+            .all(|impact| impact.number("final_displacement").unwrap() > 1e-3)
     );
     assert_eq!(number(&record, 0, "passed").0, Some(2.0));
 }

@@ -60,15 +60,15 @@ fn example_1_comes_out_as_printed() {
     assert_eq!(steps[1].state, StepState::Contact);
     assert_eq!(value(&record, "steps"), count(steps.len() as u64 - 1));
     // Each move at the rig's own 1 mm/s: at least 0.157864 m outwards.
-    let way: f64 = steps
+    let travel: f64 = steps
         .windows(2)
         .map(|pair| (pair[1].command - pair[0].command).abs())
         .sum();
-    assert!((steps.last().unwrap().wall_time - way / 1e-3).abs() < 1e-9);
+    assert!((steps.last().unwrap().wall_time - travel / 1e-3).abs() < 1e-9);
 }
 
 #[test]
-fn results_stand_in_the_order_of_the_reference_also_when_there_are_none() {
+fn results_are_in_the_order_of_the_reference_also_without_values() {
     let reference = "max_displacement, time_of_max_displacement, stop_time, final_displacement, max_velocity, \
                      max_contact_force, impulse, contacts, restitution, indentation, indentation_energy, absorbed_energy, \
                      restoring_energy, damping_energy, striker_energy, energy_error, tracking_energy_error, tracking_indicator, \
@@ -107,11 +107,11 @@ fn pauses_take_rig_time_and_a_time_step_may_be_critical() {
     );
     let steps = steps(&record);
     let last = steps.last().unwrap();
-    let way: f64 = steps
+    let travel: f64 = steps
         .windows(2)
         .map(|pair| (pair[1].command - pair[0].command).abs())
         .sum();
-    let by_hand = way / 1e-3 + 0.5 * count(last.step);
+    let by_hand = travel / 1e-3 + 0.5 * count(last.step);
     assert!(
         (last.wall_time - by_hand).abs() < 1e-6,
         "{} {by_hand}",
@@ -122,7 +122,7 @@ fn pauses_take_rig_time_and_a_time_step_may_be_critical() {
 /// With a contact of finite stiffness, the critical step is that of the contact. A step that the plan does not specify must resolve the
 /// impact. Between free masses F = k^(2/5)(5/4 μu²)^(3/5) (Hertz). The spring adds nothing significant in such a short time.
 #[test]
-fn a_step_that_is_not_given_shows_the_blow_of_a_stiff_contact() {
+fn a_default_step_resolves_the_impact_of_a_stiff_contact() {
     let hertz = |step, duration| {
         let divided = |by| {
             let parts = (Box::new(Formula::CriticalTimeStep), Box::new(constant(by)));
@@ -155,7 +155,7 @@ fn a_step_that_is_not_given_shows_the_blow_of_a_stiff_contact() {
 }
 
 #[test]
-fn a_run_that_ends_early_says_that_its_peak_is_none() {
+fn a_run_that_ends_early_reports_that_its_maximum_was_not_reached() {
     let mut still_moving_on = 0;
     for duration in [0.09, 0.1, 0.11, 0.12] {
         let record = run_unwatched(&plan(Impact {
@@ -163,13 +163,13 @@ fn a_run_that_ends_early_says_that_its_peak_is_none() {
             ..impact()
         }));
         assert_eq!(number(&record, 0, "stop_time"), (None, None));
-        let says = |text| {
+        let has_event = |text| {
             record
                 .events
                 .iter()
                 .any(|event| event.kind == EventKind::Remark && event.text.contains(text))
         };
-        assert!(says("did not stop"));
+        assert!(has_event("did not stop"));
         let last = steps(&record).last().unwrap();
         let largest = steps(&record)
             .iter()
@@ -177,7 +177,11 @@ fn a_run_that_ends_early_says_that_its_peak_is_none() {
             .fold(0.0, f64::max);
         // A run that continues past its largest X contains the peak.
         let moving_on = last.velocity > 0.0 && last.displacement >= largest;
-        assert_eq!(says("not reached within the run"), moving_on, "{duration}");
+        assert_eq!(
+            has_event("not reached within the run"),
+            moving_on,
+            "{duration}"
+        );
         still_moving_on += u32::from(moving_on);
     }
     assert!((1..4).contains(&still_moving_on), "both ends are tried");

@@ -31,7 +31,7 @@ fn explicit(mode: Mode, time_step: f64) -> Stepping {
 
 /// Released at 10 mm from rest, with the striker out of reach, for half a second.
 fn let_go(mode: Mode, damping: f64, coulomb: f64, time_step: f64) -> Plan {
-    let blow = Impact {
+    let struck = Impact {
         stepping: explicit(mode, time_step),
         duration: Constant(0.5),
         until: Until::Duration,
@@ -43,7 +43,7 @@ fn let_go(mode: Mode, damping: f64, coulomb: f64, time_step: f64) -> Plan {
     };
     let mut plan = elastic_plan(
         STIFFNESS,
-        vec![ProcedureKind::Move(out), ProcedureKind::Impact(blow)],
+        vec![ProcedureKind::Move(out), ProcedureKind::Impact(struck)],
     );
     plan.strikers[0].gap = 1000.0;
     plan.specimens[0].damping = damping;
@@ -62,15 +62,15 @@ fn lost(plan: &Plan) -> f64 {
 
 /// A damper of c on the cell acts as C = c/scale: E(t) of d'' + (C/M)d' + (K/M)d = 0 in closed form, M = 1 kg.
 #[test]
-fn a_damper_takes_what_the_closed_form_says_and_ramp_and_hold_shows_none_of_it() {
+fn a_damper_absorbs_the_energy_of_the_closed_form_and_ramp_and_hold_shows_none_of_it() {
     let (damper, end) = (50.0, 0.5);
     let rate = damper / SCALE / 2.0;
     let damped = f64::sqrt(STIFFNESS - rate * rate);
     let decay = 0.01 * f64::exp(-rate * end);
     let (sine, cosine) = ((damped * end).sin(), (damped * end).cos());
-    let place = decay * (cosine + rate / damped * sine);
+    let displacement = decay * (cosine + rate / damped * sine);
     let velocity = -decay * (damped + rate * rate / damped) * sine;
-    let exact = 0.5 * STIFFNESS * (1e-4 - place * place) - 0.5 * velocity * velocity;
+    let exact = 0.5 * STIFFNESS * (1e-4 - displacement * displacement) - 0.5 * velocity * velocity;
     assert!(exact > 0.15 * 0.5 * STIFFNESS * 1e-4, "enough to be seen");
     let error = |time_step| lost(&let_go(CONTINUOUS, damper, 0.0, time_step)) - exact;
     let (coarse, fine) = (error(1e-3), error(5e-4));
@@ -81,20 +81,20 @@ fn a_damper_takes_what_the_closed_form_says_and_ramp_and_hold_shows_none_of_it()
 
 /// Friction dissipates F_c over the whole path, in either mode: the cell keeps its sign through a pause.
 #[test]
-fn friction_takes_its_force_times_the_way() {
+fn friction_dissipates_its_force_times_the_travel() {
     let friction = 0.05;
     for mode in [CONTINUOUS, Mode::StepAndPause] {
         let plan = let_go(mode, 0.0, friction, 5e-4);
         let record = run_unwatched(&plan);
-        let way: f64 = steps(&record)
+        let travel: f64 = steps(&record)
             .windows(2)
             .map(|pair| (pair[1].computed - pair[0].computed).abs())
             .sum();
         let found = lost(&plan);
         assert!(
-            (found - friction * way).abs() < 0.02 * friction * way,
+            (found - friction * travel).abs() < 0.02 * friction * travel,
             "{mode:?}: {found} J of {} J",
-            friction * way
+            friction * travel
         );
     }
 }
@@ -104,11 +104,11 @@ fn friction_takes_its_force_times_the_way() {
 #[test]
 fn without_damping_both_modes_are_the_same_run() {
     let by = |mode| {
-        let blow = Impact {
+        let struck = Impact {
             stepping: explicit(mode, 1e-3),
             ..impact(Constant(327.65))
         };
-        run_unwatched(&elastic_plan(327.65, vec![ProcedureKind::Impact(blow)]))
+        run_unwatched(&elastic_plan(327.65, vec![ProcedureKind::Impact(struck)]))
     };
     let (one, other) = (by(CONTINUOUS), by(Mode::StepAndPause));
     assert_eq!(steps(&one).len(), steps(&other).len());
@@ -132,17 +132,17 @@ fn without_damping_both_modes_are_the_same_run() {
 /// an impact. An impact is an impulse and has no lasting effect. With the acceleration of the impact kept, half its velocity jump would
 /// also be measured, at any step. A limit force lasts, and is kept.
 #[test]
-fn after_a_blow_the_damper_is_felt_at_the_velocity_that_the_structure_has() {
+fn after_an_impact_the_damper_acts_at_the_velocity_of_the_structure() {
     let damper = 50.0;
     let worst = |contact: Contact, time_step: f64| {
-        let blow = Impact {
+        let struck = Impact {
             stepping: explicit(CONTINUOUS, time_step),
             contact,
             duration: Constant(0.2),
             until: Until::Duration,
             ..impact(Constant(STIFFNESS))
         };
-        let mut plan = elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(blow)]);
+        let mut plan = elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(struck)]);
         plan.specimens[0].damping = damper;
         let record = run_unwatched(&plan);
         let steps = steps(&record);
@@ -153,8 +153,8 @@ fn after_a_blow_the_damper_is_felt_at_the_velocity_that_the_structure_has() {
             jump = jump.max(forces[1] * time_step);
             // The impact at the end of a step is not smooth motion. The same applies to the first and last step of a lasting impact.
             if forces[1] == 0.0 || (forces[0] == forces[1] && forces[1] == forces[2]) {
-                let felt = three[1].restoring_force - STIFFNESS * three[1].command;
-                worst = worst.max((felt - damper / SCALE * velocity).abs());
+                let damping_force = three[1].restoring_force - STIFFNESS * three[1].command;
+                worst = worst.max((damping_force - damper / SCALE * velocity).abs());
             }
         }
         (worst, damper / SCALE * jump)
@@ -181,7 +181,7 @@ fn after_a_blow_the_damper_is_felt_at_the_velocity_that_the_structure_has() {
 /// While a target is computed, the actuator continues at its last acceleration, but not at that of an impact. A velocity jump is not a
 /// trend.
 #[test]
-fn a_blow_is_no_trend_to_go_on_with() {
+fn an_impact_is_not_extrapolated_as_a_trend() {
     use crate::record::journal::testing::PowerLoss;
     use crate::record::journal::{Durability, EntryKind, Journal, recover};
     use crate::rig::VirtualRig;
@@ -189,11 +189,11 @@ fn a_blow_is_no_trend_to_go_on_with() {
     use crate::run::replay::{begin, record};
 
     let time_step = 1e-3;
-    let blow = Impact {
+    let struck = Impact {
         stepping: explicit(CONTINUOUS, time_step),
         ..impact(Constant(STIFFNESS))
     };
-    let plan = elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(blow)]);
+    let plan = elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(struck)]);
     let disk = PowerLoss::new();
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
     begin(
@@ -253,8 +253,8 @@ fn the_reading_is_corrected_to_the_target() {
             low: 0.0,
             high: 1e6,
         };
-        if let ProcedureKind::Impact(blow) = &mut plan.procedures[1].kind {
-            blow.stepping.i_modification = correct;
+        if let ProcedureKind::Impact(impact) = &mut plan.procedures[1].kind {
+            impact.stepping.i_modification = correct;
         }
         plan
     };
@@ -271,7 +271,7 @@ fn the_reading_is_corrected_to_the_target() {
 }
 
 #[test]
-fn a_continuous_run_is_stopped_on_its_way_by_what_is_read_there() {
+fn a_continuous_run_is_stopped_by_a_reading_during_the_motion() {
     let mut plan = let_go(CONTINUOUS, 50.0, 0.0, 1e-3);
     plan.limits.speed = Interval {
         low: 0.0,
@@ -357,7 +357,7 @@ fn a_continuous_run_is_played_back_from_its_record() {
 /// target. With the correction by the spring's own K this is not an error, and the run continues as if without lag. Without the
 /// correction the rig is put on hold.
 #[test]
-fn a_lag_that_is_taken_back_holds_no_run() {
+fn a_corrected_lag_holds_no_run() {
     let with = |lag: f64, i_modification: bool| {
         let mut plan = let_go(CONTINUOUS, 0.0, 0.0, 1e-3);
         plan.strikers[0].mass = 1e-6;
@@ -367,10 +367,10 @@ fn a_lag_that_is_taken_back_holds_no_run() {
         });
         // It begins at the commanded position.
         plan.rig.settle.band = 1e-10;
-        let ProcedureKind::Impact(blow) = &mut plan.procedures[1].kind else {
+        let ProcedureKind::Impact(impact) = &mut plan.procedures[1].kind else {
             panic!()
         };
-        blow.stepping.i_modification = i_modification;
+        impact.stepping.i_modification = i_modification;
         run_unwatched(&plan)
     };
     let (late, prompt) = (with(2.0, true), with(0.0, true));

@@ -19,7 +19,7 @@ const NOISY: VirtualLink = VirtualLink {
     tracking: 0.0,
     drift: 0.0,
     seed: 3,
-    foretold: None,
+    predicted: None,
 };
 
 fn remarks(mut plan: Plan, link: VirtualLink) -> Vec<String> {
@@ -47,15 +47,15 @@ fn splitting(stepping: &Stepping, mode: Mode) -> Stepping {
 
 /// 300 N/m on 1 kg, assumed as 250 N/m: 2/√50 s = 0.28 s is left.
 #[test]
-fn a_stiffer_spring_is_told_in_both_modes() {
+fn a_stiffer_spring_is_reported_in_both_modes() {
     let of = |mode: Mode, operator: f64, link: VirtualLink| {
-        let blow = impact(Constant(operator));
-        let blow = Impact {
-            stepping: splitting(&blow.stepping, mode),
+        let struck = impact(Constant(operator));
+        let struck = Impact {
+            stepping: splitting(&struck.stepping, mode),
             until: Until::Duration,
-            ..blow
+            ..struck
         };
-        let mut plan = elastic_plan(300.0, vec![ProcedureKind::Impact(blow)]);
+        let mut plan = elastic_plan(300.0, vec![ProcedureKind::Impact(struck)]);
         plan.strikers[0].mass = 0.5;
         plan.specimens[0].damping = 10.0;
         plan.specimens[0].coulomb = 0.05;
@@ -63,12 +63,13 @@ fn a_stiffer_spring_is_told_in_both_modes() {
     };
     for link in [VirtualLink::default(), NOISY] {
         for mode in [Mode::StepAndPause, CONTINUOUS] {
-            let told = of(mode, 250.0, link);
-            assert_eq!(told.len(), 1, "{mode:?}, {link:?}: {told:?}");
+            let texts = of(mode, 250.0, link);
+            assert_eq!(texts.len(), 1, "{mode:?}, {link:?}: {texts:?}");
             assert!(
-                told[0].contains("the specimen is stiffer") && told[0].contains("K_I = 250.0 N/m"),
+                texts[0].contains("the specimen is stiffer")
+                    && texts[0].contains("K_I = 250.0 N/m"),
                 "{}",
-                told[0]
+                texts[0]
             );
         }
         // A damper, or friction that reverses, is not mistaken for stiffness.
@@ -90,15 +91,15 @@ fn a_stiffer_spring_is_told_in_both_modes() {
 
 /// Two storeys. The upper one has 450 N/m where the frame states 300 N/m, between floors of 1 kg each: 2/√(150·2) s = 0.1155 s.
 #[test]
-fn a_stiffer_storey_is_told_by_its_number_in_both_modes() {
+fn a_stiffer_storey_is_reported_by_its_number_in_both_modes() {
     let of = |mode: Mode, upper: f64, link: VirtualLink| {
         let mut plan = struck_frame();
-        if let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind {
-            blow.stepping = splitting(&blow.stepping, mode);
-            blow.contact = Contact::Limit {
+        if let ProcedureKind::Impact(impact) = &mut plan.procedures[0].kind {
+            impact.stepping = splitting(&impact.stepping, mode);
+            impact.contact = Contact::Limit {
                 force: Constant(200.0),
             };
-            blow.duration = Constant(0.5);
+            impact.duration = Constant(0.5);
         }
         plan.strikers[0].mass = 0.5;
         let frame = plan.specimens[0].frame.as_mut().unwrap();
@@ -110,12 +111,12 @@ fn a_stiffer_storey_is_told_by_its_number_in_both_modes() {
     };
     for link in [VirtualLink::default(), NOISY] {
         for mode in [Mode::StepAndPause, CONTINUOUS] {
-            let told = of(mode, 450.0, link);
-            assert_eq!(told.len(), 1, "{mode:?}, {link:?}: {told:?}");
+            let texts = of(mode, 450.0, link);
+            assert_eq!(texts.len(), 1, "{mode:?}, {link:?}: {texts:?}");
             assert!(
-                told[0].contains("storey 2 is stiffer") && told[0].contains("K_I = 300.0 N/m"),
+                texts[0].contains("storey 2 is stiffer") && texts[0].contains("K_I = 300.0 N/m"),
                 "{}",
-                told[0]
+                texts[0]
             );
         }
         for mode in [Mode::StepAndPause, CONTINUOUS] {
@@ -126,18 +127,18 @@ fn a_stiffer_storey_is_told_by_its_number_in_both_modes() {
             );
         }
     }
-    let told = of(CONTINUOUS, 450.0, VirtualLink::default());
+    let texts = of(CONTINUOUS, 450.0, VirtualLink::default());
     assert!(
-        told[0].contains(", 450.0 N/m measured") && told[0].contains("up to 0.1155 s"),
-        "{told:?}"
+        texts[0].contains(", 450.0 N/m measured") && texts[0].contains("up to 0.1155 s"),
+        "{texts:?}"
     );
 }
 
 /// 300 N/m on 1 kg, assumed as 100 N/m, in steps that are stable for 100 N/m. Explicit Newmark beyond 2/√300 s = 0.1155 s, and α-OS
 /// beyond 2/√200 s = 0.1414 s, reverse at every step.
 #[test]
-fn a_response_that_turns_at_every_step_is_told() {
-    for (integrator, told_of) in [
+fn a_response_that_reverses_at_every_step_is_reported() {
+    for (integrator, expected) in [
         (Integrator::Explicit, "stable up to 0.1155 s"),
         (
             Integrator::AlphaOs { alpha: 0.0 },
@@ -145,28 +146,28 @@ fn a_response_that_turns_at_every_step_is_told() {
         ),
     ] {
         let of = |stated: f64| {
-            let blow = impact(Constant(stated));
+            let struck = impact(Constant(stated));
             let stepping = Stepping {
                 integrator,
                 time_step: Constant(0.15),
-                ..blow.stepping
+                ..struck.stepping
             };
-            let blow = Impact {
+            let struck = Impact {
                 stepping,
                 until: Until::Duration,
                 duration: Constant(3.0),
-                ..blow
+                ..struck
             };
-            let mut plan = elastic_plan(300.0, vec![ProcedureKind::Impact(blow)]);
+            let mut plan = elastic_plan(300.0, vec![ProcedureKind::Impact(struck)]);
             plan.strikers[0].mass = 0.5;
             remarks(plan, VirtualLink::default())
         };
-        let told = of(100.0);
-        assert_eq!(told.len(), 1, "{integrator:?}: {told:?}");
+        let texts = of(100.0);
+        assert_eq!(texts.len(), 1, "{integrator:?}: {texts:?}");
         assert!(
-            told[0].contains(told_of) && told[0].contains("300.0 N/m"),
+            texts[0].contains(expected) && texts[0].contains("300.0 N/m"),
             "{}",
-            told[0]
+            texts[0]
         );
     }
 }

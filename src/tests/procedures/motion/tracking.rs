@@ -62,11 +62,11 @@ impl Stepped for &mut Sine {
         false
     }
 
-    fn taken_at_start(&self, start: &Start) -> Vec<f64> {
+    fn effective_force_at_start(&self, start: &Start) -> Vec<f64> {
         start.reading.force.clone()
     }
 
-    fn taken(&self) -> Vec<f64> {
+    fn effective_force(&self) -> Vec<f64> {
         self.state.restoring_force.clone()
     }
 
@@ -108,13 +108,13 @@ fn followed(link: VirtualLink, mode: Mode, per_cycle: u32) -> (Vec<Vec<Tracking>
         steps: u64::from(per_cycle * CYCLES),
         pause: 0.0,
     };
-    let ProcedureKind::Impact(blow) = &plan.procedures[0].kind else {
+    let ProcedureKind::Impact(impact) = &plan.procedures[0].kind else {
         panic!("another procedure")
     };
     let stepping = Stepping {
         mode,
         integrator: Integrator::Explicit,
-        ..blow.stepping.clone()
+        ..impact.stepping.clone()
     };
     let nothing = || vec![0.0; 2];
     let state = FrameState {
@@ -219,7 +219,7 @@ fn list(results: &[NamedResult], name: &str) -> Vec<f64> {
 /// Each increment misses its target by a fraction t, measured from the present position of the actuator: x₁ = (1 − t)d₁ + t·x₀. Its gain
 /// on a sine is (1 − t)/(1 − t·e^(−iωΔt)), to rounding.
 #[test]
-fn a_share_of_each_increment_missed_shows_as_the_closed_form_says() {
+fn a_missed_fraction_of_each_increment_shows_as_in_the_closed_form() {
     for missed in [0.2, -0.2] {
         let per_cycle = 40;
         let link = VirtualLink {
@@ -283,7 +283,7 @@ fn a_share_of_each_increment_missed_shows_as_the_closed_form_says() {
 /// A lag τ in continuous mode is τ/scale of simulated time: gain cos φ, φ = atan(ωτ/scale), to the order of the paths between the
 /// readings.
 #[test]
-fn a_lag_on_the_way_shows_as_the_closed_form_says() {
+fn a_lag_during_the_motion_shows_as_in_the_closed_form() {
     let lag = 2.0;
     let apart = |per_cycle: u32| {
         let link = VirtualLink {
@@ -307,13 +307,13 @@ fn a_lag_on_the_way_shows_as_the_closed_form_says() {
 
 /// On hold in both modes, because of the axis with the largest NRMS error if the plan limits it.
 #[test]
-fn tracking_holds_a_blow_on_a_storey_in_both_modes() {
+fn tracking_error_holds_an_impact_on_a_storey_in_both_modes() {
     let struck = |mode: Mode, link: VirtualLink, limit: fn(&mut Plan)| {
         let mut plan = struck_frame();
         plan.rig.link = Link::Virtual(link);
         limit(&mut plan);
-        if let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind {
-            blow.stepping.mode = mode;
+        if let ProcedureKind::Impact(impact) = &mut plan.procedures[0].kind {
+            impact.stepping.mode = mode;
         }
         crate::run::run(&plan, virtual_rig(&plan).as_mut(), &mut Unwatched).outcome
     };

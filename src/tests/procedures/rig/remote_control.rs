@@ -151,7 +151,7 @@ fn who_ends_the_serving_has_the_rig_held_where_it_is() {
 }
 
 #[test]
-fn a_rig_that_does_not_say_is_not_asked() {
+fn a_rig_that_does_not_report_it_is_not_asked() {
     let mut plan = plan(5.0, ZeroAfter::Nowhere);
     assert!(served(&plan, false).drift.unwrap().axes[0].after.is_none());
     plan.rig.zero_drift = None;

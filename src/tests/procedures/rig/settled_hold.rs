@@ -162,7 +162,7 @@ fn noisy_holds_of_a_rig_that_settles_are_held() {
 
 /// The parts of a hold add up to the time between its readings. The move equals the move of the rig.
 #[test]
-fn a_hold_tells_when_the_rig_moved() {
+fn a_dwell_records_when_the_rig_moved() {
     let record = run_unwatched(&solid(0.5, VirtualLink::default()));
     let History::Ramp(ramp) = &record.procedures[0].history else {
         panic!()

@@ -30,14 +30,14 @@ fn one_storey_has_the_uncertainty_of_one_degree_of_freedom() {
         coefficient: constant(0.3),
     };
     let alone = |link| {
-        let blow = Impact {
+        let struck = Impact {
             contact: contact.clone(),
             stepping: every(1e-3),
             ..impact(constant(STIFFNESS))
         }
         .with_point(|point| point.mass_uncertainty = 0.02);
         run_unwatched(&uncertain(
-            elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(blow)]),
+            elastic_plan(STIFFNESS, vec![ProcedureKind::Impact(struck)]),
             link,
         ))
     };
@@ -47,15 +47,15 @@ fn one_storey_has_the_uncertainty_of_one_degree_of_freedom() {
             mass_uncertainty: 0.02,
             ..storey(1.0, STIFFNESS)
         }];
-        let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind else {
+        let ProcedureKind::Impact(impact) = &mut plan.procedures[0].kind else {
             panic!()
         };
-        *blow = Impact {
+        *impact = Impact {
             contact: contact.clone(),
             stepping: every(1e-3),
             duration: constant(0.5),
             until: Until::StrikerStop,
-            ..blow.clone()
+            ..impact.clone()
         }
         .with_storey(|storey| {
             storey.storey = 0;
@@ -200,11 +200,11 @@ fn two_elastic_storeys_have_the_uncertainty_of_their_modes() {
     let at = |masses, force, displacement| two_storeys(masses, stiffnesses, force, displacement);
     let by_hand = at(masses, [1.0; 2], [1.0; 2]);
     let mut compared = 0;
-    for (index, (name, place)) in NAMES.into_iter().enumerate() {
-        let (value, parts) = entry(&record, name, place);
+    for (index, (name, entry_index)) in NAMES.into_iter().enumerate() {
+        let (value, parts) = entry(&record, name, entry_index);
         assert!(
             (value / by_hand[index] - 1.0).abs() < 1e-4,
-            "{name}[{place}]: {value}, by hand {}",
+            "{name}[{entry_index}]: {value}, by hand {}",
             by_hand[index]
         );
         for axis in 0..2 {
@@ -247,14 +247,14 @@ fn two_elastic_storeys_have_the_uncertainty_of_their_modes() {
                 let rough = parts
                     .iter()
                     .any(|part| part.source == source && !part.smooth);
-                let told = if rough {
+                let agrees = if rough {
                     found.abs() + within > expected.abs()
                 } else {
                     (found - expected).abs() < within
                 };
                 assert!(
-                    told,
-                    "{name}[{place}] by {source:?}: {found}, by hand {expected}, of {value}"
+                    agrees,
+                    "{name}[{entry_index}] by {source:?}: {found}, by hand {expected}, of {value}"
                 );
                 compared += usize::from(expected.abs() > 1e-3 * value);
             }
@@ -263,7 +263,7 @@ fn two_elastic_storeys_have_the_uncertainty_of_their_modes() {
         // The contribution includes peaks between the ends of steps; the value is that at the end of a step.
         assert!(
             (scale / (0.02 * value) - 1.0).abs() < 1e-4,
-            "{name}[{place}] of the ground: {scale}"
+            "{name}[{entry_index}] of the ground: {scale}"
         );
         // The one-sided differences of a negligible effect may disagree.
         let rough = parts

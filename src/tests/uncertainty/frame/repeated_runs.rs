@@ -9,38 +9,38 @@ use crate::uncertainty::{Source, combined};
 
 const RUNS: u32 = 150;
 
-/// The virtual rig runs `RUNS` times with random inputs; the scatter is compared with the prediction of one run of `doubtful`. The
+/// The virtual rig runs `RUNS` times with random inputs; the scatter is compared with the prediction of one run of `uncertain`. The
 /// relative standard deviation of a standard deviation of normal numbers is 1/√(2(n − 1)). For a Monte Carlo prediction it is 1/√(2·64).
 /// The limit is three times both combined.
 fn scatters_as_predicted(
-    doubtful: &Plan,
+    uncertain: &Plan,
     names: &[(&str, usize)],
     drawn: bool,
     draw: &mut dyn FnMut(&mut Uniform, u64) -> Plan,
 ) {
-    let told = run_unwatched(doubtful);
+    let with_uncertainty = run_unwatched(uncertain);
     let mut uniform = Uniform(20_060_102);
     let mut found: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
     for run in 0..RUNS {
         let record = run_unwatched(&draw(&mut uniform, u64::from(run)));
-        for (values, (name, place)) in found.iter_mut().zip(names) {
-            values.push(entry(&record, name, *place).0);
+        for (values, (name, index)) in found.iter_mut().zip(names) {
+            values.push(entry(&record, name, *index).0);
         }
     }
     let within =
         3.0 * (1.0 / (2.0 * f64::from(RUNS - 1)) + if drawn { 1.0 / 128.0 } else { 0.0 }).sqrt();
-    for (values, (name, place)) in found.iter().zip(names) {
-        let (_, parts) = entry(&told, name, *place);
+    for (values, (name, index)) in found.iter().zip(names) {
+        let (_, parts) = entry(&with_uncertainty, name, *index);
         let (scatter, u) = (scatter(values), combined(&parts).unwrap());
         // If the measured path does not determine the motion of the storeys, the largest possible effect is reported and marked.
         let sure = parts
             .iter()
             .all(|part| part.smooth || part.amount.abs() < 0.1 * u);
         let most = if sure { within } else { 1.0 };
-        let told = u / scatter - 1.0;
+        let deviation = u / scatter - 1.0;
         assert!(
-            (-within..most).contains(&told),
-            "{name}[{place}]: {scatter} of runs, {u} foretold"
+            (-within..most).contains(&deviation),
+            "{name}[{index}]: {scatter} of runs, {u} foretold"
         );
     }
 }
@@ -78,12 +78,12 @@ fn repeated_ground_motion_tests_scatter_as_predicted() {
         shake(&mut plan).damping = ShakeDamping::Rayleigh(constant(ratio));
         plan
     };
-    let mut doubtful = with([3.0, 2.0], 1.0, 0.05);
-    for storey in storeys(&mut doubtful) {
+    let mut uncertain = with([3.0, 2.0], 1.0, 0.05);
+    for storey in storeys(&mut uncertain) {
         storey.mass_uncertainty = 0.01 * storey.mass;
     }
-    doubtful.grounds[0].scale_uncertainty = 0.01;
-    shake(&mut doubtful).damping_uncertainty = 0.01;
+    uncertain.grounds[0].scale_uncertainty = 0.01;
+    shake(&mut uncertain).damping_uncertainty = 0.01;
     let names = [
         ("max_displacement", 0),
         ("max_displacement", 1),
@@ -92,7 +92,7 @@ fn repeated_ground_motion_tests_scatter_as_predicted() {
         ("final_drift", 0),
         ("max_base_shear", 0),
     ];
-    scatters_as_predicted(&rebuilt(doubtful), &names, false, &mut |uniform, _| {
+    scatters_as_predicted(&rebuilt(uncertain), &names, false, &mut |uniform, _| {
         let masses = [3.0, 2.0].map(|mass: f64| mass * (1.0 + 0.01 * uniform.normal()));
         let scale = 1.0 + 0.01 * uniform.normal();
         with(masses, scale, 0.05 + 0.01 * uniform.normal())
@@ -107,22 +107,22 @@ fn repeated_impacts_on_a_storey_scatter_as_predicted() {
         storeys(&mut plan)[1].mass = mass;
         plan.strikers[0].velocity = velocity;
         plan.strikers[0].mass = striker;
-        let ProcedureKind::Impact(blow) = &mut plan.procedures[0].kind else {
+        let ProcedureKind::Impact(impact) = &mut plan.procedures[0].kind else {
             panic!()
         };
-        blow.contact = Contact::Restitution {
+        impact.contact = Contact::Restitution {
             coefficient: constant(0.0),
         };
-        blow.stepping = Stepping {
+        impact.stepping = Stepping {
             max_tangent_ratio: constant(2.0),
             ..every(2e-3)
         };
         rebuilt(plan)
     };
-    let mut doubtful = with(1.0, 1.0, 10.0);
-    storeys(&mut doubtful)[1].mass_uncertainty = 0.02;
-    doubtful.strikers[0].velocity_uncertainty = 0.01;
-    doubtful.strikers[0].mass_uncertainty = 0.1;
+    let mut uncertain = with(1.0, 1.0, 10.0);
+    storeys(&mut uncertain)[1].mass_uncertainty = 0.02;
+    uncertain.strikers[0].velocity_uncertainty = 0.01;
+    uncertain.strikers[0].mass_uncertainty = 0.1;
     let names = [
         ("max_displacement", 0),
         ("absorbed_energy", 0),
@@ -137,7 +137,7 @@ fn repeated_impacts_on_a_storey_scatter_as_predicted() {
         ("storey_energy", 1),
         ("max_base_shear", 0),
     ];
-    scatters_as_predicted(&doubtful, &names, false, &mut |uniform, _| {
+    scatters_as_predicted(&uncertain, &names, false, &mut |uniform, _| {
         let mass = 1.0 + 0.02 * uniform.normal();
         with(
             mass,

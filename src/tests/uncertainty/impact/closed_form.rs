@@ -81,7 +81,7 @@ fn an_elastic_impact_has_the_uncertainty_of_its_closed_form() {
 /// applies to the critical step of every impact of a series.
 #[test]
 fn the_critical_time_step_has_the_uncertainty_of_the_ramp() {
-    let blow = Impact {
+    let struck = Impact {
         ..impact(result_of(0, "stiffness"))
     }
     .with_point(|point| point.mass_uncertainty = 0.02 * MASS);
@@ -89,7 +89,7 @@ fn the_critical_time_step_has_the_uncertainty_of_the_ramp() {
         STIFFNESS,
         vec![
             ProcedureKind::StiffnessRamp(ramp(1e-3)),
-            ProcedureKind::Impact(blow),
+            ProcedureKind::Impact(struck),
         ],
     );
     plan.rig.link = Link::Virtual(VirtualLink {
@@ -99,12 +99,12 @@ fn the_critical_time_step_has_the_uncertainty_of_the_ramp() {
     });
     let record = run_unwatched(&plan);
     let (stiffness, known) = number(&record, 0, "stiffness");
-    let (critical, told) = number(&record, 1, "critical_time_step");
+    let (critical, reported) = number(&record, 1, "critical_time_step");
     let (relative, critical) = (known.unwrap() / stiffness.unwrap(), critical.unwrap());
     let by_hand = 0.5 * critical * relative.hypot(0.02);
     assert!(
-        relative > 1e-3 && (told.unwrap() / by_hand - 1.0).abs() < 1e-3,
-        "{told:?}, by hand {by_hand}"
+        relative > 1e-3 && (reported.unwrap() / by_hand - 1.0).abs() < 1e-3,
+        "{reported:?}, by hand {by_hand}"
     );
     let parts = contributions(&record, 1, "critical_time_step");
     let of = |source| {

@@ -50,7 +50,7 @@ fn a_record_that_does_not_reproduce_its_results_reports_no_uncertainty() {
     use crate::run::inputs::Inputs;
     let plan = all_uncertain(plan(sticking(1e-3)));
     let record = run_unwatched(&plan);
-    let ProcedureKind::Impact(blow) = &plan.procedures[0].kind else {
+    let ProcedureKind::Impact(impact) = &plan.procedures[0].kind else {
         panic!()
     };
     let History::Impact(history) = &record.procedures[0].history else {
@@ -58,12 +58,12 @@ fn a_record_that_does_not_reproduce_its_results_reports_no_uncertainty() {
     };
     let mut inputs = Inputs::new(&record, ProcedureId(0));
     let noise = DeclaredNoise::default();
-    let point = blow.point().unwrap();
-    let setting = Setting::of_point(blow, point, &plan.strikers[0], &mut inputs, noise)
+    let point = impact.point().unwrap();
+    let setting = Setting::of_point(impact, point, &plan.strikers[0], &mut inputs, noise)
         .ok()
         .unwrap();
-    let doubts = crate::procedures::impact::uncertainty::ImpactUncertainty::new(
-        blow, point, &plan, &inputs, noise,
+    let uncertainty = crate::procedures::impact::uncertainty::ImpactUncertainty::new(
+        impact, point, &plan, &inputs, noise,
     );
     let summary = ImpactSummary {
         max_displacement: 0.2,
@@ -81,11 +81,11 @@ fn a_record_that_does_not_reproduce_its_results_reports_no_uncertainty() {
         striker_energy: 5.0,
         energy_error: 0.0,
         still_rising: false,
-        last_blow_cut: false,
+        last_contact_cut: false,
     };
     let mut results = record.procedures[0].results.clone();
     let before = results.clone();
-    let found = doubts.propagate(
+    let found = uncertainty.propagate(
         &setting,
         &history.steps,
         &summary,
@@ -179,11 +179,12 @@ fn impacts_of_one_striker_share_its_uncertainty() {
         let crate::record::History::Escalate(history) = &record.procedures[0].history else {
             panic!()
         };
-        let of_blows = history
-            .blows
+        let of_impacts = history
+            .impacts
             .iter()
-            .map(|blow| {
-                blow.results
+            .map(|impact| {
+                impact
+                    .results
                     .iter()
                     .find(|result| result.name == "absorbed_energy")
                     .unwrap()
@@ -197,7 +198,7 @@ fn impacts_of_one_striker_share_its_uncertainty() {
             .entry_uncertainties();
         assert_eq!(
             listed,
-            of_blows
+            of_impacts
                 .iter()
                 .map(|parts| combined(parts))
                 .collect::<Vec<_>>()
@@ -208,23 +209,23 @@ fn impacts_of_one_striker_share_its_uncertainty() {
                 combined(&without_the_time_step(contributions(&record, 0, name))),
             )
         };
-        let of_blows: Vec<f64> = of_blows
+        let of_impacts: Vec<f64> = of_impacts
             .iter()
             .map(|parts| combined(&without_the_time_step(parts)).unwrap())
             .collect();
-        (of_blows, u("absorbed_energy"), u("max_displacement"))
+        (of_impacts, u("absorbed_energy"), u("max_displacement"))
     };
-    let (of_blows, (total, u), (largest, largest_u)) = run(0.01, 0.0);
+    let (of_impacts, (total, u), (largest, largest_u)) = run(0.01, 0.0);
     // 1 % of V0 is 1 % of every velocity, and so 2 % of every energy: the linear sum of both, not the root of the sum of squares.
     assert!(
-        (u.unwrap() - (of_blows[0] + of_blows[1])).abs() < 1e-9
+        (u.unwrap() - (of_impacts[0] + of_impacts[1])).abs() < 1e-9
             && (u.unwrap() / total.unwrap() - 0.02).abs() < 1e-4
     );
     assert!((largest_u.unwrap() / largest.unwrap() - 0.01).abs() < 1e-4);
-    let (of_blows, (_, u), _) = run(0.0, 0.5);
+    let (of_impacts, (_, u), _) = run(0.0, 0.5);
     assert!(
-        (u.unwrap() / of_blows[0].hypot(of_blows[1]) - 1.0).abs() < 1e-9,
-        "{u:?} of {of_blows:?}"
+        (u.unwrap() / of_impacts[0].hypot(of_impacts[1]) - 1.0).abs() < 1e-9,
+        "{u:?} of {of_impacts:?}"
     );
 }
 
@@ -233,7 +234,7 @@ fn impacts_of_one_striker_share_its_uncertainty() {
 #[test]
 fn a_diverging_path_is_reported_as_such() {
     let with = |force_uncertainty: f64| {
-        let blow = Impact {
+        let struck = Impact {
             contact: Contact::Rigid,
             stepping: Stepping {
                 integrator: Integrator::Explicit,
@@ -243,7 +244,7 @@ fn a_diverging_path_is_reported_as_such() {
             until: Until::Duration,
             ..impact(constant(300.0))
         };
-        let mut plan = elastic_plan(300.0, vec![ProcedureKind::Impact(blow)]);
+        let mut plan = elastic_plan(300.0, vec![ProcedureKind::Impact(struck)]);
         plan.strikers[0].mass = 0.5;
         plan.rig.calibration = Calibration {
             force_uncertainty,

@@ -13,12 +13,13 @@ use crate::uncertainty::Source;
 #[test]
 fn repeated_runs_scatter_as_predicted() {
     const RUNS: u32 = 200;
-    let blow = || Impact {
+    let given_impact = || Impact {
         until: crate::plan::Until::Rebound,
         ..sticking(2e-3)
     };
     let with = |velocity: f64, mass: f64, force: f64| {
-        let mut plan = plan(Impact { ..blow() }.with_point(|point| point.mass = constant(mass)));
+        let mut plan =
+            plan(Impact { ..given_impact() }.with_point(|point| point.mass = constant(mass)));
         plan.strikers[0].velocity = velocity;
         plan.specimens[0].behaviour = Some(Behaviour::Bilinear {
             stiffness: force * STIFFNESS,
@@ -27,13 +28,13 @@ fn repeated_runs_scatter_as_predicted() {
         });
         plan
     };
-    let mut doubtful = with(1.0, MASS, 1.0);
-    doubtful.strikers[0].velocity_uncertainty = 0.01;
-    doubtful.rig.calibration.force_uncertainty = 0.02;
-    if let ProcedureKind::Impact(impact) = &mut doubtful.procedures[0].kind {
+    let mut uncertain = with(1.0, MASS, 1.0);
+    uncertain.strikers[0].velocity_uncertainty = 0.01;
+    uncertain.rig.calibration.force_uncertainty = 0.02;
+    if let ProcedureKind::Impact(impact) = &mut uncertain.procedures[0].kind {
         impact.point_mut().mass_uncertainty = 0.02 * MASS;
     }
-    let told = run_unwatched(&doubtful);
+    let with_uncertainty = run_unwatched(&uncertain);
     let mut uniform = Uniform(20_060_101);
     let names = [
         "max_displacement",
@@ -54,7 +55,7 @@ fn repeated_runs_scatter_as_predicted() {
     }
     for (values, name) in found.iter().zip(names) {
         let scatter = scatter(values);
-        let u = number(&told, 0, name).1.unwrap();
+        let u = number(&with_uncertainty, 0, name).1.unwrap();
         // The relative standard deviation of a standard deviation of normal numbers is 1/√(2(n − 1)); the limit is three times this.
         assert!(
             (scatter / u - 1.0).abs() < 3.0 / (2.0 * f64::from(RUNS - 1)).sqrt(),
@@ -76,8 +77,8 @@ fn noise_scatters_repeated_runs_as_its_trials_predict() {
         });
         plan
     };
-    let told = run_unwatched(&with(1));
-    let u = number(&told, 0, "max_displacement").1.unwrap();
+    let with_uncertainty = run_unwatched(&with(1));
+    let u = number(&with_uncertainty, 0, "max_displacement").1.unwrap();
     let values: Vec<f64> = (1..=RUNS)
         .map(|seed| {
             number(&run_unwatched(&with(seed)), 0, "max_displacement")
@@ -91,7 +92,7 @@ fn noise_scatters_repeated_runs_as_its_trials_predict() {
         (scatter / u - 1.0).abs() < 3.0 * (1.0 / 198.0_f64 + 1.0 / 128.0).sqrt(),
         "{scatter} of runs, {u} foretold"
     );
-    let parts = without_the_time_step(contributions(&told, 0, "max_displacement"));
+    let parts = without_the_time_step(contributions(&with_uncertainty, 0, "max_displacement"));
     assert!(
         parts
             .iter()
@@ -103,13 +104,13 @@ fn noise_scatters_repeated_runs_as_its_trials_predict() {
 /// K of a ramp and X of an impact, read on one cell: the factor of the cell affects K·X through both together.
 #[test]
 fn readings_of_one_rig_share_its_calibration() {
-    let blow =
+    let struck =
         Impact { ..sticking(1e-3) }.with_point(|point| point.stiffness = result_of(0, "stiffness"));
     let mut plan = elastic_plan(
         STIFFNESS,
         vec![
             ProcedureKind::StiffnessRamp(ramp(1e-3)),
-            ProcedureKind::Impact(blow),
+            ProcedureKind::Impact(struck),
         ],
     );
     plan.rig.calibration.force_uncertainty = 0.01;

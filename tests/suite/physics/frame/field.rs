@@ -103,7 +103,7 @@ fn splitting_is_hht_alpha_to_rounding_on_a_linear_frame() {
         let zero = [0.0; 3];
         let input = at(&frame, Integrator::AlphaOs { alpha }, dt, &zero);
         let mut compared = 0;
-        let tell = |state: &FrameState| {
+        let observe = |state: &FrameState| {
             let (d, v) = histories[compared];
             for i in 0..3 {
                 assert!(
@@ -119,7 +119,7 @@ fn splitting_is_hht_alpha_to_rounding_on_a_linear_frame() {
             }
             compared += 1;
         };
-        run_linear(&input, &[0.01, -0.02, 0.015], 500, load, tell);
+        run_linear(&input, &[0.01, -0.02, 0.015], 500, load, observe);
         assert_eq!(compared, 500);
     }
 }
@@ -139,13 +139,13 @@ fn amplitude(integrator: Integrator, i_modification: bool, miss: Miss) -> f64 {
         ..at(&frame, integrator, 0.01, &load)
     };
     let mut solver = FrameSolver::new(&start).expect("one degree of freedom");
-    let (mut target_before, mut place, mut largest) = (1.0, 1.0, 0.0_f64);
+    let (mut target_before, mut position, mut largest) = (1.0, 1.0, 0.0_f64);
     for step in 1..=500 {
         let target = solver.predict(&load)[0];
-        place = miss(target_before, place, target);
+        position = miss(target_before, position, target);
         target_before = target;
         let displacement = solver
-            .complete(&[place], &[omega * omega * place])
+            .complete(&[position], &[omega * omega * position])
             .displacement[0];
         if step >= 450 {
             largest = largest.max(displacement.abs());
@@ -160,8 +160,8 @@ fn a_missed_target_feeds_or_drains_a_run_as_published() {
     let short: Miss = |before, _, target| target - 0.1 * (target - before);
     let beyond: Miss = |before, _, target| target + 0.1 * (target - before);
     let late: Miss = |before, _, target| target - 0.02 * (target - before).signum();
-    let short_from_place: Miss = |_, place, target| target - 0.1 * (target - place);
-    let beyond_from_place: Miss = |_, place, target| target + 0.1 * (target - place);
+    let short_of_the_move: Miss = |_, position, target| target - 0.1 * (target - position);
+    let beyond_the_move: Miss = |_, position, target| target + 0.1 * (target - position);
     let exact: Miss = |_, _, target| target;
     for (what, found, expected, digit) in [
         // Its steps no longer meet the exact peak: the period has increased by 0.13 % in ten cycles.
@@ -187,13 +187,13 @@ fn a_missed_target_feeds_or_drains_a_run_as_published() {
         ),
         (
             "explicit, 10 % short",
-            amplitude(Integrator::Explicit, false, short_from_place),
+            amplitude(Integrator::Explicit, false, short_of_the_move),
             1.5485,
             5e-5,
         ),
         (
             "explicit, 10 % beyond",
-            amplitude(Integrator::Explicit, false, beyond_from_place),
+            amplitude(Integrator::Explicit, false, beyond_the_move),
             0.7227,
             5e-5,
         ),
@@ -223,16 +223,16 @@ fn growth(
         ..at(frame, Integrator::AlphaOs { alpha: 0.0 }, 0.01, &load)
     };
     let mut solver = FrameSolver::new(&input).expect("a frame");
-    let (mut before, mut place, mut largest) =
+    let (mut before, mut position, mut largest) =
         (start.to_vec(), start.to_vec(), vec![0.0_f64; order]);
     for step in 1..=500 {
         let target = solver.predict(&load).to_vec();
         for axis in 0..order {
-            place[axis] = miss(axis, before[axis], target[axis]);
+            position[axis] = miss(axis, before[axis], target[axis]);
         }
         before = target;
-        frame.stiffness.mul_into(&place, &mut force);
-        let state = solver.complete(&place, &force);
+        frame.stiffness.mul_into(&position, &mut force);
+        let state = solver.complete(&position, &force);
         if step >= 450 {
             for (largest, (now, first)) in
                 largest.iter_mut().zip(state.displacement.iter().zip(start))

@@ -70,10 +70,10 @@ fn a_harmonic_ground_motion_ends_in_the_exact_steady_state() {
             let largest = exact.iter().copied().map(f64::abs).fold(0.0, f64::max);
             for floor in 0..storeys {
                 let (coarse, fine) = (coarse[floor] - exact[floor], fine[floor] - exact[floor]);
-                let said =
+                let case =
                     format!("{storeys} storeys, {integrator:?}: {coarse}, {fine} of {largest} m");
-                assert!((fine - coarse / 4.0).abs() < 1e-6 * largest, "{said}");
-                assert!(fine.abs() < 1e-3 * largest, "{said}");
+                assert!((fine - coarse / 4.0).abs() < 1e-6 * largest, "{case}");
+                assert!(fine.abs() < 1e-3 * largest, "{case}");
             }
         }
     }
@@ -98,15 +98,15 @@ fn sample(index: u32) -> f64 {
 }
 
 fn ground(time: f64) -> f64 {
-    let place = (time / SAMPLE).clamp(0.0, f64::from(SAMPLES));
-    let before = place.floor();
+    let sample_time = (time / SAMPLE).clamp(0.0, f64::from(SAMPLES));
+    let before = sample_time.floor();
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "within the record"
     )]
     let index = before as u32;
-    sample(index) + (place - before) * (sample(index + 1) - sample(index))
+    sample(index) + (sample_time - before) * (sample(index + 1) - sample(index))
 }
 
 fn yielding_frame() -> FrameMatrices {

@@ -132,7 +132,7 @@ fn one_floor_is_one_degree_of_freedom() {
 
 /// A first impact dissipates ½(1 − e²)μu², with μ from the mass of the struck floor only.
 #[test]
-fn a_blow_on_one_floor_meets_that_floor_s_mass() {
+fn an_impact_on_one_floor_meets_the_mass_of_that_floor() {
     let frame = uniform(5, 4.0, 3e4);
     for (law, e) in [
         (RIGID, 10.0 / (10.0 + 2.0 * 4.0)),
@@ -170,7 +170,7 @@ fn a_blow_on_one_floor_meets_that_floor_s_mass() {
 
 /// The same impact by every integrator, and its energy.
 #[test]
-fn every_integrator_tends_to_the_same_blow() {
+fn every_integrator_converges_to_the_same_impact() {
     let frame = uniform(3, 4.0, 3e4);
     for law in [RIGID, ContactLaw::Limit { force: 800.0 }] {
         let peak = |integrator, time_step| {

@@ -79,11 +79,11 @@ fn growth(integrator: Integrator, time_step: f64, operator: f64) -> f64 {
         ..at(&frame, integrator, time_step, &zero)
     };
     let mut largest = [0.0_f64; 2];
-    let tell = |state: &FrameState| {
+    let observe = |state: &FrameState| {
         let half = &mut largest[usize::from(state.step > 1000)];
         *half = half.max(state.displacement[0].abs());
     };
-    run_linear(&input, &shape, 2000, |_, load| load.fill(0.0), tell);
+    run_linear(&input, &shape, 2000, |_, load| load.fill(0.0), observe);
     largest[1] / largest[0]
 }
 
@@ -136,13 +136,13 @@ fn the_energy_balance_of_a_linear_frame_closes_to_rounding() {
     let shaken = |time: f64, load: &mut [f64]| frame.ground_load(3.0 * (17.0 * time).sin(), load);
     for integrator in [Integrator::Tangent, Integrator::AlphaOs { alpha: 0.0 }] {
         let mut worst = 0.0_f64;
-        let tell = |state: &FrameState| worst = worst.max(state.energies.error.abs());
+        let observe = |state: &FrameState| worst = worst.max(state.energies.error.abs());
         let last = run_linear(
             &at(&frame, integrator, 0.02, &[0.0; 5]),
             &[0.0; 5],
             1000,
             shaken,
-            tell,
+            observe,
         );
         assert!(last.energies.input > 100.0, "{:?}", last.energies);
         assert!(
@@ -159,14 +159,14 @@ fn the_error_of_the_explicit_balance_shrinks_with_the_square_of_the_step() {
     let frame = uniform(5, 1500.0, 2e6);
     let worst = |steps: u32| {
         let mut worst = 0.0_f64;
-        let tell = |state: &FrameState| worst = worst.max(state.energies.error.abs());
+        let observe = |state: &FrameState| worst = worst.max(state.energies.error.abs());
         let input = at(
             &frame,
             Integrator::Explicit,
             2.0 / f64::from(steps),
             &[0.0; 5],
         );
-        run_linear(&input, &[0.01; 5], steps, |_, load| load.fill(0.0), tell);
+        run_linear(&input, &[0.01; 5], steps, |_, load| load.fill(0.0), observe);
         worst
     };
     let order = (worst(4000) / worst(8000)).log2();

@@ -133,19 +133,19 @@ fn a_struck_chain_is_its_modal_solution_to_second_order() {
 /// Hertz between free masses, also approximated by a stiff contact on a soft frame: F = k^(2/5) (5/4 μu²)^(3/5), duration 2.943 δ/u. All
 /// elastic energy is released.
 #[test]
-fn a_hertz_blow_on_a_floor_is_that_of_free_masses() {
+fn a_hertz_impact_on_a_floor_is_that_of_free_masses() {
     const STIFFNESS: f64 = 1e9;
     let frame = frame(0.0);
     for struck in [0, 1] {
         let reduced = STRIKER * MASSES[struck] / (STRIKER + MASSES[struck]);
         let deepest = (1.25 * reduced * SPEED * SPEED / STIFFNESS).powf(0.4);
-        let (peak, blow) = (STIFFNESS * deepest.powf(1.5), 2.943 * deepest / SPEED);
+        let (peak, contact_time) = (STIFFNESS * deepest.powf(1.5), 2.943 * deepest / SPEED);
         let law = ContactLaw::Hertz {
             stiffness: STIFFNESS,
             loss: 0.0,
             force_limit: None,
         };
-        let time_step = blow / 50.0;
+        let time_step = contact_time / 50.0;
         let mut solver = solver(&frame, struck, law, Integrator::Tangent, time_step);
         let (mut largest, mut touching) = (0.0_f64, 0);
         for _ in 0..100 {
@@ -159,8 +159,8 @@ fn a_hertz_blow_on_a_floor_is_that_of_free_masses() {
             "{largest} is not {peak}"
         );
         assert!(
-            (number(touching) * time_step / blow - 1.0).abs() < 0.03,
-            "{touching} steps of {time_step}, not {blow}"
+            (number(touching) * time_step / contact_time - 1.0).abs() < 0.03,
+            "{touching} steps of {time_step}, not {contact_time}"
         );
         let energies = solver.state().energies;
         assert!(

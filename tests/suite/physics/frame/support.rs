@@ -63,7 +63,7 @@ pub fn run_linear(
     displacement: &[f64],
     steps: u32,
     mut load: impl FnMut(f64, &mut [f64]),
-    mut tell: impl FnMut(&FrameState),
+    mut observe: impl FnMut(&FrameState),
 ) -> FrameState {
     let order = displacement.len();
     let stiffness = &input.matrices.stiffness;
@@ -81,7 +81,7 @@ pub fn run_linear(
         load(f64::from(step) * input.time_step, &mut load_end);
         let target = solver.predict(&load_end).to_vec();
         stiffness.mul_into(&target, &mut force);
-        tell(solver.complete(&target, &force));
+        observe(solver.complete(&target, &force));
     }
     solver.state().clone()
 }

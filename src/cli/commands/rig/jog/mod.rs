@@ -92,8 +92,9 @@ pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure
                 .transpose()?;
             let rig = plan.rig.with_recorded_datum(recorded.as_deref());
             let connected = connect(&rig, &plan.limits, &stop_request).map_err(Failure::Rig);
-            let place = |fault: &str| plan_file::place_of_link(&checked, &arguments.plan, fault);
-            let mut connected = connected.map_err(|failure| failure.in_the_plan(place))?;
+            let location =
+                |fault: &str| plan_file::location_of_link(&checked, &arguments.plan, fault);
+            let mut connected = connected.map_err(|failure| failure.in_the_plan(location))?;
             if !settings.can_ask && !connected.rig.identity().simulated {
                 return Err(Failure::command_line(
                     "a real rig is not moved by hand without an operator at a terminal",

@@ -111,12 +111,10 @@ impl JogSession<'_> {
     /// The expected motion, for the question to the operator.
     fn motion(&self, to: &[f64], specimen: &Specimen<'_, '_>) -> Motion {
         let from = specimen.commanded();
-        let (low, high) = from
-            .iter()
-            .chain(to)
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), place| {
-                (low.min(*place), high.max(*place))
-            });
+        let (low, high) = from.iter().chain(to).fold(
+            (f64::INFINITY, f64::NEG_INFINITY),
+            |(low, high), position| (low.min(*position), high.max(*position)),
+        );
         let distance = from
             .iter()
             .zip(to)

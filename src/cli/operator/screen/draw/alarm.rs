@@ -11,13 +11,13 @@ use crate::cli::operator::question::After;
 use crate::record::EventKind;
 
 pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
-    let told = view
+    let message = view
         .model
         .events
         .iter()
         .rev()
         .find(|event| event.kind == EventKind::NotHeld);
-    let told = told.map_or_else(String::new, |event| shown(&event.text));
+    let message = message.map_or_else(String::new, |event| shown(&event.text));
     let loud = view
         .paint(Color::Red)
         .add_modifier(Modifier::BOLD | Modifier::REVERSED);
@@ -41,7 +41,7 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
             Style::new().add_modifier(Modifier::BOLD),
         ),
         Line::raw(""),
-        Line::raw(told),
+        Line::raw(message),
         Line::raw(""),
         Line::styled(acknowledge, Style::new().add_modifier(Modifier::BOLD)),
     ];

@@ -57,7 +57,7 @@ fn over_two(text: &str, width: usize) -> Vec<String> {
 }
 
 fn words(event: &Event) -> String {
-    let place = match (&event.procedure, event.step) {
+    let procedure_and_step = match (&event.procedure, event.step) {
         (Some(procedure), Some(step)) => format!("{procedure} {step}"),
         (Some(procedure), None) => procedure.clone(),
         (None, _) => String::new(),
@@ -66,7 +66,7 @@ fn words(event: &Event) -> String {
     format!(
         " {:>9.decimals$} s  {:<10} {:<12} {}",
         event.time,
-        fitted(&shown(&place), 18),
+        fitted(&shown(&procedure_and_step), 18),
         event.kind.word(),
         shown(&event.text)
     )

@@ -23,11 +23,11 @@ pub fn nearest(rows: &[LimitRow], most: usize) -> Vec<LimitRow> {
             .filter(|share| !row.kept || *share < 0.0)
             .unwrap_or(f64::INFINITY)
     };
-    let mut places: Vec<usize> = (0..rows.len()).collect();
-    places.sort_by(|one, other| left(&rows[*one]).total_cmp(&left(&rows[*other])));
-    places.truncate(most);
-    places.sort_unstable();
-    places.into_iter().map(|place| rows[place]).collect()
+    let mut indices: Vec<usize> = (0..rows.len()).collect();
+    indices.sort_by(|one, other| left(&rows[*one]).total_cmp(&left(&rows[*other])));
+    indices.truncate(most);
+    indices.sort_unstable();
+    indices.into_iter().map(|index| rows[index]).collect()
 }
 
 /// `all`: the total number of limits, of which these rows are shown.
@@ -140,7 +140,7 @@ impl Bar {
     }
 
     fn cells(&self, width: usize, value: Option<f64>) -> String {
-        let place = |at: f64| {
+        let column_of = |at: f64| {
             let share = ((at - self.low) / (self.high - self.low)).clamp(0.0, 1.0);
             #[expect(
                 clippy::cast_precision_loss,
@@ -154,7 +154,7 @@ impl Bar {
         let Some(value) = value else {
             return "─".repeat(width);
         };
-        let (zero, at) = (place(0.0), place(value));
+        let (zero, at) = (column_of(0.0), column_of(value));
         let filled = zero.min(at)..=zero.max(at);
         (0..width)
             .map(|column| match column {

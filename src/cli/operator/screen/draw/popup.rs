@@ -7,7 +7,7 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, BorderType, Clear, Padding, Paragraph};
 
 use super::{View, shown};
-use crate::cli::operator::question::{After, Kind, WHY_RESUME, felt};
+use crate::cli::operator::question::{After, Kind, WHY_RESUME, position_and_force};
 use crate::cli::operator::screen::dialogue::{Typing, What};
 use crate::record::EventKind;
 
@@ -156,7 +156,7 @@ fn held(view: &View<'_>, after: After) -> (&'static str, Vec<String>) {
         view.model
             .feedback()
             .into_iter()
-            .map(|(displacement, force)| felt(displacement, force)),
+            .map(|(displacement, force)| position_and_force(displacement, force)),
     );
     lines.push(String::new());
     if view.dialogue.hears(view.now) {

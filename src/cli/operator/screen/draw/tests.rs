@@ -211,7 +211,7 @@ fn a_question_at_80_by_24() {
 }
 
 #[test]
-fn a_release_says_what_will_move_and_wants_its_word() {
+fn a_release_states_what_will_move_and_requires_its_word() {
     let mut dialogue = Dialogue::new(Some("A".to_owned()));
     let before = Model {
         simulated: false,
@@ -227,7 +227,7 @@ fn a_release_says_what_will_move_and_wants_its_word() {
 }
 
 #[test]
-fn a_look_at_a_real_rig_says_that_it_will_move_on() {
+fn an_inspection_of_a_real_rig_states_that_it_will_move_on() {
     let mut dialogue = Dialogue::new(Some("A".to_owned()));
     dialogue.ask(&Question::look(
         "Look at the bolted joints",
@@ -267,7 +267,7 @@ fn a_held_rig_stays_on_the_screen_with_what_may_be_done() {
 }
 
 #[test]
-fn nothing_stands_beside_a_rig_that_may_still_move() {
+fn nothing_is_shown_beside_a_rig_that_may_still_move() {
     let mut lost = model();
     let text = "NOT CONFIRMED HELD (rig bench, actuator: connection lost): IT MAY STILL BE MOVING. Press the emergency stop";
     lost.event(&Event {
@@ -310,7 +310,7 @@ fn every_size_is_drawn() {
 
 /// Hostile text of a plan, an operator or a rig, at every position of the screen that shows it.
 #[test]
-fn hostile_labels_stand_where_they_are_shown() {
+fn hostile_labels_are_text_where_they_are_shown() {
     let labels: Vec<String> =
         serde_json::from_str(include_str!("../../../../../tests/hostile_labels.json")).unwrap();
     for label in labels {

@@ -8,13 +8,13 @@ use std::time::Duration;
 use super::*;
 
 /// A clock that a test sets, and an operator whose lines the test types.
-struct Bench {
+struct Typist {
     now: Rc<Cell<Duration>>,
     send: Option<Sender<String>>,
     person: Person,
 }
 
-impl Bench {
+impl Typist {
     fn new() -> Self {
         let (now, (send, lines)) = (Rc::new(Cell::new(Duration::ZERO)), channel());
         let clock = Rc::clone(&now);
@@ -44,24 +44,24 @@ fn question(kind: Kind) -> Question {
 }
 
 /// The result of these lines, typed after the question can be answered and followed by the end of the input.
-fn said(kind: Kind, lines: &[&str], operator: Option<&str>) -> Inspection {
-    let mut bench = Bench::new();
+fn answer_to(kind: Kind, lines: &[&str], operator: Option<&str>) -> Inspection {
+    let mut typist = Typist::new();
     let mut operator = operator.map(str::to_owned);
     assert_eq!(
-        bench.person.ask(&question(kind), &mut operator),
+        typist.person.ask(&question(kind), &mut operator),
         Inspection::Wait
     );
-    bench.now.set(Duration::from_secs(1));
+    typist.now.set(Duration::from_secs(1));
     assert_eq!(
-        bench.person.ask(&question(kind), &mut operator),
+        typist.person.ask(&question(kind), &mut operator),
         Inspection::Wait
     );
     for line in lines {
-        bench.types(line);
+        typist.types(line);
     }
-    bench.send = None;
+    typist.send = None;
     loop {
-        match bench.person.ask(&question(kind), &mut operator) {
+        match typist.person.ask(&question(kind), &mut operator) {
             Inspection::Wait => {}
             answer => return answer,
         }
@@ -72,14 +72,14 @@ fn said(kind: Kind, lines: &[&str], operator: Option<&str>) -> Inspection {
 fn only_a_clear_yes_with_a_name_goes_on_and_a_remark_is_a_line_of_its_own() {
     let by = |name: &str| Some(name.to_owned());
     assert_eq!(
-        said(LOOK, &["y"], Some("A")),
+        answer_to(LOOK, &["y"], Some("A")),
         Inspection::GoOn {
             note: None,
             by: by("A")
         }
     );
     assert_eq!(
-        said(LOOK, &["yes"], Some("A")),
+        answer_to(LOOK, &["yes"], Some("A")),
         Inspection::GoOn {
             note: None,
             by: by("A")
@@ -88,14 +88,14 @@ fn only_a_clear_yes_with_a_name_goes_on_and_a_remark_is_a_line_of_its_own() {
     let note = Some("crack at\\u{7} midspan".to_owned());
     let lines = ["what", "i crack at\u{7} midspan ", "yes", "", "B"];
     assert_eq!(
-        said(LOOK, &lines, None),
+        answer_to(LOOK, &lines, None),
         Inspection::GoOn { note, by: by("B") }
     );
     assert!(matches!(
-        said(LOOK, &["no"], Some("A")),
+        answer_to(LOOK, &["no"], Some("A")),
         Inspection::Stop { by: Some(_), .. }
     ));
-    let released = said(
+    let released = answer_to(
         Kind::Release,
         &["y", "yes", "xyz", "release", "RELEASE"],
         Some("A"),
@@ -110,7 +110,7 @@ fn only_a_clear_yes_with_a_name_goes_on_and_a_remark_is_a_line_of_its_own() {
     for none in ["y", "yes", "xyz", "release", "UNLOAD", "y RELEASE"] {
         assert!(
             matches!(
-                said(Kind::Release, &[none], Some("A")),
+                answer_to(Kind::Release, &[none], Some("A")),
                 Inspection::Stop { by: None, .. }
             ),
             "{none}"
@@ -121,57 +121,57 @@ fn only_a_clear_yes_with_a_name_goes_on_and_a_remark_is_a_line_of_its_own() {
         by: by("A"),
     };
     assert_eq!(
-        said(Kind::Release, &["i not clear", "n"], Some("A")),
+        answer_to(Kind::Release, &["i not clear", "n"], Some("A")),
         declined
     );
 }
 
 #[test]
 fn a_release_typed_before_its_question_could_be_read_is_none() {
-    let mut bench = Bench::new();
+    let mut typist = Typist::new();
     let mut operator = Some("A".to_owned());
-    let mut ask = |bench: &mut Bench| bench.person.ask(&question(Kind::Release), &mut operator);
-    bench.types("RELEASE");
-    assert_eq!(ask(&mut bench), Inspection::Wait);
-    bench.types("RELEASE");
-    bench.now.set(Duration::from_millis(999));
-    assert_eq!(ask(&mut bench), Inspection::Wait);
-    bench.types("RELEASE");
-    bench.now.set(Duration::from_secs(1));
+    let mut ask = |typist: &mut Typist| typist.person.ask(&question(Kind::Release), &mut operator);
+    typist.types("RELEASE");
+    assert_eq!(ask(&mut typist), Inspection::Wait);
+    typist.types("RELEASE");
+    typist.now.set(Duration::from_millis(999));
+    assert_eq!(ask(&mut typist), Inspection::Wait);
+    typist.types("RELEASE");
+    typist.now.set(Duration::from_secs(1));
     assert_eq!(
-        [ask(&mut bench), ask(&mut bench)],
+        [ask(&mut typist), ask(&mut typist)],
         [Inspection::Wait, Inspection::Wait]
     );
-    bench.types("RELEASE");
-    assert!(matches!(ask(&mut bench), Inspection::GoOn { .. }));
+    typist.types("RELEASE");
+    assert!(matches!(ask(&mut typist), Inspection::GoOn { .. }));
 }
 
 #[test]
 fn the_next_question_takes_no_line_of_the_one_before() {
-    let mut bench = Bench::new();
+    let mut typist = Typist::new();
     let mut operator = Some("A".to_owned());
-    let mut ask = |bench: &mut Bench, kind| bench.person.ask(&question(kind), &mut operator);
-    ask(&mut bench, Kind::Release);
-    bench.now.set(Duration::from_secs(1));
-    ask(&mut bench, Kind::Release);
-    bench.types("RELEASE");
-    bench.types("RELEASE");
+    let mut ask = |typist: &mut Typist, kind| typist.person.ask(&question(kind), &mut operator);
+    ask(&mut typist, Kind::Release);
+    typist.now.set(Duration::from_secs(1));
+    ask(&mut typist, Kind::Release);
+    typist.types("RELEASE");
+    typist.types("RELEASE");
     assert!(matches!(
-        ask(&mut bench, Kind::Release),
+        ask(&mut typist, Kind::Release),
         Inspection::GoOn { .. }
     ));
     assert_eq!(
-        [ask(&mut bench, Kind::GoOn), ask(&mut bench, Kind::GoOn)],
+        [ask(&mut typist, Kind::GoOn), ask(&mut typist, Kind::GoOn)],
         [Inspection::Wait, Inspection::Wait]
     );
-    bench.now.set(Duration::from_secs(2));
+    typist.now.set(Duration::from_secs(2));
     assert_eq!(
-        [ask(&mut bench, Kind::GoOn), ask(&mut bench, Kind::GoOn)],
+        [ask(&mut typist, Kind::GoOn), ask(&mut typist, Kind::GoOn)],
         [Inspection::Wait, Inspection::Wait]
     );
-    bench.types("RELEASE");
+    typist.types("RELEASE");
     assert!(matches!(
-        ask(&mut bench, Kind::GoOn),
+        ask(&mut typist, Kind::GoOn),
         Inspection::GoOn { .. }
     ));
 }
@@ -182,34 +182,34 @@ const HELD: After = After::Held {
 };
 
 /// A rig on hold, at the time when input counts.
-fn held(operator: Option<&str>) -> (Bench, Option<String>) {
-    let (mut bench, mut operator) = (Bench::new(), operator.map(str::to_owned));
-    bench.types("x");
+fn held(operator: Option<&str>) -> (Typist, Option<String>) {
+    let (mut typist, mut operator) = (Typist::new(), operator.map(str::to_owned));
+    typist.types("x");
     for _ in 0..2 {
-        let answer = bench
+        let answer = typist
             .person
             .ask_to_unload(&question(Kind::Unload), &[], &mut operator);
         assert_eq!(answer, Some(Inspection::Wait));
-        bench.now.set(bench.now.get() + Duration::from_secs(1));
+        typist.now.set(typist.now.get() + Duration::from_secs(1));
     }
-    (bench, operator)
+    (typist, operator)
 }
 
 /// The result of these lines at a rig on hold; each question can be answered.
 fn typed_before_it(
-    bench: &mut Bench,
+    typist: &mut Typist,
     operator: &mut Option<String>,
     lines: &[&str],
 ) -> Option<Inspection> {
     let mut answer = Some(Inspection::Wait);
     for line in lines {
-        bench.types(line);
+        typist.types(line);
         // The line, the text it shows, the second without input.
         for _ in 0..3 {
-            answer = bench
+            answer = typist
                 .person
                 .ask_to_unload(&question(Kind::Unload), &[], operator);
-            bench.now.set(bench.now.get() + Duration::from_secs(1));
+            typist.now.set(typist.now.get() + Duration::from_secs(1));
             if answer != Some(Inspection::Wait) {
                 return answer;
             }
@@ -220,14 +220,14 @@ fn typed_before_it(
 
 #[test]
 fn a_held_rig_unloads_for_its_word_alone() {
-    let (mut bench, mut operator) = held(Some("A"));
-    let yes = typed_before_it(&mut bench, &mut operator, &["u", "UNLOAD"]);
+    let (mut typist, mut operator) = held(Some("A"));
+    let yes = typed_before_it(&mut typist, &mut operator, &["u", "UNLOAD"]);
     assert!(
         matches!(yes, Some(Inspection::GoOn { by: Some(_), .. })),
         "{yes:?}"
     );
     assert_eq!(
-        bench.person.stay(HELD, &[]),
+        typist.person.stay(HELD, &[]),
         Stay::Wait,
         "somebody still looks at it"
     );
@@ -241,9 +241,9 @@ fn a_held_rig_unloads_for_its_word_alone() {
         &["u", "n", "r", "", "UNLOAD"],
     ];
     for lines in all {
-        let (mut bench, mut operator) = held(Some("A"));
+        let (mut typist, mut operator) = held(Some("A"));
         assert_eq!(
-            typed_before_it(&mut bench, &mut operator, lines),
+            typed_before_it(&mut typist, &mut operator, lines),
             Some(Inspection::Wait),
             "{lines:?}"
         );
@@ -262,31 +262,31 @@ fn a_held_rig_is_left_or_gone_on_with_for_a_reason() {
         (&["r", "", "r", "now"], Stay::Resume("now".to_owned())),
     ];
     for (lines, chosen) in all {
-        let (mut bench, mut operator) = held(Some("A"));
+        let (mut typist, mut operator) = held(Some("A"));
         assert_eq!(
-            typed_before_it(&mut bench, &mut operator, lines),
+            typed_before_it(&mut typist, &mut operator, lines),
             None,
             "{lines:?}"
         );
-        assert_eq!(bench.person.stay(HELD, &[]), chosen, "{lines:?}");
+        assert_eq!(typist.person.stay(HELD, &[]), chosen, "{lines:?}");
     }
     for lines in [&[][..], &["u"], &["r"]] {
-        let (mut bench, mut operator) = held(Some("A"));
-        typed_before_it(&mut bench, &mut operator, lines);
-        bench.send = None;
+        let (mut typist, mut operator) = held(Some("A"));
+        typed_before_it(&mut typist, &mut operator, lines);
+        typist.send = None;
         assert_eq!(
-            typed_before_it(&mut bench, &mut operator, &[]),
+            typed_before_it(&mut typist, &mut operator, &[]),
             Some(Inspection::Wait)
         );
         assert_eq!(
-            bench
+            typist
                 .person
                 .ask_to_unload(&question(Kind::Unload), &[], &mut operator),
             None,
             "{lines:?}"
         );
         assert_eq!(
-            bench.person.stay(HELD, &[]),
+            typist.person.stay(HELD, &[]),
             Stay::Leave,
             "the end of the input"
         );
@@ -295,34 +295,37 @@ fn a_held_rig_is_left_or_gone_on_with_for_a_reason() {
 
 #[test]
 fn a_rig_that_may_still_move_waits_until_that_has_been_seen() {
-    let mut bench = Bench::new();
-    let stay =
-        |bench: &mut Bench, after| bench.person.stay(after, &["NOT CONFIRMED HELD".to_owned()]);
-    bench.types("a");
-    assert_eq!(stay(&mut bench, After::NotHeld), Stay::Wait);
-    bench.now.set(Duration::from_secs(1));
+    let mut typist = Typist::new();
+    let stay = |typist: &mut Typist, after| {
+        typist
+            .person
+            .stay(after, &["NOT CONFIRMED HELD".to_owned()])
+    };
+    typist.types("a");
+    assert_eq!(stay(&mut typist, After::NotHeld), Stay::Wait);
+    typist.now.set(Duration::from_secs(1));
     assert_eq!(
-        stay(&mut bench, After::NotHeld),
+        stay(&mut typist, After::NotHeld),
         Stay::Wait,
         "what was typed before"
     );
     for line in ["r", "u", "x", ""] {
-        bench.types(line);
-        assert_eq!(stay(&mut bench, After::NotHeld), Stay::Wait, "{line:?}");
+        typist.types(line);
+        assert_eq!(stay(&mut typist, After::NotHeld), Stay::Wait, "{line:?}");
     }
-    bench.types("a");
+    typist.types("a");
     assert_eq!(
         [
-            stay(&mut bench, After::NotHeld),
-            stay(&mut bench, After::NotHeld)
+            stay(&mut typist, After::NotHeld),
+            stay(&mut typist, After::NotHeld)
         ],
         [Stay::Leave, Stay::Leave]
     );
     // The operator left while the rig was on hold.
-    let (mut bench, mut operator) = held(None);
-    assert_eq!(typed_before_it(&mut bench, &mut operator, &["x"]), None);
+    let (mut typist, mut operator) = held(None);
+    assert_eq!(typed_before_it(&mut typist, &mut operator, &["x"]), None);
     assert_eq!(
-        [stay(&mut bench, HELD), stay(&mut bench, After::NotHeld)],
+        [stay(&mut typist, HELD), stay(&mut typist, After::NotHeld)],
         [Stay::Leave, Stay::Wait]
     );
 }
@@ -400,7 +403,10 @@ fn one_move_by_hand_wants_its_word() {
 fn the_end_of_the_input_is_no_yes() {
     for lines in [&[][..], &["yesterday"], &["y"], &["y", " "]] {
         assert!(
-            matches!(said(LOOK, lines, None), Inspection::Stop { by: None, .. }),
+            matches!(
+                answer_to(LOOK, lines, None),
+                Inspection::Stop { by: None, .. }
+            ),
             "{lines:?}"
         );
     }

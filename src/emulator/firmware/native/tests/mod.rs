@@ -3,10 +3,10 @@
 mod several_axes;
 
 use super::*;
-use crate::emulator::testing::bench;
+use crate::emulator::testing::elastic_rig;
 
-fn rig() -> (Native, Bench) {
-    let bench = bench();
+fn rig() -> (Native, EmulatedRig) {
+    let emulated = elastic_rig();
     let settings = NativeSettings {
         boot: Some(0x7f3a),
         force_limits: vec![Interval {
@@ -15,23 +15,23 @@ fn rig() -> (Native, Bench) {
         }],
         ..Default::default()
     };
-    (Native::new(settings, &bench), bench)
+    (Native::new(settings, &emulated), emulated)
 }
 
 /// Returns the words of the answer to a request.
-fn ask(rig: &mut (Native, Bench), body: &str) -> String {
-    let said = rig.0.receive(&sealed(body), &mut rig.1);
-    let said = String::from_utf8(said).expect("text");
-    let body = said
+fn ask(rig: &mut (Native, EmulatedRig), body: &str) -> String {
+    let reply = rig.0.receive(&sealed(body), &mut rig.1);
+    let reply = String::from_utf8(reply).expect("text");
+    let body = reply
         .strip_prefix('<')
-        .and_then(|said| said.strip_suffix('\n'))
-        .unwrap_or_else(|| panic!("a reply: `{said}`"));
+        .and_then(|text| text.strip_suffix('\n'))
+        .unwrap_or_else(|| panic!("a reply: `{reply}`"));
     let (body, crc) = body.split_once('*').expect("a checksum");
     assert_eq!(crc, format!("{:04X}", super::crc(body.as_bytes())));
     body.to_owned()
 }
 
-fn ready() -> (Native, Bench) {
+fn ready() -> (Native, EmulatedRig) {
     let mut rig = rig();
     ask(&mut rig, "HELLO 40");
     rig
@@ -45,15 +45,15 @@ fn the_vectors_of_the_reference() {
         b">MOVE 41 17 1.250000 0.500000*6858\n"
     );
     assert_eq!(sealed("MEAS 42 5"), b">MEAS 42 5*5976\n");
-    let (mut firmware, mut bench) = ready();
-    let said = firmware.receive(b">MOVE 41 17 1.250000 0.500000*6858\n", &mut bench);
-    assert_eq!(said, b"<ACK 41 7F3A MOVING*1F01\n");
+    let (mut firmware, mut emulated) = ready();
+    let reply = firmware.receive(b">MOVE 41 17 1.250000 0.500000*6858\n", &mut emulated);
+    assert_eq!(reply, b"<ACK 41 7F3A MOVING*1F01\n");
     let data = b"DATA 42 7F3A 118203 1.249871 512.375 812344 0x0000 IDLE";
     assert_eq!(crc(data), 0x788b);
 }
 
 #[test]
-fn hello_says_who_it_is_what_it_keeps_to_and_where_it_was_sent() {
+fn hello_states_identity_limits_and_last_target() {
     let mut rig = rig();
     let bounds = "-1.000000 10.000000 -2000.000 12000.000 10.000000";
     assert_eq!(
@@ -174,14 +174,14 @@ fn an_exclamation_mark_anywhere_holds_at_once() {
     let mut rig = ready();
     ask(&mut rig, "MOVE 41 1 5.000000 1.000000");
     rig.1.advance(1.0);
-    let said = rig.0.receive(b">STA!", &mut rig.1);
-    assert!(said.is_empty() && !rig.1.moving());
+    let reply = rig.0.receive(b">STA!", &mut rig.1);
+    assert!(reply.is_empty() && !rig.1.moving());
     let rest = sealed("STAT 42").split_off(">STA".len());
-    let said = rig.0.receive(&rest, &mut rig.1);
+    let reply = rig.0.receive(&rest, &mut rig.1);
     assert!(
-        said.starts_with(b"<ACK 42 7F3A HELD 0x0000*"),
+        reply.starts_with(b"<ACK 42 7F3A HELD 0x0000*"),
         "{}",
-        said.escape_ascii()
+        reply.escape_ascii()
     );
     assert_eq!(
         ask(&mut rig, "MOVE 43 2 6.000000 1.000000"),
@@ -219,23 +219,23 @@ fn silence_holds_until_it_is_cleared() {
 
 #[test]
 fn broken_and_overlong_frames_are_not_answered() {
-    let (mut firmware, mut bench) = ready();
+    let (mut firmware, mut emulated) = ready();
     let mut bytes = sealed("STAT 41");
     for at in 0..bytes.len() - 1 {
         for bit in 0..8 {
             bytes[at] ^= 1 << bit;
-            let answer = firmware.receive(&bytes, &mut bench);
+            let answer = firmware.receive(&bytes, &mut emulated);
             assert!(answer.is_empty(), "{}", answer.escape_ascii());
-            firmware.receive(b"\n", &mut bench);
+            firmware.receive(b"\n", &mut emulated);
             bytes[at] ^= 1 << bit;
         }
     }
     let long = vec![b'>'; 1 << 20];
-    assert!(firmware.receive(&long, &mut bench).is_empty() && firmware.line.len() <= LONGEST);
-    assert!(firmware.receive(b"\n", &mut bench).is_empty());
+    assert!(firmware.receive(&long, &mut emulated).is_empty() && firmware.line.len() <= LONGEST);
+    assert!(firmware.receive(b"\n", &mut emulated).is_empty());
     assert!(
         firmware
-            .receive(&bytes, &mut bench)
+            .receive(&bytes, &mut emulated)
             .starts_with(b"<ACK 41 7F3A ")
     );
 }

@@ -1,12 +1,12 @@
 //! The native firmware with two axes, and its smooth moves.
 
 use super::*;
-use crate::emulator::RamSettings;
+use crate::emulator::ActuatorSettings;
 use crate::plan::{Behaviour, Frame, Storey};
 
 /// Two actuators on storeys of 3 and 2 kN/m.
-fn of_two() -> (Native, Bench) {
-    let limits = |size: f64| RamSettings {
+fn of_two() -> (Native, EmulatedRig) {
+    let limits = |size: f64| ActuatorSettings {
         sign: 1.0,
         noise: 0.0,
         resolution: 0.0,
@@ -16,8 +16,8 @@ fn of_two() -> (Native, Bench) {
         },
     };
     let frame = Frame::of_storeys(vec![storey(3000.0), storey(2000.0)]);
-    let bench = Bench::of_frame(
-        bench().settings().clone(),
+    let emulated = EmulatedRig::of_frame(
+        elastic_rig().settings().clone(),
         &frame,
         &[limits(0.005), limits(0.01)],
     );
@@ -30,7 +30,7 @@ fn of_two() -> (Native, Bench) {
         force_limits: vec![force(100.0), force(50.0)],
         ..Default::default()
     };
-    (Native::new(settings, &bench), bench)
+    (Native::new(settings, &emulated), emulated)
 }
 
 fn storey(stiffness: f64) -> Storey {
@@ -199,7 +199,7 @@ fn a_glide_is_passed_and_gone_on_from_until_the_next_one_or_the_hold() {
 }
 
 #[test]
-fn a_glide_is_judged_on_its_whole_way() {
+fn a_glide_is_checked_on_its_whole_path() {
     let mut rig = of_two();
     ask(&mut rig, "HELLO 1");
     // To 5.12 mm and back to 4 mm: one axis is limited to 5 mm, the other to 10 mm.

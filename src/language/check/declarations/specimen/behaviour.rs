@@ -344,7 +344,7 @@ fn fracture<'a>(
         (displacement, _) => {
             let given = if displacement.is_some() { 2 } else { 0 };
             let takes = "a `fracture` requires a `displacement` or a `force`";
-            return checker.fail(message::one_way_only(takes, "force: 5 kN", span, given));
+            return checker.fail(message::one_form_only(takes, "force: 5 kN", span, given));
         }
     };
     let of = of?;

@@ -194,15 +194,15 @@ fn storey<'a>(
         && (stiffness - initial).abs()
             > SAME * stiffness.max(initial) + WITHIN * stiffness_uncertainty
     {
-        let said = ["stiffness", "column_stiffness"]
+        let given = ["stiffness", "column_stiffness"]
             .into_iter()
             .find_map(|field| Some((field, chosen.span(field)?)));
-        let (field, said) = said.unwrap_or(("stiffness", at));
+        let (field, given) = given.unwrap_or(("stiffness", at));
         let bends = chosen.span("behaviour").unwrap_or(at);
         return checker.fail(message::storey_bends_otherwise(
             number,
             field,
-            Spanned::new(stiffness, said),
+            Spanned::new(stiffness, given),
             Spanned::new(initial, bends),
         ));
     }

@@ -85,7 +85,7 @@ pub fn portal<'a>(
             let given = usize::from(modulus.is_some() || second_moment.is_some()) * 2;
             let takes =
                 "a `portal` requires either `youngs_modulus` with `second_moment`, or `stiffness`";
-            return checker.fail(message::one_way_only(
+            return checker.fail(message::one_form_only(
                 takes,
                 "stiffness: 2 kN/mm",
                 span,
@@ -93,7 +93,7 @@ pub fn portal<'a>(
             ));
         }
     };
-    Some(Behaviour::Portal(portal.weighing(masses?)))
+    Some(Behaviour::Portal(portal.with_masses(masses?)))
 }
 
 /// The masses of the frame; Some(None) where the plan does not state them.
@@ -121,12 +121,12 @@ fn masses<'a>(
         ));
     }
     let beam = beam.unwrap_or(0.0);
-    let weighs = beam + midspan + corner > 0.0;
+    let has_mass = beam + midspan + corner > 0.0;
     let per_length = Sections {
         beam,
         column: column.unwrap_or(beam),
     };
-    Some(weighs.then_some(FrameMasses {
+    Some(has_mass.then_some(FrameMasses {
         per_length,
         midspan,
         corner,

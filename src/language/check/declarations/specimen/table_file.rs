@@ -163,7 +163,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_side_is_mirrored_and_two_are_taken_as_they_are() {
+    fn one_side_is_mirrored_and_two_are_used_unchanged() {
         let text = "# from the frame\r\ndisplacement_mm, force_kn\r\n1, 2\r\n\r\n3, 2.5\r\n";
         let found = points(text).unwrap();
         assert_eq!(
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bad_row_is_named_with_its_place_and_reason() {
+    fn a_bad_row_is_named_with_its_position_and_reason() {
         for (text, line, reason) in [
             ("0,0\n1,2\n", 1, "name the columns"),
             (

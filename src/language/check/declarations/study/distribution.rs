@@ -7,7 +7,7 @@ use super::target::Target;
 use super::varied::Law;
 use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::expressions::overrides::Place;
+use crate::language::check::expressions::overrides::InputLocation;
 use crate::language::check::messages::studies as message;
 use crate::physics::study::distribution::{Distribution, DistributionError, Spread};
 use crate::plan::Interval;
@@ -196,7 +196,7 @@ const UNCERTAIN: [Uncertain; 4] = [
 
 /// Normal, with the standard uncertainty that the block states for the field.
 pub(super) fn measured(checker: &mut Checker, target: &Target, span: Span) -> Option<Law> {
-    let Place::Field { block, field, .. } = target.place else {
+    let InputLocation::Field { block, field, .. } = target.location else {
         return checker.fail(message::no_uncertainty(&target.name, None, span));
     };
     let kind = checker.scope.blocks[block].kind.kind;

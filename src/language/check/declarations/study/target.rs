@@ -1,7 +1,7 @@
 //! An input as a study names it: `impact_speed`, `beam.mass`. In: the expression. Out: its place, dimension and value in the plan.
 
 use crate::language::check::checker::{Checker, Shape, literal};
-use crate::language::check::expressions::overrides::{self, Place};
+use crate::language::check::expressions::overrides::{self, InputLocation};
 use crate::language::check::messages::{inputs as names, studies as message};
 use crate::language::check::rig;
 use crate::language::syntax::ast::{Expr, ExprKind};
@@ -15,7 +15,7 @@ pub(super) struct Target<'a> {
     pub name: String,
     /// The name.
     pub span: Span,
-    pub place: Place<'a>,
+    pub location: InputLocation<'a>,
     pub dimension: Dimension,
     /// The value of the plan without the study, SI.
     pub nominal: f64,
@@ -58,17 +58,17 @@ pub(super) fn target<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option
         };
     };
     let name = path.join(".");
-    let place = match overrides::place(checker.scope, &path) {
-        Ok(place) => place,
+    let location = match overrides::find_input(checker.scope, &path) {
+        Ok(location) => location,
         Err(_) if checker.may_be_lost(path[0]) => return None,
         Err(reason) => {
             checker.diagnostics.extend(names::no_input(&reason, span));
             return None;
         }
     };
-    let (dimension, nominal, angle) = match place {
-        Place::Parameter(index) => of_parameter(checker, index)?,
-        Place::Field {
+    let (dimension, nominal, angle) = match location {
+        InputLocation::Parameter(index) => of_parameter(checker, index)?,
+        InputLocation::Field {
             block,
             entry,
             field,
@@ -99,7 +99,7 @@ pub(super) fn target<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option
     Some(Target {
         name,
         span,
-        place,
+        location,
         dimension,
         nominal,
         angle,

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::plan::Limits;
-use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
+use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
 
 const SETTINGS: &str =
     "$1=255\r\n$10=1\r\n$13=0\r\n$20=1\r\n$21=1\r\n$22=1\r\n$100=400.000\r\n$110=500.000\r\nok\r\n";
@@ -21,7 +21,7 @@ fn device() -> (GrblDevice, ScriptedPort) {
 }
 
 fn reply(port: &ScriptedPort, text: &str) {
-    port.reply(&[Say::After(0.01, text.as_bytes().to_vec())]);
+    port.reply(&[Scripted::After(0.01, text.as_bytes().to_vec())]);
 }
 
 fn status(port: &ScriptedPort, state: &str, x: f64) {
@@ -62,7 +62,7 @@ fn reason<T: std::fmt::Debug>(outcome: Result<T, DeviceFault>) -> String {
 }
 
 #[test]
-fn it_says_who_it_is_and_its_settings_are_looked_at() {
+fn it_identifies_itself_and_its_settings_are_checked() {
     let (mut device, port) = device();
     introduce(&port, SETTINGS);
     let identity = device.identify().unwrap();
@@ -84,7 +84,7 @@ fn it_says_who_it_is_and_its_settings_are_looked_at() {
 }
 
 #[test]
-fn every_wrong_setting_is_named_with_the_line_that_mends_it() {
+fn every_wrong_setting_is_named_with_the_line_that_corrects_it() {
     for (right, wrong, named) in [
         ("$1=255", "$1=25", "`$1=255`"),
         ("$10=1", "$10=2", "`$10=1`"),
@@ -160,7 +160,7 @@ fn a_start_while_its_port_is_opened_is_no_loss_and_later_it_is() {
 }
 
 #[test]
-fn a_jog_is_taken_when_the_axis_shows_it() {
+fn a_jog_is_accepted_when_the_axis_shows_it() {
     let (mut device, port) = identified();
     let going = device.encode(&[1.25e-3], 0.5e-3).unwrap();
     assert_eq!(
@@ -206,7 +206,7 @@ fn an_ok_without_motion_is_not_believed_unless_it_is_there() {
 }
 
 #[test]
-fn what_it_refuses_is_said_in_words() {
+fn refusals_are_reported_in_words() {
     for (answer, expected) in [
         ("error:15\r\n", "outside its travel"),
         ("error:9\r\n", "alarm"),
@@ -286,9 +286,9 @@ fn a_jog_without_answer_is_never_let_loose() {
 }
 
 #[test]
-fn a_late_status_is_not_taken_for_a_fresh_one() {
+fn a_late_status_is_not_accepted_as_a_fresh_one() {
     let (mut device, port) = identified();
-    port.reply(&[Say::After(
+    port.reply(&[Scripted::After(
         0.4,
         b"<Idle|MPos:0.000,0.000,0.000>\r\n".to_vec(),
     )]);
@@ -333,7 +333,7 @@ fn a_held_axis_is_let_go_of_by_a_reset_at_rest_and_stays_where_it_is() {
 }
 
 #[test]
-fn an_axis_that_lost_its_place_or_is_elsewhere_is_not_taken_for_let_go() {
+fn an_axis_that_lost_its_position_or_is_elsewhere_is_not_considered_cleared() {
     let (mut device, _port) = held_and_let_go(&format!("ALARM:3\r\n{BANNER}"));
     assert!(reason(device.identify()).contains("ALARM:3"));
     for (state, x) in [("Idle", 0.999), ("Alarm", 1.0), ("Hold:0", 1.0)] {
@@ -357,7 +357,7 @@ fn an_axis_that_lost_its_place_or_is_elsewhere_is_not_taken_for_let_go() {
 }
 
 #[test]
-fn a_start_seen_while_its_port_is_opened_is_told_as_one() {
+fn a_start_seen_while_its_port_is_opened_is_reported_as_one() {
     let (mut device, port) = device();
     reply(&port, BANNER);
     introduce(&port, SETTINGS);

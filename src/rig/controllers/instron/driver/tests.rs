@@ -106,7 +106,7 @@ fn a_ramp_that_is_never_read_back_is_never_started() {
 }
 
 #[test]
-fn a_move_says_what_its_bytes_say_and_is_never_faster_than_asked() {
+fn a_move_states_the_values_of_its_bytes_and_is_never_faster_than_requested() {
     let (mut console, ..) = opened();
     for step in 0..500 {
         let (target, speed) = (

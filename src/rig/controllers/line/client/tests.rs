@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::rig::safety::failpoint::without;
-use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
+use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
 
 fn client() -> (LineClient, ScriptedPort, VirtualClock) {
     let clock = VirtualClock::default();
@@ -14,8 +14,8 @@ fn client() -> (LineClient, ScriptedPort, VirtualClock) {
     )
 }
 
-fn after(seconds: f64, bytes: &[u8]) -> Say {
-    Say::After(seconds, bytes.to_vec())
+fn after(seconds: f64, bytes: &[u8]) -> Scripted {
+    Scripted::After(seconds, bytes.to_vec())
 }
 
 /// Accepts lines that begin with `ok`.
@@ -31,9 +31,9 @@ fn ok(line: &[u8]) -> Answer<Vec<u8>> {
 fn bytes_one_at_a_time_and_two_lines_at_once_are_whole_lines() {
     let (mut client, port, _) = client();
     for byte in b"12.5\r\n" {
-        port.say(&[after(0.01, &[*byte])]);
+        port.send_unasked(&[after(0.01, &[*byte])]);
     }
-    port.say(&[after(0.0, b"one\r\ntwo\r\nthr")]);
+    port.send_unasked(&[after(0.0, b"one\r\ntwo\r\nthr")]);
     assert_eq!(client.line(b"\r\n", 1.0).unwrap(), b"12.5");
     assert_eq!(client.line(b"\r\n", 1.0).unwrap(), b"one");
     assert_eq!(client.line(b"\r\n", 1.0).unwrap(), b"two");
@@ -42,7 +42,7 @@ fn bytes_one_at_a_time_and_two_lines_at_once_are_whole_lines() {
         Err(Missed::TimedOut),
         "never a part of a line"
     );
-    port.say(&[after(0.5, b"ee\r\n")]);
+    port.send_unasked(&[after(0.5, b"ee\r\n")]);
     assert_eq!(
         client.line(b"\r\n", 3.0).unwrap(),
         b"three",
@@ -54,9 +54,9 @@ fn bytes_one_at_a_time_and_two_lines_at_once_are_whole_lines() {
 fn a_line_without_end_is_thrown_away_and_the_next_is_good() {
     let (mut client, port, _) = client();
     for _ in 0..100 {
-        port.say(&[after(0.0, &[b'x'; 100])]);
+        port.send_unasked(&[after(0.0, &[b'x'; 100])]);
     }
-    port.say(&[after(0.0, b"\r"), after(0.0, b"\n1.0\r\n")]);
+    port.send_unasked(&[after(0.0, b"\r"), after(0.0, b"\n1.0\r\n")]);
     assert_eq!(client.line(b"\r\n", 1.0), Err(Missed::TooLong));
     assert!(
         client.waiting.len() <= LONGEST_LINE && client.waiting.capacity() < 2 * LONGEST_LINE + 1
@@ -66,7 +66,7 @@ fn a_line_without_end_is_thrown_away_and_the_next_is_good() {
     // The longest line with its ending fits; one byte more does not.
     for (length, fits) in [(LONGEST_LINE - 1, true), (LONGEST_LINE, false)] {
         let line = [vec![b'y'; length], b"\n".to_vec()].concat();
-        port.say(&[after(0.0, &line)]);
+        port.send_unasked(&[after(0.0, &line)]);
         assert_eq!(client.line(b"\n", 2.0).is_ok(), fits);
     }
 }
@@ -116,7 +116,7 @@ fn what_does_not_answer_is_counted_and_does_not_prolong_the_wait() {
     );
     let began = clock.now();
     for _ in 0..1000 {
-        port.say(&[after(0.01, b"banner\n")]);
+        port.send_unasked(&[after(0.01, b"banner\n")]);
     }
     assert_eq!(
         client.exchange_once(b"?\n", b"\n", ok),
@@ -137,7 +137,7 @@ fn what_does_not_answer_is_counted_and_does_not_prolong_the_wait() {
 #[test]
 fn a_hangup_gives_the_last_line_first() {
     let (mut client, port, _) = client();
-    port.say(&[after(0.1, b"last\n"), Say::HangUp]);
+    port.send_unasked(&[after(0.1, b"last\n"), Scripted::HangUp]);
     assert_eq!(client.line(b"\n", 1.0).unwrap(), b"last");
     assert_eq!(
         client.line(b"\n", 1.0),
@@ -152,12 +152,12 @@ fn a_hangup_gives_the_last_line_first() {
 #[test]
 fn exactly_so_many_bytes_or_none() {
     let (mut client, port, _) = client();
-    port.say(&[after(0.1, &[1, 3, 4]), after(0.1, &[0, 0, 9])]);
+    port.send_unasked(&[after(0.1, &[1, 3, 4]), after(0.1, &[0, 0, 9])]);
     assert_eq!(client.exactly(5, 0.15), Err(Missed::TimedOut));
     assert_eq!(client.exactly(5, 1.0).unwrap(), [1, 3, 4, 0, 0]);
     assert_eq!(client.exactly(LONGEST_LINE + 1, 1.0), Err(Missed::TooLong));
     client.drain().unwrap();
-    port.say(&[after(0.3, &[7]), after(0.3, &[8])]);
+    port.send_unasked(&[after(0.3, &[7]), after(0.3, &[8])]);
     client.until_quiet(0.4).unwrap();
     assert_eq!(client.exactly(1, client.now() + 1.0), Err(Missed::TimedOut));
 }
@@ -168,7 +168,7 @@ fn a_wish_to_hold_ends_a_wait_within_a_slice_and_does_not_stop_the_words_that_ho
     let stop_request = StopRequest::default();
     let mut client = client.observing(stop_request.clone());
     let at_once = stop_request.clone();
-    port.say(&[after(0.2, b"banner\n")]);
+    port.send_unasked(&[after(0.2, b"banner\n")]);
     let fault = client.exchange(b"?\n", b"\n", |_| {
         at_once.hold_now();
         Answer::<()>::Ignore

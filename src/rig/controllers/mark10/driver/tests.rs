@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::rig::controllers::mark10::load_cell::Mark10Gauge;
-use crate::rig::testing::{Say, ScriptedPort, Transcript, VirtualClock};
+use crate::rig::testing::{Scripted, ScriptedPort, Transcript, VirtualClock};
 
 const T: f64 = 0.2;
 const FORCE: &str = "/?\r\\";
@@ -238,7 +238,9 @@ fn after_a_silence_travel_and_force_are_asked_twice() {
     );
     script.done();
     // Unsolicited bytes are discarded.
-    script.port.say(&[Say::After(0.0, b"999.99\r\n".to_vec())]);
+    script
+        .port
+        .send_unasked(&[Scripted::After(0.0, b"999.99\r\n".to_vec())]);
     round(&mut script, "SL", "1.00", "100 N");
     assert_eq!(stand.sample().unwrap().displacement, Some(0.001));
     assert!(stand.line_statistics().ignored >= 1);
@@ -277,7 +279,7 @@ fn it_holds_by_stopping_and_looks_whether_it_does() {
 }
 
 #[test]
-fn the_gauge_alone_weighs_and_does_not_move() {
+fn the_gauge_alone_measures_force_and_does_not_move() {
     let (client, mut script) = line();
     let mut gauge = Mark10Gauge::new(client);
     script

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::rig::safety::failpoint::{Guarding, without};
-use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
+use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
 use crate::rig::transport::Clock as _;
 
 const T: f64 = 0.2;
@@ -52,8 +52,8 @@ fn float(value: f32) -> Vec<u8> {
     sealed(&[&[1, 3, 4][..], &value.to_bits().to_be_bytes()].concat())
 }
 
-fn at_once(bytes: Vec<u8>) -> [Say; 1] {
-    [Say::After(0.01, bytes)]
+fn at_once(bytes: Vec<u8>) -> [Scripted; 1] {
+    [Scripted::After(0.01, bytes)]
 }
 
 fn frames(port: &ScriptedPort) -> Vec<Vec<u8>> {
@@ -68,14 +68,14 @@ fn force(sample: &Sample) -> f64 {
 }
 
 #[test]
-fn a_sample_is_what_the_registers_say() {
+fn a_sample_equals_the_registers() {
     let (mut device, port, _) = device(MAP);
     port.reply(&at_once(float(12.5)));
     // In pieces of one byte.
     port.reply(
         &float(-300.0)
             .into_iter()
-            .map(|byte| Say::After(0.001, vec![byte]))
+            .map(|byte| Scripted::After(0.001, vec![byte]))
             .collect::<Vec<_>>(),
     );
     port.reply(&at_once(sealed(&[1, 3, 2, 0, 5])));
@@ -176,8 +176,11 @@ fn no_speed_is_rounded_up_and_no_number_is_clamped() {
     let (mut device, ..) = self::device(MAP);
     for step in 1..2000 {
         let asked = f64::from(step) * 1.7e-6;
-        let said = device.encode(&[0.0], asked).unwrap().speed;
-        assert!(said <= asked && said > 0.99 * asked, "{said} {asked}");
+        let encoded = device.encode(&[0.0], asked).unwrap().speed;
+        assert!(
+            encoded <= asked && encoded > 0.99 * asked,
+            "{encoded} {asked}"
+        );
     }
 }
 
@@ -211,9 +214,9 @@ fn noise_and_a_broken_answer_are_waited_out_and_asked_again() {
         }
     );
     // Bytes that arrived before the first request are discarded.
-    port.say(&[
-        Say::After(0.0, vec![0xFF; 700]),
-        Say::After(0.0, float(1.0)),
+    port.send_unasked(&[
+        Scripted::After(0.0, vec![0xFF; 700]),
+        Scripted::After(0.0, float(1.0)),
     ]);
     port.reply(&at_once(float(2.0)));
     assert_eq!(force(&device.sample().unwrap()), 2.0);
@@ -223,7 +226,7 @@ fn noise_and_a_broken_answer_are_waited_out_and_asked_again() {
 fn late_answer() -> f64 {
     let (mut device, port, _) = device(CELL);
     // The late reply arrives while the driver waits for silence, or as the reply to the second request.
-    port.reply(&[Say::After(1.2 * T, float(111.0))]);
+    port.reply(&[Scripted::After(1.2 * T, float(111.0))]);
     for value in [222.0, 333.0, 444.0] {
         port.reply(&at_once(float(value)));
     }
@@ -231,7 +234,7 @@ fn late_answer() -> f64 {
 }
 
 #[test]
-fn a_late_answer_is_never_taken_and_the_guard_is_what_stops_it() {
+fn a_late_answer_is_never_accepted_and_only_the_guard_stops_it() {
     assert_ne!(late_answer(), 111.0);
     assert_eq!(without(Guarding::Sequence, late_answer), 111.0);
 }
@@ -239,7 +242,7 @@ fn a_late_answer_is_never_taken_and_the_guard_is_what_stops_it() {
 #[test]
 fn an_answer_that_comes_while_the_second_question_is_open_is_one_too_many() {
     let (mut device, port, _) = device(CELL);
-    port.reply(&[Say::After(2.1 * T, float(111.0))]);
+    port.reply(&[Scripted::After(2.1 * T, float(111.0))]);
     // In order on the line: the late reply, then the reply to the second request.
     port.reply(&at_once(float(222.0)));
     port.reply(&at_once(float(333.0)));
@@ -293,7 +296,7 @@ fn swapped_words_are_noticed_when_it_is_opened() {
 
 /// If every reading is exactly 0, the word order cannot be determined: the first move must be refused.
 #[test]
-fn a_drive_with_its_words_the_other_way_round_is_told_no_speed() {
+fn a_drive_with_swapped_words_is_sent_no_speed() {
     for speed in [1e-3, 1.1e-3, 0.7e-3, 0.05] {
         let (mut device, ..) = device(MAP);
         let going = device.encode(&[1e-4], speed).unwrap();
@@ -355,6 +358,9 @@ fn it_holds_by_its_stop_word_or_by_going_where_it_is() {
 #[test]
 fn a_hangup_is_a_lost_line() {
     let (mut device, port, _) = device(CELL);
-    port.reply(&[Say::After(0.01, float(1.0)[..4].to_vec()), Say::HangUp]);
+    port.reply(&[
+        Scripted::After(0.01, float(1.0)[..4].to_vec()),
+        Scripted::HangUp,
+    ]);
     assert!(matches!(device.sample(), Err(DeviceFault::Lost { .. })));
 }

@@ -42,7 +42,7 @@ pub enum Request<'a> {
 /// The end of a smooth path: \[m\], \[m/s\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct End {
-    pub place: f64,
+    pub position: f64,
     pub velocity: f64,
 }
 
@@ -125,7 +125,7 @@ pub fn lengths(values: &[f64]) -> Option<String> {
 /// Position and velocity of each end, one after the other.
 pub(crate) fn in_turn(ends: &[End]) -> Vec<f64> {
     ends.iter()
-        .flat_map(|end| [end.place, end.velocity])
+        .flat_map(|end| [end.position, end.velocity])
         .collect()
 }
 

@@ -14,7 +14,7 @@ fn acknowledged(body: &str) -> Reply {
     reply(&framed(&format!("ACK 1 7F3A {body}"))).unwrap()
 }
 
-fn said(body: &str) -> Option<Hello> {
+fn hello_of(body: &str) -> Option<Hello> {
     hello(&acknowledged(body).words())
 }
 
@@ -60,7 +60,7 @@ fn the_vectors_of_the_specification() {
 }
 
 #[test]
-fn each_request_says_its_verb() {
+fn each_request_states_its_verb() {
     let body = |request| {
         let frame = String::from_utf8(frame(7, &request).unwrap()).unwrap();
         assert!(frame.starts_with('>') && frame.ends_with('\n'));
@@ -95,12 +95,12 @@ fn each_request_says_its_verb() {
 }
 
 #[test]
-fn what_cannot_be_said_is_not_said() {
+fn values_that_cannot_be_encoded_are_not_sent() {
     assert_eq!(lengths(&[0.0, 1e-3]).as_deref(), Some("0.000000 1.000000"));
     for none in [f64::NAN, f64::INFINITY, 1e60] {
         assert_eq!((length(none), lengths(&[0.0, none])), (None, None));
         let end = End {
-            place: none,
+            position: none,
             velocity: 0.0,
         };
         assert_eq!(
@@ -129,9 +129,9 @@ fn what_cannot_be_said_is_not_said() {
 }
 
 #[test]
-fn a_rig_says_who_it_is() {
+fn a_rig_identifies_itself() {
     let body = "PSD-BENCH 0042 1.3 -2.000000 25.000000 -2000.000 12000.000 120.000000 17 1.250000";
-    let rig = said(body).unwrap();
+    let rig = hello_of(body).unwrap();
     assert_eq!(
         (
             rig.model.as_str(),
@@ -167,9 +167,12 @@ fn a_rig_says_who_it_is() {
             targets: vec![1.25e-3]
         })
     );
-    assert_eq!(said(&body.replace("17 1.25", "0 0.00")).unwrap().last, None);
-    assert_eq!(said(&body.replace("25.000000", "inf")), None);
-    assert_eq!(said(&body.replace(" 0042", "")), None);
+    assert_eq!(
+        hello_of(&body.replace("17 1.25", "0 0.00")).unwrap().last,
+        None
+    );
+    assert_eq!(hello_of(&body.replace("25.000000", "inf")), None);
+    assert_eq!(hello_of(&body.replace(" 0042", "")), None);
 }
 
 #[test]
@@ -231,7 +234,7 @@ fn a_whole_line_with_a_false_field_is_no_reading() {
             (&["1", "", "2"][..], None)
         );
         assert_eq!(
-            said(&format!("{field} 0042 1.3 -25.0 25.0 -5.0 5.0 10.0 0 0.0")),
+            hello_of(&format!("{field} 0042 1.3 -25.0 25.0 -5.0 5.0 10.0 0 0.0")),
             None
         );
     }
@@ -307,12 +310,12 @@ fn the_vectors_of_several_axes() {
 }
 
 #[test]
-fn a_rig_says_how_many_axes_it_has_by_what_it_says_of_them() {
+fn the_number_of_axes_follows_from_their_fields() {
     let axis = |number: usize| format!("-{number}.000000 {number}.000000 -10.000 10.000");
     let with = |axes: usize, targets: usize| {
         let limits: Vec<String> = (1..=axes).map(axis).collect();
         let targets = vec!["0.500000"; targets].join(" ");
-        said(&format!(
+        hello_of(&format!(
             "PSD-BENCH 0042 1.3 {} 120.000000 3 {targets}",
             limits.join(" ")
         ))
@@ -338,17 +341,20 @@ fn a_rig_says_how_many_axes_it_has_by_what_it_says_of_them() {
 
 #[test]
 fn of_several_axes_the_one_without_a_number_is_known() {
-    let told = |force: &str| {
+    let acknowledgement = |force: &str| {
         acknowledged(&format!(
             "118203 1.0 2.0 3 0x0000 1.0 {force} 3 0x0000 IDLE"
         ))
     };
-    let (sound, none) = (told("2.0"), told("NaN"));
+    let (sound, none) = (acknowledgement("2.0"), acknowledgement("NaN"));
     assert_eq!(axis_without_number(&sound.words()), None);
     for none in ["NaN", "1e400", "OVL"] {
-        let told = told(none);
+        let received = acknowledgement(none);
         assert_eq!(
-            (axis_without_number(&told.words()), data(&told.words())),
+            (
+                axis_without_number(&received.words()),
+                data(&received.words())
+            ),
             (Some(2), None),
             "{none}"
         );

@@ -82,7 +82,7 @@ impl NativeDevice {
     /// Sends a request and waits for the reply of this kind, after resynchronising an interrupted conversation.
     fn request(&mut self, request: &Request<'_>, kind: Kind) -> Result<Reply, DeviceFault> {
         if self.out_of_step {
-            self.say_hello()?;
+            self.send_hello()?;
             if let Some(bounds) = self.narrowed.clone() {
                 self.request(&Request::Limits(&bounds), Kind::Ack)?;
             }
@@ -109,7 +109,7 @@ impl NativeDevice {
         Ok(answered)
     }
 
-    fn say_hello(&mut self) -> Result<(), DeviceFault> {
+    fn send_hello(&mut self) -> Result<(), DeviceFault> {
         let frame = framed(self.sequence.wrapping_add(1), &Request::Hello)?;
         let reply = self.exchange(&frame, Kind::Ack)?;
         let hello =
@@ -278,7 +278,7 @@ impl Device for NativeDevice {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         self.client.drain()?;
         self.narrowed = None;
-        self.say_hello()?;
+        self.send_hello()?;
         let reply = self.request(&Request::Status, Kind::Ack)?;
         let flags = reply
             .words()
@@ -335,13 +335,13 @@ impl Device for NativeDevice {
         let (written, rate) = native::codec::lengths(targets)
             .zip(native::codec::length(speed))
             .ok_or_else(unsaid)?;
-        let said = |(written, meant): (&str, f64)| number::read_back(written, 1e3, meant);
+        let read_back = |(written, meant): (&str, f64)| number::read_back(written, 1e3, meant);
         let heard: Option<Vec<f64>> = written
             .split(' ')
             .zip(targets.iter().copied())
-            .map(said)
+            .map(read_back)
             .collect();
-        let (targets, speed) = heard.zip(said((&rate, speed))).ok_or_else(unsaid)?;
+        let (targets, speed) = heard.zip(read_back((&rate, speed))).ok_or_else(unsaid)?;
         if !bounds
             .axes
             .iter()

@@ -23,11 +23,11 @@ impl NativeDevice {
                 paths.len()
             )));
         }
-        let said = |meant: f64| number::read_back(&native::codec::length(meant)?, 1e3, meant);
+        let read_back = |meant: f64| number::read_back(&native::codec::length(meant)?, 1e3, meant);
         let end = |path: &Path| {
             Some(End {
-                place: said(path.to)?,
-                velocity: said(path.end_velocity)?,
+                position: read_back(path.to)?,
+                velocity: read_back(path.end_velocity)?,
             })
         };
         let ends: Option<Vec<End>> = paths.iter().map(end).collect();
@@ -75,7 +75,7 @@ impl NativeDevice {
         });
         Ok(DeviceMove {
             frames,
-            targets: ends.iter().map(|end| end.place).collect(),
+            targets: ends.iter().map(|end| end.position).collect(),
             speed,
             id: Some(id),
         })

@@ -4,7 +4,7 @@ use super::*;
 use crate::plan::Interval;
 use crate::rig::controllers::Flags;
 use crate::rig::safety::failpoint::without;
-use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
+use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
 
 const WHO: &str =
     "PSD-BENCH 0042 1.3 -2.000000 25.000000 -2000.000 12000.000 120.000000 17 1.250000";
@@ -13,8 +13,8 @@ fn line(body: &str) -> Vec<u8> {
     format!("<{body}*{:04X}\n", native::codec::checksum(body.as_bytes())).into_bytes()
 }
 
-fn say(port: &ScriptedPort, body: &str) {
-    port.reply(&[Say::After(0.01, line(body))]);
+fn script_reply(port: &ScriptedPort, body: &str) {
+    port.reply(&[Scripted::After(0.01, line(body))]);
 }
 
 /// The frames that were sent, without lead character, checksum and line ending.
@@ -50,8 +50,8 @@ fn device() -> (NativeDevice, ScriptedPort) {
 /// A rig after its identification, at sequence number 2.
 fn identified() -> (NativeDevice, ScriptedPort) {
     let (mut device, port) = device();
-    say(&port, &format!("ACK 1 7F3A {WHO}"));
-    say(&port, "ACK 2 7F3A IDLE 0x0000");
+    script_reply(&port, &format!("ACK 1 7F3A {WHO}"));
+    script_reply(&port, "ACK 2 7F3A IDLE 0x0000");
     device.identify().unwrap();
     (device, port)
 }
@@ -70,12 +70,12 @@ fn force(sample: &Sample) -> f64 {
 #[test]
 fn a_rig_is_asked_who_it_is_and_let_go_of_what_held_it_between_runs() {
     let (mut device, port) = device();
-    say(
+    script_reply(
         &port,
         &format!("ACK 1 7F3A {}", WHO.replace("PSD-BENCH", "PSD-SIM-1")),
     );
-    say(&port, "ACK 2 7F3A HELD 0x0080");
-    say(&port, "ACK 3 7F3A IDLE");
+    script_reply(&port, "ACK 2 7F3A HELD 0x0080");
+    script_reply(&port, "ACK 3 7F3A IDLE");
     let identity = device.identify().unwrap();
     assert_eq!(
         (
@@ -102,8 +102,8 @@ fn a_rig_is_asked_who_it_is_and_let_go_of_what_held_it_between_runs() {
 #[test]
 fn a_rig_that_is_stopped_or_strange_is_unfit() {
     let (mut device, port) = device();
-    say(&port, &format!("ACK 1 7F3A {WHO}"));
-    say(&port, "ACK 2 7F3A HELD 0x0010");
+    script_reply(&port, &format!("ACK 1 7F3A {WHO}"));
+    script_reply(&port, "ACK 2 7F3A HELD 0x0010");
     assert!(matches!(device.identify(), Err(DeviceFault::Unfit(_))));
     assert_eq!(sent(&port).len(), 2, "a pressed stop is not cleared");
     for strange in [
@@ -112,7 +112,7 @@ fn a_rig_that_is_stopped_or_strange_is_unfit() {
         WHO.replace(" 17", ""),
     ] {
         let (mut device, port) = self::device();
-        say(&port, &format!("ACK 1 7F3A {strange}"));
+        script_reply(&port, &format!("ACK 1 7F3A {strange}"));
         assert!(
             matches!(device.identify(), Err(DeviceFault::Unfit(_))),
             "{strange}"
@@ -135,16 +135,16 @@ fn limits_are_only_narrowed_a_move_is_accepted_and_a_reading_read() {
         },
         ..Limits::NONE
     };
-    say(&port, "ACK 3 7F3A IDLE");
+    script_reply(&port, "ACK 3 7F3A IDLE");
     device.narrow_limits(&[limits]).unwrap();
     let going = device.encode(&[1.25e-3], 0.5e-3).unwrap();
     assert_eq!(
         (going.targets[0], going.speed, going.id, going.frames.len()),
         (1.25e-3, 0.5e-3, Some(18), 1)
     );
-    say(&port, "ACK 4 7F3A MOVING");
+    script_reply(&port, "ACK 4 7F3A MOVING");
     device.start(&going).unwrap();
-    say(&port, &reading(5, "512.375"));
+    script_reply(&port, &reading(5, "512.375"));
     let sample = device.sample().unwrap();
     assert_eq!(
         (sample.time, sample.displacement, force(&sample)),
@@ -181,7 +181,7 @@ fn reading_line(sequence: u32) -> Vec<u8> {
 }
 
 #[test]
-fn what_cannot_be_said_or_lies_outside_the_rig_is_not_offered() {
+fn targets_that_cannot_be_encoded_or_are_outside_the_rig_are_not_proposed() {
     let (mut device, port) = identified();
     for (target, speed) in [
         (0.0251, 1e-3),
@@ -217,7 +217,7 @@ fn a_number_belongs_to_one_target_until_a_move_is_accepted() {
         "neither was sent"
     );
     let going = device.encode(&[0.002], 1e-3).unwrap();
-    say(&port, "ERR 3 7F3A BUSY");
+    script_reply(&port, "ERR 3 7F3A BUSY");
     let refused = device.start(&going).unwrap_err();
     assert!(refused.to_string().contains("still moving"), "{refused}");
     assert_eq!(
@@ -226,7 +226,7 @@ fn a_number_belongs_to_one_target_until_a_move_is_accepted() {
         "the rig may know 18 by its target"
     );
     let going = device.encode(&[0.003], 1e-3).unwrap();
-    say(&port, "ACK 4 7F3A MOVING");
+    script_reply(&port, "ACK 4 7F3A MOVING");
     device.start(&going).unwrap();
     assert_eq!(id(&mut device, 0.003), Some(20), "a move accepted is over");
 }
@@ -235,7 +235,7 @@ fn a_number_belongs_to_one_target_until_a_move_is_accepted() {
 fn a_move_is_sent_as_it_was_made_or_not_at_all() {
     let (mut device, port) = identified();
     let going = device.encode(&[0.001], 1e-3).unwrap();
-    say(&port, &reading(3, "1.0"));
+    script_reply(&port, &reading(3, "1.0"));
     device.sample().unwrap();
     assert!(matches!(device.start(&going), Err(DeviceFault::Unfit(_))));
     assert_eq!(sent(&port).last().unwrap(), "MEAS 3 1");
@@ -245,12 +245,12 @@ fn a_move_is_sent_as_it_was_made_or_not_at_all() {
 fn a_lost_frame_is_sent_again_as_it_was_and_a_doubled_reply_used_once() {
     let (mut device, port) = identified();
     port.reply(&[]);
-    port.reply(&[Say::After(
+    port.reply(&[Scripted::After(
         0.01,
         [line(&reading(3, "1.0")), line(&reading(3, "1.0"))].concat(),
     )]);
     assert_eq!(force(&device.sample().unwrap()), 1.0);
-    say(&port, &reading(4, "2.0"));
+    script_reply(&port, &reading(4, "2.0"));
     assert_eq!(force(&device.sample().unwrap()), 2.0);
     assert_eq!(sent(&port)[2..], ["MEAS 3 1", "MEAS 3 1", "MEAS 4 1"]);
     assert_eq!(
@@ -267,8 +267,8 @@ fn a_lost_frame_is_sent_again_as_it_was_and_a_doubled_reply_used_once() {
 fn a_reply_to_another_request_is_ignored_and_without_the_guard_it_would_pass() {
     let late = |device: &mut NativeDevice, port: &ScriptedPort| {
         port.reply(&[
-            Say::After(0.01, line(&reading(2, "666.0"))),
-            Say::After(0.01, line(&reading(3, "1.0"))),
+            Scripted::After(0.01, line(&reading(2, "666.0"))),
+            Scripted::After(0.01, line(&reading(3, "1.0"))),
         ]);
         force(&device.sample().unwrap())
     };
@@ -288,8 +288,8 @@ fn a_broken_reply_is_asked_for_again_and_without_the_guard_it_would_pass() {
         let mut wrong = line(&reading(3, "512.375"));
         let at = wrong.windows(3).position(|part| part == b"512").unwrap();
         wrong[at] = b'9';
-        port.reply(&[Say::After(0.01, wrong)]);
-        port.reply(&[Say::After(0.01, line(&reading(3, "512.375")))]);
+        port.reply(&[Scripted::After(0.01, wrong)]);
+        port.reply(&[Scripted::After(0.01, line(&reading(3, "512.375")))]);
         force(&device.sample().unwrap())
     };
     let (mut device, port) = identified();
@@ -311,18 +311,18 @@ fn a_broken_reply_is_asked_for_again_and_without_the_guard_it_would_pass() {
 
 #[test]
 fn a_new_power_up_is_seen_in_any_reply_and_without_the_guard_it_would_pass() {
-    let anew = "DATA 3 0001 12 0.000000 0.000 0 0x0000 IDLE";
+    let after_restart = "DATA 3 0001 12 0.000000 0.000 0 0x0000 IDLE";
     let (mut device, port) = identified();
-    say(&port, anew);
+    script_reply(&port, after_restart);
     let rebooted = DeviceFault::Rebooted {
         was: "7F3A".to_owned(),
         is: "0001".to_owned(),
     };
     assert_eq!(device.sample(), Err(rebooted.clone()));
-    say(&port, "ERR 3 0001 SEQ");
+    script_reply(&port, "ERR 3 0001 SEQ");
     assert_eq!(device.sample(), Err(rebooted), "whatever number it answers");
     let (mut device, port) = identified();
-    say(&port, anew);
+    script_reply(&port, after_restart);
     assert_eq!(
         without(Guarding::Reboot, || device.sample())
             .unwrap()
@@ -332,11 +332,11 @@ fn a_new_power_up_is_seen_in_any_reply_and_without_the_guard_it_would_pass() {
 }
 
 /// The reading after a fault of one reply: the rig repeats its last reply when the frame is sent again.
-fn after_fault(pieces: &[Say]) -> (f64, LineStatistics) {
+fn after_fault(pieces: &[Scripted]) -> (f64, LineStatistics) {
     let (mut device, port) = identified();
     port.reply(pieces);
     for _ in 0..3 {
-        say(&port, &reading(3, "512.375"));
+        script_reply(&port, &reading(3, "512.375"));
     }
     (force(&device.sample().unwrap()), device.line_statistics())
 }
@@ -347,7 +347,7 @@ fn every_bit_flipped_and_every_truncation_gives_the_reading_or_asks_again() {
     for bit in 0..whole.len() * 8 {
         let mut flipped = whole.clone();
         flipped[bit / 8] ^= 1 << (bit % 8);
-        let (force, line_statistics) = after_fault(&[Say::After(0.01, flipped)]);
+        let (force, line_statistics) = after_fault(&[Scripted::After(0.01, flipped)]);
         assert_eq!(force, 512.375, "bit {bit}");
         assert!(
             line_statistics.resent >= 1 && line_statistics.ignored >= 1,
@@ -355,7 +355,8 @@ fn every_bit_flipped_and_every_truncation_gives_the_reading_or_asks_again() {
         );
     }
     for length in 1..whole.len() {
-        let (force, line_statistics) = after_fault(&[Say::After(0.01, whole[..length].to_vec())]);
+        let (force, line_statistics) =
+            after_fault(&[Scripted::After(0.01, whole[..length].to_vec())]);
         assert_eq!(force, 512.375, "{length} bytes");
         assert!(line_statistics.resent >= 1, "{length} bytes");
     }
@@ -364,14 +365,14 @@ fn every_bit_flipped_and_every_truncation_gives_the_reading_or_asks_again() {
 #[test]
 fn bytes_one_at_a_time_and_noise_around_are_read_through() {
     let whole = line(&reading(3, "512.375"));
-    let pieces: Vec<Say> = whole
+    let pieces: Vec<Scripted> = whole
         .iter()
-        .map(|byte| Say::After(0.001, vec![*byte]))
+        .map(|byte| Scripted::After(0.001, vec![*byte]))
         .collect();
     assert_eq!(after_fault(&pieces), (512.375, LineStatistics::default()));
     let noise = [b"\0\xff<<>\n".to_vec(), whole.clone()].concat();
     assert_eq!(
-        after_fault(&[Say::After(0.0, noise)]),
+        after_fault(&[Scripted::After(0.0, noise)]),
         (
             512.375,
             LineStatistics {
@@ -382,7 +383,7 @@ fn bytes_one_at_a_time_and_noise_around_are_read_through() {
     );
     let endless = [vec![b'x'; 512], b"\n".to_vec(), whole].concat();
     assert_eq!(
-        after_fault(&[Say::After(0.0, endless)]),
+        after_fault(&[Scripted::After(0.0, endless)]),
         (
             512.375,
             LineStatistics {
@@ -400,20 +401,20 @@ fn a_whole_reply_with_a_field_missing_is_no_reading() {
         "DATA 3 7F3A 118203 1.249871 nan 812344 0x0000 IDLE",
     ] {
         let (mut device, port) = identified();
-        say(&port, body);
+        script_reply(&port, body);
         assert!(
             matches!(device.sample(), Err(DeviceFault::Impossible { .. })),
             "{body}"
         );
-        say(&port, &reading(4, "1.0"));
+        script_reply(&port, &reading(4, "1.0"));
         assert!(device.sample().is_ok(), "asked again it is a new request");
     }
 }
 
 #[test]
-fn after_silence_the_conversation_is_taken_up_before_anything_else() {
+fn after_silence_the_conversation_is_resumed_before_anything_else() {
     let (mut device, port) = identified();
-    say(&port, "ACK 3 7F3A IDLE");
+    script_reply(&port, "ACK 3 7F3A IDLE");
     device.narrow_limits(&[Limits::NONE]).unwrap();
     let going = device.encode(&[0.001], 1e-3).unwrap();
     assert_eq!(
@@ -424,12 +425,12 @@ fn after_silence_the_conversation_is_taken_up_before_anything_else() {
         device.encode(&[0.001], 1e-3).is_err() && device.start(&going).is_err(),
         "first the rig is read"
     );
-    say(
+    script_reply(
         &port,
         &format!("ACK 5 7F3A {}", WHO.replace("17 1.25", "18 1.00")),
     );
-    say(&port, "ACK 6 7F3A IDLE");
-    say(&port, &reading(7, "1.0"));
+    script_reply(&port, "ACK 6 7F3A IDLE");
+    script_reply(&port, &reading(7, "1.0"));
     device.sample().unwrap();
     let sent = sent(&port);
     assert_eq!(sent[3..7], vec!["MOVE 4 18 1.000000 1.000000"; 4]);
@@ -449,15 +450,15 @@ fn after_silence_the_conversation_is_taken_up_before_anything_else() {
 }
 
 #[test]
-fn a_hold_is_said_at_once_and_let_go_of_only_with_the_next_move() {
+fn a_hold_is_sent_immediately_and_cleared_only_with_the_next_move() {
     let (mut device, port) = identified();
     port.reply(&[]);
-    say(&port, "ACK 3 7F3A HELD");
+    script_reply(&port, "ACK 3 7F3A HELD");
     device.hold().unwrap();
     assert_eq!(sent(&port)[2..], ["!", "STOP 3"]);
     let going = device.encode(&[0.0], 1e-3).unwrap();
-    say(&port, "ACK 4 7F3A IDLE");
-    say(&port, "ACK 5 7F3A MOVING");
+    script_reply(&port, "ACK 4 7F3A IDLE");
+    script_reply(&port, "ACK 5 7F3A MOVING");
     device.start(&going).unwrap();
     assert_eq!(sent(&port)[4..], ["CLR 4", "MOVE 5 18 0.000000 1.000000"]);
     assert_eq!(device.emergency(), b"!");
@@ -467,7 +468,7 @@ fn a_hold_is_said_at_once_and_let_go_of_only_with_the_next_move() {
 fn a_hold_by_the_rig_itself_is_not_let_go_of() {
     let (mut device, port) = identified();
     let going = device.encode(&[0.001], 1e-3).unwrap();
-    say(&port, "ERR 3 7F3A HELD");
+    script_reply(&port, "ERR 3 7F3A HELD");
     assert!(matches!(
         device.start(&going),
         Err(DeviceFault::Refused { .. })

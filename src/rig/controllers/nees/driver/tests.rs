@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::rig::StopRequest;
-use crate::rig::testing::{Say, ScriptedPort, VirtualClock};
+use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
 use crate::rig::transport::Clock as _;
 
 const T: f64 = 1.0;
@@ -21,8 +21,8 @@ fn session() -> (Nees, ScriptedPort, VirtualClock, StopRequest) {
     )
 }
 
-fn after(seconds: f64, text: &str) -> Say {
-    Say::After(
+fn after(seconds: f64, text: &str) -> Scripted {
+    Scripted::After(
         seconds,
         format!("{}\n", text.replace(' ', "\t")).into_bytes(),
     )
@@ -55,13 +55,13 @@ fn opened() -> (Nees, ScriptedPort, VirtualClock, StopRequest) {
 fn a_session_is_opened_and_read_before_anything_moves_and_closed_at_the_end() {
     let (rig, port, ..) = opened();
     drop(rig);
-    let said = [
+    let frames = [
         "open-session psd\n",
         "set-parameter psd-000001 nstep 1000000\n",
         "get-control-point psd-000002 MDL-00-01\n",
         "close-session psd\n",
     ];
-    assert_eq!(sent(&port), said);
+    assert_eq!(sent(&port), frames);
 }
 
 #[test]
@@ -168,7 +168,7 @@ fn what_is_no_number_is_no_reading() {
 }
 
 #[test]
-fn holding_cancels_what_is_being_executed_and_says_nothing_at_rest() {
+fn holding_cancels_an_execution_and_sends_nothing_at_rest() {
     let (mut rig, port, _, stop_request) = opened();
     rig.hold().unwrap();
     assert_eq!(sent(&port).len(), 3);
@@ -198,7 +198,7 @@ fn holding_cancels_what_is_being_executed_and_says_nothing_at_rest() {
 }
 
 #[test]
-fn the_late_answer_to_an_execution_says_that_it_is_over() {
+fn the_late_answer_to_an_execution_reports_its_end() {
     let (mut rig, port, ..) = opened();
     let going = rig.encode(&[0.002], 0.001).unwrap();
     port.reply(&[after(0.1, "OK 0 psd-000003")]);
@@ -211,7 +211,7 @@ fn the_late_answer_to_an_execution_says_that_it_is_over() {
 }
 
 #[test]
-fn targets_and_names_that_cannot_be_said_are_refused() {
+fn targets_and_names_that_cannot_be_encoded_are_refused() {
     let (mut rig, ..) = opened();
     for (target, speed) in [
         (f64::NAN, 1e-3),

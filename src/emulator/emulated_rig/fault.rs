@@ -1,4 +1,4 @@
-//! Faults of the actuator, the specimen and the sensors of a bench. In: a fault and the correct value. Out: the faulty value.
+//! Faults of the actuator, the specimen and the sensors of an emulated rig. In: a fault and the correct value. Out: the faulty value.
 //! It knows neither protocol nor line.
 
 use rand::RngExt as _;
@@ -8,7 +8,7 @@ use rand_pcg::rand_core::SeedableRng as _;
 /// A fault of an actuator, a specimen or a sensor. A spike and an invalid number affect one reading. Every other fault lasts
 /// from its start.
 #[derive(Clone, Debug, PartialEq)]
-pub enum BenchFault {
+pub enum MechanicalFault {
     /// From now on the actuator makes only this fraction of every move. At 0 it does not move.
     Reach(f64),
     /// The actuator follows its command with this time constant \[s\].
@@ -38,7 +38,7 @@ pub enum BenchFault {
 
 /// The faults that have occurred.
 #[derive(Debug)]
-pub struct BenchFaults {
+pub struct MechanicalFaults {
     pub(crate) reach: f64,
     pub(crate) lag: f64,
     force_factor: f64,
@@ -58,12 +58,12 @@ pub struct BenchFaults {
     fracture: Option<(f64, f64)>,
     broken: Option<f64>,
     /// Faults that occur at random at a force reading, with their probability.
-    chances: Vec<(BenchFault, f64)>,
+    chances: Vec<(MechanicalFault, f64)>,
     generator: Pcg64,
 }
 
-impl BenchFaults {
-    /// A bench without faults. The seed is used for the random faults.
+impl MechanicalFaults {
+    /// An emulated rig without faults. The seed is used for the random faults.
     pub(crate) fn none(seed: u64) -> Self {
         Self {
             reach: 1.0,
@@ -87,26 +87,26 @@ impl BenchFaults {
     }
 
     /// Starts a fault at `time` \[s\].
-    pub(crate) fn strike(&mut self, fault: BenchFault, time: f64) {
+    pub(crate) fn strike(&mut self, fault: MechanicalFault, time: f64) {
         match fault {
-            BenchFault::Reach(part) => self.reach = part,
-            BenchFault::Lag(seconds) => self.lag = seconds,
-            BenchFault::ScaleForce(factor) => self.force_factor *= factor,
-            BenchFault::ScaleDisplacement(factor) => self.displacement_factor *= factor,
-            BenchFault::ClipForce(limit) => self.clip = Some(limit),
-            BenchFault::FreezeForce => self.freezes_force = true,
-            BenchFault::FreezeDisplacement => self.freezes_displacement = true,
-            BenchFault::Drift(rate) => self.drifts.push((rate, time)),
-            BenchFault::DriftDisplacement(rate) => self.displacement_drifts.push((rate, time)),
-            BenchFault::Spike(force) => self.spike += force,
-            BenchFault::Number(text) => self.number = Some(text),
-            BenchFault::Fracture { displacement, left } => {
+            MechanicalFault::Reach(part) => self.reach = part,
+            MechanicalFault::Lag(seconds) => self.lag = seconds,
+            MechanicalFault::ScaleForce(factor) => self.force_factor *= factor,
+            MechanicalFault::ScaleDisplacement(factor) => self.displacement_factor *= factor,
+            MechanicalFault::ClipForce(limit) => self.clip = Some(limit),
+            MechanicalFault::FreezeForce => self.freezes_force = true,
+            MechanicalFault::FreezeDisplacement => self.freezes_displacement = true,
+            MechanicalFault::Drift(rate) => self.drifts.push((rate, time)),
+            MechanicalFault::DriftDisplacement(rate) => self.displacement_drifts.push((rate, time)),
+            MechanicalFault::Spike(force) => self.spike += force,
+            MechanicalFault::Number(text) => self.number = Some(text),
+            MechanicalFault::Fracture { displacement, left } => {
                 self.fracture = Some((displacement, left));
             }
         }
     }
 
-    pub(crate) fn strike_by_chance(&mut self, fault: BenchFault, probability: f64) {
+    pub(crate) fn strike_by_chance(&mut self, fault: MechanicalFault, probability: f64) {
         self.chances.push((fault, probability));
     }
 
@@ -127,7 +127,7 @@ impl BenchFaults {
 
     /// Returns the reading of the load cell \[N\] at `time` \[s\] for a true force.
     pub(crate) fn read_force(&mut self, sound: f64, time: f64) -> f64 {
-        let drawn: Vec<BenchFault> = {
+        let drawn: Vec<MechanicalFault> = {
             let Self {
                 chances, generator, ..
             } = self;

@@ -2,15 +2,15 @@
 //! targets and time. Out: position and force of each actuator, SI. It knows no protocol. A value without an axis belongs to the
 //! first one.
 
-use super::bench::fault::BenchFault;
-use super::bench::glide::Glides;
-use super::bench::ram::{Ram, RamSettings};
-use super::bench::structure::Structure;
+use super::emulated_rig::actuator::{ActuatorModel, ActuatorSettings};
+use super::emulated_rig::fault::MechanicalFault;
+use super::emulated_rig::glide::Glides;
+use super::emulated_rig::structure::Structure;
 use crate::plan::{Behaviour, Frame, Interval};
 
-/// The properties of a bench.
+/// The properties of an emulated rig.
 #[derive(Clone, Debug)]
-pub struct BenchSettings {
+pub struct EmulatedRigSettings {
     pub behaviour: Behaviour,
     /// Damping coefficient c of the force c·v while it moves \[N·s/m\].
     pub damping: f64,
@@ -29,7 +29,7 @@ pub struct BenchSettings {
     pub top_speed: f64,
 }
 
-/// A commanded move of the bench.
+/// A commanded move of the emulated rig.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SentMove {
     /// Time since power-up \[s\].
@@ -44,10 +44,10 @@ pub struct SentMove {
 
 /// The physics behind an emulated controller.
 #[derive(Debug)]
-pub struct Bench {
-    settings: BenchSettings,
+pub struct EmulatedRig {
+    settings: EmulatedRigSettings,
     structure: Structure,
-    pub(super) rams: Vec<Ram>,
+    pub(super) actuators: Vec<ActuatorModel>,
     /// Time since power-up \[s\].
     pub(super) time: f64,
     /// Restoring force of the specimen at each actuator \[N\], without noise.
@@ -62,23 +62,23 @@ pub struct Bench {
     pub(super) glides: Glides,
     /// Index of the actuator that a value without an axis belongs to.
     view: usize,
-    /// Scale factor \[N per count\] and zero offset of each actuator, if they differ from those of the bench.
+    /// Scale factor \[N per count\] and zero offset of each actuator, if they differ from those of the emulated rig.
     converters: Vec<(f64, f64)>,
 }
 
 /// Longest time step of a smooth move \[s\]: the specimen reacts to a load reversal within this time.
 const FINELY: f64 = 1e-3;
 
-/// Returns the seed of one actuator. The first one uses the seed of the bench.
-const fn seed_of(seed: u64, ram: u64) -> u64 {
-    seed.wrapping_add(ram.wrapping_mul(0x9e37_79b9_7f4a_7c15))
+/// Returns the seed of one actuator. The first one uses the seed of the emulated rig.
+const fn seed_of(seed: u64, actuator: u64) -> u64 {
+    seed.wrapping_add(actuator.wrapping_mul(0x9e37_79b9_7f4a_7c15))
 }
 
-impl Bench {
+impl EmulatedRig {
     /// One actuator on a specimen of one degree of freedom.
     #[must_use]
-    pub fn new(settings: BenchSettings) -> Self {
-        let BenchSettings {
+    pub fn new(settings: EmulatedRigSettings) -> Self {
+        let EmulatedRigSettings {
             noise,
             resolution,
             limits,
@@ -89,7 +89,7 @@ impl Bench {
         Self::standing(
             settings,
             structure,
-            &[RamSettings {
+            &[ActuatorSettings {
                 sign: 1.0,
                 noise,
                 resolution,
@@ -100,16 +100,25 @@ impl Bench {
 
     /// One actuator at every floor of a frame, the lowest first. Only the settings common to all actuators are used.
     #[must_use]
-    pub fn of_frame(settings: BenchSettings, frame: &Frame, rams: &[RamSettings]) -> Self {
-        Self::standing(settings, Structure::of_frame(frame), rams)
+    pub fn of_frame(
+        settings: EmulatedRigSettings,
+        frame: &Frame,
+        actuators: &[ActuatorSettings],
+    ) -> Self {
+        Self::standing(settings, Structure::of_frame(frame), actuators)
     }
 
-    fn standing(settings: BenchSettings, structure: Structure, rams: &[RamSettings]) -> Self {
-        let ram =
-            |(number, ram): (u64, &RamSettings)| Ram::new(*ram, seed_of(settings.seed, number));
-        let mut bench = Self {
+    fn standing(
+        settings: EmulatedRigSettings,
+        structure: Structure,
+        actuators: &[ActuatorSettings],
+    ) -> Self {
+        let actuator = |(number, actuator): (u64, &ActuatorSettings)| {
+            ActuatorModel::new(*actuator, seed_of(settings.seed, number))
+        };
+        let mut rig = Self {
             structure,
-            rams: (0..).zip(rams).map(ram).collect(),
+            actuators: (0..).zip(actuators).map(actuator).collect(),
             settings,
             time: 0.0,
             restoring_force: Vec::new(),
@@ -121,9 +130,9 @@ impl Bench {
             view: 0,
             converters: Vec::new(),
         };
-        let at_rest = vec![0.0; rams.len()];
-        bench.restoring_force = bench.structure.bend(&at_rest, &at_rest, 0.0, 0.0);
-        bench
+        let at_rest = vec![0.0; actuators.len()];
+        rig.restoring_force = rig.structure.bend(&at_rest, &at_rest, 0.0, 0.0);
+        rig
     }
 
     /// Adds friction to the load cell \[N\]. It acts against the last motion, also during a dwell, as in the simulated rig.
@@ -141,43 +150,43 @@ impl Bench {
 
     /// Moves the actuators to these initial positions of their controllers \[m\]; the specimen stays undeformed.
     #[must_use]
-    pub fn standing_at(mut self, places: &[f64]) -> Self {
-        for (ram, place) in self.rams.iter_mut().zip(places) {
-            ram.stand_at(*place);
+    pub fn standing_at(mut self, positions: &[f64]) -> Self {
+        for (actuator, position) in self.actuators.iter_mut().zip(positions) {
+            actuator.stand_at(*position);
         }
         self
     }
 
     /// Starts a fault of the actuator with this index, of its specimen or of its sensors.
-    pub fn strike(&mut self, ram: usize, fault: BenchFault) {
+    pub fn strike(&mut self, actuator: usize, fault: MechanicalFault) {
         let time = self.time;
-        if let Some(ram) = self.rams.get_mut(ram) {
-            ram.faults.strike(fault, time);
+        if let Some(actuator) = self.actuators.get_mut(actuator) {
+            actuator.faults.strike(fault, time);
         }
     }
 
     /// Adds a fault that occurs with a probability at any force reading of the actuator with this index.
-    pub fn strike_by_chance(&mut self, ram: usize, fault: BenchFault, probability: f64) {
-        if let Some(ram) = self.rams.get_mut(ram) {
-            ram.faults.strike_by_chance(fault, probability);
+    pub fn strike_by_chance(&mut self, actuator: usize, fault: MechanicalFault, probability: f64) {
+        if let Some(actuator) = self.actuators.get_mut(actuator) {
+            actuator.faults.strike_by_chance(fault, probability);
         }
     }
 
     #[must_use]
-    pub const fn settings(&self) -> &BenchSettings {
+    pub const fn settings(&self) -> &EmulatedRigSettings {
         &self.settings
     }
 
     /// The number of actuators.
     #[must_use]
-    pub const fn rams(&self) -> usize {
-        self.rams.len()
+    pub const fn actuators(&self) -> usize {
+        self.actuators.len()
     }
 
     /// The limits for targets of the actuator with this index \[m\].
     #[must_use]
-    pub fn limits_of(&self, ram: usize) -> Interval {
-        self.rams[ram].settings.limits
+    pub fn limits_of(&self, actuator: usize) -> Interval {
+        self.actuators[actuator].settings.limits
     }
 
     /// Time since power-up \[s\].
@@ -186,7 +195,7 @@ impl Bench {
         self.time
     }
 
-    /// Advances the bench to a later time \[s\].
+    /// Advances the emulated rig to a later time \[s\].
     pub fn advance(&mut self, to: f64) {
         while let Some(until) = self.next_glide().filter(|until| *until < to) {
             self.pass(until);
@@ -195,9 +204,9 @@ impl Bench {
         self.pass(to);
     }
 
-    /// Advances the bench to a time \[s\] before which the actuators receive no command.
+    /// Advances the emulated rig to a time \[s\] before which the actuators receive no command.
     fn pass(&mut self, to: f64) {
-        while self.rams.iter().any(Ram::glides) && to - self.time > FINELY {
+        while self.actuators.iter().any(ActuatorModel::glides) && to - self.time > FINELY {
             self.take(self.time + FINELY);
         }
         self.take(to);
@@ -215,33 +224,33 @@ impl Bench {
         }
         // All arrive simultaneously. An actuator with a lag moves the whole time.
         let going = self
-            .rams
+            .actuators
             .iter()
-            .map(|ram| ram.arrives_in(seconds))
+            .map(|actuator| actuator.arrives_in(seconds))
             .fold(0.0, f64::max);
-        let before: Vec<f64> = self.rams.iter().map(|ram| ram.at).collect();
-        for ram in &mut self.rams {
-            ram.advance(seconds);
+        let before: Vec<f64> = self.actuators.iter().map(|actuator| actuator.at).collect();
+        for actuator in &mut self.actuators {
+            actuator.advance(seconds);
         }
         let moved: Vec<f64> = self
-            .rams
+            .actuators
             .iter()
             .zip(before)
-            .map(|(ram, before)| ram.settings.sign * (ram.at - before))
+            .map(|(actuator, before)| actuator.settings.sign * (actuator.at - before))
             .collect();
-        let places: Vec<f64> = self
-            .rams
+        let positions: Vec<f64> = self
+            .actuators
             .iter()
-            .map(|ram| ram.settings.sign * ram.bends())
+            .map(|actuator| actuator.settings.sign * actuator.bends())
             .collect();
-        let forces = self.structure.bend(&places, &moved, going, seconds);
+        let forces = self.structure.bend(&positions, &moved, going, seconds);
         if moved.iter().any(|moved| *moved != 0.0) {
-            let felt = self
-                .rams
+            let cell_forces = self
+                .actuators
                 .iter_mut()
                 .zip(forces)
-                .map(|(ram, force)| ram.faults.specimen_force(ram.bends(), force));
-            self.restoring_force = felt.collect();
+                .map(|(actuator, force)| actuator.faults.specimen_force(actuator.bends(), force));
+            self.restoring_force = cell_forces.collect();
         }
     }
 
@@ -253,29 +262,30 @@ impl Bench {
     /// Starts a move to one target per actuator \[m\]. The move can have a number. All arrive simultaneously, and the actuator
     /// with the longest move has the speed `speed` \[m/s\].
     pub fn go_as(&mut self, id: Option<u64>, targets: &[f64], speed: f64) {
-        let all: Vec<usize> = (0..self.rams.len()).collect();
+        let all: Vec<usize> = (0..self.actuators.len()).collect();
         self.go_those(id, &all, targets, speed);
     }
 
     /// Starts such a move of these actuators alone.
-    pub fn go_those(&mut self, id: Option<u64>, rams: &[usize], targets: &[f64], speed: f64) {
+    pub fn go_those(&mut self, id: Option<u64>, actuators: &[usize], targets: &[f64], speed: f64) {
         let speed = speed.abs().min(self.settings.top_speed);
-        let way = |bench: &Self, ram: usize, to: f64| (to - bench.rams[ram].position).abs();
-        let farthest = rams
+        let travel =
+            |rig: &Self, actuator: usize, to: f64| (to - rig.actuators[actuator].position).abs();
+        let farthest = actuators
             .iter()
             .zip(targets)
-            .map(|(ram, to)| way(self, *ram, *to))
+            .map(|(actuator, to)| travel(self, *actuator, *to))
             .fold(0.0, f64::max);
-        for (ram, target) in rams.iter().zip(targets) {
-            self.judge(*ram, *target);
+        for (actuator, target) in actuators.iter().zip(targets) {
+            self.judge(*actuator, *target);
             self.targets.push(*target);
-            let way = way(self, *ram, *target);
-            self.rams[*ram].go(
+            let travel = travel(self, *actuator, *target);
+            self.actuators[*actuator].go(
                 *target,
-                if way == farthest {
+                if travel == farthest {
                     speed
                 } else {
-                    speed * (way / farthest)
+                    speed * (travel / farthest)
                 },
             );
         }
@@ -293,19 +303,19 @@ impl Bench {
     }
 
     /// The same for the actuator with this index.
-    pub fn refuse_of(&mut self, ram: usize, target: f64) {
-        self.judge(ram, target);
+    pub fn refuse_of(&mut self, actuator: usize, target: f64) {
+        self.judge(actuator, target);
     }
 
     /// The same for several targets, one per actuator.
     pub fn refuse_all(&mut self, targets: &[f64]) {
-        for (ram, target) in (0..self.rams.len()).zip(targets) {
-            self.judge(ram, *target);
+        for (actuator, target) in (0..self.actuators.len()).zip(targets) {
+            self.judge(actuator, *target);
         }
     }
 
-    pub(super) fn judge(&mut self, ram: usize, target: f64) {
-        if !self.rams[ram].allows(target) {
+    pub(super) fn judge(&mut self, actuator: usize, target: f64) {
+        if !self.actuators[actuator].allows(target) {
             self.violations.push(target);
         }
     }
@@ -313,15 +323,15 @@ impl Bench {
     /// Stops all actuators at their present position.
     pub fn hold(&mut self) {
         self.glides.clear();
-        for ram in &mut self.rams {
-            ram.hold();
+        for actuator in &mut self.actuators {
+            actuator.hold();
         }
     }
 
     /// Whether any actuator moves.
     #[must_use]
     pub fn moving(&self) -> bool {
-        self.rams.iter().any(Ram::moving)
+        self.actuators.iter().any(ActuatorModel::moving)
     }
 
     /// The present commanded position \[m\], as a controller knows it that counts its own steps.
@@ -331,8 +341,8 @@ impl Bench {
     }
 
     #[must_use]
-    pub fn commanded_of(&self, ram: usize) -> f64 {
-        self.rams[ram].position
+    pub fn commanded_of(&self, actuator: usize) -> f64 {
+        self.actuators[actuator].position
     }
 
     /// The reading of the displacement transducer \[m\].
@@ -340,8 +350,8 @@ impl Bench {
         self.displacement_of(self.view)
     }
 
-    pub fn displacement_of(&mut self, ram: usize) -> f64 {
-        self.rams[ram].displacement(self.time)
+    pub fn displacement_of(&mut self, actuator: usize) -> f64 {
+        self.actuators[actuator].displacement(self.time)
     }
 
     /// The reading of the load cell \[N\], with noise.
@@ -349,20 +359,22 @@ impl Bench {
         self.force_of(self.view)
     }
 
-    pub fn force_of(&mut self, ram: usize) -> f64 {
-        self.readings += u64::from(ram == 0);
+    pub fn force_of(&mut self, actuator: usize) -> f64 {
+        self.readings += u64::from(actuator == 0);
         let velocities = self.velocities();
-        let felt = self.structure.felt(&self.restoring_force, &velocities)[ram];
-        let ram = &mut self.rams[ram];
-        let at_the_cell = ram.settings.sign * felt;
-        ram.force(at_the_cell, self.time)
+        let cell_forces = self
+            .structure
+            .actuator_forces(&self.restoring_force, &velocities)[actuator];
+        let actuator = &mut self.actuators[actuator];
+        let at_the_cell = actuator.settings.sign * cell_forces;
+        actuator.force(at_the_cell, self.time)
     }
 
     /// The velocity of the specimen at each actuator \[m/s\].
     fn velocities(&self) -> Vec<f64> {
-        self.rams
+        self.actuators
             .iter()
-            .map(|ram| ram.settings.sign * ram.velocity())
+            .map(|actuator| actuator.settings.sign * actuator.velocity())
             .collect()
     }
 
@@ -385,8 +397,11 @@ impl Bench {
 
     /// The string that the controller sends for a force of the actuator with this index: `ordinary`, unless a fault replaces
     /// it. Call it once for each number sent.
-    pub fn shown_force(&mut self, ram: usize, ordinary: String) -> String {
-        self.rams[ram].faults.take_number().unwrap_or(ordinary)
+    pub fn shown_force(&mut self, actuator: usize, ordinary: String) -> String {
+        self.actuators[actuator]
+            .faults
+            .take_number()
+            .unwrap_or(ordinary)
     }
 
     /// The same for the actuator in view.
@@ -395,20 +410,22 @@ impl Bench {
     }
 
     /// From now on, values without an axis belong to this actuator. Returns the previous one.
-    pub(super) const fn look_from(&mut self, ram: usize) -> usize {
-        std::mem::replace(&mut self.view, ram)
+    pub(super) const fn look_from(&mut self, actuator: usize) -> usize {
+        std::mem::replace(&mut self.view, actuator)
     }
 
     /// Whether any of these actuators moves.
     #[must_use]
-    pub fn any_moving(&self, rams: &[usize]) -> bool {
-        rams.iter().any(|ram| self.rams[*ram].moving())
+    pub fn any_moving(&self, actuators: &[usize]) -> bool {
+        actuators
+            .iter()
+            .any(|actuator| self.actuators[*actuator].moving())
     }
 
     /// Stops these actuators at their present position.
-    pub fn hold_those(&mut self, rams: &[usize]) {
-        for ram in rams {
-            self.rams[*ram].hold();
+    pub fn hold_those(&mut self, actuators: &[usize]) {
+        for actuator in actuators {
+            self.actuators[*actuator].hold();
         }
     }
 
@@ -442,9 +459,9 @@ fn in_24_bits(count: f64) -> i64 {
     count.round().clamp(-8_388_608.0, 8_388_607.0) as i64
 }
 
+pub(crate) mod actuator;
 pub(crate) mod fault;
 pub(crate) mod glide;
-pub(crate) mod ram;
 pub(crate) mod structure;
 #[cfg(test)]
 mod tests;

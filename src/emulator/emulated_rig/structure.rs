@@ -1,4 +1,4 @@
-//! The structure on a bench: a specimen of one degree of freedom, or a frame with an actuator at every floor. In: positions and
+//! The structure on an emulated rig: a specimen of one degree of freedom, or a frame with an actuator at every floor. In: positions and
 //! moves of the actuators. Out: the restoring force at each. It knows no rig and no sensor.
 
 use crate::physics::relaxation::maxwell::Motion;
@@ -67,7 +67,7 @@ impl Structure {
     /// `going` at constant velocity. The actuators were at rest for the other `seconds`.
     pub(crate) fn bend(
         &mut self,
-        places: &[f64],
+        positions: &[f64],
         moved: &[f64],
         going: f64,
         seconds: f64,
@@ -75,26 +75,26 @@ impl Structure {
         let bent = |specimen: &mut SpecimenModel,
                     relaxing: &mut RelaxationState,
                     force: f64,
-                    place: f64,
+                    position: f64,
                     moved: f64| {
             let velocity = if moved == 0.0 { 0.0 } else { moved / going };
             let force = relaxing.advance(
                 specimen,
                 &Motion::even(velocity, going),
                 Deformed {
-                    displacement: place - moved,
+                    displacement: position - moved,
                     force,
                 },
-                place,
+                position,
             );
             relaxing.advance(
                 specimen,
                 &Motion::rest(seconds - going),
                 Deformed {
-                    displacement: place,
+                    displacement: position,
                     force,
                 },
-                place,
+                position,
             )
         };
         match self {
@@ -104,7 +104,7 @@ impl Structure {
                 force,
                 ..
             } => {
-                *force = bent(specimen, relaxing, *force, places[0], moved[0]);
+                *force = bent(specimen, relaxing, *force, positions[0], moved[0]);
                 vec![*force]
             }
             Self::Storeys {
@@ -114,11 +114,11 @@ impl Structure {
                 ..
             } => {
                 let (mut drift, mut apart, mut forces) = (
-                    vec![0.0; places.len()],
-                    vec![0.0; places.len()],
-                    vec![0.0; places.len()],
+                    vec![0.0; positions.len()],
+                    vec![0.0; positions.len()],
+                    vec![0.0; positions.len()],
                 );
-                drifts(places, &mut drift);
+                drifts(positions, &mut drift);
                 drifts(moved, &mut apart);
                 let storeys = models
                     .iter_mut()
@@ -133,13 +133,13 @@ impl Structure {
             }
             Self::Matrix(rows) => rows
                 .iter()
-                .map(|row| row.iter().zip(places).map(|(k, x)| k * x).sum())
+                .map(|row| row.iter().zip(positions).map(|(k, x)| k * x).sum())
                 .collect(),
         }
     }
 
     /// Calculates the forces on the load cells from `forces` \[N\] at these velocities of the actuators \[m/s\].
-    pub(crate) fn felt(&mut self, forces: &[f64], velocities: &[f64]) -> Vec<f64> {
+    pub(crate) fn actuator_forces(&mut self, forces: &[f64], velocities: &[f64]) -> Vec<f64> {
         match self {
             Self::One {
                 damping, relaxing, ..

@@ -1,12 +1,12 @@
-//! A stand: one bench and its controllers, each on a separate line. In: bytes of a line, time. Out: bytes of a line. It knows
+//! A rig emulator: one emulated rig and its controllers, each on a separate line. In: bytes of a line, time. Out: bytes of a line. It knows
 //! neither whether its time is real nor the transport of the bytes.
 
 use super::script::{Fault, Script};
-use super::{Bench, Faulty, Firmware, Log};
+use super::{EmulatedRig, Faulty, Firmware, Log};
 
 /// Everything behind the ports of an emulated rig.
-pub struct Stand {
-    bench: Bench,
+pub struct RigEmulator {
+    rig: EmulatedRig,
     lines: Vec<Line>,
     log: Log,
 }
@@ -15,56 +15,56 @@ struct Line {
     name: String,
     controller: Faulty,
     /// Whether its hang-up is in the log.
-    told: bool,
+    hangup_sent: bool,
 }
 
-impl Stand {
-    /// A stand without lines.
+impl RigEmulator {
+    /// A rig emulator without lines.
     #[must_use]
-    pub const fn new(bench: Bench, log: Log) -> Self {
+    pub const fn new(rig: EmulatedRig, log: Log) -> Self {
         Self {
-            bench,
+            rig,
             lines: Vec::new(),
             log,
         }
     }
 
-    /// A stand with its controllers, each with its name, the actuators first. A fault affects the controller that its line
+    /// A rig emulator with its controllers, each with its name, the actuators first. A fault affects the controller that its line
     /// names. For a load cell without an axis this is the first load cell, otherwise the first controller.
     #[must_use]
     pub fn of(
-        bench: Bench,
+        rig: EmulatedRig,
         log: Log,
         script: &Script,
         controllers: Vec<(String, Box<dyn Firmware>)>,
     ) -> Self {
-        let mut stand = Self::new(bench, log);
+        let mut emulator = Self::new(rig, log);
         let names: Vec<String> = controllers.iter().map(|(name, _)| name.clone()).collect();
         for (at, (name, firmware)) in controllers.into_iter().enumerate() {
-            let befalls = |fault: &&Fault| at == fault.place_among(&names).unwrap_or(0);
+            let befalls = |fault: &&Fault| at == fault.line_index(&names).unwrap_or(0);
             let faults = script.faults.iter().filter(befalls).cloned().collect();
             let controller = Faulty::new(
                 firmware,
                 faults,
-                stand.bench.settings().seed.wrapping_add(at as u64),
+                emulator.rig.settings().seed.wrapping_add(at as u64),
             );
-            stand.lines.push(Line {
+            emulator.lines.push(Line {
                 name,
                 controller,
-                told: false,
+                hangup_sent: false,
             });
         }
-        stand
+        emulator
     }
 
     #[must_use]
-    pub const fn bench(&self) -> &Bench {
-        &self.bench
+    pub const fn rig(&self) -> &EmulatedRig {
+        &self.rig
     }
 
     /// For a test that starts a fault by hand.
-    pub const fn bench_mut(&mut self) -> &mut Bench {
-        &mut self.bench
+    pub const fn rig_mut(&mut self) -> &mut EmulatedRig {
+        &mut self.rig
     }
 
     /// The number of lines, which are numbered from 0.
@@ -75,9 +75,9 @@ impl Stand {
 
     /// Advances everything to a later time since power-up \[s\].
     pub fn advance(&mut self, to: f64) {
-        self.bench.advance(to);
+        self.rig.advance(to);
         for line in &mut self.lines {
-            line.controller.tick(&mut self.bench);
+            line.controller.tick(&mut self.rig);
         }
         self.follow();
     }
@@ -88,14 +88,14 @@ impl Stand {
         if line.controller.hung_up() || bytes.is_empty() {
             return;
         }
-        self.log.from_host(self.bench.time(), &line.name, bytes);
-        line.controller.receive(bytes, &mut self.bench);
+        self.log.from_host(self.rig.time(), &line.name, bytes);
+        line.controller.receive(bytes, &mut self.rig);
         self.follow();
     }
 
     /// Returns one block of bytes that a line has for its host now.
     pub fn take(&mut self, line: usize) -> Option<Vec<u8>> {
-        let time = self.bench.time();
+        let time = self.rig.time();
         let piece = self.lines[line].controller.take(time);
         if let Some(bytes) = &piece {
             self.log.to_host(time, &self.lines[line].name, bytes);
@@ -119,19 +119,19 @@ impl Stand {
     pub fn connect(&mut self, line: usize) {
         let line = &mut self.lines[line];
         line.controller.reconnect();
-        line.told = false;
-        self.log.happened(self.bench.time(), &line.name, "opened");
+        line.hangup_sent = false;
+        self.log.happened(self.rig.time(), &line.name, "opened");
     }
 
     /// The host of a line disconnected.
     pub fn host_left(&mut self, line: usize) {
         self.log
-            .happened(self.bench.time(), &self.lines[line].name, "host left");
+            .happened(self.rig.time(), &self.lines[line].name, "host left");
     }
 
     /// Writes the end of the log. Returns whether every target was within the limits.
     pub fn end(&mut self) -> bool {
-        self.log.end(&self.bench)
+        self.log.end(&self.rig)
     }
 
     /// Returns the write error of the log, if there was one.
@@ -140,11 +140,11 @@ impl Stand {
     }
 
     fn follow(&mut self) {
-        self.log.follow(&self.bench);
+        self.log.follow(&self.rig);
         for line in &mut self.lines {
-            if line.controller.hung_up() && !line.told {
-                line.told = true;
-                self.log.happened(self.bench.time(), &line.name, "hung up");
+            if line.controller.hung_up() && !line.hangup_sent {
+                line.hangup_sent = true;
+                self.log.happened(self.rig.time(), &line.name, "hung up");
             }
         }
     }

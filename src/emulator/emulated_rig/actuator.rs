@@ -1,4 +1,4 @@
-//! One actuator of a bench, with its transducer and its load cell. In: targets, time, the force on it. Out: its position and
+//! One actuator of an emulated rig, with its transducer and its load cell. In: targets, time, the force on it. Out: its position and
 //! the readings of its sensors, in SI, with noise, quantization and faults. It knows neither the other actuators nor a
 //! protocol.
 
@@ -6,7 +6,7 @@ use rand_distr::{Distribution as _, Normal};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::SeedableRng as _;
 
-use super::fault::BenchFaults;
+use super::fault::MechanicalFaults;
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::Interval;
 
@@ -15,7 +15,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// The properties of an actuator and its sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RamSettings {
+pub struct ActuatorSettings {
     /// Polarity (+1 or −1) of its displacement and force at the specimen.
     pub sign: f64,
     /// Standard deviation of a force reading \[N\].
@@ -27,10 +27,10 @@ pub struct RamSettings {
 }
 
 #[derive(Debug)]
-pub(crate) struct Ram {
-    pub(crate) settings: RamSettings,
+pub(crate) struct ActuatorModel {
+    pub(crate) settings: ActuatorSettings,
     generator: Pcg64,
-    pub(crate) faults: BenchFaults,
+    pub(crate) faults: MechanicalFaults,
     /// The present commanded position \[m\].
     pub(crate) position: f64,
     /// The position without lag \[m\].
@@ -46,9 +46,9 @@ pub(crate) struct Ram {
     course: Option<(Path, f64)>,
 }
 
-impl Ram {
-    pub(crate) fn new(settings: RamSettings, seed: u64) -> Self {
-        let (generator, faults) = (Pcg64::seed_from_u64(seed), BenchFaults::none(seed));
+impl ActuatorModel {
+    pub(crate) fn new(settings: ActuatorSettings, seed: u64) -> Self {
+        let (generator, faults) = (Pcg64::seed_from_u64(seed), MechanicalFaults::none(seed));
         Self {
             settings,
             generator,
@@ -64,14 +64,14 @@ impl Ram {
     }
 
     /// Moves to this initial position \[m\] with the specimen undeformed.
-    pub(crate) fn stand_at(&mut self, place: f64) {
+    pub(crate) fn stand_at(&mut self, position: f64) {
         (
             self.position,
             self.reached,
             self.at,
             self.target,
             self.mounted_at,
-        ) = (place, place, place, place, place);
+        ) = (position, position, position, position, position);
     }
 
     /// The displacement of the specimen \[m\].
@@ -112,7 +112,7 @@ impl Ram {
         self.position = if ended {
             path.to + past.max(0.0) * path.end_velocity
         } else {
-            path.place(*elapsed)
+            path.position(*elapsed)
         };
         if ended && path.end_velocity == 0.0 {
             self.course = None;
@@ -126,11 +126,11 @@ impl Ram {
         if self.course.is_some() {
             self.glide(seconds);
         } else if left != 0.0 {
-            let way = self.speed * seconds;
-            self.position = if left.abs() <= way {
+            let travel = self.speed * seconds;
+            self.position = if left.abs() <= travel {
                 self.target
             } else {
-                self.position + way.copysign(left)
+                self.position + travel.copysign(left)
             };
         }
         // The position of an actuator without faults equals its command exactly. A sum of increments would have rounding
@@ -195,10 +195,10 @@ impl Ram {
         }
     }
 
-    /// The reading of its load cell \[N\] for a true force `felt` at `time` \[s\].
-    pub(crate) fn force(&mut self, felt: f64, time: f64) -> f64 {
+    /// The reading of its load cell \[N\] for a true force `true_force` at `time` \[s\].
+    pub(crate) fn force(&mut self, true_force: f64, time: f64) -> f64 {
         let noise = Normal::new(0.0, self.settings.noise)
             .map_or(0.0, |normal| normal.sample(&mut self.generator));
-        self.faults.read_force(felt + noise, time)
+        self.faults.read_force(true_force + noise, time)
     }
 }

@@ -1,26 +1,26 @@
-//! Smooth moves of a bench's actuators. Each move ends with a position and a velocity, and the next one follows without a stop.
+//! Smooth moves of an emulated rig's actuators. Each move ends with a position and a velocity, and the next one follows without a stop.
 //! Without a next move, the actuators continue at their velocity. In: end points, one per actuator, and times. Out: the paths
 //! to these end points. It checks no limit: the controller does that.
 
-use crate::emulator::Bench;
+use crate::emulator::EmulatedRig;
 use crate::emulator::SentMove;
 use crate::physics::tracking::trajectory::Path;
 
 /// The end of a smooth move: position \[m\] and velocity \[m/s\].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WayEnd {
-    pub place: f64,
+pub struct PathEnd {
+    pub position: f64,
     pub velocity: f64,
 }
 
-/// The commanded smooth moves of a bench.
+/// The commanded smooth moves of an emulated rig.
 #[derive(Debug, Default)]
 pub(crate) struct Glides {
     /// End time of the last move that began \[s\]; none while the actuators go to targets.
     end: Option<f64>,
-    ends: Vec<WayEnd>,
+    ends: Vec<PathEnd>,
     /// The next move and its duration \[s\].
-    next: Option<(Vec<WayEnd>, f64)>,
+    next: Option<(Vec<PathEnd>, f64)>,
 }
 
 impl Glides {
@@ -31,33 +31,33 @@ impl Glides {
 
 /// The reason why a move is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NoWay {
+pub enum GlideRefusal {
     /// The actuators go to targets, or one move is already waiting.
     Busy,
     /// The move would have ended before now.
     Late,
 }
 
-impl Bench {
+impl EmulatedRig {
     /// Calculates the paths, one per actuator, of a move of `seconds` after the last one, or from now on.
     ///
     /// # Errors
     /// The move is refused.
-    pub fn paths_to(&self, ends: &[WayEnd], seconds: f64) -> Result<Vec<Path>, NoWay> {
-        let path = |from: WayEnd, to: &WayEnd, seconds| Path {
-            from: from.place,
-            to: to.place,
+    pub fn paths_to(&self, ends: &[PathEnd], seconds: f64) -> Result<Vec<Path>, GlideRefusal> {
+        let path = |from: PathEnd, to: &PathEnd, seconds| Path {
+            from: from.position,
+            to: to.position,
             start_velocity: from.velocity,
             end_velocity: to.velocity,
             seconds,
         };
-        let here = self.rams.iter().map(|ram| WayEnd {
-            place: ram.position,
-            velocity: ram.velocity(),
+        let here = self.actuators.iter().map(|actuator| PathEnd {
+            position: actuator.position,
+            velocity: actuator.velocity(),
         });
-        match self.glides.end.filter(|_| self.glide_under_way()) {
+        match self.glides.end.filter(|_| self.is_gliding()) {
             Some(end) if end > self.time => match self.glides.next {
-                Some(_) => Err(NoWay::Busy),
+                Some(_) => Err(GlideRefusal::Busy),
                 None => Ok(self
                     .glides
                     .ends
@@ -71,9 +71,9 @@ impl Bench {
                     .zip(ends)
                     .map(|(from, to)| path(from, to, left))
                     .collect()),
-                _ => Err(NoWay::Late),
+                _ => Err(GlideRefusal::Late),
             },
-            None if self.moving() => Err(NoWay::Busy),
+            None if self.moving() => Err(GlideRefusal::Busy),
             None => Ok(here
                 .zip(ends)
                 .map(|(from, to)| path(from, to, seconds))
@@ -86,13 +86,13 @@ impl Bench {
         &mut self,
         id: Option<u64>,
         paths: &[Path],
-        ends: &[WayEnd],
+        ends: &[PathEnd],
         seconds: f64,
     ) -> f64 {
-        for (ram, path) in paths.iter().enumerate() {
+        for (actuator, path) in paths.iter().enumerate() {
             let (low, high) = path.reach();
-            self.judge(ram, low);
-            self.judge(ram, high);
+            self.judge(actuator, low);
+            self.judge(actuator, high);
             self.targets.push(path.to);
         }
         let speed = paths.iter().map(Path::fastest).fold(0.0, f64::max);
@@ -102,15 +102,15 @@ impl Bench {
             targets: paths.iter().map(|path| path.to).collect(),
             speed,
         });
-        let under_way = self.glides.end.filter(|_| self.glide_under_way());
-        if let Some(end) = under_way.filter(|end| *end > self.time) {
+        let gliding_until = self.glides.end.filter(|_| self.is_gliding());
+        if let Some(end) = gliding_until.filter(|end| *end > self.time) {
             self.glides.next = Some((ends.to_vec(), seconds));
             return end + seconds - self.time;
         }
-        let end = under_way.unwrap_or(self.time) + seconds;
+        let end = gliding_until.unwrap_or(self.time) + seconds;
         (self.glides.end, self.glides.ends) = (Some(end), ends.to_vec());
-        for (ram, path) in self.rams.iter_mut().zip(paths) {
-            ram.follow(*path);
+        for (actuator, path) in self.actuators.iter_mut().zip(paths) {
+            actuator.follow(*path);
         }
         end - self.time
     }
@@ -118,12 +118,14 @@ impl Bench {
     /// Returns the time since the end of the last move \[s\]; none during a move or at rest.
     #[must_use]
     pub fn gone_on(&self) -> Option<f64> {
-        let end = self.glides.end.filter(|_| self.glide_under_way())?;
+        let end = self.glides.end.filter(|_| self.is_gliding())?;
         Some(self.time - end).filter(|gone_on| *gone_on > 0.0)
     }
 
-    fn glide_under_way(&self) -> bool {
-        self.rams.iter().any(super::ram::Ram::glides)
+    fn is_gliding(&self) -> bool {
+        self.actuators
+            .iter()
+            .any(super::actuator::ActuatorModel::glides)
     }
 
     /// Returns the start time of the waiting move \[s\].
@@ -135,17 +137,20 @@ impl Bench {
         let (Some((ends, seconds)), Some(end)) = (self.glides.next.take(), self.glides.end) else {
             return;
         };
-        let from = self.rams.iter().map(|ram| (ram.position, ram.velocity()));
-        let path = |((from, start_velocity), to): ((f64, f64), &WayEnd)| Path {
+        let from = self
+            .actuators
+            .iter()
+            .map(|actuator| (actuator.position, actuator.velocity()));
+        let path = |((from, start_velocity), to): ((f64, f64), &PathEnd)| Path {
             from,
-            to: to.place,
+            to: to.position,
             start_velocity,
             end_velocity: to.velocity,
             seconds: end + seconds - self.time,
         };
         let paths: Vec<Path> = from.zip(&ends).map(path).collect();
-        for (ram, path) in self.rams.iter_mut().zip(paths) {
-            ram.follow(path);
+        for (actuator, path) in self.actuators.iter_mut().zip(paths) {
+            actuator.follow(path);
         }
         (self.glides.end, self.glides.ends) = (Some(end + seconds), ends);
     }
@@ -154,62 +159,67 @@ impl Bench {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::emulator::testing::bench;
+    use crate::emulator::testing::elastic_rig;
 
-    fn told(bench: &mut Bench, place: f64, velocity: f64, seconds: f64) -> Result<f64, NoWay> {
-        let ends = [WayEnd { place, velocity }];
-        let paths = bench.paths_to(&ends, seconds)?;
-        Ok(bench.follow(None, &paths, &ends, seconds))
+    fn glide(
+        rig: &mut EmulatedRig,
+        position: f64,
+        velocity: f64,
+        seconds: f64,
+    ) -> Result<f64, GlideRefusal> {
+        let ends = [PathEnd { position, velocity }];
+        let paths = rig.paths_to(&ends, seconds)?;
+        Ok(rig.follow(None, &paths, &ends, seconds))
     }
 
     #[test]
-    fn ways_are_passed_in_place_and_time_also_where_the_next_comes_late() {
-        let mut bench = bench();
-        assert_eq!(told(&mut bench, 0.001, 0.002, 1.0), Ok(1.0));
-        bench.advance(0.5);
+    fn paths_are_followed_in_position_and_time_also_if_the_next_comes_late() {
+        let mut rig = elastic_rig();
+        assert_eq!(glide(&mut rig, 0.001, 0.002, 1.0), Ok(1.0));
+        rig.advance(0.5);
         // x = 3·1 mm·s² − 2·1 mm·s³ + 2 mm/s·(s³ − s²)·1 s at s = 0.5.
-        assert!((bench.commanded() - (0.75e-3 - 0.25e-3 + 2e-3 * (0.125 - 0.25))).abs() < 1e-15);
-        assert_eq!(told(&mut bench, 0.002, -0.001, 0.5), Ok(1.0), "one waits");
-        assert_eq!(told(&mut bench, 0.0, 0.0, 0.5), Err(NoWay::Busy));
-        bench.advance(1.5);
-        assert!((bench.commanded() - 0.002).abs() < 1e-15 && bench.moving());
-        bench.advance(1.6);
+        assert!((rig.commanded() - (0.75e-3 - 0.25e-3 + 2e-3 * (0.125 - 0.25))).abs() < 1e-15);
+        assert_eq!(glide(&mut rig, 0.002, -0.001, 0.5), Ok(1.0), "one waits");
+        assert_eq!(glide(&mut rig, 0.0, 0.0, 0.5), Err(GlideRefusal::Busy));
+        rig.advance(1.5);
+        assert!((rig.commanded() - 0.002).abs() < 1e-15 && rig.moving());
+        rig.advance(1.6);
         assert!(
-            (bench.commanded() - 0.0019).abs() < 1e-15
-                && bench
+            (rig.commanded() - 0.0019).abs() < 1e-15
+                && rig
                     .gone_on()
                     .is_some_and(|gone_on| (gone_on - 0.1).abs() < 1e-12)
         );
         assert!(
-            told(&mut bench, 0.001, 0.0, 0.5).is_ok_and(|left| (left - 0.4).abs() < 1e-12),
+            glide(&mut rig, 0.001, 0.0, 0.5).is_ok_and(|left| (left - 0.4).abs() < 1e-12),
             "its time began at 1.5 s"
         );
-        bench.advance(2.0);
-        assert!(bench.commanded() == 0.001 && !bench.moving() && bench.gone_on().is_none());
+        rig.advance(2.0);
+        assert!(rig.commanded() == 0.001 && !rig.moving() && rig.gone_on().is_none());
     }
 
     #[test]
-    fn a_way_that_would_have_ended_is_none_and_a_held_ram_goes_no_farther() {
-        let mut bench = bench();
-        told(&mut bench, 0.001, 0.002, 1.0).unwrap();
-        bench.advance(1.3);
-        assert_eq!(told(&mut bench, 0.002, 0.0, 0.2), Err(NoWay::Late));
-        bench.hold();
-        let held = bench.commanded();
-        bench.advance(2.0);
-        assert!(bench.commanded() == held && !bench.moving());
+    fn an_expired_path_is_refused_and_a_held_actuator_goes_no_farther() {
+        let mut rig = elastic_rig();
+        glide(&mut rig, 0.001, 0.002, 1.0).unwrap();
+        rig.advance(1.3);
+        assert_eq!(glide(&mut rig, 0.002, 0.0, 0.2), Err(GlideRefusal::Late));
+        rig.hold();
+        let held = rig.commanded();
+        rig.advance(2.0);
+        assert!(rig.commanded() == held && !rig.moving());
         assert!(
-            told(&mut bench, 0.001, 0.0, 0.1).is_ok_and(|left| (left - 0.1).abs() < 1e-12),
+            glide(&mut rig, 0.001, 0.0, 0.1).is_ok_and(|left| (left - 0.1).abs() < 1e-12),
             "from rest"
         );
     }
 
     /// A spring and a damper: the force depends on position and velocity only, and not on the time steps.
     #[test]
-    fn the_force_is_that_of_place_and_velocity() {
-        let mut bench = bench();
-        told(&mut bench, 0.004, 0.01, 1.0).unwrap();
-        bench.advance(0.777);
+    fn the_force_is_that_of_position_and_velocity() {
+        let mut rig = elastic_rig();
+        glide(&mut rig, 0.004, 0.01, 1.0).unwrap();
+        rig.advance(0.777);
         let path = Path {
             from: 0.0,
             to: 0.004,
@@ -217,11 +227,11 @@ mod tests {
             end_velocity: 0.01,
             seconds: 1.0,
         };
-        assert!((bench.commanded() - path.place(0.777)).abs() < 1e-12);
+        assert!((rig.commanded() - path.position(0.777)).abs() < 1e-12);
         assert!(
-            (bench.force() - 1e5 * path.place(0.777)).abs() < 1e-6,
+            (rig.force() - 1e5 * path.position(0.777)).abs() < 1e-6,
             "{}",
-            bench.force()
+            rig.force()
         );
     }
 }
