@@ -290,11 +290,11 @@ mod tests {
         let answers = answers(&metadata, &fragility_rows(&stripes, 200));
         let text = text(&metadata, &answers);
         for part in [
-            "    drop_height = 400.0 mm: exceeded in ",
+            "    drop_height = 0.4000 m: exceeded in ",
             "    drop_height = 1.600 m: exceeded in ",
             " of 200 runs [",
             "  median ",
-            ", dispersion 0.4",
+            ", dispersion 0.3",
         ] {
             assert!(text.contains(part), "{part:?} in\n{text}");
         }

@@ -139,7 +139,8 @@ fn commands_and_options_on_the_pages_are_those_of_the_program() {
         for line in marked.map(|code| &code[4..]).chain(lines) {
             let line = line.split(" #").next().unwrap_or_default();
             let words: Vec<&str> = line.split_whitespace().collect();
-            let count = if words.first() == Some(&"rig") { 2 } else { 1 };
+            let has_subcommands = matches!(words.first(), Some(&"rig" | &"study"));
+            let count = if has_subcommands { 2 } else { 1 };
             let command: Vec<&str> = words.iter().copied().take(count).filter(is_word).collect();
             if command.is_empty() || command[0].starts_with('-') {
                 continue;

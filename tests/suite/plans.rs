@@ -17,7 +17,10 @@ fn plans() -> Vec<PathBuf> {
     let mut found: Vec<PathBuf> = fs::read_dir(root().join("plans"))
         .expect("plans/ is there")
         .map(|entry| entry.expect("readable").path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "psd"))
+        .filter(|path| {
+            let ending = path.extension().unwrap_or_default();
+            ending == "psd" || ending == "md" && !path.ends_with("README.md")
+        })
         .collect();
     found.sort();
     found
@@ -63,7 +66,9 @@ fn ran(plan: &str) -> &'static Run {
         if folder.exists() {
             fs::remove_dir_all(&folder).expect("what an earlier test left can go");
         }
-        let output = psd_run(&root().join(format!("plans/{plan}.psd")), &folder);
+        let all = plans().into_iter();
+        let path = all.filter(|path| path.file_stem().is_some_and(|stem| stem == plan));
+        let output = psd_run(&path.last().expect("a plan of that name"), &folder);
         Run { folder, output }
     })
 }

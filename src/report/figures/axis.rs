@@ -83,13 +83,13 @@ impl Axis {
 
     /// An axis with a name at every whole number.
     fn of_names(quantity: &Quantity) -> Self {
-        let ticks: Vec<(f64, String)> = (0_u32..)
+        let ticks: Vec<(f64, String)> = (1_u32..)
             .map(f64::from)
             .zip(quantity.names.iter().cloned())
             .collect();
         let last = ticks.last().map_or(0.0, |(at, _)| *at);
         Self {
-            low: -0.5,
+            low: 0.5,
             high: last + 0.5,
             ticks,
             title: quantity.name.to_string(),
@@ -183,9 +183,9 @@ mod tests {
             ..Quantity::of("", Dimension::NUMBER)
         };
         let axis = Axis::over(&names, [7.0].into_iter(), 5);
-        assert_eq!([axis.low, axis.high], [-0.5, 1.5]);
-        assert_eq!(axis.ticks[1], (1.0, "speed".to_owned()));
-        assert_eq!(axis.fraction(0.5), 0.5);
+        assert_eq!([axis.low, axis.high], [0.5, 2.5]);
+        assert_eq!(axis.ticks[1], (2.0, "speed".to_owned()));
+        assert_eq!(axis.fraction(1.5), 0.5);
     }
 
     #[test]

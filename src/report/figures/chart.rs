@@ -45,7 +45,7 @@ pub(crate) struct Quantity {
     pub end: End,
     /// Whether zero must be on the axis.
     pub from_zero: bool,
-    /// Names instead of numbers: name i is at i, the first one lowest. Empty: an axis of numbers.
+    /// Names instead of numbers: the first one is at 1, the lowest. Empty: an axis of numbers.
     pub names: Vec<String>,
 }
 

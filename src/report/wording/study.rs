@@ -9,6 +9,8 @@ phrases! {
         specimen does.";
     fn decided(met, not_met, undecided) = "Requirements on the study: {met} met, {not_met} not met, {undecided} undecided.";
     fn incomplete(runs, at_most) = "INCOMPLETE: {runs} of up to {at_most} runs. An incomplete study decides nothing.";
+    fn curve(median, dispersion) = "Median θ = {median}, dispersion β = {dispersion}.";
+    NO_CURVE = "No fragility curve fits.";
     NO_STUDIED = "The plan has no requirement on a probability of this study.";
 
     // The first page.
@@ -90,8 +92,8 @@ phrases! {
     GOODNESS = "Goodness of fit: probability of a deviance as large as this one if the curve is lognormal. Below 5 % the curve is \
         doubtful.";
     NO_MIDDLE = "No stripe has between 10 % and 90 % of exceedances: the dispersion is a guess. Add intensities between them.";
-    SPREAD = "The dispersion is that of the varied inputs. The record-to-record dispersion is not included: one ground motion is \
-        scaled.";
+    SPREAD = "The dispersion is that of the varied inputs alone. A record-to-record dispersion is part of it only if the ground \
+        motion is one of them.";
     STEPPED = "stepped";
 
     // Looks.
@@ -114,7 +116,7 @@ phrases! {
     NO_SETTINGS = "none";
     DATA_SET = "Data set";
     fn data_set(runs) = "{runs} rows, one a run";
-    DATA_DIGEST = "SHA-256 of the data set's metadata";
+    REPORT = "Report, first digits of the SHA-256 of the data set's metadata";
     SAME = "Run i depends on the seed and i alone. The same plan, seed and program give the same data set, bit for bit.";
 
     // Figures.

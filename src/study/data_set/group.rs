@@ -23,6 +23,8 @@ pub struct Group {
 pub struct Meter {
     bytes: u64,
     digest: Sha256,
+    /// The end of the file, which is not written yet.
+    held: Option<Vec<u8>>,
 }
 
 /// The meter, shared by the writer of the file and the one who ends its row groups.
@@ -33,12 +35,31 @@ impl SharedMeter {
     /// The bytes so far are a row group.
     pub fn end_group(&self, rows: u64) -> Group {
         let mut meter = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let Meter { bytes, digest } = std::mem::take(&mut *meter);
+        let Meter { bytes, digest, .. } = std::mem::take(&mut *meter);
         Group {
             rows,
             bytes,
             sha256: hex(&digest.finalize()),
         }
+    }
+
+    /// Holds the bytes that follow.
+    pub fn hold(&self) {
+        let mut meter = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        meter.held = Some(Vec::new());
+    }
+
+    /// The bytes since [`SharedMeter::hold`].
+    pub fn held(&self) -> Vec<u8> {
+        let mut meter = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        meter.held.take().unwrap_or_default()
+    }
+
+    /// Whether the bytes are held.
+    fn holds(&self, bytes: &[u8]) -> bool {
+        let mut meter = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let held = meter.held.as_mut().map(|held| held.extend(bytes));
+        held.is_some()
     }
 
     fn count(&self, bytes: &[u8]) {
@@ -56,6 +77,9 @@ pub struct Metered<W> {
 
 impl<W: Write> Write for Metered<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.meter.holds(bytes) {
+            return Ok(bytes.len());
+        }
         let written = self.out.write(bytes)?;
         self.meter.count(&bytes[..written]);
         Ok(written)

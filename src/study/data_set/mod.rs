@@ -15,6 +15,7 @@
 
 mod block;
 mod fault;
+mod footer;
 mod frame;
 mod group;
 mod metadata;

@@ -13,14 +13,13 @@ use sha2::{Digest as _, Sha256};
 
 use super::block::{Block, Row};
 use super::fault::DataSetFault;
+use super::footer::{self, Footer};
 use super::frame;
 use super::group::Group;
 use super::metadata::{FORMAT, Metadata};
 use super::writer::{KEY_FORMAT, KEY_GROUPS, KEY_STUDY};
 use crate::text::digest::hex;
 
-/// Shortest file: its mark, the length of the footer, and the mark again.
-const LEAST_BYTES: u64 = 12;
 /// Bytes that are digested together.
 const CHUNK: usize = 1 << 16;
 
@@ -39,20 +38,23 @@ impl Reader {
     /// # Errors
     /// The file cannot be read, is no data set of a study, or is incomplete.
     pub fn open(path: &Path) -> Result<Self, DataSetFault> {
-        let file = File::open(path).map_err(DataSetFault::of(path))?;
-        let length = file.metadata().map_err(DataSetFault::of(path))?.len();
-        if length < LEAST_BYTES {
-            return Err(DataSetFault::new(path, "is incomplete: it has no footer"));
-        }
-        let footer = ParquetReader::new(file).get_metadata().cloned();
-        let footer = footer.map_err(|error| {
-            DataSetFault::new(
-                path,
-                format!("is incomplete, or not a Parquet file: {error}"),
-            )
-        })?;
+        let mut file = File::open(path).map_err(DataSetFault::of(path))?;
         let foreign =
             || DataSetFault::new(path, "is a Parquet file, but not a data set of a study");
+        match footer::verify(&mut file).map_err(DataSetFault::of(path))? {
+            Footer::Intact => {}
+            Footer::Foreign => return Err(foreign()),
+            Footer::Incomplete => {
+                let reason = "is incomplete, or not a Parquet file";
+                return Err(DataSetFault::new(path, reason));
+            }
+            Footer::Damaged => {
+                let reason = "has a damaged footer: its SHA-256 is not the one before it";
+                return Err(DataSetFault::new(path, reason));
+            }
+        }
+        let footer = ParquetReader::new(file).get_metadata().cloned();
+        let footer = footer.map_err(DataSetFault::of(path))?;
         let format = text(&footer, KEY_FORMAT).ok_or_else(foreign)?;
         if format != FORMAT.to_string() {
             let reason = format!("is a data set of format {format}, this program reads {FORMAT}");

@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use polars::prelude::{Column as FrameColumn, DataFrame, ParquetWriter};
+use polars::prelude::{
+    Column as FrameColumn, DataFrame, ParquetReader, ParquetWriter, SerReader as _,
+};
 use tempfile::TempDir;
 
 use super::testing::{metadata, row};
@@ -169,39 +171,39 @@ fn a_changed_byte_is_found_with_its_runs() {
         changed[at] ^= 4;
         std::fs::write(&path, &changed).unwrap();
         let fault = fault(&path);
-        let found =
-            fault.contains("runs 5 to 204: damaged") || at == 0 && fault.contains("not a Parquet");
-        assert!(found, "{at}: {fault}");
+        assert!(fault.contains("runs 5 to 204: damaged"), "{at}: {fault}");
     }
 }
 
-/// A changed byte of the footer is an error, or changes nothing that is read.
+/// A changed byte of the footer is found before the footer is parsed; one of the tail, or of its digest, as well.
 #[test]
-fn a_changed_footer_gives_no_other_rows() {
+fn a_changed_footer_is_found() {
     let folder = folder();
     let path = small(&folder);
     let bytes = std::fs::read(&path).unwrap();
-    let rows: Vec<Row> = (5..205).map(row).collect();
-    let length = usize::try_from(u32::from_le_bytes(
-        bytes[bytes.len() - 8..bytes.len() - 4].try_into().unwrap(),
-    ))
-    .unwrap();
-    let footer = bytes.len() - 8 - length;
-    for at in (footer..bytes.len()).step_by(7) {
+    let tail = bytes.len() - 8;
+    let length = u32::from_le_bytes(bytes[tail..tail + 4].try_into().unwrap());
+    let footer = tail - usize::try_from(length).unwrap();
+    for at in (footer - 40..bytes.len()).step_by(3) {
         let mut changed = bytes.clone();
         changed[at] ^= 1;
         std::fs::write(&path, &changed).unwrap();
-        if let Ok(reader) = Reader::open(&path)
-            && let Ok(read) = reader.rows().collect::<Result<Vec<Row>, _>>()
-        {
-            assert_eq!(read.len(), rows.len(), "{at}");
-            let same = read
-                .iter()
-                .zip(&rows)
-                .all(|(read, row)| bits(read) == bits(row));
-            assert!(same, "{at}");
-        }
+        let fault = fault(&path);
+        let found = ["damaged footer", "is incomplete", "not a data set"];
+        assert!(
+            found.iter().any(|part| fault.contains(part)),
+            "{at}: {fault}"
+        );
     }
+}
+
+/// The digest lies before the footer, where no reader of Parquet looks.
+#[test]
+fn other_programs_read_a_data_set() {
+    let folder = folder();
+    let file = std::fs::File::open(small(&folder)).unwrap();
+    let frame = ParquetReader::new(file).finish().unwrap();
+    assert_eq!((frame.height(), frame.width()), (200, 8));
 }
 
 #[test]

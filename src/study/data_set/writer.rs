@@ -4,7 +4,7 @@
 //! The encodings are stated here: left to Polars, they would depend on an estimate with a random seed.
 
 use std::fs::{File, OpenOptions};
-use std::io::BufWriter;
+use std::io::{BufWriter, Write as _};
 use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::{Path, PathBuf};
 
@@ -20,7 +20,7 @@ use super::block::{Block, Row};
 use super::fault::DataSetFault;
 use super::group::{Group, Metered, SharedMeter};
 use super::metadata::{FORMAT, Metadata};
-use super::{GROUP_RUNS, frame};
+use super::{GROUP_RUNS, footer, frame};
 
 /// Keys of the footer.
 pub(super) const KEY_FORMAT: &str = "psd.format";
@@ -147,8 +147,12 @@ impl Writer {
         let KeyValueMetadata::Static(texts) = KeyValueMetadata::from_static(texts) else {
             unreachable!("made of texts")
         };
+        self.meter.hold();
         let failed = DataSetFault::of(&self.part);
         self.out.end(Some(texts)).map_err(&failed)?;
+        let end = footer::with_digest(&self.meter.held());
+        let failed = DataSetFault::of(&self.part);
+        self.file.write_all(&end).map_err(failed)?;
         let failed = DataSetFault::of(&self.part);
         self.file.sync_all().map_err(failed)?;
         let failed = DataSetFault::of(&self.path);

@@ -49,8 +49,9 @@ pub fn document(source: &Source<'_>) -> Document {
     } = source;
     let mut body = Vec::new();
     statements(source, &mut body);
-    body.push(Block::NewPage);
     runs::requirements(source, &mut body);
+    first_figure(source, &mut body);
+    body.push(Block::NewPage);
     fragility::section(source, &mut body);
     results::section(source, &mut body);
     results::sensitivities(source, &mut body);
@@ -72,7 +73,7 @@ pub fn document(source: &Source<'_>) -> Document {
         verdict: Verdict {
             tone: tone(answers),
             heading: wording::HEADING.to_owned(),
-            text: statement(answers),
+            text: statement(metadata, answers),
         },
         notices: Vec::new(),
         watermarks: vec![wording::WATERMARK],
@@ -122,7 +123,7 @@ fn tone(answers: &Answers) -> Tone {
     }
 }
 
-fn statement(answers: &Answers) -> Text {
+fn statement(metadata: &Metadata, answers: &Answers) -> Text {
     let count = |decision| {
         let decided = answers.studied.iter().filter(|it| it.decision == decision);
         decided.count()
@@ -132,7 +133,9 @@ fn statement(answers: &Answers) -> Text {
         let words = wording::incomplete(answers.runs, answers.at_most);
         text = text.with(Style::Strong, words).and(" ");
     }
-    let decided = if answers.studied.is_empty() {
+    let decided = if let Some(curve) = fragility::statement(metadata, answers) {
+        curve
+    } else if answers.studied.is_empty() {
         wording::NO_STUDIED.to_owned()
     } else {
         wording::decided(
@@ -144,7 +147,7 @@ fn statement(answers: &Answers) -> Text {
     text.and(decided).and(" ").and(wording::SIMULATED)
 }
 
-/// The statements and the figure of the first page.
+/// The statements of the first page.
 fn statements(source: &Source<'_>, body: &mut Vec<Block>) {
     let answers = source.answers;
     if !answers.studied.is_empty() {
@@ -174,6 +177,10 @@ fn statements(source: &Source<'_>, body: &mut Vec<Block>) {
             body.push(Block::note(wording::NOT_EXACT));
         }
     }
+}
+
+/// The curve of a fragility, or the first histogram.
+fn first_figure(source: &Source<'_>, body: &mut Vec<Block>) {
     let first = source.figures.first().map(|figure| figure.kind);
     let shown = match first {
         Some(FigureKind::Fragility) => FigureKind::Fragility,

@@ -52,14 +52,14 @@ pub fn figures(metadata: &Metadata, answers: &Answers) -> Vec<StudyFigure> {
         figures.extend(of_fragility(metadata, fragility));
         figures.extend(intensity_scatter(metadata, answers));
     }
-    for (index, result) in answers.results.iter().enumerate() {
-        let column = &metadata.results[index];
-        let limits = limits(metadata, index);
-        figures.extend(histogram(index, column, result, &limits));
-        figures.extend(cumulative(index, column, result, &limits));
-        figures.extend(tornado(index, metadata, result));
-        figures.extend(scatter(index, metadata, answers));
-    }
+    let results = || answers.results.iter().enumerate();
+    let drawn = |(index, result)| histogram(index, metadata, result);
+    figures.extend(results().filter_map(drawn));
+    let drawn = |(index, result)| cumulative(index, metadata, result);
+    figures.extend(results().filter_map(drawn));
+    let drawn = |(index, result)| tornado(index, metadata, result);
+    figures.extend(results().filter_map(drawn));
+    figures.extend(results().filter_map(|(index, _)| scatter(index, metadata, answers)));
     figures
 }
 
@@ -123,12 +123,8 @@ fn limit_lines(
     clippy::cast_precision_loss,
     reason = "counts of at most a quarter of a million kept runs"
 )]
-fn histogram(
-    index: usize,
-    column: &Column,
-    result: &ResultAnswer,
-    limits: &[(&str, f64)],
-) -> Option<StudyFigure> {
+fn histogram(index: usize, metadata: &Metadata, result: &ResultAnswer) -> Option<StudyFigure> {
+    let column = &metadata.results[index];
     let Histogram { low, width, counts } = result.histogram.as_ref()?;
     if counts.len() < 2 {
         return None;
@@ -145,7 +141,7 @@ fn histogram(
         series("", outline.clone(), Style::area(palette::FILL)),
         series("", outline, Style::line(palette::BLUE, 1.3, SOLID)),
     ];
-    drawn.extend(limit_lines(result, column, limits, top));
+    drawn.extend(limit_lines(result, column, &limits(metadata, index), top));
     Some(StudyFigure {
         name: format!("{}_histogram", column.name),
         chart: Chart {
@@ -161,12 +157,8 @@ fn histogram(
     })
 }
 
-fn cumulative(
-    index: usize,
-    column: &Column,
-    result: &ResultAnswer,
-    limits: &[(&str, f64)],
-) -> Option<StudyFigure> {
+fn cumulative(index: usize, metadata: &Metadata, result: &ResultAnswer) -> Option<StudyFigure> {
+    let column = &metadata.results[index];
     if result.cumulative.len() < 2 {
         return None;
     }
@@ -178,7 +170,7 @@ fn cumulative(
     }
     let mut drawn = vec![series("", curve, Style::line(palette::BLUE, 2.0, SOLID))];
     drawn.extend(quantile_bars(result));
-    drawn.extend(limit_lines(result, column, limits, 1.0));
+    drawn.extend(limit_lines(result, column, &limits(metadata, index), 1.0));
     drawn.push(whole_range(result.least?));
     Some(StudyFigure {
         name: format!("{}_cumulative", column.name),
@@ -222,12 +214,15 @@ fn quantile_bars(result: &ResultAnswer) -> Vec<Series> {
 
 /// A horizontal interval with its ends.
 fn across(low: f64, high: f64, y: f64, end: f64) -> Vec<(f64, f64)> {
-    let ends = |x: f64| [(x, y - end), (x, y + end), (x, y)];
-    ends(low)
-        .into_iter()
-        .chain(ends(high))
-        .chain([(high, y + end), (high, y - end)])
-        .collect()
+    let outline = [
+        (low, y - end),
+        (low, y + end),
+        (low, y),
+        (high, y),
+        (high, y + end),
+        (high, y - end),
+    ];
+    outline.to_vec()
 }
 
 /// Nothing visible, from 0 to 1 along y: an axis of fractions shows all of them.
@@ -270,7 +265,7 @@ fn tornado(index: usize, metadata: &Metadata, result: &ResultAnswer) -> Option<S
     let mut areas = Vec::new();
     let mut intervals = Vec::new();
     for (row, (_, value, [low, high])) in bars.iter().enumerate() {
-        let y = row as f64;
+        let y = (row + 1) as f64;
         let corners = vec![
             (0.0, y - BAR),
             (*value, y - BAR),

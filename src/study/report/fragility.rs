@@ -5,7 +5,7 @@ use super::figures::FigureKind;
 use super::numbers::{decimals, index, percents, short_percent};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::wording::study as wording;
-use crate::study::answers::{FitAnswer, StripeAnswer};
+use crate::study::answers::{Answers, FitAnswer, StripeAnswer};
 use crate::study::data_set::{Kind, Metadata};
 use crate::units::{Dimension, display};
 
@@ -56,6 +56,23 @@ pub fn section(source: &Source<'_>, body: &mut Vec<Block>) {
         body.push(Block::note(wording::NO_RESULT_BOUNDS));
     }
     body.extend(source.figures_of(|figure| figure.kind == FigureKind::Scatter));
+}
+
+/// The curve in one sentence, for the first page; None of a study. If runs have no result, that of the two whose median is smaller.
+pub fn statement(metadata: &Metadata, answers: &Answers) -> Option<String> {
+    let fits = &answers.fragility.as_ref()?.fits;
+    let dimension = dimension(metadata)?;
+    let fitted = fits.iter().rev().find(|fit| fit.no_fit.is_none());
+    let Some(FitAnswer {
+        median: Some(median),
+        dispersion: Some(dispersion),
+        ..
+    }) = fitted
+    else {
+        return Some(wording::NO_CURVE.to_owned());
+    };
+    let median = display::readable(*median, dimension);
+    Some(wording::curve(median, decimals(*dispersion)))
 }
 
 fn dimension(metadata: &Metadata) -> Option<Dimension> {

@@ -98,7 +98,7 @@ pub fn section(source: &Source<'_>, body: &mut Vec<Block>) {
                 wording::DATA_SET.into(),
                 wording::data_set(source.answers.runs).into(),
             ),
-            (wording::DATA_DIGEST.into(), Text::new().id(source.id)),
+            (wording::REPORT.into(), Text::new().id(source.id)),
         ],
     });
     body.push(Block::note(wording::SAME));

@@ -10,7 +10,7 @@ use crate::cli::output::{print_message, print_result};
 use crate::files::failure::plain;
 use crate::physics::study::probability::Decision;
 use crate::report::SUMMARY;
-use crate::study::answers::Answers;
+use crate::study::answers::{Answers, StudiedAnswer};
 use crate::study::console;
 use crate::study::data_set::Reader;
 use crate::study::report::summary;
@@ -28,10 +28,15 @@ pub fn give(path: &Path, format: Format) -> Result<Exit, Failure> {
         Format::Human => print_result(&format!("{}\n", folder.display()))?,
         Format::Json => print_result(&String::from_utf8_lossy(&summary))?,
     }
-    let decided = |decision| answers.studied.iter().all(|it| it.decision == decision);
-    Ok(if decided(Decision::Met) {
+    Ok(exit(&answers))
+}
+
+/// 1 if a requirement on a probability is not met or undecided.
+pub fn exit(answers: &Answers) -> Exit {
+    let is_met = |it: &StudiedAnswer| it.decision == Decision::Met;
+    if answers.studied.iter().all(is_met) {
         Exit::Met
     } else {
         Exit::Missed
-    })
+    }
 }

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::failure;
+use super::{answers, failure};
 use crate::cli::args::ReportStudyArguments;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::run_folder::FolderSink;
@@ -11,11 +11,9 @@ use crate::cli::files::writing::ProgressSink;
 use crate::cli::output::print_result;
 use crate::cli::settings::Settings;
 use crate::files::failure::plain;
-use crate::physics::study::probability::Decision;
 use crate::study::answers::Answers;
 use crate::study::collection::folder::DataSetFiles;
 use crate::study::data_set::Reader;
-
 use crate::study::report;
 
 /// Makes the files of a study.
@@ -41,31 +39,21 @@ pub fn report(arguments: &ReportStudyArguments, settings: Settings) -> Result<Ex
 }
 
 /// Reads the data set and writes every file of its report into the folder; the exit code is that of its requirements.
-pub fn written(path: &Path, folder: &Path, settings: Settings) -> Result<Exit, Failure> {
+fn written(path: &Path, folder: &Path, settings: Settings) -> Result<Exit, Failure> {
     let read = || {
         let reader = Reader::open(path)?;
         let answers = Answers::of(&reader)?;
         Ok((reader, answers))
     };
-    let (reader, answers) = read().map_err(|fault| failure::of_data_set(&fault))?;
+    let (reader, found) = read().map_err(|fault| failure::of_data_set(&fault))?;
     std::fs::create_dir_all(folder).map_err(|error| Failure::file(folder, plain(&error)))?;
     let mut sink = FolderSink::replacing(folder);
     let made = {
         let mut progress = ProgressSink::new(&mut sink, settings);
-        report::put(reader.metadata(), &answers, &mut progress)
+        report::put(reader.metadata(), &found, &mut progress)
     };
     if let Err(error) = made {
         return Err(sink.failed(error));
     }
-    Ok(exit(&answers))
-}
-
-/// 1 if a requirement on a probability is not met or undecided.
-fn exit(answers: &Answers) -> Exit {
-    let met = |decision| decision == Decision::Met;
-    if answers.studied.iter().all(|it| met(it.decision)) {
-        Exit::Met
-    } else {
-        Exit::Missed
-    }
+    Ok(answers::exit(&found))
 }

@@ -71,6 +71,10 @@ pub fn submit(arguments: &SubmitArguments, settings: Settings) -> Result<Exit, F
             job.array(),
             job.merging()
         ))?;
+        print_message(&format!(
+            "  before sbatch: mkdir -p {}; a task without a folder for its log fails without a message\n",
+            job.folder
+        ));
         Ok(Exit::Met)
     }
 }
