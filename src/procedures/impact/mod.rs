@@ -12,7 +12,6 @@ pub(crate) mod results;
 pub(crate) mod run;
 pub(crate) mod setting;
 pub(crate) mod steps;
-pub(crate) mod storey_uncertainty;
 pub(crate) mod summary;
 pub(crate) mod tables;
 pub(crate) mod uncertainty;

@@ -6,9 +6,9 @@
 use super::results::{observe, results};
 use super::setting::{Setting, StruckStructure};
 use super::steps::{ImpactSteps, Kept};
-use super::storey_uncertainty::{self, StoreyRecord};
 use super::summary::StruckSummary;
 use super::uncertainty::ImpactUncertainty;
+use super::uncertainty::storey::{self, StoreyRecord};
 use crate::physics::impact::{FrameImpactSolver, ImpactSetup, ImpactSolver};
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::plan::{Impact, ImpactTarget, Plan, StoreyTarget};
@@ -140,7 +140,7 @@ pub(crate) fn strike(
     if let (Some(summary), None) = (&summary, &stop) {
         let summary = summary.impact();
         stop = session.evaluate_uncertainty(|tick| match (uncertainty, &history.frame) {
-            (UncertaintyInputs::Storey(storey), Some(frame)) => storey_uncertainty::propagate(
+            (UncertaintyInputs::Storey(storey), Some(frame)) => storey::propagate(
                 storey,
                 plan,
                 StoreyRecord {

@@ -1,6 +1,6 @@
 //! The dashes of a line. In: its points and a pattern. Out: the points of each dash. It draws nothing.
 
-use crate::Point;
+use crate::shapes::Point;
 
 /// The dashes of a line along its length; a solid line is one piece.
 pub(crate) fn dashes(points: &[Point], pattern: &[f64]) -> Vec<Vec<Point>> {

@@ -5,6 +5,7 @@
 
 mod average;
 mod dashes;
+mod shapes;
 
 use plotters::prelude::{
     BitMapBackend, Circle, DrawingArea, IntoDrawingArea as _, Polygon, RGBColor, Rectangle, Text,
@@ -13,26 +14,12 @@ use plotters::style::{Color as _, TextStyle};
 
 use average::{BOX, average};
 use dashes::dashes;
+pub use shapes::{Colour, Line, Point};
 
 /// Subpixels per reference pixel, in each direction.
 pub const FINE: u32 = 8;
 /// 192 dpi in pixels per metre.
 const PIXELS_PER_METRE: u32 = 7559;
-
-/// A point in reference pixels (96 to the inch), y downward.
-pub type Point = (f64, f64);
-
-/// Red, green, blue.
-pub type Colour = (u8, u8, u8);
-
-/// A line.
-#[derive(Clone, Copy)]
-pub struct Line {
-    /// Reference pixels.
-    pub width: f64,
-    /// Lengths drawn and left out, in turn, reference pixels; empty: solid.
-    pub dash: &'static [f64],
-}
 
 /// A sheet to draw on.
 pub struct Sheet<'a> {

@@ -5,8 +5,7 @@ phrases! {
     HEADING = "STUDY (SIMULATION)";
     WATERMARK = "SIMULATION";
     END = "— End of report ";
-    SIMULATED = "Every run of this study is simulated. It states what the model does when its inputs scatter, not what a \
-        specimen does.";
+    SIMULATED = "Every run of this study is simulated. It describes the model with scattered inputs, not a specimen.";
     fn decided(met, not_met, undecided) = "Requirements on the study: {met} met, {not_met} not met, {undecided} undecided.";
     fn incomplete(runs, at_most) = "INCOMPLETE: {runs} of up to {at_most} runs. An incomplete study decides nothing.";
     fn curve(median, dispersion) = "Median θ = {median}, dispersion β = {dispersion}.";

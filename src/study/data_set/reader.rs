@@ -132,7 +132,7 @@ impl Reader {
             digest(&mut file, from, group.bytes).map_err(|error| fault(error.to_string()))?;
         if found != group.sha256 {
             return Err(fault(format!(
-                "damaged: SHA-256 of bytes {from} to {} is {found}, the footer says {}",
+                "damaged: SHA-256 of bytes {from} to {} is {found}, the footer states {}",
                 from + group.bytes,
                 group.sha256
             )));

@@ -3,44 +3,15 @@
 
 use crate::physics::study::probability::Decision;
 use crate::plan::study::Sampling;
-use crate::report::document::{Block, Column, Document, Figure, Style, Table, Text, Tone, Verdict};
+use crate::report::document::{Block, Column, Document, Style, Table, Text, Tone, Verdict};
 use crate::report::wording::{LABELS, study as wording};
 use crate::study::answers::{Answers, StudiedAnswer};
 use crate::study::data_set::{Kind, Metadata, Stopping};
 
 use super::figures::{FigureKind, percent};
 use super::numbers::{probability, range};
-use super::{DrawnFigure, fragility, provenance, results, runs};
-
-/// What the sections read.
-pub struct Source<'a> {
-    pub metadata: &'a Metadata,
-    pub answers: &'a Answers,
-    pub figures: &'a [DrawnFigure],
-    /// First digits of the SHA-256 of the metadata.
-    pub id: &'a str,
-}
-
-impl Source<'_> {
-    /// The figures of this kind, as blocks.
-    pub fn figures_of(&self, wanted: impl Fn(&DrawnFigure) -> bool) -> impl Iterator<Item = Block> {
-        let chosen: Vec<Block> = self
-            .figures
-            .iter()
-            .enumerate()
-            .filter(|(_, figure)| wanted(figure))
-            .map(|(index, figure)| {
-                Block::Figure(Figure {
-                    number: index + 1,
-                    caption: figure.caption.clone().into(),
-                    description: figure.description.clone().into(),
-                    svg: figure.svg.clone(),
-                })
-            })
-            .collect();
-        chosen.into_iter()
-    }
-}
+use super::source::Source;
+use super::{fragility, provenance, results, runs};
 
 /// The whole report.
 pub fn document(source: &Source<'_>) -> Document {

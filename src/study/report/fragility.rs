@@ -1,8 +1,8 @@
 //! The section on the fragility curve: stripes, fit, band. In: answers. Out: blocks.
 
-use super::document::Source;
 use super::figures::FigureKind;
 use super::numbers::{decimals, index, percents, short_percent};
+use super::source::Source;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::wording::study as wording;
 use crate::study::answers::{Answers, FitAnswer, StripeAnswer};

@@ -8,6 +8,7 @@ mod numbers;
 mod provenance;
 mod results;
 mod runs;
+mod source;
 mod summary;
 #[cfg(test)]
 mod tests;
@@ -20,22 +21,13 @@ use crate::study::answers::Answers;
 use crate::study::data_set::Metadata;
 use crate::text::digest::sha256;
 use crate::text::sanitize;
-use document::Source;
-use figures::{FigureKind, StudyFigure};
+use figures::StudyFigure;
+use source::{DrawnFigure, Source};
 
 pub use summary::{SCHEMA, summary};
 
 /// Digits of the report's identifier.
 const ID_DIGITS: usize = 16;
-
-/// A figure in vectors.
-struct DrawnFigure {
-    kind: FigureKind,
-    result: Option<usize>,
-    caption: String,
-    description: String,
-    svg: String,
-}
 
 /// Puts summary, figures and report, each as soon as it is made, with paths relative to the folder of the study.
 ///

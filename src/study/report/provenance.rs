@@ -1,8 +1,8 @@
 //! The last sections: looks of the stopping rule, inputs, and where the numbers come from. In: metadata and answers. Out: blocks.
 
-use super::document::Source;
 use super::figures::percent;
 use super::numbers::percents;
+use super::source::Source;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::wording::study as wording;
 use crate::study::data_set::Kind;

@@ -1,9 +1,8 @@
 //! The sections on results: their distributions, and the inputs that matter for each. In: answers. Out: blocks.
 
-use super::DrawnFigure;
-use super::document::Source;
 use super::figures::{FigureKind, percent};
 use super::numbers::{decimals, index, with_interval};
+use super::source::{DrawnFigure, Source};
 use crate::plan::study::Sampling;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::wording::study as wording;

@@ -1,8 +1,8 @@
 //! The sections on single runs: how often each requirement is met, the worst runs with the settings that reproduce them, and why runs have
 //! no result. In: answers. Out: blocks.
 
-use super::document::Source;
 use super::numbers::{probability, range};
+use super::source::Source;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::wording::study as wording;
 use crate::study::answers::{RequirementAnswer, WorstRun};
@@ -97,7 +97,8 @@ pub fn worst(source: &Source<'_>, body: &mut Vec<Block>) {
             rows: answer.worst.iter().map(row).collect(),
         }));
     }
-    let scatter = |figure: &super::DrawnFigure| figure.kind == super::figures::FigureKind::Scatter;
+    let scatter =
+        |figure: &super::source::DrawnFigure| figure.kind == super::figures::FigureKind::Scatter;
     body.extend(source.figures_of(scatter));
 }
 

@@ -50,22 +50,26 @@ impl Bounds {
 
 /// A length \[m\] or speed \[m/s\] in the unit of the protocol, rounded as it is sent.
 fn millimetres(value: f64) -> f64 {
-    rounded(value * 1e3, NO_LIMIT_MM, 1e6)
+    rounded(finite(value * 1e3, NO_LIMIT_MM), 1e6)
 }
 
 /// A force \[N\], rounded as it is sent.
 fn newtons(value: f64) -> f64 {
-    rounded(value, NO_LIMIT_N, 1e3)
+    rounded(finite(value, NO_LIMIT_N), 1e3)
 }
 
-/// A limit to the decimals that `scale` keeps; `absent` if there is no limit.
-fn rounded(value: f64, absent: f64, scale: f64) -> f64 {
-    let wire = if value.is_finite() {
+/// A limit; `absent` with its sign if there is none.
+fn finite(value: f64, absent: f64) -> f64 {
+    if value.is_finite() {
         value
     } else {
         absent.copysign(value)
-    };
-    (wire * scale).round() / scale
+    }
+}
+
+/// A number to the decimals that `scale` keeps.
+fn rounded(value: f64, scale: f64) -> f64 {
+    (value * scale).round() / scale
 }
 
 impl AxisBounds {

@@ -221,7 +221,10 @@ fn fields_are_bound_as_their_settings_write_them() {
 fn a_setting_of_any_size_is_read_to_the_last_bit() {
     for value in [f64::MIN_POSITIVE, 1e-30 / 3.0, 1.0 / 3.0, 1e22 / 3.0] {
         let setting = Quantity::new(value, Dimension::MASS).in_plan_syntax();
-        let set = [("beam.mass".to_owned(), setting.replace(' ', ""))];
+        let set = [
+            ("beam.mass".to_owned(), setting.replace(' ', "")),
+            ("beam.mass_uncertainty".to_owned(), "0kg".to_owned()),
+        ];
         let mass = parsed_fields(&set).1.specimens[0].mass;
         assert_eq!(mass.to_bits(), value.to_bits(), "{setting}");
     }

@@ -118,7 +118,10 @@ fn no_column(name: &str, names: &[&str]) -> BadSamples {
 /// The unit in which the name of a column ends: `speed_m_per_s`, `mass_kg`, `force_kn`. None if it ends in none.
 pub(super) fn unit_of(column: &str) -> Option<Unit> {
     // The longest end is the whole unit: `m_per_s` and not `s`.
-    let ends = column.match_indices('_').map(|(at, _)| &column[at + 1..]);
+    let ends = column
+        .match_indices('_')
+        .map(|(at, _)| &column[at + 1..])
+        .filter(|end| !end.is_empty());
     ends.filter_map(|end| {
         let (above, below) = end.split_once("_per_").unwrap_or((end, ""));
         let factors = |part: &str| {

@@ -2,6 +2,8 @@
 //! contributions of each source to each result. The impact is re-integrated along the recorded force–displacement path with perturbed
 //! inputs and readings; no rig is moved.
 
+pub(crate) mod storey;
+
 use super::results::re_integrated;
 use super::setting::{Setting, StruckStructure};
 use crate::physics::contact::ContactLaw;

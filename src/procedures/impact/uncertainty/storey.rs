@@ -1,10 +1,10 @@
 //! The uncertainty of the results of an impact on a storey. In: its inputs with their sources of uncertainty, and the recorded steps. Out:
 //! the contributions of each source to each number. The frame is re-integrated along its recorded path.
 
-use super::contact;
-use super::results::re_integrated;
-use super::setting::Setting;
-use super::uncertainty::{at_least, no_known_force, same, striker_sources, whole_steps};
+use super::super::contact;
+use super::super::results::re_integrated;
+use super::super::setting::Setting;
+use super::{at_least, no_known_force, same, striker_sources, whole_steps};
 use crate::physics::impact::ImpactInput;
 use crate::physics::impact::summary::ImpactSummary;
 use crate::physics::reintegration::frame::{FloorImpact, Floors, FrameRun, StrikerOutcome};

@@ -1,14 +1,16 @@
 //! The figures of a study. In: answers and the kept runs. Out: charts with captions, drawn as those of a run are. Areas, dashes and markers
 //! differ, so that a grey print can be read.
 
+mod fragility;
+
 use std::borrow::Cow;
 
 use crate::report::figures::chart::{
     Chart, DASHED, End, Marker, Quantity, Reference, SOLID, Series, Style, palette,
 };
 use crate::report::wording::study as wording;
-use crate::study::answers::{Answers, FitAnswer, FragilityAnswer, Histogram, ResultAnswer};
-use crate::study::data_set::{Column, Kind, Limit, Metadata};
+use crate::study::answers::{Answers, Histogram, ResultAnswer};
+use crate::study::data_set::{Column, Limit, Metadata};
 use crate::units::Dimension;
 use crate::units::display;
 
@@ -49,8 +51,8 @@ pub enum FigureKind {
 pub fn figures(metadata: &Metadata, answers: &Answers) -> Vec<StudyFigure> {
     let mut figures = Vec::new();
     if let Some(fragility) = &answers.fragility {
-        figures.extend(of_fragility(metadata, fragility));
-        figures.extend(intensity_scatter(metadata, answers));
+        figures.extend(fragility::curve(metadata, fragility));
+        figures.extend(fragility::scatter(metadata, answers));
     }
     let results = || answers.results.iter().enumerate();
     let drawn = |(index, result)| histogram(index, metadata, result);
@@ -202,7 +204,7 @@ fn quantile_bars(result: &ResultAnswer) -> Vec<Series> {
         if let [Some(low), Some(high)] = quantile.interval {
             let style = Style::line(palette::BLACK, 1.4, SOLID);
             let text = label(wording::QUANTILES);
-            drawn.push(series(text, across(low, high, y, 0.012), style));
+            drawn.push(series(text, across([low, high], y, 0.012), style));
         }
         if let Some(value) = quantile.estimates[0] {
             let style = Style::marker(palette::BLACK, Marker::Ring(3.6));
@@ -213,7 +215,7 @@ fn quantile_bars(result: &ResultAnswer) -> Vec<Series> {
 }
 
 /// A horizontal interval with its ends.
-fn across(low: f64, high: f64, y: f64, end: f64) -> Vec<(f64, f64)> {
+fn across([low, high]: [f64; 2], y: f64, end: f64) -> Vec<(f64, f64)> {
     let outline = [
         (low, y - end),
         (low, y + end),
@@ -281,7 +283,7 @@ fn tornado(index: usize, metadata: &Metadata, result: &ResultAnswer) -> Option<S
             String::new()
         };
         let style = Style::line(palette::BLACK, 1.4, SOLID);
-        intervals.push(series(label, across(*low, *high, y, END), style));
+        intervals.push(series(label, across([*low, *high], y, END), style));
     }
     areas.extend(intervals);
     let column = &metadata.results[index];
@@ -397,117 +399,4 @@ fn references(metadata: &Metadata, result: usize) -> Vec<Reference> {
             y: limit,
         })
         .collect()
-}
-
-/// Band, curve, stripes. Beyond the stripes the curve is dashed.
-fn of_fragility(metadata: &Metadata, fragility: &FragilityAnswer) -> Option<StudyFigure> {
-    let Kind::Fragility(stripes) = &metadata.kind else {
-        return None;
-    };
-    let column = &metadata.inputs[stripes.intensity];
-    let mut drawn = Vec::new();
-    let with_curve: Vec<&FitAnswer> = fragility
-        .fits
-        .iter()
-        .filter(|fit| !fit.curve.is_empty())
-        .collect();
-    let styles = [(palette::BLUE, 2.2), (palette::PURPLE, 1.4)];
-    if let [first, ..] = &with_curve[..] {
-        let lower = first
-            .curve
-            .iter()
-            .zip(with_curve.last().into_iter().flat_map(|fit| &fit.curve));
-        let band: Vec<(f64, [f64; 2])> = lower
-            .map(|(a, b)| {
-                let [low, high] = [
-                    a.interval[0].min(b.interval[0]),
-                    a.interval[1].max(b.interval[1]),
-                ];
-                (a.intensity, [low, high])
-            })
-            .collect();
-        let corners = band
-            .iter()
-            .map(|(x, [low, _])| (*x, *low))
-            .chain(band.iter().rev().map(|(x, [_, high])| (*x, *high)));
-        let label = wording::band(percent(metadata.confidence));
-        drawn.push(series(label, corners.collect(), Style::area(palette::FILL)));
-    }
-    for (fit, (colour, width)) in with_curve.iter().zip(styles) {
-        for part in fit
-            .curve
-            .chunk_by(|a, b| a.is_extrapolated == b.is_extrapolated)
-        {
-            let dashed = part[0].is_extrapolated;
-            let label = if dashed {
-                ""
-            } else {
-                wording::curve_label(fit.no_result_as)
-            };
-            let style = Style::line(colour, width, if dashed { DASHED } else { SOLID });
-            let points = part
-                .iter()
-                .map(|point| (point.intensity, point.probability));
-            drawn.push(series(label, points.collect(), style));
-        }
-    }
-    for (at, stripe) in fragility.stripes.iter().enumerate() {
-        let [low, high] = stripe.interval;
-        let x = stripe.intensity;
-        let label = if at == 0 { wording::STRIPES } else { "" };
-        let style = Style::line(palette::BLACK, 1.0, SOLID);
-        drawn.push(series("", vec![(x, low), (x, high)], style));
-        let marker = Style::marker(palette::BLACK, Marker::Disc(3.6));
-        drawn.push(series(label, vec![(x, stripe.bounds[0])], marker));
-        if stripe.no_result > 0 {
-            let marker = Style::marker(palette::BLACK, Marker::Ring(3.6));
-            drawn.push(series("", vec![(x, stripe.bounds[1])], marker));
-        }
-    }
-    drawn.push(whole_range(fragility.stripes.first()?.intensity));
-    Some(StudyFigure {
-        name: format!("{}_fragility", metadata.study),
-        chart: Chart {
-            x: Quantity {
-                from_zero: true,
-                ..axis(column, End::Margin)
-            },
-            y: plain(wording::PROBABILITY_AXIS, End::Data),
-            bands: Vec::new(),
-            series: drawn,
-            references: Vec::new(),
-        },
-        caption: wording::fragility(&fragility.exceeds, &column.name),
-        result: None,
-        kind: FigureKind::Fragility,
-    })
-}
-
-/// The result that the limit of a fragility compares, at every intensity.
-fn intensity_scatter(metadata: &Metadata, answers: &Answers) -> Option<StudyFigure> {
-    let Kind::Fragility(stripes) = &metadata.kind else {
-        return None;
-    };
-    let limit = metadata.requirements.first()?.limit?;
-    let (x, y) = (
-        &metadata.inputs[stripes.intensity],
-        &metadata.results[limit.result],
-    );
-    let drawn = cloud(answers, stripes.intensity, limit.result);
-    if drawn.points.len() < 2 {
-        return None;
-    }
-    Some(StudyFigure {
-        name: format!("{}_against_{}", y.name, x.name),
-        chart: Chart {
-            x: axis(x, End::Margin),
-            y: axis(y, End::Margin),
-            bands: Vec::new(),
-            series: vec![drawn],
-            references: references(metadata, limit.result),
-        },
-        caption: wording::scatter(&y.name, &x.name),
-        result: None,
-        kind: FigureKind::Scatter,
-    })
 }
