@@ -47,7 +47,7 @@ pub struct Input {
 }
 
 impl Input {
-    /// The argument of `--set` that gives the plan this value [SI] to the last bit: `beam.mass=2.1kg`.
+    /// The argument of `--set` that gives the plan this value \[SI\] to the last bit: `beam.mass=2.1kg`.
     #[must_use]
     pub fn setting(&self, value: f64) -> String {
         let written = Quantity::new(value, self.dimension).in_plan_syntax();

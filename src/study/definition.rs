@@ -81,13 +81,11 @@ impl Definition {
                 _ => return Err(DefinitionError::Several(known())),
             },
         };
-        match studies.studies.get(index) {
-            Some(study) => Self::of_study(study, index, runs),
-            None => {
-                let index = index - studies.studies.len();
-                Self::of_fragility(&studies.fragilities[index], index, runs)
-            }
+        if let Some(study) = studies.studies.get(index) {
+            return Self::of_study(study, index, runs);
         }
+        let index = index - studies.studies.len();
+        Self::of_fragility(&studies.fragilities[index], index, runs)
     }
 
     fn of_study(study: &Study, index: usize, runs: Option<u64>) -> Result<Self, DefinitionError> {

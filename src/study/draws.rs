@@ -134,7 +134,7 @@ mod tests {
         let draws = Draws::of_fragility(&[1.0, 2.0], Some(&variation), 10).unwrap();
         let law = match &variation.sources[0] {
             crate::physics::study::inputs::Source::Distribution(law) => *law,
-            other => panic!("{other:?}"),
+            rows @ crate::physics::study::inputs::Source::Rows(_) => panic!("{rows:?}"),
         };
         for stripe in 0..2 {
             let mut tenths: Vec<u32> = values(&draws, 20)

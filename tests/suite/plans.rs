@@ -66,9 +66,11 @@ fn ran(plan: &str) -> &'static Run {
         if folder.exists() {
             fs::remove_dir_all(&folder).expect("what an earlier test left can go");
         }
-        let all = plans().into_iter();
-        let path = all.filter(|path| path.file_stem().is_some_and(|stem| stem == plan));
-        let output = psd_run(&path.last().expect("a plan of that name"), &folder);
+        let path = plans()
+            .into_iter()
+            .find(|path| path.file_stem().is_some_and(|stem| stem == plan))
+            .expect("a plan of that name");
+        let output = psd_run(&path, &folder);
         Run { folder, output }
     })
 }

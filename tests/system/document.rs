@@ -1,4 +1,4 @@
-//! A run of a procedure document on a real port: stopped, resumed, verified. In: the plan of a stage as a Markdown document. Out: a run
+//! A run of a procedure document on a real port: stopped, resumed, verified. In: the declarations of a stage in Markdown. Out: a run
 //! that is continued from its run log alone, although the document was changed meanwhile.
 
 use std::cell::RefCell;
@@ -13,9 +13,12 @@ use crate::stage::{Stage, finish, signal, start};
 fn a_run_of_a_document_is_resumed_from_its_log() {
     let folder = RefCell::new(PathBuf::new());
     let write = |plan: &str| {
-        let document = format!("# Procedure\n\nThe plan:\n\n```psd\n{plan}```\n\nEnd.\n");
+        let (title, rest) = plan.split_once("limits {").unwrap();
+        let (declarations, procedures) = rest.split_once("stiffness ramp").unwrap();
+        let document =
+            format!("# Procedure\n\nThe rig:\n\n```psd\nlimits {{{declarations}```\n\nEnd.\n");
         fs::write(folder.borrow().join("procedure.md"), document).unwrap();
-        "use \"procedure.md\"\n".to_owned()
+        format!("{title}use \"procedure.md\"\n\nstiffness ramp{procedures}")
     };
     let stage = Stage::laid_out(write, "", |path| *folder.borrow_mut() = path.to_owned());
     let document = fs::read_to_string(stage.path("procedure.md")).unwrap();

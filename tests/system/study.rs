@@ -10,7 +10,7 @@ use rustix::process::{Pid, Signal, kill_process};
 use crate::stage::PSD;
 
 /// Longest wait for anything.
-const PATIENCE: Duration = Duration::from_secs(300);
+const PATIENCE: Duration = Duration::from_mins(5);
 /// Far more runs than are done before the first signal.
 const RUNS: &str = "12000";
 
@@ -73,8 +73,11 @@ fn begun(folder: &Path, arguments: &[&str]) -> Child {
     let began = Instant::now();
     let part = || {
         let entries = fs::read_dir(study(folder)).into_iter().flatten().flatten();
-        let mut names = entries.map(|entry| entry.file_name().into_string().unwrap());
-        names.any(|name| name.ends_with(".part"))
+        let mut paths = entries.map(|entry| entry.path());
+        paths.any(|path| {
+            path.extension()
+                .is_some_and(|extension| extension == "part")
+        })
     };
     while !part() {
         assert!(began.elapsed() < PATIENCE, "no run was written");

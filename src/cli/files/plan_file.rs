@@ -28,7 +28,7 @@ pub fn open_to_run(
         unattended,
         ..Options::default()
     };
-    parsed(path, settings, options).map(|(_, checked)| checked)
+    parsed(path, settings, &options).map(|(_, checked)| checked)
 }
 
 /// [`open`] before the studies of the plan are run, with the syntax trees, which a study binds to other values.
@@ -40,13 +40,13 @@ pub fn open_for_studies(
         for_studies: true,
         ..Options::default()
     };
-    parsed(path, settings, options)
+    parsed(path, settings, &options)
 }
 
 fn parsed(
     path: &Path,
     settings: &PlanSettings,
-    options: Options,
+    options: &Options,
 ) -> Result<(ParsedPlan, Checked), Failure> {
     for (at, (name, _)) in settings.set.iter().enumerate() {
         if settings.set[..at].iter().any(|(before, _)| before == name) {
@@ -67,7 +67,7 @@ fn parsed(
         rig,
         settings: set,
         date,
-        ..options
+        ..options.clone()
     };
     let mut parsed = ParsedPlan::parse(&name_of(path), &text, &loader, &options);
     let checked = parsed.check(&loader);

@@ -73,6 +73,10 @@ pub struct Context {
     pub critical: bool,
 }
 
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each states a fact of its own about the check"
+)]
 pub struct Checker<'a> {
     pub sources: &'a Sources,
     pub scope: &'a Scope<'a>,

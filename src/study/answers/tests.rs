@@ -2,6 +2,7 @@
 
 use tempfile::TempDir;
 
+use super::moments::number;
 use super::testing::{
     CAPACITY, answers, fragility_metadata, fragility_rows, metadata, normals, rows, scatter,
 };
@@ -37,7 +38,7 @@ fn a_known_failure_probability_is_in_its_interval() {
             );
             let probability = requirement.probability.clone().unwrap();
             assert!(probability.is_exact);
-            assert_eq!(probability.bounds, [failed as f64 / 400.0; 2]);
+            assert_eq!(probability.bounds, [number(failed) / 400.0; 2]);
             contains(probability.interval, truth)
         })
         .count();
@@ -66,7 +67,7 @@ fn lost_runs_are_counted_and_widen_every_answer() {
     let [requirement] = &answers.requirements[..] else {
         panic!("one requirement")
     };
-    let failed = requirement.not_met as f64 / 1000.0;
+    let failed = number(requirement.not_met) / 1000.0;
     assert_eq!(requirement.no_result, 50);
     let probability = requirement.probability.clone().unwrap();
     assert!((probability.bounds[0] - failed).abs() < 1e-15);
@@ -310,7 +311,7 @@ fn lost_runs_give_two_curves_and_a_part_none() {
     };
     let row = |run: u64| Row {
         run,
-        inputs: vec![0.9 + 0.1 * (run % 3) as f64, 1.0],
+        inputs: vec![0.9 + 0.1 * number(run % 3), 1.0],
         results: vec![None],
         outcomes: vec![match run / 3 % 10 {
             0 => Outcome::NoResult,

@@ -156,31 +156,23 @@ impl NamedShard {
             parsed.map_err(|_| ShardError::NoNumber { name, text })
         };
         let index = number(system.index)?;
-        let shard = match of {
-            Some(of) => {
-                let zero_based = matches!(system.first, First::Is(0));
-                Shard {
-                    number: index.saturating_add(u32::from(zero_based)),
-                    of,
-                }
-            }
-            None => {
-                let first = match system.first {
-                    First::Is(first) => first,
-                    First::In(name) => number(name)?,
-                };
-                let of = match system.count {
-                    None => return Err(ShardError::NoCount(system.index)),
-                    Some(Counted::In(name)) => number(name)?,
-                    Some(Counted::UpTo(name)) => {
-                        number(name)?.saturating_sub(first).saturating_add(1)
-                    }
-                };
-                Shard {
-                    number: index.wrapping_sub(first).wrapping_add(1),
-                    of,
-                }
-            }
+        if let Some(of) = of {
+            let zero_based = matches!(system.first, First::Is(0));
+            let number = index.saturating_add(u32::from(zero_based));
+            return Shard { number, of }.in_range();
+        }
+        let first = match system.first {
+            First::Is(first) => first,
+            First::In(name) => number(name)?,
+        };
+        let of = match system.count {
+            None => return Err(ShardError::NoCount(system.index)),
+            Some(Counted::In(name)) => number(name)?,
+            Some(Counted::UpTo(name)) => number(name)?.saturating_sub(first).saturating_add(1),
+        };
+        let shard = Shard {
+            number: index.wrapping_sub(first).wrapping_add(1),
+            of,
         };
         shard.in_range()
     }

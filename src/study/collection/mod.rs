@@ -29,7 +29,7 @@ use folder::DataSetFiles;
 use same::{Difference, grown, same};
 
 /// Longest time whose runs a kill may cost.
-const PIECE: Duration = Duration::from_secs(60);
+const PIECE: Duration = Duration::from_mins(1);
 /// A round of runs takes about this long: after each one, a stop request is obeyed.
 const ROUND: Duration = Duration::from_millis(250);
 /// Runs of the first round.
@@ -298,12 +298,11 @@ impl Lock {
             .open(&path)
             .map_err(|error| DataSetFault::new(&path, error.to_string()))?;
         match flock(&file, FlockOperation::NonBlockingLockExclusive) {
-            // The process before may have removed the file between opening and locking it.
-            Ok(()) if is_at(&file, &path) => Ok(Self { path, _file: file }),
-            Ok(()) => Err(CollectionFault::Locked { path }),
             Err(rustix::io::Errno::WOULDBLOCK) => Err(CollectionFault::Locked { path }),
+            // The process before may have removed the file between opening and locking it.
+            Ok(()) if !is_at(&file, &path) => Err(CollectionFault::Locked { path }),
             // A file system without locks: two processes would only do the same work.
-            Err(_) => Ok(Self { path, _file: file }),
+            Ok(()) | Err(_) => Ok(Self { path, _file: file }),
         }
     }
 }

@@ -227,6 +227,7 @@ mod keywords {
 
         const ALL: [Sampling; 3] = [Sampling::Random, Sampling::LatinHypercube, Sampling::Sobol];
 
+        #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives a reference")]
         pub fn serialize<S: serde::Serializer>(
             value: &Sampling,
             serializer: S,
@@ -262,6 +263,7 @@ mod keywords {
             }
         }
 
+        #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives a reference")]
         pub fn serialize<S: serde::Serializer>(
             value: &Comparison,
             serializer: S,

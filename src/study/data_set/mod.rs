@@ -9,9 +9,9 @@
 //! | `requirement N: LABEL` | string | `met`, `not_met` or `no_result` |
 //! | `reason` | string, may be missing | why a result does not exist |
 //!
-//! The metadata are JSON in the footer, with the SHA-256 of every row group. Row groups end where the run number is a multiple of
-//! [`GROUP_RUNS`], and no encoding depends on chance: equal rows and metadata give equal bytes, whoever computed them. Neither writer nor
-//! reader holds more than one row group, beside some 200 bytes a column and row group for the footer.
+//! The metadata are JSON in the footer, with the SHA-256 of every row group; that of the footer lies before it. Row groups end where the
+//! run number is a multiple of [`GROUP_RUNS`], and no encoding depends on chance: equal rows and metadata give equal bytes, whoever
+//! computed them. Neither writer nor reader holds more than one row group, beside some 200 bytes a column and row group for the footer.
 
 mod block;
 mod fault;

@@ -16,6 +16,7 @@ use super::data_set::Row;
 use super::definition::Definition;
 use crate::language::check::ParsedPlan;
 use crate::plan::Plan;
+use crate::text::diagnostic::Diagnostic;
 use crate::units::Quantity;
 use batches::Batch;
 use readout::{Kept, Readout};
@@ -141,7 +142,7 @@ impl<'a> Simulation<'a> {
             self.parsed.bind(&quantities)
         };
         let mut plan = bound.map_err(|errors| {
-            let first = errors.into_iter().find(|found| found.is_error());
+            let first = errors.into_iter().find(Diagnostic::is_error);
             first.map_or_else(
                 || "the plan with these inputs is invalid".to_owned(),
                 |first| format!("the plan with these inputs is invalid: {}", first.message),

@@ -1,5 +1,6 @@
 //! `psd study status` and `psd study merge`. In: the folder of a study. Out: how far it is, or its shards in one file.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 use super::{answers, failure};
@@ -25,8 +26,9 @@ pub fn status(folder: &Path) -> Result<Exit, Failure> {
     let of = shards.clone().count();
     if of > 0 {
         let done: u64 = shards.clone().map(|part| part.runs).sum();
-        text += &format!(
-            "  {} of {of} shards are finished, {done} of {} runs are durable\n",
+        let _ = writeln!(
+            text,
+            "  {} of {of} shards are finished, {done} of {} runs are durable",
             shards.clone().filter(finished).count(),
             metadata.at_most
         );
@@ -35,15 +37,15 @@ pub fn status(folder: &Path) -> Result<Exit, Failure> {
         }
         let missing = status.unfinished();
         if !missing.is_empty() {
-            text += &format!("  submit again: --array={}\n", listed(&missing));
+            let _ = writeln!(text, "  submit again: --array={}", listed(&missing));
         }
     }
     for part in status.parts.iter().filter(|part| part.shard.is_none()) {
-        text += &if part.finished {
-            format!("  study.parquet is finished, {} runs\n", part.runs)
+        if part.finished {
+            let _ = writeln!(text, "  study.parquet is finished, {} runs", part.runs);
         } else {
-            unfinished(part)
-        };
+            text += &unfinished(part);
+        }
     }
     print_result(&text)?;
     let whole = |part: &Part| part.shard.is_none() && part.finished;

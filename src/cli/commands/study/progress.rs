@@ -1,6 +1,7 @@
 //! Progress of a study. In: how far it is. Out: on a terminal one line that is updated; in a pipe a line every half minute. It knows no
 //! statistics.
 
+use std::fmt::Write as _;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -66,13 +67,15 @@ fn line(progress: &Progress<'_>, elapsed: Duration) -> String {
     let [simulated, left] =
         [progress.simulated, progress.of.saturating_sub(counts.runs)].map(|runs| runs as f64);
     let rate = simulated / elapsed.as_secs_f64().max(1e-3);
-    let mut text = format!("{} of {} runs", counts.runs, progress.of);
-    text += &format!(", {rate:.0}/s, {} not met", counts.failed);
+    let mut text = format!(
+        "{} of {} runs, {rate:.0}/s, {} not met",
+        counts.runs, progress.of, counts.failed
+    );
     if counts.no_result > 0 {
-        text += &format!(", {} without a result", counts.no_result);
+        let _ = write!(text, ", {} without a result", counts.no_result);
     }
     if rate > 0.0 && left > 0.0 {
-        text += &format!(", {} left", duration(left / rate));
+        let _ = write!(text, ", {} left", duration(left / rate));
     }
     text
 }

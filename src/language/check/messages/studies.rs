@@ -61,7 +61,7 @@ pub fn bad_distribution(
 ) -> Diagnostic {
     let show = |value| shown(value, dimension);
     let (message, help) = match reason {
-        DistributionError::NoSpread { mean, .. } if mean == 0.0 => (
+        DistributionError::NoSpread { mean: 0.0, .. } => (
             format!("`cv` is relative to the mean, and the mean of `{name}` is 0"),
             "write `sd:` instead".to_owned(),
         ),

@@ -171,7 +171,7 @@ const VALUES: [(&str, f64, Dimension); 6] = [
     ),
     (
         "hit.contact.force",
-        1499.999_999_999_999_8,
+        1_499.999_999_999_999_8,
         Dimension::FORCE,
     ),
     ("hit.time_step", 1.234_567_890_123_456_7e-4, Dimension::TIME),

@@ -47,7 +47,7 @@ pub struct LawFit {
     pub scatter: f64,
     /// Degrees of freedom of that scatter: number of readings minus number of parameters.
     pub degrees: f64,
-    /// BIC, corrected for few readings ([`corrected_bic`]).
+    /// BIC, corrected for few readings (`corrected_bic`).
     pub criterion: f64,
     /// Whether the readings resolve the time: it is neither shorter than they are nor longer than the holds.
     pub resolved: bool,

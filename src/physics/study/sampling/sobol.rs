@@ -2,7 +2,7 @@
 //! those before it.
 //!
 //! In base two, the coordinate of point i is the sum modulo 2 of the direction numbers of the bits of i (I. M. Sobol', USSR Comput. Math.
-//! Math. Phys. 7 (1967) 86–112), with the numbers of [`super::direction_numbers`]. A scramble flips each bit of a coordinate by a random bit
+//! Math. Phys. 7 (1967) 86–112), with the numbers of `direction_numbers`. A scramble flips each bit of a coordinate by a random bit
 //! of its own for every value of the bits above it (A. B. Owen, *Randomly permuted (t,m,s)-nets and (t,s)-sequences*, Lect. Notes Stat. 106
 //! (1995) 299–317). Here that bit is a hash of the bits above, so the tree of random bits needs no memory.
 

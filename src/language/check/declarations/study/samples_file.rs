@@ -118,11 +118,11 @@ fn no_column(name: &str, names: &[&str]) -> BadSamples {
 /// The unit in which the name of a column ends: `speed_m_per_s`, `mass_kg`, `force_kn`. None if it ends in none.
 pub(super) fn unit_of(column: &str) -> Option<Unit> {
     // The longest end is the whole unit: `m_per_s` and not `s`.
-    let ends = column
+    let mut ends = column
         .match_indices('_')
         .map(|(at, _)| &column[at + 1..])
         .filter(|end| !end.is_empty());
-    ends.filter_map(|end| {
+    ends.find_map(|end| {
         let (above, below) = end.split_once("_per_").unwrap_or((end, ""));
         let factors = |part: &str| {
             let words = part.split('_').filter(|word| !word.is_empty());
@@ -134,7 +134,6 @@ pub(super) fn unit_of(column: &str) -> Option<Unit> {
             .fold(above, |token, factor| format!("{token}/{factor}"));
         unit::parse(&token).ok()
     })
-    .next()
 }
 
 /// A unit in small letters with its power: `s2` is `s^2`. Those that small letters make ambiguous, such as MN and mN, are left out.
