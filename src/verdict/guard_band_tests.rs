@@ -224,7 +224,7 @@ fn a_partial_budget_of_a_real_rig_gives_no_guard_band() {
     assert_eq!(
         partial.requirements[0].conditions[0].reason.as_deref(),
         Some(
-            "the budget of `max_displacement` is partial (not declared in the plan: the calibration of the displacement)"
+            "the budget of `max_displacement` is partial (not declared in the plan: displacement calibration)"
         )
     );
     plan.rig.calibration.displacement_uncertainty = 0.01;

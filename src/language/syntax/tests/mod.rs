@@ -87,18 +87,7 @@ pub fn shape(expr: &Expr) -> String {
         ExprKind::Field { base, name } => format!("({} . {})", shape(base), name.node),
         ExprKind::Index { base, index } => format!("({} @ {})", shape(base), shape(index)),
         ExprKind::Negate(value) => format!("(- {})", shape(value)),
-        ExprKind::Binary {
-            operator,
-            left,
-            right,
-        } => {
-            format!(
-                "({} {} {})",
-                shape(left),
-                operator.node.symbol(),
-                shape(right)
-            )
-        }
+        ExprKind::Binary { .. } => shape_of_operators(expr),
         ExprKind::Within {
             value,
             tolerance,
@@ -114,6 +103,24 @@ pub fn shape(expr: &Expr) -> String {
         ExprKind::Parenthesised(inner) => format!("<{}>", shape(inner)),
         ExprKind::Faulty => "?".to_owned(),
     }
+}
+
+/// A loop over the left operands: a sum of a thousand terms does not need a thousand stack frames.
+fn shape_of_operators(expr: &Expr) -> String {
+    let mut rest = Vec::new();
+    let mut first = expr;
+    while let ExprKind::Binary {
+        operator,
+        left,
+        right,
+    } = &first.kind
+    {
+        rest.push(format!(" {} {})", operator.node.symbol(), shape(right)));
+        first = left;
+    }
+    let open = "(".repeat(rest.len());
+    rest.push(format!("{open}{}", shape(first)));
+    rest.into_iter().rev().collect()
 }
 
 fn shape_of_arguments(arguments: &[Argument]) -> String {

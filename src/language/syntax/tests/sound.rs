@@ -133,7 +133,7 @@ fn precedence_is_that_of_the_language() {
         ("1 +\n  # why\n  2", "(1 + 2)"),
         (
             "s.probability(fails: \"a\") < 2 %",
-            "((s . probability(fails: \"a\")) < 2%)",
+            "((s . probability(fails: \"a\")) < 2 %)",
         ),
         ("a.b ~ normal(sd: 1)", "((a . b) ~ normal(sd: 1))"),
         ("a.b in 1 .. 3 step 1 m", "((a . b) in (1 .. 3 step 1 m))"),
