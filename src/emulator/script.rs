@@ -17,7 +17,7 @@
 //! scale displacement by 25.4       clip force at 900 N             drift force 2 N/s
 //! spike 500 N                      number 9.91E37                  number ""
 //! reach 40 %                       stick                           lag 0.2 s
-//! drift displacement 0.001 mm/s    fracture at 3 mm to 10 %
+//! drift displacement 0.001 mm/s    fracture at 3 mm to 10 %        coast 2 s
 //! ```
 //!
 //! A line without WHEN, `stands at 3 mm` or `axis 2 stands at 3 mm`, sets the initial position of an actuator in the

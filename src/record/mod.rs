@@ -96,7 +96,9 @@ pub enum EventKind {
     /// The hold is not confirmed.
     NotHeld,
     Fault,
-    /// Communication errors that were recovered: frames sent again, replies ignored, readings repeated.
+    /// Communication errors that were recovered: frames sent again, replies ignored, readings repeated. `mended` in a run
+    /// log.
+    #[serde(rename = "mended")]
     Recovered,
     /// A numerical observation: the contact was still active at the last step, a maximum was not reached, …
     Remark,
@@ -118,7 +120,7 @@ impl EventKind {
             Self::Held => "held",
             Self::NotHeld => "not confirmed held",
             Self::Fault => "fault",
-            Self::Recovered => "mended",
+            Self::Recovered => "recovered",
             Self::Remark => "remark",
             Self::Resume => "resume",
             Self::Amendment => "amendment",
@@ -279,5 +281,31 @@ impl Results for Record {
         procedure
             .result(reference.name)?
             .no_uncertainty(procedure.kind)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::EventKind;
+
+    /// Run logs of all versions have these words.
+    #[test]
+    fn the_kinds_of_events_keep_their_words_in_a_run_log() {
+        let words = [
+            (EventKind::Note, "note"),
+            (EventKind::Inspection, "inspection"),
+            (EventKind::LimitBreach, "limit_breach"),
+            (EventKind::Hold, "hold"),
+            (EventKind::Held, "held"),
+            (EventKind::NotHeld, "not_held"),
+            (EventKind::Fault, "fault"),
+            (EventKind::Recovered, "mended"),
+            (EventKind::Remark, "remark"),
+            (EventKind::Resume, "resume"),
+            (EventKind::Amendment, "amendment"),
+        ];
+        for (kind, word) in words {
+            assert_eq!(serde_json::to_value(kind).unwrap(), word);
+        }
     }
 }

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-use rigs::{CASES, Case};
+use rigs::{CASES, Case, VELOCITY_DIFFERENCE};
 use serde_json::Value;
 
 /// Longest wait for any output: far longer than a machine under load requires.
@@ -209,7 +209,12 @@ fn compare(case: &Case, ideal: &Value, real: &Value) -> Result<(), String> {
     let stiffness = (error + STIFFNESS * case.resolution / 2.0) * 3200.0;
     error += near(ideal, real, ("k0", "stiffness"), stiffness)? * INCREMENT;
     if case.sweep {
-        error += near(ideal, real, ("c", "damping"), 2.0 * error / 1e-3)? * VELOCITY;
+        error += near(
+            ideal,
+            real,
+            ("c", "damping"),
+            2.0 * error / VELOCITY_DIFFERENCE,
+        )? * VELOCITY;
     }
     let displacement =
         std::f64::consts::FRAC_2_PI * FREQUENCY * STOP * error / STIFFNESS + case.resolution;

@@ -20,7 +20,6 @@ mod named;
 mod needs;
 mod opensees;
 mod person;
-mod quiet;
 mod released;
 mod report;
 mod resumed;

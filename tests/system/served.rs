@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use rustix::process::Signal;
 
-use crate::stage::{Stage, code, impatient, let_it_trip, signal, until, watched};
+use crate::stage::{Stage, code, let_it_trip, signal, until, watched};
 
 /// `psd rig serve` on a stage's rig, ready for clients.
 pub struct Served {
@@ -304,7 +304,7 @@ fn each_signal_in_a_session_holds_the_rig_and_keeps_the_record() {
 #[test]
 fn a_rig_that_falls_silent_ends_the_session_and_the_client_is_informed() {
     // The pre-test check makes two moves.
-    let silent = || Stage::of(impatient, "after 3 moves: drop replies for ever");
+    let silent = || Stage::of(str::to_owned, "after 3 moves: drop replies for ever");
     let mut served = Served::start_on(silent(), "nees", &[]);
     let mut client = Coordinator::come(&served);
     let answers = client.go(1e-3);

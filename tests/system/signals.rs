@@ -31,7 +31,8 @@ fn each_of(
     then: impl Fn(&Stage) + Sync,
 ) {
     let one = |sent| {
-        let stage = Stage::of(&plan, "");
+        // Of use where it does not stop: the rig waits a fifth of a step for a late target.
+        let stage = Stage::of(&plan, "at 0 s: coast 1.2 s");
         let run = start(&mut stage.run_with(&["--yes"]));
         moment(&stage);
         signal(&run, sent);

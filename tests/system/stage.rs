@@ -9,8 +9,6 @@ use std::time::{Duration, Instant};
 use rustix::process::{Pid, Signal, kill_process};
 use tempfile::TempDir;
 
-use crate::quiet::{self, Beside};
-
 pub const PSD: &str = env!("CARGO_BIN_EXE_psd");
 
 /// Longest wait for any event, far longer than needed: only a program that hangs reaches it.
@@ -77,12 +75,6 @@ report {
 }
 "#;
 
-/// The plan with a request time-out of 4 s instead of 16 s, only for tests of a rig that becomes silent. On a busy machine the
-/// answers of a rig emulator can take seconds.
-pub fn impatient(plan: &str) -> String {
-    swapped(plan, "reply_timeout: 2 s", "reply_timeout: 0.5 s")
-}
-
 /// The plan of a rig that holds automatically after 8 s without communication.
 pub fn watched(plan: &str) -> String {
     swapped(
@@ -114,8 +106,6 @@ pub struct Stage {
     folder: TempDir,
     simulator: Option<Child>,
     logs: usize,
-    /// After the rig emulator has ended.
-    _beside: Beside,
 }
 
 impl Stage {
@@ -135,7 +125,6 @@ impl Stage {
         script: &str,
         files: impl FnOnce(&Path),
     ) -> Self {
-        let beside = quiet::beside();
         let folder = folder();
         files(folder.path());
         let port = folder.path().join("rig");
@@ -148,7 +137,6 @@ impl Stage {
             folder,
             simulator: None,
             logs: 0,
-            _beside: beside,
         };
         stage.power_up(script);
         stage

@@ -13,6 +13,8 @@ pub enum MechanicalFault {
     Reach(f64),
     /// The actuator follows its command with this time constant \[s\].
     Lag(f64),
+    /// Without a next smooth move the actuators continue for so long \[s\], instead of the time of the controller.
+    Coast(f64),
     /// Factor on the force readings, such as a wrong polarity or a wrong unit.
     ScaleForce(f64),
     /// Factor on the displacement readings.
@@ -41,6 +43,8 @@ pub enum MechanicalFault {
 pub struct MechanicalFaults {
     pub(crate) reach: f64,
     pub(crate) lag: f64,
+    /// \[s\]
+    pub(crate) coast: Option<f64>,
     force_factor: f64,
     displacement_factor: f64,
     clip: Option<f64>,
@@ -68,6 +72,7 @@ impl MechanicalFaults {
         Self {
             reach: 1.0,
             lag: 0.0,
+            coast: None,
             force_factor: 1.0,
             displacement_factor: 1.0,
             clip: None,
@@ -91,6 +96,7 @@ impl MechanicalFaults {
         match fault {
             MechanicalFault::Reach(part) => self.reach = part,
             MechanicalFault::Lag(seconds) => self.lag = seconds,
+            MechanicalFault::Coast(seconds) => self.coast = Some(seconds),
             MechanicalFault::ScaleForce(factor) => self.force_factor *= factor,
             MechanicalFault::ScaleDisplacement(factor) => self.displacement_factor *= factor,
             MechanicalFault::ClipForce(limit) => self.clip = Some(limit),

@@ -122,6 +122,13 @@ impl EmulatedRig {
         Some(self.time - end).filter(|gone_on| *gone_on > 0.0)
     }
 
+    /// Returns the duration of the motion after a move without a successor \[s\], if a fault has changed it.
+    #[must_use]
+    pub fn coasts_for(&self) -> Option<f64> {
+        let changed = self.actuators.iter().filter_map(|one| one.faults.coast);
+        changed.reduce(f64::max)
+    }
+
     fn is_gliding(&self) -> bool {
         self.actuators
             .iter()

@@ -156,6 +156,7 @@ fn mechanical_fault(verb: &str, words: &mut Words<'_>) -> Result<MechanicalFault
         "reach" => Ok(MechanicalFault::Reach(words.amount("%")? / 100.0)),
         "stick" => Ok(MechanicalFault::Reach(0.0)),
         "lag" => Ok(MechanicalFault::Lag(words.amount("s")?)),
+        "coast" => Ok(MechanicalFault::Coast(words.amount("s")?)),
         "fracture" => {
             words.expect("at")?;
             let displacement = words.amount("mm")? * 1e-3;

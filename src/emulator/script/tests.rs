@@ -74,6 +74,10 @@ fn a_line_states_time_and_event() {
         What::Replies(fill, Some(1))
     );
     assert_eq!(
+        one("at 0 s: coast 2 s").what,
+        What::Rig(MechanicalFault::Coast(2.0))
+    );
+    assert_eq!(
         one("at 1 s: fracture at 3 mm to 10 %").what,
         What::Rig(MechanicalFault::Fracture {
             displacement: 0.003,

@@ -207,13 +207,15 @@ fn position(records: &[(EntryKind, Value)], kind: EntryKind) -> usize {
     records.iter().position(|(of, _)| *of == kind).unwrap()
 }
 
-/// Random damage, the same in each run. The result does not matter, as long as there is one.
+/// Random damage, the same in each run. The result does not matter, as long as there is one. `PSD_VANDALS=10000` makes so many rounds:
+/// about an hour.
 #[test]
 fn no_vandal_makes_a_record_that_panics() {
     const ROUNDS: u64 = 150;
+    let rounds = std::env::var("PSD_VANDALS").map_or(ROUNDS, |rounds| rounds.parse().unwrap());
     let real: &[u8] = include_bytes!("../../../tests/records/waits_for_ever.psdj");
     let journal = &run()[JOURNAL];
-    for seed in 0..ROUNDS {
+    for seed in 0..rounds {
         let _ = played(&Vandal::new(seed).mangled(journal, real));
         let _ = played(&Vandal::new(seed).mangled(real, journal));
     }

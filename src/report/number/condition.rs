@@ -82,7 +82,7 @@ fn between(target: f64, tolerance: f64) -> String {
     let ends = [target - tolerance, target + tolerance];
     let ends = match decimals_of(target, tolerance) {
         Some(second) => {
-            let decimals = second + usize::from(whole);
+            let decimals = usize::try_from(second + i32::from(whole)).unwrap_or(0);
             let mut ends = ends.map(|number| format!("{number:.decimals$}"));
             // Trailing zeros of both are removed.
             while ends[0].contains('.')
@@ -110,17 +110,23 @@ fn between(target: f64, tolerance: f64) -> String {
 /// The margin of a condition in the unit of its value; None if it has no margin.
 pub(in crate::report) fn margin(condition: &ConditionOutcome) -> Option<String> {
     condition.bound?;
-    condition.margin.map(|margin| distance(margin, condition))
+    /// Digits of a distance to a limit: a difference has no more.
+    const DIGITS: usize = 3;
+    condition
+        .margin
+        .map(|margin| distance(margin, DIGITS, condition))
 }
 
 /// The guard band of a condition in the unit of its value; None if it has no guard band.
 pub(in crate::report) fn guard_band(condition: &ConditionOutcome) -> Option<String> {
-    condition.guard_band.map(|band| distance(band, condition))
+    /// The band is U, of which two digits are printed.
+    const DIGITS: usize = 2;
+    condition
+        .guard_band
+        .map(|band| distance(band, DIGITS, condition))
 }
 
-fn distance(distance: f64, condition: &ConditionOutcome) -> String {
-    /// Digits of a distance to a limit: a difference has no more.
-    const DIGITS: usize = 3;
+fn distance(distance: f64, digits: usize, condition: &ConditionOutcome) -> String {
     let (scale, percent) = if in_percent(condition) {
         (100.0, "\u{a0}%")
     } else {
@@ -131,7 +137,7 @@ fn distance(distance: f64, condition: &ConditionOutcome) -> String {
         distance == 0.0 || (distance / unit(*value, condition.dimension).1).abs() >= 1e-3
     });
     let (unit, factor) = unit(beside.unwrap_or(distance), condition.dimension);
-    join(&minus(&rounded(scale * distance / factor, DIGITS)), &unit) + percent
+    join(&minus(&rounded(scale * distance / factor, digits)), &unit) + percent
 }
 
 /// A number to `digits` significant digits; a whole number in full.

@@ -42,9 +42,8 @@ pub(in crate::report) fn parts(value: f64, known: Option<Known>, dimension: Dime
     let by = 10.0_f64.powi(power);
     let (value, [standard, expanded]) = match decimals_of(scaled / by, expanded / by) {
         Some(decimals) => {
-            let text = |number: f64, decimals: usize| {
-                raised(&minus(&format!("{:.decimals$}", number / by)), power)
-            };
+            let text =
+                |number: f64, decimals: i32| raised(&minus(&fixed(number / by, decimals)), power);
             let own = decimals_of(scaled / by, uncertainty / by).unwrap_or(decimals);
             (
                 text(scaled, decimals),
@@ -118,7 +117,7 @@ pub(crate) fn with_uncertainty(
     let by = 10.0_f64.powi(power);
     let number = match decimals_of(scaled / by, uncertainty / by) {
         Some(decimals) => {
-            let text = |number: f64| minus(&format!("{:.decimals$}", number / by));
+            let text = |number: f64| minus(&fixed(number / by, decimals));
             raised_bracket(&text(scaled), &text(uncertainty), power)
         }
         None => format!(
@@ -144,20 +143,28 @@ pub(super) fn tens(power: i32) -> String {
     }
 }
 
-/// Decimals that show two digits of the uncertainty; None if plain decimals would not be readable.
-pub(super) fn decimals_of(value: f64, uncertainty: f64) -> Option<usize> {
+/// A number to so many decimals; below zero, to tens, hundreds, …
+fn fixed(number: f64, decimals: i32) -> String {
+    match usize::try_from(decimals) {
+        Ok(decimals) => format!("{number:.decimals$}"),
+        Err(_) => {
+            let step = 10.0_f64.powi(-decimals);
+            // Zero is added for a rounded zero without a minus sign.
+            format!("{:.0}", (number / step).round() * step + 0.0)
+        }
+    }
+}
+
+/// Decimals that show two digits of the uncertainty, below zero for tens, hundreds, …; None if plain decimals would not be readable.
+pub(super) fn decimals_of(value: f64, uncertainty: f64) -> Option<i32> {
     if uncertainty <= 0.0 || value.abs() >= 1e7 {
         return None;
     }
     // Rounded first: 0.0996 is 0.10, and not 0.100.
     let rounded: f64 = format!("{uncertainty:.1e}").parse().unwrap_or(uncertainty);
     let decimals = 1.0 - rounded.log10().floor();
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "between 0 and 9"
-    )]
-    (decimals <= 9.0).then(|| decimals.max(0.0) as usize)
+    #[expect(clippy::cast_possible_truncation, reason = "between -308 and 9")]
+    (decimals <= 9.0).then_some(decimals as i32)
 }
 
 #[cfg(test)]
@@ -186,6 +193,19 @@ mod tests {
         assert_eq!(
             with_uncertainty(2.5e8, Some(1.25e6), Dimension::NUMBER),
             "2.500(0.013) × 10⁸"
+        );
+        // Two digits also of a large uncertainty.
+        assert_eq!(
+            with_uncertainty(100.4, Some(542.0), Dimension::NUMBER),
+            "100(540)"
+        );
+        assert_eq!(
+            with_uncertainty(-12_344.0, Some(996.0), Dimension::NUMBER),
+            "−12300(1000)"
+        );
+        assert_eq!(
+            with_expanded(-2.0, Known::surely(271.0), Dimension::NUMBER),
+            "0 ± 540"
         );
         let column = parts(1.7e-7, Some(Known::surely(2.3e-8)), Dimension::NUMBER);
         assert_eq!(

@@ -5,7 +5,7 @@ use super::{AxisBounds, Native, decimal, of_axis};
 use crate::emulator::{EmulatedRig, GlideRefusal, PathEnd};
 use crate::physics::tracking::trajectory::Path;
 
-/// Duration of the motion after a move without a successor \[s\]; then it holds.
+/// Duration of the motion after a move without a successor \[s\]; then it holds. A fault can change it.
 const GOES_ON: f64 = 0.25;
 /// Tolerance of a limit \[mm or mm/s\]: the rounding errors of a cubic.
 const ROUNDING: f64 = 1e-6;
@@ -77,7 +77,9 @@ impl Native {
             let (position, (low, high)) = (rig.commanded_of(actuator) * 1e3, axis.displacement);
             low - ROUNDING <= position && position <= high + ROUNDING
         };
-        if gone_on > GOES_ON || !self.run.axes.iter().enumerate().all(inside) {
+        if gone_on > rig.coasts_for().unwrap_or(GOES_ON)
+            || !self.run.axes.iter().enumerate().all(inside)
+        {
             self.hold(rig);
         }
     }

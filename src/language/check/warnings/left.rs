@@ -2,7 +2,7 @@
 //! reads, the procedures, the requirements. Out: the result, E206, or a warning (W730). It knows no run.
 
 use crate::schema::procedures::impact_series as series;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::values;
@@ -72,6 +72,14 @@ pub fn warn(
     procedures: &[(usize, Option<Procedure>)],
     requirements: &[Requirement],
 ) {
+    // The last unloading of each specimen: a search through the later procedures for every requirement would be quadratic.
+    let unloadings: BTreeMap<Option<usize>, usize> = procedures
+        .iter()
+        .enumerate()
+        .filter_map(|(index, (_, procedure))| Some((index, &procedure.as_ref()?.kind)))
+        .filter(|(_, kind)| crate::procedures::facts_of(kind).unloads)
+        .map(|(index, kind)| (kind.specimen(), index))
+        .collect();
     let mut reported = BTreeSet::new();
     for (index, requirement) in requirements.iter().enumerate() {
         let formulas = requirement.conditions.iter().flat_map(Condition::formulas);
@@ -80,13 +88,9 @@ pub fn warn(
                 continue;
             };
             let final_value = LEFT.iter().any(|(_, last)| reference.name == *last);
-            let later = procedures[reference.procedure.0 + 1..]
-                .iter()
-                .filter_map(|(_, later)| later.as_ref());
-            let unloaded = later.map(|later| &later.kind).any(|later| {
-                crate::procedures::facts_of(later).unloads
-                    && later.specimen() == procedure.kind.specimen()
-            });
+            let unloaded = unloadings
+                .get(&procedure.kind.specimen())
+                .is_some_and(|unloading| *unloading > reference.procedure.0);
             if final_value && !unloaded && reported.insert((*block, reference.name)) {
                 let (required, head) = (
                     checker.scope.requirements[index].condition.span,

@@ -79,7 +79,7 @@ pub fn figure_of_other_procedure<'n>(
     };
     Diagnostic::new(
         Code::UnknownVariant,
-        format!("a `{procedure}` has no figure `{figure}`"),
+        format!("`{procedure}` has no figure `{figure}`"),
     )
     .at(span, "unknown for this procedure")
     .help(help)

@@ -81,19 +81,19 @@ pub fn block_name(kind: &BlockKind, block: &Block, rest: &[Ident]) -> Option<Dia
     };
     if let (Some(title), true) = (&block.title, kind.naming != Naming::Titled) {
         return Some(wrong(
-            format!("a `{words}` block requires a title"),
+            format!("`{words}` requires a title"),
             title.span,
             "title in quotes",
         ));
     }
     match (kind.naming, rest) {
         (Naming::Named, []) => Some(wrong(
-            format!("a `{words}` block requires a name"),
+            format!("`{words}` requires a name"),
             block.head,
             "name missing",
         )),
         (Naming::Unnamed | Naming::Titled, [name, ..]) => Some(wrong(
-            format!("a `{words}` block has no name"),
+            format!("`{words}` takes no name"),
             name.span,
             "extra word",
         )),
