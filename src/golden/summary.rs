@@ -33,7 +33,7 @@ pub(super) fn compare(
         return;
     };
     let Some(is) = read(is) else {
-        found.push(Finding::new(Part::Verdict, super::SUMMARY, Change::Gone));
+        found.push(Finding::new(Part::Verdict, super::SUMMARY, Change::Missing));
         return;
     };
     Walk { tolerances, found }.value(&mut Vec::new(), &was, &is);
@@ -78,7 +78,7 @@ impl Walk<'_> {
         {
             path.push(key.clone());
             match (is.get(key), measure) {
-                (None, _) => self.note(path, Some(Change::Gone)),
+                (None, _) => self.note(path, Some(Change::Missing)),
                 (Some(new), Some(dimension))
                     if is_numeric(old) && is_numeric(new) && key != "margin" =>
                 {
@@ -168,7 +168,7 @@ impl Walk<'_> {
                 path.push(name.clone());
                 match new_index(name) {
                     Some(index) => self.value(path, old, &is[index]),
-                    None => self.note(path, Some(Change::Gone)),
+                    None => self.note(path, Some(Change::Missing)),
                 }
                 path.pop();
             }

@@ -58,8 +58,8 @@ pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<ProcedureKind
     }
 }
 
-/// Check: judges a procedure by the other declarations of the plan.
-pub(crate) fn judge(
+/// Check: compares a procedure with the other declarations of the plan.
+pub(crate) fn check_declared(
     checker: &mut Checker,
     block: usize,
     kind: &ProcedureKind,
@@ -67,13 +67,13 @@ pub(crate) fn judge(
 ) {
     match kind {
         ProcedureKind::Impact(impact) => {
-            impact::check::judge::with_its_striker(checker, block, impact, declared);
+            impact::check::declared::with_its_striker(checker, block, impact, declared);
         }
         ProcedureKind::Escalate(escalate) => {
-            impact_series::judge::judge(checker, block, escalate, declared);
+            impact_series::declared::check_declared(checker, block, escalate, declared);
         }
         ProcedureKind::Shake(shake) => {
-            base_excitation::check::judge(checker, block, shake, declared);
+            base_excitation::check::check_declared(checker, block, shake, declared);
         }
         ProcedureKind::StiffnessRamp(_)
         | ProcedureKind::DampingSweep(_)
@@ -85,19 +85,19 @@ pub(crate) fn judge(
     }
 }
 
-/// Check: judges the results that the plan reads from procedures; called only if there is no error.
-pub(crate) fn hold_reads(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
-    stiffness_ramp::read_results::hold(checker, procedures);
-    cycle::declared_cycles::hold_entries(checker, procedures);
+/// Check: the results that the plan reads from procedures; called only if there is no error.
+pub(crate) fn check_reads(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
+    stiffness_ramp::read_results::check(checker, procedures);
+    cycle::declared_cycles::check_entries(checker, procedures);
 }
 
 /// Check: compares the targets that are known before the run with the limits.
-pub(crate) fn hold_limits(
+pub(crate) fn check_limits(
     checker: &mut Checker,
     procedures: &[(usize, Option<Procedure>)],
     limits: &CheckedLimits,
 ) {
-    cycle::declared_cycles::hold_cycles(checker, procedures, limits);
+    cycle::declared_cycles::check_cycles(checker, procedures, limits);
 }
 
 /// Check: the state in which a procedure leaves the specimen.
@@ -105,7 +105,7 @@ pub(crate) fn leaves(kind: &ProcedureKind, grounds: &[Option<Ground>]) -> Leaves
     match kind {
         ProcedureKind::Impact(impact) => Leaves::Moving(impact::facts::motion(impact)),
         ProcedureKind::Shake(shake) => Leaves::Moving(base_excitation::left::left(shake, grounds)),
-        ProcedureKind::Escalate(series) => Leaves::Moving(impact_series::judge::motion(series)),
+        ProcedureKind::Escalate(series) => Leaves::Moving(impact_series::declared::motion(series)),
         ProcedureKind::Inspect { .. } => Leaves::AsFound,
         ProcedureKind::StiffnessRamp(_)
         | ProcedureKind::DampingSweep(_)

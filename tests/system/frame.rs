@@ -120,7 +120,7 @@ fn results(folder: &Path) -> Vec<(String, f64)> {
 
 /// The same plan with continuous motion: six steps of 1.25 s. Targets must arrive within a quarter of a second of the end of a path,
 /// which is a fifth of a step.
-fn gliding() -> Stage {
+fn continuous() -> Stage {
     let mode = "  time_step     = 10 ms\n  mode          = continuous(time_scale: 125)";
     let short = ("0.4 s\n}", "0.06 s\n}");
     let plan = plan_with(&[("  time_step     = 10 ms", mode), short]);
@@ -215,7 +215,7 @@ fn a_meter_apart_gives_the_virtual_runs_results_and_killed_it_goes_on() {
 #[test]
 fn two_axes_that_do_not_stop_give_the_virtual_runs_motion_and_killed_they_go_on() {
     let _alone = quiet::alone();
-    let whole = gliding();
+    let whole = continuous();
     succeeded(&wait(&mut whole.run_with(&["--yes"])));
     let proven = whole.proven();
     assert!(
@@ -235,7 +235,7 @@ fn two_axes_that_do_not_stop_give_the_virtual_runs_motion_and_killed_they_go_on(
     };
     same(&whole);
 
-    let cut_off = gliding();
+    let cut_off = continuous();
     killed(&cut_off, 13);
     // It receives no next target: it holds automatically at the end of its path.
     std::thread::sleep(std::time::Duration::from_secs(3));

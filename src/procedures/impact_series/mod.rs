@@ -4,9 +4,9 @@
 
 pub(crate) mod chart;
 pub(crate) mod check;
+pub(crate) mod declared;
 pub(crate) mod facts;
 pub(crate) mod figures;
-pub(crate) mod judge;
 pub(crate) mod repeated_impact;
 pub(crate) mod report;
 pub(crate) mod results;
