@@ -293,13 +293,13 @@ pub(crate) fn chart(
 ) -> Option<(Chart, String)> {
     let (name, kind) = (&procedure.name, figure.kind);
     match &procedure.history {
-        History::Ramp(history) => stiffness_ramp::chart::chart(name, history, kind),
-        History::Sweep(history) => damping_sweep::chart::chart(name, history, kind),
+        History::Ramp(history) => stiffness_ramp::figures::chart(name, history, kind),
+        History::Sweep(history) => damping_sweep::figures::chart(name, history, kind),
         History::Impact(history) => impact::figures::chart(run, name, history, figure),
-        History::Shake(history) => base_excitation::chart::chart(run, name, history, figure),
-        History::Cycle(history) => cycle::chart::chart(name, history, kind),
-        History::Escalate(history) => impact_series::chart::chart(name, history, kind),
-        History::FrameUnload(steps) => base_excitation::chart::unloading_chart(name, steps, kind),
+        History::Shake(history) => base_excitation::figures::chart(run, name, history, figure),
+        History::Cycle(history) => cycle::figures::chart(name, history, kind),
+        History::Escalate(history) => impact_series::figures::chart(name, history, kind),
+        History::FrameUnload(steps) => base_excitation::figures::unloading_chart(name, steps, kind),
         History::Move(_) | History::Inspect => None,
     }
 }
@@ -308,7 +308,7 @@ pub(crate) fn chart(
 pub(crate) fn shared_curve(kind: FigureKind, history: &History) -> Option<SharedCurve> {
     match history {
         History::Impact(history) => impact::figures::shared(kind, history),
-        History::Shake(history) => base_excitation::chart::shared(kind, history),
+        History::Shake(history) => base_excitation::figures::shared(kind, history),
         History::Ramp(_)
         | History::Sweep(_)
         | History::Cycle(_)

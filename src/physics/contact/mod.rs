@@ -2,12 +2,14 @@
 //! the contact force of the step. They know no rig and no procedure.
 
 pub mod contact_time_step;
+mod followed;
 mod hertz;
 mod impulse;
 mod restitution;
 pub mod state;
 
-pub use hertz::HertzContact;
+pub use followed::Followed;
+pub use hertz::HertzForce;
 pub(super) use impulse::Decided;
 pub use impulse::ImpulseContact;
 pub use restitution::RestitutionContact;
@@ -256,7 +258,7 @@ pub enum AnyContact {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DividingContact {
     Restitution(RestitutionContact),
-    Hertz(HertzContact),
+    Hertz(Followed<HertzForce>),
 }
 
 impl DividingContact {
@@ -301,12 +303,11 @@ impl AnyContact {
                 stiffness,
                 loss,
                 force_limit,
-            } => Ok(Self::Divided(DividingContact::Hertz(HertzContact::new(
-                stiffness,
-                loss,
-                force_limit,
-                impact,
-            )))),
+            } => {
+                let law = HertzForce::new(stiffness, loss, force_limit);
+                let followed = Followed::new(law, impact);
+                Ok(Self::Divided(DividingContact::Hertz(followed)))
+            }
         }
     }
 }

@@ -2,7 +2,6 @@
 //! Out: parameters, the history of each impact, results, tables, figures, report text. The impact
 //! itself is in `impact`.
 
-pub(crate) mod chart;
 pub(crate) mod check;
 pub(crate) mod declared;
 pub(crate) mod facts;
