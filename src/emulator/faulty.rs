@@ -326,7 +326,7 @@ mod tests {
     }
 
     /// Returns the answer to each line, sent one per second, in the parts in which it came.
-    fn talk(script: &str, lines: &[&str]) -> Vec<Vec<String>> {
+    fn converse(script: &str, lines: &[&str]) -> Vec<Vec<String>> {
         let mut faulty = Faulty::new(
             Box::new(Echo::default()),
             Script::parse(script).expect("a script").faults,
@@ -360,14 +360,14 @@ mod tests {
     #[test]
     fn each_fault_of_a_reply_has_its_stated_effect() {
         let lines = ["one\n", "two\n", "three\n"];
-        let second = |fault: &str| talk(&format!("after 1 reply: {fault}"), &lines)[1].clone();
-        assert_eq!(talk("", &lines), [["one\\n"], ["two\\n"], ["three\\n"]]);
+        let second = |fault: &str| converse(&format!("after 1 reply: {fault}"), &lines)[1].clone();
+        assert_eq!(converse("", &lines), [["one\\n"], ["two\\n"], ["three\\n"]]);
         assert_eq!(
-            talk("after 1 reply: drop reply", &lines),
+            converse("after 1 reply: drop reply", &lines),
             [vec!["one\\n"], vec![], vec!["three\\n"]]
         );
         assert_eq!(
-            talk("at 0 s: drop replies for ever", &lines),
+            converse("at 0 s: drop replies for ever", &lines),
             [Vec::<String>::new(), vec![], vec![]]
         );
         assert_eq!(second("split reply at 2 bytes"), ["tw", "o\\n"]);
@@ -384,7 +384,7 @@ mod tests {
         assert_eq!(second("hang up before reply"), ["(hung up)"]);
         assert_eq!(second("hang up after reply"), ["two\\n", "(hung up)"]);
         assert_eq!(
-            talk("after 1 reply: delay reply 1.5 s", &lines),
+            converse("after 1 reply: delay reply 1.5 s", &lines),
             [vec!["one\\n"], vec![], vec!["three\\n", "two\\n"]]
         );
     }
@@ -392,27 +392,27 @@ mod tests {
     #[test]
     fn what_comes_by_chance_is_the_same_for_the_same_seed() {
         let lines = ["0123456789\n"; 40];
-        let flips = || talk("each reply: flip a bit with 0.25", &lines);
+        let flips = || converse("each reply: flip a bit with 0.25", &lines);
         let spoilt = flips()
             .iter()
             .filter(|pieces| pieces[0] != "0123456789\\n")
             .count();
         assert!((2..20).contains(&spoilt), "{spoilt} of 40, expected 10");
         assert_eq!(flips(), flips());
-        assert!(talk("after 1 reply: garbage 4 bytes after", &["a\n", "b\n"])[1][0].len() > 6);
+        assert!(converse("after 1 reply: garbage 4 bytes after", &["a\n", "b\n"])[1][0].len() > 6);
     }
 
     #[test]
     fn faults_of_the_line_strike_when_they_are_due() {
         let lines = ["one\n", "m\n", "three\n", "four\n"];
         assert_eq!(
-            talk("after 1 move: drop reply", &lines)[1],
+            converse("after 1 move: drop reply", &lines)[1],
             Vec::<String>::new(),
             "the reply to the move itself"
         );
-        assert_eq!(talk("after 1 move: hang up", &lines)[1], ["(hung up)"]);
-        assert_eq!(talk("at 1.5 s: reboot", &lines)[1], ["m\\n", "up\\n"]);
-        let frozen = talk("at 0.5 s: freeze firmware 2 s", &lines);
+        assert_eq!(converse("after 1 move: hang up", &lines)[1], ["(hung up)"]);
+        assert_eq!(converse("at 1.5 s: reboot", &lines)[1], ["m\\n", "up\\n"]);
+        let frozen = converse("at 0.5 s: freeze firmware 2 s", &lines);
         assert_eq!(
             frozen,
             [

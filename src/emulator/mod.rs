@@ -15,7 +15,7 @@ pub(crate) mod testing;
 
 pub use emulated_rig::actuator::ActuatorSettings;
 pub use emulated_rig::fault::MechanicalFault;
-pub use emulated_rig::glide::{GlideRefusal, PathEnd};
+pub use emulated_rig::smooth_paths::{PathEnd, PathRefusal};
 pub use emulated_rig::{EmulatedRig, EmulatedRigSettings, SentMove};
 pub use faulty::Faulty;
 pub use lines::in_process::{InProcess, SimulatedClock, SimulatedPort};

@@ -51,7 +51,7 @@ pub fn of_plan(
 ) -> Result<RigEmulator, NoStandIn> {
     let link = plan.rig.link.as_real().ok_or(NoStandIn::Virtual)?;
     let starts = starts(plan, link, script);
-    let rig = emulated_rig(plan, link, seed, &starts)?.standing_at(&starts);
+    let rig = emulated_rig(plan, link, seed, &starts)?.resting_at(&starts);
     let axes = rig.actuators();
     let named = script
         .faults
@@ -378,7 +378,7 @@ move to_half {
     }
 
     /// Returns all bytes received within a second.
-    fn heard(shared: &InProcess, line: usize, sent: &[u8]) -> String {
+    fn received(shared: &InProcess, line: usize, sent: &[u8]) -> String {
         let mut port = shared.port(line);
         port.write(sent, Duration::from_secs(1)).expect("sent");
         let mut text = String::new();
@@ -401,8 +401,8 @@ move to_half {
             ..Calibration::default()
         };
         let shared = emulator(&plan);
-        assert!(heard(&shared, 0, b"$J=G21G90G53X-3.000F600\n").starts_with("ok\r\n"));
-        let counts = heard(&shared, 1, b"");
+        assert!(received(&shared, 0, b"$J=G21G90G53X-3.000F600\n").starts_with("ok\r\n"));
+        let counts = received(&shared, 1, b"");
         assert_eq!(
             counts.lines().last(),
             Some("-19500"),
@@ -414,7 +414,7 @@ move to_half {
     fn a_rig_with_opposite_polarity_has_its_limits_reversed() {
         let mut plan = plan(Dialect::Native, None);
         plan.rig.polarity = -1.0;
-        let hello = heard(&emulator(&plan), 0, &sealed("HELLO 1"));
+        let hello = received(&emulator(&plan), 0, &sealed("HELLO 1"));
         assert!(
             hello.contains(" -25.000000 1.000000 -12000.000 2000.000 10.000000 0 "),
             "{hello}"
@@ -467,7 +467,7 @@ move to_half {
         ];
         for (dialect, question, answer) in asked {
             let plan = plan(dialect.clone(), None);
-            let reply = heard(&emulator(&plan), 0, question);
+            let reply = received(&emulator(&plan), 0, question);
             assert!(
                 reply.contains(answer),
                 "{dialect:?}: `{}`",

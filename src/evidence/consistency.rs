@@ -12,7 +12,7 @@ use crate::run::replay::{self, Header, LoggedRun};
 /// # Errors
 /// The first contradiction.
 pub fn check_consistency(read: &ReadRecord) -> Result<(), String> {
-    replay::check_consistency(&read.recovered, &read.played, &read.plan)
+    replay::check_consistency(&read.recovered, &read.logged, &read.plan)
         .map_err(|fault| fault.to_string())?;
     match read
         .recovered
@@ -20,15 +20,15 @@ pub fn check_consistency(read: &ReadRecord) -> Result<(), String> {
         .iter()
         .position(|line| line.kind == EntryKind::Amend)
     {
-        None => begins(&read.recovered, &read.played, &read.plan)?,
+        None => begins(&read.recovered, &read.logged, &read.plan)?,
         Some(amended) => {
             let mut first = read.recovered.clone();
             first.lines.truncate(amended);
-            let played = LoggedRun::of(&first).map_err(|fault| fault.to_string())?;
+            let logged = LoggedRun::of(&first).map_err(|fault| fault.to_string())?;
             let plan =
-                plan_of(&played).map_err(|fault| format!("before it was amended: {fault}"))?;
-            begins(&first, &played, &plan)?;
-            if read.played.header.run_id != played.header.run_id {
+                plan_of(&logged).map_err(|fault| format!("before it was amended: {fault}"))?;
+            begins(&first, &logged, &plan)?;
+            if read.logged.header.run_id != logged.header.run_id {
                 return Err("an amendment makes it a different run".to_owned());
             }
         }
@@ -37,8 +37,8 @@ pub fn check_consistency(read: &ReadRecord) -> Result<(), String> {
 }
 
 /// The start of the run log: its run id, and the entries that this program would have written.
-fn begins(recovered: &Recovered, played: &LoggedRun, plan: &Plan) -> Result<(), String> {
-    let header = &played.header;
+fn begins(recovered: &Recovered, logged: &LoggedRun, plan: &Plan) -> Result<(), String> {
+    let header = &logged.header;
     let id = recorded_id(header, plan);
     if header.run_id != id {
         return Err(format!(

@@ -27,7 +27,7 @@ use crate::verdict::{self, Assessment};
 pub type Predict<'a> = &'a dyn Fn(&Plan, &Record) -> Option<Prediction>;
 
 /// A run, replayed from its run log alone.
-pub struct PlayedBack {
+pub struct ReplayedRun {
     pub plan: Plan,
     pub provenance: Provenance,
     pub record: Record,
@@ -37,7 +37,7 @@ pub struct PlayedBack {
     pub steps: Option<Vec<DrivenStep>>,
 }
 
-impl PlayedBack {
+impl ReplayedRun {
     /// Replays a run log, with the data stated for its report after the test.
     pub fn of(
         read: ReadRecord,
@@ -47,7 +47,7 @@ impl PlayedBack {
         let ReadRecord {
             mut plan,
             mut provenance,
-            played,
+            logged,
             recovered,
         } = read;
         // The replay no longer needs the entries: their memory is freed.
@@ -56,7 +56,7 @@ impl PlayedBack {
             mut record,
             mismatch,
             steps,
-        } = replay::replay(&plan, played);
+        } = replay::replay(&plan, logged);
         if let Outcome::Faulted { reason }
         | Outcome::Aborted { reason }
         | Outcome::NotReleased { reason } = &mut record.outcome
@@ -153,7 +153,7 @@ impl Rebuilt {
         };
         drop(bytes);
         match IssueFile::of(folder) {
-            Ok(issues) => Self::played(read, issues.as_ref(), predict).named_as_in(folder),
+            Ok(issues) => Self::replayed(read, issues.as_ref(), predict).named_as_in(folder),
             Err(fault) => nothing("issue", fault),
         }
     }
@@ -170,7 +170,7 @@ impl Rebuilt {
         self
     }
 
-    fn played(read: ReadRecord, issues: Option<&IssueFile>, predict: Predict<'_>) -> Self {
+    fn replayed(read: ReadRecord, issues: Option<&IssueFile>, predict: Predict<'_>) -> Self {
         let count = |kind| {
             read.recovered
                 .lines
@@ -184,7 +184,7 @@ impl Rebuilt {
             format!(", {} bytes incomplete at its end", torn.end - torn.start)
         });
         let (records, head) = (read.recovered.lines.len(), read.recovered.head());
-        let remarks = consistency::remarks(&read.recovered, &read.played.header);
+        let remarks = consistency::remarks(&read.recovered, &read.logged.header);
         let mut findings = vec![match consistency::check_consistency(&read) {
             Ok(()) => Finding::sound(
                 "record",
@@ -195,12 +195,12 @@ impl Rebuilt {
             ),
             Err(fault) => Finding::wrong("record", fault),
         }];
-        let ended = read.played.ended;
-        let header = &read.played.header;
+        let ended = read.logged.ended;
+        let header = &read.logged.header;
         let other_build =
             (header.build != BUILD).then(|| format!("psd {} build {}", header.psd, header.build));
-        let played = match PlayedBack::of(read, issues, predict) {
-            Ok(played) => played,
+        let replayed = match ReplayedRun::of(read, issues, predict) {
+            Ok(replayed) => replayed,
             Err(fault) => {
                 return Self {
                     findings: vec![Finding::wrong("issue", fault)],
@@ -214,7 +214,7 @@ impl Rebuilt {
             ""
         };
         let again = || format!("all {targets} recomputed, bit-identical");
-        findings.push(match (&played.mismatch, &played.record.outcome) {
+        findings.push(match (&replayed.mismatch, &replayed.record.outcome) {
             (Some(mismatch), _) => Finding::wrong("targets", mismatch.to_string()),
             (None, Outcome::Completed) if ended => {
                 Finding::sound("targets", format!("{}, and {steps} steps{built}", again()))
@@ -242,29 +242,29 @@ impl Rebuilt {
                 Finding::sound("targets", format!("{}; {statement}{built}", again()))
             }
         });
-        if played.mismatch.is_some() {
+        if replayed.mismatch.is_some() {
             return Self {
                 findings,
                 report: None,
             };
         }
-        let issues = played.provenance.issues.as_ref();
+        let issues = replayed.provenance.issues.as_ref();
         findings.extend(issues.and_then(|issues| {
             Some(Finding::sound(
                 "issue",
                 issue_text(&issues.report_id, issues.all.last()?),
             ))
         }));
-        Self::with_results(findings, &played, other_build, ended)
+        Self::with_results(findings, &replayed, other_build, ended)
     }
 
     fn with_results(
         mut findings: Vec<Finding>,
-        played: &PlayedBack,
+        replayed: &ReplayedRun,
         other_build: Option<String>,
         ended: bool,
     ) -> Self {
-        let files = match played.results(&mut NullSink) {
+        let files = match replayed.results(&mut NullSink) {
             Ok(files) => files,
             Err(error) => {
                 findings.push(Finding::wrong("results", error.to_string()));
@@ -275,9 +275,9 @@ impl Rebuilt {
             }
         };
         let report = Report {
-            run_id: played.provenance.run_id.clone(),
-            id: played.provenance.report_id().to_owned(),
-            roles: played.plan.report.sign.clone(),
+            run_id: replayed.provenance.run_id.clone(),
+            id: replayed.provenance.report_id().to_owned(),
+            roles: replayed.plan.report.sign.clone(),
             files,
             other_build,
             ended,

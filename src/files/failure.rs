@@ -116,8 +116,8 @@ impl DiskSpaceFault {
 
     /// The action that corrects it.
     pub fn help(&self) -> String {
-        let lacking = amount(LEAST_FREE_BYTES - self.free);
-        format!("free {lacking}, or name a folder on another disk with `--out`")
+        let missing = amount(LEAST_FREE_BYTES - self.free);
+        format!("free {missing}, or name a folder on another disk with `--out`")
     }
 }
 

@@ -20,7 +20,7 @@ pub const JOURNAL: &str = "journal.psdj";
 /// A run log as it was read.
 pub struct ReadRecord {
     pub recovered: Recovered,
-    pub played: LoggedRun,
+    pub logged: LoggedRun,
     pub plan: Plan,
     pub provenance: Provenance,
 }
@@ -37,8 +37,8 @@ pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<ReadRecord, Failure> {
     let damaged = |reason: String| Failure::file(path, reason);
     let recovered =
         recover(bytes).map_err(|damage| damaged(format!("the run log is damaged: {damage}")))?;
-    let played = LoggedRun::of(&recovered).map_err(|fault| damaged(fault.to_string()))?;
-    for (file, text) in played.header.files.iter().zip(&played.texts) {
+    let logged = LoggedRun::of(&recovered).map_err(|fault| damaged(fault.to_string()))?;
+    for (file, text) in logged.header.files.iter().zip(&logged.texts) {
         if sha256(text.as_bytes()) != file.sha256 {
             return Err(damaged(format!(
                 "the text of `{}` does not match its digest",
@@ -46,18 +46,18 @@ pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<ReadRecord, Failure> {
             )));
         }
     }
-    let plan = plan_of(&played).map_err(damaged)?;
+    let plan = plan_of(&logged).map_err(damaged)?;
     replay::well_formed(&recovered, &plan).map_err(|fault| damaged(fault.to_string()))?;
-    if played.header.equipment.is_none() && recovered.format() > OLDEST_FORMAT {
+    if logged.header.equipment.is_none() && recovered.format() > OLDEST_FORMAT {
         return Err(damaged(
             "its header does not state the measuring equipment".to_owned(),
         ));
     }
-    fits(&played, &plan).map_err(damaged)?;
-    let provenance = provenance_of(&played.header, &plan, &recovered);
+    fits(&logged, &plan).map_err(damaged)?;
+    let provenance = provenance_of(&logged.header, &plan, &recovered);
     Ok(ReadRecord {
         recovered,
-        played,
+        logged,
         plan,
         provenance,
     })
@@ -69,13 +69,13 @@ pub fn journal_of(run: &Path) -> PathBuf {
 }
 
 /// The plan of a run log, checked again from the run log alone.
-pub fn plan_of(played: &LoggedRun) -> Result<Plan, String> {
-    let header = &played.header;
+pub fn plan_of(logged: &LoggedRun) -> Result<Plan, String> {
+    let header = &logged.header;
     let files = Files {
         header,
-        texts: &played.texts,
+        texts: &logged.texts,
     };
-    let (Some(first), Some(text)) = (header.files.first(), played.texts.first()) else {
+    let (Some(first), Some(text)) = (header.files.first(), logged.texts.first()) else {
         return Err("the run log has no plan".to_owned());
     };
     let (rig, settings, date) = (
@@ -105,8 +105,8 @@ pub fn plan_of(played: &LoggedRun) -> Result<Plan, String> {
 }
 
 /// Whether the equipment in the header agrees with plan and rig. This detects a changed calibration.
-fn fits(played: &LoggedRun, plan: &Plan) -> Result<(), String> {
-    let (Some(equipment), Some(rig)) = (&played.header.equipment, &played.rig) else {
+fn fits(logged: &LoggedRun, plan: &Plan) -> Result<(), String> {
+    let (Some(equipment), Some(rig)) = (&logged.header.equipment, &logged.rig) else {
         return Ok(());
     };
     if *equipment == Equipment::of(plan, Device::of(&rig.identity, rig.noise)) {

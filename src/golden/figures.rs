@@ -20,7 +20,7 @@ pub(super) fn compare(
             return found.push(Finding::new(Part::Figure, super::FIGURES, Change::New));
         }
         (Some(_), None) => {
-            return found.push(Finding::new(Part::Figure, super::FIGURES, Change::Gone));
+            return found.push(Finding::new(Part::Figure, super::FIGURES, Change::Missing));
         }
     };
     for old in &was {
@@ -29,7 +29,7 @@ pub(super) fn compare(
             None => found.push(Finding::new(
                 Part::Figure,
                 format!("figure {}", old.figure),
-                Change::Gone,
+                Change::Missing,
             )),
         }
     }

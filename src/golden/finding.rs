@@ -51,7 +51,7 @@ pub enum Change {
         first: Option<(RowRef, Count)>,
     },
     /// Accepted, but missing now.
-    Gone,
+    Missing,
     /// Present now, but not accepted.
     New,
     /// The accepted number of entries, and the present one.

@@ -112,7 +112,7 @@ pub fn compare(accepted: &Truth, now: &Truth, tolerances: &Tolerances) -> Vec<Fi
             found.push(Finding::new(
                 Part::Diagnostics,
                 "the plan checks, but is accepted as a plan that does not",
-                Change::Gone,
+                Change::Missing,
             ));
         }
         (None, Some(_)) => found.push(Finding::new(

@@ -33,7 +33,7 @@ pub(super) fn compare(
         return;
     };
     let Some(is) = read(is) else {
-        found.push(Finding::new(Part::Verdict, super::SUMMARY, Change::Gone));
+        found.push(Finding::new(Part::Verdict, super::SUMMARY, Change::Missing));
         return;
     };
     Walk { tolerances, found }.value(&mut Vec::new(), &was, &is);
@@ -78,11 +78,16 @@ impl Walk<'_> {
         {
             path.push(key.clone());
             match (is.get(key), measure) {
-                (None, _) => self.note(path, Some(Change::Gone)),
+                (None, _) => self.note(path, Some(Change::Missing)),
                 (Some(new), Some(dimension))
                     if is_numeric(old) && is_numeric(new) && key != "margin" =>
                 {
-                    self.quantity(path, old, new, dimension, was, is);
+                    let scale = ["value", "limit"]
+                        .into_iter()
+                        .flat_map(|key| [was.get(key), is.get(key)])
+                        .flatten();
+                    let scale = number::scale(scale.flat_map(numbers).flatten());
+                    self.quantity(path, [old, new], dimension, scale);
                 }
                 (Some(_), Some(_)) if key == "margin" => {}
                 (Some(new), _) => self.value(path, old, new),
@@ -96,25 +101,10 @@ impl Walk<'_> {
         }
     }
 
-    /// A number with a unit, or a list of them; its scale is the largest number of that object.
-    fn quantity(
-        &mut self,
-        path: &[String],
-        old: &Value,
-        new: &Value,
-        dimension: Dimension,
-        was: &Map<String, Value>,
-        is: &Map<String, Value>,
-    ) {
+    /// A number with a unit, or a list of them; its `scale` is the largest number of that object.
+    fn quantity(&mut self, path: &[String], both: [&Value; 2], dimension: Dimension, scale: f64) {
         let rule = self.rule(path, dimension);
-        let both = || {
-            ["value", "limit"]
-                .into_iter()
-                .flat_map(|key| [was.get(key), is.get(key)])
-                .flatten()
-        };
-        let scale = number::scale(both().flat_map(numbers).flatten());
-        let (old, new) = (numbers(old), numbers(new));
+        let [old, new] = both.map(numbers);
         if old.len() != new.len() {
             self.note(
                 path,
@@ -168,7 +158,7 @@ impl Walk<'_> {
                 path.push(name.clone());
                 match new_index(name) {
                     Some(index) => self.value(path, old, &is[index]),
-                    None => self.note(path, Some(Change::Gone)),
+                    None => self.note(path, Some(Change::Missing)),
                 }
                 path.pop();
             }

@@ -130,7 +130,7 @@ pub(super) fn compare_all(
             None => found.push(Finding::new(
                 Part::Table,
                 format!("table of {name}"),
-                Change::Gone,
+                Change::Missing,
             )),
         }
     }
@@ -171,7 +171,7 @@ fn compare(
             continue;
         };
         let change = match (old, new) {
-            (_, None) => Some(Change::Gone),
+            (_, None) => Some(Change::Missing),
             (Cells::Numbers(old), Some(Cells::Numbers(new))) => {
                 let scale = number::scale(old.iter().chain(&new).flatten().copied());
                 // Rows that only one of the two has are counted above.
@@ -334,7 +334,7 @@ mod tests {
         assert_eq!(
             change(&OLD.replace("tangent", "other")),
             [
-                ("hit.tangent".to_owned(), Change::Gone),
+                ("hit.tangent".to_owned(), Change::Missing),
                 ("hit.other".to_owned(), Change::New)
             ]
         );

@@ -15,6 +15,7 @@ pub mod study;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
+use crate::physics::contact::ContactSpring;
 use crate::physics::contact::contact_time_step::{Approach, Flight};
 use crate::plan::formula::{Formula, ResultReference};
 use crate::units::Dimension;
@@ -225,16 +226,16 @@ impl Striker {
         }
     }
 
-    /// State of the striker at contact, with a contact of stiffness `hertz` \[N/m^1.5\] where that is finite.
+    /// State of the striker at contact, with the spring of a contact of finite stiffness.
     #[must_use]
-    pub fn approach(&self, hertz: Option<f64>) -> Approach {
+    pub fn approach(&self, spring: Option<ContactSpring>) -> Approach {
         let flight = Flight {
             striker_mass: self.mass,
             velocity: self.velocity,
             gap: self.gap,
             gravity: self.gravity,
         };
-        Approach::after(flight, hertz)
+        Approach::after(flight, spring)
     }
 }
 

@@ -58,8 +58,8 @@ pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<ProcedureKind
     }
 }
 
-/// Check: judges a procedure by the other declarations of the plan.
-pub(crate) fn judge(
+/// Check: compares a procedure with the other declarations of the plan.
+pub(crate) fn check_declared(
     checker: &mut Checker,
     block: usize,
     kind: &ProcedureKind,
@@ -67,13 +67,13 @@ pub(crate) fn judge(
 ) {
     match kind {
         ProcedureKind::Impact(impact) => {
-            impact::check::judge::with_its_striker(checker, block, impact, declared);
+            impact::check::declared::with_its_striker(checker, block, impact, declared);
         }
         ProcedureKind::Escalate(escalate) => {
-            impact_series::judge::judge(checker, block, escalate, declared);
+            impact_series::declared::check_declared(checker, block, escalate, declared);
         }
         ProcedureKind::Shake(shake) => {
-            base_excitation::check::judge(checker, block, shake, declared);
+            base_excitation::check::check_declared(checker, block, shake, declared);
         }
         ProcedureKind::StiffnessRamp(_)
         | ProcedureKind::DampingSweep(_)
@@ -85,19 +85,19 @@ pub(crate) fn judge(
     }
 }
 
-/// Check: judges the results that the plan reads from procedures; called only if there is no error.
-pub(crate) fn hold_reads(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
-    stiffness_ramp::read_results::hold(checker, procedures);
-    cycle::declared_cycles::hold_entries(checker, procedures);
+/// Check: the results that the plan reads from procedures; called only if there is no error.
+pub(crate) fn check_reads(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
+    stiffness_ramp::read_results::check(checker, procedures);
+    cycle::declared_cycles::check_entries(checker, procedures);
 }
 
 /// Check: compares the targets that are known before the run with the limits.
-pub(crate) fn hold_limits(
+pub(crate) fn check_limits(
     checker: &mut Checker,
     procedures: &[(usize, Option<Procedure>)],
     limits: &CheckedLimits,
 ) {
-    cycle::declared_cycles::hold_cycles(checker, procedures, limits);
+    cycle::declared_cycles::check_cycles(checker, procedures, limits);
 }
 
 /// Check: the state in which a procedure leaves the specimen.
@@ -105,7 +105,7 @@ pub(crate) fn leaves(kind: &ProcedureKind, grounds: &[Option<Ground>]) -> Leaves
     match kind {
         ProcedureKind::Impact(impact) => Leaves::Moving(impact::facts::motion(impact)),
         ProcedureKind::Shake(shake) => Leaves::Moving(base_excitation::left::left(shake, grounds)),
-        ProcedureKind::Escalate(series) => Leaves::Moving(impact_series::judge::motion(series)),
+        ProcedureKind::Escalate(series) => Leaves::Moving(impact_series::declared::motion(series)),
         ProcedureKind::Inspect { .. } => Leaves::AsFound,
         ProcedureKind::StiffnessRamp(_)
         | ProcedureKind::DampingSweep(_)
@@ -293,13 +293,13 @@ pub(crate) fn chart(
 ) -> Option<(Chart, String)> {
     let (name, kind) = (&procedure.name, figure.kind);
     match &procedure.history {
-        History::Ramp(history) => stiffness_ramp::chart::chart(name, history, kind),
-        History::Sweep(history) => damping_sweep::chart::chart(name, history, kind),
+        History::Ramp(history) => stiffness_ramp::figures::chart(name, history, kind),
+        History::Sweep(history) => damping_sweep::figures::chart(name, history, kind),
         History::Impact(history) => impact::figures::chart(run, name, history, figure),
-        History::Shake(history) => base_excitation::chart::chart(run, name, history, figure),
-        History::Cycle(history) => cycle::chart::chart(name, history, kind),
-        History::Escalate(history) => impact_series::chart::chart(name, history, kind),
-        History::FrameUnload(steps) => base_excitation::chart::unloading_chart(name, steps, kind),
+        History::Shake(history) => base_excitation::figures::chart(run, name, history, figure),
+        History::Cycle(history) => cycle::figures::chart(name, history, kind),
+        History::Escalate(history) => impact_series::figures::chart(name, history, kind),
+        History::FrameUnload(steps) => base_excitation::figures::unloading_chart(name, steps, kind),
         History::Move(_) | History::Inspect => None,
     }
 }
@@ -308,7 +308,7 @@ pub(crate) fn chart(
 pub(crate) fn shared_curve(kind: FigureKind, history: &History) -> Option<SharedCurve> {
     match history {
         History::Impact(history) => impact::figures::shared(kind, history),
-        History::Shake(history) => base_excitation::chart::shared(kind, history),
+        History::Shake(history) => base_excitation::figures::shared(kind, history),
         History::Ramp(_)
         | History::Sweep(_)
         | History::Cycle(_)

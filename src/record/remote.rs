@@ -41,7 +41,9 @@ pub enum Request {
     },
     /// The client has disconnected, or was disconnected.
     Leave {
-        parting: Disconnect,
+        /// `parting` in the run log.
+        #[serde(rename = "parting")]
+        disconnect: Disconnect,
         reason: String,
     },
     /// No further client is served.

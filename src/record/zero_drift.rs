@@ -86,7 +86,7 @@ impl Drift {
         } = self.check;
         let (forces, lengths) = (Dimension::FORCE, Dimension::LENGTH);
         let mut found = Vec::new();
-        let mut judge =
+        let mut assess =
             |what: &str, change: f64, allowed: Option<f64>, of_force: bool, dimension| {
                 // NaN is outside every interval.
                 let Some(allowed) =
@@ -102,14 +102,14 @@ impl Drift {
                 found.push(Beyond { of_force, reason });
             };
         if let Some((by_force, by_displacement)) = axis.change() {
-            judge(
+            assess(
                 &format!("the zero of the force{of} drifted"),
                 by_force,
                 Some(force),
                 true,
                 forces,
             );
-            judge(
+            assess(
                 &format!("the zero of the displacement{of} drifted"),
                 by_displacement,
                 displacement,
@@ -118,14 +118,14 @@ impl Drift {
             );
         }
         let at_rest = |what: &str| format!("at rest the {what}{of} drifted");
-        judge(
+        assess(
             &at_rest("force"),
             axis.before.force_slope * over,
             Some(force),
             true,
             forces,
         );
-        judge(
+        assess(
             &at_rest("displacement"),
             axis.before.displacement_slope * over,
             displacement,

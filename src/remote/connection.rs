@@ -83,9 +83,10 @@ impl<'a> Connection<'a> {
             .stream
             .try_clone()
             .map_err(|error| Ended::Lost(error.to_string()))?;
-        let executed = self
-            .stop_request
-            .for_client(move || is_gone(&line, &takes_leave), || specimen.execute());
+        let executed = self.stop_request.for_client(
+            move || is_disconnected(&line, &takes_leave),
+            || specimen.execute(),
+        );
         executed.map_err(|fault| match fault {
             RigFault::Interrupted if !self.stop_request.end_requested() => Ended::HungUp,
             fault => fault.into(),
@@ -194,7 +195,7 @@ impl<'a> Connection<'a> {
 }
 
 /// Whether the other side will send nothing more, and did not announce this.
-fn is_gone(line: &TcpStream, takes_leave: &dyn Fn(&[u8]) -> bool) -> bool {
+fn is_disconnected(line: &TcpStream, takes_leave: &dyn Fn(&[u8]) -> bool) -> bool {
     let mut watched = [PollFd::new(line, PollFlags::RDHUP)];
     let at_once = Timespec {
         tv_sec: 0,

@@ -54,8 +54,8 @@ pub fn session(
     stiffness: &[f64],
 ) -> Ended {
     let (mut words, mut begun) = (0, Vec::new());
-    let ended =
-        talk(connection, specimen, stiffness, &mut words, &mut begun).unwrap_or_else(|ended| ended);
+    let ended = converse(connection, specimen, stiffness, &mut words, &mut begun)
+        .unwrap_or_else(|ended| ended);
     if words > 0 && matches!(ended, Ended::Limit(_) | Ended::Rig(_) | Ended::Stopped) {
         specimen.hold();
         // A further failure adds nothing to the reason why the session ended.
@@ -91,7 +91,7 @@ fn bid_farewell(
     Ok(())
 }
 
-fn talk(
+fn converse(
     connection: &mut Connection<'_>,
     specimen: &mut Specimen<'_, '_>,
     stiffness: &[f64],

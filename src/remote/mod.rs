@@ -57,7 +57,7 @@ pub enum Ended {
 
 impl Ended {
     /// For the run log.
-    const fn parting(&self) -> Disconnect {
+    const fn disconnect(&self) -> Disconnect {
         match self {
             Self::Closed => Disconnect::Closed,
             Self::Stopped | Self::Limit(_) => Disconnect::Stopped,
@@ -144,14 +144,14 @@ pub fn serve(
     let (busy, closing) = (AtomicBool::new(false), AtomicBool::new(false));
     std::thread::scope(|scope| {
         let (sender, clients) = channel();
-        let door = scope.spawn(|| keep_door(listener, &busy, &closing, sender));
+        let admission = scope.spawn(|| admit_clients(listener, &busy, &closing, sender));
         loop {
             let (stream, address) = match next_client(&clients, stop_request, specimen) {
                 Ok(Some(client)) => client,
                 Ok(None) => break,
                 Err(fault) => {
                     let ended = Ended::from(fault);
-                    specimen.leave(ended.parting(), ended.to_string());
+                    specimen.leave(ended.disconnect(), ended.to_string());
                     on_event(Event::Ended(&Session {
                         ended,
                         driven: Driven::default(),
@@ -169,7 +169,8 @@ pub fn serve(
         }
         specimen.close();
         closing.store(true, Ordering::Release);
-        door.join()
+        admission
+            .join()
             .unwrap_or_else(|_| Err(io::Error::other("the listener failed")))
     })
 }
@@ -196,7 +197,7 @@ pub fn session(
             },
         },
     };
-    specimen.leave(ended.parting(), ended.to_string());
+    specimen.leave(ended.disconnect(), ended.to_string());
     Session {
         ended,
         driven: specimen.driven(),
@@ -206,9 +207,9 @@ pub fn session(
 /// Admits one client while there is none, and refuses the others.
 #[expect(
     clippy::needless_pass_by_value,
-    reason = "who waits for clients is to see that nobody keeps the door any more"
+    reason = "the receiver of the clients must see the end of the admission"
 )]
-fn keep_door(
+fn admit_clients(
     listener: &TcpListener,
     busy: &AtomicBool,
     closing: &AtomicBool,

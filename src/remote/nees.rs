@@ -24,7 +24,7 @@ pub fn session(
     specimen: &mut Specimen<'_, '_>,
     names: &[String],
 ) -> Ended {
-    talk(connection, specimen, names).unwrap_or_else(|ended| ended)
+    converse(connection, specimen, names).unwrap_or_else(|ended| ended)
 }
 
 /// Default names of the control points: none for one axis.
@@ -93,7 +93,7 @@ impl From<String> for Answer {
     }
 }
 
-fn talk(
+fn converse(
     connection: &mut Connection<'_>,
     specimen: &mut Specimen<'_, '_>,
     names: &[String],
@@ -198,11 +198,11 @@ impl State<'_> {
             } => {
                 self.proposed = None;
                 let refused = |reason: &str| Refusal::new(Why::Message, transaction, reason);
-                let wishes = nees_message::wishes(points, |name| self.control_point_index(name))
+                let demands = nees_message::demands(points, |name| self.control_point_index(name))
                     .map_err(refused)?;
-                if !wishes.is_empty() {
+                if !demands.is_empty() {
                     let mut targets = specimen.commanded().to_vec();
-                    for (axis, stop_request) in &wishes {
+                    for (axis, stop_request) in &demands {
                         targets[*axis] = stop_request.value;
                     }
                     match specimen.propose(&targets) {
@@ -213,12 +213,12 @@ impl State<'_> {
                         Err(fault) => return Ok(failed(transaction, fault.into())),
                     }
                 }
-                for (axis, stop_request) in &wishes {
+                for (axis, stop_request) in &demands {
                     stop_request.axis.clone_into(&mut self.directions[*axis]);
                 }
                 self.proposed = Some(Proposed {
                     transaction: (*transaction).to_owned(),
-                    moves: !wishes.is_empty(),
+                    moves: !demands.is_empty(),
                 });
                 Ok(nees_message::done(transaction).into())
             }

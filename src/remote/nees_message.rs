@@ -33,7 +33,7 @@ pub enum Request<'a> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point<'a> {
     pub name: &'a str,
-    pub wishes: Vec<StopRequest<'a>>,
+    pub demands: Vec<StopRequest<'a>>,
 }
 
 impl Point<'_> {
@@ -115,25 +115,25 @@ pub fn control_point_index(names: &[String], name: &str) -> Option<usize> {
 ///
 /// # Errors
 /// The invalid part, for the client.
-pub fn wishes<'a>(
+pub fn demands<'a>(
     points: &[Point<'a>],
     control_point_index: impl Fn(&str) -> Option<usize>,
 ) -> Result<Vec<(usize, StopRequest<'a>)>, &'static str> {
-    let mut wishes: Vec<(usize, StopRequest<'a>)> = Vec::new();
+    let mut demands: Vec<(usize, StopRequest<'a>)> = Vec::new();
     for point in points.iter().filter(|point| !point.is_auxiliary()) {
         let axis = control_point_index(point.name).ok_or("no such control point")?;
-        let [wish] = *point.wishes.as_slice() else {
+        let [demand] = *point.demands.as_slice() else {
             return Err("a control point has one degree of freedom");
         };
-        if wish.kind != "displacement" {
+        if demand.kind != "displacement" {
             return Err("a control point moves by displacement only");
         }
-        if wishes.iter().any(|(other, _)| *other == axis) {
+        if demands.iter().any(|(other, _)| *other == axis) {
             return Err("a control point is listed twice");
         }
-        wishes.push((axis, wish));
+        demands.push((axis, demand));
     }
-    Ok(wishes)
+    Ok(demands)
 }
 
 /// Reads one line.
@@ -184,7 +184,7 @@ fn points<'a>(wanted: &[&'a str]) -> Result<Vec<Point<'a>>, String> {
             [name, ref rest @ ..] if name.starts_with("MDL-") => {
                 points.push(Point {
                     name,
-                    wishes: Vec::new(),
+                    demands: Vec::new(),
                 });
                 left = rest;
             }
@@ -201,7 +201,7 @@ fn points<'a>(wanted: &[&'a str]) -> Result<Vec<Point<'a>>, String> {
                 } else {
                     (first, second)
                 };
-                point.wishes.push(StopRequest { axis, kind, value });
+                point.demands.push(StopRequest { axis, kind, value });
                 left = rest;
             }
             _ => return Err("axis, kind and value must come in threes".to_owned()),
@@ -257,14 +257,14 @@ mod tests {
         let proposed = parse(
             "propose\tOPFTransaction20260431120000\tMDL-00-01\tx\tdisplacement\t1.2500000000E-03\t",
         );
-        let wish = StopRequest {
+        let demand = StopRequest {
             axis: "x",
             kind: "displacement",
             value: 1.25e-3,
         };
         let points = vec![Point {
             name: "MDL-00-01",
-            wishes: vec![wish],
+            demands: vec![demand],
         }];
         assert_eq!(
             proposed,
@@ -286,7 +286,7 @@ mod tests {
         let Request::Propose { points, .. } = trigger else {
             panic!("{trigger:?}")
         };
-        assert!(points[0].is_auxiliary() && points[0].wishes[0].axis == "z");
+        assert!(points[0].is_auxiliary() && points[0].demands[0].axis == "z");
         for (line, request) in [
             ("open-session\tpsd", Request::OpenSession),
             ("set-parameter\tdummy\tnstep\t100", Request::SetParameter),

@@ -293,7 +293,7 @@ pub trait Rig {
     ///
     /// # Errors
     /// As `traverse`; a rig that accepts only one target at a time follows no path.
-    fn glide(
+    fn follow_paths(
         &mut self,
         _paths: &[Path],
         _samples: usize,
@@ -322,8 +322,8 @@ pub trait Rig {
     /// The same for paths.
     ///
     /// # Errors
-    /// As `glide`.
-    fn glide_on(
+    /// As `follow_paths`.
+    fn resume_paths(
         &mut self,
         _paths: &[Path],
         _samples: usize,

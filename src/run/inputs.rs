@@ -3,8 +3,9 @@
 
 use crate::plan::formula::{Estimate, Formula, ProcedureId, Results};
 use crate::run::stop::Stop;
+use crate::schema::Field;
 use crate::schema::procedures::SPEED;
-use crate::uncertainty::known;
+use crate::uncertainty::measurement_uncertainty;
 use crate::units::Dimension;
 use crate::units::display::readable;
 
@@ -109,6 +110,26 @@ impl<'record> Inputs<'record> {
         }
     }
 
+    /// A number in the range of a field.
+    pub(crate) fn in_range(
+        &mut self,
+        input: &'static str,
+        formula: &Formula,
+        field: &Field,
+    ) -> Result<f64, Stop> {
+        let dimension = field.dimension().unwrap_or(Dimension::NUMBER);
+        let (value, range) = (self.number(input, formula, dimension)?, field.range);
+        if range.contains(value) {
+            return Ok(value);
+        }
+        let wanted = match (value > range.high, range.above) {
+            (true, _) => format!("at most {}", range.high),
+            (false, true) => format!("greater than {}", range.low),
+            (false, false) => format!("at least {}", range.low),
+        };
+        Err(Stop::bad_input(input, value, dimension, wanted))
+    }
+
     /// Damping, or its ratio: at least 0. A measured value below 0 by no more than its expanded uncertainty is set to 0,
     /// with its uncertainty.
     pub(crate) fn damping(
@@ -125,8 +146,8 @@ impl<'record> Inputs<'record> {
         let parts = formula
             .contributions(self.results, None)
             .map_err(|error| Stop::NoInput { field, error })?;
-        let Some(known) =
-            known(&parts, self.results).filter(|known| !self.moved && known.standard > 0.0)
+        let Some(known) = measurement_uncertainty(&parts, self.results)
+            .filter(|known| !self.moved && known.standard > 0.0)
         else {
             return Err(bad("at least 0"));
         };

@@ -237,9 +237,9 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
     }
 
     /// The client has disconnected; the rig holds.
-    pub fn leave(&mut self, parting: Disconnect, reason: String) {
+    pub fn leave(&mut self, disconnect: Disconnect, reason: String) {
         self.asked(&Request::Leave {
-            parting,
+            disconnect,
             reason: reason.clone(),
         });
         self.guard.hold();
@@ -248,9 +248,9 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
         if self
             .worst
             .as_ref()
-            .is_none_or(|(worst, _)| *worst < parting)
+            .is_none_or(|(worst, _)| *worst < disconnect)
         {
-            self.worst = Some((parting, reason));
+            self.worst = Some((disconnect, reason));
         }
     }
 
@@ -298,8 +298,8 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
                 self.remark(text);
                 Ok(())
             }
-            Request::Leave { parting, reason } => {
-                self.leave(parting, reason);
+            Request::Leave { disconnect, reason } => {
+                self.leave(disconnect, reason);
                 Ok(())
             }
             Request::Close => {

@@ -6,7 +6,7 @@ use super::{AxisReport, Inspection, Motion, Next, Observer, Settings, StepReport
 use crate::plan::{Plan, Procedure};
 use crate::record::{Event, EventKind};
 use crate::rig::{Guard, Identity, LineStatistics, Reading, Rig, RigFault};
-use crate::uncertainty::engine::{Tick, Unknown};
+use crate::uncertainty::engine::{Progress, Unknown};
 
 /// A reading, the time of the last move \[s\], and the fault that ends the run.
 pub(super) type MovedReading = (Reading, Option<[f64; 2]>, Option<Stop>);
@@ -282,8 +282,8 @@ impl<'run> Session<'run> {
         self.reckoned
     }
 
-    /// During a sensitivity study of the run: its progress is reported, and a real rig is polled.
-    fn study(&mut self, done: usize, of: usize) -> Result<(), Stop> {
+    /// During the propagation of uncertainties: its progress is reported, and a real rig is polled.
+    fn propagation(&mut self, done: usize, of: usize) -> Result<(), Stop> {
         self.observer.studying(done, of);
         self.breathe()
     }
@@ -292,12 +292,12 @@ impl<'run> Session<'run> {
     /// of a rig that failed meanwhile.
     pub(crate) fn evaluate_uncertainty(
         &mut self,
-        study: impl FnOnce(Tick<'_, Stop>) -> Result<(), Unknown<Stop>>,
+        propagation: impl FnOnce(Progress<'_, Stop>) -> Result<(), Unknown<Stop>>,
     ) -> Option<Stop> {
         if !self.settings.uncertainty {
             return None;
         }
-        match study(&mut |done, of| self.study(done, of)) {
+        match propagation(&mut |done, of| self.propagation(done, of)) {
             Ok(()) => None,
             Err(Unknown::Ended(stop)) => Some(stop),
             Err(Unknown::Reason(reason)) => {

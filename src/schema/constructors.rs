@@ -1,6 +1,6 @@
 //! Constructors of the entries of the schema, to be chained: `Field::quantity(…).above_zero().required(…)`.
 
-use super::types::{Field, FieldType, Kind, Need, Range, ResultKind, RigKind, Variant};
+use super::types::{Field, FieldType, Kind, Presence, Range, ResultKind, RigKind, Variant};
 use crate::units::Dimension;
 
 impl Field {
@@ -8,7 +8,7 @@ impl Field {
         Self {
             name,
             ty,
-            need: Need::Optional,
+            presence: Presence::Optional,
             range: Range::ANY,
             example: "",
             doc,
@@ -132,7 +132,7 @@ impl Field {
 
     /// The field is required; the example is a valid line.
     pub(super) const fn required(mut self, example: &'static str) -> Self {
-        self.need = Need::Required;
+        self.presence = Presence::Required;
         self.example = example;
         self
     }
@@ -144,7 +144,7 @@ impl Field {
         example: &'static str,
         otherwise: &'static str,
     ) -> Self {
-        self.need = Need::RequiredOn(rig, otherwise);
+        self.presence = Presence::RequiredOn(rig, otherwise);
         self.example = example;
         self
     }
@@ -166,12 +166,12 @@ impl Field {
     }
 
     pub(super) const fn or(mut self, number: f64, unit: &'static str) -> Self {
-        self.need = Need::Default { number, unit };
+        self.presence = Presence::Default { number, unit };
         self
     }
 
     pub(super) const fn default_in_words(mut self, words: &'static str) -> Self {
-        self.need = Need::DefaultInWords(words);
+        self.presence = Presence::DefaultInWords(words);
         self
     }
 

@@ -12,15 +12,15 @@ mod types;
 
 pub(crate) use blocks::evaluation::{golden, report, study};
 pub(crate) use blocks::{
-    curves, devices, frames, ground, limits, methods, plan_block, procedures, rig, specimen,
-    striker,
+    behaviours, curves, devices, frames, ground, limits, methods, plan_block, procedures, rig,
+    specimen, striker,
 };
 pub use columns::Column;
 pub use functions::{FUNCTIONS, FunctionKind};
 pub use reference::{codes, reference};
 pub use renamed::{NameRole, RENAMED, Renamed, renamed_at, renamed_result};
 pub use types::{
-    BlockKind, Field, FieldType, Kind, Naming, Need, Range, ResultKind, RigKind, Variant,
+    BlockKind, Field, FieldType, Kind, Naming, Presence, Range, ResultKind, RigKind, Variant,
 };
 
 /// Every kind of block, in the order of the reference: the declarations, the procedures, and the blocks about the run.
@@ -118,7 +118,8 @@ mod tests {
             [vec![field], inner].concat()
         }
         for field in BLOCKS.iter().flat_map(|block| block.fields).flat_map(all) {
-            if let (Need::Default { unit, .. }, Some(dimension)) = (field.need, field.dimension())
+            if let (Presence::Default { unit, .. }, Some(dimension)) =
+                (field.presence, field.dimension())
                 && !unit.is_empty()
             {
                 assert_eq!(

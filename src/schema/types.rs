@@ -66,7 +66,7 @@ pub struct BlockKind {
 pub struct Field {
     pub name: &'static str,
     pub ty: FieldType,
-    pub need: Need,
+    pub presence: Presence,
     pub range: Range,
     pub example: &'static str,
     pub doc: &'static str,
@@ -145,7 +145,7 @@ impl FieldType {
 
 /// Whether a field is required, and its default where it is not.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Need {
+pub enum Presence {
     Required,
     Optional,
     /// A number in a unit of the table; no unit: a plain number.
@@ -274,24 +274,24 @@ impl Field {
     /// The default as the reference shows it.
     #[must_use]
     pub fn default_text(&self) -> Option<String> {
-        match self.need {
-            Need::Default { number, unit: "" } => Some(number.to_string()),
-            Need::Default { number, unit } => Some(format!("{number} {unit}")),
-            Need::DefaultInWords(words) => Some(words.to_owned()),
-            Need::RequiredOn(rig, "") => Some(format!("required on a {} rig", rig.name())),
-            Need::RequiredOn(rig, words) => {
+        match self.presence {
+            Presence::Default { number, unit: "" } => Some(number.to_string()),
+            Presence::Default { number, unit } => Some(format!("{number} {unit}")),
+            Presence::DefaultInWords(words) => Some(words.to_owned()),
+            Presence::RequiredOn(rig, "") => Some(format!("required on a {} rig", rig.name())),
+            Presence::RequiredOn(rig, words) => {
                 Some(format!("{words}; required on a {} rig", rig.name()))
             }
-            Need::Required | Need::Optional => None,
+            Presence::Required | Presence::Optional => None,
         }
     }
 
     /// The default number in SI.
     #[must_use]
     pub fn default_number(&self) -> Option<f64> {
-        match self.need {
-            Need::Default { number, unit: "" } => Some(number),
-            Need::Default { number, unit } => crate::units::unit::parse(unit)
+        match self.presence {
+            Presence::Default { number, unit: "" } => Some(number),
+            Presence::Default { number, unit } => crate::units::unit::parse(unit)
                 .ok()
                 .map(|unit| number * unit.factor),
             _ => None,

@@ -1,4 +1,4 @@
-//! The cost of a study: the number of evaluations. In: the length of a run, its sources. Out: a bound that is the same for every
+//! The cost of a propagation: the number of evaluations. In: the length of a run, its sources. Out: a bound that is the same for every
 //! procedure.
 
 use super::{MOST_DRAWS, Source};
@@ -13,7 +13,7 @@ const STEPS_OF_MOVES: u64 = 512_000;
 /// Number of input perturbations that are allowed for a run of any length.
 const MOVES_OF_ANY: u64 = 24;
 
-/// The number of evaluations of a study.
+/// The number of evaluations of a propagation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct TrialBudget {
     /// Whether every input is also perturbed by half its uncertainty, to check that the results are proportional.
@@ -73,7 +73,7 @@ const fn is_alike(source: Source) -> bool {
 mod tests {
     use super::*;
 
-    /// However long the run and however many its inputs, a study needs only a few times as many steps.
+    /// However long the run and however many its inputs, a propagation needs only a few times as many steps.
     #[test]
     fn the_cost_of_a_study_is_bounded() {
         let sources = |inputs: usize, alike: usize| -> Vec<Source> {

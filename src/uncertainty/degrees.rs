@@ -14,17 +14,17 @@ pub const FEW: u8 = 3;
 
 /// The uncertainty of a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Known {
+pub struct MeasurementUncertainty {
     /// u, in the number's own unit.
     pub standard: f64,
     /// Effective degrees of freedom of u; infinite if no part of u was estimated from readings.
     pub degrees: f64,
 }
 
-impl Known {
+impl MeasurementUncertainty {
     /// A standard uncertainty that was not estimated from readings.
     #[must_use]
-    pub const fn surely(standard: f64) -> Self {
+    pub const fn exact(standard: f64) -> Self {
         Self {
             standard,
             degrees: f64::INFINITY,
@@ -58,7 +58,10 @@ enum Estimate {
 /// size of both, so that their squares are added first. n trials have n degrees of freedom. Uncertainties that plan, rig and program
 /// state have infinitely many (G.4.3). None without contributions.
 #[must_use]
-pub fn known(parts: &[Contribution], results: &dyn Results) -> Option<Known> {
+pub fn measurement_uncertainty(
+    parts: &[Contribution],
+    results: &dyn Results,
+) -> Option<MeasurementUncertainty> {
     let standard = combined(parts)?;
     let mut estimates: Vec<(Estimate, f64, f64)> = Vec::new();
     for part in parts.iter().filter(|part| part.amount != 0.0) {
@@ -91,16 +94,16 @@ pub fn known(parts: &[Contribution], results: &dyn Results) -> Option<Known> {
     } else {
         f64::INFINITY
     };
-    Some(Known { standard, degrees })
+    Some(MeasurementUncertainty { standard, degrees })
 }
 
-/// As [`known`], for each of `count` entries of a list.
+/// As [`measurement_uncertainty`], for each of `count` entries of a list.
 #[must_use]
-pub fn known_entries(
+pub fn measurement_uncertainties(
     parts: &[Contribution],
     count: usize,
     results: &dyn Results,
-) -> Vec<Option<Known>> {
+) -> Vec<Option<MeasurementUncertainty>> {
     let of_entry = |entry| {
         parts
             .iter()
@@ -109,7 +112,7 @@ pub fn known_entries(
             .collect::<Vec<Contribution>>()
     };
     (0..count)
-        .map(|entry| known(&of_entry(entry), results))
+        .map(|entry| measurement_uncertainty(&of_entry(entry), results))
         .collect()
 }
 
@@ -149,7 +152,7 @@ mod tests {
     }
 
     fn degrees(parts: &[Contribution]) -> f64 {
-        known(parts, &Two).unwrap().degrees
+        measurement_uncertainty(parts, &Two).unwrap().degrees
     }
 
     /// By hand: u² = 9 + 16 = 25, ν = 625/(81/4 + 256/9) = 12.83; beside a known contribution a fit has less weight.
@@ -164,10 +167,10 @@ mod tests {
             (degrees(&[fit(0, "stiffness", 3.0), stated]) - 625.0 / (81.0 / 4.0)).abs() < 1e-12
         );
         assert_eq!(degrees(&[stated]), f64::INFINITY);
-        assert_eq!(known(&[], &Two), None);
+        assert_eq!(measurement_uncertainty(&[], &Two), None);
         assert_eq!(
-            known(&[fit(0, "stiffness", 0.0)], &Two),
-            Some(Known::surely(0.0))
+            measurement_uncertainty(&[fit(0, "stiffness", 0.0)], &Two),
+            Some(MeasurementUncertainty::exact(0.0))
         );
     }
 
@@ -207,7 +210,7 @@ mod tests {
             .map(draw)
             .chain([fit(0, "a", 0.57), fit(1, "b", 0.82)])
             .collect();
-        let known = known(&parts, &Guide).unwrap();
+        let known = measurement_uncertainty(&parts, &Guide).unwrap();
         assert!(
             (known.standard - 1.03).abs() < 0.005 && (known.degrees - 19.0).abs() < 0.05,
             "{known:?}"
@@ -224,14 +227,21 @@ mod tests {
         };
         let of_two: Vec<Contribution> =
             (0..9).chain(MOST_DRAWS..MOST_DRAWS + 9).map(next).collect();
-        assert!((super::known(&of_two, &Guide).unwrap().degrees - 18.0).abs() < 1e-9);
+        assert!(
+            (super::measurement_uncertainty(&of_two, &Guide)
+                .unwrap()
+                .degrees
+                - 18.0)
+                .abs()
+                < 1e-9
+        );
     }
 
     /// Slope and intercept of one line: every result of both has the degrees of freedom of the line, and no more.
     #[test]
     fn an_uncertainty_from_one_scatter_has_its_degrees_of_freedom() {
         let parts = [fit(0, "stiffness", 2.0), fit(0, "intercept_force", 2.0)];
-        let known = known(&parts, &Two).unwrap();
+        let known = measurement_uncertainty(&parts, &Two).unwrap();
         assert!((known.degrees - 4.0).abs() < 1e-12);
         assert!((known.expanded() / (2.87 * 8_f64.sqrt()) - 1.0).abs() < 2e-3);
         let entries = [
@@ -241,7 +251,7 @@ mod tests {
                 ..parts[1]
             },
         ];
-        let of = known_entries(&entries, 3, &Two);
+        let of = measurement_uncertainties(&entries, 3, &Two);
         assert_eq!(
             (
                 of[0].map(|known| known.degrees),

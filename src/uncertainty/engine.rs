@@ -83,7 +83,7 @@ impl Evaluation {
 /// Why no uncertainty is reported.
 #[derive(Debug)]
 pub enum Unknown<E> {
-    /// The caller ended the study.
+    /// The caller ended the propagation.
     Ended(E),
     Reason(String),
 }
@@ -94,14 +94,14 @@ impl<E> From<String> for Unknown<E> {
     }
 }
 
-/// Receives the number of evaluations done and their total number; an error ends the study.
-pub type Tick<'a, E> = &'a mut dyn FnMut(usize, usize) -> Result<(), E>;
+/// Receives the number of evaluations done and their total number; an error ends the propagation.
+pub type Progress<'a, E> = &'a mut dyn FnMut(usize, usize) -> Result<(), E>;
 
 /// Contributions to each of the values of a procedure.
 pub type Contributions = Vec<Vec<Contribution>>;
 
-/// The study of one procedure, or of one impact of a series.
-pub struct Study<'a, P> {
+/// The propagation of one procedure, or of one impact of a series.
+pub struct Propagation<'a, P> {
     pub procedure: ProcedureId,
     /// From 0: each impact of a series has separate reading errors.
     pub impact: u16,
@@ -115,12 +115,12 @@ pub struct Study<'a, P> {
     pub reported: Option<Vec<f64>>,
 }
 
-impl<P: Evaluate> Study<'_, P> {
+impl<P: Evaluate> Propagation<'_, P> {
     /// The contributions of every source to every value.
     ///
     /// # Errors
-    /// An input is out of its bounds however little it is perturbed, errors grow without bound, or the caller ends the study.
-    pub fn contributions<E>(&self, tick: Tick<'_, E>) -> Result<Contributions, Unknown<E>> {
+    /// An input is out of its bounds however little it is perturbed, errors grow without bound, or the caller ends the propagation.
+    pub fn contributions<E>(&self, progress: Progress<'_, E>) -> Result<Contributions, Unknown<E>> {
         let mut sources: Vec<Source> = self
             .inputs
             .iter()
@@ -145,17 +145,17 @@ impl<P: Evaluate> Study<'_, P> {
             &self.instruments.perturbed(&[], None),
             &self.evaluate.inputs(&[])?,
         );
-        let study = Prepared {
-            study: self,
+        let propagation = Prepared {
+            propagation: self,
             budget,
             drawn,
             nominal,
         };
-        let effects =
-            in_threads(&parts, &|part| study.effects(*part), tick).map_err(Unknown::Ended)?;
-        let mut contributions: Contributions = vec![Vec::new(); study.nominal.values.len()];
+        let effects = in_threads(&parts, &|part| propagation.effects(*part), progress)
+            .map_err(Unknown::Ended)?;
+        let mut contributions: Contributions = vec![Vec::new(); propagation.nominal.values.len()];
         for (part, effects) in parts.into_iter().zip(effects) {
-            let source = study.source(part);
+            let source = propagation.source(part);
             for (parts, effect) in contributions.iter_mut().zip(effects?) {
                 parts.extend(effect.map(|(amount, smooth)| Contribution {
                     smooth,
@@ -167,7 +167,7 @@ impl<P: Evaluate> Study<'_, P> {
     }
 }
 
-/// One piece of a study.
+/// One piece of a propagation.
 #[derive(Clone, Copy)]
 enum Part {
     Source(Source),
@@ -179,7 +179,7 @@ enum Part {
 type Effects = Vec<Option<(f64, bool)>>;
 
 struct Prepared<'a, P> {
-    study: &'a Study<'a, P>,
+    propagation: &'a Propagation<'a, P>,
     budget: TrialBudget,
     /// Inputs that are varied in the trials of the reading errors.
     drawn: Vec<Source>,
@@ -188,7 +188,7 @@ struct Prepared<'a, P> {
 
 impl<P: Evaluate> Prepared<'_, P> {
     fn source(&self, part: Part) -> Source {
-        let procedure = self.study.procedure;
+        let procedure = self.propagation.procedure;
         match part {
             Part::Source(source) => source,
             Part::TimeStep => Source::TimeStep { procedure },
@@ -206,7 +206,7 @@ impl<P: Evaluate> Prepared<'_, P> {
     }
 
     fn run(&self, readings: &Perturbation, inputs: &P::Inputs) -> Result<Evaluation, String> {
-        let found = self.study.evaluate.evaluate(readings, inputs);
+        let found = self.propagation.evaluate.evaluate(readings, inputs);
         let grows = found.farthest.is_nan() || found.farthest > FARTHER * self.nominal.farthest;
         if grows {
             Err(GROWS.to_owned())
@@ -218,11 +218,14 @@ impl<P: Evaluate> Prepared<'_, P> {
     /// The results with a source perturbed; None if the input is then out of its bounds.
     fn perturbed(&self, source: Source, by: f64) -> Result<Option<Evaluation>, String> {
         let shifts = [(source, by)];
-        let Ok(inputs) = self.study.evaluate.inputs(&shifts) else {
+        let Ok(inputs) = self.propagation.evaluate.inputs(&shifts) else {
             return Ok(None);
         };
-        self.run(&self.study.instruments.perturbed(&shifts, None), &inputs)
-            .map(Some)
+        self.run(
+            &self.propagation.instruments.perturbed(&shifts, None),
+            &inputs,
+        )
+        .map(Some)
     }
 
     fn of_source(&self, source: Source) -> Result<Effects, String> {
@@ -237,7 +240,7 @@ impl<P: Evaluate> Prepared<'_, P> {
             }
             if share < LEAST_SHARE {
                 return Err(self
-                    .study
+                    .propagation
                     .evaluate
                     .inputs(&[(source, share)])
                     .err()
@@ -279,12 +282,12 @@ impl<P: Evaluate> Prepared<'_, P> {
     }
 
     fn of_the_time_step(&self) -> Result<Effects, String> {
-        let inputs = self.study.evaluate.inputs(&[])?;
+        let inputs = self.propagation.evaluate.inputs(&[])?;
         let in_steps = |finer| {
             self.run(
                 &Perturbation {
                     finer,
-                    ..self.study.instruments.perturbed(&[], None)
+                    ..self.propagation.instruments.perturbed(&[], None)
                 },
                 &inputs,
             )
@@ -301,7 +304,7 @@ impl<P: Evaluate> Prepared<'_, P> {
             reported.is_finite().then_some((amount, converges && known))
         };
         Ok(self
-            .study
+            .propagation
             .reported
             .iter()
             .flatten()
@@ -311,7 +314,7 @@ impl<P: Evaluate> Prepared<'_, P> {
     }
 
     fn of_trial(&self, trial: u16) -> Result<Effects, String> {
-        let evaluate = self.study.evaluate;
+        let evaluate = self.propagation.evaluate;
         let drawn = self.drawn.iter().enumerate();
         let mut shifts: Vec<(Source, f64)> = drawn
             .map(|(index, source)| (*source, sign_of_input(trial, index)))
@@ -325,7 +328,7 @@ impl<P: Evaluate> Prepared<'_, P> {
             }
         }
         let found = self.run(
-            &self.study.instruments.perturbed(&shifts, Some(trial)),
+            &self.propagation.instruments.perturbed(&shifts, Some(trial)),
             &evaluate.inputs(&shifts)?,
         )?;
         let root = f64::from(self.budget.trials).sqrt();

@@ -11,5 +11,7 @@ mod threads;
 pub use crate::plan::contribution::{Contribution, combined, combined_entries, share};
 pub use crate::plan::results::{Moved, sources_of};
 pub use crate::plan::source::Source;
-pub use degrees::{FEW, Known, MOST_DRAWS, known, known_entries};
+pub use degrees::{
+    FEW, MOST_DRAWS, MeasurementUncertainty, measurement_uncertainties, measurement_uncertainty,
+};
 pub use instruments::InstrumentUncertainty;

@@ -6,15 +6,15 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
-/// How long to wait for the next result before `tick` is called again.
+/// How long to wait for the next result before `progress` is called again.
 const MOMENT: Duration = Duration::from_millis(20);
 
-/// The result of each job, in the order of the jobs, by as many threads as the machine has cores. `tick` receives how many of how many
+/// The result of each job, in the order of the jobs, by as many threads as the machine has cores. `progress` receives how many of how many
 /// are done.
 pub(super) fn in_threads<J: Sync, T: Send, E>(
     jobs: &[J],
     work: &(dyn Fn(&J) -> T + Sync),
-    tick: &mut dyn FnMut(usize, usize) -> Result<(), E>,
+    progress: &mut dyn FnMut(usize, usize) -> Result<(), E>,
 ) -> Result<Vec<T>, E> {
     let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
     let (next, given_up) = (AtomicUsize::new(0), AtomicBool::new(false));
@@ -42,7 +42,7 @@ pub(super) fn in_threads<J: Sync, T: Send, E>(
             for (job, found) in jobs.iter().zip(&mut found) {
                 *found = Some(work(job));
                 done += 1;
-                tick(done, jobs.len())?;
+                progress(done, jobs.len())?;
             }
         }
         while done < jobs.len() {
@@ -55,7 +55,7 @@ pub(super) fn in_threads<J: Sync, T: Send, E>(
                 // A thread panicked: the scope reports it.
                 Err(RecvTimeoutError::Disconnected) => break,
             }
-            if let Err(stop) = tick(done, jobs.len()) {
+            if let Err(stop) = progress(done, jobs.len()) {
                 given_up.store(true, Ordering::Relaxed);
                 return Err(stop);
             }

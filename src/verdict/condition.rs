@@ -4,7 +4,7 @@ use super::{Bound, ConditionOutcome, Verdict};
 use crate::physics::statistics::student_t;
 use crate::plan::formula::{Formula, FormulaError, Operator, Part, Results};
 use crate::plan::{Comparison, Condition, DecisionRule, Test};
-use crate::uncertainty::{FEW, Known, known};
+use crate::uncertainty::{FEW, MeasurementUncertainty, measurement_uncertainty};
 
 /// Value and bound are evaluated separately, so that a report shows the one that exists.
 pub(crate) fn assess_condition(
@@ -18,14 +18,14 @@ pub(crate) fn assess_condition(
         (Ok(value), Ok(bound)) => Some((value.value, *bound)),
         _ => None,
     };
-    let lacking = no_uncertainty(condition, record);
+    let undeclared = no_uncertainty(condition, record);
     let distance_known =
-        known.and_then(|(value, bound)| margin_known(condition, value, bound, record));
-    let (margin_known, unguarded) = match rule {
+        known.and_then(|(value, bound)| margin_uncertainty(condition, value, bound, record));
+    let (margin_uncertainty, unguarded) = match rule {
         DecisionRule::Simple => (None, None),
-        DecisionRule::Guarded => (distance_known, lacking.clone()),
+        DecisionRule::Guarded => (distance_known, undeclared.clone()),
     };
-    let distance_uncertainty = distance_known.filter(|_| lacking.is_none());
+    let distance_uncertainty = distance_known.filter(|_| undeclared.is_none());
     let conforms = known
         .zip(distance_uncertainty)
         .map(|((value, bound), distance_uncertainty)| bound.conforms(value, distance_uncertainty));
@@ -35,9 +35,9 @@ pub(crate) fn assess_condition(
             Bound::Compare { .. } => false,
         },
     );
-    let guard_band = margin_known
+    let guard_band = margin_uncertainty
         .filter(|_| unguarded.is_none())
-        .map(Known::expanded);
+        .map(MeasurementUncertainty::expanded);
     let verdict = match (known, &unguarded) {
         (Some((value, bound)), None) => bound.verdict(value, guard_band),
         _ => Verdict::Inconclusive,
@@ -48,7 +48,7 @@ pub(crate) fn assess_condition(
         .or(bound.as_ref().err())
         .map(ToString::to_string)
         .or(unguarded);
-    let too_near = || (verdict == Verdict::Inconclusive).then(|| near(margin_known));
+    let too_near = || (verdict == Verdict::Inconclusive).then(|| near(margin_uncertainty));
     ConditionOutcome {
         text: condition.text.clone(),
         verdict,
@@ -59,7 +59,7 @@ pub(crate) fn assess_condition(
         bound: bound.ok(),
         margin: known.map(|(value, bound)| bound.margin(value)),
         guard_band,
-        margin_degrees: margin_known.map_or(f64::INFINITY, |known| known.degrees),
+        margin_degrees: margin_uncertainty.map_or(f64::INFINITY, |known| known.degrees),
         conforms,
         wider_than_tolerance,
         reason: missing.or_else(too_near),
@@ -77,7 +77,7 @@ fn no_uncertainty(condition: &Condition, record: &dyn Results) -> Option<String>
 }
 
 /// Why a limit within the guard band is not conclusive, and why the band is wide if it comes from few readings.
-fn near(margin: Option<Known>) -> String {
+fn near(margin: Option<MeasurementUncertainty>) -> String {
     let few = margin.filter(|known| known.degrees < f64::from(FEW));
     let why = few.map(|known| {
         format!(
@@ -90,18 +90,18 @@ fn near(margin: Option<Known>) -> String {
 }
 
 /// The uncertainty of a formula, with its degrees of freedom.
-fn how_well(formula: &Formula, record: &dyn Results) -> Option<Known> {
-    known(&formula.contributions(record, None).ok()?, record)
+fn how_well(formula: &Formula, record: &dyn Results) -> Option<MeasurementUncertainty> {
+    measurement_uncertainty(&formula.contributions(record, None).ok()?, record)
 }
 
 /// w = U = k·u of the distance between value and bound. The uncertainty of a measured limit is therefore included, and a result on both
 /// sides counts once. None if nothing in it is uncertain.
-fn margin_known(
+fn margin_uncertainty(
     condition: &Condition,
     value: f64,
     bound: Bound,
     record: &dyn Results,
-) -> Option<Known> {
+) -> Option<MeasurementUncertainty> {
     let difference = |a: &Formula, b: &Formula| {
         Formula::Binary(Operator::Subtract, Box::new(a.clone()), Box::new(b.clone()))
     };
@@ -177,8 +177,8 @@ pub(super) fn equal(a: f64, b: f64) -> bool {
 impl ConditionOutcome {
     /// The uncertainty of the value.
     #[must_use]
-    pub fn known(&self) -> Option<Known> {
-        self.uncertainty.map(|standard| Known {
+    pub fn measurement_uncertainty(&self) -> Option<MeasurementUncertainty> {
+        self.uncertainty.map(|standard| MeasurementUncertainty {
             standard,
             degrees: self.degrees,
         })
@@ -186,11 +186,11 @@ impl ConditionOutcome {
 
     /// The uncertainty of its margin, if a guard band is applied.
     #[must_use]
-    pub fn margin_known(&self) -> Option<Known> {
+    pub fn margin_uncertainty(&self) -> Option<MeasurementUncertainty> {
         let degrees = self.margin_degrees;
-        self.guard_band.map(|band| Known {
+        self.guard_band.map(|band| MeasurementUncertainty {
             standard: band
-                / Known {
+                / MeasurementUncertainty {
                     standard: 1.0,
                     degrees,
                 }
@@ -219,8 +219,8 @@ impl Bound {
 
     /// Probability that the quantity measured as `value` (SI) satisfies it; `known` is the uncertainty of the distance between them.
     #[must_use]
-    pub fn conforms(self, value: f64, known: Known) -> f64 {
-        let Known { standard, degrees } = known;
+    pub fn conforms(self, value: f64, known: MeasurementUncertainty) -> f64 {
+        let MeasurementUncertainty { standard, degrees } = known;
         let below = |limit: f64| student_t::below((limit - value) / standard, degrees);
         match self {
             Self::Compare { comparison, limit } => match comparison {

@@ -9,7 +9,7 @@ use psd::language::check::{Checked, LoadError, Loader, Options, check};
 use psd::record::{Outcome, Record};
 use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
-use psd::schema::{BLOCKS, Field, FieldType, Kind, Need, RigKind, Variant};
+use psd::schema::{BLOCKS, Field, FieldType, Kind, Presence, RigKind, Variant};
 use psd::text::diagnostic::render::{Appearance, render_all};
 use psd::text::diagnostic::{Code, Diagnostic, Severity};
 use psd::units::display::readable;
@@ -309,7 +309,7 @@ fn argument_cases(field: &Field) -> Vec<String> {
         let required = variant
             .arguments
             .iter()
-            .filter(|argument| argument.need == Need::Required);
+            .filter(|argument| argument.presence == Presence::Required);
         let own = required.map(|argument| format!("e213_{}_{}", variant.name, argument.name));
         own.chain(variant.arguments.iter().flat_map(argument_cases))
             .collect::<Vec<_>>()
@@ -324,17 +324,17 @@ fn every_required_field_and_argument_has_a_case() {
     for block in BLOCKS {
         for field in block.fields {
             let words = block.words().replace(' ', "_");
-            match field.need {
-                Need::Required | Need::RequiredOn(RigKind::Virtual, _) => {
+            match field.presence {
+                Presence::Required | Presence::RequiredOn(RigKind::Virtual, _) => {
                     wanted.push(format!("e209_{words}_{}", field.name));
                 }
-                Need::RequiredOn(RigKind::Real, _) if block.kind == Kind::Rig => {
+                Presence::RequiredOn(RigKind::Real, _) if block.kind == Kind::Rig => {
                     wanted.push(format!("e606_{words}_{}", field.name));
                 }
-                Need::RequiredOn(RigKind::Real, _) => {
+                Presence::RequiredOn(RigKind::Real, _) => {
                     wanted.push(format!("e209_{words}_{}_on_a_real_rig", field.name));
                 }
-                Need::Optional | Need::Default { .. } | Need::DefaultInWords(_) => {}
+                Presence::Optional | Presence::Default { .. } | Presence::DefaultInWords(_) => {}
             }
             wanted.extend(argument_cases(field));
         }

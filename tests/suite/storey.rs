@@ -250,7 +250,7 @@ fn floors_that_never_stop_are_struck_as_those_that_do() {
         ))
     };
     for integrator in ["tangent", "explicit", "alpha_os(alpha: -0.05)"] {
-        let (stepped, gliding) = (
+        let (stepped, continuous) = (
             plan("ramp_and_hold", integrator),
             plan("continuous(time_scale: 50)", integrator),
         );
@@ -259,12 +259,12 @@ fn floors_that_never_stop_are_struck_as_those_that_do() {
             .fold(0.0, f64::max);
         assert_eq!(
             history(&stepped).floors.len(),
-            history(&gliding).floors.len()
+            history(&continuous).floors.len()
         );
         for (one, other) in history(&stepped)
             .floors
             .iter()
-            .zip(&history(&gliding).floors)
+            .zip(&history(&continuous).floors)
         {
             for (one, other) in one.computed.iter().zip(&other.computed) {
                 assert!(

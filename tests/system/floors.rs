@@ -204,7 +204,7 @@ fn a_coordinator_drives_the_floors_of_a_real_rig_together_and_one_by_one() {
     let moved = served.stage.moves().len();
     assert_eq!(moved, pretest_check + 2);
     // The lower axis has its own limit. A refused target of one axis moves neither.
-    for (wish, expected) in [
+    for (demand, expected) in [
         (
             "MDL-00-01\tx\tdisplacement\t0.0101\tMDL-00-02\tx\tdisplacement\t0",
             "NOT OK\t1\tt3",
@@ -226,9 +226,12 @@ fn a_coordinator_drives_the_floors_of_a_real_rig_together_and_one_by_one() {
             "NOT OK\t2\tt3",
         ),
     ] {
-        let refused = client.ask(&format!("propose\tt3\t{wish}"));
-        assert!(refused.starts_with(expected), "{wish}: {refused}");
-        assert!(client.ask("execute\tt3").starts_with("NOT OK\t3"), "{wish}");
+        let refused = client.ask(&format!("propose\tt3\t{demand}"));
+        assert!(refused.starts_with(expected), "{demand}: {refused}");
+        assert!(
+            client.ask("execute\tt3").starts_with("NOT OK\t3"),
+            "{demand}"
+        );
     }
     assert!(
         client

@@ -122,15 +122,15 @@ fn results(folder: &Path) -> Vec<(String, f64)> {
     named.collect()
 }
 
-/// Duration of a step of [`gliding`] \[s\].
-const GLIDING_STEP: u64 = 10;
+/// Duration of a step of [`continuous`] \[s\].
+const CONTINUOUS_STEP: u64 = 10;
 
 /// The same plan with continuous motion: four steps. The rig waits a fifth of a step, 2 s, for a late target: no busy machine is that
 /// slow.
-fn gliding() -> Stage {
+fn continuous() -> Stage {
     let mode = format!(
         "  time_step     = 10 ms\n  mode          = continuous(time_scale: {})",
-        100 * GLIDING_STEP
+        100 * CONTINUOUS_STEP
     );
     let short = ("0.4 s\n}", "0.04 s\n}");
     let plan = plan_with(&[("  time_step     = 10 ms", &mode), short]);
@@ -225,13 +225,13 @@ fn a_meter_apart_gives_the_virtual_runs_results_and_killed_it_goes_on() {
 /// is corrected to it. The motion equals that of the simulated run, within the resolution of forces and positions on the line.
 #[test]
 fn two_axes_that_do_not_stop_give_the_virtual_runs_motion_and_killed_they_go_on() {
-    let (whole, cut_off) = (gliding(), gliding());
+    let (whole, cut_off) = (continuous(), continuous());
     std::thread::scope(|scope| {
         scope.spawn(|| succeeded(&wait(&mut whole.run_with(&["--yes"]))));
         // Four moves of the pre-test check, two of the beginning, two of each step: in the second of four.
         killed(&cut_off, 9);
         // It receives no next target: it holds automatically after the end of its path.
-        std::thread::sleep(std::time::Duration::from_secs(GLIDING_STEP + 4));
+        std::thread::sleep(std::time::Duration::from_secs(CONTINUOUS_STEP + 4));
         cut_off.goes_on(&[]);
     });
     let proven = whole.proven();

@@ -11,7 +11,7 @@ use crate::cli::files::record_file;
 use crate::cli::files::record_file::journal_of;
 use crate::cli::files::run_folder::{RunFolder, write_new};
 use crate::cli::output::print_result;
-use crate::evidence::{Folder, IssueFile, PlayedBack};
+use crate::evidence::{Folder, IssueFile, ReplayedRun};
 use crate::golden::comparison;
 use crate::golden::comparison::page::page;
 use crate::golden::comparison::{Comparison, Side};
@@ -82,15 +82,15 @@ fn side(run: &Path) -> Result<Side, Failure> {
 fn from_record(name: String, run: &Path) -> Result<Side, Failure> {
     let kept = Folder::read(run)?;
     let issues = IssueFile::of(&kept).map_err(|fault| Failure::file(run, fault))?;
-    let played = PlayedBack::of(record_file::read(run)?, issues.as_ref(), &prediction)
+    let replayed = ReplayedRun::of(record_file::read(run)?, issues.as_ref(), &prediction)
         .map_err(|fault| Failure::file(run, fault))?;
-    if played.steps.is_some() {
+    if replayed.steps.is_some() {
         return Err(Failure::file(
             run,
             "is a run that a client drove: it has no results to compare",
         ));
     }
-    let run = played.run();
+    let run = replayed.run();
     let summary = serde_json::to_value(Summary::of(&run)).map_err(OutputError::from)?;
     let figures =
         serde_json::from_slice::<Figures>(&figure_data(&run).bytes).map_err(OutputError::from)?;
@@ -98,7 +98,7 @@ fn from_record(name: String, run: &Path) -> Result<Side, Failure> {
         name,
         summary,
         figures,
-        plan: played.plan.files.first().map(|file| file.text.clone()),
+        plan: replayed.plan.files.first().map(|file| file.text.clone()),
     })
 }
 

@@ -96,12 +96,12 @@ impl ActuatorModel {
     }
 
     /// Whether it is on a smooth path, or continues after one.
-    pub(crate) fn glides(&self) -> bool {
+    pub(crate) fn follows_path(&self) -> bool {
         self.course.is_some()
     }
 
     /// Its position on its path after a further `seconds` \[m\].
-    fn glide(&mut self, seconds: f64) {
+    fn advance_on_path(&mut self, seconds: f64) {
         let Some((path, elapsed)) = &mut self.course else {
             return;
         };
@@ -124,7 +124,7 @@ impl ActuatorModel {
         let left = self.target - self.position;
         let before = self.position;
         if self.course.is_some() {
-            self.glide(seconds);
+            self.advance_on_path(seconds);
         } else if left != 0.0 {
             let travel = self.speed * seconds;
             self.position = if left.abs() <= travel {
@@ -156,14 +156,14 @@ impl ActuatorModel {
     /// The part of the next `seconds` during which it moves \[s\].
     pub(crate) fn arrives_in(&self, seconds: f64) -> f64 {
         match self.target - self.position {
-            _ if self.faults.lag > 0.0 || self.glides() => seconds,
+            _ if self.faults.lag > 0.0 || self.follows_path() => seconds,
             0.0 => 0.0,
             left => (left.abs() / self.speed).min(seconds),
         }
     }
 
     pub(crate) fn moving(&self) -> bool {
-        self.glides() || self.position != self.target
+        self.follows_path() || self.position != self.target
     }
 
     /// Velocity with its sign \[m/s\]; 0 at rest.

@@ -4,7 +4,7 @@
 
 use super::emulated_rig::actuator::{ActuatorModel, ActuatorSettings};
 use super::emulated_rig::fault::MechanicalFault;
-use super::emulated_rig::glide::Glides;
+use super::emulated_rig::smooth_paths::PathQueue;
 use super::emulated_rig::structure::Structure;
 use crate::plan::{Behaviour, Frame, Interval};
 
@@ -59,7 +59,7 @@ pub struct EmulatedRig {
     /// Every commanded target \[m\].
     pub(super) targets: Vec<f64>,
     pub(super) moves: Vec<SentMove>,
-    pub(super) glides: Glides,
+    pub(super) paths: PathQueue,
     /// Index of the actuator that a value without an axis belongs to.
     view: usize,
     /// Scale factor \[N per count\] and zero offset of each actuator, if they differ from those of the emulated rig.
@@ -86,7 +86,7 @@ impl EmulatedRig {
         } = settings;
         let structure = Structure::of_one(&settings.behaviour, settings.damping);
         // The displacement of such a specimen has the polarity of the rig.
-        Self::standing(
+        Self::with_structure(
             settings,
             structure,
             &[ActuatorSettings {
@@ -105,10 +105,10 @@ impl EmulatedRig {
         frame: &Frame,
         actuators: &[ActuatorSettings],
     ) -> Self {
-        Self::standing(settings, Structure::of_frame(frame), actuators)
+        Self::with_structure(settings, Structure::of_frame(frame), actuators)
     }
 
-    fn standing(
+    fn with_structure(
         settings: EmulatedRigSettings,
         structure: Structure,
         actuators: &[ActuatorSettings],
@@ -126,7 +126,7 @@ impl EmulatedRig {
             violations: Vec::new(),
             targets: Vec::new(),
             moves: Vec::new(),
-            glides: Glides::default(),
+            paths: PathQueue::default(),
             view: 0,
             converters: Vec::new(),
         };
@@ -150,7 +150,7 @@ impl EmulatedRig {
 
     /// Moves the actuators to these initial positions of their controllers \[m\]; the specimen stays undeformed.
     #[must_use]
-    pub fn standing_at(mut self, positions: &[f64]) -> Self {
+    pub fn resting_at(mut self, positions: &[f64]) -> Self {
         for (actuator, position) in self.actuators.iter_mut().zip(positions) {
             actuator.stand_at(*position);
         }
@@ -197,16 +197,16 @@ impl EmulatedRig {
 
     /// Advances the emulated rig to a later time \[s\].
     pub fn advance(&mut self, to: f64) {
-        while let Some(until) = self.next_glide().filter(|until| *until < to) {
+        while let Some(until) = self.next_path_start().filter(|until| *until < to) {
             self.pass(until);
-            self.begin_next_glide();
+            self.begin_next_path();
         }
         self.pass(to);
     }
 
     /// Advances the emulated rig to a time \[s\] before which the actuators receive no command.
     fn pass(&mut self, to: f64) {
-        while self.actuators.iter().any(ActuatorModel::glides) && to - self.time > FINELY {
+        while self.actuators.iter().any(ActuatorModel::follows_path) && to - self.time > FINELY {
             self.take(self.time + FINELY);
         }
         self.take(to);
@@ -277,7 +277,7 @@ impl EmulatedRig {
             .map(|(actuator, to)| travel(self, *actuator, *to))
             .fold(0.0, f64::max);
         for (actuator, target) in actuators.iter().zip(targets) {
-            self.judge(*actuator, *target);
+            self.check_limits(*actuator, *target);
             self.targets.push(*target);
             let travel = travel(self, *actuator, *target);
             self.actuators[*actuator].go(
@@ -299,22 +299,22 @@ impl EmulatedRig {
 
     /// The controller refused a target \[m\]: no motion, but the target is logged.
     pub fn refuse(&mut self, target: f64) {
-        self.judge(0, target);
+        self.check_limits(0, target);
     }
 
     /// The same for the actuator with this index.
     pub fn refuse_of(&mut self, actuator: usize, target: f64) {
-        self.judge(actuator, target);
+        self.check_limits(actuator, target);
     }
 
     /// The same for several targets, one per actuator.
     pub fn refuse_all(&mut self, targets: &[f64]) {
         for (actuator, target) in (0..self.actuators.len()).zip(targets) {
-            self.judge(actuator, *target);
+            self.check_limits(actuator, *target);
         }
     }
 
-    pub(super) fn judge(&mut self, actuator: usize, target: f64) {
+    pub(super) fn check_limits(&mut self, actuator: usize, target: f64) {
         if !self.actuators[actuator].allows(target) {
             self.violations.push(target);
         }
@@ -322,7 +322,7 @@ impl EmulatedRig {
 
     /// Stops all actuators at their present position.
     pub fn hold(&mut self) {
-        self.glides.clear();
+        self.paths.clear();
         for actuator in &mut self.actuators {
             actuator.hold();
         }
@@ -461,7 +461,7 @@ fn in_24_bits(count: f64) -> i64 {
 
 pub(crate) mod actuator;
 pub(crate) mod fault;
-pub(crate) mod glide;
+pub(crate) mod smooth_paths;
 pub(crate) mod structure;
 #[cfg(test)]
 mod tests;

@@ -168,11 +168,11 @@ impl Nees {
         let refused = |reason| (Why::Message, reason);
         let control_point_index =
             |name: &str| nees_message::control_point_index(&self.control_points, name);
-        let wishes = nees_message::wishes(points, control_point_index).map_err(refused)?;
-        if wishes.iter().any(|(_, wish)| wish.axis != AXIS) {
+        let demands = nees_message::demands(points, control_point_index).map_err(refused)?;
+        if demands.iter().any(|(_, demand)| demand.axis != AXIS) {
             return Err(refused("this rig knows the direction x only"));
         }
-        if wishes.is_empty() {
+        if demands.is_empty() {
             return Ok(None);
         }
         let mut targets: Vec<f64> = self
@@ -180,8 +180,8 @@ impl Nees {
             .iter()
             .map(|actuator| rig.commanded_of(*actuator))
             .collect();
-        for (actuator, wish) in &wishes {
-            targets[*actuator] = wish.value;
+        for (actuator, demand) in &demands {
+            targets[*actuator] = demand.value;
         }
         let own = || self.actuators.iter().zip(&targets);
         if own().all(|(actuator, target)| rig.limits_of(*actuator).contains(*target)) {
@@ -317,7 +317,7 @@ mod tests {
     #[test]
     fn what_it_cannot_do_it_refuses_and_does_not_move() {
         let (mut rig, mut emulated) = opened();
-        for (wish, code) in [
+        for (demand, code) in [
             ("MDL-00-01\tx\tdisplacement\t0.0601", 1),
             ("MDL-00-01\tx\tdisplacement\tnan", 1),
             ("MDL-00-02\tx\tdisplacement\t0.001", 2),
@@ -328,10 +328,10 @@ mod tests {
                 2,
             ),
         ] {
-            let answer = reply_to(&mut rig, &mut emulated, &format!("propose\tt1\t{wish}\n"));
+            let answer = reply_to(&mut rig, &mut emulated, &format!("propose\tt1\t{demand}\n"));
             assert!(
                 answer.starts_with(&format!("NOT OK\t{code}\tt1\t")),
-                "{wish}: {answer}"
+                "{demand}: {answer}"
             );
             assert!(
                 reply_to(&mut rig, &mut emulated, "execute\tt1\n").starts_with("NOT OK\t3\tt1\t")

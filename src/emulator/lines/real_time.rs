@@ -120,8 +120,8 @@ impl Served<'_> {
         } else {
             self.carrier.write(&self.outbox)
         };
-        let went = *written.as_ref().unwrap_or(&0);
-        self.outbox.drain(..went);
+        let sent = *written.as_ref().unwrap_or(&0);
+        self.outbox.drain(..sent);
         let left = read.is_err() || written.is_err() || (came == 0 && !self.carrier.host()?);
         if left {
             emulator.host_left(at);
@@ -131,6 +131,6 @@ impl Served<'_> {
             self.outbox.clear();
             self.carrier.renew()?;
         }
-        Ok(came > 0 || went > 0)
+        Ok(came > 0 || sent > 0)
     }
 }

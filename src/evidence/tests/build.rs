@@ -7,7 +7,7 @@ use crate::cli::commands::prediction::prediction;
 use crate::evidence::check::examine;
 use crate::evidence::folder::Folder;
 use crate::evidence::names::{MANIFEST, older_name};
-use crate::evidence::rebuilt::{PlayedBack, Rebuilt};
+use crate::evidence::rebuilt::{Rebuilt, ReplayedRun};
 use crate::files::provenance::{BUILD, TOOLCHAIN};
 use crate::files::recorded_run;
 use crate::files::recorded_run::JOURNAL;
@@ -47,7 +47,7 @@ fn a_report_names_the_build_that_made_the_run_and_not_the_one_that_made_the_repo
     let journal = of_another_build(&run()[JOURNAL]);
     let read = recorded_run::from_bytes(JOURNAL.as_ref(), &journal).unwrap();
     let mut files: Vec<OutputFile> = Vec::new();
-    PlayedBack::of(read, None, &prediction)
+    ReplayedRun::of(read, None, &prediction)
         .unwrap()
         .results(&mut files)
         .unwrap();

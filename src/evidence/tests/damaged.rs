@@ -9,7 +9,7 @@ use super::run;
 use crate::cli::commands::prediction::prediction;
 use crate::cli::files::record_file;
 use crate::evidence::consistency;
-use crate::evidence::rebuilt::PlayedBack;
+use crate::evidence::rebuilt::ReplayedRun;
 use crate::files::recorded_run::JOURNAL;
 use crate::record::journal::EntryKind;
 use crate::record::journal::testing::{Vandal, records, written};
@@ -23,7 +23,7 @@ use crate::run::replay::Bands;
 type Damage<'a> = &'a dyn Fn(&mut Vec<(EntryKind, Value)>);
 
 /// Everything that `verify`, `report` and `resume` do with a run log before they write or move anything; the error found.
-fn played(journal: &[u8]) -> Result<(), String> {
+fn replayed(journal: &[u8]) -> Result<(), String> {
     let read = record_file::from_bytes(Path::new(JOURNAL), journal)
         .map_err(|failure| failure.to_string())?;
     let consistent = consistency::check_consistency(&read);
@@ -31,12 +31,12 @@ fn played(journal: &[u8]) -> Result<(), String> {
     let no_rig = || Err(replay::ResumeRefusal::NothingRecorded);
     let _ = replay::resume(
         &read.plan,
-        &read.played,
+        &read.logged,
         &mut Unwatched,
         Box::new(|| None),
         no_rig,
     );
-    if let (Some(link), Some(rig)) = (read.plan.rig.link.as_real(), &read.played.last_rig) {
+    if let (Some(link), Some(rig)) = (read.plan.rig.link.as_real(), &read.logged.last_rig) {
         let nowhere = vec![0.0; read.plan.degrees_of_freedom()];
         let reading = Reading {
             time: 0.0,
@@ -45,17 +45,17 @@ fn played(journal: &[u8]) -> Result<(), String> {
             raw: Vec::new(),
         };
         let bands = Bands::of(&read.plan.rig, link);
-        let _ = replay::decide(&read.played, rig, &reading, &bands, true);
+        let _ = replay::decide(&read.logged, rig, &reading, &bands, true);
     }
-    let played = PlayedBack::of(read, None, &prediction)?;
-    let PlayedBack {
+    let replayed = ReplayedRun::of(read, None, &prediction)?;
+    let ReplayedRun {
         plan,
         provenance,
         record,
         assessment,
         mismatch,
         ..
-    } = &played;
+    } = &replayed;
     let run = report::Run {
         plan,
         record,
@@ -126,7 +126,7 @@ fn known_damage_is_an_error_with_its_position() {
         ),
     ];
     for (name, journal, reason) in cases {
-        let fault = played(journal).expect_err(name);
+        let fault = replayed(journal).expect_err(name);
         assert!(fault.contains(reason), "{name}: {fault}");
         assert_eq!(
             fault.contains("is malformed: its `"),
@@ -198,7 +198,7 @@ fn what_no_run_writes_is_malformed() {
     for (damage, expected) in cases {
         let mut damaged = records(journal);
         damage(&mut damaged);
-        let fault = played(&written(damaged)).expect_err(expected);
+        let fault = replayed(&written(damaged)).expect_err(expected);
         assert!(fault.contains(expected), "{expected}: {fault}");
     }
 }
@@ -216,7 +216,7 @@ fn no_vandal_makes_a_record_that_panics() {
     let real: &[u8] = include_bytes!("../../../tests/records/waits_for_ever.psdj");
     let journal = &run()[JOURNAL];
     for seed in 0..rounds {
-        let _ = played(&Vandal::new(seed).mangled(journal, real));
-        let _ = played(&Vandal::new(seed).mangled(real, journal));
+        let _ = replayed(&Vandal::new(seed).mangled(journal, real));
+        let _ = replayed(&Vandal::new(seed).mangled(real, journal));
     }
 }

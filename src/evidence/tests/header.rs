@@ -9,7 +9,7 @@ use crate::cli::files::record_file;
 use crate::evidence::check::examine;
 use crate::evidence::folder::{Folder, Held};
 use crate::evidence::names::MANIFEST;
-use crate::evidence::rebuilt::{PlayedBack, Rebuilt};
+use crate::evidence::rebuilt::{Rebuilt, ReplayedRun};
 use crate::files::recorded_run::JOURNAL;
 use crate::plan::formula::ResultValue;
 use crate::record::journal::testing::forged;
@@ -138,10 +138,10 @@ fn a_record_of_a_plan_with_an_older_name_is_read() {
         _ => {}
     });
     let read = record_file::from_bytes(JOURNAL.as_ref(), &older).unwrap();
-    let played = PlayedBack::of(read, None, &prediction).unwrap();
-    assert!(played.mismatch.is_none(), "{:?}", played.mismatch);
-    let stays = &played.assessment.requirements[0];
-    let ResultValue::Number { value: last, .. } = played.record.procedures[0]
+    let replayed = ReplayedRun::of(read, None, &prediction).unwrap();
+    assert!(replayed.mismatch.is_none(), "{:?}", replayed.mismatch);
+    let stays = &replayed.assessment.requirements[0];
+    let ResultValue::Number { value: last, .. } = replayed.record.procedures[0]
         .result("final_displacement")
         .unwrap()
         .value

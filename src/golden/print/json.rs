@@ -52,7 +52,7 @@ pub fn finding(finding: &Finding) -> Value {
             let first_row = first.as_ref().map(|(at, _)| row_json(*at));
             json!({ "kind": "text", "was": was, "is": is, "first": first_row, "rows": first.as_ref().map(|(_, count)| count.moved) })
         }
-        Change::Gone => json!({ "kind": "gone" }),
+        Change::Missing => json!({ "kind": "gone" }),
         Change::New => json!({ "kind": "new" }),
         Change::Length { of, was, is } => {
             json!({ "kind": "length", "of": of, "was": was, "is": is })

@@ -74,7 +74,7 @@ mod tests {
         };
         let found = vec![
             Finding::text(Part::Verdict, "verdict", "pass", "fail"),
-            Finding::new(Part::Table, "table of k0", Change::Gone),
+            Finding::new(Part::Table, "table of k0", Change::Missing),
         ];
         let report = Report {
             tested: vec![

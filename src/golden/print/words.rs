@@ -29,7 +29,7 @@ impl Words {
                 });
                 (texts(was, is), String::new(), detail)
             }
-            Change::Gone => (
+            Change::Missing => (
                 "accepted, but missing now".to_owned(),
                 String::new(),
                 String::new(),

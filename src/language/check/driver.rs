@@ -136,7 +136,7 @@ pub fn plan(
     {
         declarations::limits::check_start(checker, limits);
         declarations::limits::check_targets(checker, limits);
-        slices::hold_limits(checker, &procedures, limits);
+        slices::check_limits(checker, &procedures, limits);
     }
     let declared = Declared {
         specimens: &specimens,
@@ -145,7 +145,7 @@ pub fn plan(
     };
     for (block, procedure) in &procedures {
         if let Some(procedure) = procedure {
-            slices::judge(checker, *block, &procedure.kind, &declared);
+            slices::check_declared(checker, *block, &procedure.kind, &declared);
         }
     }
     let requirements = checker.requirements();
@@ -174,7 +174,7 @@ pub fn plan(
                 declarations::print::warn(checker, report);
             }
         }
-        slices::hold_reads(checker, &procedures);
+        slices::check_reads(checker, &procedures);
         if warns {
             let head = checker
                 .scope

@@ -107,21 +107,28 @@ impl<'a> Scope<'a> {
                 match &item.kind {
                     ItemKind::Use { .. } => {}
                     ItemKind::Let { name, value } => {
-                        scope.declare_value("let", name, value, None, None, diagnostics);
+                        let declared = DeclaredValue {
+                            keyword: "let",
+                            name,
+                            value,
+                            bounds: None,
+                            setting: None,
+                        };
+                        scope.declare_value(declared, diagnostics);
                     }
                     ItemKind::Param {
                         name,
                         value,
                         bounds,
                     } => {
-                        scope.declare_value(
-                            "param",
+                        let declared = DeclaredValue {
+                            keyword: "param",
                             name,
                             value,
-                            bounds.as_ref(),
-                            settings.get(&name.node),
-                            diagnostics,
-                        );
+                            bounds: bounds.as_ref(),
+                            setting: settings.get(&name.node),
+                        };
+                        scope.declare_value(declared, diagnostics);
                     }
                     ItemKind::Require { label, .. } if library => {
                         diagnostics.push(message::not_in_library("require", label.span));
@@ -213,23 +220,10 @@ impl<'a> Scope<'a> {
         }
     }
 
-    fn declare_value(
-        &mut self,
-        keyword: &'static str,
-        name: &'a Ident,
-        value: &'a Expr,
-        bounds: Option<&'a Expr>,
-        setting: Option<&'a Setting>,
-        diagnostics: &mut Vec<Diagnostic>,
-    ) {
-        self.declare(name, Meaning::Value(self.values.len()), diagnostics);
-        self.values.push(DeclaredValue {
-            keyword,
-            name,
-            value,
-            bounds,
-            setting,
-        });
+    fn declare_value(&mut self, declared: DeclaredValue<'a>, diagnostics: &mut Vec<Diagnostic>) {
+        let meaning = Meaning::Value(self.values.len());
+        self.declare(declared.name, meaning, diagnostics);
+        self.values.push(declared);
     }
 
     fn declare_block(

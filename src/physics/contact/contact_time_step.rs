@@ -1,6 +1,7 @@
 //! The motion of a striker when it meets the structure, and the time step that a contact of finite stiffness then needs. In: masses,
 //! speed, stiffnesses. Out: numbers in SI. It integrates nothing.
 
+use super::ContactSpring;
 use crate::integrator::newmark::critical_time_step;
 
 /// A striker at the instant when it meets a structure.
@@ -10,8 +11,8 @@ pub struct Approach {
     pub striker_mass: f64,
     /// \[m/s\]
     pub speed: f64,
-    /// k of a contact of finite stiffness \[N/m^1.5\].
-    pub hertz: Option<f64>,
+    /// Of a contact of finite stiffness.
+    pub spring: Option<ContactSpring>,
 }
 
 /// A striker from its start until it meets the structure.
@@ -30,23 +31,28 @@ pub struct Flight {
 impl Approach {
     /// A striker after its flight, with its speed when the gap closes.
     #[must_use]
-    pub fn after(flight: Flight, hertz: Option<f64>) -> Self {
+    pub fn after(flight: Flight, spring: Option<ContactSpring>) -> Self {
         let squared = flight.velocity * flight.velocity + 2.0 * flight.gravity * flight.gap;
         Self {
             striker_mass: flight.striker_mass,
             speed: squared.max(0.0).sqrt(),
-            hertz,
+            spring,
         }
     }
 
-    /// The contact's tangent at its deepest \[N/m\]: `k_c = 1.5 k √δ` with δ of an impact between free masses, (5/4 μu²/k)^(2/5).
-    /// `struck` is the effective mass at the struck point \[kg\]. None for a contact without stiffness, or one that never closes.
+    /// The contact's tangent at its deepest \[N/m\]: `k_c = n k δⁿ⁻¹` with δ of an impact between free masses, whose energy ½μu² the
+    /// spring then stores, k δⁿ⁺¹/(n + 1). `struck` is the effective mass at the struck point \[kg\]. None for a contact without stiffness,
+    /// or one that never closes.
     #[must_use]
     pub fn contact_stiffness(&self, struck: f64) -> Option<f64> {
-        let hertz = self.hertz.filter(|_| self.speed > 0.0)?;
+        let ContactSpring {
+            stiffness,
+            exponent,
+        } = self.spring.filter(|_| self.speed > 0.0)?;
         let reduced_mass = super::reduced_mass(struck, self.striker_mass);
-        let deepest = (1.25 * reduced_mass * self.speed * self.speed / hertz).powf(0.4);
-        Some(1.5 * hertz * deepest.sqrt())
+        let energy = 0.5 * (exponent + 1.0) * reduced_mass * self.speed * self.speed;
+        let deepest = (energy / stiffness).powf(1.0 / (exponent + 1.0));
+        Some(exponent * stiffness * deepest.powf(exponent - 1.0))
     }
 
     /// Critical time step of one struck degree of freedom \[s\]: a tenth of its period (Melo et al. 2006, eq. 7). For a contact of finite
@@ -72,17 +78,24 @@ mod tests {
     use crate::structure::frame::Frame;
     use crate::structure::frame_properties::FrameProperties;
 
+    const fn hertz(stiffness: f64) -> Option<ContactSpring> {
+        Some(ContactSpring {
+            stiffness,
+            exponent: 1.5,
+        })
+    }
+
     const HARD: Approach = Approach {
         striker_mass: 10.0,
         speed: 1.0,
-        hertz: Some(1e9),
+        spring: hertz(1e9),
     };
 
     #[test]
     fn without_a_stiffness_of_the_contact_it_is_that_of_the_structure() {
         for approach in [
             Approach {
-                hertz: None,
+                spring: None,
                 ..HARD
             },
             Approach { speed: 0.0, ..HARD },
@@ -105,7 +118,7 @@ mod tests {
                 Approach {
                     striker_mass: 0.5,
                     speed: 3.0,
-                    hertz: Some(2e8),
+                    spring: hertz(2e8),
                 },
             ),
             (
@@ -114,7 +127,7 @@ mod tests {
                 Approach {
                     striker_mass: 1.0,
                     speed: 1e-6,
-                    hertz: Some(1.0),
+                    spring: hertz(1.0),
                 },
             ),
         ] {

@@ -2,12 +2,14 @@
 //! the contact force of the step. They know no rig and no procedure.
 
 pub mod contact_time_step;
+mod followed;
 mod hertz;
 mod impulse;
 mod restitution;
 pub mod state;
 
-pub use hertz::HertzContact;
+pub use followed::Followed;
+pub use hertz::HertzForce;
 pub(super) use impulse::Decided;
 pub use impulse::ImpulseContact;
 pub use restitution::RestitutionContact;
@@ -18,6 +20,7 @@ use super::contact::state::StepState;
 use crate::integrator::Integrator;
 use crate::integrator::step_form::Motion;
 use crate::integrator::substep::{Scratch, Striker, Substep};
+use crate::self_test::Part;
 use crate::structure::matrix::Vector;
 
 /// The contact law between striker and structure, with its numbers: f64 in SI here, formulas in a plan.
@@ -37,6 +40,25 @@ pub enum ContactLaw<N = f64> {
     },
 }
 
+/// A number of a law.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LawNumber<'a, N> {
+    /// Its argument in a plan.
+    pub argument: &'static str,
+    /// Its name among the inputs of a run.
+    pub input: &'static str,
+    pub value: &'a N,
+}
+
+/// The spring of a law of finite stiffness: F = k δⁿ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactSpring<N = f64> {
+    /// k \[N/mⁿ\]
+    pub stiffness: N,
+    /// n
+    pub exponent: f64,
+}
+
 impl<N> ContactLaw<N> {
     /// Its word in a plan.
     #[must_use]
@@ -49,27 +71,98 @@ impl<N> ContactLaw<N> {
         }
     }
 
+    /// Its name in a sentence.
+    #[must_use]
+    pub const fn title(&self) -> &'static str {
+        match self {
+            Self::Rigid => "rigid",
+            Self::Limit { .. } => "rigid up to a limit force",
+            Self::Restitution { .. } => "restitution",
+            Self::Hertz { .. } => "Hertz",
+        }
+    }
+
+    /// The law with this word in a plan. `number` gives the value of an argument, None where it is left out. None for an unknown word, or
+    /// without a number that the law requires.
+    pub fn of_numbers(word: &str, mut number: impl FnMut(&str) -> Option<N>) -> Option<Self> {
+        Some(match word {
+            "rigid" => Self::Rigid,
+            "limit" => Self::Limit {
+                force: number("force")?,
+            },
+            "restitution" => Self::Restitution {
+                coefficient: number("coefficient")?,
+            },
+            "hertz" => Self::Hertz {
+                stiffness: number("stiffness")?,
+                loss: number("loss")?,
+                force_limit: number("force_limit"),
+            },
+            _ => return None,
+        })
+    }
+
     /// Its numbers, in the order of its declaration.
     #[must_use]
-    pub fn numbers(&self) -> Vec<&N> {
+    pub fn numbers(&self) -> Vec<LawNumber<'_, N>> {
+        let number = |argument, input, value| LawNumber {
+            argument,
+            input,
+            value,
+        };
         match self {
             Self::Rigid => Vec::new(),
-            Self::Limit { force } => vec![force],
-            Self::Restitution { coefficient } => vec![coefficient],
+            Self::Limit { force } => vec![number("force", "force_limit", force)],
+            Self::Restitution { coefficient } => {
+                vec![number("coefficient", "restitution", coefficient)]
+            }
             Self::Hertz {
                 stiffness,
                 loss,
                 force_limit,
-            } => [stiffness, loss].into_iter().chain(force_limit).collect(),
+            } => {
+                let limit = force_limit.iter();
+                [
+                    number("stiffness", "contact_stiffness", stiffness),
+                    number("loss", "loss", loss),
+                ]
+                .into_iter()
+                .chain(limit.map(|force| number("force_limit", "force_limit", force)))
+                .collect()
+            }
         }
     }
 
-    /// k of a law of finite stiffness \[N/m^1.5\].
+    /// The spring of a law of finite stiffness.
     #[must_use]
-    pub const fn stiffness(&self) -> Option<&N> {
+    pub const fn spring(&self) -> Option<ContactSpring<&N>> {
         match self {
-            Self::Hertz { stiffness, .. } => Some(stiffness),
+            Self::Hertz { stiffness, .. } => Some(ContactSpring {
+                stiffness,
+                exponent: 1.5,
+            }),
             Self::Rigid | Self::Limit { .. } | Self::Restitution { .. } => None,
+        }
+    }
+
+    /// Whether the contact returns the energy that it took: a spring without loss. `is_zero` finds whether a number is 0.
+    pub fn is_lossless(&self, is_zero: impl FnOnce(&N) -> bool) -> bool {
+        match self {
+            Self::Hertz {
+                loss, force_limit, ..
+            } => force_limit.is_none() && is_zero(loss),
+            Self::Rigid | Self::Limit { .. } | Self::Restitution { .. } => false,
+        }
+    }
+
+    /// The parts of the self-test that cover it, on one degree of freedom and on a storey.
+    #[must_use]
+    pub const fn self_tested(&self) -> [Part; 2] {
+        match self {
+            Self::Rigid => [Part::Rigid, Part::FrameRigid],
+            Self::Limit { .. } => [Part::Limit, Part::FrameLimit],
+            Self::Restitution { .. } => [Part::Restitution, Part::FrameRestitution],
+            Self::Hertz { .. } => [Part::Hertz, Part::FrameHertz],
         }
     }
 
@@ -151,7 +244,7 @@ pub struct Advance {
 
 /// Law and integrator that do not go together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("{0} finds the instant of a blow by the tangent's prediction, which only `tangent` has")]
+#[error("{0} finds the instant of an impact by the tangent's prediction, which only `tangent` has")]
 pub struct NeedsTangent(pub &'static str);
 
 /// The law of a plan, chosen once a step.
@@ -165,7 +258,7 @@ pub enum AnyContact {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DividingContact {
     Restitution(RestitutionContact),
-    Hertz(HertzContact),
+    Hertz(Followed<HertzForce>),
 }
 
 impl DividingContact {
@@ -210,12 +303,11 @@ impl AnyContact {
                 stiffness,
                 loss,
                 force_limit,
-            } => Ok(Self::Divided(DividingContact::Hertz(HertzContact::new(
-                stiffness,
-                loss,
-                force_limit,
-                impact,
-            )))),
+            } => {
+                let law = HertzForce::new(stiffness, loss, force_limit);
+                let followed = Followed::new(law, impact);
+                Ok(Self::Divided(DividingContact::Hertz(followed)))
+            }
         }
     }
 }

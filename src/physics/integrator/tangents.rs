@@ -336,7 +336,7 @@ mod tests {
         assert_eq!(
             coarse.stiffness()[1],
             INITIAL[1],
-            "two readings, two quanta"
+            "two readings, two quantization steps"
         );
         assert!(coarse.stiffness()[0] < INITIAL[0] && coarse.stiffness()[2] < INITIAL[2]);
     }

@@ -34,7 +34,7 @@ pub struct FrameRun {
     pub force_noise: f64,
     pub resolution: f64,
     /// Whether the floors passed their targets without a stop.
-    pub gliding: bool,
+    pub continuous: bool,
 }
 
 /// A striker on one floor.
@@ -126,7 +126,7 @@ impl FrameRun {
     ///
     /// # Errors
     /// The frame, with its inputs perturbed, cannot be stepped.
-    pub fn shaken(
+    pub fn under_ground_motion(
         &self,
         ground: &[f64],
         path: &FramePath,
@@ -140,13 +140,14 @@ impl FrameRun {
         let mut solver = FrameSolver::new(&self.input(&retrace, &load, time_step))?;
         let mut peaks = Peaks::new(self.matrices.order(), time_step);
         peaks.take(solver.state(), 1.0);
-        let mut passing = Passing::new(self, path);
+        let mut velocities_at_targets = TargetVelocities::new(self, path);
         for step in (1..)
             .take(usize::try_from(self.steps * u64::from(readings.finer)).unwrap_or(usize::MAX))
         {
             self.matrices.ground_load(at(step), &mut load);
             solver.predict(&load);
-            let velocities = passing.predicted_velocities(&mut |to| solver.predicted_velocity(to));
+            let velocities =
+                velocities_at_targets.predicted_velocities(&mut |to| solver.predicted_velocity(to));
             retrace.move_to(solver.predict(&load), velocities);
             if retrace.departed() {
                 peaks.departs();
@@ -156,13 +157,13 @@ impl FrameRun {
                 1.0,
             );
         }
-        Ok(peaks.finish(passing))
+        Ok(peaks.finish(velocities_at_targets))
     }
 
     /// Re-integrates an impact on one floor.
     ///
     /// # Errors
-    /// As [`Self::shaken`].
+    /// As [`Self::under_ground_motion`].
     pub fn struck(
         &self,
         impact: &FloorImpact,
@@ -202,9 +203,9 @@ impl FrameRun {
             before_departure: None,
         };
         found.peaks.take(solver.structure(), 1.0);
-        let mut passing = Passing::new(self, path);
+        let mut velocities_at_targets = TargetVelocities::new(self, path);
         let read = |solver: &mut FrameImpactSolver| {
-            let velocities = passing.predicted_velocities(&mut |to| {
+            let velocities = velocities_at_targets.predicted_velocities(&mut |to| {
                 solver.predicted_velocity(to);
             });
             retrace.move_to(solver.predict(), velocities);
@@ -217,7 +218,7 @@ impl FrameRun {
             impact: found.impact.finish(),
             striker: found.energy.outcome(found.first_contact_steps, &found.last),
             before_departure: found.before_departure,
-            floors: found.peaks.finish(passing),
+            floors: found.peaks.finish(velocities_at_targets),
         })
     }
 }
@@ -256,18 +257,25 @@ impl Sink<Vec<f64>> for StruckFloors<'_> {
 }
 
 /// Velocities of the floors at their targets in a run without stops \[m/s\].
-struct Passing {
+struct TargetVelocities {
     /// At the end of the step in progress; empty for a run that stops.
     now: Vec<f64>,
     gathers: bool,
     gathered: Vec<Vec<f64>>,
 }
 
-impl Passing {
+impl TargetVelocities {
     /// From rest.
     fn new(run: &FrameRun, path: &FramePath) -> Self {
-        let now = vec![0.0; if run.gliding { run.matrices.order() } else { 0 }];
-        let gathers = run.gliding && !path.knows_velocities();
+        let now = vec![
+            0.0;
+            if run.continuous {
+                run.matrices.order()
+            } else {
+                0
+            }
+        ];
+        let gathers = run.continuous && !path.knows_velocities();
         Self {
             gathered: if gathers {
                 vec![now.clone()]
@@ -384,13 +392,13 @@ impl Peaks {
         }
     }
 
-    fn finish(self, passing: Passing) -> FloorsOutcome {
+    fn finish(self, velocities_at_targets: TargetVelocities) -> FloorsOutcome {
         let between = self.between();
         FloorsOutcome {
             ends: self.ends,
             between,
             before_departure: self.before_departure,
-            velocities: passing.gathered,
+            velocities: velocities_at_targets.gathered,
         }
     }
 }

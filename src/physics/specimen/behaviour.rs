@@ -79,7 +79,85 @@ pub enum Behaviour {
     Portal(Portal),
 }
 
+/// The parameters of a model whose parameters are numbers: each by its name in a plan.
+pub type Numbers = Vec<(&'static str, f64)>;
+
 impl Behaviour {
+    /// The model with this word in a plan, if its parameters are numbers. `number` gives a parameter by its name. None for the word of
+    /// another model, or without a number that it requires.
+    pub fn of_numbers(word: &str, number: impl Fn(&str) -> Option<f64>) -> Option<Self> {
+        Some(match word {
+            "elastic" => Self::Elastic {
+                stiffness: number("stiffness")?,
+            },
+            "bouc_wen" => Self::BoucWen {
+                stiffness: number("stiffness")?,
+                yield_force: number("yield_force")?,
+                post_yield_ratio: number("post_yield_ratio")?,
+                sharpness: number("n")?,
+                beta: number("beta")?,
+            },
+            "degrading" => Self::Degrading {
+                stiffness: number("stiffness")?,
+                half_displacement: number("half_displacement")?,
+                residual: number("residual")?,
+            },
+            "bolted" => Self::Bolted(Bolted {
+                stiffness: number("stiffness")?,
+                bearing_force: number("bearing_force")?,
+                clearance: number("clearance")?,
+                slip_force: number("slip_force")?,
+            }),
+            _ => return None,
+        })
+    }
+
+    /// Its word in a plan and its numbers, as [`Self::of_numbers`] takes them; None for a model with other parameters.
+    #[must_use]
+    pub fn numbers(&self) -> Option<(&'static str, Numbers)> {
+        Some(match self {
+            Self::Elastic { stiffness } => ("elastic", vec![("stiffness", *stiffness)]),
+            Self::BoucWen {
+                stiffness,
+                yield_force,
+                post_yield_ratio,
+                sharpness,
+                beta,
+            } => (
+                "bouc_wen",
+                vec![
+                    ("stiffness", *stiffness),
+                    ("yield_force", *yield_force),
+                    ("post_yield_ratio", *post_yield_ratio),
+                    ("n", *sharpness),
+                    ("beta", *beta),
+                ],
+            ),
+            Self::Degrading {
+                stiffness,
+                half_displacement,
+                residual,
+            } => (
+                "degrading",
+                vec![
+                    ("stiffness", *stiffness),
+                    ("half_displacement", *half_displacement),
+                    ("residual", *residual),
+                ],
+            ),
+            Self::Bolted(bolted) => (
+                "bolted",
+                vec![
+                    ("stiffness", bolted.stiffness),
+                    ("bearing_force", bolted.bearing_force),
+                    ("clearance", bolted.clearance),
+                    ("slip_force", bolted.slip_force),
+                ],
+            ),
+            _ => return None,
+        })
+    }
+
     /// Initial stiffness without relaxation \[N/m\]; for a joint with clearance and no friction, that in bearing.
     #[must_use]
     pub fn initial_stiffness(&self) -> f64 {

@@ -22,3 +22,24 @@ pub fn energy_along(model: &mut impl RestoringForce, from: f64, turns: &[f64], s
     }
     energy
 }
+
+/// A model of plain numbers is read and described by the same names.
+#[test]
+fn a_model_of_numbers_is_the_model_of_its_numbers() {
+    for word in ["elastic", "bouc_wen", "degrading", "bolted"] {
+        let read = Behaviour::of_numbers(word, |name| {
+            let bytes = name.bytes().map(f64::from);
+            Some(bytes.sum())
+        });
+        let read = read.expect(word);
+        let (own, numbers) = read.numbers().expect(word);
+        assert_eq!(own, word);
+        let again = Behaviour::of_numbers(word, |name| {
+            numbers
+                .iter()
+                .find(|(own, _)| *own == name)
+                .map(|found| found.1)
+        });
+        assert_eq!(again, Some(read));
+    }
+}

@@ -91,9 +91,9 @@ impl Path {
         let Rate {
             acceleration, jerk, ..
         } = self.at_start();
-        let turn = -acceleration / jerk;
-        let inside = if turn > 0.0 && turn < self.seconds {
-            self.rate(turn).velocity.abs()
+        let extremum = -acceleration / jerk;
+        let inside = if extremum > 0.0 && extremum < self.seconds {
+            self.rate(extremum).velocity.abs()
         } else {
             0.0
         };
@@ -116,9 +116,9 @@ impl Path {
             .max(0.0)
             .sqrt();
         let sum = -(acceleration + root.copysign(acceleration));
-        for turn in [sum / jerk, 2.0 * velocity / sum] {
-            if turn > 0.0 && turn < self.seconds {
-                let position = self.position(turn);
+        for reversal in [sum / jerk, 2.0 * velocity / sum] {
+            if reversal > 0.0 && reversal < self.seconds {
+                let position = self.position(reversal);
                 (low, high) = (low.min(position), high.max(position));
             }
         }

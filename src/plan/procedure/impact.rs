@@ -1,8 +1,8 @@
 //! A checked `impact`: a computed striker meets a structure on the rig, either one degree of freedom or one floor of a frame. In:
 //! formulas from the check. Out: SI numbers, and the critical time step if its inputs are known. It integrates nothing.
 
-use crate::physics::contact::ContactLaw;
 use crate::physics::contact::contact_time_step::Approach;
+use crate::physics::contact::{ContactLaw, ContactSpring};
 use crate::plan::formula::Formula;
 use crate::plan::{ShakeDamping, Stepping, Striker, Until};
 
@@ -78,11 +78,14 @@ impl Impact {
         striker: &Striker,
         known: impl Fn(&Formula) -> Option<f64>,
     ) -> Option<Approach> {
-        let stiffness = match self.contact.stiffness() {
-            Some(stiffness) => Some(known(stiffness)?),
+        let spring = match self.contact.spring() {
+            Some(spring) => Some(ContactSpring {
+                stiffness: known(spring.stiffness)?,
+                exponent: spring.exponent,
+            }),
             None => None,
         };
-        Some(striker.approach(stiffness))
+        Some(striker.approach(spring))
     }
 
     /// Critical time step of an impact of this striker on one degree of freedom \[s\], if `known` contains mass and stiffnesses. None if

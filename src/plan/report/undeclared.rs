@@ -50,7 +50,7 @@ impl Plan {
         ];
         let own = own
             .into_iter()
-            .filter(|(_, lacking)| *lacking)
+            .filter(|(_, undeclared)| *undeclared)
             .map(|(name, _)| name);
         own.chain(self.rig.undeclared(self.degrees_of_freedom()))
             .collect()
@@ -75,7 +75,7 @@ impl RigPlan {
             ("zero drift in the run", self.zero_drift.is_none()),
         ];
         all.into_iter()
-            .filter(|(_, lacking)| *lacking)
+            .filter(|(_, undeclared)| *undeclared)
             .map(|(name, _)| name)
             .collect()
     }

@@ -91,7 +91,7 @@ impl Dialect {
 
     /// Whether the device follows smooth paths without a stop.
     #[must_use]
-    pub const fn glides(&self) -> bool {
+    pub const fn follows_paths(&self) -> bool {
         matches!(self, Self::Native)
     }
 

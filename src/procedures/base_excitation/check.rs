@@ -90,7 +90,12 @@ pub fn damping_uncertainty(
 
 /// Checks the time step of a ground-motion test, as far as it is known before the run: against the limits of any frame, and against the
 /// time step of the record.
-pub(crate) fn judge(checker: &mut Checker, block: usize, shake: &Shake, declared: &Declared<'_>) {
+pub(crate) fn check_declared(
+    checker: &mut Checker,
+    block: usize,
+    shake: &Shake,
+    declared: &Declared<'_>,
+) {
     let (Some(frame), Some(ground)) = (
         declared.frame(shake.specimen),
         declared.ground(shake.ground),
@@ -114,7 +119,7 @@ pub(crate) fn judge(checker: &mut Checker, block: usize, shake: &Shake, declared
         stepping,
         duration,
     };
-    let Some((_, step)) = frame_check::judge(checker, block, &steps, |properties| {
+    let Some((_, step)) = frame_check::check(checker, block, &steps, |properties| {
         Some(properties.critical_time_step())
     }) else {
         return;

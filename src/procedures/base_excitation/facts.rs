@@ -1,6 +1,6 @@
 //! The facts about a ground-motion test that check and report need without running it. In: a test, or its history. Out: facts.
 
-use super::chart;
+use super::figures;
 use crate::plan::{Dependence, Plan, Shake};
 use crate::procedures::facts::{Delay, Facts, Recorded, Tests};
 use crate::procedures::stepping;
@@ -17,8 +17,8 @@ pub(crate) fn facts(shake: &Shake) -> Facts<'_> {
             frame: Some(shake.specimen),
             ..Dependence::default()
         },
-        figures: chart::FIGURES,
-        shared_figures: chart::SHARED,
+        figures: figures::FIGURES,
+        shared_figures: figures::SHARED,
         headline: vec![
             schema::MAX_DRIFT.name,
             schema::MAX_BASE_SHEAR.name,

@@ -1,7 +1,6 @@
 //! `shake`: a frame under ground motion. In: its block, the ground-motion record, a rig behind the
 //! guard. Out: parameters, history, results, tables, figures, report text.
 
-pub(crate) mod chart;
 pub(crate) mod check;
 pub(crate) mod facts;
 pub(crate) mod figures;

@@ -60,14 +60,14 @@ pub(crate) fn perform(
             observe_imbalance(shaking.summary.energy_error(), session);
         }
         let uncertainty = FrameUncertainty::of_shake(plan, whole, inputs, session);
-        stop = session.evaluate_uncertainty(|tick| {
+        stop = session.evaluate_uncertainty(|progress| {
             let shake = ShakeUncertainty {
                 uncertainty: &uncertainty,
                 plan,
                 ground,
                 setting: &setting,
             };
-            uncertainty::propagate(shake, &shaking.history, &mut results, tick)
+            uncertainty::propagate(shake, &shaking.history, &mut results, progress)
         });
     }
     Performed {

@@ -17,7 +17,7 @@ use crate::record::{NamedResult, ShakeHistory, ShakeStep};
 use crate::run::stop::Stop;
 use crate::schema::procedures::base_excitation as schema;
 use crate::uncertainty::Source;
-use crate::uncertainty::engine::{Evaluate, Evaluation, FINER, Shifts, Tick, Unknown};
+use crate::uncertainty::engine::{Evaluate, Evaluation, FINER, Progress, Shifts, Unknown};
 use crate::units::Dimension;
 
 /// Steps of the finest run for each of the record.
@@ -37,7 +37,7 @@ pub(crate) fn propagate(
     shake: ShakeUncertainty<'_, '_>,
     history: &ShakeHistory,
     results: &mut [NamedResult],
-    tick: Tick<'_, Stop>,
+    progress: Progress<'_, Stop>,
 ) -> Result<(), Unknown<Stop>> {
     let ShakeUncertainty {
         uncertainty,
@@ -98,7 +98,7 @@ pub(crate) fn propagate(
     );
     give(
         &layout,
-        uncertainty.contributions(&evaluate, sources, history.steps.len(), reported, tick)?,
+        uncertainty.contributions(&evaluate, sources, history.steps.len(), reported, progress)?,
         results,
     );
     Ok(())
@@ -143,7 +143,9 @@ impl RecordedShake<'_, '_> {
         let scaled: Vec<f64> = accelerations
             .map(|acceleration| inputs.scale * acceleration)
             .collect();
-        inputs.run.shaken(&scaled, &self.path, readings)
+        inputs
+            .run
+            .under_ground_motion(&scaled, &self.path, readings)
     }
 }
 

@@ -17,7 +17,7 @@ const BY_CYCLE: [&str; 4] = [
 ];
 
 /// An entry past the last cycle, which can never exist; called only if there is no error.
-pub fn hold_entries(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
+pub fn check_entries(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
     for (reference, entry, span) in std::mem::take(&mut checker.list_entries_read) {
         let Some((_, Some(procedure))) = procedures.get(reference.procedure.0) else {
             continue;
@@ -35,7 +35,7 @@ pub fn hold_entries(checker: &mut Checker, procedures: &[(usize, Option<Procedur
 }
 
 /// Compares the ends of cycles \[m\] that are known before the run with the limits.
-pub fn hold_cycles(
+pub fn check_cycles(
     checker: &mut Checker,
     procedures: &[(usize, Option<Procedure>)],
     limits: &CheckedLimits,

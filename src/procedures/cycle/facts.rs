@@ -1,12 +1,12 @@
 //! The facts about a `cycle` that check and report need without running it. In: the `cycle`. Out: facts.
 
-use super::{chart, report};
+use super::{figures, report};
 use crate::procedures::facts::{Facts, Recorded};
 use crate::schema::procedures::cycle as schema;
 
 pub(crate) fn facts() -> Facts<'static> {
     Facts {
-        figures: chart::FIGURES,
+        figures: figures::FIGURES,
         headline: vec![
             schema::DISSIPATED_ENERGY.name,
             schema::EQUIVALENT_DAMPING_RATIO.name,

@@ -1,11 +1,55 @@
-//! Charts of cycles: loops, backbone, energy and stiffness cycle by cycle. In: the history. Out: [`Chart`]s in SI.
+//! The figures of a `cycle`: their list, captions and charts: loops, backbone, energy and stiffness cycle by cycle. In: the history. Out:
+//! [`Chart`]s in SI with their captions.
 
+use crate::plan::FigureKind;
 use crate::record::{CycleHistory, MultilinearFit, WholeCycle};
 use crate::report::figures::chart::{
     Chart, DASHED, LONG, Marker, Quantity, SOLID, Series, Style, palette,
 };
 use crate::report::figures::points::Points;
 use crate::units::Dimension;
+
+/// In the order of a report.
+pub(crate) const FIGURES: &[FigureKind] = &[
+    FigureKind::ForceDisplacement,
+    FigureKind::Backbone,
+    FigureKind::CycleEnergy,
+    FigureKind::StiffnessDegradation,
+];
+
+/// A figure and its caption; None if nothing was recorded for it, or if a `cycle` does not have this figure.
+pub(crate) fn chart(
+    name: &str,
+    history: &CycleHistory,
+    kind: FigureKind,
+) -> Option<(Chart, String)> {
+    if history.cycles.is_empty() {
+        return None;
+    }
+    Some(match kind {
+        FigureKind::ForceDisplacement => (
+            loops(history),
+            format!(
+                "{name}: restoring force against displacement; the area of a loop is the energy of its cycle."
+            ),
+        ),
+        FigureKind::Backbone => (
+            backbone(history),
+            format!(
+                "{name}: backbone, the force at the ends of the cycles, amplitude by amplitude."
+            ),
+        ),
+        FigureKind::CycleEnergy => (
+            energy(history),
+            format!("{name}: energy of each cycle, and cumulative energy."),
+        ),
+        FigureKind::StiffnessDegradation => (
+            stiffness(history),
+            format!("{name}: secant stiffness of each cycle."),
+        ),
+        _ => return None,
+    })
+}
 
 /// Every loop, the last one on top.
 pub(crate) fn loops(history: &CycleHistory) -> Chart {
@@ -32,7 +76,7 @@ pub(crate) fn loops(history: &CycleHistory) -> Chart {
             style: Style::line(palette::VERMILION, 2.0, SOLID),
         });
     }
-    chart(
+    on_axes(
         Quantity::along("Displacement X", Dimension::LENGTH),
         Quantity::of("Restoring force R", Dimension::FORCE),
         series,
@@ -83,7 +127,7 @@ pub(crate) fn backbone(history: &CycleHistory) -> Chart {
     if let Some(fit) = &history.backbone {
         series.extend(sides(fit, history));
     }
-    chart(
+    on_axes(
         Quantity::along("Displacement X", Dimension::LENGTH),
         Quantity::of("Restoring force R", Dimension::FORCE),
         series,
@@ -161,7 +205,7 @@ pub(crate) fn energy(history: &CycleHistory) -> Chart {
             },
         },
     ];
-    chart(
+    on_axes(
         Quantity::along("Cycle", Dimension::NUMBER),
         Quantity::of("Energy", Dimension::ENERGY),
         series,
@@ -184,7 +228,7 @@ pub(crate) fn stiffness(history: &CycleHistory) -> Chart {
         points,
         style,
     }];
-    chart(
+    on_axes(
         Quantity::along("Cycle", Dimension::NUMBER),
         Quantity::of("Secant stiffness", Dimension::STIFFNESS),
         series,
@@ -196,7 +240,7 @@ fn number(cycle: &WholeCycle) -> f64 {
     cycle.cycle as f64
 }
 
-fn chart(x: Quantity, y: Quantity, series: Vec<Series>) -> Chart {
+fn on_axes(x: Quantity, y: Quantity, series: Vec<Series>) -> Chart {
     Chart {
         x,
         y,

@@ -1,7 +1,6 @@
 //! `cycle`: displacement cycles, amplitude by amplitude. In: its block, a rig behind the guard.
 //! Out: parameters, history, energies and stiffnesses of the cycles, tables, figures, report text.
 
-pub(crate) mod chart;
 pub(crate) mod check;
 pub(crate) mod declared_cycles;
 pub(crate) mod facts;

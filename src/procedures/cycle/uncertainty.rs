@@ -13,7 +13,7 @@ use crate::procedures::common::loop_sampling::{left_open_by, of_open};
 use crate::procedures::common::results::{Layout, give, index_of, values};
 use crate::record::{CycleHistory, CycleStep, NamedResult, WholeCycle};
 use crate::schema::procedures::cycle as schema;
-use crate::uncertainty::engine::{Evaluate, Evaluation, Shifts, Study};
+use crate::uncertainty::engine::{Evaluate, Evaluation, Propagation, Shifts};
 use crate::uncertainty::{Contribution, InstrumentUncertainty, Source};
 
 /// Results with one entry per cycle.
@@ -113,7 +113,7 @@ pub(crate) fn propagate(
     procedure: ProcedureId,
     results: &mut [NamedResult],
 ) {
-    let study = Study {
+    let propagation = Propagation {
         procedure,
         impact: 0,
         evaluate: loops,
@@ -124,7 +124,7 @@ pub(crate) fn propagate(
     };
     let layout = loops.layout();
     // Inputs have no bounds here, and no one waits for progress.
-    if let Ok(mut contributions) = study.contributions::<Infallible>(&mut |_, _| Ok(())) {
+    if let Ok(mut contributions) = propagation.contributions::<Infallible>(&mut |_, _| Ok(())) {
         for (kind, entry, amount) in of_sampling(loops.history, loops.left_open) {
             let sampling = Contribution::new(Source::LoopSampling { procedure }, amount);
             if let Some(first) = index_of(&layout, kind) {

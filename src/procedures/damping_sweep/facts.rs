@@ -1,6 +1,6 @@
 //! The facts about a damping sweep that check and report need without running it. In: the sweep. Out: facts.
 
-use super::chart;
+use super::figures;
 use crate::procedures::facts::{Facts, Recorded};
 use crate::procedures::stiffness_ramp;
 use crate::record::SweepHistory;
@@ -8,7 +8,7 @@ use crate::schema::procedures::damping_sweep as schema;
 
 pub(crate) fn facts() -> Facts<'static> {
     Facts {
-        figures: chart::FIGURES,
+        figures: figures::FIGURES,
         headline: vec![
             schema::DAMPING.name,
             schema::COULOMB_FORCE.name,

@@ -1,9 +1,9 @@
 //! `damping sweep`: constant-velocity strokes that give the damping. In: its block, a rig behind
 //! the guard. Out: parameters, history, the damping with its standard uncertainty.
 
-pub(crate) mod chart;
 pub(crate) mod check;
 pub(crate) mod facts;
+pub(crate) mod figures;
 mod findings;
 mod pairing;
 pub(crate) mod rate_separated_stiffness;

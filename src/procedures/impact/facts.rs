@@ -1,7 +1,7 @@
 //! The facts about an impact that check and report need without running it. In: an impact of the plan, or its history. Out: facts, the
 //! motion at its end, the parts of the program that it uses.
 
-use super::{contact, figures, report, results};
+use super::{figures, report, results};
 use crate::physics::self_test::Part;
 use crate::plan::{Dependence, Impact, ImpactTarget, Until};
 use crate::procedures::facts::{Facts, Motion, Recorded, Tests};
@@ -89,7 +89,7 @@ pub(crate) fn motion(impact: &Impact) -> Motion<'static> {
 /// The parts of the self-test that an impact uses, each with the parts in combination with it.
 pub(crate) fn self_tested(impact: &Impact) -> Vec<Vec<Part>> {
     let of_frame = matches!(impact.target, ImpactTarget::Storey(_));
-    let [point, storey] = contact::reported(&impact.contact).self_tested;
+    let [point, storey] = impact.contact.self_tested();
     let law = if of_frame { storey } else { point };
     stepped(&impact.stepping, of_frame, Some(law))
 }

@@ -139,7 +139,7 @@ pub(crate) fn strike(
     let mut results = results(summary.as_ref(), &followed, &history);
     if let (Some(summary), None) = (&summary, &stop) {
         let summary = summary.impact();
-        stop = session.evaluate_uncertainty(|tick| match (uncertainty, &history.frame) {
+        stop = session.evaluate_uncertainty(|progress| match (uncertainty, &history.frame) {
             (UncertaintyInputs::Storey(storey), Some(frame)) => storey::propagate(
                 storey,
                 plan,
@@ -149,10 +149,10 @@ pub(crate) fn strike(
                     summary: &summary,
                 },
                 &mut results,
-                tick,
+                progress,
             ),
             (UncertaintyInputs::Point(point), _) => {
-                point.propagate(setting, &history.steps, &summary, &mut results, tick)
+                point.propagate(setting, &history.steps, &summary, &mut results, progress)
             }
             (UncertaintyInputs::Storey(_), None) => Ok(()),
         });

@@ -78,7 +78,7 @@ impl Setting {
         let (stiffness, operator_stiffness) = (stiffness.value, upper_end(stiffness));
         let damping = inputs.damping(schema::DAMPING.name, &point.damping, Dimension::DAMPING)?;
         let law = contact::with_numbers(&plan.contact, inputs)?;
-        let approach = striker.approach(law.stiffness().copied());
+        let approach = striker.approach(contact::spring(law));
         let critical = approach.critical_time_step(mass, stiffness);
         let time_step = stepping::run::time_step(&plan.stepping, critical, inputs)?;
         let duration = inputs.positive(methods::DURATION.name, &plan.duration, Dimension::TIME)?;
@@ -135,7 +135,7 @@ impl Setting {
     ) -> Result<Self, Stop> {
         let properties = stepping::run::properties(frame, &target.damping, inputs)?;
         let law = contact::with_numbers(&plan.contact, inputs)?;
-        let approach = striker.approach(law.stiffness().copied());
+        let approach = striker.approach(contact::spring(law));
         let critical = properties.critical_on_impact(target.storey, &approach);
         let time_step = stepping::run::time_step(&plan.stepping, critical, inputs)?;
         stepping::run::stable_on_frame(&plan.stepping, time_step, frame, &properties, session)?;

@@ -1,7 +1,7 @@
 //! The facts about a series of impacts that the drivers of check and report need without carrying it out. In: the series of the plan.
 //! Out: facts.
 
-use super::chart;
+use super::figures;
 use crate::plan::{Escalate, ImpactTarget};
 use crate::procedures::facts::{Facts, Recorded};
 use crate::procedures::{impact, stepping};
@@ -9,8 +9,8 @@ use crate::schema::procedures::impact_series as schema;
 
 pub(crate) fn facts(series: &Escalate) -> Facts<'_> {
     let figures = match &series.impact.target {
-        ImpactTarget::Point(_) => chart::FIGURES,
-        ImpactTarget::Storey(_) => chart::STOREY_FIGURES,
+        ImpactTarget::Point(_) => figures::FIGURES,
+        ImpactTarget::Storey(_) => figures::STOREY_FIGURES,
     };
     Facts {
         conditions: Some(&series.condition),

@@ -1,10 +1,11 @@
-//! Charts of a series of impacts: the path and the motion of each, overlaid, and the response to each against its energy. In: the
-//! history. Out: [`Chart`]s in SI.
+//! The figures of a series of impacts: their list, captions and charts: the path and the motion of each, overlaid, and the response to
+//! each against its energy. In: the history. Out: [`Chart`]s in SI with their captions.
 
 use std::borrow::Cow;
 
+use crate::plan::FigureKind;
 use crate::procedures::base_excitation;
-use crate::record::{EscalateHistory, ImpactStep, SeriesImpact};
+use crate::record::{EscalateHistory, FloorStep, ImpactStep, SeriesImpact};
 use crate::report::figures::chart::{
     Chart, Colour, DASHED, Marker, Quantity, SOLID, Series, Style, palette,
 };
@@ -12,6 +13,85 @@ use crate::report::figures::points::Points;
 use crate::schema::procedures::impact as schema;
 use crate::units::Dimension;
 use crate::units::display::stated;
+
+/// Figures of impacts on one degree of freedom, in the order of a report.
+pub(crate) const FIGURES: &[FigureKind] = &[
+    FigureKind::ImpactSeries,
+    FigureKind::ForceDisplacement,
+    FigureKind::Displacement,
+];
+
+/// Figures of impacts on a storey.
+pub(crate) const STOREY_FIGURES: &[FigureKind] = &[
+    FigureKind::ImpactSeries,
+    FigureKind::Drift,
+    FigureKind::Hysteresis,
+    FigureKind::Displacement,
+];
+
+/// A figure and its caption; None if nothing was recorded for it, or for a figure of a different procedure.
+pub(crate) fn chart(
+    name: &str,
+    history: &EscalateHistory,
+    kind: FigureKind,
+) -> Option<(Chart, String)> {
+    let struck = |impact: &SeriesImpact| !impact.impact().steps.is_empty();
+    if !history.impacts.iter().any(struck) {
+        return None;
+    }
+    Some(match kind {
+        FigureKind::ForceDisplacement => (
+            force_displacement(history),
+            format!(
+                "{name}: restoring force against computed displacement for all impacts; lighter lines are earlier impacts."
+            ),
+        ),
+        FigureKind::Displacement => (
+            displacement(history),
+            match history.storeys().next() {
+                None => format!(
+                    "{name}: displacement against the simulated time of each impact; lighter lines are earlier impacts."
+                ),
+                Some(impact) => format!(
+                    "{name}: displacement of floor {} against the simulated time of each impact; lighter lines are earlier impacts.",
+                    impact.struck + 1
+                ),
+            },
+        ),
+        FigureKind::ImpactSeries => (
+            impact_series(history),
+            match history.storeys().next() {
+                None => format!(
+                    "{name}: largest displacement of each impact, and the position after it, against its energy."
+                ),
+                Some(impact) => format!(
+                    "{name}: largest displacement of floor {} in each impact, and its position after it, against its energy.",
+                    impact.struck + 1
+                ),
+            },
+        ),
+        FigureKind::Drift => (
+            drift(history),
+            format!(
+                "{name}: largest drift of each storey in each impact, and the drift after it, against its energy."
+            ),
+        ),
+        FigureKind::Hysteresis => {
+            let steps: Vec<&FloorStep> = history
+                .storeys()
+                .flat_map(|impact| &impact.floors)
+                .collect();
+            let caption = format!(
+                "{name}: measured storey shear against drift, impact after impact; straight lines connect successive impacts."
+            );
+            (
+                base_excitation::figures::charts::hysteresis(&steps),
+                caption,
+            )
+        }
+        _ => return None,
+    })
+}
 
 /// Restoring force against displacement, one curve per impact.
 pub(crate) fn force_displacement(history: &EscalateHistory) -> Chart {
@@ -112,11 +192,11 @@ pub(crate) fn drift(history: &EscalateHistory) -> Chart {
             .filter_map(|impact| Some((impact.energy, of(impact, storey)?)))
             .collect()
     };
-    let series = base_excitation::figures::shown(storeys)
+    let series = base_excitation::figures::charts::shown(storeys)
         .into_iter()
         .enumerate()
         .flat_map(|(curve, storey)| {
-            let colour = base_excitation::figures::style(curve, 1.6).colour;
+            let colour = base_excitation::figures::charts::style(curve, 1.6).colour;
             let peak = Style {
                 marker: Some(Marker::Disc(3.2)),
                 ..Style::line(colour, 1.6, SOLID)

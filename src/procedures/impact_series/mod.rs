@@ -2,11 +2,10 @@
 //! Out: parameters, the history of each impact, results, tables, figures, report text. The impact
 //! itself is in `impact`.
 
-pub(crate) mod chart;
 pub(crate) mod check;
+pub(crate) mod declared;
 pub(crate) mod facts;
 pub(crate) mod figures;
-pub(crate) mod judge;
 pub(crate) mod repeated_impact;
 pub(crate) mod report;
 pub(crate) mod results;

@@ -3,7 +3,6 @@
 use crate::plan::formula::ResultValue;
 use crate::plan::{Frame, Impact, ProcedureKind, StoreyTarget};
 use crate::procedures::base_excitation;
-use crate::procedures::impact::contact;
 use crate::record::{EscalateHistory, ImpactHistory, ProcedureRecord, SeriesImpact, StruckFrame};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::percent;
@@ -92,7 +91,7 @@ fn struck(
     format!(
         "Floor {} is struck in every impact. Contact law: {}. {} Time step {}; critical time step {}.",
         frame.struck + 1,
-        contact::reported(&impact.contact).name,
+        impact.contact.title(),
         base_excitation::report::integrated(
             base_excitation::report::frame_of(run, impact.specimen),
             impact.stepping.integrator,

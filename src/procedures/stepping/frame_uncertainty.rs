@@ -17,7 +17,9 @@ use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::schema::ResultKind;
 use crate::schema::procedures::base_excitation as schema;
-use crate::uncertainty::engine::{CLOSE, Contributions, Evaluate, Shifts, Study, Tick, Unknown};
+use crate::uncertainty::engine::{
+    CLOSE, Contributions, Evaluate, Progress, Propagation, Shifts, Unknown,
+};
 use crate::uncertainty::{InstrumentUncertainty, Source};
 
 /// The uncertain inputs of a frame.
@@ -187,9 +189,9 @@ impl<'run> FrameUncertainty<'run> {
         inputs: Vec<Source>,
         steps: usize,
         reported: Vec<f64>,
-        tick: Tick<'_, Stop>,
+        progress: Progress<'_, Stop>,
     ) -> Result<Contributions, Unknown<Stop>> {
-        let study = Study {
+        let propagation = Propagation {
             procedure: self.procedure,
             impact: self.impact,
             evaluate,
@@ -198,7 +200,7 @@ impl<'run> FrameUncertainty<'run> {
             steps: (steps * self.floors()) as u64,
             reported: Some(reported),
         };
-        study.contributions(tick)
+        propagation.contributions(progress)
     }
 
     /// The frame with its storeys perturbed.
@@ -283,7 +285,7 @@ impl<'run> FrameUncertainty<'run> {
             steps: steps.steps.count,
             force_noise: self.noise.force,
             resolution: self.noise.resolution,
-            gliding: matches!(self.stepping.mode, Mode::Continuous { .. }),
+            continuous: matches!(self.stepping.mode, Mode::Continuous { .. }),
         }
     }
 

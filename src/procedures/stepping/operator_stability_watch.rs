@@ -82,13 +82,13 @@ impl Stiffer {
         if struck {
             self.in_motion.restart();
         }
-        let text = self.judge(reading, name);
+        let text = self.assess(reading, name);
         if let Some(text) = text {
             session.event(EventKind::Remark, text);
         }
     }
 
-    fn judge(&mut self, reading: (f64, f64), name: &str) -> Option<String> {
+    fn assess(&mut self, reading: (f64, f64), name: &str) -> Option<String> {
         let Judged {
             integrator,
             operator_stiffness,
@@ -297,27 +297,27 @@ mod tests {
     fn a_stiffer_specimen_is_reported_once_with_the_remaining_limit() {
         let mut stiffer = Stiffer::new(judged((0.0, 0.0)), (0.0, 0.0));
         assert_eq!(
-            stiffer.judge((0.000_5, 0.15), "the specimen"),
+            stiffer.assess((0.000_5, 0.15), "the specimen"),
             None,
             "as stiff as K_I"
         );
         assert_eq!(
-            stiffer.judge((0.001, 0.3), "the specimen"),
+            stiffer.assess((0.001, 0.3), "the specimen"),
             None,
             "as stiff as K_I"
         );
         assert_eq!(
-            stiffer.judge((0.000_5, 0.0), "the specimen"),
+            stiffer.assess((0.000_5, 0.0), "the specimen"),
             None,
             "a turn, where friction turns too"
         );
         assert_eq!(
-            stiffer.judge((0.001, 0.3), "the specimen"),
+            stiffer.assess((0.001, 0.3), "the specimen"),
             None,
             "and back"
         );
         let text = stiffer
-            .judge((0.002, 0.8), "the specimen")
+            .assess((0.002, 0.8), "the specimen")
             .expect("a remark");
         assert!(
             text.contains("500.0 N/m measured, K_I = 300.0 N/m") && text.contains("up to 0.2000 s"),
@@ -327,13 +327,13 @@ mod tests {
             text.starts_with("W718") && text.contains("not exceeded here (0.1000 s)"),
             "{text}"
         );
-        assert_eq!(stiffer.judge((0.003, 1.5), "the specimen"), None, "once");
+        assert_eq!(stiffer.assess((0.003, 1.5), "the specimen"), None, "once");
         let tangent = Judged {
             integrator: Integrator::Tangent,
             ..judged((0.0, 0.0))
         };
         assert_eq!(
-            Stiffer::new(tangent, (0.0, 0.0)).judge((0.001, 9.0), "the specimen"),
+            Stiffer::new(tangent, (0.0, 0.0)).assess((0.001, 9.0), "the specimen"),
             None
         );
     }
@@ -347,17 +347,17 @@ mod tests {
         };
         let mut stiffer = Stiffer::new(explicit, (0.0, 0.0));
         assert_eq!(
-            stiffer.judge((0.001, 0.5), "the specimen"),
+            stiffer.assess((0.001, 0.5), "the specimen"),
             None,
             "beyond K_I, and stable"
         );
         assert_eq!(
-            stiffer.judge((0.002, 1.3), "the specimen"),
+            stiffer.assess((0.002, 1.3), "the specimen"),
             None,
             "at its limit"
         );
         let text = stiffer
-            .judge((0.003, 2.2), "the specimen")
+            .assess((0.003, 2.2), "the specimen")
             .expect("a remark");
         assert!(
             text.starts_with("W718")
@@ -365,7 +365,7 @@ mod tests {
                 && text.contains("up to 94.28 ms"),
             "{text}"
         );
-        assert_eq!(stiffer.judge((0.004, 3.2), "the specimen"), None, "once");
+        assert_eq!(stiffer.assess((0.004, 3.2), "the specimen"), None, "once");
     }
 
     /// The response reverses at every step from the first: 900 N/m and friction of 0.1 N, each position −1.3 times the one before. Two
@@ -382,7 +382,7 @@ mod tests {
             );
             let mut displacement = 0.001;
             let remarks = (0..12).filter_map(|_| {
-                let text = stiffer.judge(
+                let text = stiffer.assess(
                     (
                         displacement,
                         stiffness * displacement + 0.1 * displacement.signum(),
@@ -430,7 +430,7 @@ mod tests {
             let mut stiffer = Stiffer::new(judged((0.0, 0.0)), read(from));
             for step in 1..2000 {
                 assert_eq!(
-                    stiffer.judge(read(from + 1e-7 * f64::from(step)), "the specimen"),
+                    stiffer.assess(read(from + 1e-7 * f64::from(step)), "the specimen"),
                     None,
                     "step {step} from {from} m"
                 );
@@ -443,18 +443,18 @@ mod tests {
     fn noise_is_no_stiffness() {
         let mut stiffer = Stiffer::new(judged((0.1, 1e-6)), (-0.001, -0.3));
         assert_eq!(
-            stiffer.judge((0.0, 0.0), "the specimen"),
+            stiffer.assess((0.0, 0.0), "the specimen"),
             None,
             "the first move has no direction before it"
         );
-        assert_eq!(stiffer.judge((0.001, 0.36), "the specimen"), None);
+        assert_eq!(stiffer.assess((0.001, 0.36), "the specimen"), None);
         assert_eq!(
-            stiffer.judge((0.001_004, 0.5), "the specimen"),
+            stiffer.assess((0.001_004, 0.5), "the specimen"),
             None,
             "a move of four quanta tells nothing"
         );
         assert!(
-            stiffer.judge((0.02, 8.0), "the specimen").is_some(),
+            stiffer.assess((0.02, 8.0), "the specimen").is_some(),
             "395 N/m over 19 mm"
         );
     }

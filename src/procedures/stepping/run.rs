@@ -60,7 +60,7 @@ impl Steps {
             &plan.max_tangent_ratio,
             Dimension::NUMBER,
         )?;
-        holds_a_step(time_step, duration)?;
+        check_one_step(time_step, duration)?;
         #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
         let axes = axes as f64;
         if steps_in(duration, time_step) * axes > MOST_STEPS {
@@ -242,7 +242,7 @@ pub(crate) fn above_critical(steps: &Steps, session: &mut Session<'_>) {
 }
 
 /// A duration that holds one step at least.
-fn holds_a_step(time_step: f64, duration: f64) -> Result<(), Stop> {
+fn check_one_step(time_step: f64, duration: f64) -> Result<(), Stop> {
     if time_step <= duration {
         return Ok(());
     }

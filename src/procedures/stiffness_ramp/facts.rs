@@ -1,6 +1,6 @@
 //! The facts about a stiffness ramp that check and report need without running it. In: the ramp. Out: facts.
 
-use super::{chart, report};
+use super::{figures, report};
 use crate::physics::self_test::Part;
 use crate::plan::{RampFit, StiffnessRamp};
 use crate::procedures::facts::{Facts, Recorded};
@@ -9,7 +9,7 @@ use crate::schema::procedures::stiffness_ramp as schema;
 
 pub(crate) fn facts() -> Facts<'static> {
     Facts {
-        figures: chart::FIGURES,
+        figures: figures::FIGURES,
         headline: vec![
             schema::STIFFNESS.name,
             schema::YIELD_FORCE.name,

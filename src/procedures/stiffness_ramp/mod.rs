@@ -2,7 +2,6 @@
 //! follows. In: its block, a rig behind the guard. Out: parameters, history, fitted results with
 //! standard uncertainties, figures, report text.
 
-pub(crate) mod chart;
 pub(crate) mod check;
 pub(crate) mod curve;
 pub(crate) mod facts;

@@ -29,7 +29,7 @@ const OF_A_KNEE: [&str; 4] = [
 ];
 
 /// Reported once for each ramp; called only if there is no error.
-pub fn hold(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
+pub fn check(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
     let (mut never, mut few) = (BTreeSet::new(), BTreeSet::new());
     for (reference, span) in checker.read.clone() {
         let Some((block, Some(procedure))) = procedures.get(reference.procedure.0) else {
@@ -108,9 +108,9 @@ fn fitted_to_too_few(ramp: &StiffnessRamp) -> Option<(String, &'static str)> {
         }
     };
     if points < wanted {
-        let bear = if points == 1 { "is" } else { "are" };
+        let verb = if points == 1 { "is" } else { "are" };
         let lacks = format!(
-            "{} {bear} not enough for the fit, which requires {wanted}",
+            "{} {verb} not enough for the fit, which requires {wanted}",
             count(points)
         );
         return Some((

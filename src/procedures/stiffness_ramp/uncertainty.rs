@@ -16,7 +16,7 @@ use crate::procedures::common::results::{give, index_of, largest};
 use crate::record::{NamedResult, RampStep};
 use crate::rig::DeclaredNoise;
 use crate::schema::procedures::stiffness_ramp as schema;
-use crate::uncertainty::engine::{Evaluate, Evaluation, Shifts, Study};
+use crate::uncertainty::engine::{Evaluate, Evaluation, Propagation, Shifts};
 use crate::uncertainty::{Contribution, InstrumentUncertainty, Source};
 
 /// The results that are read directly, SI; None for a result that does not exist.
@@ -173,7 +173,7 @@ pub(crate) fn propagate(
     procedure: ProcedureId,
     results: &mut [NamedResult],
 ) {
-    let study = Study {
+    let propagation = Propagation {
         procedure,
         impact: 0,
         evaluate: &RecordedRamp {
@@ -187,7 +187,7 @@ pub(crate) fn propagate(
         reported: None,
     };
     // Inputs have no bounds here, and no one waits for progress.
-    if let Ok(mut contributions) = study.contributions::<Infallible>(&mut |_, _| Ok(())) {
+    if let Ok(mut contributions) = propagation.contributions::<Infallible>(&mut |_, _| Ok(())) {
         let layout = DIRECT.map(|(kind, _)| (kind.name, 1));
         if let Some(of_loops) = index_of(&layout, schema::LOOP_ENERGY) {
             contributions[of_loops].push(Contribution::new(

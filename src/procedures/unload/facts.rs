@@ -1,6 +1,6 @@
 //! The facts about an unloading that the drivers of check and report need without carrying it out. In: nothing. Out: facts.
 
-use crate::procedures::base_excitation::chart;
+use crate::procedures::base_excitation::figures;
 use crate::procedures::facts::{Facts, Recorded, Tests};
 use crate::schema::procedures::unload as schema;
 
@@ -16,7 +16,7 @@ pub(crate) fn of_frame() -> Facts<'static> {
     Facts {
         tests: Tests::Frame,
         unloads: true,
-        figures: chart::UNLOADING_FIGURES,
+        figures: figures::UNLOADING_FIGURES,
         headline: vec![schema::RESIDUAL_DRIFT.name],
         ..Facts::default()
     }

@@ -28,7 +28,7 @@ pub enum EntryKind {
     /// The result of the final hold, and the position of the rig.
     Held,
     /// The communication errors recovered, if there were any.
-    Tally,
+    LineStatistics,
     /// A torn tail was put aside.
     Recover,
     /// The plan or the program differs from that of the header: by whom it was changed, and why.
@@ -52,7 +52,7 @@ impl EntryKind {
         Self::Event,
         Self::Fault,
         Self::Held,
-        Self::Tally,
+        Self::LineStatistics,
         Self::Recover,
         Self::Amend,
         Self::Resume,
@@ -74,7 +74,7 @@ impl EntryKind {
             Self::Event => "EVENT",
             Self::Fault => "FAULT",
             Self::Held => "HELD",
-            Self::Tally => "TALLY",
+            Self::LineStatistics => "TALLY",
             Self::Recover => "RECOVER",
             Self::Amend => "AMEND",
             Self::Resume => "RESUME",

@@ -1,7 +1,7 @@
 //! The printed coverage factor k of U = k·u and the effective degrees of freedom. In: combined uncertainties. Out: strings. The
 //! module `uncertainty` calculates both.
 
-use crate::uncertainty::Known;
+use crate::uncertainty::MeasurementUncertainty;
 use crate::units::display::trimmed;
 use crate::verdict::Assessment;
 
@@ -9,17 +9,17 @@ use crate::verdict::Assessment;
 const UNLIMITED: f64 = 1e4;
 
 /// k to two decimals without trailing zeros.
-pub(in crate::report) fn factor(known: Known) -> String {
+pub(in crate::report) fn factor(known: MeasurementUncertainty) -> String {
     trimmed(&format!("{:.2}", known.coverage()))
 }
 
 /// Effective degrees of freedom, if they are few enough to be printed.
-pub(in crate::report) fn degrees(known: Known) -> Option<f64> {
+pub(in crate::report) fn degrees(known: MeasurementUncertainty) -> Option<f64> {
     (known.standard > 0.0 && known.degrees < UNLIMITED).then_some(known.degrees)
 }
 
 /// `12.8`, `3`; `∞` if they are not printed.
-pub(in crate::report) fn degrees_text(known: Known) -> String {
+pub(in crate::report) fn degrees_text(known: MeasurementUncertainty) -> String {
     degrees(known).map_or_else(
         || "∞".to_owned(),
         |degrees| trimmed(&format!("{degrees:.1}")),
@@ -27,7 +27,7 @@ pub(in crate::report) fn degrees_text(known: Known) -> String {
 }
 
 /// Whether the printed k differs from 2.
-pub(in crate::report) fn differs_from_two(known: Known) -> bool {
+pub(in crate::report) fn differs_from_two(known: MeasurementUncertainty) -> bool {
     known.standard > 0.0 && factor(known) != "2"
 }
 
@@ -38,7 +38,12 @@ pub(in crate::report) fn largest(assessment: &Assessment) -> Option<String> {
         .iter()
         .flat_map(|requirement| &requirement.conditions);
     let all = conditions
-        .flat_map(|condition| [condition.known(), condition.margin_known()])
+        .flat_map(|condition| {
+            [
+                condition.measurement_uncertainty(),
+                condition.margin_uncertainty(),
+            ]
+        })
         .flatten();
     let worst = all
         .filter(|known| differs_from_two(*known))
@@ -61,7 +66,7 @@ mod tests {
 
     #[test]
     fn a_factor_is_printed_where_it_differs_from_two() {
-        let known = |degrees| Known {
+        let known = |degrees| MeasurementUncertainty {
             standard: 0.1,
             degrees,
         };
@@ -76,7 +81,7 @@ mod tests {
         assert!(
             differs_from_two(known(20.0))
                 && !differs_from_two(known(2e3))
-                && !differs_from_two(Known {
+                && !differs_from_two(MeasurementUncertainty {
                     standard: 0.0,
                     degrees: 1.0
                 })

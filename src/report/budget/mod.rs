@@ -9,7 +9,7 @@ pub(super) use line::{Line, Origin};
 use super::run::Run;
 use crate::plan::formula::{ProcedureId, ResultValue};
 use crate::record::{NamedResult, ProcedureRecord};
-use crate::uncertainty::{Contribution, Known, Source, known};
+use crate::uncertainty::{Contribution, MeasurementUncertainty, Source, measurement_uncertainty};
 
 /// The budget of one result.
 #[derive(Clone, Debug)]
@@ -21,7 +21,7 @@ pub(super) struct Budget<'a> {
     /// Combined standard uncertainty u of all lines.
     pub uncertainty: f64,
     /// The same with its effective degrees of freedom.
-    pub known: Known,
+    pub known: MeasurementUncertainty,
     pub lines: Vec<Line>,
 }
 
@@ -99,8 +99,8 @@ fn entry_budgets<'a>(run: &Run<'_>, result: &'a NamedResult, values: &[f64]) -> 
 }
 
 /// u with its effective degrees of freedom.
-fn combined(run: &Run<'_>, parts: &[Contribution], uncertainty: f64) -> Known {
-    known(parts, run.record).unwrap_or(Known::surely(uncertainty))
+fn combined(run: &Run<'_>, parts: &[Contribution], uncertainty: f64) -> MeasurementUncertainty {
+    measurement_uncertainty(parts, run.record).unwrap_or(MeasurementUncertainty::exact(uncertainty))
 }
 
 /// One line per source. All Monte Carlo trials are one line, and so are all readings at rest.

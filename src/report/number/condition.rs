@@ -3,7 +3,7 @@
 use super::uncertain::{decimals_of, parts, plus_minus, power_of, tens, with_uncertainty};
 use super::{join, join_typeset, text};
 use crate::plan::Comparison;
-use crate::uncertainty::Known;
+use crate::uncertainty::MeasurementUncertainty;
 use crate::units::Dimension;
 use crate::units::display::{minus, significant, trimmed, unit};
 use crate::verdict::{Bound, ConditionOutcome};
@@ -17,8 +17,10 @@ pub(in crate::report) fn value(condition: &ConditionOutcome) -> Option<String> {
     } else {
         (1.0, "")
     };
-    let known = condition.known().filter(|known| known.standard > 0.0);
-    let known = known.map(|known| Known {
+    let known = condition
+        .measurement_uncertainty()
+        .filter(|known| known.standard > 0.0);
+    let known = known.map(|known| MeasurementUncertainty {
         standard: scale * known.standard,
         ..known
     });

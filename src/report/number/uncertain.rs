@@ -2,7 +2,7 @@
 //! strings.
 
 use super::{join_typeset, text};
-use crate::uncertainty::Known;
+use crate::uncertainty::MeasurementUncertainty;
 use crate::units::Dimension;
 use crate::units::display::{digits, minus, significant, typeset, unit};
 
@@ -18,7 +18,11 @@ pub(in crate::report) struct Parts {
 }
 
 /// A value with its uncertainties, one string per column of a table. Small and large numbers share one power of ten.
-pub(in crate::report) fn parts(value: f64, known: Option<Known>, dimension: Dimension) -> Parts {
+pub(in crate::report) fn parts(
+    value: f64,
+    known: Option<MeasurementUncertainty>,
+    dimension: Dimension,
+) -> Parts {
     let (unit, factor) = unit(value, dimension);
     let set = typeset(&unit);
     let Some(known) = known.filter(|known| known.standard.is_finite()) else {
@@ -93,7 +97,11 @@ pub(in crate::report) fn plus_minus(value: &str, uncertainty: &str) -> String {
 }
 
 /// A value and its expanded uncertainty in one unit: `7.88 ± 0.32 mm`.
-pub(in crate::report) fn with_expanded(value: f64, known: Known, dimension: Dimension) -> String {
+pub(in crate::report) fn with_expanded(
+    value: f64,
+    known: MeasurementUncertainty,
+    dimension: Dimension,
+) -> String {
     let parts = parts(value, Some(known), dimension);
     match parts.expanded {
         Some(expanded) => join_typeset(&plus_minus(&parts.value, &expanded), &parts.unit),
@@ -204,10 +212,18 @@ mod tests {
             "−12300(1000)"
         );
         assert_eq!(
-            with_expanded(-2.0, Known::surely(271.0), Dimension::NUMBER),
+            with_expanded(
+                -2.0,
+                MeasurementUncertainty::exact(271.0),
+                Dimension::NUMBER
+            ),
             "0 ± 540"
         );
-        let column = parts(1.7e-7, Some(Known::surely(2.3e-8)), Dimension::NUMBER);
+        let column = parts(
+            1.7e-7,
+            Some(MeasurementUncertainty::exact(2.3e-8)),
+            Dimension::NUMBER,
+        );
         assert_eq!(
             (column.value.as_str(), column.standard.as_deref()),
             ("1.70 × 10⁻⁷", Some("0.23 × 10⁻⁷"))

@@ -11,7 +11,9 @@ use crate::report::number;
 use crate::report::run::Run;
 use crate::report::wording::{common, headline as wording};
 use crate::schema::procedures::stiffness_ramp::R_SQUARED;
-use crate::uncertainty::{Known, known, known_entries};
+use crate::uncertainty::{
+    MeasurementUncertainty, measurement_uncertainties, measurement_uncertainty,
+};
 
 /// Headline results of a plan that names none.
 const MOST: usize = 6;
@@ -156,11 +158,15 @@ fn row(run: &Run<'_>, chosen: &ReadResult) -> Option<Row> {
     let (value, known, entry) = match &result.value {
         ResultValue::Number { value, .. } => {
             let contributions = result.contributions_of(chosen.reference);
-            (*value, known(&contributions, run.record), 0)
+            (
+                *value,
+                measurement_uncertainty(&contributions, run.record),
+                0,
+            )
         }
         ResultValue::List(values) => {
             let entry = chosen.entry_in(values).unwrap_or(0);
-            let all = known_entries(&result.contributions, values.len(), run.record);
+            let all = measurement_uncertainties(&result.contributions, values.len(), run.record);
             name = name.and(wording::entry(
                 budget_table::entry_kind(result.name, procedure),
                 entry + 1,
@@ -173,7 +179,7 @@ fn row(run: &Run<'_>, chosen: &ReadResult) -> Option<Row> {
             (values.get(entry).copied(), known, entry)
         }
     };
-    let known = known.filter(|known: &Known| known.standard > 0.0);
+    let known = known.filter(|known: &MeasurementUncertainty| known.standard > 0.0);
     let partial = Scope::of(run) == Scope::PartialReal;
     let text = match (value, known) {
         (None, _) => Text::missing(common::NO_VALUE),

@@ -12,7 +12,9 @@ use crate::report::budget::{Budget, Line, budgets, coverage_factor};
 use crate::report::run::Run;
 use crate::report::status::{Change, Issues, ReportStatus, deviations, report_status};
 use crate::schema;
-use crate::uncertainty::{Known, known, known_entries};
+use crate::uncertainty::{
+    MeasurementUncertainty, measurement_uncertainties, measurement_uncertainty,
+};
 use crate::units::Dimension;
 use crate::units::display::si_unit;
 use crate::verdict::{Bound, ConditionOutcome, RequirementOutcome};
@@ -225,7 +227,7 @@ fn result(run: &Run<'_>, index: usize, kind: &str, result: &NamedResult) -> Quan
 }
 
 /// Reads degrees of freedom or k of an uncertainty.
-type Read = fn(Known) -> f64;
+type Read = fn(MeasurementUncertainty) -> f64;
 
 /// The quantity with degrees of freedom and coverage factor of its uncertainty.
 fn expanded(quantity: Quantity, run: &Run<'_>, index: usize, result: &NamedResult) -> Quantity {
@@ -235,7 +237,7 @@ fn expanded(quantity: Quantity, run: &Run<'_>, index: usize, result: &NamedResul
         part: Part::Value,
     };
     let parts = result.contributions_of(reference);
-    let printed = |all: &[Option<Known>], read: Read| {
+    let printed = |all: &[Option<MeasurementUncertainty>], read: Read| {
         let each = all.iter().map(|known| {
             known
                 .filter(|known| coverage_factor::degrees(*known).is_some())
@@ -244,15 +246,15 @@ fn expanded(quantity: Quantity, run: &Run<'_>, index: usize, result: &NamedResul
         let each: Vec<Option<f64>> = each.collect();
         each.iter().any(Option::is_some).then_some(each)
     };
-    let (degrees, k): (Read, Read) = (|known| known.degrees, Known::coverage);
+    let (degrees, k): (Read, Read) = (|known| known.degrees, MeasurementUncertainty::coverage);
     let (degrees_of_freedom, k) = match &result.value {
         ResultValue::Number { .. } => {
-            let one = [known(&parts, run.record)];
+            let one = [measurement_uncertainty(&parts, run.record)];
             let number = |read| printed(&one, read).map(|each| Uncertainty::Number(each[0]));
             (number(degrees), number(k))
         }
         ResultValue::List(values) => {
-            let all = known_entries(&parts, values.len(), run.record);
+            let all = measurement_uncertainties(&parts, values.len(), run.record);
             (
                 printed(&all, degrees).map(Uncertainty::List),
                 printed(&all, k).map(Uncertainty::List),
@@ -328,9 +330,9 @@ fn condition(outcome: &ConditionOutcome) -> ConditionSummary {
         unit: si_unit(outcome.dimension),
         u: outcome.uncertainty.and_then(finite),
         k: outcome
-            .known()
+            .measurement_uncertainty()
             .filter(|known| coverage_factor::degrees(*known).is_some())
-            .map(Known::coverage),
+            .map(MeasurementUncertainty::coverage),
         guard_band: outcome.guard_band.and_then(finite),
         conforms: outcome.conforms.and_then(finite),
         reason: outcome.reason.clone(),

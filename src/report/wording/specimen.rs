@@ -9,6 +9,7 @@ use crate::plan::{
     Beam, Behaviour, Breaks, Deterioration, Ends, FrameMasses, Loads, Mechanism, Pinching, Portal,
     Sections, Unloading,
 };
+use crate::schema::behaviours;
 use crate::units::Dimension;
 
 /// Prints a stated number, or one that follows from stated numbers.
@@ -58,9 +59,6 @@ pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
         parts.join(word)
     };
     match behaviour {
-        Behaviour::Elastic { stiffness } => {
-            list("elastic", &[("stiffness", *stiffness, Of::STIFFNESS)])
-        }
         Behaviour::Bilinear {
             stiffness,
             yield_force,
@@ -147,31 +145,6 @@ pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
                     .deterioration
                     .map_or_else(String::new, |lost| deteriorating(lost, unit, shown))
         }
-        Behaviour::Degrading {
-            stiffness,
-            half_displacement,
-            residual,
-        } => list(
-            "degrading",
-            &[
-                ("stiffness", *stiffness, Of::STIFFNESS),
-                (
-                    "half of the loss of stiffness at",
-                    *half_displacement,
-                    Of::LENGTH,
-                ),
-                ("residual", *residual, Of::NUMBER),
-            ],
-        ),
-        Behaviour::Bolted(bolted) => list(
-            "bolted",
-            &[
-                ("stiffness", bolted.stiffness, Of::STIFFNESS),
-                ("bearing force", bolted.bearing_force, Of::FORCE),
-                ("clearance", bolted.clearance, Of::LENGTH),
-                ("slip force", bolted.slip_force, Of::FORCE),
-            ],
-        ),
         Behaviour::Table(table) => {
             let ends = [table.points.first(), table.points.last()]
                 .map(|point| point.map_or(0.0, |[x, _]| *x));
@@ -243,6 +216,18 @@ pub fn words(behaviour: &Behaviour, shown: Printed<'_>) -> String {
         }
         Behaviour::Beam(beam) => beam_words(beam, shown),
         Behaviour::Portal(portal) => portal_words(portal, shown),
+        numbers => numbers
+            .numbers()
+            .map_or_else(String::new, |(word, numbers)| {
+                let labels = numbers.iter().map(|(name, _)| name.replace('_', " "));
+                let labels: Vec<String> = labels.collect();
+                let values: Vec<_> = (labels.iter().zip(&numbers))
+                    .map(|(label, (name, value))| {
+                        (label.as_str(), *value, behaviours::dimension(word, name))
+                    })
+                    .collect();
+                list(word, &values)
+            }),
     }
 }
 

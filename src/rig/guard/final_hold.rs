@@ -10,7 +10,7 @@ impl Guard<'_> {
         self.going.clear();
         let halted = self.rig.halt();
         if let Some(halted) = &halted {
-            self.heard = halted.time;
+            self.last_contact = halted.time;
         }
         halted
     }

@@ -4,10 +4,10 @@
 
 pub(crate) mod about;
 pub(crate) mod final_hold;
-pub(crate) mod glide;
 mod holds;
 pub(crate) mod path;
 pub(crate) mod read;
+pub(crate) mod smooth_paths;
 pub(crate) mod speed;
 
 use super::safety::failpoint::{Guarding, on};
@@ -33,7 +33,7 @@ pub struct Guard<'rig> {
     /// Speed of the last motion \[m/s\].
     pub(super) speed: Option<f64>,
     /// Rig time when the rig last answered \[s\].
-    pub(super) heard: f64,
+    pub(super) last_contact: f64,
     /// The evaluation of dwells, if it is requested.
     holds: Option<Holds>,
     /// The first reading: displacements, m, and forces \[N\].
@@ -67,7 +67,7 @@ impl<'rig> Guard<'rig> {
         limits: Limits,
         own: Vec<Limits>,
     ) -> Result<Self, RigFault> {
-        let heard = rig.time();
+        let last_contact = rig.time();
         let (commanded, going, found) = (Vec::new(), Vec::new(), (Vec::new(), Vec::new()));
         let mut guard = Self {
             rig,
@@ -78,7 +78,7 @@ impl<'rig> Guard<'rig> {
             settled: false,
             proposed: None,
             speed: None,
-            heard,
+            last_contact,
             holds: None,
             found,
             broken: None,
@@ -103,7 +103,7 @@ impl<'rig> Guard<'rig> {
     /// without a reading takes time that is not in the run log. So no event may have a time within it.
     #[must_use]
     pub const fn time(&self) -> f64 {
-        self.heard
+        self.last_contact
     }
 
     /// Moves to `targets` (m) in one increment and settles. Without a speed \[m/s\]: the rig's own, else the highest that the
@@ -140,11 +140,11 @@ impl<'rig> Guard<'rig> {
             self.check(LimitedQuantity::Speed, self.limits.speed, speed)?;
         }
         let proposed = self.rig.propose(targets, speed);
-        let offer = self.or_hold(proposed)?;
+        let encoded = self.or_hold(proposed)?;
         // The decoded bytes are the motion that will happen, so they are compared with the limits again.
-        self.check_targets(&offer.targets)?;
-        self.check(LimitedQuantity::Speed, self.limits.speed, offer.speed)?;
-        self.proposed = Some((targets.to_vec(), offer.speed));
+        self.check_targets(&encoded.targets)?;
+        self.check(LimitedQuantity::Speed, self.limits.speed, encoded.speed)?;
+        self.proposed = Some((targets.to_vec(), encoded.speed));
         Ok(())
     }
 
@@ -215,9 +215,9 @@ impl<'rig> Guard<'rig> {
     ) -> Traversed {
         let (limits, own) = (self.limits, self.own.clone());
         let mut readings = Vec::with_capacity(samples);
-        let (mut heard, mut broken) = (self.heard, None);
+        let (mut last_contact, mut broken) = (self.last_contact, None);
         let moved = motion(self.rig, &mut |reading| {
-            heard = reading.time;
+            last_contact = reading.time;
             if let Some(fault) = outside(&limits, &own, &reading) {
                 broken = Some(reading).filter(is_finite);
                 return Err(fault);
@@ -225,7 +225,7 @@ impl<'rig> Guard<'rig> {
             readings.push(reading);
             Ok(())
         });
-        self.heard = heard;
+        self.last_contact = last_contact;
         readings.extend(broken.clone());
         self.broken = broken;
         let fault = self.or_hold(moved).err();
@@ -348,7 +348,7 @@ impl<'rig> Guard<'rig> {
         if let Err(fault) = &outcome {
             // A fault of a limit comes from the guard itself.
             if !matches!(fault, RigFault::LimitBreached { .. }) {
-                self.heard = self.rig.time();
+                self.last_contact = self.rig.time();
             }
             self.hold();
         }

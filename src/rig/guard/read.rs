@@ -12,7 +12,7 @@ impl Guard<'_> {
     /// The reading is outside a limit or not finite, or the rig fails.
     pub fn read(&mut self) -> Result<Reading, RigFault> {
         let reading = self.rig.read();
-        self.judged(reading)
+        self.checked(reading)
     }
 
     /// The same, with the time of the last move: start and end of the equivalent uniform motion \[s\].
@@ -25,20 +25,20 @@ impl Guard<'_> {
             |fault| (Err(fault), None),
             |(reading, moved)| (Ok(reading), moved),
         );
-        Ok((self.judged(reading)?, moved))
+        Ok((self.checked(reading)?, moved))
     }
 
-    fn judged(&mut self, reading: Result<Reading, RigFault>) -> Result<Reading, RigFault> {
+    fn checked(&mut self, reading: Result<Reading, RigFault>) -> Result<Reading, RigFault> {
         let reading = self.or_hold(reading)?;
-        self.heard = reading.time;
-        if let Err(fault) = self.judge_reading(&reading) {
+        self.last_contact = reading.time;
+        if let Err(fault) = self.check_limits_and_tracking(&reading) {
             self.broken = Some(reading).filter(is_finite);
             return Err(fault);
         }
         Ok(reading)
     }
 
-    fn judge_reading(&mut self, reading: &Reading) -> Result<(), RigFault> {
+    fn check_limits_and_tracking(&mut self, reading: &Reading) -> Result<(), RigFault> {
         self.check_reading(reading)?;
         if self.settled {
             let errors: Vec<f64> = reading
@@ -71,8 +71,8 @@ impl Guard<'_> {
     fn check_reading(&mut self, reading: &Reading) -> Result<(), RigFault> {
         let found =
             outside(&self.limits, &self.own, reading).filter(|_| on(Guarding::ReadingLimits));
-        let judged = found.map_or(Ok(()), Err);
-        self.or_hold(judged)
+        let checked = found.map_or(Ok(()), Err);
+        self.or_hold(checked)
     }
 }
 

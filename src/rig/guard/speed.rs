@@ -64,7 +64,7 @@ mod tests {
         assert_eq!(guard.speed(), Some(0.004));
         assert!(
             guard
-                .glide(
+                .follow_paths(
                     &[Path::accelerated(
                         ActuatorMotion {
                             position: 0.001,

@@ -212,7 +212,7 @@ fn a_reading_that_is_no_number_or_beyond_a_limit_holds_the_rig() {
         rig.force = force;
         let (commanded, own, going, holds, speed) =
             (vec![0.001], Vec::new(), Vec::new(), None, None);
-        let (settled, proposed, heard, found) = (true, None, 0.0, (Vec::new(), Vec::new()));
+        let (settled, proposed, last_contact, found) = (true, None, 0.0, (Vec::new(), Vec::new()));
         let mut guard = Guard {
             rig: &mut rig,
             limits: LIMITS,
@@ -222,7 +222,7 @@ fn a_reading_that_is_no_number_or_beyond_a_limit_holds_the_rig() {
             settled,
             proposed,
             speed,
-            heard,
+            last_contact,
             holds,
             found,
             broken: None,

@@ -22,18 +22,18 @@ impl RealRig {
             .iter_mut()
             .for_each(|axis| axis.allowed_range = None);
         if !self.deaf {
-            let mut heard = self.actuator.hold();
-            if heard == Err(DeviceFault::Interrupted) {
+            let mut confirmed = self.actuator.hold();
+            if confirmed == Err(DeviceFault::Interrupted) {
                 // Another request to hold, while the hold was in progress.
                 self.stop_request.acknowledge();
-                heard = self.actuator.hold();
+                confirmed = self.actuator.hold();
             }
-            let Err(fault) = heard else { return Ok(()) };
-            self.unheard = self.device_fault(Part::Actuator, &fault).to_string();
+            let Err(fault) = confirmed else { return Ok(()) };
+            self.hold_failure = self.device_fault(Part::Actuator, &fault).to_string();
             self.deaf = true;
         }
         safety::hold_everything();
-        Err(self.unheard.clone())
+        Err(self.hold_failure.clone())
     }
 
     /// Commands a hold, waits until the rig is seen at rest, and reads it once.
@@ -98,7 +98,7 @@ impl RealRig {
     /// Displacement \[m\] and force \[N\] of every axis at rest, with their bytes.
     fn reading_at_rest(&mut self) -> Found {
         // Earlier silence does not matter: the device answers now.
-        self.heard = self.clock.now();
+        self.last_contact = self.clock.now();
         let _ = self.stop_request.take_line_gap();
         let mut read = self.poll();
         if matches!(read, Err(RigFault::Interrupted)) {

@@ -46,7 +46,7 @@ pub struct RealRig {
     /// Time of the clock at opening \[s\].
     began: f64,
     /// Time of the last answer of the devices \[s\], by the clock.
-    heard: f64,
+    last_contact: f64,
     proposed: Option<Proposed>,
     /// The position where it has settled \[m\]. None during a motion, and after a motion without settling.
     settled: Option<Vec<f64>>,
@@ -64,7 +64,7 @@ pub struct RealRig {
     /// The hold command was not received: only the bytes that need no answer are left.
     deaf: bool,
     /// The reason why the hold command was not received.
-    unheard: String,
+    hold_failure: String,
     /// Publishes readings as they are made.
     live: Live,
 }
@@ -322,7 +322,7 @@ impl Rig for RealRig {
         self.or_hold(traversed)
     }
 
-    fn glide(
+    fn follow_paths(
         &mut self,
         paths: &[Path],
         samples: usize,
@@ -332,7 +332,7 @@ impl Rig for RealRig {
         self.or_hold(followed)
     }
 
-    fn glide_on(
+    fn resume_paths(
         &mut self,
         paths: &[Path],
         samples: usize,

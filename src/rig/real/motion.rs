@@ -91,8 +91,8 @@ impl RealRig {
     /// Waits until the time `until` (\[s\], by the clock), and polls often enough for the heartbeat of the devices.
     pub(super) fn stay_until(&mut self, until: f64) -> Result<(), RigFault> {
         // Counted from the last answer of the rig: otherwise many short waits would be one long silence.
-        while self.heard + self.link.watchdog / 4.0 < until {
-            self.wait_until(self.heard + self.link.watchdog / 4.0)?;
+        while self.last_contact + self.link.watchdog / 4.0 < until {
+            self.wait_until(self.last_contact + self.link.watchdog / 4.0)?;
             let point = self.poll()?;
             self.watch(&point)?;
         }

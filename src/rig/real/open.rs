@@ -39,7 +39,7 @@ impl RealRig {
             clock,
             stop_request,
             began,
-            heard: began,
+            last_contact: began,
             proposed: None,
             settled: None,
             rested: Vec::new(),
@@ -49,7 +49,7 @@ impl RealRig {
             moved: false,
             untrusted: None,
             deaf: false,
-            unheard: String::new(),
+            hold_failure: String::new(),
             live: Live::default(),
             link,
         };
@@ -58,7 +58,7 @@ impl RealRig {
         match rig.link.datum.clone() {
             Datum::Machine => {}
             Datum::Here => {
-                rig.heard_now();
+                rig.note_contact();
                 rig.verify_at_rest()?;
                 let here = rig.settled_reading()?.displacement;
                 let own: Vec<f64> = rig
@@ -72,14 +72,14 @@ impl RealRig {
             Datum::At(positions) => rig.begin_at(&positions)?,
         }
         rig.narrow()?;
-        rig.heard_now();
+        rig.note_contact();
         rig.verify_at_rest()?;
         Ok(rig)
     }
 
     /// One device was not polled while another was identified.
-    fn heard_now(&mut self) {
-        self.heard = self.clock.now();
+    fn note_contact(&mut self) {
+        self.last_contact = self.clock.now();
         let _ = self.stop_request.take_line_gap();
     }
 

@@ -104,7 +104,7 @@ impl RealRig {
         let mut points = Vec::new();
         for sample in 0..self.link.readings.samples.max(1) {
             if sample > 0 {
-                self.wait_until(self.heard + self.period())?;
+                self.wait_until(self.last_contact + self.period())?;
             }
             let point = self.poll()?;
             let disturbed = targets.and_then(|targets| self.disturbed(&point, targets));
@@ -178,13 +178,13 @@ impl RealRig {
     /// Polls the devices again after other work.
     fn come_back(&mut self) -> Result<(), RigFault> {
         let now = self.clock.now();
-        let away = now - std::mem::replace(&mut self.heard, now);
+        let away = now - std::mem::replace(&mut self.last_contact, now);
         self.check_line_gap(away)
     }
 
     /// The devices have answered, or were polled repeatedly: the longest gap between polls of a line is checked.
     pub(super) fn look_up(&mut self) -> Result<(), RigFault> {
-        self.heard = self.clock.now();
+        self.last_contact = self.clock.now();
         safety::beat();
         let away = self.stop_request.take_line_gap();
         self.check_line_gap(away)?;

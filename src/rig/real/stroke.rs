@@ -111,7 +111,7 @@ impl RealRig {
                     false => Err(self.unsettled(None)),
                 };
             }
-            self.wait_until(self.heard + self.period())?;
+            self.wait_until(self.last_contact + self.period())?;
         }
     }
 }

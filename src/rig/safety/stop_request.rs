@@ -25,21 +25,21 @@ pub struct StopRequest {
 
 /// Whether the client that requested the present move is disconnected. None: no client requested it.
 #[derive(Clone, Default)]
-struct Client(Arc<Mutex<Option<IsGone>>>);
+struct Client(Arc<Mutex<Option<IsDisconnected>>>);
 
-type IsGone = Box<dyn Fn() -> bool + Send>;
+type IsDisconnected = Box<dyn Fn() -> bool + Send>;
 
 impl Client {
-    fn set(&self, is_gone: Option<IsGone>) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = is_gone;
+    fn set(&self, is_disconnected: Option<IsDisconnected>) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = is_disconnected;
     }
 
-    fn is_gone(&self) -> bool {
+    fn is_disconnected(&self) -> bool {
         self.0
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .as_ref()
-            .is_some_and(|is_gone| is_gone())
+            .is_some_and(|is_disconnected| is_disconnected())
     }
 }
 
@@ -105,10 +105,10 @@ impl StopRequest {
     /// Executes a client's move. The rig must hold immediately if the client disconnects meanwhile; this does not end the run.
     pub fn for_client<T>(
         &self,
-        is_gone: impl Fn() -> bool + Send + 'static,
+        is_disconnected: impl Fn() -> bool + Send + 'static,
         moves: impl FnOnce() -> T,
     ) -> T {
-        self.client.set(Some(Box::new(is_gone)));
+        self.client.set(Some(Box::new(is_disconnected)));
         let moved = moves();
         self.client.set(None);
         moved
@@ -125,7 +125,7 @@ impl StopRequest {
     /// Whether a hold is requested that has not been acknowledged yet.
     #[must_use]
     pub fn hold_requested(&self) -> bool {
-        self.what.load(Ordering::SeqCst) == HOLD_NOW || self.client.is_gone()
+        self.what.load(Ordering::SeqCst) == HOLD_NOW || self.client.is_disconnected()
     }
 
     /// How often a stop or a hold was requested: a request that repeats an earlier one is counted too.
@@ -159,7 +159,10 @@ mod tests {
         assert!(!clone.hold_requested() && clone.end_requested());
         assert_eq!(stop_request.requests(), 3);
         clone.hold_now();
-        assert!(stop_request.hold_requested(), "a second wish is a new one");
+        assert!(
+            stop_request.hold_requested(),
+            "a second request is a new one"
+        );
         assert_eq!(stop_request.requests(), 4);
         assert!(stop_request.prompts_allowed());
         clone.suppress_prompts();

@@ -132,9 +132,9 @@ mod tests {
         let mut port = SerialPort::open(&path, 115_200).unwrap();
         port.write(b">HELLO\n", LONG).unwrap();
         port.emergency().unwrap().send(b"!");
-        let mut heard = [0; 8];
-        master.read_exact(&mut heard).unwrap();
-        assert_eq!(&heard, b">HELLO\n!", "unchanged");
+        let mut received = [0; 8];
+        master.read_exact(&mut received).unwrap();
+        assert_eq!(&received, b">HELLO\n!", "unchanged");
         let mut buffer = [0; 64];
         assert_eq!(
             port.read(&mut buffer, SHORT).unwrap_err().kind(),

@@ -102,9 +102,9 @@ mod tests {
         let (mut peer, mut port) = pair();
         port.write(b"open-session\tpsd\n", LONG).unwrap();
         port.emergency().unwrap().send(b"!");
-        let mut heard = [0; 18];
-        peer.read_exact(&mut heard).unwrap();
-        assert_eq!(&heard, b"open-session\tpsd\n!");
+        let mut received = [0; 18];
+        peer.read_exact(&mut received).unwrap();
+        assert_eq!(&received, b"open-session\tpsd\n!");
         let mut buffer = [0; 64];
         assert_eq!(
             port.read(&mut buffer, SHORT).unwrap_err().kind(),

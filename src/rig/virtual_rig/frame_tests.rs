@@ -254,7 +254,7 @@ const UPPER: Path = Path {
 
 fn readings(link: VirtualLink, samples: usize) -> Vec<crate::rig::Reading> {
     let (mut rig, mut readings) = (damped_rig(link), Vec::new());
-    rig.glide_along(&[LOWER, UPPER], samples, 0, &mut |reading| {
+    rig.follow_paths_after(&[LOWER, UPPER], samples, 0, &mut |reading| {
         readings.push(reading);
         Ok(())
     })
@@ -324,12 +324,12 @@ fn paths_that_are_not_of_one_length_lead_nowhere() {
     };
     assert!(
         damped_rig(VirtualLink::default())
-            .glide_along(&[LOWER, short], 4, 0, &mut |_| Ok(()))
+            .follow_paths_after(&[LOWER, short], 4, 0, &mut |_| Ok(()))
             .is_err()
     );
     assert!(
         damped_rig(VirtualLink::default())
-            .glide_along(&[LOWER], 4, 0, &mut |_| Ok(()))
+            .follow_paths_after(&[LOWER], 4, 0, &mut |_| Ok(()))
             .is_err()
     );
 }

@@ -5,15 +5,15 @@
 pub(crate) mod actuator;
 #[cfg(test)]
 mod frame_tests;
-pub(super) mod glide;
 pub(crate) mod load_cell;
 pub(crate) mod settling;
+pub(super) mod smooth_paths;
 mod springs;
 mod stroke;
 #[cfg(test)]
 mod tests;
 
-use self::glide::Course;
+use self::smooth_paths::Course;
 use self::springs::Springs;
 use self::stroke::Stroke;
 use super::motion::{Instants, even};
@@ -326,12 +326,12 @@ impl Rig for VirtualRig {
             .zip(&aims)
             .map(|(axis, aim)| (aim - axis.actuator.reference()).abs());
         let seconds = travels.fold(0.0, f64::max) / speed;
-        let went = self
+        let motions = self
             .axes
             .iter_mut()
             .zip(&aims)
             .map(|(axis, aim)| axis.actuator.advance(*aim, seconds));
-        let travels: Vec<Motion> = went.collect();
+        let travels: Vec<Motion> = motions.collect();
         // A first-order lag delays a motion by its time constant, and adds its square to the variance.
         let lag = self.link.lag;
         self.moved = Some(even(
@@ -408,24 +408,24 @@ impl Rig for VirtualRig {
         self.stroke(stroke, cut_off.samples, cut_off.done, each)
     }
 
-    fn glide(
+    fn follow_paths(
         &mut self,
         paths: &[Path],
         samples: usize,
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
         self.interrupted.clear();
-        self.glide_on(paths, samples, 0, each)
+        self.resume_paths(paths, samples, 0, each)
     }
 
-    fn glide_on(
+    fn resume_paths(
         &mut self,
         paths: &[Path],
         samples: usize,
         done: usize,
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
-        self.glide_along(paths, samples, done, each)
+        self.follow_paths_after(paths, samples, done, each)
     }
 
     fn hold(&mut self) {

@@ -74,7 +74,7 @@ fn is_of_the_plans_rig(
         }
         (EntryKind::Rig, None) => {
             let rig: RigBody = body(line).map_err(unread)?;
-            without_bytes(rig.said.is_empty(), "a virtual rig sends no bytes")
+            without_bytes(rig.replies.is_empty(), "a virtual rig sends no bytes")
         }
         (EntryKind::Intent, None) => {
             let intent: IntentBody = body(line).map_err(unread)?;
@@ -118,7 +118,7 @@ fn is_ours(line: &Line) -> Result<(), Contradiction> {
         EntryKind::Event => written::<Event>(line, &[]),
         EntryKind::Fault => written::<FaultBody>(line, &[]),
         EntryKind::Held => written::<HeldBody>(line, &[]),
-        EntryKind::Tally => written::<LineStatistics>(line, &[]),
+        EntryKind::LineStatistics => written::<LineStatistics>(line, &[]),
         EntryKind::Recover => written::<RecoverBody>(line, &[]),
         EntryKind::Amend => written::<AmendBody>(line, &[]),
         EntryKind::Resume => written::<ResumeBody>(line, &[]),

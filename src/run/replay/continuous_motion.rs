@@ -21,7 +21,7 @@ impl ContinuousMove<'_> {
                 paths.iter().map(Path::fastest).fold(0.0, f64::max),
             ),
         };
-        let offer = EncodedMove {
+        let encoded = EncodedMove {
             targets: targets.clone(),
             speed,
             wire: Vec::new(),
@@ -34,7 +34,7 @@ impl ContinuousMove<'_> {
         };
         IntentBody {
             path,
-            ..intent(&targets, Some(speed), &offer, Some(samples))
+            ..intent(&targets, Some(speed), &encoded, Some(samples))
         }
     }
 
@@ -46,7 +46,7 @@ impl ContinuousMove<'_> {
     ) -> Result<(), RigFault> {
         match self {
             Self::Stroke(targets, velocity) => rig.traverse(targets, *velocity, samples, each),
-            Self::Paths(paths) => rig.glide(paths, samples, each),
+            Self::Paths(paths) => rig.follow_paths(paths, samples, each),
         }
     }
 
@@ -70,7 +70,7 @@ impl ContinuousMove<'_> {
                 *velocity,
                 each,
             ),
-            Self::Paths(paths) => rig.glide_on(paths, samples, done, each),
+            Self::Paths(paths) => rig.resume_paths(paths, samples, done, each),
         }
     }
 }

@@ -117,8 +117,8 @@ pub struct RigBody {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub datum: Option<Vec<f64>>,
     /// The replies with its identity, escaped. Empty if the protocol has none.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub said: Vec<String>,
+    #[serde(default, rename = "said", skip_serializing_if = "Vec::is_empty")]
+    pub replies: Vec<String>,
 }
 
 /// INTENT: a target that is about to be sent.
@@ -133,8 +133,8 @@ pub struct IntentBody {
     /// As requested \[m/s\]; signed for a stroke.
     pub speed: Option<f64>,
     /// As decoded from the bytes \[m\] and \[m/s\], if different.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub said: Option<Vec<f64>>,
+    #[serde(default, rename = "said", skip_serializing_if = "Option::is_none")]
+    pub encoded: Option<Vec<f64>>,
     pub rate: f64,
     /// The bytes that carry the target, escaped.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -248,7 +248,7 @@ pub enum OperatorBody {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OperatorEntry {
     #[serde(flatten)]
-    pub said: OperatorBody,
+    pub statement: OperatorBody,
     /// Run logs of other builds may have none; a virtual run has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wall: Option<String>,

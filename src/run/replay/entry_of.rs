@@ -17,7 +17,7 @@ impl RigBody {
             own_speed: rig.own_speed(),
             last_move: rig.last_move(),
             datum: rig.datum(),
-            said: rig
+            replies: rig
                 .introduction()
                 .iter()
                 .map(|reply| escaped(reply))
@@ -45,14 +45,14 @@ pub(super) fn unknown_rig() -> RigBody {
         own_speed: None,
         last_move: None,
         datum: None,
-        said: Vec::new(),
+        replies: Vec::new(),
     }
 }
 
 pub(super) fn intent(
     targets: &[f64],
     speed: Option<f64>,
-    offer: &EncodedMove,
+    encoded: &EncodedMove,
     samples: Option<usize>,
 ) -> IntentBody {
     IntentBody {
@@ -60,11 +60,11 @@ pub(super) fn intent(
         t: 0.0,
         to: targets.to_vec(),
         speed,
-        said: (!same_bits(&offer.targets, targets)).then(|| offer.targets.clone()),
-        rate: offer.speed,
-        wire: (!offer.wire.is_empty()).then(|| escaped(&offer.wire)),
-        id: offer.move_id,
-        own: offer.at_the_rig.clone(),
+        encoded: (!same_bits(&encoded.targets, targets)).then(|| encoded.targets.clone()),
+        rate: encoded.speed,
+        wire: (!encoded.wire.is_empty()).then(|| escaped(&encoded.wire)),
+        id: encoded.move_id,
+        own: encoded.at_the_rig.clone(),
         path: None,
         samples,
         wall: None,

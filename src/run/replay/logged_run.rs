@@ -116,7 +116,7 @@ impl LoggedRun {
             EntryKind::Amend => self.amended(body(line)?),
             EntryKind::Resume => self.resumed(body(line)?),
             EntryKind::Recover => self.recovered(),
-            EntryKind::Tally => self.line_statistics = body(line)?,
+            EntryKind::LineStatistics => self.line_statistics = body(line)?,
             EntryKind::Header | EntryKind::End => {}
             EntryKind::Intent
             | EntryKind::Sample

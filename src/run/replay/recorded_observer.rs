@@ -45,9 +45,9 @@ impl<'run, 'rig> RecordedObserver<'run, 'rig> {
     }
 
     /// Appends a statement of the operator or a client, with the time of day.
-    fn append_operator(&self, said: OperatorBody) {
+    fn append_operator(&self, statement: OperatorBody) {
         let wall = self.state.borrow().wall();
-        self.append(EntryKind::Operator, &OperatorEntry { said, wall });
+        self.append(EntryKind::Operator, &OperatorEntry { statement, wall });
     }
 
     /// A run log with an END is complete: a call after its last entry means that an entry was removed.

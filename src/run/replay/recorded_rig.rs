@@ -211,7 +211,7 @@ impl<'rig> RecordedRig<'rig> {
 
     /// A move that the guard refuses is logged too, so that the run can be replayed up to here.
     fn forget_proposal(&mut self) {
-        let Some((targets, speed, offer)) = self.pending.take() else {
+        let Some((targets, speed, encoded)) = self.pending.take() else {
             return;
         };
         if self.answers_from_the_log() {
@@ -219,7 +219,7 @@ impl<'rig> RecordedRig<'rig> {
                 self.state.borrow_mut().consume();
             }
         } else {
-            let _ = self.record_intent(&mut intent(&targets, speed, &offer, None));
+            let _ = self.record_intent(&mut intent(&targets, speed, &encoded, None));
         }
     }
 
@@ -292,27 +292,27 @@ impl Rig for RecordedRig<'_> {
                 move_id: None,
                 at_the_rig: None,
             };
-            let offer = intent.map_or_else(unsent, |intent| EncodedMove {
-                targets: intent.said.clone().unwrap_or_else(|| intent.to.clone()),
+            let encoded = intent.map_or_else(unsent, |intent| EncodedMove {
+                targets: intent.encoded.clone().unwrap_or_else(|| intent.to.clone()),
                 speed: intent.rate,
                 wire: Vec::new(),
                 move_id: intent.id,
                 at_the_rig: intent.own.clone(),
             });
-            self.pending = Some((targets.to_vec(), speed, offer.clone()));
-            return Ok(offer);
+            self.pending = Some((targets.to_vec(), speed, encoded.clone()));
+            return Ok(encoded);
         }
         match self.rig()?.propose(targets, speed) {
-            Ok(offer) => {
-                self.pending = Some((targets.to_vec(), speed, offer.clone()));
-                Ok(offer)
+            Ok(encoded) => {
+                self.pending = Some((targets.to_vec(), speed, encoded.clone()));
+                Ok(encoded)
             }
             Err(fault) => self.failed(Call::Propose, fault),
         }
     }
 
     fn execute(&mut self) -> Result<(), RigFault> {
-        let (targets, speed, offer) = self
+        let (targets, speed, encoded) = self
             .pending
             .take()
             .ok_or_else(|| RigFault::Device("nothing was proposed to execute".to_owned()))?;
@@ -338,7 +338,7 @@ impl Rig for RecordedRig<'_> {
             };
         }
         self.rig()?;
-        self.record_intent(&mut intent(&targets, speed, &offer, None))?;
+        self.record_intent(&mut intent(&targets, speed, &encoded, None))?;
         match self.rig()?.execute() {
             Ok(()) => Ok(()),
             Err(fault) => self.failed(Call::Execute, fault),
@@ -380,7 +380,7 @@ impl Rig for RecordedRig<'_> {
         self.replay_or_follow(&ContinuousMove::Stroke(targets, velocity), samples, each)
     }
 
-    fn glide(
+    fn follow_paths(
         &mut self,
         paths: &[Path],
         samples: usize,

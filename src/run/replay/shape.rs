@@ -68,9 +68,10 @@ impl Shape<'_> {
             }
             EntryKind::Fault => self.failed(&body_of(line)?),
             EntryKind::Resume => self.resumed(&body_of(line)?, line.seq),
-            EntryKind::Stroke | EntryKind::Operator | EntryKind::Event | EntryKind::Tally => {
-                self.rig().map(drop)
-            }
+            EntryKind::Stroke
+            | EntryKind::Operator
+            | EntryKind::Event
+            | EntryKind::LineStatistics => self.rig().map(drop),
             EntryKind::Header
             | EntryKind::Plan
             | EntryKind::Amend
@@ -131,7 +132,7 @@ impl Shape<'_> {
     fn sent(&self, intent: &IntentBody) -> Result<(), String> {
         self.moves(&[
             ("to", &intent.to),
-            ("said", intent.said.as_ref().unwrap_or(&intent.to)),
+            ("said", intent.encoded.as_ref().unwrap_or(&intent.to)),
         ])?;
         let paths = intent.path.as_ref().map_or(intent.to.len(), Vec::len);
         if paths == intent.to.len() {

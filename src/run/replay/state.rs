@@ -358,7 +358,7 @@ impl<'rig> State<'rig> {
             return Ok(());
         }
         self.recovered = recovered;
-        self.append(EntryKind::Tally, &recovered)
+        self.append(EntryKind::LineStatistics, &recovered)
     }
 
     /// Appends an entry; a fault is kept and is final.

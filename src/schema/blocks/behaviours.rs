@@ -335,3 +335,13 @@ pub(crate) const BEHAVIOURS: &[Variant] = &[
         "portal frame with fixed feet by plastic hinges: elastic up to the lowest collapse load",
     ),
 ];
+
+/// The dimension of a number of a model.
+pub(crate) fn dimension(model: &str, argument: &str) -> Dimension {
+    let model = BEHAVIOURS.iter().find(|variant| variant.name == model);
+    let mut arguments = model.iter().flat_map(|model| model.arguments);
+    let named = arguments.find(|field| field.name == argument);
+    named
+        .and_then(Field::dimension)
+        .unwrap_or(Dimension::NUMBER)
+}

@@ -74,7 +74,8 @@ fn apart<'e, T: 'static>(
 
 /// Whether two fields have the same line. Their marks may differ.
 fn same_field(one: &Field, other: &Field) -> bool {
-    (one.name, one.doc, one.need, one.range) == (other.name, other.doc, other.need, other.range)
+    (one.name, one.doc, one.presence, one.range)
+        == (other.name, other.doc, other.presence, other.range)
         && format!("{:?}", one.ty) == format!("{:?}", other.ty)
 }
 

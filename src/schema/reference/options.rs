@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::values::{default, is_truth, value};
-use crate::schema::types::{BlockKind, Field, FieldType, Need, Variant};
+use crate::schema::types::{BlockKind, Field, FieldType, Presence, Variant};
 
 /// The default of an argument that is a field of its block as well.
 const OF_THE_RIG: &str = "the rig's";
@@ -116,7 +116,8 @@ impl<'b> Written<'b> {
 
     /// The text that says where an argument was written before; none for a new one.
     fn origin(&self, block: &'static BlockKind, argument: &Field) -> Option<String> {
-        if argument.need == Need::DefaultInWords(OF_THE_RIG) && block.field(argument.name).is_some()
+        if argument.presence == Presence::DefaultInWords(OF_THE_RIG)
+            && block.field(argument.name).is_some()
         {
             return Some("the block, whose value is the default".to_owned());
         }

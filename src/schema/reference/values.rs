@@ -1,6 +1,6 @@
 //! Values of fields in words: the type with its limits, and the default.
 
-use crate::schema::types::{BlockKind, Field, FieldType, Need, Range};
+use crate::schema::types::{BlockKind, Field, FieldType, Presence, Range};
 use crate::units::Dimension;
 use crate::units::display::{si_unit, significant};
 
@@ -111,8 +111,8 @@ fn limits(range: Range, dimension: Dimension) -> String {
 
 /// The default of a field, or that it is required; empty if it has neither.
 pub(super) fn default(field: &Field) -> String {
-    match (field.need, field.default_text()) {
-        (Need::Required, _) => "required".to_owned(),
+    match (field.presence, field.default_text()) {
+        (Presence::Required, _) => "required".to_owned(),
         (_, default) => default.unwrap_or_default(),
     }
 }

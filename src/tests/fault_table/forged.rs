@@ -3,7 +3,7 @@
 
 use serde_json::{Value, json};
 
-use super::axes::two_axes::shaken;
+use super::axes::two_axes::base_excited_plan;
 use super::stage::{Ended, link, plan, run};
 use crate::plan::Plan;
 use crate::record::journal::{EntryKind, Recovered};
@@ -30,9 +30,9 @@ pub(super) fn found(
 }
 
 pub(super) fn judged(plan: &Plan, forged: &Recovered) -> Result<(), String> {
-    let played = LoggedRun::of(forged).map_err(|fault| fault.to_string())?;
-    replay::check_consistency(forged, &played, plan).map_err(|fault| fault.to_string())?;
-    let replayed = replay::replay(plan, played);
+    let logged_run = LoggedRun::of(forged).map_err(|fault| fault.to_string())?;
+    replay::check_consistency(forged, &logged_run, plan).map_err(|fault| fault.to_string())?;
+    let replayed = replay::replay(plan, logged_run);
     replayed
         .mismatch
         .map_or(Ok(()), |mismatch| Err(mismatch.to_string()))
@@ -40,7 +40,7 @@ pub(super) fn judged(plan: &Plan, forged: &Recovered) -> Result<(), String> {
 
 #[test]
 fn a_contradictory_record_is_found() {
-    for plan in [plan(), shaken("50 ms")] {
+    for plan in [plan(), base_excited_plan("50 ms")] {
         let ended = run(&plan, "");
         assert!(ended.completed());
         assert_eq!(judged(&plan, &ended.recovered), Ok(()));

@@ -24,7 +24,7 @@
 //! | 26 | targets beyond limits or not finite | `targets::nothing_beyond_a_limit_is_ever_on_the_wire` |
 //! | 27 | energy error, tracking-error energy | `motion::an_energy_error_beyond_its_limit_holds_the_rig`, `motion::tracking_that_changes_the_energy_holds_the_rig` |
 //! | 18–22 | the same on one axis of two | `axes::*` |
-//! | 10, 14, 18, 25, 26 | the same in continuous mode | `gliding::*` |
+//! | 10, 14, 18, 25, 26 | the same in continuous mode | `continuous::*` |
 //! | 10, 12, 16, 20–22 | the same with one device per axis, a meter with several channels, several sites | `several::*` |
 //! | 28 | signals, a closed terminal | `tests/system/signals.rs`, in separate processes |
 //! | 29 | panic, abort | `tests/system/ended.rs`, in separate processes |

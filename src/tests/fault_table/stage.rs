@@ -147,9 +147,12 @@ pub(super) fn run_watched(
     assert!(recorded.mismatch.is_none() && recorded.fault.is_none());
     let recovered = recover(&disk.written()).unwrap();
     // Whatever fault occurred, the run log alone reproduces the run.
-    let played = LoggedRun::of(&recovered).unwrap();
-    assert_eq!(replay::check_consistency(&recovered, &played, plan), Ok(()));
-    let replayed = replay::replay(plan, played);
+    let logged_run = LoggedRun::of(&recovered).unwrap();
+    assert_eq!(
+        replay::check_consistency(&recovered, &logged_run, plan),
+        Ok(())
+    );
+    let replayed = replay::replay(plan, logged_run);
     assert_eq!(replayed.mismatch, None);
     let same = format!("{:?}", replayed.record) == format!("{:?}", recorded.record);
     assert!(

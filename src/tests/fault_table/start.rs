@@ -1,9 +1,9 @@
 //! Position and readings of the rig when a run begins. In: rigs that are not at their zero position, or whose numbers are invalid. Out:
 //! nothing moves, or every position counts from the present one.
 
-use super::axes::two_axes::{results, shaken};
+use super::axes::two_axes::{base_excited_plan, results};
 use super::forged::{found, judged};
-use super::interrupted::cut_off::{GoneOn, gone_on, killed};
+use super::interrupted::cut_off::{Resumed, killed, resumed};
 use super::line::unnumbered::{grbl, modbus};
 use super::stage::{
     Ended, STIFFNESS, device_link, emulator, link, open, plan, plan_of, run, run_without, to,
@@ -132,7 +132,7 @@ fn a_plan_with_its_zero_at_the_rig_position_counts_from_there() {
 
 #[test]
 fn each_of_several_axes_counts_from_its_position() {
-    let plan = shaken("0.1 s");
+    let plan = base_excited_plan("0.1 s");
     let ideal = run(&plan, "");
     let ended = run(&here(plan), "stands at 30 mm\naxis 2 stands at -17 mm");
     assert!(ended.completed(), "{}", ended.reason());
@@ -143,7 +143,7 @@ fn each_of_several_axes_counts_from_its_position() {
         );
     }
     refused(
-        &shaken("0.1 s"),
+        &base_excited_plan("0.1 s"),
         "axis 2 stands at 1 mm",
         "axis 2 is at −1.000 mm",
     );
@@ -177,7 +177,7 @@ fn a_run_goes_on_from_the_zero_on_record() {
     for call in (30..90).step_by(7) {
         let (emulator, disk) = (emulator(&plan, AT_3_MM, Log::none(), 1), PowerLoss::new());
         assert!(killed(&plan, &emulator, &disk, (call, true)), "call {call}");
-        let GoneOn::ToItsEnd(record) = gone_on(&plan, &emulator, &disk, call) else {
+        let Resumed::ToItsEnd(record) = resumed(&plan, &emulator, &disk, call) else {
             panic!("call {call}")
         };
         assert_eq!(results(&record), results(&whole.record), "call {call}");

@@ -3,7 +3,7 @@
 use crate::plan::{Behaviour, ProcedureKind, ShakeDamping, Storey};
 use crate::record::{EventKind, Record};
 use crate::tests::testing::{number, run_unwatched};
-use crate::tests::uncertainty::frame::{constant, shaken};
+use crate::tests::uncertainty::frame::{base_excited_plan, constant};
 
 /// Two storeys that yield, by the tangent form, under ground motion of 20 s followed by a rest of 40 s.
 fn yielding(time_step: f64) -> Record {
@@ -22,7 +22,7 @@ fn yielding(time_step: f64) -> Record {
         3.0 * (0.126 * f64::from(sample)).sin() + 2.0 * (0.31 * f64::from(sample)).sin()
     };
     let storeys = vec![storey(2000.0, 3e6, 9e3), storey(1500.0, 2.4e6, 7e3)];
-    let mut plan = shaken(storeys, (0..2000).map(swings).collect(), time_step);
+    let mut plan = base_excited_plan(storeys, (0..2000).map(swings).collect(), time_step);
     if let ProcedureKind::Shake(shake) = &mut plan.procedures[0].kind {
         shake.damping = ShakeDamping::Rayleigh(constant(0.02));
         shake.duration = Some(constant(60.0));

@@ -1,7 +1,7 @@
 //! Sensitivity of a ground-motion test by re-integration, compared with a re-run on the same rig with the input perturbed: every kind of
 //! storey, ramp-and-hold and continuous, with a damper in each storey and without.
 
-use super::frame::{constant, entry, shaken};
+use super::frame::{base_excited_plan, constant, entry};
 use super::rest::{Misread, RIGHT};
 use crate::physics::impact::peaks::{Peak, PeakDisplacements};
 use crate::plan::{
@@ -71,7 +71,7 @@ fn plan(case: Case) -> Plan {
         }
     };
     let storeys = vec![storey(2000.0, 600e3, 5500.0), storey(1500.0, 400e3, 3200.0)];
-    let mut plan = shaken(storeys, ground.chain([0.0]).collect(), TIME_STEP);
+    let mut plan = base_excited_plan(storeys, ground.chain([0.0]).collect(), TIME_STEP);
     let mode = if case.continuous {
         Mode::Continuous {
             time_scale: TIME_SCALE,
@@ -278,7 +278,7 @@ struct Within {
 }
 
 /// Checks every result of every run of one kind of storey. Effects smaller than a ten thousandth of a result count as zero.
-fn judge(kind: Kind, within: Within, links: [VirtualLink; 2], modes: &[(bool, bool)]) {
+fn compare(kind: Kind, within: Within, links: [VirtualLink; 2], modes: &[(bool, bool)]) {
     let mut wrong = Vec::new();
     for (continuous, dampers) in modes.iter().copied() {
         let case = Case {
@@ -347,7 +347,7 @@ const IDEAL: VirtualLink = VirtualLink {
 
 #[test]
 fn elastic_storeys_are_reported_with_their_true_response() {
-    judge(
+    compare(
         Kind::Elastic,
         Within {
             smooth: 0.02,
@@ -361,7 +361,7 @@ fn elastic_storeys_are_reported_with_their_true_response() {
 
 #[test]
 fn yielding_storeys_are_reported_with_their_true_response() {
-    judge(
+    compare(
         Kind::Bilinear,
         Within {
             smooth: 0.1,
@@ -377,7 +377,7 @@ fn yielding_storeys_are_reported_with_their_true_response() {
 /// contributions are still correct.
 #[test]
 fn bouc_wen_storeys_are_reported_with_their_true_response() {
-    judge(
+    compare(
         Kind::BoucWen,
         Within {
             smooth: 0.25,
@@ -399,7 +399,7 @@ fn noise_during_the_motion_does_not_hide_the_effect_of_an_input() {
         ..IDEAL
     };
     for kind in [Kind::Elastic, Kind::Bilinear] {
-        judge(
+        compare(
             kind,
             Within {
                 smooth: 0.2,

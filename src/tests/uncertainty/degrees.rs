@@ -8,7 +8,7 @@ use crate::plan::{
 };
 use crate::record::Record;
 use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
-use crate::uncertainty::{Known, known};
+use crate::uncertainty::{MeasurementUncertainty, measurement_uncertainty};
 use crate::units::Dimension;
 use crate::verdict::{Verdict, assess};
 
@@ -32,7 +32,7 @@ fn plan(points: u32, seed: u64) -> Plan {
     plan
 }
 
-fn value_and_uncertainty(record: &Record, name: &'static str) -> (f64, Known) {
+fn value_and_uncertainty(record: &Record, name: &'static str) -> (f64, MeasurementUncertainty) {
     let reference = ResultReference {
         procedure: ProcedureId(0),
         name,
@@ -41,7 +41,7 @@ fn value_and_uncertainty(record: &Record, name: &'static str) -> (f64, Known) {
     let value = number(record, 0, name).0.unwrap();
     (
         value,
-        known(&record.contributions(reference), record).unwrap(),
+        measurement_uncertainty(&record.contributions(reference), record).unwrap(),
     )
 }
 
@@ -109,8 +109,10 @@ fn a_guard_band_has_the_degrees_of_freedom_of_its_ramp() {
     };
     let (value, known, condition) = of_limit(0.0);
     assert!((condition.guard_band.unwrap() / (13.968 * known.standard) - 1.0).abs() < 1e-4);
-    assert_eq!(condition.known(), Some(known));
-    assert!((condition.margin_known().unwrap().standard / known.standard - 1.0).abs() < 1e-12);
+    assert_eq!(condition.measurement_uncertainty(), Some(known));
+    assert!(
+        (condition.margin_uncertainty().unwrap().standard / known.standard - 1.0).abs() < 1e-12
+    );
     let verdict = |errors: f64| of_limit(value - errors * known.standard).2.verdict;
     let found = [3.0, 13.9, 14.0, -3.0, -14.0].map(verdict);
     let undecided = Verdict::Inconclusive;
@@ -144,7 +146,7 @@ fn what_follows_from_a_fit_has_its_degrees_of_freedom() {
         })
     };
     let degrees = |formula: &Formula| {
-        known(&formula.contributions(&record, None).unwrap(), &record)
+        measurement_uncertainty(&formula.contributions(&record, None).unwrap(), &record)
             .unwrap()
             .degrees
     };

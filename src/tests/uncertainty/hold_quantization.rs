@@ -10,7 +10,7 @@ use crate::plan::{
 use crate::record::Record;
 use crate::tests::noise::uniform;
 use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
-use crate::uncertainty::{Known, Source, known};
+use crate::uncertainty::{MeasurementUncertainty, Source, measurement_uncertainty};
 
 const STIFFNESS: f64 = 3e5;
 
@@ -36,11 +36,12 @@ fn holds(behaviour: Behaviour, begin: f64, model: WatchedModel, link: VirtualLin
     plan
 }
 
-fn value_and_uncertainty(record: &Record, name: &'static str) -> (f64, Known) {
+fn value_and_uncertainty(record: &Record, name: &'static str) -> (f64, MeasurementUncertainty) {
     let result = record.procedures[0].result(name).expect(name);
     (
         number(record, 0, name).0.expect(name),
-        known(&result.contributions, record).unwrap_or(Known::surely(0.0)),
+        measurement_uncertainty(&result.contributions, record)
+            .unwrap_or(MeasurementUncertainty::exact(0.0)),
     )
 }
 

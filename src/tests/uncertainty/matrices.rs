@@ -1,7 +1,7 @@
 //! Uncertainty of frames whose matrices have one common uncertainty, and of the lists of an impact series. It is compared with re-runs of
 //! the virtual rig with one input perturbed.
 
-use super::frame::{constant, entry, from, shaken, storey};
+use super::frame::{base_excited_plan, constant, entry, from, storey};
 use crate::plan::formula::ResultValue;
 use crate::plan::{
     Behaviour, Between, Contact, Frame, Plan, ProcedureKind, ShakeDamping, Stepping,
@@ -15,7 +15,7 @@ use crate::uncertainty::{Contribution, Source, combined};
 
 /// Two storeys by their matrices, damped, on ground that jumps to 1 m/s².
 fn of_matrices() -> Plan {
-    let mut plan = shaken(
+    let mut plan = base_excited_plan(
         vec![storey(2.0, 3000.0), storey(1.5, 1800.0)],
         vec![1.0; 31],
         5e-4,

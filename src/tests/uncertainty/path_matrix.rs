@@ -266,7 +266,7 @@ fn keeps_masing(specimen: usize) -> bool {
 
 /// The contribution of a smooth source equals its true effect, within −25 % and +50 %. A marked one is at least its fraction of the true
 /// effect. For specimens that do not follow Masing's rule, marked contributions are not checked.
-fn judge(case: ImpactCase, specimens_and_laws: &[(usize, usize)], held: Held) {
+fn compare(case: ImpactCase, specimens_and_laws: &[(usize, usize)], held: Held) {
     let (mut smooth, mut all) = (0.0, 0.0);
     for (specimen, law) in specimens_and_laws {
         let (name, _) = &specimens(1.0, 1.0)[*specimen];
@@ -321,7 +321,7 @@ const STRUCK: ImpactCase = ImpactCase {
 /// A heavy striker that hits repeatedly during the outward motion.
 #[test]
 fn repeated_impacts_contribute_their_true_effect() {
-    judge(
+    compare(
         STRUCK,
         &every_specimen_by_every_law(),
         Held {
@@ -329,7 +329,7 @@ fn repeated_impacts_contribute_their_true_effect() {
             marked: 0.5,
         },
     );
-    judge(
+    compare(
         ImpactCase {
             share: 1e-2,
             ..STRUCK
@@ -352,7 +352,7 @@ fn swinging_back_contributes_what_it_truly_does() {
         until: Until::Duration,
         ..STRUCK
     };
-    judge(
+    compare(
         swinging,
         &every_specimen_by_every_law(),
         Held {
@@ -360,7 +360,7 @@ fn swinging_back_contributes_what_it_truly_does() {
             marked: 0.35,
         },
     );
-    judge(
+    compare(
         ImpactCase {
             share: 1e-2,
             ..swinging
@@ -381,7 +381,7 @@ fn finer_steps_contribute_as_much() {
         share: 2e-3,
         ..STRUCK
     };
-    judge(
+    compare(
         fine,
         &[(1, 3), (6, 3), (1, 2)],
         Held {

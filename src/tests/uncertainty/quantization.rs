@@ -7,13 +7,17 @@ use crate::plan::{
 use crate::record::{History, Record};
 use crate::tests::noise::uniform;
 use crate::tests::testing::{elastic_plan, ramp, result_of, run_unwatched};
-use crate::uncertainty::{Known, Source, known};
+use crate::uncertainty::{MeasurementUncertainty, Source, measurement_uncertainty};
 
 const STIFFNESS: f64 = 3e5;
 /// \[m\]
 const REACH: f64 = 1e-3;
 
-fn value_and_uncertainty(record: &Record, procedure: usize, name: &'static str) -> (f64, Known) {
+fn value_and_uncertainty(
+    record: &Record,
+    procedure: usize,
+    name: &'static str,
+) -> (f64, MeasurementUncertainty) {
     let reference = ResultReference {
         procedure: ProcedureId(procedure),
         name,
@@ -27,7 +31,8 @@ fn value_and_uncertainty(record: &Record, procedure: usize, name: &'static str) 
     };
     (
         value,
-        known(&record.contributions(reference), record).unwrap_or(Known::surely(0.0)),
+        measurement_uncertainty(&record.contributions(reference), record)
+            .unwrap_or(MeasurementUncertainty::exact(0.0)),
     )
 }
 
@@ -52,7 +57,10 @@ struct Replayed {
     held: f64,
 }
 
-fn replayed(count: u32, mut replay: impl FnMut(&mut u64) -> (f64, Known)) -> Replayed {
+fn replayed(
+    count: u32,
+    mut replay: impl FnMut(&mut u64) -> (f64, MeasurementUncertainty),
+) -> Replayed {
     let mut state = 23;
     let (mut errors, mut squares, mut held) = (0.0, 0.0, 0);
     for _ in 0..count {
@@ -74,10 +82,10 @@ fn replayed(count: u32, mut replay: impl FnMut(&mut u64) -> (f64, Known)) -> Rep
 #[test]
 fn replays_of_a_ramp_on_a_coarse_load_cell_are_held() {
     for points in [3, 5, 12, 40] {
-        for quanta in [3.0, 10.0, 77.0] {
-            let quantum = STIFFNESS * REACH / quanta;
+        for resolution_steps in [3.0, 10.0, 77.0] {
+            let quantum = STIFFNESS * REACH / resolution_steps;
             let found = replayed(100, |state| {
-                let stiffness = STIFFNESS * (1.0 + (uniform(state) - 0.5) / quanta);
+                let stiffness = STIFFNESS * (1.0 + (uniform(state) - 0.5) / resolution_steps);
                 let begin = uniform(state) * quantum / stiffness;
                 let link = VirtualLink {
                     force_resolution: quantum,
@@ -94,11 +102,11 @@ fn replays_of_a_ramp_on_a_coarse_load_cell_are_held() {
             } = found;
             assert!(
                 held >= 0.94,
-                "{points} points over {quanta} quanta: {found:?}"
+                "{points} points over {resolution_steps} resolution_steps: {found:?}"
             );
             assert!(
                 reported > 0.93 * error && reported < 3.0 * error,
-                "{points} points over {quanta} quanta: {found:?}"
+                "{points} points over {resolution_steps} resolution_steps: {found:?}"
             );
         }
     }
@@ -107,8 +115,8 @@ fn replays_of_a_ramp_on_a_coarse_load_cell_are_held() {
 /// The same for the displacement, including its effect on the intercept.
 #[test]
 fn replays_of_a_ramp_on_a_coarse_transducer_are_held() {
-    for (points, quanta) in [(5, 5.3), (10, 33.3)] {
-        let quantum = REACH / quanta;
+    for (points, resolution_steps) in [(5, 5.3), (10, 33.3)] {
+        let quantum = REACH / resolution_steps;
         for name in ["stiffness", "intercept_force"] {
             let found = replayed(150, |state| {
                 // The path has the required length except for part of a quantization step, and begins at any position.
@@ -118,7 +126,7 @@ fn replays_of_a_ramp_on_a_coarse_transducer_are_held() {
                     ..VirtualLink::default()
                 };
                 let mut plan = ramp_plan(points, begin, STIFFNESS, link);
-                let longer = 1.0 + (uniform(state) - 0.5) / quanta;
+                let longer = 1.0 + (uniform(state) - 0.5) / resolution_steps;
                 let ProcedureKind::StiffnessRamp(ramp) = &mut plan.procedures[0].kind else {
                     panic!()
                 };
@@ -135,7 +143,7 @@ fn replays_of_a_ramp_on_a_coarse_transducer_are_held() {
             });
             assert!(
                 found.held >= 0.92 && found.reported > 0.85 * found.error,
-                "{name}, {points} over {quanta} quanta: {found:?}"
+                "{name}, {points} over {resolution_steps} resolution_steps: {found:?}"
             );
         }
     }

@@ -64,10 +64,10 @@ impl Rig for Misread {
             .zip(&self.axes)
             .map(|(target, axis)| target / axis.displacement)
             .collect();
-        let offer = self.rig.propose(&true_targets, speed)?;
+        let encoded = self.rig.propose(&true_targets, speed)?;
         Ok(EncodedMove {
             targets: targets.to_vec(),
-            ..offer
+            ..encoded
         })
     }
     fn execute(&mut self) -> Result<(), RigFault> {
@@ -88,7 +88,7 @@ impl Rig for Misread {
     ) -> Result<(), RigFault> {
         self.rig.traverse(targets, velocity, samples, each)
     }
-    fn glide(
+    fn follow_paths(
         &mut self,
         paths: &[Path],
         samples: usize,
@@ -103,7 +103,7 @@ impl Rig for Misread {
         };
         let true_paths: Vec<Path> = paths.iter().zip(&self.axes).map(truly).collect();
         let axes = &self.axes;
-        self.rig.glide(&true_paths, samples, &mut |reading| {
+        self.rig.follow_paths(&true_paths, samples, &mut |reading| {
             each(misread(axes, reading))
         })
     }

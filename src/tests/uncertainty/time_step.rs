@@ -86,7 +86,7 @@ fn noise_is_not_counted_as_an_error_of_the_time_step() {
     }
 }
 
-fn shaken(time_step: f64) -> Record {
+fn base_excited_plan(time_step: f64) -> Record {
     let storey = |stiffness| Storey::new(1000.0, stiffness, Behaviour::Elastic { stiffness });
     let mut specimen = Specimen::new("frame", 2000.0, None);
     specimen.frame = Some(Frame::of_storeys(vec![storey(2e6), storey(1.5e6)]));
@@ -135,9 +135,10 @@ fn a_frame_is_known_no_better_than_its_time_step_lets_it_be() {
             .zip(result.entry_uncertainties())
             .collect::<Vec<(f64, Option<f64>)>>()
     };
-    let fine = drifts(&shaken(6.25e-5));
+    let fine = drifts(&base_excited_plan(6.25e-5));
     for time_step in [4e-3, 2e-3, 1e-3] {
-        for ((value, u), (exact, _)) in drifts(&shaken(time_step)).into_iter().zip(&fine) {
+        for ((value, u), (exact, _)) in drifts(&base_excited_plan(time_step)).into_iter().zip(&fine)
+        {
             let expanded = 2.0 * u.unwrap();
             assert!(
                 (value - exact).abs() <= expanded,

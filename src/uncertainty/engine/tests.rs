@@ -49,14 +49,14 @@ impl Evaluate for Formula {
 
 const ANY: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
-fn study(evaluate: &Formula, errors: ReadingErrors) -> Result<Vec<Contribution>, String> {
+fn propagation(evaluate: &Formula, errors: ReadingErrors) -> Result<Vec<Contribution>, String> {
     let instruments = InstrumentUncertainty::exact_but_for(errors);
     let inputs = [0, 1]
         .into_iter()
         .filter(|index| evaluate.u[*index] > 0.0)
         .map(source)
         .collect();
-    let study = Study {
+    let propagation = Propagation {
         procedure: ProcedureId(0),
         impact: 0,
         evaluate,
@@ -65,7 +65,7 @@ fn study(evaluate: &Formula, errors: ReadingErrors) -> Result<Vec<Contribution>,
         steps: 10,
         reported: None,
     };
-    match study.contributions::<()>(&mut |_, _| Ok(())) {
+    match propagation.contributions::<()>(&mut |_, _| Ok(())) {
         Ok(mut found) => Ok(found.remove(0)),
         Err(Unknown::Reason(reason)) => Err(reason),
         Err(Unknown::Ended(())) => panic!("nobody ends it"),
@@ -82,7 +82,7 @@ fn a_study_finds_the_effect_of_each_source() {
         bounds: ANY,
         departs: 1.01,
     };
-    let found = study(&evaluate, ReadingErrors::default()).unwrap();
+    let found = propagation(&evaluate, ReadingErrors::default()).unwrap();
     assert!(
         (found[0].amount - 0.3).abs() < 1e-12 && !found[0].smooth,
         "where nothing is recorded"
@@ -97,7 +97,7 @@ fn a_study_finds_the_effect_of_each_source() {
 #[test]
 fn an_input_is_perturbed_as_far_as_its_bounds_let_it() {
     let of = |u, bounds| {
-        study(
+        propagation(
             &Formula {
                 y: |a, _| 3.0 * a,
                 u: [u, 0.0],
@@ -129,7 +129,7 @@ fn trials_come_to_the_errors_of_the_readings() {
         noise: 0.2,
         ..ReadingErrors::default()
     };
-    let found = study(&evaluate, errors).unwrap();
+    let found = propagation(&evaluate, errors).unwrap();
     assert_eq!(found.len(), usize::from(MOST_DRAWS));
     assert!((crate::uncertainty::combined(&found).unwrap() - 0.2).abs() < 1e-12);
 }

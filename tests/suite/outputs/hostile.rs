@@ -324,7 +324,7 @@ fn tested_with(label: &str) -> Report {
     let own = || label.to_owned();
     let found = vec![
         Finding::text(Part::Verdict, label, label, label),
-        Finding::new(Part::Table, label, Change::Gone),
+        Finding::new(Part::Table, label, Change::Missing),
     ];
     let outcomes = [
         TestOutcome::Same {

@@ -106,7 +106,9 @@ fn a_lagging_piston_is_followed_in_closed_form() {
         forces.push(reading.force[0]);
         Ok(())
     };
-    stopping.glide(&[path], 3, &mut take).expect("a path");
+    stopping
+        .follow_paths(&[path], 3, &mut take)
+        .expect("a path");
     let by_steps = stepped(&|time| path.position(time), 0.6);
     assert!(
         (forces[2] - by_steps).abs() < 1e-3,

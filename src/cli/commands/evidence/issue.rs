@@ -15,7 +15,7 @@ use crate::cli::files::run_folder::{RunFolder, write_new};
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::evidence::{
-    Folder, ISSUE, IssueFile, MANIFEST, One, OneKind, PlayedBack, Rebuilt, examine, may_be_stated,
+    Folder, ISSUE, IssueFile, MANIFEST, One, OneKind, Rebuilt, ReplayedRun, examine, may_be_stated,
 };
 use crate::files::failure::plain;
 use crate::files::recorded_run::JOURNAL;
@@ -127,7 +127,8 @@ fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
     };
     let file = IssueFile::after(before.as_ref(), one);
     let read = record_file::from_bytes(&run.join(JOURNAL), journal)?;
-    let played = PlayedBack::of(read, Some(&file), &prediction).map_err(Failure::command_line)?;
+    let replayed =
+        ReplayedRun::of(read, Some(&file), &prediction).map_err(Failure::command_line)?;
 
     let beside = beside(run, wanted.kind);
     let created = RunFolder::create(Some(wanted.out.unwrap_or(&beside)), run)?;
@@ -147,14 +148,14 @@ fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
         .listed()
         .map(|(name, held)| (name.clone(), held.digest.clone()))
         .collect();
-    finish_replayed(created.path(), &played, &beside, settings)?;
+    finish_replayed(created.path(), &replayed, &beside, settings)?;
     let does = match wanted.kind {
         OneKind::Issue => "issues",
         OneKind::Amendment => "replaces",
     };
     print_message(&format!(
         "  report {} {does} report {}\n",
-        played.provenance.report_id(),
+        replayed.provenance.report_id(),
         report.id
     ));
     print_result(&format!("{}\n", created.path().display()))?;

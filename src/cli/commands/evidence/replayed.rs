@@ -8,28 +8,28 @@ use crate::cli::files::run_folder::FolderSink;
 use crate::cli::files::writing::ProgressSink;
 use crate::cli::output::{print_message, print_wrapped};
 use crate::cli::settings::Settings;
-use crate::evidence::PlayedBack;
+use crate::evidence::ReplayedRun;
 use crate::report;
 
 /// Prints the verdict of a replayed run, and writes its results.
 pub fn finish_replayed(
     folder: &Path,
-    played: &PlayedBack,
+    replayed: &ReplayedRun,
     beside: &[(String, String)],
     settings: Settings,
 ) -> Result<Exit, Failure> {
-    if played.steps.is_none() {
+    if replayed.steps.is_none() {
         print_wrapped(
-            &report::console::verdict_text(&played.run(), settings.color),
+            &report::console::verdict_text(&replayed.run(), settings.color),
             settings,
         );
     }
     print_message(&folder_message(folder));
     write_made(FolderSink::replacing(folder), beside, |sink| {
-        played.results(&mut ProgressSink::new(sink, settings))
+        replayed.results(&mut ProgressSink::new(sink, settings))
     })?;
-    let exit = Exit::from(played.assessment.verdict);
-    let Some(mismatch) = &played.mismatch else {
+    let exit = Exit::from(replayed.assessment.verdict);
+    let Some(mismatch) = &replayed.mismatch else {
         return Ok(exit);
     };
     print_message(&format!(

@@ -15,7 +15,7 @@ use crate::cli::files::record_file::journal_of;
 use crate::cli::files::run_folder::RunFolder;
 use crate::cli::output::print_result;
 use crate::cli::settings::Settings;
-use crate::evidence::{Folder, IssueFile, MANIFEST, PlayedBack, check_consistency, held_issue};
+use crate::evidence::{Folder, IssueFile, MANIFEST, ReplayedRun, check_consistency, held_issue};
 use crate::files::failure::plain;
 use crate::record::journal::FileStorage;
 
@@ -37,7 +37,7 @@ pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, F
         Failure::file(journal, fault)
             .help("no report is created from a run log that does not verify")
     })?;
-    let played = PlayedBack::of(read, issues.as_ref(), &prediction)
+    let replayed = ReplayedRun::of(read, issues.as_ref(), &prediction)
         .map_err(|fault| Failure::file(run, fault))?;
     let folder = match &arguments.out {
         Some(out) => RunFolder::create(Some(out), run)?.path().to_owned(),
@@ -51,7 +51,7 @@ pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, F
             .iter()
             .try_for_each(|(name, _)| copy(run, &folder, name))?;
     }
-    let exit = finish_replayed(&folder, &played, &beside, settings)?;
+    let exit = finish_replayed(&folder, &replayed, &beside, settings)?;
     print_result(&format!("{}\n", folder.display()))?;
     Ok(exit)
 }

@@ -134,9 +134,9 @@ impl Rig for Watched {
     }
 
     fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
-        let offer = self.inner.propose(targets, speed)?;
+        let encoded = self.inner.propose(targets, speed)?;
         self.note_target(targets, speed.unwrap_or(OWN_SPEED));
-        Ok(offer)
+        Ok(encoded)
     }
 
     fn execute(&mut self) -> Result<(), RigFault> {
@@ -178,7 +178,7 @@ impl Rig for Watched {
         traversed
     }
 
-    fn glide(
+    fn follow_paths(
         &mut self,
         paths: &[Path],
         samples: usize,
@@ -187,14 +187,14 @@ impl Rig for Watched {
         let ends: Vec<f64> = paths.iter().map(|path| path.to).collect();
         self.note_target(&ends, paths.iter().map(Path::fastest).fold(0.0, f64::max));
         let mut readings = Vec::new();
-        let glided = self.inner.glide(paths, samples, &mut |reading| {
+        let traversed = self.inner.follow_paths(paths, samples, &mut |reading| {
             readings.push(reading.clone());
             each(reading)
         });
         for reading in &readings {
             self.note_reading(reading, false);
         }
-        glided
+        traversed
     }
 
     fn hold(&mut self) {

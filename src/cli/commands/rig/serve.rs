@@ -50,11 +50,11 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
     let protocol = protocol(arguments, plan)?;
     named(arguments, plan)?;
     let attendance = real_rig::named(attendance, plan)?;
-    let door = Door::open(arguments)?;
+    let clients = ClientListener::open(arguments)?;
     let stop_request = StopRequest::default();
     let service = Service {
         arguments,
-        door,
+        clients,
         protocol,
         stop_request: &stop_request,
         settings,
@@ -123,12 +123,12 @@ fn named(arguments: &ServeArguments, plan: &Plan) -> Result<(), Failure> {
 }
 
 /// The listener for clients. It opens before the rig, so that nothing moves if the port is in use.
-struct Door {
+struct ClientListener {
     listener: TcpListener,
     address: SocketAddr,
 }
 
-impl Door {
+impl ClientListener {
     fn open(arguments: &ServeArguments) -> Result<Self, Failure> {
         let listener =
             TcpListener::bind(arguments.listen).map_err(|error| listening(arguments, &error))?;
@@ -147,7 +147,7 @@ fn listening(arguments: &ServeArguments, error: &std::io::Error) -> Failure {
 /// What is offered to clients, and where.
 struct Service<'a> {
     arguments: &'a ServeArguments,
-    door: Door,
+    clients: ClientListener,
     protocol: Protocol,
     stop_request: &'a StopRequest,
     settings: Settings,
@@ -169,7 +169,7 @@ struct Served {
     /// The exit of the worst session.
     exit: Exit,
     /// Whether the listener and standard output had no error.
-    door: std::io::Result<()>,
+    clients: std::io::Result<()>,
     printed: Result<(), Failure>,
 }
 
@@ -181,7 +181,7 @@ impl Served {
             recorded,
             steps,
             mut exit,
-            door,
+            clients,
             printed,
         } = self;
         let drift = recorded.record.drift.as_ref();
@@ -201,7 +201,7 @@ impl Served {
             ));
         }
         print_message(&format!("  {}\n", folder.path().display()));
-        door.map_err(|error| listening(arguments, &error))?;
+        clients.map_err(|error| listening(arguments, &error))?;
         printed?;
         if let Some(fault) = &recorded.fault {
             print_message(&format!(
@@ -227,7 +227,7 @@ fn on_record(
 ) -> Result<Served, Failure> {
     let Service {
         arguments,
-        door,
+        clients,
         protocol,
         stop_request,
         settings,
@@ -257,14 +257,14 @@ fn on_record(
         OpenLog { journal, wall },
         Driver::Client,
         &mut |specimen| {
-            if !door.address.ip().is_loopback() {
-                print_message(&open_door(door.address, *settings));
+            if !clients.address.ip().is_loopback() {
+                print_message(&open_listener(clients.address, *settings));
             }
             // The program that started this one waits for the line.
             printed = print_result(&format!(
                 "ready: {} on {}\n",
                 arguments.protocol.name(),
-                door.address
+                clients.address
             ));
             let mut print_event = |event: Event<'_>| match event {
                 Event::Connected(client) => print_message(&format!("  {client} is connected\n")),
@@ -275,7 +275,7 @@ fn on_record(
                 }
             };
             served = remote::serve(
-                &door.listener,
+                &clients.listener,
                 protocol,
                 specimen,
                 arguments.once,
@@ -290,7 +290,7 @@ fn on_record(
         recorded,
         steps,
         exit,
-        door: served,
+        clients: served,
         printed,
     })
 }
@@ -390,7 +390,7 @@ fn stiffness(text: &str) -> Result<f64, Failure> {
     }
 }
 
-fn open_door(address: SocketAddr, settings: Settings) -> String {
+fn open_listener(address: SocketAddr, settings: Settings) -> String {
     let note = settings.paint_note("  note:");
     format!(
         "{note} {address} can be reached from other machines, and the protocol has no password:\n        every client MOVES the specimen, within the plan's limits\n"

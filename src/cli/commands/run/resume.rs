@@ -45,7 +45,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     let path = journal_of(&arguments.run);
     let mut storage = FileStorage::open_existing(&path)?;
     let read = record_file::from_bytes(&path, &storage.contents()?)?;
-    if read.played.ended {
+    if read.logged.ended {
         let run = arguments.run.display();
         let failure = Failure::file(&arguments.run, replay::ResumeRefusal::Ended.to_string());
         // The manifest is written last.
@@ -57,13 +57,13 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
             ))
         });
     }
-    if read.played.header.served.as_deref() == Some(replay::BY_HAND) {
+    if read.logged.header.served.as_deref() == Some(replay::BY_HAND) {
         return Err(Failure::command_line(
             "the rig was driven by hand: there is nothing to resume",
         )
         .help("`psd rig jog` starts at the present position of the rig"));
     }
-    if read.played.header.served.is_some() {
+    if read.logged.header.served.is_some() {
         return Err(
             Failure::command_line("a client drove this run: psd cannot continue it")
                 .help("start a new run with `psd rig serve`"),
@@ -78,11 +78,11 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     let (plan, provenance, amendment) = what_holds(arguments, &read)?;
 
     replay::same_measure(&read.plan.rig, &plan.rig)?;
-    replay::not_restarted(&read.played, &assured(arguments))?;
+    replay::not_restarted(&read.logged, &assured(arguments))?;
     record_file::check_disk_space(&arguments.run, &storage)?;
 
     let steps = read
-        .played
+        .logged
         .lines
         .iter()
         .filter(|line| line.kind == EntryKind::Step)
@@ -96,14 +96,14 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     let stop_request = StopRequest::default().with_release_allowed(arguments.let_go);
     // The zero is that of the start of the run; the present position of the rig does not change it.
     let datum = read
-        .played
+        .logged
         .rig
         .as_ref()
         .and_then(|rig| rig.datum.as_deref());
     let at_its_datum = plan.rig.with_recorded_datum(datum);
     let signals = Signals::caught(&stop_request).map_err(Failure::Signals)?;
     let simulated = read
-        .played
+        .logged
         .last_rig
         .as_ref()
         .is_some_and(|rig| rig.identity.simulated);
@@ -131,7 +131,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
             arguments,
             &plan,
             &link,
-            &read.played,
+            &read.logged,
             rig,
             &mut watcher.borrow_mut(),
         )?;
@@ -143,7 +143,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
             Durability::EverySyncPoint,
             &read.recovered,
         );
-        let mut played = read.played.clone();
+        let mut logged = read.logged.clone();
         if let Some(torn) = put_aside {
             let name = torn
                 .file_name()
@@ -153,36 +153,36 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
             journal.append(
                 EntryKind::Recover,
                 &RecoverBody {
-                    t: played.time,
+                    t: logged.time,
                     put_aside: name,
                 },
             )?;
-            played.recovered();
+            logged.recovered();
         }
         if let Some((amendment, texts)) = amendment {
             replay::amend(&mut journal, &amendment, &texts)?;
-            played.amended(amendment);
+            logged.amended(amendment);
         }
         journal.append(
             EntryKind::Rig,
             &RigBody {
-                t: played.time,
+                t: logged.time,
                 ..RigBody::of(rig)
             },
         )?;
         journal.append(EntryKind::Resume, &resumption)?;
         journal.sync()?;
-        played.resumed(resumption);
+        logged.resumed(resumption);
         put_results_aside(&arguments.run)?;
         Ok(Continuation {
             rig,
             journal,
-            logged: played,
+            logged,
         })
     };
     let recorded = replay::resume(
         &plan,
-        &read.played,
+        &read.logged,
         &mut Shared(&watcher),
         real_rig::wall_clock(),
         begin,
@@ -224,7 +224,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
 type Held = (Plan, Provenance, Option<(AmendBody, Vec<String>)>);
 
 fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Failure> {
-    let recorded = &read.played.header;
+    let recorded = &read.logged.header;
     let mut differences = Vec::new();
     if recorded.build != BUILD {
         differences.push(format!(
@@ -238,7 +238,7 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
     let (mut plan, mut header, mut texts) = (
         read.plan.clone(),
         recorded.clone(),
-        read.played.texts.clone(),
+        read.logged.texts.clone(),
     );
     if let Some(path) = &arguments.plan {
         let options = real_rig::settings_of(recorded);
@@ -317,11 +317,11 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
 
 /// The equipment that the run log states; for version 1, the equipment that plan and rig state.
 fn equipment_of(read: &ReadRecord) -> Result<Equipment, Failure> {
-    if let Some(stated) = &read.played.header.equipment {
+    if let Some(stated) = &read.logged.header.equipment {
         return Ok(stated.clone());
     }
     let rig = read
-        .played
+        .logged
         .rig
         .as_ref()
         .ok_or(replay::ResumeRefusal::NothingRecorded)?;
@@ -368,11 +368,11 @@ fn settle(
     arguments: &ResumeArguments,
     plan: &Plan,
     link: &RealLink,
-    played: &LoggedRun,
+    logged: &LoggedRun,
     rig: &mut RealRig,
     watcher: &mut Watcher,
 ) -> Result<ResumeBody, Failure> {
-    let recorded = played
+    let recorded = logged
         .last_rig
         .as_ref()
         .ok_or(replay::ResumeRefusal::NothingRecorded)?;
@@ -382,7 +382,7 @@ fn settle(
     let found = rig.read()?;
     let bands = Bands::of(&plan.rig, link);
     let decision = replay::decide(
-        played,
+        logged,
         &RigBody::of(rig),
         &found,
         &bands,
@@ -390,7 +390,7 @@ fn settle(
     )?;
     let released = confirm_release::ask(plan, link, &found, &decision, rig, watcher)?;
     let resumption =
-        decision.resumption(&arguments.operator, &arguments.reason, &found, played.time);
+        decision.resumption(&arguments.operator, &arguments.reason, &found, logged.time);
     let released = Some(released);
     Ok(ResumeBody {
         assured,

@@ -404,7 +404,7 @@ impl Dialogue {
             unload: true,
         };
         if self.after != Some(choice) {
-            self.offer(choice);
+            self.show_choices(choice);
         }
         if self.unload {
             match self.ask(question) {
@@ -430,12 +430,12 @@ impl Dialogue {
             return chosen;
         }
         if self.after != Some(after) {
-            self.offer(after);
+            self.show_choices(after);
         }
         Stay::Wait
     }
 
-    fn offer(&mut self, after: After) {
+    fn show_choices(&mut self, after: After) {
         (self.after, self.chosen, self.help) = (Some(after), None, false);
         self.back_to_the_choice();
     }

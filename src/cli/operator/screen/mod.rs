@@ -21,7 +21,7 @@ use dialogue::Dialogue;
 use draw::View;
 use keys::Key;
 use model::{Ended, Model};
-use terminal::{Gone, Page};
+use terminal::{Page, TerminalLost};
 
 pub use terminal::is_large_enough;
 
@@ -118,8 +118,8 @@ impl Screen {
             state: Mutex::new(state),
             changed: Condvar::new(),
         });
-        let (theirs, their_wish) = (Arc::clone(&shared), stop_request.clone());
-        std::thread::spawn(move || show(&theirs, &their_wish, color));
+        let (theirs, their_stop_request) = (Arc::clone(&shared), stop_request.clone());
+        std::thread::spawn(move || show(&theirs, &their_stop_request, color));
         Self {
             shared,
             stop_request,
@@ -284,7 +284,7 @@ fn page(
     stop_request: &StopRequest,
     color: bool,
     began: Instant,
-) -> Result<(), Gone> {
+) -> Result<(), TerminalLost> {
     let mut page = Page::open()?;
     let mut alarmed = false;
     loop {

@@ -256,7 +256,7 @@ impl Model {
             kept: false,
             value,
         };
-        let went = last.and_then(|last| last.speed);
+        let speed_found = last.and_then(|last| last.speed);
         [
             row(
                 "displacement",
@@ -274,7 +274,13 @@ impl Model {
             ),
             LimitRow {
                 kept: true,
-                ..row("speed", Dimension::VELOCITY, sizes(speed), true, went)
+                ..row(
+                    "speed",
+                    Dimension::VELOCITY,
+                    sizes(speed),
+                    true,
+                    speed_found,
+                )
             },
             row(
                 "increment",

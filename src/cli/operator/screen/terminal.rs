@@ -21,7 +21,7 @@ use super::keys::{Key, Keyboard};
 
 /// The terminal is closed.
 #[derive(Clone, Copy, Debug)]
-pub struct Gone;
+pub struct TerminalLost;
 
 /// Drawn on standard error: standard output may be a pipe.
 pub struct Page {
@@ -38,7 +38,7 @@ pub fn is_large_enough() -> bool {
 
 impl Page {
     /// Sets up the terminal.
-    pub fn open() -> Result<Self, Gone> {
+    pub fn open() -> Result<Self, TerminalLost> {
         static HOOK: Once = Once::new();
         HOOK.call_once(|| {
             // The message of a panic must appear on the normal page.
@@ -48,7 +48,7 @@ impl Page {
                 before(panic);
             }));
         });
-        enable_raw_mode().map_err(|_| Gone)?;
+        enable_raw_mode().map_err(|_| TerminalLost)?;
         let opened = execute!(stderr(), EnterAlternateScreen).and_then(|()| {
             Terminal::new(CrosstermBackend::new(BufWriter::with_capacity(
                 1 << 14,
@@ -57,7 +57,7 @@ impl Page {
         });
         let Ok(terminal) = opened else {
             restore();
-            return Err(Gone);
+            return Err(TerminalLost);
         };
         Ok(Self {
             terminal: ManuallyDrop::new(terminal),
@@ -65,11 +65,11 @@ impl Page {
         })
     }
 
-    pub fn draw(&mut self, view: &View<'_>) -> Result<(), Gone> {
+    pub fn draw(&mut self, view: &View<'_>) -> Result<(), TerminalLost> {
         self.terminal
             .draw(|frame| draw(frame, view))
             .map(|_| ())
-            .map_err(|_| Gone)
+            .map_err(|_| TerminalLost)
     }
 
     /// Rings the bell, for an operator who does not look at the screen.
@@ -78,17 +78,17 @@ impl Page {
     }
 
     /// The keys pressed within the time-out.
-    pub fn keys(&mut self, timeout: Duration) -> Result<Vec<Key>, Gone> {
+    pub fn keys(&mut self, timeout: Duration) -> Result<Vec<Key>, TerminalLost> {
         if !has_input(timeout)? {
             self.keyboard.quiet();
             return Ok(Vec::new());
         }
         let mut typed = [0; 256];
         match rustix::io::read(std::io::stdin(), &mut typed) {
-            Ok(0) => Err(Gone),
+            Ok(0) => Err(TerminalLost),
             Ok(count) => Ok(self.keyboard.typed(&typed[..count])),
             Err(rustix::io::Errno::INTR | rustix::io::Errno::AGAIN) => Ok(Vec::new()),
-            Err(_) => Err(Gone),
+            Err(_) => Err(TerminalLost),
         }
     }
 }
@@ -107,7 +107,7 @@ fn restore() {
 }
 
 /// Whether a key is waiting. psd reads only if there is input: the read never blocks, and ends immediately on a closed terminal.
-fn has_input(timeout: Duration) -> Result<bool, Gone> {
+fn has_input(timeout: Duration) -> Result<bool, TerminalLost> {
     let stdin = std::io::stdin();
     let mut watched = [PollFd::new(&stdin, PollFlags::IN)];
     let wait = Timespec {
@@ -117,13 +117,13 @@ fn has_input(timeout: Duration) -> Result<bool, Gone> {
     match poll(&mut watched, Some(&wait)) {
         // No input yet; or for example the window size changed.
         Ok(0) | Err(rustix::io::Errno::INTR) => Ok(false),
-        Err(_) => Err(Gone),
+        Err(_) => Err(TerminalLost),
         Ok(_) => {
             let found = watched[0].revents();
             let gone = found.intersects(PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL);
             let readable = rustix::io::ioctl_fionread(&stdin).is_ok_and(|bytes| bytes > 0);
             if gone || !readable {
-                Err(Gone)
+                Err(TerminalLost)
             } else {
                 Ok(true)
             }

@@ -2,7 +2,7 @@
 //! answer with its remark and name, or the choice for a rig on hold. The end of the input never counts as yes.
 
 use super::Stay;
-use super::typed::{Heard, Typed};
+use super::typed::{Input, Typed};
 use crate::cli::operator::question::{After, Choice, Kind, Question, WHY_RESUME};
 use crate::cli::output::print_message;
 use crate::rig::StopRequest;
@@ -45,14 +45,14 @@ impl Person {
             self.remark = None;
             self.state = State::Asked(kind);
         }
-        match self.typed().hear() {
-            Heard::Nothing => Inspection::Wait,
-            Heard::Ready => {
+        match self.typed().read() {
+            Input::Nothing => Inspection::Wait,
+            Input::Ready => {
                 print_message(&prompt(kind));
                 Inspection::Wait
             }
-            Heard::Line(line) => self.heard(&line, operator),
-            Heard::End => {
+            Input::Line(line) => self.answered(&line, operator),
+            Input::End => {
                 self.state = State::Silent;
                 kind.unanswered()
             }
@@ -113,18 +113,18 @@ impl Person {
             self.typed().begin();
             self.state = State::Choosing(after);
         }
-        match self.typed().hear() {
-            Heard::Nothing => {}
-            Heard::Ready => print_message(&choices(after)),
-            Heard::End => self.leave(),
-            Heard::Line(line) if self.state == State::Resuming(after) => {
+        match self.typed().read() {
+            Input::Nothing => {}
+            Input::Ready => print_message(&choices(after)),
+            Input::End => self.leave(),
+            Input::Line(line) if self.state == State::Resuming(after) => {
                 match escape(line.trim()) {
                     // No reason: back to the choice.
                     reason if reason.is_empty() => self.state = State::Silent,
                     reason => self.chosen = Some(Stay::Resume(reason)),
                 }
             }
-            Heard::Line(line) => match line.trim().parse().ok().and_then(|key| after.choice(key)) {
+            Input::Line(line) => match line.trim().parse().ok().and_then(|key| after.choice(key)) {
                 Some(Choice::Leave) => self.leave(),
                 Some(Choice::Unload) => self.unload = true,
                 Some(Choice::Resume) => {
@@ -151,7 +151,7 @@ impl Person {
         self.typed().begin();
     }
 
-    fn heard(&mut self, line: &str, operator: &mut Option<String>) -> Inspection {
+    fn answered(&mut self, line: &str, operator: &mut Option<String>) -> Inspection {
         let (kind, yes) = match self.state {
             State::Naming(kind, yes) => {
                 let name = escape(line.trim());
@@ -231,11 +231,11 @@ pub fn next_line<E>(
     mut meanwhile: impl FnMut() -> Result<(), E>,
 ) -> Result<Option<String>, E> {
     loop {
-        match typed.hear() {
-            Heard::Line(line) => return Ok(Some(line)),
-            Heard::End => return Ok(None),
-            Heard::Nothing | Heard::Ready if stop_request.end_requested() => return Ok(None),
-            Heard::Nothing | Heard::Ready => meanwhile()?,
+        match typed.read() {
+            Input::Line(line) => return Ok(Some(line)),
+            Input::End => return Ok(None),
+            Input::Nothing | Input::Ready if stop_request.end_requested() => return Ok(None),
+            Input::Nothing | Input::Ready => meanwhile()?,
         }
     }
 }
@@ -253,15 +253,15 @@ pub fn agrees<E>(
     print_message(&shown(question));
     typed.begin();
     loop {
-        match typed.hear() {
-            Heard::Ready => print_message(&prompt(question.kind)),
-            Heard::Line(line) => match question.kind.answer(&line) {
+        match typed.read() {
+            Input::Ready => print_message(&prompt(question.kind)),
+            Input::Line(line) => match question.kind.answer(&line) {
                 Some(yes) => return Ok(yes),
                 None => print_message(&prompt(question.kind)),
             },
-            Heard::End => return Ok(false),
-            Heard::Nothing if stop_request.end_requested() => return Ok(false),
-            Heard::Nothing => {}
+            Input::End => return Ok(false),
+            Input::Nothing if stop_request.end_requested() => return Ok(false),
+            Input::Nothing => {}
         }
         meanwhile()?;
     }

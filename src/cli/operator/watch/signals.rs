@@ -44,7 +44,7 @@ impl Signals {
 
     fn become_wishes(
         stop_request: &StopRequest,
-        become_wish: fn(&StopRequest, i32),
+        forward: fn(&StopRequest, i32),
     ) -> std::io::Result<Self> {
         let mut signals =
             iterator::Signals::new([SIGINT, SIGQUIT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGALRM])?;
@@ -60,7 +60,7 @@ impl Signals {
                     SIGINT | SIGQUIT => {}
                     _ => theirs.suppress_prompts(),
                 }
-                become_wish(&theirs, signal);
+                forward(&theirs, signal);
                 match their_output.load(Ordering::SeqCst) {
                     SILENT => {}
                     ON_A_TERMINAL => print_message(&format!("{CLEARED}  {}\n", effect(&theirs))),

@@ -30,7 +30,7 @@ static STANDARD_INPUT: LazyLock<Arc<Mutex<Receiver<String>>>> = LazyLock::new(||
 
 /// The result of a wait for a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Heard {
+pub enum Input {
     Nothing,
     /// From here on lines count: the answer can be asked for.
     Ready,
@@ -80,7 +80,7 @@ impl Typed {
     }
 
     /// Waits a moment for a line.
-    pub fn hear(&mut self) -> Heard {
+    pub fn read(&mut self) -> Input {
         let line = self
             .lines
             .lock()
@@ -88,19 +88,19 @@ impl Typed {
             .recv_timeout(LOOK);
         if let Some(until) = self.deaf_until {
             if line == Err(RecvTimeoutError::Disconnected) {
-                return Heard::End;
+                return Input::End;
             }
             if (self.clock)() < until {
-                return Heard::Nothing;
+                return Input::Nothing;
             }
             self.forget();
             self.deaf_until = None;
-            return Heard::Ready;
+            return Input::Ready;
         }
         match line {
-            Ok(line) => Heard::Line(line),
-            Err(RecvTimeoutError::Timeout) => Heard::Nothing,
-            Err(RecvTimeoutError::Disconnected) => Heard::End,
+            Ok(line) => Input::Line(line),
+            Err(RecvTimeoutError::Timeout) => Input::Nothing,
+            Err(RecvTimeoutError::Disconnected) => Input::End,
         }
     }
 
@@ -133,22 +133,22 @@ mod tests {
         let type_line = |line: &str| send.send(line.to_owned()).unwrap();
         type_line("before");
         typed.begin();
-        assert_eq!(typed.hear(), Heard::Nothing);
+        assert_eq!(typed.read(), Input::Nothing);
         now.set(Duration::from_millis(999));
         type_line("RELEASE");
-        assert_eq!(typed.hear(), Heard::Nothing, "in its first second");
+        assert_eq!(typed.read(), Input::Nothing, "in its first second");
         type_line("still there when the second is over");
         now.set(Duration::from_secs(1));
-        assert_eq!(typed.hear(), Heard::Ready);
-        assert_eq!(typed.hear(), Heard::Nothing);
+        assert_eq!(typed.read(), Input::Ready);
+        assert_eq!(typed.read(), Input::Nothing);
         type_line("RELEASE");
-        assert_eq!(typed.hear(), Heard::Line("RELEASE".to_owned()));
+        assert_eq!(typed.read(), Input::Line("RELEASE".to_owned()));
         type_line("for the next");
         typed.begin();
         now.set(Duration::from_secs(5));
-        assert_eq!((typed.hear(), typed.hear()), (Heard::Ready, Heard::Nothing));
+        assert_eq!((typed.read(), typed.read()), (Input::Ready, Input::Nothing));
         drop(send);
         typed.begin();
-        assert_eq!(typed.hear(), Heard::End);
+        assert_eq!(typed.read(), Input::End);
     }
 }

@@ -14,7 +14,7 @@ fn wait(board: &mut (Grbl, EmulatedRig), seconds: f64) -> String {
 }
 
 fn board() -> (Grbl, EmulatedRig) {
-    (Grbl::new("PSD-SIM"), elastic_rig().standing_at(&[-0.001]))
+    (Grbl::new("PSD-SIM"), elastic_rig().resting_at(&[-0.001]))
 }
 
 #[test]

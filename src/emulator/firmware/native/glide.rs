@@ -2,7 +2,7 @@
 //! move, or the code of a refusal. The whole move is compared with the limits of the run before it begins.
 
 use super::{AxisBounds, Native, decimal, of_axis};
-use crate::emulator::{EmulatedRig, GlideRefusal, PathEnd};
+use crate::emulator::{EmulatedRig, PathEnd, PathRefusal};
 use crate::physics::tracking::trajectory::Path;
 
 /// Duration of the motion after a move without a successor \[s\]; then it holds. A fault can change it.
@@ -40,8 +40,8 @@ impl Native {
         }
         let seconds = time / 1e3;
         let paths = rig.paths_to(&ends, seconds).map_err(|why| match why {
-            GlideRefusal::Busy => "BUSY".to_owned(),
-            GlideRefusal::Late => "LATE".to_owned(),
+            PathRefusal::Busy => "BUSY".to_owned(),
+            PathRefusal::Late => "LATE".to_owned(),
         })?;
         let outside = |(axis, path): (&AxisBounds, &Path)| {
             let ((low, high), (least, most)) = (path.reach(), axis.displacement);
@@ -70,14 +70,14 @@ impl Native {
 
     /// After a move without a successor the motion continues for a short time, within its limits. Then it holds.
     pub(super) fn coast(&mut self, rig: &mut EmulatedRig) {
-        let Some(gone_on) = rig.gone_on().filter(|_| self.has_all_of(rig)) else {
+        let Some(overrun) = rig.overrun().filter(|_| self.has_all_of(rig)) else {
             return;
         };
         let inside = |(actuator, axis): (usize, &AxisBounds)| {
             let (position, (low, high)) = (rig.commanded_of(actuator) * 1e3, axis.displacement);
             low - ROUNDING <= position && position <= high + ROUNDING
         };
-        if gone_on > rig.coasts_for().unwrap_or(GOES_ON)
+        if overrun > rig.coasts_for().unwrap_or(GOES_ON)
             || !self.run.axes.iter().enumerate().all(inside)
         {
             self.hold(rig);

@@ -73,7 +73,7 @@ pub struct Native {
     held: bool,
     watchdog_tripped: bool,
     /// Time of the last valid frame \[s\].
-    heard: Option<f64>,
+    last_contact: Option<f64>,
 }
 
 impl Native {
@@ -99,7 +99,7 @@ impl Native {
             referenced: true,
             held: false,
             watchdog_tripped: false,
-            heard: None,
+            last_contact: None,
         }
     }
 
@@ -132,7 +132,7 @@ impl Native {
         if stated != format!("{:04X}", crc(body.as_bytes())) {
             return None;
         }
-        self.heard = Some(rig.time());
+        self.last_contact = Some(rig.time());
         let mut words = body.split(' ');
         let verb = words.next()?;
         let sequence: u32 = words
@@ -328,8 +328,8 @@ impl Firmware for Native {
     fn tick(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
         self.coast(rig);
         if self
-            .heard
-            .is_some_and(|heard| rig.time() - heard > self.settings.watchdog)
+            .last_contact
+            .is_some_and(|last_contact| rig.time() - last_contact > self.settings.watchdog)
             && !self.watchdog_tripped
         {
             self.watchdog_tripped = true;

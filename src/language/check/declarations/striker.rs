@@ -55,8 +55,8 @@ pub fn striker(checker: &mut Checker, block: usize) -> Option<Striker> {
     ] {
         let pairless =
             checker.field(block, form).is_some() && checker.field(block, other).is_none();
-        let lacking = form == ANGLE.name || forms.is_empty();
-        if pairless && lacking && !checker.misspelt(block, &[other]) {
+        let missing = form == ANGLE.name || forms.is_empty();
+        if pairless && missing && !checker.misspelt(block, &[other]) {
             checker
                 .diagnostics
                 .push(message::missing_field(kind, name, head, other, example));

@@ -7,7 +7,7 @@ use crate::language::check::messages::{names as message, types};
 use crate::language::syntax::ast::{Argument, Expr, ExprKind};
 use crate::plan::Interval;
 use crate::plan::formula::Formula;
-use crate::schema::{Field, FieldType, Need, Variant};
+use crate::schema::{Field, FieldType, Presence, Variant};
 use crate::text::source::Span;
 use crate::units::Dimension;
 
@@ -159,7 +159,7 @@ impl<'a> Checker<'a> {
             return None;
         }
         for (field, given) in variant.arguments.iter().zip(&assigned) {
-            if given.is_none() && field.need == Need::Required {
+            if given.is_none() && field.presence == Presence::Required {
                 self.diagnostics
                     .push(message::missing_argument(variant, field, span));
                 faulty = true;

@@ -8,7 +8,7 @@ use crate::language::syntax::ast::{Entry, Expr, ExprKind};
 use crate::plan::formula::Formula;
 use crate::schema::methods::TIME_STEP;
 use crate::schema::procedures::STIFFNESS;
-use crate::schema::{Field, FieldType, Kind, Need, RigKind};
+use crate::schema::{Field, FieldType, Kind, Presence, RigKind};
 use crate::schema::{rig, specimen};
 use crate::text::source::Span;
 use crate::text::suggest;
@@ -47,10 +47,10 @@ impl<'a> Checker<'a> {
         } else {
             RigKind::Virtual
         };
-        let required = |field: &&Field| match field.need {
-            Need::Required => true,
+        let required = |field: &&Field| match field.presence {
+            Presence::Required => true,
             // The missing entries of a rig are reported together.
-            Need::RequiredOn(on, _) => on == rig && kind.kind != Kind::Rig,
+            Presence::RequiredOn(on, _) => on == rig && kind.kind != Kind::Rig,
             _ => false,
         };
         for field in kind.fields.iter().filter(required) {
@@ -60,8 +60,8 @@ impl<'a> Checker<'a> {
                 && !self.replaced(block, field.name)
             {
                 let example = self.example_of(block, field);
-                self.diagnostics.push(match field.need {
-                    Need::RequiredOn(rig, _) => message::missing_field_on(
+                self.diagnostics.push(match field.presence {
+                    Presence::RequiredOn(rig, _) => message::missing_field_on(
                         rig,
                         kind,
                         declared.name,

@@ -10,7 +10,7 @@ use crate::language::check::rig;
 use crate::language::check::scope::{Meaning, Scope, Setting};
 use crate::language::syntax::ast::{Argument, Entry, Expr, ExprKind};
 use crate::plan::formula::Formula;
-use crate::schema::{Field, FieldType, Kind, Need, RigKind, Variant};
+use crate::schema::{Field, FieldType, Kind, Presence, RigKind, Variant};
 use crate::text::source::Span;
 use crate::units::Quantity;
 
@@ -63,7 +63,7 @@ pub fn find_input<'a>(scope: &Scope<'a>, path: &[&str]) -> Result<InputLocation<
     let (Some(field), Some((entry, written))) = (field, written) else {
         return no_field(if declared.kind.result(name).is_some() {
             message::NoField::Result
-        } else if field.is_some_and(|field| matches!(field.need, Need::Default { .. })) {
+        } else if field.is_some_and(|field| matches!(field.presence, Presence::Default { .. })) {
             message::NoField::NotWritten
         } else if declared.kind.export(name).is_some() {
             message::NoField::Derived

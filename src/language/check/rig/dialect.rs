@@ -103,10 +103,10 @@ fn modbus<'a>(
     let length_unit = checker.optional_argument(chosen, schema::LENGTH_UNIT.name, context);
     let speed_unit = checker.optional_argument(chosen, schema::SPEED_UNIT.name, context);
     let force_unit = checker.optional_argument(chosen, schema::FORCE_UNIT.name, context);
-    let lacking = TOGETHER
+    let missing = TOGETHER
         .iter()
         .find(|(one, other)| chosen.span(one).is_some() && chosen.span(other).is_none());
-    if let Some((one, other)) = lacking
+    if let Some((one, other)) = missing
         && let Some(span) = chosen.span(one)
     {
         return checker.fail(names::argument_needs(chosen.variant.name, one, other, span));

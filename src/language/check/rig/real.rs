@@ -16,7 +16,7 @@ use crate::plan::{
     Datum, Dialect, Interval, Link, PretestCheck, ReadingRules, RealLink, SafeState,
 };
 use crate::schema::rig as schema;
-use crate::schema::{Field, Kind, Need, RigKind};
+use crate::schema::{Field, Kind, Presence, RigKind};
 use crate::schema::{limits as limits_block, plan_block};
 use crate::units::Dimension;
 
@@ -309,7 +309,7 @@ pub fn complete(
             .kind
             .fields
             .iter()
-            .filter(|field| matches!(field.need, Need::RequiredOn(RigKind::Real, _)));
+            .filter(|field| matches!(field.presence, Presence::RequiredOn(RigKind::Real, _)));
         let absent = |field: &&Field| {
             let elsewhere =
                 field.name == schema::PRETEST_CHECK.name && every_axis_has_a_check(checker, block);

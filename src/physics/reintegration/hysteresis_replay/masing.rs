@@ -35,7 +35,7 @@ pub(super) fn is_kept(
     // Past its peak displacement so far a specimen continues along its initial loading curve.
     let mut largest = 0.0;
     for branch in 1..branches.len() {
-        largest = f64::max(largest, off(&branches[branch - 1].turn));
+        largest = f64::max(largest, off(&branches[branch - 1].reversal));
         if branches[branch].retraces {
             continue;
         }

@@ -10,10 +10,10 @@ pub(super) fn monotonic_branches(readings: &[Reading]) -> Vec<(usize, usize, f64
 }
 
 /// The same from the move to each reading: a displacement change, or a velocity.
-pub(super) fn branches_of(went: impl Iterator<Item = f64>) -> Vec<(usize, usize, f64)> {
+pub(super) fn branches_of(travel: impl Iterator<Item = f64>) -> Vec<(usize, usize, f64)> {
     let mut found = Vec::new();
     let (mut begin, mut last, mut direction) = (0, 0, 0.0);
-    for (step, moved) in went.enumerate() {
+    for (step, moved) in travel.enumerate() {
         last = step;
         if moved * direction < 0.0 {
             found.push((begin, step - 1, direction));

@@ -45,7 +45,7 @@ pub(super) struct Branch {
     /// The reading before the reversal at its end, or the last.
     pub end: usize,
     /// That reversal, the begin of the next branch: a reading, or a point between two.
-    pub turn: Reading,
+    pub reversal: Reading,
     /// Force there by its own curve \[N\].
     pub led_to: f64,
     /// Its pieces, at least one.
@@ -90,25 +90,25 @@ pub(super) fn cut(
     );
     for (begin, end, direction) in found {
         let branch = branches.len();
-        let mut turn = readings[begin];
+        let mut reversal = readings[begin];
         if let Some(before) = branch.checked_sub(1) {
             if let Some(position) = continuous.and_then(|continuous| continuous.turned(begin)) {
                 let onto = readings[begin + 1];
                 let tangent = tangent(readings[begin + 1..=end].iter(), least).unwrap_or(elastic);
                 let displacement = onto.displacement + (position - onto.target);
                 branches[before].led_to +=
-                    pieces[branches[before].last_piece].end_tangent * (position - turn.target);
-                turn = Reading {
+                    pieces[branches[before].last_piece].end_tangent * (position - reversal.target);
+                reversal = Reading {
                     target: position,
                     displacement,
                     force: onto.force + tangent * (position - onto.target),
                 };
-                branches[before].turn = turn;
+                branches[before].reversal = reversal;
             }
             open.push(before);
         }
         let own = Piece {
-            begin: turn,
+            begin: reversal,
             first: begin + 1,
             last: end,
             branch,
@@ -125,7 +125,7 @@ pub(super) fn cut(
         for step in begin + 1..=end {
             let mut rejoined = None;
             while let [.., left, _] = open[..]
-                && (readings[step].target - branches[left].turn.target) * direction > 0.0
+                && (readings[step].target - branches[left].reversal.target) * direction > 0.0
             {
                 let (near, far) = (
                     if step == begin + 1 {
@@ -135,14 +135,14 @@ pub(super) fn cut(
                     },
                     readings[step],
                 );
-                let turn = branches[left].turn;
+                let reversal = branches[left].reversal;
                 let force = near.force
-                    + (turn.target - near.target) / (far.target - near.target)
+                    + (reversal.target - near.target) / (far.target - near.target)
                         * (far.force - near.force);
-                let height = (turn.force - own.begin.force).abs();
+                let height = (reversal.force - own.begin.force).abs();
                 let force_uncertainty =
                     NOISE_BOUND * force_noise + 0.5 * (far.force - near.force).abs();
-                let closed = (force - turn.force).abs() <= force_uncertainty + OPEN * height;
+                let closed = (force - reversal.force).abs() <= force_uncertainty + OPEN * height;
                 rejoined = closed.then_some(left);
                 drifts = drifts.or((!closed).then_some(step));
                 open.truncate(open.len() - 2);
@@ -153,7 +153,7 @@ pub(super) fn cut(
                 pieces[here - 1].last = step - 1;
                 pieces[before].after = Some(here);
                 let curve = pieces[before].curve;
-                let begin = branches[left].turn;
+                let begin = branches[left].reversal;
                 pieces.push(Piece {
                     begin,
                     first: step,
@@ -181,7 +181,7 @@ pub(super) fn cut(
         branches.push(Branch {
             direction,
             end,
-            turn: readings[end],
+            reversal: readings[end],
             led_to: readings[end].force,
             first_piece,
             last_piece: pieces.len() - 1,
@@ -211,14 +211,14 @@ fn retraces(
 ) -> bool {
     let own = pieces[branches[branch].first_piece];
     let from = branches[branch - 1].last_piece;
-    let turn = own.begin;
+    let reversal = own.begin;
     let (mut thickness, mut span) = (0.0_f64, 0.0_f64);
     for reading in readings.iter().take(own.last + 1).skip(own.first) {
         let Some((_, force)) = within(readings, pieces, branches, from, reading.target) else {
             break;
         };
         thickness = thickness.max((reading.force - force).abs());
-        span = span.max((reading.force - turn.force).abs());
+        span = span.max((reading.force - reversal.force).abs());
     }
     thickness <= noise + THIN * span
 }
@@ -244,7 +244,7 @@ fn within(
     } = pieces[piece];
     let Branch {
         direction,
-        turn,
+        reversal,
         led_to,
         last_piece,
         ..
@@ -253,10 +253,10 @@ fn within(
         .partition_point(|reading| (reading.target - position) * direction < 0.0);
     let far = if first + reached <= last {
         readings[first + reached]
-    } else if piece == last_piece && (turn.target - position) * direction >= 0.0 {
+    } else if piece == last_piece && (reversal.target - position) * direction >= 0.0 {
         Reading {
             force: led_to,
-            ..turn
+            ..reversal
         }
     } else {
         return None;

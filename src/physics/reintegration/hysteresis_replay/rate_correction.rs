@@ -177,12 +177,12 @@ impl ContinuousReadings {
                 velocity: *velocity,
             })
         };
-        self.turn_between(at(step)?, at(step + 1)?, 1)
+        self.reversal_between(at(step)?, at(step + 1)?, 1)
     }
 
     /// Position of a reversal between two passages \[m\] that are a step apart, of which there are `finer` for each of the record. The
     /// nearer end has the larger weight.
-    pub fn turn_between(&self, from: Passage, to: Passage, finer: u8) -> Option<f64> {
+    pub fn reversal_between(&self, from: Passage, to: Passage, finer: u8) -> Option<f64> {
         let time_step = self.time_step / f64::from(finer);
         (from.velocity * to.velocity < 0.0).then(|| {
             let share = from.velocity / (from.velocity - to.velocity);
@@ -435,18 +435,18 @@ mod tests {
             0.0,
             0.0,
         );
-        for turn in [1e-4, 1e-3, 1.9e-3] {
-            let position = |time: f64| 0.5 * -3.0 * (time - turn).powi(2);
+        for reversal in [1e-4, 1e-3, 1.9e-3] {
+            let position = |time: f64| 0.5 * -3.0 * (time - reversal).powi(2);
             let at = |time: f64| Passage {
                 position: position(time),
-                velocity: -3.0 * (time - turn),
+                velocity: -3.0 * (time - reversal),
             };
-            let found = motion.turn_between(at(0.0), at(TIME_STEP), 1).unwrap();
+            let found = motion.reversal_between(at(0.0), at(TIME_STEP), 1).unwrap();
             assert!(found.abs() < 1e-15, "{found} m");
         }
         let passes = |position: f64, velocity: f64| Passage { position, velocity };
         assert_eq!(
-            motion.turn_between(passes(0.0, 1.0), passes(1e-3, 2.0), 1),
+            motion.reversal_between(passes(0.0, 1.0), passes(1e-3, 2.0), 1),
             None
         );
     }

@@ -62,7 +62,7 @@ impl<'a> Retrace<'a> {
         let turns = path
             .branches
             .iter()
-            .map(|branch| branch.turn.target)
+            .map(|branch| branch.reversal.target)
             .collect();
         let position = path.readings[0].target;
         let shifts = vec![Shift::default(); path.branches.len()];
@@ -146,7 +146,7 @@ impl<'a> Retrace<'a> {
             } else if branch + 1 < path.branches.len() && path.branches[branch].end < self.step {
                 // The record has reversed by now: the reversals match.
                 self.aside = None;
-                self.turn(aside.from);
+                self.reversal(aside.from);
             } else {
                 self.leaves_by(position - aside.from);
                 return;
@@ -165,11 +165,11 @@ impl<'a> Retrace<'a> {
                         position: self.position,
                         velocity: self.speed.actual,
                     };
-                    it.turn_between(before, Passage { position, velocity }, self.finer)
+                    it.reversal_between(before, Passage { position, velocity }, self.finer)
                 });
                 let from = between.unwrap_or(self.position);
                 if self.matched(before) {
-                    self.turn(from);
+                    self.reversal(from);
                 } else {
                     let (displacement, force) = self.at(from);
                     self.aside = Some(Aside {
@@ -251,22 +251,24 @@ impl<'a> Retrace<'a> {
         for branch in [left + 1, left + 2] {
             self.shifts[branch] = self.shifts[curve];
         }
-        self.shifts_by(path.branches[left].turn.target - path.branches[left + 1].turn.target);
+        self.shifts_by(
+            path.branches[left].reversal.target - path.branches[left + 1].reversal.target,
+        );
     }
 
     /// Reverses at `position` \[m\] onto the next branch. A curve that retraces an earlier one is shifted as that one; any other keeps
     /// its shape. A curve that closed no loop returns to the line on which it settled.
-    fn turn(&mut self, position: f64) {
+    fn reversal(&mut self, position: f64) {
         let path = self.path;
         let branch = self.branch();
         let next = branch + 1;
-        let turn = path.branches[branch].turn;
+        let reversal = path.branches[branch].reversal;
         let before = self.shift();
         let at = position - before.position;
         let mut shift = before;
         if !path.branches[next].retraces {
             // The difference of readings this near each other is noise.
-            let off = at - turn.target;
+            let off = at - reversal.target;
             let rise = if off.abs() <= path.least {
                 path.pieces[path.branches[branch].last_piece].end_tangent * off
             } else {

@@ -238,11 +238,11 @@ fn turns_are_its_own() {
     let straight = motion(&[0.0, 0.61, 0.5], STEP);
     let off = worst(&path, bilinear(), &straight);
     assert!(off <= 0.5 * 1000.0 * STEP, "{off} N");
-    for turn in [0.39, 0.41] {
+    for reversal in [0.39, 0.41] {
         let off = worst(
             &path,
             bilinear(),
-            &motion(&[0.0, turn, turn - 0.02, 0.6, 0.5], STEP),
+            &motion(&[0.0, reversal, reversal - 0.02, 0.6, 0.5], STEP),
         );
         assert!(off <= 0.5 * 1000.0 * STEP, "{off} N");
     }
@@ -271,14 +271,18 @@ fn an_unrecorded_reversal_is_reported() {
 
 /// Sixty reversals, first with growing amplitude; `more` adds a relative variation of the amplitude.
 fn swings(more: f64) -> Vec<f64> {
-    let turn = |turn: u32| {
-        let phase = f64::from(turn);
+    let reversal = |reversal: u32| {
+        let phase = f64::from(reversal);
         let size = 0.5 * (1.0 + 0.4 * (0.37 * phase).sin()) * (0.15 * phase).min(1.0)
             + 0.05 * (1.3 * phase).sin();
         let size = size * (1.0 + more * (0.9 * phase).cos());
-        if turn.is_multiple_of(2) { size } else { -size }
+        if reversal.is_multiple_of(2) {
+            size
+        } else {
+            -size
+        }
     };
-    (0..60).map(turn).collect()
+    (0..60).map(reversal).collect()
 }
 
 /// Elements in parallel keep Masing's rule and never depart from their record. Specimens that pinch, degrade or follow the Bouc–Wen

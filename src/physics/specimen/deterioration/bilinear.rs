@@ -98,7 +98,7 @@ impl DeterioratingBilinear {
     }
 
     /// The reversal of a loaded excursion.
-    fn turn(&mut self) {
+    fn reverse_loading(&mut self) {
         self.turned = true;
         let (before, within) = (
             self.degradation.unloading,
@@ -133,7 +133,7 @@ impl DeterioratingBilinear {
 
     fn go(&mut self, direction: f64, to: f64) {
         if self.force * direction < 0.0 && !self.turned {
-            self.turn();
+            self.reverse_loading();
         }
         let mut from = [self.displacement * direction, self.force * direction];
         let mut origin = from;
@@ -308,7 +308,7 @@ mod tests {
         assert!((model.move_to(0.0048) - (1000.0 - 2e-4 * soft)).abs() < 1e-9);
         assert!(
             (model.move_to(0.0045) - (1000.0 - 5e-4 * soft)).abs() < 1e-9,
-            "another turn there costs nothing"
+            "another reversal there costs nothing"
         );
         assert!(
             (model.move_to(0.007) - 1000.0).abs() < 1e-9,
@@ -342,7 +342,7 @@ mod tests {
             let (mut work, mut least): (f64, f64) = (0.0, 0.0);
             for cycle in 1..=40 {
                 let amplitude = 1e-3 * (1.5 + 0.2 * f64::from(cycle));
-                for turn in [
+                for reversal in [
                     amplitude,
                     -0.3 * amplitude,
                     0.6 * amplitude,
@@ -350,7 +350,7 @@ mod tests {
                     0.0,
                 ] {
                     let from = model.displacement;
-                    work += energy_along(&mut model, from, &[turn], 1e-5);
+                    work += energy_along(&mut model, from, &[reversal], 1e-5);
                     least = least.min(work);
                 }
             }

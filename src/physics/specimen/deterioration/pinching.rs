@@ -58,7 +58,7 @@ pub struct PinchedHysteresis {
     zero: f64,
     pub(super) degradation: Degradation,
     /// Begin of an unloading that has not reached zero force: displacement \[m\], force \[N\].
-    turn: Option<[f64; 2]>,
+    reversal: Option<[f64; 2]>,
 }
 
 impl PinchedHysteresis {
@@ -73,7 +73,7 @@ impl PinchedHysteresis {
             force: 0.0,
             zero: 0.0,
             degradation: Degradation::new(plan.deterioration, plan.yield_force, plan.stiffness),
-            turn: None,
+            reversal: None,
         }
     }
 
@@ -204,10 +204,12 @@ impl PinchedHysteresis {
     /// Unloads a force against the direction, or reloads to the begin of an unloading; true where `to` was reached. A force that has
     /// unloaded to exactly zero still ends its excursion when the motion continues.
     fn elastic(&mut self, direction: f64, to: f64) -> bool {
-        let unloads = self.turn.is_some_and(|[_, force]| force * direction < 0.0);
+        let unloads = self
+            .reversal
+            .is_some_and(|[_, force]| force * direction < 0.0);
         if self.force * direction < 0.0 || unloads {
-            if self.turn.is_none() {
-                self.turn = Some([self.displacement, self.force]);
+            if self.reversal.is_none() {
+                self.reversal = Some([self.displacement, self.force]);
                 self.degradation
                     .turned(0.5 * self.force * self.force / self.unloading(-direction));
             }
@@ -217,15 +219,15 @@ impl PinchedHysteresis {
                 return true;
             }
             self.zero = self.displacement;
-            self.turn = None;
+            self.reversal = None;
             let side = usize::from(direction < 0.0);
             self.peaks[side] *= self.degradation.ended(side);
         }
-        if let Some([at, force]) = self.turn {
+        if let Some([at, force]) = self.reversal {
             if self.along(direction, [at * direction, force * direction], to) {
                 return true;
             }
-            self.turn = None;
+            self.reversal = None;
         }
         false
     }

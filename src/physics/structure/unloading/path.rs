@@ -179,9 +179,9 @@ impl UnloadingPath {
                 .learn_within(OF_OLDER, from, to, &|_, _, _| true);
         } else if self.unloading.storeys().is_none() {
             let [before, after] = [from, to].map(|at| largest(at.force));
-            let went = self.parts[0].moves(before);
+            let travel = self.parts[0].moves(before);
             let part = &mut self.parts[0];
-            part.learn(part.last_significant.0 + went, after);
+            part.learn(part.last_significant.0 + travel, after);
         } else {
             for (part, (drift, shear)) in self.parts.iter_mut().zip(of_storeys(to)) {
                 part.learn(drift, shear);
@@ -212,14 +212,14 @@ impl Part {
     fn learn(&mut self, drift: f64, load: f64) {
         self.moved = true;
         let (from, loaded) = self.last_significant;
-        let went = drift - from;
-        if went == 0.0
-            || went.abs() <= NOISE_MULTIPLE * self.noise.1.max(self.noise.0 / self.expected)
+        let travel = drift - from;
+        if travel == 0.0
+            || travel.abs() <= NOISE_MULTIPLE * self.noise.1.max(self.noise.0 / self.expected)
         {
             return;
         }
         let slope =
-            ((load - loaded) / went).clamp(self.expected / BELIEVED, BELIEVED * self.expected);
+            ((load - loaded) / travel).clamp(self.expected / BELIEVED, BELIEVED * self.expected);
         (self.falls, self.slope) = (slope <= STIFFER * self.slope, slope);
         self.last_significant = (drift, load);
     }

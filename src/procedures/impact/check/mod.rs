@@ -1,7 +1,7 @@
 //! `impact NAME { … }`: the fields that an impact and a series of impacts share. In: a block. Out: the impact, or errors.
 
 pub(crate) mod arrival;
-pub(crate) mod judge;
+pub(crate) mod declared;
 pub(crate) mod target;
 pub(crate) mod time_step;
 pub(crate) mod warnings;

@@ -139,7 +139,7 @@ pub(crate) fn force_displacement(history: &ImpactHistory) -> Chart {
 pub(crate) fn energy_of_contact(run: &Run<'_>, procedure: ProcedureId) -> &'static str {
     let planned = run.plan.procedures.get(procedure.0);
     match planned.map(|planned| &planned.kind) {
-        Some(ProcedureKind::Impact(impact)) => contact::reported(&impact.contact).energy,
+        Some(ProcedureKind::Impact(impact)) => contact::energy(&impact.contact),
         _ => "transferred in contact",
     }
 }

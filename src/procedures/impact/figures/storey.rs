@@ -24,7 +24,7 @@ pub(crate) fn chart(
         return None;
     }
     let limits = |result: ResultKind| limits_on(run, figure.procedure, result);
-    let chosen = if base_excitation::figures::is_chosen(&frame.floors) {
+    let chosen = if base_excitation::figures::charts::is_chosen(&frame.floors) {
         "; not all are drawn"
     } else {
         ""
@@ -32,13 +32,13 @@ pub(crate) fn chart(
     let struck = frame.struck + 1;
     Some(match figure.kind {
         FigureKind::Modes => (
-            base_excitation::figures::modes(frame.modes.as_ref()?),
+            base_excitation::figures::charts::modes(frame.modes.as_ref()?),
             format!("{name}: natural mode shapes and periods, floor by floor from the ground up."),
         ),
         FigureKind::Displacement => {
             let mut chart = shaded(
                 history,
-                base_excitation::figures::displacement(&frame.floors),
+                base_excitation::figures::charts::displacement(&frame.floors),
             );
             chart.series.push(striker(history, frame));
             chart.references = limits(schema::MAX_DISPLACEMENT);
@@ -50,12 +50,12 @@ pub(crate) fn chart(
         FigureKind::Drift => (
             shaded(
                 history,
-                base_excitation::figures::drift(&frame.floors, &limits(schema::MAX_DRIFT)),
+                base_excitation::figures::charts::drift(&frame.floors, &limits(schema::MAX_DRIFT)),
             ),
             format!("{name}: drift of each storey against simulated time{chosen}."),
         ),
         FigureKind::Hysteresis => (
-            base_excitation::figures::hysteresis(&frame.floors),
+            base_excitation::figures::charts::hysteresis(&frame.floors),
             format!(
                 "{name}: measured storey shear against drift; the area of a loop is the energy absorbed by the storey{chosen}."
             ),
@@ -63,7 +63,7 @@ pub(crate) fn chart(
         FigureKind::BaseShear => (
             shaded(
                 history,
-                base_excitation::figures::base_shear(
+                base_excitation::figures::charts::base_shear(
                     &frame.floors,
                     &limits(schema::MAX_BASE_SHEAR),
                 ),
@@ -110,8 +110,11 @@ pub(crate) fn chart(
             ),
         ),
         FigureKind::Tracking => (
-            shaded(history, base_excitation::figures::tracking(&frame.floors)),
-            base_excitation::chart::followed(name, chosen),
+            shaded(
+                history,
+                base_excitation::figures::charts::tracking(&frame.floors),
+            ),
+            base_excitation::figures::followed(name, chosen),
         ),
         _ => return None,
     })

@@ -20,20 +20,20 @@ pub(crate) const BUDGET: &[&str] = &[schema::MAX_DISPLACEMENT.name, schema::ABSO
 
 /// The results that a reader looks for first.
 pub(crate) fn headline(contact: &Contact) -> Vec<&'static str> {
-    let of_contact = contact::reported(contact).headline;
+    let of_contact = contact::headline(contact);
     let first = [schema::MAX_DISPLACEMENT.name, schema::ABSORBED_ENERGY.name];
     let last = [
         schema::STOP_TIME.name,
         schema::RESTITUTION.name,
         schema::MAX_VELOCITY.name,
     ];
-    [&first[..], of_contact, &last].concat()
+    [&first[..], &of_contact, &last].concat()
 }
 
 /// Inputs, settings and counts of the method, and the tracking, which the text below the results states; the results that the
 /// contact law does not have.
 pub(crate) fn unprinted(contact: &Contact) -> Vec<&'static str> {
-    let of_contact = contact::reported(contact).unprinted;
+    let of_contact = contact::unprinted(contact);
     let of_method = [
         schema::CONTACTS.name,
         schema::STRIKER_ENERGY.name,
@@ -41,7 +41,7 @@ pub(crate) fn unprinted(contact: &Contact) -> Vec<&'static str> {
         schema::CRITICAL_TIME_STEP.name,
         schema::STEPS.name,
     ];
-    [of_contact, &of_method[..], stepping::report::TRACKING].concat()
+    [&of_contact, &of_method[..], stepping::report::TRACKING].concat()
 }
 
 /// The blocks below its results.
@@ -86,7 +86,7 @@ fn force_note(
         _ => format!("Time step {step}."),
     };
     let mut sentences = vec![
-        format!("Contact law: {}.", contact::reported(&impact.contact).name),
+        format!("Contact law: {}.", impact.contact.title()),
         forces,
         format!("Critical time step (Melo et al. 2006, eq. 7) {critical}."),
     ];

@@ -5,7 +5,6 @@ use super::{contact_log, contact_work, energy_balance};
 use crate::plan::formula::ResultValue;
 use crate::plan::{Contact, Impact, Mode, ProcedureKind, StoreyTarget};
 use crate::procedures::base_excitation;
-use crate::procedures::impact::contact;
 use crate::procedures::stepping::energy;
 use crate::record::{ImpactHistory, ProcedureRecord, StruckFrame};
 use crate::report::document::{Block, Column, Table, Text};
@@ -81,7 +80,7 @@ fn method(
 ) -> Vec<String> {
     let time = |value| number::text(value, Dimension::TIME);
     let step = time(history.time_step);
-    let critical = if impact.contact.stiffness().is_some() {
+    let critical = if impact.contact.spring().is_some() {
         "a tenth of the shortest period of the frame with the striker in contact (tangent at the largest indentation) is"
     } else {
         "a tenth of the frame's shortest period is"
@@ -90,7 +89,7 @@ fn method(
         format!(
             "Floor {} is struck. Contact law: {}.",
             struck.struck + 1,
-            contact::reported(&impact.contact).name
+            impact.contact.title()
         ),
         base_excitation::report::integrated(
             base_excitation::report::frame_of(run, impact.specimen),

@@ -4,6 +4,7 @@
 
 pub(crate) mod storey;
 
+use super::contact;
 use super::results::re_integrated;
 use super::setting::{Setting, StruckStructure};
 use crate::physics::contact::ContactLaw;
@@ -26,7 +27,7 @@ use crate::run::stop::Stop;
 use crate::schema::ResultKind;
 use crate::schema::procedures::impact as schema;
 use crate::uncertainty::engine::{
-    CLOSE, Contributions, Evaluate, Evaluation, Shifts, Study, Tick, Unknown,
+    CLOSE, Contributions, Evaluate, Evaluation, Progress, Propagation, Shifts, Unknown,
 };
 use crate::uncertainty::{InstrumentUncertainty, Source};
 
@@ -88,7 +89,7 @@ impl<'run> ImpactUncertainty<'run> {
         steps: &[ImpactStep],
         recorded: &ImpactSummary,
         results: &mut [NamedResult],
-        tick: Tick<'_, Stop>,
+        progress: Progress<'_, Stop>,
     ) -> Result<(), Unknown<Stop>> {
         let path = self
             .path(setting, steps)
@@ -107,7 +108,7 @@ impl<'run> ImpactUncertainty<'run> {
         }
         let layout = layout_of(&numbers(&unperturbed.values, setting));
         evaluate.length = layout.len();
-        let study = Study {
+        let propagation = Propagation {
             procedure: self.procedure,
             impact: self.impact,
             evaluate: &evaluate,
@@ -116,7 +117,7 @@ impl<'run> ImpactUncertainty<'run> {
             steps: steps.len() as u64,
             reported: Some(values(&layout, results)),
         };
-        let mut contributions = study.contributions(tick)?;
+        let mut contributions = propagation.contributions(progress)?;
         for (kind, quantum) in whole_steps(setting.input.time_step) {
             at_least(
                 quantum,
@@ -168,7 +169,7 @@ impl<'run> ImpactUncertainty<'run> {
         } = self.point;
         let formulas: Vec<&Formula> = [mass, stiffness, damping]
             .into_iter()
-            .chain(contact.numbers())
+            .chain(contact::formulas(contact))
             .collect();
         let stated = striker_sources(self.whole, *striker)
             .into_iter()

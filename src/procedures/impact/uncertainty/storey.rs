@@ -21,7 +21,7 @@ use crate::record::{FloorStep, NamedResult};
 use crate::run::stop::Stop;
 use crate::schema::procedures::impact as schema;
 use crate::uncertainty::Source;
-use crate::uncertainty::engine::{Evaluate, Evaluation, Shifts, Tick, Unknown};
+use crate::uncertainty::engine::{Evaluate, Evaluation, Progress, Shifts, Unknown};
 
 /// An impact on a storey as it was recorded.
 #[derive(Clone, Copy)]
@@ -37,7 +37,7 @@ pub(crate) fn propagate(
     plan: &Impact,
     recorded: StoreyRecord<'_>,
     results: &mut [NamedResult],
-    tick: Tick<'_, Stop>,
+    progress: Progress<'_, Stop>,
 ) -> Result<(), Unknown<Stop>> {
     let StoreyRecord {
         setting,
@@ -87,9 +87,9 @@ pub(crate) fn propagate(
         reported[shear] = found.floors.between.max_base_shear;
     }
     let stated = striker_sources(uncertainty.whole, plan.striker);
-    let sources = uncertainty.sources(&plan.contact.numbers(), &stated);
+    let sources = uncertainty.sources(&contact::formulas(&plan.contact), &stated);
     let mut contributions =
-        uncertainty.contributions(&evaluate, sources, history.len(), reported, tick)?;
+        uncertainty.contributions(&evaluate, sources, history.len(), reported, progress)?;
     no_known_force(setting.input.law, summary, &layout, &mut contributions);
     let time_step = frame.steps.time_step;
     // From the beginning of a step to the end of one: two times.
@@ -211,8 +211,8 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
             velocity: striker.velocity * (setting.fastest / recorded_velocity),
             ..striker.clone()
         };
-        let critical_time_step = properties
-            .critical_on_impact(target.storey, &fastest.approach(law.stiffness().copied()));
+        let critical_time_step =
+            properties.critical_on_impact(target.storey, &fastest.approach(contact::spring(law)));
         let stiffness = frame.stiffness[target.storey][target.storey];
         let body = ImpactInput {
             mass: properties.struck_mass(target.storey),

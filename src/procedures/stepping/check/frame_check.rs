@@ -22,7 +22,7 @@ pub struct FrameSteps<'a> {
 
 /// Checks the time step of a frame as far as it is known before the run: stability, the critical step (of the modes, or `critical`'s),
 /// the number of steps. Gives the properties of the frame and the step \[s\] where further checks are possible.
-pub fn judge(
+pub fn check(
     checker: &mut Checker,
     block: usize,
     steps: &FrameSteps,

@@ -22,7 +22,7 @@ const BRAKING: f64 = 5.0;
 
 /// The point that an actuator passes at the end of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Passing {
+pub(crate) struct Waypoint {
     /// \[m\]
     pub position: f64,
     /// \[m/s\] of simulated time.
@@ -32,7 +32,7 @@ pub(crate) struct Passing {
 }
 
 /// All actuators of a rig in continuous motion.
-pub(crate) struct Gliding {
+pub(crate) struct ContinuousMotion {
     /// At the end of the last path, in laboratory time; the acceleration is the mean over the last step, which the next parabola uses.
     axes: Vec<ActuatorMotion>,
     time_scale: f64,
@@ -40,7 +40,7 @@ pub(crate) struct Gliding {
     step_time: f64,
 }
 
-impl Gliding {
+impl ContinuousMotion {
     /// From rest at these positions \[m\]; `time_step` in simulated time \[s\].
     pub(crate) fn from_rest(displacements: &[f64], time_scale: f64, time_step: f64) -> Self {
         let axes = displacements
@@ -62,7 +62,7 @@ impl Gliding {
     /// while the actuators move.
     pub(crate) fn step(
         &mut self,
-        predict: impl FnOnce() -> Vec<Passing>,
+        predict: impl FnOnce() -> Vec<Waypoint>,
         session: &mut Session<'_>,
     ) -> Result<(Reading, Option<Stop>), Stop> {
         let seconds = AHEAD * self.step_time;
@@ -76,17 +76,17 @@ impl Gliding {
             return Ok((reading, broken));
         }
         let seconds = (1.0 - AHEAD) * self.step_time;
-        let on = |(axis, (ahead, passing)): (&mut ActuatorMotion, (&Path, Passing))| {
-            let velocity = passing.velocity / self.time_scale;
+        let on = |(axis, (ahead, waypoint)): (&mut ActuatorMotion, (&Path, Waypoint))| {
+            let velocity = waypoint.velocity / self.time_scale;
             let gained = (velocity - axis.velocity) / self.step_time;
             *axis = ActuatorMotion {
-                position: passing.position,
+                position: waypoint.position,
                 velocity,
-                acceleration: if passing.struck { 0.0 } else { gained },
+                acceleration: if waypoint.struck { 0.0 } else { gained },
             };
             Path {
                 from: ahead.to,
-                to: passing.position,
+                to: waypoint.position,
                 start_velocity: ahead.end_velocity,
                 end_velocity: velocity,
                 seconds,
@@ -126,7 +126,7 @@ fn follow(
     readings: usize,
     session: &mut Session<'_>,
 ) -> Result<(Reading, Option<Stop>), Stop> {
-    let mut followed = session.guard.glide(paths, readings);
+    let mut followed = session.guard.follow_paths(paths, readings);
     let broken = session.guard.take_broken();
     match (followed.fault, broken) {
         (Some(fault), Some(reading)) => Ok((reading, Some(fault.into()))),

@@ -21,7 +21,7 @@ use crate::rig::Reading;
 use crate::run::StepReport;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use continuous_motion::{Gliding, Passing};
+use continuous_motion::{ContinuousMotion, Waypoint};
 use pace::Pace;
 use triggers::Triggers;
 
@@ -89,8 +89,8 @@ pub(crate) fn run<S: Stepped>(
         &start.reading,
         &stepped.effective_force_at_start(&start),
     );
-    let mut gliding = match plan.mode {
-        Mode::Continuous { time_scale } => Some(Gliding::from_rest(
+    let mut motion = match plan.mode {
+        Mode::Continuous { time_scale } => Some(ContinuousMotion::from_rest(
             &start.commanded,
             time_scale,
             pace.time_step,
@@ -100,8 +100,8 @@ pub(crate) fn run<S: Stepped>(
     stepped.keep(&monitors.tracking(), session);
     let mut struck = false;
     for _ in 0..pace.steps {
-        let (reading, broken) = if let Some(gliding) = &mut gliding {
-            gliding.step(|| passing(&mut stepped), session)?
+        let (reading, broken) = if let Some(motion) = &mut motion {
+            motion.step(|| waypoints(&mut stepped), session)?
         } else {
             session.guard.move_to(&stepped.predict(), None)?;
             session.guard.pause(pace.pause)?;
@@ -117,7 +117,7 @@ pub(crate) fn run<S: Stepped>(
         stiffer.take(&reading, before || now, session);
         struck = now;
         let Balance { error, input } = stepped.keep(&axes, session);
-        let (tracking, tracking_energy_error) = followed.judge(&axes, input, session);
+        let (tracking, tracking_energy_error) = followed.assess(&axes, input, session);
         let errors = Errors {
             energy_error: if error == 0.0 { 0.0 } else { error / input },
             tracking,
@@ -142,18 +142,18 @@ pub(crate) fn run<S: Stepped>(
             session.inspect(&reason)?;
         }
     }
-    gliding.map_or(Ok(()), |gliding| gliding.brake(session))
+    motion.map_or(Ok(()), |motion| motion.brake(session))
 }
 
 /// The waypoint of each axis at the end of this step.
-fn passing(stepped: &mut impl Stepped) -> Vec<Passing> {
+fn waypoints(stepped: &mut impl Stepped) -> Vec<Waypoint> {
     let displacements = stepped.predict();
     let mut velocities = vec![0.0; displacements.len()];
     let struck = stepped.predicted_velocity(&mut velocities);
     displacements
         .into_iter()
         .zip(velocities)
-        .map(|(position, velocity)| Passing {
+        .map(|(position, velocity)| Waypoint {
             position,
             velocity,
             struck,

@@ -11,7 +11,7 @@ struct Armed {
     trigger: InspectTrigger,
     /// Largest |R| since its last trigger \[N\].
     largest_force: f64,
-    gone_off: bool,
+    fired: bool,
 }
 
 impl Triggers {
@@ -19,7 +19,7 @@ impl Triggers {
         let armed = |trigger: &InspectTrigger| Armed {
             trigger: trigger.clone(),
             largest_force: 0.0,
-            gone_off: false,
+            fired: false,
         };
         Self {
             armed: triggers.iter().map(armed).collect(),
@@ -57,8 +57,8 @@ impl Armed {
             }
             InspectTrigger::At(moment) => {
                 // Half a billionth for a step end that rounding put just before the moment.
-                let due = !self.gone_off && time >= moment * (1.0 - 5e-10);
-                self.gone_off |= due;
+                let due = !self.fired && time >= moment * (1.0 - 5e-10);
+                self.fired |= due;
                 due.then(|| format!("inspection at {moment} s of test time"))
             }
         }

@@ -15,7 +15,7 @@ pub(crate) struct Watch {
 
 impl Watch {
     /// Records once that tracking adds or removes more energy than usual practice accepts.
-    pub(crate) fn judge(&mut self, share: Option<f64>, session: &mut Session<'_>) {
+    pub(crate) fn assess(&mut self, share: Option<f64>, session: &mut Session<'_>) {
         let Some(share) = share else { return };
         if self.worst.is_none_or(|worst| share.abs() > worst.abs()) {
             self.worst = Some(share);

@@ -19,7 +19,7 @@ pub(crate) struct Followed {
 
 impl Followed {
     /// Adds a step, `energy` \[J\] that of the test so far. Gives all axes together, and their energy error over that energy.
-    pub(crate) fn judge(
+    pub(crate) fn assess(
         &mut self,
         axes: &[Tracking],
         energy: f64,
@@ -27,7 +27,7 @@ impl Followed {
     ) -> (Tracking, Option<f64>) {
         let tracking = Tracking::together(axes);
         let share = tracking.share_of(energy);
-        self.watch.judge(share, session);
+        self.watch.assess(share, session);
         self.worst.resize(axes.len(), 0.0);
         for (worst, axis) in self.worst.iter_mut().zip(axes) {
             let share = axis.share_of(energy).unwrap_or(0.0);

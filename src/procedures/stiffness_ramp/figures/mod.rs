@@ -1,8 +1,9 @@
-//! Charts of the identification procedures: a stiffness ramp's line and a damping sweep's. In: their steps and fits.
-//! Out: [`Chart`]s in SI.
+//! The figures of a stiffness ramp: their list, captions and charts, and the line of a damping sweep. In: steps and fits. Out: [`Chart`]s in
+//! SI with their captions.
 
 pub(crate) mod relaxation_figures;
 
+use crate::plan::FigureKind;
 use crate::record::{MultilinearFit, RampHistory, RampStep, SweepHistory, SweepStep};
 use crate::report::figures::chart::{
     Chart, DASHED, Marker, Quantity, SOLID, Series, Style, palette,
@@ -10,6 +11,38 @@ use crate::report::figures::chart::{
 use crate::report::figures::points::Points;
 use crate::report::number;
 use crate::units::Dimension;
+
+/// In the order of a report.
+pub(crate) const FIGURES: &[FigureKind] = &[FigureKind::ForceDisplacement, FigureKind::Relaxation];
+
+/// A figure and its caption; None if nothing was recorded for it, or if a ramp does not have this figure.
+pub(crate) fn chart(
+    name: &str,
+    history: &RampHistory,
+    kind: FigureKind,
+) -> Option<(Chart, String)> {
+    Some(match (kind, &history.reached) {
+        (FigureKind::ForceDisplacement, _) if !history.steps.is_empty() => (
+            force_displacement(history),
+            format!(
+                "{name}: measured restoring force against displacement, with the least-squares fit."
+            ),
+        ),
+        (FigureKind::Relaxation, Some(fit)) => (
+            relaxation_figures::lost(&history.holds, fit),
+            format!(
+                "{name}: force lost in the pauses, with the relaxation laws, against dwell time."
+            ),
+        ),
+        (FigureKind::Relaxation, None) => (
+            relaxation_figures::left(history, history.relaxation.as_ref()?),
+            format!(
+                "{name}: remaining relaxation, measured minus fitted final force, against dwell time."
+            ),
+        ),
+        _ => return None,
+    })
+}
 
 /// Measured points, with the unloading branch separate, and the line K·X + intercept.
 pub(crate) fn force_displacement(history: &RampHistory) -> Chart {

@@ -17,7 +17,7 @@ use crate::report::number;
 use crate::report::run::Run;
 use crate::report::wording::{common, results as wording};
 use crate::schema::procedures::stiffness_ramp::R_SQUARED;
-use crate::uncertainty::{Known, known};
+use crate::uncertainty::{MeasurementUncertainty, measurement_uncertainty};
 use crate::units::Dimension;
 
 /// Every procedure that was run, in order, with the text of its method.
@@ -98,14 +98,15 @@ fn table(run: &Run<'_>, index: usize, results: &[&NamedResult]) -> Block {
             name: result.name,
             part: Part::Value,
         };
-        known(&result.contributions_of(reference), run.record)
+        measurement_uncertainty(&result.contributions_of(reference), run.record)
             .filter(|known| known.standard > 0.0)
             .filter(|_| matches!(result.value, ResultValue::Number { .. }))
     };
-    let all: Vec<Option<Known>> = results.iter().map(|result| known(result)).collect();
+    let all: Vec<Option<MeasurementUncertainty>> =
+        results.iter().map(|result| known(result)).collect();
     // On a real rig, a partial budget gives no U.
     let partial = budget_table::Scope::of(run) == budget_table::Scope::PartialReal;
-    let differs = |known: &Known| coverage_factor::differs_from_two(*known);
+    let differs = |known: &MeasurementUncertainty| coverage_factor::differs_from_two(*known);
     let factors = !partial && all.iter().flatten().any(differs);
     let mut columns = vec![
         Column::words(wording::RESULT, 1),
@@ -144,13 +145,13 @@ fn table(run: &Run<'_>, index: usize, results: &[&NamedResult]) -> Block {
 }
 
 /// `2.37 (8)`
-fn factor(known: Known) -> Text {
+fn factor(known: MeasurementUncertainty) -> Text {
     let degrees = coverage_factor::degrees_text(known);
     format!("{} ({degrees})", coverage_factor::factor(known)).into()
 }
 
 /// Name, value, u, U and unit. A cell without a content is empty.
-fn row(result: &NamedResult, known: Option<Known>) -> [Text; 5] {
+fn row(result: &NamedResult, known: Option<MeasurementUncertainty>) -> [Text; 5] {
     let none = || Text::from("");
     let [value, standard, expanded, unit] = match &result.value {
         // The number of digits of R² depends on the number of nines.

@@ -62,7 +62,7 @@ impl Several {
     }
 
     /// Proposes the move to every device. If one refuses, the move is cancelled on those that have accepted.
-    fn offer_to_all(&mut self, moves: &[DeviceMove]) -> Result<(), DeviceFault> {
+    fn propose_to_all(&mut self, moves: &[DeviceMove]) -> Result<(), DeviceFault> {
         let offered = self.each(|index, member| member.device.propose(&moves[index]));
         if offered.is_err() {
             let accepted = self.faulty_member.unwrap_or(0);
@@ -166,7 +166,7 @@ impl Device for Several {
                 "this move is not the last one that was proposed".to_owned(),
             ));
         }
-        self.offer_to_all(&moves)?;
+        self.propose_to_all(&moves)?;
         self.each(|index, member| member.device.begin(&moves[index]))?;
         self.each(|index, member| member.device.finish(&moves[index]))
             .map(drop)

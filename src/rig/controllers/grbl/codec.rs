@@ -96,10 +96,13 @@ pub fn jog(target: f64, speed: f64) -> Result<Jog, String> {
         .ok_or_else(|| format!("{target} m is not a valid position for Grbl"))?;
     let feed = written(speed * 6e4, 3)
         .ok_or_else(|| format!("{speed} m/s is not a valid speed for Grbl"))?;
-    let heard = |text: &str, scale, meant| {
+    let encoded = |text: &str, scale, meant| {
         number::read_back(text, scale, meant).ok_or_else(|| format!("`{text}` is not a number"))
     };
-    let (target, speed) = (heard(&target_text, 1e3, target)?, heard(&feed, 6e4, speed)?);
+    let (target, speed) = (
+        encoded(&target_text, 1e3, target)?,
+        encoded(&feed, 6e4, speed)?,
+    );
     if speed.is_nan() || speed * 6e4 < SLOWEST * (1.0 - 1e-12) {
         return Err(format!(
             "{SLOWEST} mm/min is the lowest speed of Grbl; requested: {feed} mm/min"

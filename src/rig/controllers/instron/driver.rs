@@ -171,11 +171,11 @@ impl Instron {
         let mut raw = Vec::new();
         for _ in 0..TRIES {
             self.client.send(&frames.concat())?;
-            let heard = [
+            let read_back = [
                 self.number(Question::Target, &mut raw),
                 self.number(Question::RampTime, &mut raw),
             ];
-            match heard {
+            match read_back {
                 [Ok(to), Ok(within)]
                     if (to - target).abs() <= SAME_TARGET
                         && (within - seconds).abs() <= SAME_TIME =>

@@ -41,7 +41,7 @@ pub enum Missed {
     TimedOut,
     /// A line was too long and is discarded with its ending. The next line is usable.
     TooLong,
-    Gone(String),
+    Lost(String),
     /// The operator requests a hold now.
     Interrupted,
 }
@@ -240,7 +240,7 @@ impl LineClient {
                 Ok(()) if now < give_up => {}
                 Ok(()) => return Err(DeviceFault::Unfit("the line is never idle".to_owned())),
                 Err(Missed::TimedOut | Missed::TooLong) => return Ok(()),
-                Err(Missed::Gone(reason)) => return Err(DeviceFault::Lost { reason }),
+                Err(Missed::Lost(reason)) => return Err(DeviceFault::Lost { reason }),
                 Err(Missed::Interrupted) => return Err(DeviceFault::Interrupted),
             }
         }
@@ -314,7 +314,7 @@ impl LineClient {
                 },
                 Err(Missed::TooLong) => {}
                 Err(Missed::TimedOut) => return Ok(None),
-                Err(Missed::Gone(reason)) => return Err(DeviceFault::Lost { reason }),
+                Err(Missed::Lost(reason)) => return Err(DeviceFault::Lost { reason }),
                 Err(Missed::Interrupted) => return Err(DeviceFault::Interrupted),
             }
         }
@@ -336,14 +336,14 @@ impl LineClient {
                 &mut buffer[..room],
                 Duration::from_secs_f64(left.min(SLICE)),
             ) {
-                Ok(0) => return Err(Missed::Gone("the other side closed it".to_owned())),
+                Ok(0) => return Err(Missed::Lost("the other side closed it".to_owned())),
                 Ok(count) => {
                     self.waiting.extend_from_slice(&buffer[..count]);
                     return Ok(());
                 }
                 Err(error) => match error.kind() {
                     ErrorKind::TimedOut | ErrorKind::WouldBlock | ErrorKind::Interrupted => {}
-                    _ => return Err(Missed::Gone(reason(&error))),
+                    _ => return Err(Missed::Lost(reason(&error))),
                 },
             }
         }

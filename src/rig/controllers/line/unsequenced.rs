@@ -105,7 +105,7 @@ pub fn fault(missed: Missed, client: &LineClient) -> DeviceFault {
         Missed::TimedOut | Missed::TooLong => DeviceFault::Silent {
             seconds: client.reply_timeout(),
         },
-        Missed::Gone(reason) => DeviceFault::Lost { reason },
+        Missed::Lost(reason) => DeviceFault::Lost { reason },
         Missed::Interrupted => DeviceFault::Interrupted,
     }
 }

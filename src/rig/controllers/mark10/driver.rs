@@ -99,7 +99,7 @@ impl Mark10 {
         for _ in 0..TRIES {
             self.client.send(&settings.concat())?;
             match self.ask_travel(ask_limit(side)) {
-                Ok((heard, _)) if (heard - limit).abs() <= THERE => return Ok(()),
+                Ok((read_back, _)) if (read_back - limit).abs() <= THERE => return Ok(()),
                 Ok(_) | Err(DeviceFault::NoReading { .. }) => {
                     self.client.line_statistics_mut().resent += 1;
                 }

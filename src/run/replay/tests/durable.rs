@@ -4,7 +4,7 @@ use super::*;
 
 /// A rig that checks at every call which entries of the run log would survive a loss of power.
 struct Suspicious {
-    rig: Standing,
+    rig: RestingRig,
     disk: PowerLoss,
     proposed: f64,
     read: bool,
@@ -90,7 +90,7 @@ impl Rig for Suspicious {
 fn lost_to_power() -> Vec<&'static str> {
     let (plan, disk) = (plan(), PowerLoss::new());
     let mut rig = Suspicious {
-        rig: Standing::new(&plan),
+        rig: RestingRig::new(&plan),
         disk: disk.clone(),
         proposed: 0.0,
         read: false,
@@ -120,7 +120,7 @@ fn a_disk_that_fails_holds_the_rig_and_nothing_more_is_sent() {
             failed_sync: Some(failed_sync),
             ..Sickness::default()
         });
-        let mut rig = Standing::new(&plan);
+        let mut rig = RestingRig::new(&plan);
         let mut journal = journal(disk.clone());
         begin(&mut journal, &header(), &[]).unwrap();
         let recorded = record(&plan, &mut rig, &mut Witness, journal, no_wall());

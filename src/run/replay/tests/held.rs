@@ -4,7 +4,7 @@
 use std::cell::Cell;
 
 use super::*;
-use super::{Standing, Witness, logged};
+use super::{RestingRig, Witness, logged};
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::formula::Formula;
 use crate::plan::{Move, Plan, ProcedureKind};
@@ -18,7 +18,7 @@ use crate::tests::testing::{elastic_plan, header, ramp};
 
 /// The operator stops the rig on the path to a target, at 40 % of the path.
 struct HeldDuringMotion {
-    rig: Standing,
+    rig: RestingRig,
     target: f64,
     moves: u32,
     /// Whether the rig confirms that it holds.
@@ -72,13 +72,13 @@ impl Rig for HeldDuringMotion {
     ) -> Result<(), RigFault> {
         self.rig.traverse(targets, velocity, samples, each)
     }
-    fn glide(
+    fn follow_paths(
         &mut self,
         paths: &[Path],
         samples: usize,
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
-        self.rig.glide(paths, samples, each)
+        self.rig.follow_paths(paths, samples, each)
     }
     fn hold(&mut self) {
         self.rig.hold();
@@ -115,7 +115,7 @@ fn plan() -> Plan {
 fn held(heard: bool) -> (Recorded, Vec<u8>) {
     let (plan, disk) = (plan(), PowerLoss::new());
     let mut rig = HeldDuringMotion {
-        rig: Standing::new(&plan),
+        rig: RestingRig::new(&plan),
         target: 0.0,
         moves: 0,
         heard,
@@ -182,7 +182,7 @@ fn a_hold_at_a_look_behind_a_step_is_played_back_as_one_at_the_look() {
     let looks = Rc::new(Cell::new(false));
     let at_a_look = Some(Rc::clone(&looks));
     let mut rig = HeldDuringMotion {
-        rig: Standing::new(&plan),
+        rig: RestingRig::new(&plan),
         target: 0.0,
         moves: 0,
         heard: true,
@@ -216,7 +216,7 @@ fn a_hold_requested_while_a_release_is_asked_releases_nothing() {
         Rc::new(Cell::new(false)),
     );
     let mut rig = HeldDuringMotion {
-        rig: Standing::new(&plan),
+        rig: RestingRig::new(&plan),
         target: 0.0,
         moves: 0,
         heard: true,
@@ -241,7 +241,7 @@ fn decided(
 ) -> Result<ResumeDecision, ResumeRefusal> {
     let (_, bytes) = held(heard);
     let (_, logged) = logged(&bytes);
-    let rig = Standing::new(&plan());
+    let rig = RestingRig::new(&plan());
     let about = RigBody {
         last_move: None,
         ..RigBody::of(&rig)

@@ -26,7 +26,7 @@ pub(super) fn killed_everywhere(plan: &Plan, least: usize) {
     let mut kills = 0;
     for call in 4.. {
         for after in [false, true] {
-            let (rig, disk) = (Standing::new(plan), PowerLoss::new());
+            let (rig, disk) = (RestingRig::new(plan), PowerLoss::new());
             let storage = Killed::at(&disk, call, after);
             let ended = catch_unwind(AssertUnwindSafe(|| {
                 let mut journal = journal(storage);
@@ -46,7 +46,7 @@ pub(super) fn killed_everywhere(plan: &Plan, least: usize) {
 /// A killed program leaves all bytes that it wrote: the operating system keeps them.
 fn go_on_and_compare(
     plan: &Plan,
-    mut rig: Standing,
+    mut rig: RestingRig,
     disk: &PowerLoss,
     expected: &str,
     once: &[Vec<f64>],

@@ -32,7 +32,7 @@ use crate::tests::testing::{elastic_plan, header, impact, ramp, result_of, struc
 /// The same rig for one program after another: it remembers its moves, as a real rig does. The recovered communication errors are counted
 /// for each program.
 #[derive(Clone)]
-pub(super) struct Standing(pub(super) Rc<RefCell<Stand>>, u64);
+pub(super) struct RestingRig(pub(super) Rc<RefCell<Stand>>, u64);
 
 pub(super) struct Stand {
     rig: Box<dyn Rig>,
@@ -42,7 +42,7 @@ pub(super) struct Stand {
     pub(super) carried_out: Vec<Vec<f64>>,
 }
 
-impl Standing {
+impl RestingRig {
     pub(super) fn new(plan: &Plan) -> Self {
         let rig = virtual_rig(plan);
         let last = LastMove {
@@ -61,7 +61,7 @@ impl Standing {
     }
 }
 
-impl Rig for Standing {
+impl Rig for RestingRig {
     fn identity(&self) -> Identity {
         self.0.borrow().rig.identity()
     }
@@ -142,22 +142,25 @@ impl Rig for Standing {
             },
         )
     }
-    fn glide(
+    fn follow_paths(
         &mut self,
         paths: &[Path],
         samples: usize,
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
-        self.0.borrow_mut().rig.glide(paths, samples, each)
+        self.0.borrow_mut().rig.follow_paths(paths, samples, each)
     }
-    fn glide_on(
+    fn resume_paths(
         &mut self,
         paths: &[Path],
         samples: usize,
         done: usize,
         each: EachReading<'_>,
     ) -> Result<(), RigFault> {
-        self.0.borrow_mut().rig.glide_on(paths, samples, done, each)
+        self.0
+            .borrow_mut()
+            .rig
+            .resume_paths(paths, samples, done, each)
     }
     fn hold(&mut self) {
         self.0.borrow_mut().rig.hold();
@@ -277,8 +280,8 @@ fn journal(storage: impl Storage + 'static) -> Journal {
 }
 
 /// Logs a run of the plan on a new rig. Gives the rig, the run, and the bytes of the run log.
-pub(super) fn recorded(plan: &Plan) -> (Standing, Recorded, Vec<u8>) {
-    let (mut rig, disk) = (Standing::new(plan), PowerLoss::new());
+pub(super) fn recorded(plan: &Plan) -> (RestingRig, Recorded, Vec<u8>) {
+    let (mut rig, disk) = (RestingRig::new(plan), PowerLoss::new());
     let mut journal = journal(disk.clone());
     begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
     let recorded = record(plan, &mut rig, &mut Witness, journal, no_wall());
@@ -378,7 +381,7 @@ fn an_answer_of_the_operator_has_its_time_of_day_and_replays_without_a_clock() {
     let wall: Wall = Box::new(|| Some("2026-05-31T10:00:00.000Z".to_owned()));
     let whole = record(
         &plan,
-        &mut Standing::new(&plan),
+        &mut RestingRig::new(&plan),
         &mut Witness,
         journal,
         wall,
@@ -483,7 +486,7 @@ fn what_cannot_be_gone_on_with_is_known_without_a_rig() {
         )
         .is_err()
     );
-    let was = Standing::new(&plan).identity();
+    let was = RestingRig::new(&plan).identity();
     let is = Identity {
         firmware: "2.0".to_owned(),
         ..was.clone()

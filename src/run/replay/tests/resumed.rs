@@ -156,7 +156,7 @@ fn each_replays_bit_identically_and_is_reported_at_the_same_times_without_a_reco
             format!("{:?}", whole.record),
             "{name}: played back"
         );
-        let plain = run(&plan, &mut Standing::new(&plan), &mut Witness);
+        let plain = run(&plan, &mut RestingRig::new(&plan), &mut Witness);
         // In both, the recovered communication errors are counted from the first reading of the rig.
         assert_eq!(
             format!("{plain:?}"),
@@ -178,7 +178,7 @@ fn a_logged_restart_requires_a_reference_whatever_else_is_stated() {
         let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
         begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
         journal
-            .append(EntryKind::Rig, &RigBody::of(&Standing::new(&plan)))
+            .append(EntryKind::Rig, &RigBody::of(&RestingRig::new(&plan)))
             .unwrap();
         let fault = RigFault::Device(format!("actuator on /dev/ttyUSB0: {fault}"));
         journal
@@ -216,7 +216,7 @@ fn a_rig_that_cannot_report_a_power_cycle_requires_the_statement_of_the_operator
     let plan = crate::tests::testing::empty_plan();
     let of = |boot: Option<&str>| Identity {
         boot: boot.map(str::to_owned),
-        ..Standing::new(&plan).identity()
+        ..RestingRig::new(&plan).identity()
     };
     let (nothing, word, restarted) = (
         &[][..],

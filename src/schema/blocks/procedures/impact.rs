@@ -5,12 +5,11 @@ use crate::schema::blocks::{frames, methods};
 use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
 use crate::units::Dimension;
 
-pub(crate) const LIMIT_FORCE: Field =
-    Field::quantity("force", Dimension::FORCE, "largest contact force")
-        .required("1500 N")
-        .above_zero();
+const LIMIT_FORCE: Field = Field::quantity("force", Dimension::FORCE, "largest contact force")
+    .required("1500 N")
+    .above_zero();
 
-pub(crate) const COEFFICIENT: Field = Field::quantity(
+const COEFFICIENT: Field = Field::quantity(
     "coefficient",
     Dimension::NUMBER,
     "separation speed over closing speed",
@@ -18,12 +17,12 @@ pub(crate) const COEFFICIENT: Field = Field::quantity(
 .required("0.6")
 .within(0.0, 1.0);
 
-pub(crate) const HERTZ_STIFFNESS: Field =
+const HERTZ_STIFFNESS: Field =
     Field::quantity("stiffness", Dimension::HERTZ_STIFFNESS, "k of F = k δ^1.5")
         .required("stiffness: 1e8 N/m^1.5")
         .above_zero();
 
-pub(crate) const LOSS: Field = Field::quantity(
+const LOSS: Field = Field::quantity(
     "loss",
     Dimension {
         length: crate::units::Exponent::whole(-1),
@@ -35,9 +34,10 @@ pub(crate) const LOSS: Field = Field::quantity(
 .or(0.0, "s/m")
 .at_least_zero();
 
-pub(crate) const FORCE_LIMIT: Field =
+const FORCE_LIMIT: Field =
     Field::quantity("force_limit", Dimension::FORCE, "largest contact force").above_zero();
 
+/// The contact laws. Readers take every argument of a law, in this order; [`crate::physics::contact::ContactLaw`] names the same ones.
 const CONTACT_LAWS: &[Variant] = &[
     Variant::word(
         "rigid",
@@ -59,6 +59,14 @@ const CONTACT_LAWS: &[Variant] = &[
         "finite contact stiffness: the peak force converges",
     ),
 ];
+
+/// A number of a contact law.
+pub(crate) fn contact_number(law: &str, argument: &str) -> &'static Field {
+    let law = CONTACT_LAWS.iter().find(|variant| variant.name == law);
+    let mut arguments = law.iter().flat_map(|law| law.arguments);
+    let named = arguments.find(|field| field.name == argument);
+    named.expect("the schema has every number of every law")
+}
 
 pub(crate) const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
     "max_displacement",

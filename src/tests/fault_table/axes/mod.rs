@@ -1,12 +1,12 @@
 //! Several axes on one rig. A run of two storeys over the real driver and the simulated controller equals the virtual run. A fault of one
 //! axis holds all axes, and the message names that axis. A run killed at any write repeats no move.
 
+mod continuous;
 mod control_points;
-mod gliding;
 mod several;
 pub(super) mod two_axes;
 
-use super::interrupted::cut_off::{GoneOn, gone_on, killed};
+use super::interrupted::cut_off::{Resumed, killed, resumed};
 use super::stage::{Ended, emulator, link, open, run, run_watched, run_without};
 use crate::emulator::Log;
 use crate::plan::{Interval, Plan};
@@ -18,7 +18,7 @@ use crate::rig::{LineStatistics, Reading, Rig as _, RigFault};
 use crate::run::Unwatched;
 use crate::run::replay;
 use crate::run::replay::{Bands, LoggedRun, RigBody};
-use two_axes::{checked, ideal, results, same, shaken, upper};
+use two_axes::{base_excited_plan, checked, ideal, results, same, upper};
 
 const SINE: &str = include_str!("../../../../plans/two_storeys_sine.psd");
 const YIELDING: &str = include_str!("../../../../plans/two_storeys_yielding.psd");
@@ -61,7 +61,7 @@ fn the_plans_of_two_storeys_give_on_two_axes_what_they_give_on_a_virtual_rig() {
 
 #[test]
 fn the_pretest_check_measures_the_stiffness_matrix_column_by_column() {
-    let ended = run(&shaken("50 ms"), "");
+    let ended = run(&base_excited_plan("50 ms"), "");
     let notes = ended.events(EventKind::Note);
     let passed: Vec<&&str> = notes
         .iter()
@@ -113,7 +113,7 @@ fn caught(guard: Guarding, plan: &Plan, script: &str, why: &str) -> Ended {
 
 #[test]
 fn a_fault_of_one_axis_holds_all_axes_and_names_that_axis() {
-    let plan = shaken("0.4 s");
+    let plan = base_excited_plan("0.4 s");
     let mut clipped = plan.clone();
     upper(&mut clipped).force_range = Some(Interval {
         low: -400.0,
@@ -160,7 +160,7 @@ fn a_fault_of_one_axis_holds_all_axes_and_names_that_axis() {
 #[test]
 fn the_pretest_check_names_the_axis_that_is_wrong_and_moves_no_other() {
     let mirrored = "at 0 s: axis 2 scale force by -1";
-    let mut wide = shaken("50 ms");
+    let mut wide = base_excited_plan("50 ms");
     upper(&mut wide)
         .pretest_check
         .as_mut()
@@ -173,7 +173,7 @@ fn the_pretest_check_names_the_axis_that_is_wrong_and_moves_no_other() {
         mirrored,
         "displacement and force of axis 2 have opposite polarity",
     );
-    let plan = shaken("50 ms");
+    let plan = base_excited_plan("50 ms");
     caught(
         Guarding::PretestStiffness,
         &plan,
@@ -197,7 +197,7 @@ fn the_pretest_check_names_the_axis_that_is_wrong_and_moves_no_other() {
 
 #[test]
 fn a_limit_of_one_axis_is_its_own() {
-    let mut plan = shaken("0.4 s");
+    let mut plan = base_excited_plan("0.4 s");
     upper(&mut plan).displacement = Some(Interval {
         low: -0.002,
         high: 0.001,
@@ -233,7 +233,7 @@ fn a_controller_of_another_number_of_axes_is_refused_before_anything_is_asked_of
         let emulator = emulator(emulated_plan, "", Log::none(), 1);
         open(plan, &emulator).map(|rig| rig.degrees_of_freedom())
     };
-    let (two, one) = (shaken("50 ms"), super::stage::plan());
+    let (two, one) = (base_excited_plan("50 ms"), super::stage::plan());
     assert_eq!(opened(&two, &two), Ok(2));
     for (plan, emulated_plan, axes) in [(&two, &one, 1), (&one, &two, 2)] {
         let Err(RigFault::Device(reason)) = opened(plan, emulated_plan) else {
@@ -259,7 +259,7 @@ fn moves(emulator: &crate::emulator::InProcess) -> Vec<(Option<u64>, Vec<f64>)> 
 
 #[test]
 fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end_with_no_target_twice() {
-    let plan = shaken("60 ms");
+    let plan = base_excited_plan("60 ms");
     let whole = run_watched(&plan, "", &mut Unwatched).unwrap();
     assert!(whole.completed());
     let once = moves(&whole.emulator);
@@ -272,10 +272,10 @@ fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end_with_no_targe
                 return;
             }
             kills += 1;
-            let resumed = match gone_on(&plan, &emulator, &disk, call) {
-                GoneOn::ToItsEnd(record) => record,
-                GoneOn::Ended => continue,
-                GoneOn::NeverBegun => {
+            let resumed = match resumed(&plan, &emulator, &disk, call) {
+                Resumed::ToItsEnd(record) => record,
+                Resumed::Ended => continue,
+                Resumed::NeverBegun => {
                     assert!(moves(&emulator).is_empty());
                     continue;
                 }
@@ -286,7 +286,7 @@ fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end_with_no_targe
                 once,
                 "call {call}: no target twice, none left out"
             );
-            let (recovered, whole) = played(&disk);
+            let (recovered, whole) = logged_run(&disk);
             assert_eq!(
                 replay::check_consistency(&recovered, &whole, &plan),
                 Ok(()),
@@ -306,12 +306,12 @@ fn cut_off(plan: &Plan, call: usize) -> (LoggedRun, RigBody, Reading) {
     );
     let mut rig = open(plan, &emulator).unwrap();
     let found = rig.read().unwrap();
-    (played(&disk).1, RigBody::of(&rig), found)
+    (logged_run(&disk).1, RigBody::of(&rig), found)
 }
 
 #[test]
 fn each_axis_is_held_to_its_own_bands_when_it_goes_on() {
-    let mut plan = shaken("60 ms");
+    let mut plan = base_excited_plan("60 ms");
     let axes = &mut link(&mut plan).axes;
     (axes[0].resolution, axes[0].noise) = (Some(1e-4), Some(10.0));
     let bands = Bands::of(&plan.rig, plan.rig.link.as_real().unwrap());
@@ -322,11 +322,11 @@ fn each_axis_is_held_to_its_own_bands_when_it_goes_on() {
             force: vec![60.0, 5.0]
         }
     );
-    let (played, about, found) = cut_off(&shaken("60 ms"), 60);
+    let (logged_run, about, found) = cut_off(&base_excited_plan("60 ms"), 60);
     let decided = |change: fn(&mut Reading)| {
         let mut found = found.clone();
         change(&mut found);
-        replay::decide(&played, &about, &found, &bands, false)
+        replay::decide(&logged_run, &about, &found, &bands, false)
     };
     decided(|_| ()).unwrap();
     // A difference that the coarse axis cannot resolve is too large for the fine axis.
@@ -358,8 +358,8 @@ fn each_axis_is_held_to_its_own_bands_when_it_goes_on() {
     );
 }
 
-pub(super) fn played(disk: &PowerLoss) -> (crate::record::journal::Recovered, LoggedRun) {
+pub(super) fn logged_run(disk: &PowerLoss) -> (crate::record::journal::Recovered, LoggedRun) {
     let recovered = recover(&disk.written()).unwrap();
-    let played = LoggedRun::of(&recovered).unwrap();
-    (recovered, played)
+    let logged_run = LoggedRun::of(&recovered).unwrap();
+    (recovered, logged_run)
 }

@@ -91,12 +91,12 @@ pub(crate) fn checked(text: &str, rig: &str) -> Plan {
 }
 
 /// The ground-motion test above for this duration.
-pub(crate) fn shaken(duration: &str) -> Plan {
+pub(crate) fn base_excited_plan(duration: &str) -> Plan {
     checked(&PLAN.replace("DURATION", duration), "frame_rig")
 }
 
 /// The same in continuous mode; a step takes two seconds.
-pub(crate) fn gliding_text(duration: &str) -> String {
+pub(crate) fn continuous_text(duration: &str) -> String {
     let mode = "  time_step = 10 ms\n  mode      = continuous(time_scale: 200)";
     PLAN.replace("DURATION", duration)
         .replace("  time_step = 10 ms", mode)

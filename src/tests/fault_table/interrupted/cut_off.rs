@@ -12,7 +12,7 @@ use crate::rig::Rig as _;
 use crate::run::Unwatched;
 use crate::run::replay;
 use crate::run::replay::{Bands, RigBody};
-use crate::tests::fault_table::axes::played;
+use crate::tests::fault_table::axes::logged_run;
 use crate::tests::fault_table::stage::{emulator, header, open};
 
 /// Runs the plan until the given write or sync of its run log. psd is killed there, before the write or `after` it. Returns whether psd
@@ -36,7 +36,7 @@ pub(crate) fn killed(
 }
 
 /// Outcome of a run that was cut off.
-pub(crate) enum GoneOn {
+pub(crate) enum Resumed {
     ToItsEnd(Box<Record>),
     /// The record had its end.
     Ended,
@@ -45,10 +45,10 @@ pub(crate) enum GoneOn {
 }
 
 /// Resumes the run on this disk, from its run log and the replies of the rig.
-pub(crate) fn gone_on(plan: &Plan, emulator: &InProcess, disk: &PowerLoss, call: usize) -> GoneOn {
-    let (recovered, before) = played(disk);
+pub(crate) fn resumed(plan: &Plan, emulator: &InProcess, disk: &PowerLoss, call: usize) -> Resumed {
+    let (recovered, before) = logged_run(disk);
     if before.ended {
-        return GoneOn::Ended;
+        return Resumed::Ended;
     }
     let datum = before.rig.as_ref().and_then(|rig| rig.datum.clone());
     let at_its_datum = Plan {
@@ -59,7 +59,7 @@ pub(crate) fn gone_on(plan: &Plan, emulator: &InProcess, disk: &PowerLoss, call:
     let (found, about) = (rig.read().unwrap(), RigBody::of(&rig));
     let bands = Bands::of(&plan.rig, plan.rig.link.as_real().unwrap());
     let decision = match replay::decide(&before, &about, &found, &bands, false) {
-        Err(replay::ResumeRefusal::NothingRecorded) => return GoneOn::NeverBegun,
+        Err(replay::ResumeRefusal::NothingRecorded) => return Resumed::NeverBegun,
         decided => decided.unwrap_or_else(|refusal| panic!("call {call}: {refusal}")),
     };
     let resumption = decision.resumption("A. Witness", "power", &found, before.time);
@@ -82,7 +82,7 @@ pub(crate) fn gone_on(plan: &Plan, emulator: &InProcess, disk: &PowerLoss, call:
         Ok::<_, replay::ResumeRefusal>(replay::Continuation {
             rig: &mut rig,
             journal,
-            logged: played(disk).1,
+            logged: logged_run(disk).1,
         })
     };
     let resumed =
@@ -92,7 +92,7 @@ pub(crate) fn gone_on(plan: &Plan, emulator: &InProcess, disk: &PowerLoss, call:
         (None, Outcome::Completed),
         "call {call}"
     );
-    GoneOn::ToItsEnd(Box::new(resumed.record))
+    Resumed::ToItsEnd(Box::new(resumed.record))
 }
 
 /// Cuts the run off at every third write or sync of its run log from `first` on. `meanwhile` acts on the emulator, then the run is
@@ -110,10 +110,10 @@ pub(crate) fn cut_off_anywhere(
             return;
         }
         meanwhile(&emulator);
-        match gone_on(plan, &emulator, &disk, call) {
-            GoneOn::ToItsEnd(record) => whole(&record, &disk),
-            GoneOn::Ended => {}
-            GoneOn::NeverBegun => panic!("call {call}: the rig was opened before it"),
+        match resumed(plan, &emulator, &disk, call) {
+            Resumed::ToItsEnd(record) => whole(&record, &disk),
+            Resumed::Ended => {}
+            Resumed::NeverBegun => panic!("call {call}: the rig was opened before it"),
         }
     }
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
-use super::cut_off::{GoneOn, gone_on};
+use super::cut_off::{Resumed, resumed};
 use crate::emulator::{InProcess, Log, SimulatedPort};
 use crate::plan::{Plan, ProcedureKind, StiffnessRamp};
 use crate::record::journal::testing::PowerLoss;
@@ -104,8 +104,8 @@ fn killed_at_every_word_it_goes_on_to_the_same_end_and_no_target_is_carried_out_
             if disk.written().is_empty() {
                 continue;
             }
-            match gone_on(&plan, &emulator, &disk, kills) {
-                GoneOn::ToItsEnd(record) => {
+            match resumed(&plan, &emulator, &disk, kills) {
+                Resumed::ToItsEnd(record) => {
                     assert_eq!(
                         targets(&emulator),
                         moves,
@@ -120,7 +120,7 @@ fn killed_at_every_word_it_goes_on_to_the_same_end_and_no_target_is_carried_out_
                         "word {kills}, {after}"
                     );
                 }
-                GoneOn::Ended | GoneOn::NeverBegun => {}
+                Resumed::Ended | Resumed::NeverBegun => {}
             }
         }
         assert!(kills > 60, "{kills} words");

@@ -6,7 +6,7 @@ use crate::plan::{
 };
 use crate::record::Record;
 use crate::tests::testing::{elastic_plan, number, ramp, result_of, run_unwatched};
-use crate::uncertainty::{Source, known};
+use crate::uncertainty::{Source, measurement_uncertainty};
 
 const DAMPING: f64 = 300.0;
 const COULOMB: f64 = 10.0;
@@ -45,7 +45,7 @@ fn damping(record: &Record, procedure: usize) -> (f64, f64) {
         .result("damping")
         .unwrap()
         .contributions;
-    let known = known(parts, record).unwrap();
+    let known = measurement_uncertainty(parts, record).unwrap();
     (
         number(record, procedure, "damping").0.unwrap(),
         known.expanded(),

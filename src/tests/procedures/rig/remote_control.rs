@@ -34,14 +34,14 @@ fn plan(force: f64, after: ZeroAfter) -> Plan {
 
 /// Moves out by half a millimetre, stays, and disconnects.
 fn client(specimen: &mut Specimen<'_, '_>) {
-    let mut talk = || -> Result<(), RigFault> {
+    let mut converse = || -> Result<(), RigFault> {
         specimen.come("127.0.0.1:1".to_owned())?;
         specimen.propose(&[5e-4])?;
         specimen.execute()?;
         specimen.commit();
         Ok(())
     };
-    talk().unwrap();
+    converse().unwrap();
     specimen.leave(Disconnect::Closed, "closed by the client".to_owned());
     specimen.close();
 }
@@ -70,14 +70,14 @@ fn header() -> Header {
 /// The record of a served rig; the run log alone gives the same record.
 fn served(plan: &Plan, wants: bool) -> Record {
     let (disk, record, steps) = recorded(plan, wants);
-    let again = played(plan, &disk);
+    let again = logged_run(plan, &disk);
     assert_eq!(format!("{:?}", again.record), format!("{record:?}"));
     assert_eq!(again.steps, Some(steps));
     record
 }
 
 /// The record of a served rig from its run log alone.
-fn played(plan: &Plan, disk: &PowerLoss) -> replay::Replayed {
+fn logged_run(plan: &Plan, disk: &PowerLoss) -> replay::Replayed {
     let again = replay::replay(
         plan,
         LoggedRun::of(&recover(&disk.written()).unwrap()).unwrap(),
@@ -165,7 +165,7 @@ fn a_record_without_the_zeros_that_its_plan_asks_for_is_played_back_without_them
     let mut unread = asking.clone();
     unread.rig.zero_drift = None;
     let (disk, record, steps) = recorded(&unread, false);
-    let again = played(&asking, &disk);
+    let again = logged_run(&asking, &disk);
     assert_eq!(
         (again.record.drift.as_ref(), &again.record.outcome),
         (None, &Outcome::Completed)

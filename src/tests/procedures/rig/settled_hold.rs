@@ -9,7 +9,7 @@ use crate::plan::{
 };
 use crate::record::{History, Record};
 use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
-use crate::uncertainty::known;
+use crate::uncertainty::measurement_uncertainty;
 
 const BRANCH: f64 = 1.2e5;
 const SHARE: f64 = 0.015;
@@ -152,7 +152,8 @@ fn noisy_holds_of_a_rig_that_settles_are_held() {
                 },
             ));
             let parts = &record.procedures[0].result(name).unwrap().contributions;
-            (value(&record, name) - truth).abs() <= known(parts, &record).unwrap().expanded()
+            (value(&record, name) - truth).abs()
+                <= measurement_uncertainty(parts, &record).unwrap().expanded()
         });
         // 95.45 % of sixty are 57.3; three binomial standard deviations are 4.8.
         let held = held.count();

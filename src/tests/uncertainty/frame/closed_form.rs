@@ -1,6 +1,6 @@
 //! One storey compared with one degree of freedom, two elastic storeys with their modes.
 
-use super::{constant, entry, from, rebuilt, shaken, storey, storeys};
+use super::{base_excited_plan, constant, entry, from, rebuilt, storey, storeys};
 use crate::plan::{
     Calibration, Contact, Impact, Link, Plan, ProcedureKind, ShakeDamping, Storey, Until,
     VirtualLink,
@@ -182,7 +182,7 @@ const NAMES: [(&str, usize); 5] = [
 #[test]
 fn two_elastic_storeys_have_the_uncertainty_of_their_modes() {
     let (masses, stiffnesses) = ([2.0, 1.5], [3000.0, 1800.0]);
-    let mut plan = shaken(
+    let mut plan = base_excited_plan(
         vec![storey(2.0, 3000.0), storey(1.5, 1800.0)],
         vec![1.0; 21],
         1e-4,
@@ -277,7 +277,7 @@ fn two_elastic_storeys_have_the_uncertainty_of_their_modes() {
 /// ω² of two storeys by hand: the periods go as √(m/k) of each, and the ratios of Rayleigh damping as they are stated.
 #[test]
 fn periods_have_the_uncertainty_of_masses_and_stiffnesses() {
-    let mut plan = shaken(
+    let mut plan = base_excited_plan(
         vec![storey(2.0, 3000.0), storey(2.0, 3000.0)],
         vec![1.0; 11],
         1e-3,
@@ -353,7 +353,7 @@ fn periods_have_the_uncertainty_of_masses_and_stiffnesses() {
 fn an_exact_frame_has_the_uncertainty_of_its_time_step() {
     for plan in [
         struck_frame(),
-        shaken(
+        base_excited_plan(
             vec![storey(2.0, 3000.0), storey(1.5, 1800.0)],
             vec![1.0; 11],
             1e-3,

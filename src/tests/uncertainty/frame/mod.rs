@@ -20,7 +20,11 @@ pub(crate) fn storey(mass: f64, stiffness: f64) -> Storey {
 }
 
 /// A frame on ground that moves from the start, with these accelerations 10 ms apart.
-pub(crate) fn shaken(storeys: Vec<Storey>, accelerations: Vec<f64>, time_step: f64) -> Plan {
+pub(crate) fn base_excited_plan(
+    storeys: Vec<Storey>,
+    accelerations: Vec<f64>,
+    time_step: f64,
+) -> Plan {
     let shake = Shake {
         specimen: 0,
         ground: 0,

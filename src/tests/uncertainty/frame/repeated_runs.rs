@@ -1,6 +1,6 @@
 //! Uncertainty of frames, compared with the scatter of many virtual runs.
 
-use super::{constant, entry, rebuilt, shake, shaken, storey, storeys};
+use super::{base_excited_plan, constant, entry, rebuilt, shake, storey, storeys};
 use crate::plan::{
     Behaviour, Contact, Link, Plan, ProcedureKind, ShakeDamping, Stepping, Storey, VirtualLink,
 };
@@ -67,7 +67,7 @@ fn repeated_ground_motion_tests_scatter_as_predicted() {
             .iter()
             .map(|acceleration| scale * acceleration)
             .collect();
-        let mut plan = shaken(
+        let mut plan = base_excited_plan(
             vec![
                 yielding(masses[0], 900.0, 12.0),
                 yielding(masses[1], 700.0, 8.0),
@@ -151,7 +151,7 @@ fn repeated_impacts_on_a_storey_scatter_as_predicted() {
 #[test]
 fn noise_of_the_load_cells_scatters_as_predicted() {
     let with = |seed: u64| {
-        let mut plan = shaken(
+        let mut plan = base_excited_plan(
             vec![storey(3.0, 900.0), storey(2.0, 700.0)],
             vec![1.0; 60],
             5e-3,
@@ -180,7 +180,8 @@ fn inputs_perturbed_together_have_the_sum_of_their_variances() {
         let ground: Vec<f64> = (0..600)
             .map(|step| (0.085 * f64::from(step)).sin())
             .collect();
-        let mut plan = shaken((0..8).map(|_| storey(2.0, 9000.0)).collect(), ground, 1e-3);
+        let mut plan =
+            base_excited_plan((0..8).map(|_| storey(2.0, 9000.0)).collect(), ground, 1e-3);
         for storey in storeys(&mut plan) {
             storey.mass_uncertainty = 0.02;
         }

@@ -114,7 +114,7 @@ fn datum_of(run: &Path, plan: &Plan) -> Result<Vec<f64>, Failure> {
     let read = record_file::read(run)?;
     let of_this_rig = read.plan.rig.name == plan.rig.name;
     let datum = read
-        .played
+        .logged
         .rig
         .filter(|_| of_this_rig)
         .and_then(|rig| rig.datum);

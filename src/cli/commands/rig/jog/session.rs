@@ -44,7 +44,7 @@ impl JogSession<'_> {
             }
             self.moves(specimen)
         });
-        let (parting, reason) = match &ended {
+        let (disconnect, reason) = match &ended {
             Ok(Exit::Met) => (Disconnect::Closed, "done".to_owned()),
             Ok(_) => (
                 Disconnect::Stopped,
@@ -55,7 +55,7 @@ impl JogSession<'_> {
             }
             Err(failure) => (Disconnect::Failed, failure.to_string()),
         };
-        specimen.leave(parting, reason);
+        specimen.leave(disconnect, reason);
         specimen.close();
         self.ended = Some(ended);
     }

@@ -7,7 +7,7 @@ use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::messages::{shown, specimens as message, values};
 use crate::language::syntax::ast::{Expr, ExprKind};
 use crate::physics::relaxation::logarithmic::LogarithmicRelaxation;
-use crate::plan::{Behaviour, Bolted, Breaks, Pinching};
+use crate::plan::{Behaviour, Breaks, Pinching};
 use crate::schema::Variant;
 use crate::text::source::Span;
 use crate::units::Dimension;
@@ -92,9 +92,6 @@ fn part<'a>(
     let chosen = checker.chosen(written.field, written.variants, expr)?;
     let mut number = |name: &str| checker.constant_argument(&chosen, name, context);
     match chosen.variant.name {
-        "elastic" => Some(Behaviour::Elastic {
-            stiffness: number("stiffness")?,
-        }),
         "bilinear" => {
             let (stiffness, yield_force, post_yield_ratio) = (
                 number("stiffness"),
@@ -122,23 +119,6 @@ fn part<'a>(
                     },
                 },
             )
-        }
-        "bouc_wen" => {
-            let (stiffness, yield_force, post_yield_ratio) = (
-                number("stiffness"),
-                number("yield_force"),
-                number("post_yield_ratio"),
-            );
-            let (sharpness, beta) = (number("n"), number("beta"));
-            let (stiffness, yield_force, post_yield_ratio) =
-                (stiffness?, yield_force?, post_yield_ratio?);
-            Some(Behaviour::BoucWen {
-                stiffness,
-                yield_force,
-                post_yield_ratio,
-                sharpness: sharpness?,
-                beta: beta?,
-            })
         }
         "pinching" => {
             let (stiffness, yield_force, post_yield_ratio) = (
@@ -169,29 +149,6 @@ fn part<'a>(
                 capping,
                 deterioration,
                 ..pinching
-            }))
-        }
-        "degrading" => {
-            let (stiffness, half, residual) = (
-                number("stiffness"),
-                number("half_displacement"),
-                number("residual"),
-            );
-            Some(Behaviour::Degrading {
-                stiffness: stiffness?,
-                half_displacement: half?,
-                residual: residual?,
-            })
-        }
-        "bolted" => {
-            let (stiffness, bearing_force) = (number("stiffness"), number("bearing_force"));
-            let (clearance, slip_force) = (number("clearance"), number("slip_force"));
-            let (stiffness, bearing_force) = (stiffness?, bearing_force?);
-            Some(Behaviour::Bolted(Bolted {
-                stiffness,
-                bearing_force,
-                clearance: clearance?,
-                slip_force: slip_force?,
             }))
         }
         "rate" => {
@@ -233,7 +190,19 @@ fn part<'a>(
             expr.span,
             written.material.mass_per_length,
         ),
-        _ => beam::beam(checker, &chosen, context, written.material.own_mass),
+        "beam" => beam::beam(checker, &chosen, context, written.material.own_mass),
+        word => {
+            let fields = chosen.variant.arguments.iter();
+            let read: Vec<(&str, Option<f64>)> = fields
+                .map(|field| {
+                    let number = checker.constant_argument(&chosen, field.name, context);
+                    (field.name, number)
+                })
+                .collect();
+            Behaviour::of_numbers(word, |name| {
+                read.iter().find(|(field, _)| *field == name)?.1
+            })
+        }
     }
 }
 

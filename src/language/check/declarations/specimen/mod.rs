@@ -287,7 +287,7 @@ pub fn export(checker: &mut Checker, block: usize, name: &str, requested_at: Spa
     if name == fields::MASS.name {
         return mass(checker, block);
     }
-    // Known only with a model; a missing model of a virtual specimen has a separate diagnostic.
+    // MeasurementUncertainty only with a model; a missing model of a virtual specimen has a separate diagnostic.
     if checker.real_rig.is_some() && checker.field(block, fields::BEHAVIOUR.name).is_none() {
         return checker.fail(message::property_without_behaviour(
             declared.name,

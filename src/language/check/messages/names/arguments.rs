@@ -2,7 +2,7 @@
 
 use crate::language::check::messages::{all_of, suggestion};
 use crate::language::syntax::ast::Ident;
-use crate::schema::{FUNCTIONS, Field, FunctionKind, Need, Variant};
+use crate::schema::{FUNCTIONS, Field, FunctionKind, Presence, Variant};
 use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::Span;
 
@@ -86,7 +86,7 @@ fn argument_help(variant: &Variant, missing: &Field) -> String {
     let required: Vec<&Field> = variant
         .arguments
         .iter()
-        .filter(|argument| argument.need == Need::Required)
+        .filter(|argument| argument.presence == Presence::Required)
         .collect();
     let written = |argument: &Field| {
         let named = argument.example.starts_with(&format!("{}:", argument.name));

@@ -141,7 +141,7 @@ fn a_hangup_gives_the_last_line_first() {
     assert_eq!(client.line(b"\n", 1.0).unwrap(), b"last");
     assert_eq!(
         client.line(b"\n", 1.0),
-        Err(Missed::Gone("the other side closed it".to_owned()))
+        Err(Missed::Lost("the other side closed it".to_owned()))
     );
     assert!(matches!(
         client.exchange(b"?", b"\n", ok),

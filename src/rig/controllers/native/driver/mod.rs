@@ -98,7 +98,7 @@ impl NativeDevice {
         let (sequence, boot) = (self.sequence, self.boot.as_deref());
         let answered = self
             .client
-            .exchange(frame, b"\n", |line| judge(line, sequence, kind, boot))?;
+            .exchange(frame, b"\n", |line| classify(line, sequence, kind, boot))?;
         let refused = answered.kind == Kind::Err;
         self.out_of_step = refused && answered.words().first() == Some(&"SEQ");
         if refused {
@@ -243,7 +243,7 @@ pub(crate) fn decoded(reply: Reply, axes: usize) -> Result<Sample, DeviceFault> 
 }
 
 /// The meaning of a received line for the open request.
-fn judge(line: &[u8], sequence: u32, kind: Kind, boot: Option<&str>) -> Answer<Reply> {
+fn classify(line: &[u8], sequence: u32, kind: Kind, boot: Option<&str>) -> Answer<Reply> {
     let Ok(reply) = native::codec::reply(line) else {
         return Answer::Ignore;
     };
@@ -336,12 +336,12 @@ impl Device for NativeDevice {
             .zip(native::codec::length(speed))
             .ok_or_else(unsaid)?;
         let read_back = |(written, meant): (&str, f64)| number::read_back(written, 1e3, meant);
-        let heard: Option<Vec<f64>> = written
+        let encoded: Option<Vec<f64>> = written
             .split(' ')
             .zip(targets.iter().copied())
             .map(read_back)
             .collect();
-        let (targets, speed) = heard.zip(read_back((&rate, speed))).ok_or_else(unsaid)?;
+        let (targets, speed) = encoded.zip(read_back((&rate, speed))).ok_or_else(unsaid)?;
         if !bounds
             .axes
             .iter()

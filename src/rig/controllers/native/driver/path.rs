@@ -32,7 +32,7 @@ impl NativeDevice {
         };
         let ends: Option<Vec<End>> = paths.iter().map(end).collect();
         let seconds = paths.first().map_or(0.0, |path| path.seconds);
-        let heard = native::codec::time(seconds)
+        let encoded = native::codec::time(seconds)
             .and_then(|written| number::read_back(&written, 1e3, seconds));
         let unsaid = || {
             DeviceFault::Unfit(format!(
@@ -40,7 +40,7 @@ impl NativeDevice {
             ))
         };
         let (ends, seconds) = ends
-            .zip(heard.filter(|seconds| *seconds > 0.0))
+            .zip(encoded.filter(|seconds| *seconds > 0.0))
             .ok_or_else(unsaid)?;
         let inside = |(axis, path): (&native::codec::AxisBounds, &Path)| {
             let (low, high) = path.reach();

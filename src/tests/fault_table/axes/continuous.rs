@@ -1,8 +1,8 @@
 //! A continuous run over the real driver and the simulated controller, with two axes and with one. It equals the virtual run. A fault
 //! during a move holds every axis. A run that is cut off anywhere is resumed to the same end.
 
-use super::two_axes::{checked, gliding_text, ideal, results, same, upper};
-use super::{played, stopped};
+use super::two_axes::{checked, continuous_text, ideal, results, same, upper};
+use super::{logged_run, stopped};
 use crate::emulator::InProcess;
 use crate::plan::{Interval, Plan};
 use crate::record::Outcome;
@@ -14,7 +14,7 @@ use crate::tests::fault_table::interrupted::cut_off::cut_off_anywhere;
 use crate::tests::fault_table::stage::{link, run, run_without};
 
 fn plan(duration: &str) -> Plan {
-    checked(&gliding_text(duration), "frame_rig")
+    checked(&continuous_text(duration), "frame_rig")
 }
 
 /// One degree of freedom under an impact.
@@ -71,20 +71,20 @@ fn as_near_as(near: f64) -> impl Fn(&str, f64) -> f64 {
 
 #[test]
 fn axes_that_do_not_stop_give_what_the_virtual_run_gives() {
-    let text = gliding_text("0.6 s");
+    let text = continuous_text("0.6 s");
     let ended = run(&checked(&text, "frame_rig"), "");
     assert!(ended.completed(), "{}\n{}", ended.reason(), ended.tail());
     assert_eq!(ended.line_statistics, LineStatistics::default());
     same(&results(&ended.record), &ideal(&text), as_near_as(1e-7));
-    let glides: Vec<&str> = ended
+    let paths: Vec<&str> = ended
         .log
         .lines()
         .filter(|line| line.contains(">GLIDE "))
         .collect();
     assert!(
-        glides.len() > 100,
+        paths.len() > 100,
         "two ways a step, and a brake: {}",
-        glides.len()
+        paths.len()
     );
     assert!(!ended.emulator.lock().rig().moving(), "braked at its end");
 }
@@ -189,6 +189,6 @@ fn cut_off_anywhere_it_is_brought_back_and_goes_on_to_the_same_end() {
     };
     cut_off_anywhere(&plan, 60, left_alone, |resumed, disk| {
         same(&results(resumed), &results(&whole.record), as_near_as(1e-6));
-        assert_eq!(replay::replay(&plan, played(disk).1).mismatch, None);
+        assert_eq!(replay::replay(&plan, logged_run(disk).1).mismatch, None);
     });
 }

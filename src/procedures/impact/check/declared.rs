@@ -38,12 +38,12 @@ pub(crate) fn with_its_striker(
             slowest: striker,
             fastest: striker,
         };
-        judge(checker, block, impact, &strikers, declared);
+        check_declared(checker, block, impact, &strikers, declared);
     }
 }
 
 /// Judges an impact of these strikers.
-pub(crate) fn judge(
+pub(crate) fn check_declared(
     checker: &mut Checker,
     block: usize,
     impact: &Impact,
@@ -131,7 +131,7 @@ fn on_storey(
         let approach = impact.approach(striker, Formula::constant);
         approach.map(|approach| properties.critical_on_impact(target.storey, &approach))
     };
-    let Some((properties, step)) = frame_check::judge(checker, block, &steps, critical) else {
+    let Some((properties, step)) = frame_check::check(checker, block, &steps, critical) else {
         return;
     };
     if let Contact::Limit { force } = &impact.contact

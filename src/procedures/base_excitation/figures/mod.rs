@@ -1,7 +1,8 @@
 //! The figures of a ground-motion test and of an unloaded frame, with their captions, and the curve of a test on a chart of several. In:
 //! a history. Out: [`Chart`]s in SI.
 
-use super::figures;
+pub(crate) mod charts;
+
 use crate::plan::{Figure, FigureKind};
 use crate::procedures::common::limit_lines::limits_on;
 use crate::record::{Floors as _, ShakeHistory, ShakeStep, UnloadStep};
@@ -45,48 +46,48 @@ pub(crate) fn chart(
     if history.steps.is_empty() {
         return None;
     }
-    let limits = |result: ResultKind| figures::of_size(limits_on(run, figure.procedure, result));
-    let chosen = if figures::is_chosen(&history.steps) {
+    let limits = |result: ResultKind| charts::of_size(limits_on(run, figure.procedure, result));
+    let chosen = if charts::is_chosen(&history.steps) {
         "; not all are drawn"
     } else {
         ""
     };
     Some(match figure.kind {
         FigureKind::Modes => (
-            figures::modes(history.modes.as_ref()?),
+            charts::modes(history.modes.as_ref()?),
             format!("{name}: natural mode shapes and periods, floor by floor from the ground up."),
         ),
         FigureKind::Ground => (
-            figures::ground(history),
+            charts::ground(history),
             format!("{name}: applied ground acceleration against simulated time."),
         ),
         FigureKind::Displacement => (
-            figures::displacement(&history.steps),
+            charts::displacement(&history.steps),
             format!(
                 "{name}: displacement of each floor relative to the ground against simulated time{chosen}."
             ),
         ),
         FigureKind::Drift => (
-            figures::drift(&history.steps, &limits(schema::MAX_DRIFT)),
+            charts::drift(&history.steps, &limits(schema::MAX_DRIFT)),
             format!("{name}: drift of each storey against simulated time{chosen}."),
         ),
         FigureKind::Hysteresis => (
-            figures::hysteresis(&history.steps),
+            charts::hysteresis(&history.steps),
             format!(
                 "{name}: measured storey shear against drift; the area of a loop is the energy absorbed by the storey{chosen}."
             ),
         ),
         FigureKind::BaseShear => (
-            figures::base_shear(&history.steps, &limits(schema::MAX_BASE_SHEAR)),
+            charts::base_shear(&history.steps, &limits(schema::MAX_BASE_SHEAR)),
             format!(
                 "{name}: base shear, the sum of the measured restoring forces, against simulated time."
             ),
         ),
         FigureKind::Energy => (
-            figures::energy(history),
+            charts::energy(history),
             format!("{name}: input energy of the ground motion and its parts."),
         ),
-        FigureKind::Tracking => (figures::tracking(&history.steps), followed(name, chosen)),
+        FigureKind::Tracking => (charts::tracking(&history.steps), followed(name, chosen)),
         _ => return None,
     })
 }
@@ -99,7 +100,7 @@ pub(crate) fn unloading_chart(
 ) -> Option<(Chart, String)> {
     (kind == FigureKind::Hysteresis && !steps.is_empty()).then(|| {
         (
-            figures::hysteresis(steps),
+            charts::hysteresis(steps),
             format!(
                 "{name}: measured storey shear against drift, from the start of the unloading to the unloaded position of each storey."
             ),

@@ -99,7 +99,7 @@ impl VirtualRig {
     ///
     /// # Errors
     /// The paths contain no motion, or `each` refuses; the rig then holds.
-    pub(super) fn glide_along(
+    pub(super) fn follow_paths_after(
         &mut self,
         paths: &[Path],
         samples: usize,
@@ -144,7 +144,7 @@ mod tests {
     fn readings(link: VirtualLink, path: &Path, samples: usize) -> Vec<(f64, f64, f64)> {
         let mut rig = VirtualRig::new(link, AT_ONCE, Some(&specimen(50.0, 0.25)), 1.0);
         let mut readings = Vec::new();
-        rig.glide_along(&[*path], samples, 0, &mut |reading| {
+        rig.follow_paths_after(&[*path], samples, 0, &mut |reading| {
             readings.push((reading.time, reading.displacement[0], reading.force[0]));
             Ok(())
         })

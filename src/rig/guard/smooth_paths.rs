@@ -9,25 +9,26 @@ use crate::rig::{Guard, LimitedQuantity, RigFault, Traversed};
 impl Guard<'_> {
     /// Follows `paths`, one per degree of freedom, and reads at up to `samples` times. The last reading is at the end or at the point
     /// where a limit was exceeded.
-    pub fn glide(&mut self, paths: &[Path], samples: usize) -> Traversed {
+    pub fn follow_paths(&mut self, paths: &[Path], samples: usize) -> Traversed {
         let refused = |fault| Traversed {
             readings: Vec::new(),
             fault: Some(fault),
         };
-        if let Err(fault) = self.judge(paths) {
+        if let Err(fault) = self.check_paths(paths) {
             return refused(fault);
         }
         self.leave();
         self.speed = paths.iter().map(Path::fastest).reduce(f64::max);
-        let glided = self.read_during(samples, |rig, each| rig.glide(paths, samples, each));
-        if glided.fault.is_none() {
+        let traversed =
+            self.read_during(samples, |rig, each| rig.follow_paths(paths, samples, each));
+        if traversed.fault.is_none() {
             self.commanded = paths.iter().map(|path| path.to).collect();
             self.going = paths.iter().map(|path| path.end_velocity).collect();
         }
-        glided
+        traversed
     }
 
-    fn judge(&mut self, paths: &[Path]) -> Result<(), RigFault> {
+    fn check_paths(&mut self, paths: &[Path]) -> Result<(), RigFault> {
         let ends: Vec<f64> = paths.iter().map(|path| path.to).collect();
         self.check_targets(&ends)?;
         for (axis, path) in paths.iter().enumerate() {
@@ -67,10 +68,12 @@ mod tests {
         timeout: 60.0,
     };
 
-    fn glided(limits: Limits, paths: &[Path]) -> Option<RigFault> {
+    fn fault_of(limits: Limits, paths: &[Path]) -> Option<RigFault> {
         let mut rig = VirtualRig::new(VirtualLink::default(), AT_ONCE, None, 1.0);
         let mut guard = Guard::new(&mut rig, limits).unwrap();
-        paths.iter().find_map(|path| guard.glide(&[*path], 5).fault)
+        paths
+            .iter()
+            .find_map(|path| guard.follow_paths(&[*path], 5).fault)
     }
 
     fn quantity(fault: Option<&RigFault>) -> Option<LimitedQuantity> {
@@ -98,7 +101,7 @@ mod tests {
             },
             0.1,
         );
-        assert_eq!(glided(Limits::NONE, &[first, on]), None);
+        assert_eq!(fault_of(Limits::NONE, &[first, on]), None);
         let jumps = Path {
             from: first.to + 1e-9,
             ..on
@@ -109,7 +112,7 @@ mod tests {
         };
         for broken in [jumps, kinks] {
             assert!(
-                matches!(glided(Limits::NONE, &[first, broken]), Some(RigFault::Device(reason)) if reason.contains("begin"))
+                matches!(fault_of(Limits::NONE, &[first, broken]), Some(RigFault::Device(reason)) if reason.contains("begin"))
             );
         }
     }
@@ -137,18 +140,18 @@ mod tests {
             displacement: Interval { low: -0.01, high },
             ..Limits::NONE
         };
-        assert_eq!(glided(within(0.008), &[first, turn]), None);
+        assert_eq!(fault_of(within(0.008), &[first, turn]), None);
         assert_eq!(
-            quantity(glided(within(0.007), &[first, turn]).as_ref()),
+            quantity(fault_of(within(0.007), &[first, turn]).as_ref()),
             Some(LimitedQuantity::TargetDisplacement)
         );
         let slow = |high| Limits {
             speed: Interval { low: 0.0, high },
             ..Limits::NONE
         };
-        assert_eq!(glided(slow(0.101), &[first, turn]), None);
+        assert_eq!(fault_of(slow(0.101), &[first, turn]), None);
         assert_eq!(
-            quantity(glided(slow(0.099), &[first]).as_ref()),
+            quantity(fault_of(slow(0.099), &[first]).as_ref()),
             Some(LimitedQuantity::Speed)
         );
     }

@@ -6,10 +6,10 @@ use crate::language::check::declared::Declared;
 use crate::plan::{Between, Escalate};
 use crate::procedures::facts::Motion;
 use crate::procedures::impact;
-use crate::procedures::impact::check::judge::Strikers;
+use crate::procedures::impact::check::declared::Strikers;
 use crate::procedures::impact::facts::PEAK;
 
-pub(crate) fn judge(
+pub(crate) fn check_declared(
     checker: &mut Checker,
     block: usize,
     series: &Escalate,
@@ -22,7 +22,7 @@ pub(crate) fn judge(
         slowest: &series.slowest(striker),
         fastest: &series.fastest(striker),
     };
-    impact::check::judge::judge(checker, block, &series.impact, &strikers, declared);
+    impact::check::declared::check_declared(checker, block, &series.impact, &strikers, declared);
 }
 
 /// The motion that the series leaves.

@@ -15,7 +15,7 @@ pub struct PathEnd {
 
 /// The commanded smooth moves of an emulated rig.
 #[derive(Debug, Default)]
-pub(crate) struct Glides {
+pub(crate) struct PathQueue {
     /// End time of the last move that began \[s\]; none while the actuators go to targets.
     end: Option<f64>,
     ends: Vec<PathEnd>,
@@ -23,7 +23,7 @@ pub(crate) struct Glides {
     next: Option<(Vec<PathEnd>, f64)>,
 }
 
-impl Glides {
+impl PathQueue {
     pub(crate) fn clear(&mut self) {
         *self = Self::default();
     }
@@ -31,7 +31,7 @@ impl Glides {
 
 /// The reason why a move is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GlideRefusal {
+pub enum PathRefusal {
     /// The actuators go to targets, or one move is already waiting.
     Busy,
     /// The move would have ended before now.
@@ -43,7 +43,7 @@ impl EmulatedRig {
     ///
     /// # Errors
     /// The move is refused.
-    pub fn paths_to(&self, ends: &[PathEnd], seconds: f64) -> Result<Vec<Path>, GlideRefusal> {
+    pub fn paths_to(&self, ends: &[PathEnd], seconds: f64) -> Result<Vec<Path>, PathRefusal> {
         let path = |from: PathEnd, to: &PathEnd, seconds| Path {
             from: from.position,
             to: to.position,
@@ -55,11 +55,11 @@ impl EmulatedRig {
             position: actuator.position,
             velocity: actuator.velocity(),
         });
-        match self.glides.end.filter(|_| self.is_gliding()) {
-            Some(end) if end > self.time => match self.glides.next {
-                Some(_) => Err(GlideRefusal::Busy),
+        match self.paths.end.filter(|_| self.follows_path()) {
+            Some(end) if end > self.time => match self.paths.next {
+                Some(_) => Err(PathRefusal::Busy),
                 None => Ok(self
-                    .glides
+                    .paths
                     .ends
                     .iter()
                     .zip(ends)
@@ -71,9 +71,9 @@ impl EmulatedRig {
                     .zip(ends)
                     .map(|(from, to)| path(from, to, left))
                     .collect()),
-                _ => Err(GlideRefusal::Late),
+                _ => Err(PathRefusal::Late),
             },
-            None if self.moving() => Err(GlideRefusal::Busy),
+            None if self.moving() => Err(PathRefusal::Busy),
             None => Ok(here
                 .zip(ends)
                 .map(|(from, to)| path(from, to, seconds))
@@ -91,8 +91,8 @@ impl EmulatedRig {
     ) -> f64 {
         for (actuator, path) in paths.iter().enumerate() {
             let (low, high) = path.reach();
-            self.judge(actuator, low);
-            self.judge(actuator, high);
+            self.check_limits(actuator, low);
+            self.check_limits(actuator, high);
             self.targets.push(path.to);
         }
         let speed = paths.iter().map(Path::fastest).fold(0.0, f64::max);
@@ -102,13 +102,13 @@ impl EmulatedRig {
             targets: paths.iter().map(|path| path.to).collect(),
             speed,
         });
-        let gliding_until = self.glides.end.filter(|_| self.is_gliding());
-        if let Some(end) = gliding_until.filter(|end| *end > self.time) {
-            self.glides.next = Some((ends.to_vec(), seconds));
+        let paths_end = self.paths.end.filter(|_| self.follows_path());
+        if let Some(end) = paths_end.filter(|end| *end > self.time) {
+            self.paths.next = Some((ends.to_vec(), seconds));
             return end + seconds - self.time;
         }
-        let end = gliding_until.unwrap_or(self.time) + seconds;
-        (self.glides.end, self.glides.ends) = (Some(end), ends.to_vec());
+        let end = paths_end.unwrap_or(self.time) + seconds;
+        (self.paths.end, self.paths.ends) = (Some(end), ends.to_vec());
         for (actuator, path) in self.actuators.iter_mut().zip(paths) {
             actuator.follow(*path);
         }
@@ -117,9 +117,9 @@ impl EmulatedRig {
 
     /// Returns the time since the end of the last move \[s\]; none during a move or at rest.
     #[must_use]
-    pub fn gone_on(&self) -> Option<f64> {
-        let end = self.glides.end.filter(|_| self.is_gliding())?;
-        Some(self.time - end).filter(|gone_on| *gone_on > 0.0)
+    pub fn overrun(&self) -> Option<f64> {
+        let end = self.paths.end.filter(|_| self.follows_path())?;
+        Some(self.time - end).filter(|overrun| *overrun > 0.0)
     }
 
     /// Returns the duration of the motion after a move without a successor \[s\], if a fault has changed it.
@@ -129,19 +129,19 @@ impl EmulatedRig {
         changed.reduce(f64::max)
     }
 
-    fn is_gliding(&self) -> bool {
+    fn follows_path(&self) -> bool {
         self.actuators
             .iter()
-            .any(super::actuator::ActuatorModel::glides)
+            .any(super::actuator::ActuatorModel::follows_path)
     }
 
     /// Returns the start time of the waiting move \[s\].
-    pub(crate) fn next_glide(&self) -> Option<f64> {
-        self.glides.end.filter(|_| self.glides.next.is_some())
+    pub(crate) fn next_path_start(&self) -> Option<f64> {
+        self.paths.end.filter(|_| self.paths.next.is_some())
     }
 
-    pub(crate) fn begin_next_glide(&mut self) {
-        let (Some((ends, seconds)), Some(end)) = (self.glides.next.take(), self.glides.end) else {
+    pub(crate) fn begin_next_path(&mut self) {
+        let (Some((ends, seconds)), Some(end)) = (self.paths.next.take(), self.paths.end) else {
             return;
         };
         let from = self
@@ -159,7 +159,7 @@ impl EmulatedRig {
         for (actuator, path) in self.actuators.iter_mut().zip(paths) {
             actuator.follow(path);
         }
-        (self.glides.end, self.glides.ends) = (Some(end + seconds), ends);
+        (self.paths.end, self.paths.ends) = (Some(end + seconds), ends);
     }
 }
 
@@ -168,12 +168,12 @@ mod tests {
     use super::*;
     use crate::emulator::testing::elastic_rig;
 
-    fn glide(
+    fn follow(
         rig: &mut EmulatedRig,
         position: f64,
         velocity: f64,
         seconds: f64,
-    ) -> Result<f64, GlideRefusal> {
+    ) -> Result<f64, PathRefusal> {
         let ends = [PathEnd { position, velocity }];
         let paths = rig.paths_to(&ends, seconds)?;
         Ok(rig.follow(None, &paths, &ends, seconds))
@@ -182,41 +182,41 @@ mod tests {
     #[test]
     fn paths_are_followed_in_position_and_time_also_if_the_next_comes_late() {
         let mut rig = elastic_rig();
-        assert_eq!(glide(&mut rig, 0.001, 0.002, 1.0), Ok(1.0));
+        assert_eq!(follow(&mut rig, 0.001, 0.002, 1.0), Ok(1.0));
         rig.advance(0.5);
         // x = 3·1 mm·s² − 2·1 mm·s³ + 2 mm/s·(s³ − s²)·1 s at s = 0.5.
         assert!((rig.commanded() - (0.75e-3 - 0.25e-3 + 2e-3 * (0.125 - 0.25))).abs() < 1e-15);
-        assert_eq!(glide(&mut rig, 0.002, -0.001, 0.5), Ok(1.0), "one waits");
-        assert_eq!(glide(&mut rig, 0.0, 0.0, 0.5), Err(GlideRefusal::Busy));
+        assert_eq!(follow(&mut rig, 0.002, -0.001, 0.5), Ok(1.0), "one waits");
+        assert_eq!(follow(&mut rig, 0.0, 0.0, 0.5), Err(PathRefusal::Busy));
         rig.advance(1.5);
         assert!((rig.commanded() - 0.002).abs() < 1e-15 && rig.moving());
         rig.advance(1.6);
         assert!(
             (rig.commanded() - 0.0019).abs() < 1e-15
                 && rig
-                    .gone_on()
-                    .is_some_and(|gone_on| (gone_on - 0.1).abs() < 1e-12)
+                    .overrun()
+                    .is_some_and(|overrun| (overrun - 0.1).abs() < 1e-12)
         );
         assert!(
-            glide(&mut rig, 0.001, 0.0, 0.5).is_ok_and(|left| (left - 0.4).abs() < 1e-12),
+            follow(&mut rig, 0.001, 0.0, 0.5).is_ok_and(|left| (left - 0.4).abs() < 1e-12),
             "its time began at 1.5 s"
         );
         rig.advance(2.0);
-        assert!(rig.commanded() == 0.001 && !rig.moving() && rig.gone_on().is_none());
+        assert!(rig.commanded() == 0.001 && !rig.moving() && rig.overrun().is_none());
     }
 
     #[test]
     fn an_expired_path_is_refused_and_a_held_actuator_goes_no_farther() {
         let mut rig = elastic_rig();
-        glide(&mut rig, 0.001, 0.002, 1.0).unwrap();
+        follow(&mut rig, 0.001, 0.002, 1.0).unwrap();
         rig.advance(1.3);
-        assert_eq!(glide(&mut rig, 0.002, 0.0, 0.2), Err(GlideRefusal::Late));
+        assert_eq!(follow(&mut rig, 0.002, 0.0, 0.2), Err(PathRefusal::Late));
         rig.hold();
         let held = rig.commanded();
         rig.advance(2.0);
         assert!(rig.commanded() == held && !rig.moving());
         assert!(
-            glide(&mut rig, 0.001, 0.0, 0.1).is_ok_and(|left| (left - 0.1).abs() < 1e-12),
+            follow(&mut rig, 0.001, 0.0, 0.1).is_ok_and(|left| (left - 0.1).abs() < 1e-12),
             "from rest"
         );
     }
@@ -225,7 +225,7 @@ mod tests {
     #[test]
     fn the_force_is_that_of_position_and_velocity() {
         let mut rig = elastic_rig();
-        glide(&mut rig, 0.004, 0.01, 1.0).unwrap();
+        follow(&mut rig, 0.004, 0.01, 1.0).unwrap();
         rig.advance(0.777);
         let path = Path {
             from: 0.0,
