@@ -72,6 +72,9 @@ pub enum Outcome {
     },
 }
 
+/// The end of the text of an inspection of a simulated rig without a terminal.
+pub const NO_OPERATOR_ASKED: &str = "no operator was asked: simulated rig, no terminal";
+
 /// An event for the report.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {
@@ -118,8 +121,8 @@ impl EventKind {
             Self::Held => "held",
             Self::NotHeld => "not confirmed held",
             Self::Fault => "fault",
-            Self::Recovered => "mended",
-            Self::Remark => "remark",
+            Self::Recovered => "recovered",
+            Self::Remark => "observation",
             Self::Resume => "resume",
             Self::Amendment => "amendment",
         }

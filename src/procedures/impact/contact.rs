@@ -113,6 +113,13 @@ pub(crate) fn reported(contact: &Contact) -> Reported {
         INDENTATION[0],
         INDENTATION[1],
     ];
+    /// The coefficient of restitution is an input of this law.
+    const OF_A_STATED_RESTITUTION: &[&str] = &[
+        schema::MAX_CONTACT_FORCE.name,
+        INDENTATION[0],
+        INDENTATION[1],
+        schema::RESTITUTION.name,
+    ];
     match contact {
         Contact::Rigid => Reported {
             name: "rigid",
@@ -131,7 +138,7 @@ pub(crate) fn reported(contact: &Contact) -> Reported {
         Contact::Restitution { .. } => Reported {
             name: "restitution",
             headline: &[],
-            unprinted: OF_AN_IMPULSE,
+            unprinted: OF_A_STATED_RESTITUTION,
             energy: LOST,
             self_tested: [Part::Restitution, Part::FrameRestitution],
         },

@@ -3,7 +3,7 @@
 
 use super::{Source, capitalised};
 use crate::procedures;
-use crate::record::EventKind;
+use crate::record::{EventKind, NO_OPERATOR_ASKED};
 use crate::report::document::{Block, Text};
 use crate::report::run::Run;
 use crate::report::status::deviations;
@@ -51,7 +51,7 @@ pub(super) fn observations(source: &Source<'_>, body: &mut Vec<Block>) {
 /// Notes and inspections in the order of the run.
 pub(super) fn notes(source: &Source<'_>, body: &mut Vec<Block>) {
     let notes = of_kind(source.run, |kind, text| match kind {
-        EventKind::Inspection => true,
+        EventKind::Inspection => !text.ends_with(NO_OPERATOR_ASKED),
         EventKind::Note => !deviations::is_of_the_line(text),
         _ => false,
     });
