@@ -347,7 +347,7 @@ wording! {
         TITLE = "Zero drift";
         NOT_READ_AGAIN = "The zeros of this rig were not read after the test. Zero drift is not evaluated.";
         COLUMNS = ["Channel", "Before", "After", "Change", "Allowed", "Slope before", "In dwells", "State"];
-        NOT_JUDGED = "not judged";
+        NOT_JUDGED = "not assessed";
         WITHIN = "within";
         BEYOND = "BEYOND";
         AFTER_AT_START = "after the last, back at the start with the specimen on";
