@@ -44,9 +44,7 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
 
 /// The uncertainty budgets of every procedure.
 pub(super) fn budgets(source: &Source<'_>, body: &mut Vec<Block>) {
-    for (index, procedure) in source.run.record.procedures.iter().enumerate() {
-        budget_table::append(source.run, index, procedure, body);
-    }
+    budget_table::section(source.run, body);
 }
 
 /// A note with the input values of the procedure.
