@@ -26,6 +26,9 @@ const STATUS: [(&str, &str); 3] = [
     ("not certifiable", "not issuable"),
 ];
 
+/// Kinds of events.
+const EVENTS: [(&str, &str); 2] = [("mended", "recovered"), ("remark", "observation")];
+
 /// Reads a summary. Its results have their present names, whichever version wrote them.
 ///
 /// # Errors
@@ -42,6 +45,14 @@ pub fn summary(text: &str) -> Result<Value, serde_json::Error> {
     for (was, is) in STATUS {
         if summary["report_status"] == was {
             summary["report_status"] = is.into();
+        }
+    }
+    let events = summary.get_mut("events").and_then(Value::as_array_mut);
+    for event in events.into_iter().flatten() {
+        for (was, is) in EVENTS {
+            if event["kind"] == was {
+                event["kind"] = is.into();
+            }
         }
     }
     let procedures = summary.get_mut("procedures").and_then(Value::as_object_mut);

@@ -56,6 +56,8 @@ pub(crate) struct Recorded {
     pub entries: &'static str,
     /// The method by which the contributions to the uncertainty of its results were found.
     pub uncertainty: &'static str,
+    /// A result that says nothing if its expanded uncertainty includes zero.
+    pub distinct_from_zero: Option<&'static str>,
     /// The correction of the readings of a sweep's strokes to one position.
     pub strokes: Option<BroughtTogether>,
 }
@@ -68,6 +70,7 @@ impl Default for Recorded {
             budgeted: &[],
             entries: "number",
             uncertainty: unload::report::UNCERTAINTY,
+            distinct_from_zero: None,
             strokes: None,
         }
     }

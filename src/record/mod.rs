@@ -72,6 +72,9 @@ pub enum Outcome {
     },
 }
 
+/// The end of the text of an inspection of a simulated rig without a terminal.
+pub const NO_OPERATOR_ASKED: &str = "no operator was asked: simulated rig, no terminal";
+
 /// An event for the report.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {
@@ -121,7 +124,7 @@ impl EventKind {
             Self::NotHeld => "not confirmed held",
             Self::Fault => "fault",
             Self::Recovered => "recovered",
-            Self::Remark => "remark",
+            Self::Remark => "observation",
             Self::Resume => "resume",
             Self::Amendment => "amendment",
         }

@@ -88,8 +88,9 @@ pub(crate) fn pass(
         );
         let found = readable(column[axis], Dimension::STIFFNESS);
         let probe = stated(pretest_check.probe, Dimension::LENGTH);
-        let text =
-            format!("{force} at rest, drift {drift}/s, stiffness {found} in a move of {probe}");
+        let text = format!(
+            "{force} at rest, zero drift {drift}/s, stiffness {found} in a move of {probe}"
+        );
         let text = match named_axis(axis, axes) {
             None => format!("pre-test check passed: {text}"),
             Some(axis) => format!(

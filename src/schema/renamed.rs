@@ -64,6 +64,8 @@ pub const RENAMED: &[Renamed] = &[
     renamed(RIG, "drift", "zero_drift"),
     renamed(NameRole::Argument(&["virtual"]), "drift", "zero_drift"),
     renamed(NameRole::Field(Kind::Ground), "record", "file"),
+    renamed(NameRole::Result(&[Kind::Escalate]), "blows", "impacts"),
+    renamed(NameRole::Word(&["figures"]), "blows", "impacts"),
     renamed(NameRole::Word(&["results", "columns"]), "near", "tolerance"),
     Renamed {
         alias: true,

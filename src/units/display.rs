@@ -2,6 +2,9 @@
 
 use super::dimension::Dimension;
 
+/// A pure number that is smaller in absolute value is a rounding error.
+const ROUNDING: f64 = 1e-12;
+
 /// The usual unit for a value of this size, and its factor to SI units: 0.0079 m → (`mm`, 1e-3).
 #[must_use]
 pub fn readable_unit(value: f64, dimension: Dimension) -> (String, f64) {
@@ -133,6 +136,10 @@ pub fn digits(value: f64, factor: f64, dimension: Dimension) -> String {
     let is_count = dimension == Dimension::NUMBER && value.fract() == 0.0 && value.abs() < 1e9;
     if is_count {
         return minus(&format!("{value:.0}"));
+    }
+    // Sums of floating-point numbers differ by this much from the sum of the numbers.
+    if dimension == Dimension::NUMBER && value != 0.0 && value.abs() < ROUNDING {
+        return format!("< {}", minus(&significant(ROUNDING, 1)));
     }
     // Rounded first: 0.009999999 is 0.01000, not 0.010000.
     let scaled = value / factor;

@@ -12,7 +12,7 @@ use crate::study::cluster::shard::{self, NamedShard};
 pub enum StudyCommand {
     /// Run a study of a plan, or continue one (no motion)
     Run(RunStudyArguments),
-    /// Show how far a study or its shards are
+    /// Show the progress of a study or of its shards
     Status {
         /// The folder of the study
         #[arg(value_name = "FOLDER")]
@@ -77,7 +77,7 @@ pub struct RunStudyArguments {
     /// Number of threads [default: number of processors]
     #[arg(long, value_name = "N")]
     pub jobs: Option<NonZeroUsize>,
-    /// Simulate every run by itself, also where batches are faster
+    /// Simulate each run separately, also where batches are faster
     #[arg(long)]
     pub one_by_one: bool,
     /// Standard output: the study folder, or the summary as JSON

@@ -193,6 +193,12 @@ impl<N> ContactLaw<N> {
             Self::Limit { .. } | Self::Hertz { .. } => false,
         }
     }
+
+    /// Whether the coefficient of restitution is an input of the law.
+    #[must_use]
+    pub const fn states_restitution(&self) -> bool {
+        matches!(self, Self::Restitution { .. })
+    }
 }
 
 impl ContactLaw {

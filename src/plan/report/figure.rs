@@ -101,7 +101,7 @@ impl FigureKind {
             Self::CycleEnergy => "cycle_energy",
             Self::StiffnessDegradation => "stiffness_degradation",
             Self::Relaxation => "relaxation",
-            Self::ImpactSeries => "blows",
+            Self::ImpactSeries => "impacts",
         }
     }
 }

@@ -7,8 +7,8 @@ use crate::report::number;
 use crate::units::Dimension;
 
 /// How the contributions to its uncertainty were found.
-pub(crate) const UNCERTAINTY: &str = "each input was perturbed by its standard uncertainty, one at a time, and the \
- loops were computed again from their readings";
+pub(crate) const UNCERTAINTY: &str = "Each input was perturbed by its standard uncertainty, one at a time, and the \
+ loops were computed again from their readings.";
 
 /// Number of cycles printed; the tables contain every one.
 const PRINTED: usize = 40;

@@ -21,6 +21,7 @@ pub(crate) fn facts() -> Facts<'static> {
 pub(crate) fn recorded(history: &SweepHistory) -> Recorded {
     Recorded {
         strokes: Some(history.together),
+        distinct_from_zero: Some(schema::DAMPING.name),
         uncertainty: stiffness_ramp::report::UNCERTAINTY,
         ..Recorded::default()
     }

@@ -70,7 +70,8 @@ pub(crate) fn headline(contact: &Contact) -> Vec<&'static str> {
     force.into_iter().chain(indentation).collect()
 }
 
-/// The results that no table prints: a peak force that depends on the time step, and an indentation that the law does not have.
+/// The results that no table prints: a peak force that depends on the time step, an indentation that the
+/// law does not have, a restitution that the plan states.
 pub(crate) fn unprinted(contact: &Contact) -> Vec<&'static str> {
     let force = contact
         .is_impulsive()
@@ -79,9 +80,13 @@ pub(crate) fn unprinted(contact: &Contact) -> Vec<&'static str> {
         Some(_) => &[][..],
         None => &[schema::INDENTATION.name, schema::INDENTATION_ENERGY.name],
     };
+    let restitution = contact
+        .states_restitution()
+        .then_some(schema::RESTITUTION.name);
     force
         .into_iter()
         .chain(indentation.iter().copied())
+        .chain(restitution)
         .collect()
 }
 

@@ -11,7 +11,7 @@ use crate::schema::procedures::impact as results;
 use crate::schema::{Column, ResultKind};
 use crate::units::Dimension;
 
-const IMPACT_NUMBER: Column = column("blow", Dimension::NUMBER);
+const IMPACT_NUMBER: Column = column("impact", Dimension::NUMBER);
 const REST_DISPLACEMENT: Column = column("rest_displacement_m", Dimension::LENGTH);
 const REST_FORCE: Column = column("rest_force_n", Dimension::FORCE);
 

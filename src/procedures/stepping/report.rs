@@ -3,11 +3,11 @@
 use crate::schema::procedures::{base_excitation as schema, tracking};
 
 /// The method by which the contributions to the uncertainty were found.
-pub(crate) const UNCERTAINTY: &str = "each input was perturbed by ± its standard uncertainty, one at a time, and the \
- run was re-integrated along its recorded force–displacement path; half the difference of the results is the \
+pub(crate) const UNCERTAINTY: &str = "Each input was perturbed by ± its standard uncertainty, one at a time, and the \
+ run was re-integrated along its recorded force–displacement path. Half the difference of the results is the \
  contribution, and u is the root sum of squares (JCGM 100:2008). An input at its bound was perturbed to one side \
  only. The contribution of the time step is the largest change in a re-integration with half and a quarter of it. The \
- contact law and rate effects are not among the inputs";
+ contact law and rate effects are not among the inputs.";
 
 /// Results of a frame that have a budget even if no requirement reads any.
 pub(crate) const FRAME_BUDGET: &[&str] = &[schema::MAX_DRIFT.name, schema::MAX_BASE_SHEAR.name];

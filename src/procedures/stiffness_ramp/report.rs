@@ -9,8 +9,8 @@ use crate::report::sections::results::line_fit::{Coefficient, fitted};
 use crate::units::Dimension;
 
 /// How the contributions to its uncertainty were found; also for every other fitted line.
-pub(crate) const UNCERTAINTY: &str = "scatter of its readings: covariance of the fit; calibration: by the powers of \
- force and displacement in the result; resolution: reported beside the scatter where it is the larger contribution";
+pub(crate) const UNCERTAINTY: &str = "Scatter of its readings: covariance of the fit; calibration: by the powers of \
+ force and displacement in the result; resolution: reported beside the scatter where it is the larger contribution.";
 
 /// The blocks below its results.
 pub(crate) fn report(history: &RampHistory, body: &mut Vec<Block>) {

@@ -1,13 +1,16 @@
 //! Deviations from the plan on the first page, observations on the numbers on the second, the notes of the run in an annex. In: a
 //! run. Out: blocks.
 
-use super::{Source, capitalised};
+use super::{Source, capitalised, with_spaces};
+use crate::plan::formula::{Part, ProcedureId, ResultReference};
 use crate::procedures;
-use crate::record::EventKind;
+use crate::record::{EventKind, NO_OPERATOR_ASKED, ProcedureRecord};
 use crate::report::document::{Block, Text};
+use crate::report::number;
 use crate::report::run::Run;
 use crate::report::status::deviations;
 use crate::report::wording::deviations as wording;
+use crate::uncertainty::known;
 
 /// Every deviation. A simulation without any has no such section.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
@@ -39,19 +42,41 @@ pub(super) fn observations(source: &Source<'_>, body: &mut Vec<Block>) {
         .flat_map(|procedure| procedures::facts_of(&procedure.kind).implied)
         .copied()
         .collect();
-    let observations = of_kind(source.run, |kind, text| {
+    let mut observations = of_kind(source.run, |kind, text| {
         kind == EventKind::Remark && !implied.iter().any(|end| text.ends_with(end))
     });
+    observations.extend(not_distinct(source.run));
     if !observations.is_empty() {
         body.push(Block::section(wording::OBSERVATIONS));
         list(observations, body);
     }
 }
 
+/// Results that say nothing because their expanded uncertainty includes zero.
+fn not_distinct(run: &Run<'_>) -> Vec<String> {
+    let sentence = |(index, procedure): (usize, &ProcedureRecord)| {
+        let name = procedures::recorded(&procedure.history).distinct_from_zero?;
+        let result = procedure.result(name)?;
+        let reference = ResultReference {
+            procedure: ProcedureId(index),
+            name: result.name,
+            part: Part::Value,
+        };
+        let value = procedure.number(name)?;
+        let known = known(&result.contributions_of(reference), run.record)?;
+        (value.abs() < known.expanded()).then(|| {
+            let value = number::with_expanded(value, known, result.dimension);
+            wording::not_distinct(&procedure.name, with_spaces(name), value)
+        })
+    };
+    let procedures = run.record.procedures.iter().enumerate();
+    procedures.filter_map(sentence).collect()
+}
+
 /// Notes and inspections in the order of the run.
 pub(super) fn notes(source: &Source<'_>, body: &mut Vec<Block>) {
     let notes = of_kind(source.run, |kind, text| match kind {
-        EventKind::Inspection => true,
+        EventKind::Inspection => !text.ends_with(NO_OPERATOR_ASKED),
         EventKind::Note => !deviations::is_of_the_line(text),
         _ => false,
     });

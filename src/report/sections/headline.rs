@@ -22,10 +22,7 @@ const MOST: usize = 6;
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     let run = source.run;
     body.push(Block::section(wording::TITLE));
-    let rows: Vec<Row> = chosen(run)
-        .iter()
-        .filter_map(|chosen| row(run, chosen))
-        .collect();
+    let rows = rows(run);
     if rows.is_empty() {
         body.push(Block::paragraph(if run.record.procedures.is_empty() {
             wording::NO_PROCEDURE
@@ -38,6 +35,7 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
         .iter()
         .filter_map(|row| row.factor.as_deref())
         .any(|factor| factor != "2");
+    let marked = rows.iter().any(|row| row.marked);
     let partial = Scope::of(run) == Scope::PartialReal;
     let mut columns = vec![
         Column::words(wording::RESULT, 2),
@@ -67,12 +65,23 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     } else {
         wording::EXPANDED
     }));
-    if super::requirements::prints_mark(run) {
-        return;
-    }
-    if run.record.procedures.iter().any(budget_table::is_marked) {
+    if marked && !super::requirements::prints_mark(run) {
         body.push(Block::note(common::MARKED));
     }
+}
+
+/// The rows of the results that exist.
+fn rows(run: &Run<'_>) -> Vec<Row> {
+    let chosen = chosen(run);
+    chosen
+        .iter()
+        .filter_map(|chosen| row(run, chosen))
+        .collect()
+}
+
+/// Whether a value of this section is marked as an estimate.
+pub(super) fn prints_mark(run: &Run<'_>) -> bool {
+    rows(run).iter().any(|row| row.marked)
 }
 
 /// A row of the table.
@@ -82,6 +91,8 @@ struct Row {
     value: Text,
     /// k; None without U.
     factor: Option<String>,
+    /// Whether the value has the mark †.
+    marked: bool,
 }
 
 /// The results of the second page, in the order of the plan.
@@ -149,7 +160,7 @@ fn headlines(run: &Run<'_>) -> Vec<ReadResult> {
     (0..longest).flat_map(of_rank).collect()
 }
 
-/// None if the procedure was not run.
+/// None if the procedure was not run, or the result does not exist.
 fn row(run: &Run<'_>, chosen: &ReadResult) -> Option<Row> {
     let index = chosen.reference.procedure.0;
     let procedure = run.record.procedures.get(index)?;
@@ -181,8 +192,8 @@ fn row(run: &Run<'_>, chosen: &ReadResult) -> Option<Row> {
     };
     let known = known.filter(|known: &MeasurementUncertainty| known.standard > 0.0);
     let partial = Scope::of(run) == Scope::PartialReal;
-    let text = match (value, known) {
-        (None, _) => Text::missing(common::NO_VALUE),
+    let text: Text = match (value, known) {
+        (None, _) => return None,
         (Some(value), _) if result.name == R_SQUARED.name => format!("{value:.6}").into(),
         (Some(value), Some(known)) if partial => {
             number::with_uncertainty(value, Some(known.standard), result.dimension).into()
@@ -190,16 +201,14 @@ fn row(run: &Run<'_>, chosen: &ReadResult) -> Option<Row> {
         (Some(value), Some(known)) => number::with_expanded(value, known, result.dimension).into(),
         (Some(value), None) => number::text(value, result.dimension).into(),
     };
-    let mark = if known.is_some() && !budget_table::is_reliable(result, entry) {
-        budget_table::MARK
-    } else {
-        ""
-    };
+    let marked = known.is_some() && !budget_table::is_reliable(result, entry);
+    let mark = if marked { budget_table::MARK } else { "" };
     let factor = known.filter(|_| !partial);
     Some(Row {
         name,
         procedure: Text::from(procedure.name.as_str()).soft(format!(" · {}", procedure.kind)),
         value: text.and(mark),
         factor: factor.map(coverage_factor::factor),
+        marked,
     })
 }

@@ -276,7 +276,7 @@ pub struct EventSummary {
     pub wall_time_s: Option<f64>,
     pub procedure: Option<String>,
     pub step: Option<u64>,
-    #[schemars(extend("enum" = ["note", "inspection", "limit breach", "hold", "fault", "remark", "resume", "amendment"]))]
+    #[schemars(extend("enum" = ["note", "inspection", "limit breach", "hold", "held", "not confirmed held", "fault", "recovered", "observation", "resume", "amendment"]))]
     pub kind: &'static str,
     pub text: String,
 }

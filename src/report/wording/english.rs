@@ -169,6 +169,7 @@ wording! {
         BELOW = "below";
         fn parameter_set(name, value) = "Parameter {name} was set to {value} for this run.";
         fn check_run(text) = "Check run: {text}.";
+        fn not_distinct(procedure, result, value) = "In {procedure}: {result} {value} is not distinguishable from zero.";
         fn stopped(reason) = "The run was stopped: {reason}.";
         fn not_released(reason) = "The rig was not released: {reason}.";
         fn blocked(reason) = "The run could not continue: {reason}.";
@@ -218,11 +219,12 @@ wording! {
         PARTIAL_BUDGET = "Partial uncertainty budget";
         COLUMNS = ["Input (u)", "Sensitivity", "Contribution", "Of u²"];
         OWN_SCATTER = "scatter of the readings of its fit";
-        PARTIAL = " The budget is partial: the calibrations of force and displacement are not declared.";
-        STUDENT_T = " k is Student's t for ν effective degrees of freedom (Welch–Satterthwaite; JCGM 100, G.4). ν of a \
+        METHOD = "Method";
+        PARTIAL = "The budget is partial: the calibrations of force and displacement are not declared.";
+        STUDENT_T = "k is Student's t for ν effective degrees of freedom (Welch–Satterthwaite; JCGM 100, G.4). ν of a \
             fit: number of observations − number of fitted parameters; of Monte Carlo trials: their number; \
             otherwise infinite.";
-        SAMPLED = " Reading errors: Monte Carlo (JCGM 101).";
+        SAMPLED = "Reading errors: Monte Carlo (JCGM 101).";
         REST_LOAD = "remaining load";
         READINGS = "noise and resolution of the readings";
         READINGS_AND_INPUTS = "noise and resolution of the readings, and the inputs of each floor, mode and axis";
@@ -241,11 +243,10 @@ wording! {
         fn combined_without_calibrations(value) = "combined, without the calibrations: {value}, u in parentheses";
         fn sampled(draws) = " · Monte Carlo, {draws} trials";
         fn per(change, unit) = "{change} per {unit}";
-        fn not_declared(inputs) = " Not included in the budget (not declared in the plan): {inputs}.";
-        fn few_trials(draws, accuracy) = " With {draws} trials their fraction of u is known to {accuracy}.";
-        STUDENT_FACTOR = "k by Student's t";
-        FACTOR_TWO = "k = 2";
-        fn linearised(factor, method) = "First-order propagation (JCGM 100, 5.1.2), {factor}: {method}.";
+        fn not_declared(inputs) = "Not included in the budget (not declared in the plan): {inputs}.";
+        fn few_trials(draws, accuracy) = "With {draws} trials their fraction of u is known to {accuracy}.";
+        LINEARISED = "First-order propagation (JCGM 100, 5.1.2).";
+        fn only_of(procedures, text) = "{procedures}: {text}";
     }
 
     mod line_fit {
@@ -347,7 +348,7 @@ wording! {
         TITLE = "Zero drift";
         NOT_READ_AGAIN = "The zeros of this rig were not read after the test. Zero drift is not evaluated.";
         COLUMNS = ["Channel", "Before", "After", "Change", "Allowed", "Slope before", "In dwells", "State"];
-        NOT_JUDGED = "not judged";
+        NOT_JUDGED = "not assessed";
         WITHIN = "within";
         BEYOND = "BEYOND";
         AFTER_AT_START = "after the last, back at the start with the specimen on";

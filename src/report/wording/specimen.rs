@@ -395,7 +395,7 @@ fn portal_masses(
         "lumped equivalent mass",
         equivalent(
             masses.lumped,
-            "half of each member at its ends, as the paper's Fig. 5",
+            "half of each member at its ends, as in Melo et al. 2006, Fig. 5",
         ),
     ));
 }
@@ -407,11 +407,11 @@ fn derived(behaviour: &Behaviour, shown: Printed<'_>, rows: &mut Vec<(&'static s
             let factor = first_mode_mass_factor(beam);
             let text = match beam.own_mass {
                 Some(own) => format!(
-                    "{} ({factor:.4} qAL, static deflection as the shape); the paper's qAL/2 is {}",
+                    "{} ({factor:.4} qAL, static deflection as the shape); Melo et al. 2006 use qAL/2, {}",
                     shown(factor * own, Dimension::MASS),
                     shown(own / 2.0, Dimension::MASS)
                 ),
-                None => format!("{factor:.4} of the beam's mass qAL; the paper's is a half"),
+                None => format!("{factor:.4} of the beam's mass qAL; Melo et al. 2006 use a half"),
             };
             rows.push(("first-mode equivalent mass", text));
         }

@@ -4,6 +4,8 @@
 use crate::plan::ReadingRules;
 use crate::rig::controllers::{Flags, Force, NOT_TRUSTED};
 use crate::rig::safety::failpoint::{Guarding, on};
+use crate::units::Dimension;
+use crate::units::display::readable;
 
 /// Nearness to an end of the range at which a reading is saturated, as a fraction of that end.
 const SATURATION: f64 = 1e-3;
@@ -146,9 +148,9 @@ impl ReadingValidator {
         let moved = high - low > FROZEN_OVER * rules.resolution;
         if on(Guarding::Frozen) && repeats >= rules.frozen_after.max(2) && moved {
             return Err(Invalid::Hold(format!(
-                "the force sensor is frozen: {repeats} readings of {} N while the displacement changed by {:.6} mm",
-                sample.force,
-                (high - low) * 1e3
+                "the force sensor is frozen: {repeats} readings of {} while the displacement changed by {}",
+                readable(sample.force, Dimension::FORCE),
+                readable(high - low, Dimension::LENGTH)
             )));
         }
         Ok(())

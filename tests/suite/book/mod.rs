@@ -7,7 +7,6 @@ mod figures;
 mod generated;
 mod messages;
 mod plans;
-mod prose;
 
 use std::fs;
 use std::path::{Component, Path, PathBuf};

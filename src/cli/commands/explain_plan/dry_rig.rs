@@ -41,6 +41,24 @@ pub struct Watched {
     target: Vec<f64>,
 }
 
+/// Sets the ends of ranges that are rounding errors of the largest range to 0.
+fn without_rounding(reaches: &mut [Reach], range: fn(&mut Reach) -> &mut Interval) {
+    let ends = |interval: Interval| [interval.low, interval.high];
+    let all: Vec<f64> = reaches
+        .iter_mut()
+        .flat_map(|reach| ends(*range(reach)))
+        .collect();
+    let finite = all.into_iter().filter(|end| end.is_finite());
+    let tiny = 1e-12 * finite.map(f64::abs).fold(0.0, f64::max);
+    for interval in reaches.iter_mut().map(range) {
+        for end in [&mut interval.low, &mut interval.high] {
+            if end.abs() < tiny {
+                *end = 0.0;
+            }
+        }
+    }
+}
+
 impl Watched {
     /// Runs `plan` on its own simulated rig. `own_speed` is the speed of the rig that it represents \[m/s\].
     pub fn run(plan: &Plan, own_speed: Option<f64>) -> (Record, Vec<Reach>) {
@@ -58,7 +76,9 @@ impl Watched {
                 reaches: Rc::clone(&reaches),
             },
         );
-        let noted = reaches.borrow().clone();
+        let mut noted = reaches.borrow().clone();
+        without_rounding(&mut noted, |reach| &mut reach.displacement);
+        without_rounding(&mut noted, |reach| &mut reach.force);
         (record, noted)
     }
 

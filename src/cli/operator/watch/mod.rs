@@ -15,7 +15,7 @@ use super::question::{self, After, Kind, Question};
 use super::screen::{self, Screen};
 use crate::cli::settings::Settings;
 use crate::plan::Plan;
-use crate::record::{Event, EventKind};
+use crate::record::{Event, EventKind, NO_OPERATOR_ASKED};
 use crate::rig::{Live, StopRequest};
 use crate::run::{Extent, Inspection, Motion, Next, Observer, StepReport};
 use crate::text::diagnostic::excerpt::escape;
@@ -343,7 +343,7 @@ impl Watcher {
                 by,
             },
             Asking::NobodyNeeded => Inspection::GoOn {
-                note: Some("no operator was asked: simulated rig, no terminal".to_owned()),
+                note: Some(NO_OPERATOR_ASKED.to_owned()),
                 by: None,
             },
             Asking::Nobody => Inspection::Stop {

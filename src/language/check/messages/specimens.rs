@@ -234,6 +234,7 @@ pub fn no_such_property(
     name: Option<&Ident>,
     property: &str,
     reason: &str,
+    help: &'static str,
     span: Span,
 ) -> Diagnostic {
     let name = name.map_or("", |name| name.node.as_str());
@@ -242,7 +243,7 @@ pub fn no_such_property(
         format!("specimen `{name}` has no `{property}`: {reason}"),
     )
     .at(span, "not available")
-    .help("remove it, or use a behaviour that has it, such as `portal` or `bilinear` without hardening")
+    .help(help)
 }
 
 /// Limits that let the specimen exceed its table.

@@ -27,7 +27,10 @@ pub(crate) fn headline(contact: &Contact) -> Vec<&'static str> {
         schema::RESTITUTION.name,
         schema::MAX_VELOCITY.name,
     ];
-    [&first[..], &of_contact, &last].concat()
+    let unprinted = contact::unprinted(contact);
+    let mut names = [&first[..], &of_contact, &last].concat();
+    names.retain(|name| !unprinted.contains(name));
+    names
 }
 
 /// Inputs, settings and counts of the method, and the tracking, which the text below the results states; the results that the

@@ -22,23 +22,27 @@ const SMALL: f64 = 1e-3;
 /// The mark of an uncertainty that is an estimate.
 pub(crate) const MARK: &str = " †";
 
-/// The budgets of the results that a requirement reads, with a note on their method.
-pub(super) fn append(
-    run: &Run<'_>,
-    index: usize,
-    procedure: &ProcedureRecord,
-    body: &mut Vec<Block>,
-) {
-    let mut budgets = budgets(run, index, procedure);
-    let requested = requested(run, index, &procedure.history);
-    budgets.retain(|budget| is_printed(budget, &requested));
-    if !budgets.is_empty() {
+/// The budgets of the results that a requirement reads, procedure by procedure, then their method.
+pub(super) fn section(run: &Run<'_>, body: &mut Vec<Block>) {
+    let mut methods_used = Vec::new();
+    for (index, procedure) in run.record.procedures.iter().enumerate() {
+        let mut budgets = budgets(run, index, procedure);
+        let requested = requested(run, index, &procedure.history);
+        budgets.retain(|budget| is_printed(budget, &requested));
+        if budgets.is_empty() {
+            continue;
+        }
         let scope = Scope::of(run);
         body.push(Block::part(
             Text::from(procedure.name.as_str()).soft(format!(" · {}", procedure.kind)),
         ));
         body.extend(budgets.iter().map(|budget| table(budget, procedure, scope)));
-        body.push(Block::note(note(run, index, &procedure.history, &budgets)));
+        let sentences = sentences(run, index, &procedure.history, &budgets);
+        methods_used.push((procedure.name.clone(), sentences));
+    }
+    if !methods_used.is_empty() {
+        body.push(Block::part(wording::METHOD));
+        body.extend(methods(&methods_used));
     }
 }
 
@@ -299,30 +303,33 @@ fn sensitivity(each: f64, result: Dimension, line: &Line) -> String {
     }
 }
 
-/// Method, coverage factor, inputs that the plan does not declare, and trials.
-fn note(run: &Run<'_>, index: usize, history: &History, budgets: &[Budget<'_>]) -> String {
+/// Sentences on method, inputs that the plan does not declare, coverage factor and trials.
+fn sentences(
+    run: &Run<'_>,
+    index: usize,
+    history: &History,
+    budgets: &[Budget<'_>],
+) -> Vec<String> {
     let few_degrees = budgets
         .iter()
         .any(|budget| coverage_factor::differs_from_two(budget.known));
-    let factor = if few_degrees {
-        wording::STUDENT_FACTOR
-    } else {
-        wording::FACTOR_TWO
-    };
-    let mut text = wording::linearised(factor, procedures::recorded(history).uncertainty);
+    let mut sentences = vec![
+        wording::LINEARISED.to_owned(),
+        procedures::recorded(history).uncertainty.to_owned(),
+    ];
     let planned = run.plan.procedures.get(index);
     let undeclared = planned.map_or_else(Vec::new, |planned| {
         run.plan
             .undeclared(procedures::facts_of(&planned.kind).dependence)
     });
     if !undeclared.is_empty() {
-        text += &wording::not_declared(undeclared.join(", "));
+        sentences.push(wording::not_declared(undeclared.join(", ")));
     }
     if Scope::of(run) != Scope::Complete {
-        text += wording::PARTIAL;
+        sentences.push(wording::PARTIAL.to_owned());
     }
     if few_degrees {
-        text += wording::STUDENT_T;
+        sentences.push(wording::STUDENT_T.to_owned());
     }
     let trials = budgets
         .iter()
@@ -330,12 +337,43 @@ fn note(run: &Run<'_>, index: usize, history: &History, budgets: &[Budget<'_>]) 
         .filter_map(|line| line.draws)
         .min();
     if let Some(trials) = trials {
-        text += wording::SAMPLED;
+        sentences.push(wording::SAMPLED.to_owned());
         if trials < usize::from(MOST_DRAWS) {
             #[expect(clippy::cast_precision_loss, reason = "a few")]
             let accuracy = 1.0 / (2.0 * trials as f64).sqrt();
-            text += &wording::few_trials(trials, percent(accuracy));
+            sentences.push(wording::few_trials(trials, percent(accuracy)));
         }
     }
-    text
+    sentences
+}
+
+/// The sentences of all procedures, each once. The names of the procedures precede sentences that do not apply to all of them.
+fn methods(of_procedures: &[(String, Vec<String>)]) -> Vec<Block> {
+    let mut groups: Vec<(Vec<&str>, Vec<&str>)> = Vec::new();
+    let mut printed: Vec<&str> = Vec::new();
+    for sentence in of_procedures.iter().flat_map(|(_, sentences)| sentences) {
+        if printed.contains(&sentence.as_str()) {
+            continue;
+        }
+        printed.push(sentence);
+        let named = of_procedures
+            .iter()
+            .filter(|(_, sentences)| sentences.contains(sentence));
+        let named: Vec<&str> = named.map(|(name, _)| name.as_str()).collect();
+        match groups.iter_mut().find(|(names, _)| *names == named) {
+            Some((_, sentences)) => sentences.push(sentence),
+            None => groups.push((named, vec![sentence])),
+        }
+    }
+    // Sentences on all procedures come first.
+    groups.sort_by_key(|(names, _)| names.len() < of_procedures.len());
+    let note = |(names, sentences): (Vec<&str>, Vec<&str>)| {
+        let text = sentences.join(" ");
+        Block::note(if names.len() < of_procedures.len() {
+            wording::only_of(names.join(", "), text)
+        } else {
+            text
+        })
+    };
+    groups.into_iter().map(note).collect()
 }

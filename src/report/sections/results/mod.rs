@@ -7,7 +7,7 @@ pub(crate) mod line_fit;
 pub(super) mod read;
 pub(crate) mod tracking;
 
-use super::{Source, with_spaces};
+use super::{Source, headline, requirements, with_spaces};
 use crate::plan::formula::{Estimate, Part, ProcedureId, ResultReference, ResultValue};
 use crate::procedures;
 use crate::record::{NamedResult, ProcedureRecord};
@@ -36,13 +36,15 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
         results(run, index, procedure, body);
         procedures::report(run, index, procedure, body);
     }
+    let explained = requirements::prints_mark(run) || headline::prints_mark(run);
+    if !explained && run.record.procedures.iter().any(budget_table::is_marked) {
+        body.push(Block::note(common::MARKED));
+    }
 }
 
 /// The uncertainty budgets of every procedure.
 pub(super) fn budgets(source: &Source<'_>, body: &mut Vec<Block>) {
-    for (index, procedure) in source.run.record.procedures.iter().enumerate() {
-        budget_table::append(source.run, index, procedure, body);
-    }
+    budget_table::section(source.run, body);
 }
 
 /// A note with the input values of the procedure.

@@ -75,7 +75,7 @@ const FIELDS: [Field; OWN.len() + impact::BLOCK.fields.len()] = {
 };
 
 pub(crate) const IMPACTS: ResultKind = ResultKind::count(
-    "blows",
+    "impacts",
     "number of impacts, including one that failed or was inconclusive",
 );
 

@@ -238,7 +238,7 @@ fn a_series_on_a_storey_ends_with_the_first_failed_impact() {
             .collect::<Vec<_>>(),
         [Some(true), Some(true), Some(false)]
     );
-    assert_eq!(number(&some, 0, "blows").0, Some(3.0));
+    assert_eq!(number(&some, 0, "impacts").0, Some(3.0));
     assert_eq!(
         number(&some, 0, "first_failed_energy").0,
         Some(0.5 * 10.0 * 0.6 * 0.6)

@@ -180,7 +180,7 @@ fn it_ends_with_the_first_impact_that_fails() {
     let energy = |velocity: f64| Some(0.5 * 10.0 * velocity * velocity);
     assert_eq!(
         (
-            number(&record, 0, "blows").0,
+            number(&record, 0, "impacts").0,
             number(&record, 0, "passed").0
         ),
         (Some(4.0), Some(3.0))
@@ -208,7 +208,7 @@ fn the_list_bounds_it() {
     assert_eq!(number(&record, 0, "first_failed_energy").0, None);
     assert_eq!(
         (
-            number(&record, 0, "blows").0,
+            number(&record, 0, "impacts").0,
             number(&record, 0, "passed").0
         ),
         (Some(2.0), Some(2.0))
@@ -423,7 +423,7 @@ fn a_row_that_fails_at_once_has_withstood_nothing() {
     ));
     assert_eq!(
         (
-            number(&record, 0, "blows").0,
+            number(&record, 0, "impacts").0,
             number(&record, 0, "passed").0
         ),
         (Some(1.0), Some(0.0))

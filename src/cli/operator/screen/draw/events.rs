@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use super::{View, fitted, shown};
-use crate::record::Event;
+use crate::record::{Event, EventKind};
 
 /// Column of the second line of the newest event.
 const INDENT: usize = 14;
@@ -56,6 +56,15 @@ fn over_two(text: &str, width: usize) -> Vec<String> {
     vec![text[..cut].to_owned(), fitted(&rest, width)]
 }
 
+/// The word of its kind; the answer to a release is not an inspection.
+fn kind(event: &Event) -> &'static str {
+    if event.kind == EventKind::Inspection && event.text.starts_with("release ") {
+        "release"
+    } else {
+        event.kind.word()
+    }
+}
+
 fn words(event: &Event) -> String {
     let procedure_and_step = match (&event.procedure, event.step) {
         (Some(procedure), Some(step)) => format!("{procedure} {step}"),
@@ -67,7 +76,7 @@ fn words(event: &Event) -> String {
         " {:>9.decimals$} s  {:<10} {:<12} {}",
         event.time,
         fitted(&shown(&procedure_and_step), 18),
-        event.kind.word(),
+        kind(event),
         shown(&event.text)
     )
 }

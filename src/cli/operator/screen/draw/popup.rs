@@ -108,7 +108,7 @@ fn content(view: &View<'_>, width: usize) -> Option<(&'static str, Vec<String>)>
         dialogue
             .remark
             .as_ref()
-            .map(|remark| format!("Remark: {}", shown(remark))),
+            .map(|remark| format!("Observation: {}", shown(remark))),
     );
     lines.extend(match what {
         What::Remark => vec![

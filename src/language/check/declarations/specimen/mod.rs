@@ -336,8 +336,27 @@ pub fn export(checker: &mut Checker, block: usize, name: &str, requested_at: Spa
             declared.name,
             name,
             reason,
+            help_without(name, &behaviour),
             requested_at,
         ))
+    }
+}
+
+/// What gives a property that this behaviour does not have.
+fn help_without(name: &str, behaviour: &Behaviour) -> &'static str {
+    let is_mass = ["elastic_mass", "plastic_mass", "lumped_mass"].contains(&name);
+    match behaviour {
+        _ if name == "capacity" => {
+            "remove it, or use a behaviour with a largest force, such as `portal`"
+        }
+        Behaviour::Beam(_) if is_mass && name != "plastic_mass" => {
+            "add `area` and `density` to the specimen"
+        }
+        Behaviour::Portal(_) if is_mass => {
+            "add `mass_per_length` to the `portal`, or `area` and `density` to the specimen"
+        }
+        _ if is_mass => "write the mass as a number, or use a `beam` or a `portal`",
+        _ => "remove it, or use a `portal`",
     }
 }
 
