@@ -1,11 +1,14 @@
 //! Studies: many runs of the plan with scattered inputs. In: nothing. Out: the checked parameters of `study` and `fragility` blocks, and
 //! the requirements on their probabilities. A run of the plan itself does not read them.
 
-use super::formula::Formula;
+use serde::{Deserialize, Serialize};
+
+use super::formula::{Formula, ResultReference};
 use super::{Comparison, Condition};
 use crate::physics::study::Confidence;
 use crate::physics::study::correlation::Pair;
 use crate::physics::study::inputs::Source;
+use crate::physics::study::subset_simulation::SubsetSimulation;
 use crate::units::{Dimension, Quantity};
 
 /// Most runs of a study.
@@ -30,6 +33,18 @@ pub struct Variation {
     pub correlations: Vec<Pair>,
     pub sampling: Sampling,
     pub seed: u64,
+    /// Inputs whose distribution follows from a simulated run of the plan, beside those above.
+    pub measured: Vec<Measured>,
+}
+
+/// An input that is a result of the plan, with the uncertainty that a run of the plan gives it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// Index among the inputs.
+    pub input: usize,
+    /// Index among the sources.
+    pub source: usize,
+    pub result: ResultReference,
 }
 
 /// A value of the plan that differs from run to run.
@@ -44,6 +59,8 @@ pub struct Input {
     pub nominal: f64,
     /// Whether it is an angle, which a plan writes with its unit.
     pub angle: bool,
+    /// Whether it is the number of a ground-motion record.
+    pub is_record: bool,
 }
 
 impl Input {
@@ -72,6 +89,8 @@ pub enum Sampling {
     Random,
     LatinHypercube,
     Sobol,
+    /// Subset simulation: each level begins where the last one was worst.
+    Subset,
 }
 
 impl Sampling {
@@ -82,6 +101,7 @@ impl Sampling {
             Self::Random => "random",
             Self::LatinHypercube => "latin_hypercube",
             Self::Sobol => "sobol",
+            Self::Subset => "subset",
         }
     }
 }
@@ -101,6 +121,35 @@ pub enum Runs {
         confidence: Confidence,
         at_most: u64,
     },
+    /// Once every replicate of a subset simulation has reached the rare event.
+    Rare(RareEvent),
+}
+
+/// A rare event and the subset simulation that finds it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RareEvent {
+    /// Runs of a level.
+    pub points: u32,
+    pub replicates: u32,
+    /// Number of standard normal numbers behind the inputs.
+    pub numbers: u32,
+    /// The requirement of the plan that fails.
+    pub requirement: usize,
+    /// It fails where its result is too small.
+    pub falls: bool,
+}
+
+impl RareEvent {
+    /// The simulation with a seed.
+    #[must_use]
+    pub const fn simulation(self, seed: u64) -> SubsetSimulation {
+        SubsetSimulation {
+            inputs: self.numbers,
+            points: self.points as usize,
+            replicates: self.replicates,
+            seed,
+        }
+    }
 }
 
 impl Runs {
@@ -111,6 +160,7 @@ impl Runs {
             Self::Fixed(runs)
             | Self::Decided { at_most: runs, .. }
             | Self::HalfWidth { at_most: runs, .. } => runs,
+            Self::Rare(rare) => rare.simulation(0).at_most(),
         }
     }
 }

@@ -14,9 +14,9 @@ const WORST: usize = 3;
 /// Reasons that are shown.
 const REASONS: usize = 3;
 
-/// The answers, line by line.
+/// The answers, line by line. `plan`: its path in the lines that reproduce a run.
 #[must_use]
-pub fn text(metadata: &Metadata, answers: &Answers) -> String {
+pub fn text(metadata: &Metadata, plan: &str, answers: &Answers) -> String {
     let mut text = String::new();
     let _ = writeln!(
         text,
@@ -30,12 +30,13 @@ pub fn text(metadata: &Metadata, answers: &Answers) -> String {
         text += &of_studied(studied);
     }
     for requirement in &answers.requirements {
-        text += &of_requirement(metadata, requirement);
+        text += &of_requirement(metadata, plan, requirement);
     }
     for result in &answers.results {
         text += &of_result(metadata, result);
     }
     text += &of_fragility(metadata, answers);
+    text += &of_subset(answers);
     for reason in answers.reasons.iter().take(REASONS) {
         let _ = writeln!(
             text,
@@ -75,11 +76,16 @@ fn of_studied(studied: &StudiedAnswer) -> String {
     )
 }
 
-fn of_requirement(metadata: &Metadata, requirement: &RequirementAnswer) -> String {
+fn of_requirement(metadata: &Metadata, plan: &str, requirement: &RequirementAnswer) -> String {
     let runs = requirement.met + requirement.not_met + requirement.no_result;
     let label = one_line(&requirement.label);
     let mut text = if matches!(metadata.kind, Kind::Fragility(_)) {
         format!("  {label}: exceeded in {} of {runs} runs", requirement.met)
+    } else if requirement.probability.is_none() {
+        format!(
+            "  {label}: not met in {} of {runs} runs of all levels",
+            requirement.not_met
+        )
     } else {
         format!(
             "  {label}: not met in {} of {runs} runs, probability {}",
@@ -96,9 +102,8 @@ fn of_requirement(metadata: &Metadata, requirement: &RequirementAnswer) -> Strin
         let settings: Vec<String> = settings.map(|it| format!("--set {it}")).collect();
         let _ = writeln!(
             text,
-            "    run {}: psd run {} {}",
+            "    run {}: psd run {plan} {}",
             worst.run,
-            metadata.plan,
             settings.join(" ")
         );
     }
@@ -199,6 +204,44 @@ fn of_fragility(metadata: &Metadata, answers: &Answers) -> String {
                 shown(median)
             );
         }
+        if let Some(split) = &fit.split {
+            let [low, high] = split.share_interval.map(percent);
+            let _ = writeln!(
+                text,
+                "  record-to-record dispersion {:.3}, modelling dispersion {:.3}: {} of the variance [{low}, {high}] is between {} records",
+                split.record_to_record,
+                split.modelling,
+                percent(split.share),
+                split.records
+            );
+        }
+    }
+    text
+}
+
+/// The levels of a subset simulation.
+fn of_subset(answers: &Answers) -> String {
+    let Some(subset) = &answers.subset else {
+        return String::new();
+    };
+    let mut text = format!("  subset simulation, {} replicates", subset.replicates);
+    if let Some(variation) = subset.variation {
+        let _ = write!(
+            text,
+            ", coefficient of variation of one {}",
+            percent(variation)
+        );
+    }
+    text.push('\n');
+    for level in &subset.levels {
+        let _ = writeln!(
+            text,
+            "    level {}: {} replicates, {} of the runs beyond its threshold, {} of the moves accepted",
+            level.level,
+            level.replicates,
+            percent(level.fraction),
+            percent(level.accepted)
+        );
     }
     text
 }
@@ -246,7 +289,7 @@ mod tests {
         let inputs = normals(Design::Random, 1);
         let rows = rows(&inputs, 1000, |run| run % 100 == 7);
         let answers = answers(&metadata, &rows);
-        let text = text(&metadata, &answers);
+        let text = text(&metadata, &metadata.plan, &answers);
         for part in [
             "FINISHED  Beam, study scatter: 1000 runs  SIMULATION\n",
             "  small: not met in ",
@@ -288,7 +331,7 @@ mod tests {
         let stripes = [0.4, 0.8, 1.6];
         let metadata = fragility_metadata(&stripes, 200);
         let answers = answers(&metadata, &fragility_rows(&stripes, 200));
-        let text = text(&metadata, &answers);
+        let text = text(&metadata, &metadata.plan, &answers);
         for part in [
             "    drop_height = 0.4000 m: exceeded in ",
             "    drop_height = 1.600 m: exceeded in ",

@@ -42,6 +42,12 @@ pub enum DefinitionError {
     NoRuns,
     #[error("a study has at most {MOST_RUNS} runs")]
     TooManyRuns,
+    #[error("a subset simulation ends by its levels and has no number of runs")]
+    RunsOfSubset,
+    #[error(
+        "the limit of the requirement depends on an input of the study: a subset simulation has one limit"
+    )]
+    LimitVaries,
     #[error(transparent)]
     Inputs(#[from] InputError),
 }
@@ -89,6 +95,9 @@ impl Definition {
     }
 
     fn of_study(study: &Study, index: usize, runs: Option<u64>) -> Result<Self, DefinitionError> {
+        if runs.is_some() && matches!(study.runs, Runs::Rare(_)) {
+            return Err(DefinitionError::RunsOfSubset);
+        }
         let runs = in_bounds(runs.map_or(study.runs, |runs| with_most(study.runs, runs)))?;
         let variation = &study.variation;
         Ok(Self {
@@ -97,6 +106,7 @@ impl Definition {
                 Runs::Fixed(_) => Stopping::Fixed,
                 Runs::Decided { .. } => Stopping::Decided,
                 Runs::HalfWidth { half_width, .. } => Stopping::HalfWidth(half_width),
+                Runs::Rare(rare) => Stopping::Rare(rare),
             }),
             inputs: variation.inputs.clone(),
             seed: variation.seed,
@@ -104,7 +114,7 @@ impl Definition {
             runs,
             // The intervals of a study that chooses its own end are those of its looks.
             confidence: match runs {
-                Runs::Fixed(_) => study.confidence,
+                Runs::Fixed(_) | Runs::Rare(_) => study.confidence,
                 Runs::Decided { confidence, .. } | Runs::HalfWidth { confidence, .. } => confidence,
             },
             collect: study.collect.clone(),
@@ -123,12 +133,15 @@ impl Definition {
         let all = each.saturating_mul(stripes.len() as u64);
         let variation = fragility.variation.as_ref();
         let others = variation.map_or(&[][..], |variation| &variation.inputs);
+        let record = others.iter().position(|input| input.is_record);
         Ok(Self {
             name: fragility.name.clone(),
             kind: Kind::Fragility(Stripes {
                 intensity: 0,
                 values: stripes.clone(),
                 runs: each,
+                // Behind the intensity.
+                record: record.map(|at| at + 1),
             }),
             inputs: std::iter::once(&fragility.intensity)
                 .chain(others)
@@ -162,6 +175,7 @@ const fn with_most(end: Runs, runs: u64) -> Runs {
             confidence,
             at_most: runs,
         },
+        Runs::Rare(rare) => Runs::Rare(rare),
     }
 }
 

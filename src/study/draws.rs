@@ -57,6 +57,11 @@ impl Draws {
         })
     }
 
+    /// The values of a study at a point in standard normal space; they replace those in `values`.
+    pub fn at(&self, point: &[f64], values: &mut Vec<f64>) {
+        self.inputs[0].at(point, values);
+    }
+
     /// The values of a run, in the order of the columns of inputs; they replace those in `values`.
     pub fn draw(&self, run: u64, values: &mut Vec<f64>) {
         values.clear();
@@ -75,7 +80,8 @@ impl Draws {
 
 fn inputs(variation: &Variation, seed: u64, runs: u64) -> Result<Inputs, InputError> {
     let design = match variation.sampling {
-        Sampling::Random => Design::Random,
+        // The points of a subset simulation follow from its runs: see `at`.
+        Sampling::Random | Sampling::Subset => Design::Random,
         Sampling::LatinHypercube => Design::LatinHypercube { runs },
         Sampling::Sobol => Design::Sobol {
             replicates: REPLICATES,

@@ -41,7 +41,7 @@ pub fn of(plan: &Plan, study: &Definition, readout: &Readout) -> Metadata {
         sampling: study.sampling,
         replicates: match study.sampling {
             Sampling::Sobol => REPLICATES,
-            Sampling::Random | Sampling::LatinHypercube => 1,
+            Sampling::Random | Sampling::LatinHypercube | Sampling::Subset => 1,
         },
         correlations: variation.map_or_else(Vec::new, correlations),
         is_correlated: variation.is_some_and(is_correlated),

@@ -9,9 +9,13 @@ pub mod counts;
 pub mod data_set;
 pub mod definition;
 pub mod draws;
+pub mod measured;
 pub mod metadata;
+pub mod rare;
 pub mod report;
 pub mod simulation;
 pub mod stopping;
 #[cfg(test)]
 mod testing;
+#[cfg(test)]
+mod tests;

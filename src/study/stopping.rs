@@ -11,6 +11,7 @@ use crate::physics::study::probability::Decision;
 use crate::physics::study::probability::stopping::{Goal, Look, StoppingRule};
 use crate::plan::Comparison;
 use crate::plan::study::Runs;
+use crate::study::rare::RareRuns;
 
 /// A probability that a study is run for.
 #[derive(Clone, Debug)]
@@ -38,6 +39,8 @@ pub struct Looks {
     /// Looks to come, the next one last; none for a fixed number of runs.
     to_come: Vec<Look>,
     at_most: u64,
+    /// The levels of a subset simulation.
+    rare: Option<RareRuns>,
 }
 
 impl Looks {
@@ -56,7 +59,7 @@ impl Looks {
             looks
         };
         let (watched, to_come) = match runs {
-            Runs::Fixed(_) => (Vec::new(), Vec::new()),
+            Runs::Fixed(_) | Runs::Rare(_) => (Vec::new(), Vec::new()),
             Runs::Decided { confidence, .. } => {
                 let studied = metadata.studied.iter();
                 let watched = studied.map(|studied| Watched {
@@ -93,12 +96,22 @@ impl Looks {
             watched,
             to_come,
             at_most,
+            rare: RareRuns::of(metadata),
         }
+    }
+
+    /// The subset simulation of the study, if it is one.
+    #[must_use]
+    pub const fn rare(&self) -> Option<&RareRuns> {
+        self.rare.as_ref()
     }
 
     /// Number of runs of the next look, or of the study: no run beyond it is needed before it.
     #[must_use]
     pub fn next(&self) -> u64 {
+        if let Some(rare) = &self.rare {
+            return self.counts.runs + rare.pending().len() as u64;
+        }
         self.to_come.last().map_or(self.at_most, |look| look.runs)
     }
 
@@ -111,6 +124,9 @@ impl Looks {
     /// Adds the next run, and looks if it is the last one before a look.
     pub fn add(&mut self, row: &Row) {
         self.counts.add(row);
+        if let Some(rare) = &mut self.rare {
+            rare.add(row);
+        }
         let runs = self.counts.runs;
         let Some(look) = self.to_come.pop_if(|look| look.runs == runs) else {
             return;
@@ -128,6 +144,9 @@ impl Looks {
     /// Whether no more runs are needed.
     #[must_use]
     pub fn are_over(&self) -> bool {
+        if let Some(rare) = &self.rare {
+            return rare.is_over();
+        }
         self.counts.runs >= self.at_most
             || !self.watched.is_empty() && self.watched.iter().all(|watched| watched.concluded)
     }

@@ -20,6 +20,7 @@ pub fn variation() -> Variation {
         text: String::new(),
         nominal,
         angle: false,
+        is_record: false,
     };
     Variation {
         inputs: vec![
@@ -36,6 +37,7 @@ pub fn variation() -> Variation {
         }],
         sampling: Sampling::Random,
         seed: 7,
+        measured: Vec::new(),
     }
 }
 

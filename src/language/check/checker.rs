@@ -108,6 +108,8 @@ pub struct Checker<'a> {
     pub real_rig: Option<usize>,
     /// Values of fields that are given from outside the plan.
     pub overrides: Overrides<'a>,
+    /// Results that the plan reads as these numbers.
+    pub results: Vec<(ResultReference, Typed)>,
     /// Whether the studies of the plan are about to be run.
     pub for_studies: bool,
     /// Ends of the inputs of studies, at which the plan must be valid.
@@ -162,6 +164,7 @@ impl<'a> Checker<'a> {
             recorded: false,
             real_rig: None,
             overrides: Overrides::new(),
+            results: Vec::new(),
             for_studies: false,
             ends: Vec::new(),
             stack,

@@ -211,6 +211,7 @@ impl ParsedPlan {
             self.incomplete,
         );
         checker.data = data.to_vec();
+        checker.real_rig = rig::real_rig_of_run(&checker, self.options.rig.as_deref());
         checker.override_fields(settings);
         let text = PlanText {
             name: &self.name,

@@ -4,7 +4,7 @@
 use thiserror::Error;
 
 use super::correlation::{Correlation, CorrelationError, Pair};
-use super::distribution::{Distribution, Tails};
+use super::distribution::{Distribution, Tails, normal};
 use super::sampling::{Design, DesignError, Sampler};
 
 /// Where one or several values of a run come from.
@@ -96,6 +96,27 @@ impl Inputs {
         self.sources.iter().map(of_source).sum()
     }
 
+    /// Number of independent numbers behind the values of a run.
+    #[must_use]
+    pub const fn sources(&self) -> usize {
+        self.sources.len()
+    }
+
+    /// The values at a point in standard normal space, in the order of the sources; they replace those in `values`.
+    pub fn at(&self, point: &[f64], values: &mut Vec<f64>) {
+        values.clear();
+        let mut scores = point.to_vec();
+        if let Some(correlation) = &self.correlation {
+            correlation.apply(&mut scores);
+        }
+        for (source, score) in self.sources.iter().zip(scores) {
+            match source {
+                Source::Distribution(law) => values.push(law.quantile(Tails::of_score(score))),
+                Source::Rows(rows) => values.extend(drawn(rows, normal::below(score))),
+            }
+        }
+    }
+
     /// The values of a run, in the order of the sources; they replace those in `values`.
     pub fn draw(&self, run: u64, values: &mut Vec<f64>) {
         values.clear();
@@ -175,6 +196,29 @@ mod tests {
                 let inputs = || Inputs::new(sources(), pairs, design, 42).unwrap();
                 assert_eq!(inputs().width(), 4);
                 assert_eq!(rows(&inputs(), 1000)[..300], rows(&inputs(), 300));
+            }
+        }
+    }
+
+    /// The scores of the numbers of a run give its values, with correlations and rows.
+    #[test]
+    fn the_values_at_a_point_are_those_of_a_run_with_the_same_scores() {
+        let pair = Pair {
+            inputs: [0, 2],
+            correlation: 0.7,
+        };
+        for pairs in [&[][..], &[pair]] {
+            let inputs = Inputs::new(sources(), pairs, Design::Random, 42).unwrap();
+            let mut values = Vec::new();
+            for (run, drawn) in (0..).zip(rows(&inputs, 50)) {
+                let score = |at| Tails::of_uniform(inputs.sampler.uniform(run, at)).score();
+                inputs.at(&[score(0), score(1), score(2)], &mut values);
+                for (value, drawn) in values.iter().zip(&drawn) {
+                    assert!(
+                        (value - drawn).abs() < 1e-9 * drawn.abs(),
+                        "{value} {drawn}"
+                    );
+                }
             }
         }
     }

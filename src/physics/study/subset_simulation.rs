@@ -9,6 +9,7 @@
 use thiserror::Error;
 
 use super::distribution::normal;
+use super::probability::clopper_pearson;
 use super::sampling::philox::{Philox, Purpose};
 use super::{Confidence, mean, number};
 
@@ -80,127 +81,273 @@ impl SubsetSimulation {
     /// # Errors
     /// Too few inputs, points or replicates.
     pub fn run(
-        &self,
+        self,
         limit: f64,
         confidence: Confidence,
         response: impl Fn(&[f64]) -> Option<f64>,
     ) -> Result<Answer, SubsetError> {
+        let mut progress = self.begin(limit)?;
+        while let Some(point) = progress.pending().first() {
+            let found = response(point);
+            progress.add(found);
+        }
+        progress
+            .answer(confidence)
+            .ok_or(SubsetError::Replicates(self.replicates))
+    }
+
+    /// A simulation without runs.
+    ///
+    /// # Errors
+    /// Too few inputs, points or replicates.
+    pub fn begin(self, limit: f64) -> Result<Progress, SubsetError> {
         if self.inputs == 0 {
             return Err(SubsetError::NoInputs);
         }
         if self.points < 100 || !self.points.is_multiple_of(KEPT) {
             return Err(SubsetError::Points(self.points));
         }
-        let replicates: Vec<Replicate> = (0..self.replicates)
-            .map(|replicate| self.replicate(replicate, limit, &response))
-            .collect();
-        let found: Vec<f64> = replicates.iter().map(|found| found.probability).collect();
-        let mut probability =
-            mean::of(&found, confidence).ok_or(SubsetError::Replicates(self.replicates))?;
+        if self.replicates < 2 {
+            return Err(SubsetError::Replicates(self.replicates));
+        }
+        let mut progress = Progress {
+            simulation: self,
+            limit,
+            replicates: Vec::new(),
+            current: Replicate::default(),
+            phase: Phase::First,
+            points: Vec::new(),
+            pending: Vec::new(),
+            answered: 0,
+        };
+        progress.begin_replicate();
+        Ok(progress)
+    }
+
+    /// Most runs: every level of every replicate.
+    #[must_use]
+    pub const fn at_most(self) -> u64 {
+        let moved = (self.points - self.points / KEPT) as u64;
+        self.replicates as u64 * (self.points as u64 + (MOST_LEVELS as u64 - 1) * moved)
+    }
+}
+
+/// A simulation whose runs are made elsewhere: it names the next points, and takes their responses in the same order.
+#[derive(Clone, Debug)]
+pub struct Progress {
+    simulation: SubsetSimulation,
+    limit: f64,
+    /// Those that ended.
+    replicates: Vec<Replicate>,
+    current: Replicate,
+    phase: Phase,
+    /// Points of the level so far.
+    points: Vec<Point>,
+    /// Points whose responses do not depend on each other.
+    pending: Vec<Vec<f64>>,
+    /// Those of them with a response.
+    answered: usize,
+}
+
+/// Where a replicate is.
+#[derive(Clone, Copy, Debug)]
+enum Phase {
+    First,
+    /// Chains of moves beyond the threshold.
+    Moves {
+        level: u16,
+        threshold: f64,
+        chains: usize,
+        accepted: u64,
+    },
+}
+
+impl Progress {
+    /// The points that are simulated next, in any order; empty once the simulation is over.
+    #[must_use]
+    pub fn pending(&self) -> &[Vec<f64>] {
+        &self.pending[self.answered..]
+    }
+
+    #[must_use]
+    pub const fn is_over(&self) -> bool {
+        self.replicates.len() == self.simulation.replicates as usize
+    }
+
+    /// The replicates that ended.
+    #[must_use]
+    pub fn replicates(&self) -> &[Replicate] {
+        &self.replicates
+    }
+
+    /// Adds the response of the first pending point.
+    ///
+    /// # Panics
+    /// If no point is pending.
+    pub fn add(&mut self, response: Option<f64>) {
+        let value = response.filter(|value| !value.is_nan());
+        self.current.runs += 1;
+        self.current.no_result += u64::from(value.is_none());
+        let candidate = Point {
+            response: value.unwrap_or(f64::INFINITY),
+            point: std::mem::take(&mut self.pending[self.answered]),
+        };
+        self.answered += 1;
+        let next = match &mut self.phase {
+            Phase::Moves {
+                threshold,
+                chains,
+                accepted,
+                ..
+            } => {
+                if candidate.response > *threshold {
+                    *accepted += 1;
+                    candidate
+                } else {
+                    self.points[self.points.len() - *chains].clone()
+                }
+            }
+            Phase::First => candidate,
+        };
+        self.points.push(next);
+        if self.answered == self.pending.len() {
+            if self.points.len() == self.simulation.points {
+                self.end_level();
+            } else {
+                self.propose();
+            }
+        }
+    }
+
+    /// The answer of all replicates; None before the simulation is over.
+    #[must_use]
+    pub fn answer(&self, confidence: Confidence) -> Option<Answer> {
+        if !self.is_over() {
+            return None;
+        }
+        let found: Vec<f64> = self.replicates.iter().map(|it| it.probability).collect();
+        let mut probability = mean::of(&found, confidence)?;
+        // A replicate without an exceedance shows an upper bound, not zero.
+        let points = self.simulation.points as u64;
+        let bound = |replicate: &Replicate| match &replicate.levels[..] {
+            [before @ .., last] if last.share == 0.0 => {
+                let before: f64 = before.iter().map(|level| level.share).product();
+                before * clopper_pearson::interval(0, points, confidence).high
+            }
+            _ => replicate.probability,
+        };
+        let bounds: f64 = self.replicates.iter().map(bound).sum();
+        let upper = bounds / number(found.len() as u64);
         probability.interval.low = probability.interval.low.max(0.0);
-        probability.interval.high = probability.interval.high.min(1.0);
+        probability.interval.high = probability.interval.high.max(upper).min(1.0);
         let sd = crate::statistics::samples::scatter(found.iter().copied(), probability.value);
-        Ok(Answer {
+        Some(Answer {
             probability,
             variation: (probability.value > 0.0).then(|| sd / probability.value),
-            replicates,
+            replicates: self.replicates.clone(),
         })
     }
 
-    fn replicate(
-        &self,
-        replicate: u32,
-        limit: f64,
-        response: &impl Fn(&[f64]) -> Option<f64>,
-    ) -> Replicate {
-        let numbers = Numbers {
-            stream: Philox::new(self.seed),
-            inputs: self.inputs,
-            replicate,
+    fn numbers(&self) -> Numbers {
+        Numbers {
+            stream: Philox::new(self.simulation.seed),
+            inputs: self.simulation.inputs,
+            replicate: u32::try_from(self.replicates.len()).unwrap_or(u32::MAX),
+        }
+    }
+
+    fn begin_replicate(&mut self) {
+        self.points.clear();
+        self.pending.clear();
+        self.answered = 0;
+        if self.is_over() {
+            return;
+        }
+        self.phase = Phase::First;
+        self.current = Replicate::default();
+        let numbers = self.numbers();
+        self.pending = (0..self.simulation.points)
+            .map(|index| numbers.point(Purpose::FirstLevel, index))
+            .collect();
+    }
+
+    /// The next move of every chain.
+    fn propose(&mut self) {
+        let Phase::Moves { level, chains, .. } = self.phase else {
+            return;
         };
-        let mut found = Replicate {
+        let step = (1.0 - CORRELATION * CORRELATION).sqrt();
+        let numbers = self.numbers();
+        let from = self.points.len();
+        let candidate = |index: usize| {
+            let random = numbers.point(Purpose::Level(level), index);
+            let before = &self.points[index - chains].point;
+            let moved = before.iter().zip(random);
+            moved
+                .map(|(z, random)| CORRELATION * z + step * random)
+                .collect()
+        };
+        self.pending = (from..(from + chains).min(self.simulation.points))
+            .map(candidate)
+            .collect();
+        self.answered = 0;
+    }
+
+    /// Keeps the points beyond the next threshold, or ends the replicate.
+    fn end_level(&mut self) {
+        let (level, accepted) = match self.phase {
+            Phase::First => (1, 1.0),
+            Phase::Moves {
+                level,
+                chains,
+                accepted,
+                ..
+            } => {
+                let moves = (self.simulation.points - chains) as u64;
+                (level + 1, number(accepted) / number(moves))
+            }
+        };
+        let points = &mut self.points;
+        points.sort_by(|first, second| second.response.total_cmp(&first.response));
+        let kept = self.simulation.points / KEPT;
+        let threshold = 0.5 * (points[kept - 1].response + points[kept].response);
+        // A threshold that is not finite, or that no point of the upper tenth exceeds, leads no further.
+        let ends = threshold >= self.limit || level == MOST_LEVELS;
+        let stuck = points[0].response <= threshold;
+        let bound = if ends || stuck { self.limit } else { threshold };
+        let beyond = points.iter().filter(|point| point.response > bound).count();
+        let share = number(beyond as u64) / number(self.simulation.points as u64);
+        self.current.probability *= share;
+        self.current.levels.push(Level {
+            threshold: bound,
+            share,
+            accepted,
+        });
+        if ends || stuck || beyond == 0 {
+            let ended = std::mem::take(&mut self.current);
+            self.replicates.push(ended);
+            self.begin_replicate();
+            return;
+        }
+        self.points.truncate(beyond);
+        self.phase = Phase::Moves {
+            level,
+            threshold,
+            chains: beyond,
+            accepted: 0,
+        };
+        self.propose();
+    }
+}
+
+impl Default for Replicate {
+    fn default() -> Self {
+        Self {
             probability: 1.0,
             levels: Vec::new(),
             runs: 0,
             no_result: 0,
-        };
-        let mut responses = |point: Vec<f64>| {
-            let value = response(&point).filter(|value| !value.is_nan());
-            found.runs += 1;
-            found.no_result += u64::from(value.is_none());
-            Point {
-                response: value.unwrap_or(f64::INFINITY),
-                point,
-            }
-        };
-        let mut points: Vec<Point> = (0..self.points)
-            .map(|index| responses(numbers.point(Purpose::FirstLevel, index)))
-            .collect();
-        let mut levels = Vec::new();
-        let mut probability = 1.0;
-        let mut accepted = 1.0;
-        for level in 1..=MOST_LEVELS {
-            points.sort_by(|first, second| second.response.total_cmp(&first.response));
-            let kept = self.points / KEPT;
-            let threshold = 0.5 * (points[kept - 1].response + points[kept].response);
-            // A threshold that is not finite, or that no point of the upper tenth exceeds, leads no further.
-            let ends = threshold >= limit || level == MOST_LEVELS;
-            let stuck = points[0].response <= threshold;
-            let bound = if ends || stuck { limit } else { threshold };
-            let beyond = points.iter().filter(|point| point.response > bound).count();
-            let share = number(beyond as u64) / number(self.points as u64);
-            probability *= share;
-            levels.push(Level {
-                threshold: bound,
-                share,
-                accepted,
-            });
-            if ends || stuck || beyond == 0 {
-                break;
-            }
-            points.truncate(beyond);
-            (points, accepted) = self.moved(&numbers, level, threshold, points, &mut responses);
         }
-        Replicate {
-            probability,
-            levels,
-            ..found
-        }
-    }
-
-    /// The points of the next level, from chains that begin at those beyond the threshold, and the share of accepted moves.
-    fn moved(
-        &self,
-        numbers: &Numbers,
-        level: u16,
-        threshold: f64,
-        seeds: Vec<Point>,
-        responses: &mut impl FnMut(Vec<f64>) -> Point,
-    ) -> (Vec<Point>, f64) {
-        let step = (1.0 - CORRELATION * CORRELATION).sqrt();
-        let chains = seeds.len();
-        let mut points = seeds;
-        let mut accepted = 0;
-        for index in chains..self.points {
-            let before = &points[index - chains];
-            let move_to = numbers.point(Purpose::Level(level), index);
-            let candidate = before
-                .point
-                .iter()
-                .zip(move_to)
-                .map(|(z, random)| CORRELATION * z + step * random)
-                .collect();
-            let candidate = responses(candidate);
-            let next = if candidate.response > threshold {
-                accepted += 1;
-                candidate
-            } else {
-                points[index - chains].clone()
-            };
-            points.push(next);
-        }
-        let moves = number((self.points - chains) as u64);
-        (points, number(accepted) / moves)
     }
 }
 
@@ -288,11 +435,15 @@ mod tests {
             .run(2.0, level(0.95), |point| Some(point[0].tanh()))
             .unwrap();
         assert!(bounded.probability.value < 1e-14);
+        assert!(bounded.probability.interval.high > 0.0);
         let constant = simulation(1).run(2.0, level(0.95), |_| Some(1.0)).unwrap();
         assert_eq!(
             (constant.probability.value, constant.variation),
             (0.0, None)
         );
+        // No run of 1000 exceeds it: below 0.37 % (Clopper and Pearson, both sides 95 %).
+        let high = constant.probability.interval.high;
+        assert!((high - 0.003_682).abs() < 1e-6, "{high}");
         assert!(
             constant
                 .replicates

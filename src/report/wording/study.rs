@@ -24,10 +24,14 @@ phrases! {
     ENDS_FIXED = "after a fixed number of runs";
     ENDS_DECIDED = "when every requirement on the study is decided";
     fn ends_half_width(width) = "when half of every interval is at most {width}";
+    fn ends_levels(replicates, points) = "when {replicates} replicates with {points} runs a level have reached the limit";
     fn ends_stripes(stripes, runs) = "{stripes} intensities with {runs} runs each";
     RANDOM = "independent random runs";
     LATIN_HYPERCUBE = "Latin hypercube";
     fn sobol(replicates) = "scrambled Sobol' sequences, {replicates} replicates";
+    SUBSET = "subset simulation";
+    fn level_intervals(confidence) = "The interval has a confidence of {confidence} (Student's t, of the replicates of the subset \
+        simulation). The requirement is met or not met if the whole interval is on one side of the limit, otherwise undecided.";
     STATEMENTS = "Requirements on the study";
     STATEMENT_COLUMNS = ["Requirement", "Statement", "Probability", "Interval"];
     MET = "MET";
@@ -91,9 +95,22 @@ phrases! {
     GOODNESS = "Goodness of fit: probability of a deviance as large as this one if the curve is lognormal. Below 5 % the curve is \
         doubtful.";
     NO_MIDDLE = "No stripe has between 10 % and 90 % of exceedances: the dispersion is a guess. Add intensities between them.";
-    SPREAD = "The dispersion is that of the varied inputs alone. A record-to-record dispersion is part of it only if the ground \
-        motion is one of them.";
+    SPLIT_COLUMNS = ["Records", "Record-to-record β", "Modelling β", "Between records", "Interval"];
+    SPLIT = "Between records: fraction of β² that is record-to-record, with its profile likelihood (random effects of the records). \
+        The rest is that of the other inputs.";
+    MODELLING_ALONE = "The dispersion is that of the varied inputs (modelling). It has no record-to-record part: the ground motion \
+        does not vary.";
+    RECORDS_ALONE = "The dispersion is record-to-record alone: nothing else varies. Curve and band are those of these records.";
+    OF_THESE_RECORDS = "Curve and band are those of these records, each as probable as the others.";
     STEPPED = "stepped";
+
+    // Levels of a subset simulation.
+    LEVELS = "Levels of the subset simulation";
+    LEVEL_COLUMNS = ["Level", "Threshold", "Replicates", "Beyond it", "Accepted moves"];
+    LEVELS_EXPLAINED = "The probability of a replicate is the product of the fractions beyond its thresholds (S.-K. Au, J. L. Beck, \
+        Prob. Eng. Mech. 16 (2001) 263–277). Each level begins with the tenth of the runs that is nearest to the limit.";
+    fn variation(fraction) = "Coefficient of variation of one replicate: {fraction}.";
+    fn levels_without_result(runs) = "{runs} runs without a result count as failures, so the interval begins at 0.";
 
     // Looks.
     LOOKS = "Looks of the stopping rule";

@@ -3,11 +3,20 @@
 use crate::schema::types::{BlockKind, Field, Kind, Naming};
 use crate::units::Dimension;
 
-pub(crate) const FILE: Field = Field::text(
-            "file",
-            "CSV file with the header `time_s,acceleration_m_per_s2`, or an `.AT2` file of the PEER database",
-        )
-        .required("file = \"ground.csv\"");
+pub(crate) const FILE: Field = Field::texts(
+    "file",
+    "CSV file with the header `time_s,acceleration_m_per_s2`, or an `.AT2` file of the PEER database; or a list of them, from which \
+     `record_number` chooses",
+)
+.required("file = \"ground.csv\"");
+
+pub(crate) const RECORD_NUMBER: Field = Field::count(
+    "record_number",
+    1.0,
+    1000.0,
+    "number of the file in the list, from 1; a study draws it: `record_number ~ any`",
+)
+.or(1.0, "");
 
 pub(crate) const SCALE: Field =
     Field::quantity("scale", Dimension::NUMBER, "factor on the accelerations").or(1.0, "");
@@ -33,7 +42,7 @@ pub(crate) const GROUND: BlockKind = BlockKind {
     keyword: &["ground"],
     naming: Naming::Named,
     procedure: false,
-    fields: &[FILE, SCALE, SCALE_UNCERTAINTY, UNIT],
+    fields: &[FILE, RECORD_NUMBER, SCALE, SCALE_UNCERTAINTY, UNIT],
     exports: &[],
     results: &[],
     example: "ground quake { file = \"ground.csv\" }",

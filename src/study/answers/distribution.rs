@@ -116,7 +116,7 @@ impl Distributions {
                         probability,
                         estimates: found.estimates,
                         interval: match metadata.sampling {
-                            Sampling::LatinHypercube => [None; 2],
+                            Sampling::LatinHypercube | Sampling::Subset => [None; 2],
                             Sampling::Random | Sampling::Sobol => found.interval,
                         },
                     }
@@ -148,7 +148,7 @@ impl Distributions {
         confidence: Confidence,
     ) -> Option<[f64; 2]> {
         match sampling {
-            Sampling::LatinHypercube => None,
+            Sampling::LatinHypercube | Sampling::Subset => None,
             Sampling::Random => {
                 let moments = self.whole[index];
                 let sd = moments.standard_deviation()?;

@@ -1,12 +1,14 @@
 //! The fragility curve of a data set. In: rows, stripe by stripe. Out: the stripes with their intervals, and the lognormal curve with its
 //! band, or the reason why none fits. If runs have no result, there are two curves: the truth lies between them.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use super::ends;
 use super::moments::number;
 use crate::physics::study::Confidence;
-use crate::physics::study::fragility::{Fit, NoFit, NoResult, Stripe};
+use crate::physics::study::fragility::{Fit, NoFit, NoResult, Split, Stripe};
 use crate::physics::study::probability::Outcomes;
 use crate::study::counts::Counts;
 use crate::study::data_set::{Column, Event, Kind, Metadata, Row, Stripes};
@@ -60,7 +62,33 @@ pub struct FitAnswer {
     pub goodness: Option<f64>,
     /// Some stripe has between 10 % and 90 % of exceedances. Without one the dispersion is a guess.
     pub has_middle: bool,
+    /// The parts of the dispersion; None unless records and other inputs vary.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub split: Option<SplitAnswer>,
     pub curve: Vec<CurvePoint>,
+}
+
+/// The dispersion between ground-motion records, and by the other inputs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SplitAnswer {
+    pub records: usize,
+    pub record_to_record: f64,
+    pub modelling: f64,
+    /// Record-to-record part of β².
+    pub share: f64,
+    pub share_interval: [f64; 2],
+}
+
+impl SplitAnswer {
+    fn of(split: Split) -> Self {
+        Self {
+            records: split.records,
+            record_to_record: split.record_to_record,
+            modelling: split.modelling,
+            share: split.share,
+            share_interval: ends(split.share_interval),
+        }
+    }
 }
 
 /// A point of a fitted curve with its band.
@@ -74,23 +102,37 @@ pub struct CurvePoint {
 }
 
 /// Counts of every stripe.
-pub struct StripeCounts(Vec<Counts>);
+pub struct StripeCounts {
+    stripes: Vec<Counts>,
+    /// Index of the number of the record among the inputs.
+    record: Option<usize>,
+    /// Those of each record, by its number.
+    records: BTreeMap<u64, Vec<Counts>>,
+}
 
 impl StripeCounts {
     pub fn new(metadata: &Metadata) -> Self {
-        Self(match &metadata.kind {
-            Kind::Study(_) => Vec::new(),
-            Kind::Fragility(stripes) => {
-                vec![Counts::new(metadata.requirements.len()); stripes.values.len()]
-            }
-        })
+        let (count, record) = match &metadata.kind {
+            Kind::Study(_) => (0, None),
+            Kind::Fragility(stripes) => (stripes.values.len(), stripes.record),
+        };
+        Self {
+            stripes: vec![Counts::new(metadata.requirements.len()); count],
+            record,
+            records: BTreeMap::new(),
+        }
     }
 
     pub fn add(&mut self, row: &Row) {
-        let stripe = row.run.checked_rem(self.0.len() as u64);
-        let stripe = stripe.and_then(|stripe| usize::try_from(stripe).ok());
-        if let Some(counts) = stripe.and_then(|stripe| self.0.get_mut(stripe)) {
-            counts.add(row);
+        let stripe = row.run.checked_rem(self.stripes.len() as u64);
+        let Some(stripe) = stripe.and_then(|stripe| usize::try_from(stripe).ok()) else {
+            return;
+        };
+        self.stripes[stripe].add(row);
+        if let Some(number) = self.record.and_then(|at| row.inputs.get(at)) {
+            let empty = vec![Counts::new(row.outcomes.len()); self.stripes.len()];
+            let of_record = self.records.entry(number.to_bits()).or_insert(empty);
+            of_record[stripe].add(row);
         }
     }
 }
@@ -109,10 +151,8 @@ pub fn answer(
     };
     let column = metadata.inputs.get(*intensity)?;
     let exceeds = metadata.requirements.first()?;
-    let stripes: Vec<Stripe> = values
-        .iter()
-        .zip(counts.0)
-        .map(|(intensity, counts)| {
+    let stripes_of = |counts: &[Counts]| -> Vec<Stripe> {
+        let stripe = |(intensity, counts): (&f64, &Counts)| {
             // The first requirement of a fragility is its condition: met is exceeded.
             let outcomes = counts.of(0, Event::Holds);
             Stripe {
@@ -121,8 +161,13 @@ pub fn answer(
                 not_exceeded: outcomes.passed,
                 no_result: outcomes.no_result,
             }
-        })
-        .collect();
+        };
+        values.iter().zip(counts).map(stripe).collect()
+    };
+    let stripes = stripes_of(&counts.stripes);
+    let records: Vec<Vec<Stripe>> = counts.records.values().map(|it| stripes_of(it)).collect();
+    // The intensity and the record alone: no run differs from another under the same record.
+    let others = metadata.inputs.len() > 2;
     let treatments: &[(NoResult, &str)] = if stripes.iter().all(|stripe| stripe.no_result == 0) {
         &[(NoResult::AsNotExceeded, "none")]
     } else {
@@ -134,7 +179,13 @@ pub fn answer(
     let fits = treatments
         .iter()
         .map(|(counted, name)| match Fit::new(&stripes, *counted) {
-            Ok(fit) => fitted(&fit, name, &stripes, confidence),
+            Ok(fit) => FitAnswer {
+                split: fit
+                    .split(&records, *counted, confidence)
+                    .filter(|_| others)
+                    .map(SplitAnswer::of),
+                ..fitted(&fit, name, &stripes, confidence)
+            },
             Err(reason) => FitAnswer {
                 no_result_as: name,
                 no_fit: Some(no_fit(reason, column)),
@@ -144,6 +195,7 @@ pub fn answer(
                 dispersion_interval: None,
                 goodness: None,
                 has_middle: false,
+                split: None,
                 curve: Vec::new(),
             },
         })
@@ -187,6 +239,7 @@ fn fitted(fit: &Fit, name: &'static str, stripes: &[Stripe], confidence: Confide
         dispersion_interval: fit.dispersion_interval(confidence).map(ends),
         goodness: fit.goodness,
         has_middle: fit.has_middle,
+        split: None,
         curve: curve(fit, stripes, confidence),
     }
 }

@@ -6,6 +6,7 @@ use crate::physics::study::probability::stopping::Look;
 use crate::plan::study::Runs;
 use crate::study::counts::Counts;
 use crate::study::data_set::{Kind, Metadata, Row, Stopping};
+use crate::study::rare::RareRuns;
 use crate::study::stopping::Looks;
 
 /// Counts so far.
@@ -25,6 +26,7 @@ impl CountsWithLooks {
         let at_most = metadata.at_most;
         let runs = match metadata.kind {
             Kind::Study(Stopping::Fixed) | Kind::Fragility(_) => Runs::Fixed(at_most),
+            Kind::Study(Stopping::Rare(rare)) => Runs::Rare(rare),
             Kind::Study(Stopping::Decided) => Runs::Decided {
                 confidence,
                 at_most,
@@ -53,6 +55,11 @@ impl CountsWithLooks {
 
     pub const fn counts(&self) -> &Counts {
         &self.rule.counts
+    }
+
+    /// The subset simulation of the study, if it is one.
+    pub const fn rare(&self) -> Option<&RareRuns> {
+        self.rule.rare()
     }
 
     /// Whether the study has all the runs that it asks for.

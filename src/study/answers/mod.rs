@@ -14,6 +14,7 @@ mod probability;
 mod reasons;
 mod sensitivity;
 mod studied;
+mod subset;
 #[cfg(test)]
 pub(crate) mod testing;
 #[cfg(test)]
@@ -24,19 +25,20 @@ use serde::Serialize;
 
 use crate::physics::study::{Confidence, Interval};
 use crate::plan::study::Sampling;
-use crate::study::data_set::{DataSetFault, Kind, Metadata, Reader, Row};
+use crate::study::data_set::{DataSetFault, Kind, Metadata, Reader, Row, Stopping};
 use distribution::Distributions;
 use kept::Kept;
 use looks::CountsWithLooks;
 use worst::WorstRuns;
 
 pub use distribution::{Histogram, QuantileAnswer, ResultAnswer};
-pub use fragility::{CurvePoint, FitAnswer, FragilityAnswer, StripeAnswer};
+pub use fragility::{CurvePoint, FitAnswer, FragilityAnswer, SplitAnswer, StripeAnswer};
 pub use kept::Kept as KeptRuns;
 pub use probability::{Probability, RequirementAnswer};
 pub use reasons::ReasonCount;
 pub use sensitivity::{IndexAnswer, Sensitivity};
 pub use studied::{LookAnswer, StudiedAnswer};
+pub use subset::{LevelAnswer, SubsetAnswer};
 pub use worst::{WorstRun, setting};
 
 /// Runs whose values are kept: quantiles, histograms and cumulative curves.
@@ -63,11 +65,14 @@ pub struct Answers {
     pub studied: Vec<StudiedAnswer>,
     /// Looks of the stopping rule, in their order; none if the number of runs is fixed.
     pub looks: Vec<LookAnswer>,
-    /// None of a fragility: its results depend on the intensity.
+    /// None of a fragility, whose results depend on the intensity, and of a subset simulation, whose runs are near the limit.
     pub results: Vec<ResultAnswer>,
     /// Why runs have no result, the commonest reason first.
     pub reasons: Vec<ReasonCount>,
     pub fragility: Option<FragilityAnswer>,
+    /// Of a complete subset simulation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub subset: Option<SubsetAnswer>,
     /// The first runs, for figures.
     #[serde(skip)]
     pub kept: Kept,
@@ -131,9 +136,10 @@ impl Pass {
     }
 
     fn finish(self, metadata: &Metadata, confidence: Confidence) -> Answers {
-        let is_fragility = matches!(metadata.kind, Kind::Fragility(_));
-        let studied = studied::answers(metadata, &self.counts, confidence);
-        let results = if is_fragility {
+        let subset = subset::answer(&self.counts, confidence);
+        let studied = studied::answers(metadata, &self.counts, subset.as_ref(), confidence);
+        // The runs of stripes and of levels are not a sample of the results.
+        let results = if !is_a_sample(&metadata.kind) {
             Vec::new()
         } else {
             self.distributions.answers(metadata, &self.kept, confidence)
@@ -153,6 +159,7 @@ impl Pass {
             looks: studied.looks,
             results,
             reasons: self.reasons.answers(),
+            subset,
             fragility: fragility::answer(metadata, self.stripes, confidence),
             kept: self.kept,
         }
@@ -162,6 +169,14 @@ impl Pass {
 /// An interval as two ends.
 const fn ends(interval: Interval) -> [f64; 2] {
     [interval.low, interval.high]
+}
+
+/// Whether the runs are drawn from the inputs as they scatter.
+const fn is_a_sample(kind: &Kind) -> bool {
+    matches!(
+        kind,
+        Kind::Study(Stopping::Fixed | Stopping::Decided | Stopping::HalfWidth(_))
+    )
 }
 
 /// Whether runs are independent of each other, as exact intervals require.

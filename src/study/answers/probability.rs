@@ -4,11 +4,11 @@
 use serde::Serialize;
 
 use super::worst::{WorstRun, WorstRuns};
-use super::{ends, is_independent};
+use super::{ends, is_a_sample, is_independent};
 use crate::physics::study::Confidence;
 use crate::physics::study::probability::Outcomes;
 use crate::study::counts::Counts;
-use crate::study::data_set::{Event, Kind, Metadata};
+use crate::study::data_set::{Event, Metadata};
 
 /// What the runs say about a requirement of the plan.
 #[derive(Clone, Debug, Serialize)]
@@ -20,7 +20,7 @@ pub struct RequirementAnswer {
     pub met: u64,
     pub not_met: u64,
     pub no_result: u64,
-    /// That it is not met; None of a fragility, whose runs have several intensities.
+    /// That it is not met; None of a fragility, whose runs have several intensities, and of a subset simulation.
     pub probability: Option<Probability>,
     /// Up to ten: the runs that are farthest beyond the limit, then those that are nearest to it.
     pub worst: Vec<WorstRun>,
@@ -33,7 +33,8 @@ pub struct Probability {
     pub bounds: [f64; 2],
     /// Of Clopper and Pearson, over both bounds.
     pub interval: [f64; 2],
-    /// The runs are independent of each other, so the interval is exact. Otherwise it is that of as many independent runs.
+    /// The runs are independent of each other, so the interval is exact. Otherwise it is that of as many independent runs, or that of the
+    /// replicates of a subset simulation.
     pub is_exact: bool,
 }
 
@@ -54,7 +55,7 @@ pub fn answers(
     worst: WorstRuns,
     confidence: Confidence,
 ) -> Vec<RequirementAnswer> {
-    let is_fragility = matches!(metadata.kind, Kind::Fragility(_));
+    let is_sample = is_a_sample(&metadata.kind);
     let requirements = metadata.requirements.iter().enumerate();
     requirements
         .zip(worst.finish(metadata))
@@ -68,7 +69,7 @@ pub fn answers(
                 met: outcomes.passed,
                 not_met: outcomes.failed,
                 no_result: outcomes.no_result,
-                probability: probability.filter(|_| !is_fragility),
+                probability: probability.filter(|_| is_sample),
                 worst,
             }
         })

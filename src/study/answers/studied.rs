@@ -8,9 +8,10 @@ use serde::Serialize;
 
 use super::looks::{CountsAtLook, CountsWithLooks};
 use super::probability::Probability;
+use super::subset::SubsetAnswer;
 use super::{ends, is_independent};
-use crate::physics::study::Confidence;
 use crate::physics::study::probability::Decision;
+use crate::physics::study::{Confidence, Interval};
 use crate::study::counts::Counts;
 use crate::study::data_set::{Metadata, StudiedRequirement};
 use crate::study::stopping::{decide, probabilities};
@@ -63,12 +64,22 @@ pub const fn word(decision: Decision) -> &'static str {
     }
 }
 
-pub fn answers(metadata: &Metadata, counts: &CountsWithLooks, confidence: Confidence) -> Studied {
+pub fn answers(
+    metadata: &Metadata,
+    counts: &CountsWithLooks,
+    subset: Option<&SubsetAnswer>,
+    confidence: Confidence,
+) -> Studied {
     let complete = counts.are_complete();
     let answer = |studied: &StudiedRequirement| {
         let outcomes = counts.counts().of(studied.requirement, studied.event);
         let is_exact = is_independent(metadata.sampling);
-        let (decision, look) = if complete {
+        let is_rare = counts.rare().is_some();
+        let rare = subset.map(|subset| subset.of(studied.event));
+        let (decision, look) = if let Some(rare) = &rare {
+            let [low, high] = rare.interval;
+            (decide(studied, Interval { low, high }), None)
+        } else if complete && !is_rare {
             decided(studied, counts, confidence)
         } else {
             (Decision::Undecided, None)
@@ -77,7 +88,11 @@ pub fn answers(metadata: &Metadata, counts: &CountsWithLooks, confidence: Confid
             label: studied.label.clone(),
             text: studied.text.clone(),
             decision,
-            probability: Probability::of(&outcomes, confidence, is_exact),
+            probability: match rare {
+                Some(rare) => Some(rare),
+                None if is_rare => None,
+                None => Probability::of(&outcomes, confidence, is_exact),
+            },
             limit: studied.limit,
             look,
         }

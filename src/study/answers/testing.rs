@@ -87,6 +87,7 @@ pub fn fragility_metadata(values: &[f64], runs: u64) -> Metadata {
             intensity: 0,
             values: values.to_vec(),
             runs,
+            record: None,
         }),
         inputs: vec![
             length("drop_height", ""),

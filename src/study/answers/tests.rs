@@ -306,6 +306,7 @@ fn lost_runs_give_two_curves_and_a_part_none() {
             intensity: 0,
             values: vec![0.9, 1.0, 1.1],
             runs: 100,
+            record: None,
         }),
         ..metadata(300)
     };

@@ -19,7 +19,7 @@ pub struct WorstRun {
     pub value: Option<f64>,
     /// In the order of the inputs, SI.
     pub inputs: Vec<f64>,
-    /// `NAME="VALUE UNIT"` for each input.
+    /// `NAME="VALUE UNIT"` for each `--set` of the whole study and each input.
     pub settings: Vec<String>,
 }
 
@@ -87,12 +87,7 @@ impl WorstRuns {
                 Outcome::NotMet.word()
             },
             value: decision.and_then(|result| candidate.row.results.get(result).copied().flatten()),
-            settings: metadata
-                .inputs
-                .iter()
-                .zip(&candidate.row.inputs)
-                .map(|(column, value)| setting(column, *value))
-                .collect(),
+            settings: settings(metadata, &candidate.row.inputs),
             inputs: candidate.row.inputs,
         };
         let decisions = metadata.requirements.iter();
@@ -102,6 +97,15 @@ impl WorstRuns {
             .map(|(result, worst)| worst.into_iter().map(|it| listed(result, it)).collect())
             .collect()
     }
+}
+
+/// The `--set` values of a run: those of the whole study, then its inputs.
+fn settings(metadata: &Metadata, values: &[f64]) -> Vec<String> {
+    let fixed = metadata.settings.iter();
+    let fixed = fixed.map(|setting| format!("{}=\"{}\"", setting.name, setting.text));
+    let inputs = metadata.inputs.iter().zip(values);
+    let inputs = inputs.map(|(column, value)| setting(column, *value));
+    fixed.chain(inputs).collect()
 }
 
 /// `NAME="VALUE UNIT"`, as `--set` takes it. The digits are the fewest that give the same number again.

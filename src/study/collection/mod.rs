@@ -11,6 +11,7 @@ pub mod status;
 #[cfg(test)]
 mod tests;
 
+use std::ops::Range;
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -21,7 +22,7 @@ use thiserror::Error;
 use crate::plan::study::Runs;
 use crate::study::cluster::shard::Shard;
 use crate::study::counts::Counts;
-use crate::study::data_set::{DataSetFault, Metadata, Reader, Writer};
+use crate::study::data_set::{DataSetFault, Metadata, Reader, Row, Writer};
 use crate::study::simulation::Simulation;
 use crate::study::stopping::Looks;
 
@@ -79,7 +80,9 @@ pub enum CollectionFault {
     OtherRuns { path: PathBuf, first: u64, end: u64 },
     #[error("{}: another process adds runs to this study", path.display())]
     Locked { path: PathBuf },
-    #[error("a study with `until` looks at all of its runs: it has no shards")]
+    #[error(
+        "a study with `until` or `sampling = subset` looks at all of its runs: it has no shards"
+    )]
     UntilInShards,
     #[error("{}: shards of {found} are here, not of {wanted}", folder.display())]
     OtherShards {
@@ -143,7 +146,7 @@ impl Collection<'_> {
                 let next = range.start + looks.counts.runs;
                 let end = (next + round).min(range.start + looks.next());
                 let before = Instant::now();
-                for row in self.simulation.rows(next..end) {
+                for row in self.rows(&looks, next..end) {
                     looks.add(&row);
                     piece.push(&row)?;
                 }
@@ -167,6 +170,16 @@ impl Collection<'_> {
             Ended::Stopped { runs, of }
         };
         Ok((ended, looks))
+    }
+
+    /// The next runs: the numbers of those of a subset simulation follow from the runs before them.
+    fn rows(&self, looks: &Looks, runs: Range<u64>) -> Vec<Row> {
+        let Some(rare) = looks.rare() else {
+            return self.simulation.rows(runs);
+        };
+        let count = usize::try_from(runs.end - runs.start).expect("at most a round");
+        self.simulation
+            .rows_at(runs.start, &rare.pending()[..count])
     }
 
     /// The data sets of the runs from `first` on that are there, one behind the other.

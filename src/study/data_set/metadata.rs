@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plan::Comparison;
-use crate::plan::study::Sampling;
+use crate::plan::study::{RareEvent, Sampling};
 use crate::units::Dimension;
 use crate::units::display::si_unit;
 
@@ -76,6 +76,8 @@ pub enum Stopping {
     Decided,
     /// Once half of the interval of every probability is at most this wide.
     HalfWidth(f64),
+    /// Once every replicate of a subset simulation has ended.
+    Rare(RareEvent),
 }
 
 /// The intensities of a fragility. Run i is at intensity i modulo their number, so that more runs leave the first ones as they are.
@@ -87,6 +89,9 @@ pub struct Stripes {
     pub values: Vec<f64>,
     /// Runs at each intensity.
     pub runs: u64,
+    /// Index of the number of the ground-motion record among the inputs, if it varies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub record: Option<usize>,
 }
 
 /// A column of inputs or results.
@@ -225,7 +230,12 @@ mod keywords {
     pub mod sampling {
         use crate::plan::study::Sampling;
 
-        const ALL: [Sampling; 3] = [Sampling::Random, Sampling::LatinHypercube, Sampling::Sobol];
+        const ALL: [Sampling; 4] = [
+            Sampling::Random,
+            Sampling::LatinHypercube,
+            Sampling::Sobol,
+            Sampling::Subset,
+        ];
 
         #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives a reference")]
         pub fn serialize<S: serde::Serializer>(

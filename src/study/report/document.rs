@@ -11,7 +11,7 @@ use crate::study::data_set::{Kind, Metadata, Stopping};
 use super::figures::{FigureKind, percent};
 use super::numbers::{probability, range};
 use super::source::Source;
-use super::{fragility, provenance, results, runs};
+use super::{fragility, provenance, results, runs, subset};
 
 /// The whole report.
 pub fn document(source: &Source<'_>) -> Document {
@@ -22,6 +22,7 @@ pub fn document(source: &Source<'_>) -> Document {
     statements(source, &mut body);
     runs::requirements(source, &mut body);
     first_figure(source, &mut body);
+    subset::section(source, &mut body);
     body.push(Block::NewPage);
     fragility::section(source, &mut body);
     results::section(source, &mut body);
@@ -60,12 +61,14 @@ fn front(metadata: &Metadata, answers: &Answers) -> Vec<(Text, Text)> {
         Kind::Study(Stopping::Fixed) => wording::ENDS_FIXED.to_owned(),
         Kind::Study(Stopping::Decided) => wording::ENDS_DECIDED.to_owned(),
         Kind::Study(Stopping::HalfWidth(width)) => wording::ends_half_width(percent(*width)),
+        Kind::Study(Stopping::Rare(rare)) => wording::ends_levels(rare.replicates, rare.points),
         Kind::Fragility(stripes) => wording::ends_stripes(stripes.values.len(), stripes.runs),
     };
     let sampling = match metadata.sampling {
         Sampling::Random => wording::RANDOM.to_owned(),
         Sampling::LatinHypercube => wording::LATIN_HYPERCUBE.to_owned(),
         Sampling::Sobol => wording::sobol(metadata.replicates),
+        Sampling::Subset => wording::SUBSET.to_owned(),
     };
     let rows = [
         (wording::PLAN, metadata.plan.clone()),
@@ -133,7 +136,12 @@ fn statements(source: &Source<'_>, body: &mut Vec<Block>) {
             ],
             rows: answers.studied.iter().map(statement_row).collect(),
         }));
-        body.push(Block::note(wording::intervals(percent(answers.confidence))));
+        let confidence = percent(answers.confidence);
+        if source.metadata.sampling == Sampling::Subset {
+            body.push(Block::note(wording::level_intervals(confidence)));
+            return;
+        }
+        body.push(Block::note(wording::intervals(confidence)));
         if !answers.looks.is_empty() {
             body.push(Block::note(wording::BY_LOOKS));
         }

@@ -41,8 +41,26 @@ pub fn section(source: &Source<'_>, body: &mut Vec<Block>) {
             body.push(Block::note(wording::NO_MIDDLE));
         }
     }
-    if source.metadata.inputs.len() > 1 {
-        body.push(Block::note(wording::SPREAD));
+    let fitted = fragility.fits.iter().find(fitted);
+    if let Some(split) = fitted.and_then(|fit| fit.split) {
+        body.push(Block::Table(Table {
+            columns: wording::SPLIT_COLUMNS.map(Column::numbers).into(),
+            rows: vec![vec![
+                split.records.to_string().into(),
+                decimals(split.record_to_record).into(),
+                decimals(split.modelling).into(),
+                short_percent(split.share).into(),
+                percents(split.share_interval).into(),
+            ]],
+        }));
+        body.push(Block::note(wording::SPLIT));
+    }
+    let records = matches!(&source.metadata.kind, Kind::Fragility(it) if it.record.is_some());
+    match (records, source.metadata.inputs.len()) {
+        (true, 2) => body.push(Block::note(wording::RECORDS_ALONE)),
+        (true, _) => body.push(Block::note(wording::OF_THESE_RECORDS)),
+        (false, 1) => {}
+        (false, _) => body.push(Block::note(wording::MODELLING_ALONE)),
     }
     let mut titles = wording::STRIPE_COLUMNS.into_iter();
     let mut columns = vec![Column::words(titles.next().unwrap_or_default(), 1)];

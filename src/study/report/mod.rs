@@ -9,6 +9,7 @@ mod provenance;
 mod results;
 mod runs;
 mod source;
+mod subset;
 mod summary;
 #[cfg(test)]
 mod tests;

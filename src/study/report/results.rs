@@ -29,7 +29,8 @@ pub fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     }));
     let confidence = percent(answers.confidence);
     body.push(Block::note(match source.metadata.sampling {
-        Sampling::Random => wording::by_ranks(confidence),
+        // A subset simulation has no results here.
+        Sampling::Random | Sampling::Subset => wording::by_ranks(confidence),
         Sampling::Sobol => wording::by_replicates(confidence),
         Sampling::LatinHypercube => wording::NO_INTERVAL.to_owned(),
     }));

@@ -11,7 +11,11 @@ use crate::units::display;
 /// Requirements of the plan with their counts.
 pub fn requirements(source: &Source<'_>, body: &mut Vec<Block>) {
     let answers = source.answers;
-    if answers.requirements.is_empty() || answers.fragility.is_some() {
+    let is_sample = answers
+        .requirements
+        .iter()
+        .any(|it| it.probability.is_some());
+    if !is_sample {
         return;
     }
     body.push(Block::section(wording::REQUIREMENTS));

@@ -53,7 +53,10 @@ impl<'a> Simulation<'a> {
         let mut values = Vec::new();
         study.draws.draw(0, &mut values);
         let first = parsed.bind_with_studies(&simulation.quantities(&values));
-        simulation.with_studies = first.is_ok_and(|first| simulation.readout.differs(&first));
+        if let Ok(first) = first {
+            simulation.with_studies = simulation.readout.differs(&first);
+            simulation.readout.keep_limits_of(plan, &first);
+        }
         simulation
     }
 
@@ -81,24 +84,46 @@ impl<'a> Simulation<'a> {
     /// The rows of these runs, in their order, on all cores. They do not depend on the number of threads.
     #[must_use]
     pub fn rows(&self, runs: Range<u64>) -> Vec<Row> {
+        self.on_all_cores(runs, None)
+    }
+
+    /// The same at these points in standard normal space, one for each run.
+    #[must_use]
+    pub fn rows_at(&self, first: u64, points: &[Vec<f64>]) -> Vec<Row> {
+        self.on_all_cores(first..first + points.len() as u64, Some(points))
+    }
+
+    fn on_all_cores(&self, runs: Range<u64>, points: Option<&[Vec<f64>]>) -> Vec<Row> {
         let threads = rayon::current_num_threads() as u64;
         // Several pieces a thread, so that none waits long for the others; large enough for batches.
         let size = ((runs.end - runs.start) / (4 * threads)).clamp(1, BLOCK);
         let starts: Vec<u64> = (runs.start..runs.end)
             .step_by(usize::try_from(size).expect("at most BLOCK"))
             .collect();
-        let of_start = |start: &u64| self.block(*start..(start + size).min(runs.end));
+        let of_start = |start: &u64| {
+            let part = *start..(start + size).min(runs.end);
+            let [from, to] = [part.start, part.end]
+                .map(|run| usize::try_from(run - runs.start).expect("as many as points"));
+            self.on_this_thread(part, points.map(|points| &points[from..to]))
+        };
         starts.par_iter().map(of_start).flatten().collect()
     }
 
     /// The rows of these runs, on this thread.
     #[must_use]
     pub fn block(&self, runs: Range<u64>) -> Vec<Row> {
+        self.on_this_thread(runs, None)
+    }
+
+    fn on_this_thread(&self, runs: Range<u64>, points: Option<&[Vec<f64>]>) -> Vec<Row> {
         let mut rows = Vec::new();
         let mut values = Vec::new();
         let mut batch = Batch::default();
         for run in runs {
-            self.study.draws.draw(run, &mut values);
+            match points.and_then(|points| points.get(rows.len())) {
+                Some(point) => self.study.draws.at(point, &mut values),
+                None => self.study.draws.draw(run, &mut values),
+            }
             let kept = match self.bind(&values) {
                 Err(reason) => self.readout.nothing(self.plan, reason),
                 Ok(plan) => match batches::impact(&plan).filter(|_| self.is_batched) {

@@ -21,6 +21,8 @@ pub struct Readout {
     study_index: usize,
     /// The condition of a fragility, and its index among the fragilities of the plan.
     exceeds: Option<(usize, Requirement)>,
+    /// Requirements of the plan whose limit differs from run to run.
+    varied_limits: Vec<bool>,
 }
 
 /// A column of results and where its numbers come from.
@@ -68,6 +70,7 @@ impl Readout {
             columns: Vec::new(),
             study_index: study.index,
             exceeds,
+            varied_limits: Vec::new(),
         };
         let requirements = readout.requirements(plan).to_vec();
         for (at, requirement) in requirements.iter().enumerate() {
@@ -83,6 +86,9 @@ impl Readout {
             let column = of_collected(plan, collected);
             readout.add(column, From::Collected(index, collected.value.clone()));
         }
+        // A result that is an input is in the data set already.
+        let is_input = |name: &str| study.inputs.iter().any(|input| input.name == name);
+        readout.columns.retain(|it| !is_input(&it.column.name));
         readout
     }
 
@@ -157,8 +163,26 @@ impl Readout {
             .collect()
     }
 
+    /// Drops the limits that are other numbers in a run: a limit may contain a varied parameter.
+    pub fn keep_limits_of(&mut self, plan: &Plan, run: &Plan) {
+        let limit = |requirement: &Requirement| match &requirement.conditions[..] {
+            [only] => match &only.test {
+                Test::Compare { limit, .. } => limit.constant().map(f64::to_bits),
+                Test::Within { .. } => None,
+            },
+            _ => None,
+        };
+        let pairs = plan.requirements.iter().zip(&run.requirements);
+        self.varied_limits = pairs
+            .map(|(own, other)| limit(own) != limit(other))
+            .collect();
+    }
+
     /// The constant limit of a requirement of one condition.
     fn limit(&self, requirement: usize, of: &Requirement) -> Option<Limit> {
+        if self.exceeds.is_none() && self.varied_limits.get(requirement) == Some(&true) {
+            return None;
+        }
         let [condition] = &of.conditions[..] else {
             return None;
         };

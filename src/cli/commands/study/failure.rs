@@ -7,6 +7,7 @@ use crate::study::collection::merge::MergeFault;
 use crate::study::collection::same::Difference;
 use crate::study::data_set::DataSetFault;
 use crate::study::definition::DefinitionError;
+use crate::study::measured::MeasuredError;
 
 pub fn of_definition(error: &DefinitionError) -> Failure {
     let failure = Failure::command_line(error.to_string());
@@ -14,8 +15,22 @@ pub fn of_definition(error: &DefinitionError) -> Failure {
         DefinitionError::NoStudy => failure.help("add a `study` block; see docs/how-to/studies.md"),
         DefinitionError::Several(_) => failure.help("name one with `--study`"),
         DefinitionError::Unknown { .. } => failure.help("name one of these with `--study`"),
+        DefinitionError::LimitVaries => failure.help("write `sampling = random`"),
+        DefinitionError::RunsOfSubset => {
+            failure.help("omit `--runs`; `subset(points: …, replicates: …)` states the size")
+        }
         DefinitionError::NoRuns | DefinitionError::TooManyRuns | DefinitionError::Inputs(_) => {
             failure
+        }
+    }
+}
+
+pub fn of_measured(error: &MeasuredError) -> Failure {
+    let failure = Failure::command_line(error.to_string());
+    match error {
+        MeasuredError::NoValue(_) => failure.help("`psd run` of the plan shows why"),
+        MeasuredError::NoUncertainty(name) => {
+            failure.help(format!("state it: `{name} ~ normal(mean: …, sd: …)`"))
         }
     }
 }

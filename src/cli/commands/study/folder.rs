@@ -70,5 +70,5 @@ pub fn merge(folder: &Path) -> Result<Exit, Failure> {
     let (path, metadata) = merge::merge(folder).map_err(|fault| failure::of_merge(&fault))?;
     let (runs, path_shown) = (metadata.runs(), path.display());
     print_message(&format!("  {runs} runs are in {path_shown}\n"));
-    answers::give(&path, Format::Human)
+    answers::give(&path, None, Format::Human)
 }

@@ -18,6 +18,7 @@ use crate::cli::settings::Settings;
 use crate::language::check::ParsedPlan;
 use crate::plan::Plan;
 use crate::study::definition::Definition;
+use crate::study::measured;
 use crate::text::sanitize;
 
 /// One command of studies.
@@ -43,9 +44,10 @@ struct Opened {
 fn open(path: &Path, choice: &StudyChoice, settings: Settings) -> Result<Option<Opened>, Failure> {
     let (parsed, checked) = plan_file::open_for_studies(path, &choice.plan_settings)?;
     plan_file::show(&checked, path, settings);
-    let Some(plan) = checked.plan else {
+    let Some(mut plan) = checked.plan else {
         return Ok(None);
     };
+    measured::known(&mut plan).map_err(|error| failure::of_measured(&error))?;
     let study = Definition::of(&plan.studies, choice.study.as_deref(), choice.runs)
         .map_err(|error| failure::of_definition(&error))?;
     let folder = choice.out.clone().unwrap_or_else(|| {

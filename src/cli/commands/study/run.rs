@@ -8,10 +8,13 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::operator::watch::Signals;
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::{Settings, variable};
+use crate::plan::study::Sampling;
 use crate::rig::StopRequest;
 use crate::study::cluster::shard::Shard;
 use crate::study::collection::{Collection, Ended};
 use crate::study::data_set::Metadata;
+use crate::study::definition::DefinitionError;
+use crate::study::rare::RareRuns;
 use crate::study::simulation::Simulation;
 use crate::study::stopping::Looks;
 use crate::study::{collection, metadata};
@@ -35,6 +38,9 @@ pub fn run(arguments: &RunStudyArguments, settings: Settings) -> Result<Exit, Fa
         simulation
     };
     let metadata = metadata::of(&opened.plan, &opened.study, simulation.readout());
+    if metadata.sampling == Sampling::Subset && RareRuns::of(&metadata).is_none() {
+        return Err(failure::of_definition(&DefinitionError::LimitVaries));
+    }
     print_message(&begins(&metadata, &simulation, shard));
     let collection = Collection {
         simulation: &simulation,
@@ -56,7 +62,7 @@ pub fn run(arguments: &RunStudyArguments, settings: Settings) -> Result<Exit, Fa
                 print_message("  all runs were there already\n");
             }
             if shard.is_none() {
-                return answers::give(&path, arguments.format);
+                return answers::give(&path, Some(&arguments.plan), arguments.format);
             }
             print_result(&format!("{}\n", path.display()))?;
             Ok(Exit::Met)

@@ -257,6 +257,13 @@ impl<'a> Checker<'a> {
                 name: result.name,
                 part: Part::Value,
             };
+            let outside = self.results.iter().find(|(of, _)| *of == reference);
+            if let Some((_, outside)) = outside {
+                return Some(Typed {
+                    span,
+                    ..outside.clone()
+                });
+            }
             self.read.push((reference, span));
             let formula = Formula::Result(reference);
             let shape = if result.list {

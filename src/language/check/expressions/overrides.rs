@@ -9,10 +9,10 @@ use crate::language::check::messages::{types, values};
 use crate::language::check::rig;
 use crate::language::check::scope::{Meaning, Scope, Setting};
 use crate::language::syntax::ast::{Argument, Entry, Expr, ExprKind};
-use crate::plan::formula::Formula;
+use crate::plan::formula::{Formula, Part, ResultReference};
 use crate::schema::{Field, FieldType, Kind, Presence, RigKind, Variant};
 use crate::text::source::Span;
-use crate::units::Quantity;
+use crate::units::{Dimension, Quantity};
 
 /// Where the plan writes the value of an input.
 #[derive(Clone, Copy)]
@@ -25,6 +25,11 @@ pub enum InputLocation<'a> {
         entry: usize,
         field: &'static Field,
         written: &'a Expr,
+    },
+    /// A measured result of an identification: the plan reads another value in its place.
+    Result {
+        reference: ResultReference,
+        dimension: Dimension,
     },
 }
 
@@ -60,6 +65,22 @@ pub fn find_input<'a>(scope: &Scope<'a>, path: &[&str]) -> Result<InputLocation<
     let field = declared.kind.field(name);
     let mut entries = declared.block.fields.iter().enumerate();
     let written = entries.find(|(_, entry)| entry.key.node == name);
+    if let (Some(result), Some(procedure), []) =
+        (declared.kind.result(name), declared.procedure, rest)
+        && matches!(declared.kind.kind, Kind::StiffnessRamp | Kind::DampingSweep)
+        && result.measured
+        && !result.list
+    {
+        let reference = ResultReference {
+            procedure,
+            name: result.name,
+            part: Part::Value,
+        };
+        return Ok(InputLocation::Result {
+            reference,
+            dimension: result.dimension,
+        });
+    }
     let (Some(field), Some((entry, written))) = (field, written) else {
         return no_field(if declared.kind.result(name).is_some() {
             message::NoField::Result
@@ -224,10 +245,51 @@ impl<'a> Checker<'a> {
                         .insert(written.span, (name.as_str(), setting));
                 }
                 Ok(InputLocation::Parameter(_)) => {}
+                Ok(InputLocation::Result {
+                    reference,
+                    dimension,
+                }) => self.override_result(name, setting, reference, dimension),
                 Err(reason) => self
                     .diagnostics
                     .push(message::setting_without_input(name, &reason)),
             }
+        }
+    }
+
+    /// A result that the plan reads as this number instead. A result of a real rig is measured, and stays so.
+    fn override_result(
+        &mut self,
+        name: &str,
+        setting: &'a Setting,
+        reference: ResultReference,
+        dimension: Dimension,
+    ) {
+        if self.real_rig.is_some() {
+            self.diagnostics.push(message::setting_of_a_real_rig(name));
+            return;
+        }
+        let Some(owner) = self.procedure(reference.procedure) else {
+            return;
+        };
+        let head = self.scope.blocks[owner].block.head;
+        let typed = match setting {
+            Setting::Written(set) => {
+                let context = Context {
+                    entry: None,
+                    reads: Reads::Nothing("a setting"),
+                    critical: false,
+                };
+                self.single(set, context)
+                    .and_then(|typed| self.expect(typed, dimension, name, set))
+            }
+            Setting::Bound(quantity) if quantity.dimension == dimension => {
+                let formula = Formula::Constant(quantity.value);
+                Some(Typed::number(formula, dimension, head))
+            }
+            Setting::Bound(_) => None,
+        };
+        if let Some(typed) = typed {
+            self.results.push((reference, typed));
         }
     }
 

@@ -7,6 +7,17 @@ use crate::text::source::{Span, Spanned};
 use crate::units::Dimension;
 use crate::units::display::significant;
 
+/// `files`: where the list is.
+pub fn no_such_record(number: usize, count: usize, span: Span, files: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::OutOfRange,
+        format!("record {number} does not exist: the list has {count}"),
+    )
+    .at(span, "number of the record")
+    .at(files, format!("{count} in the list"))
+    .help(format!("write a number from 1 to {count}"))
+}
+
 pub fn bad_record(file: &str, reason: &str, span: Span) -> Diagnostic {
     Diagnostic::new(Code::GroundRecord, format!("cannot read `{file}` as a ground motion: {reason}"))
         .at(span, "invalid record")

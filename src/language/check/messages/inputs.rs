@@ -194,3 +194,34 @@ pub fn varied_twice(name: &str, span: Span, first: Span) -> Diagnostic {
         .at(first, "first varied here")
         .help("remove one of them")
 }
+
+pub fn not_a_record(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::NotAnInput,
+        format!("`{name}` is not the number of a ground-motion record"),
+    )
+    .at(span, "draws one of several records")
+    .help("write `motion.record_number ~ any` for a `ground motion` with `record_number = 1`, or a distribution such as `normal(cv: 2 %)`")
+}
+
+pub fn record_drawn(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::NotAnInput,
+        format!("`{name}` is the number of a record, not a measured value"),
+    )
+    .at(span, "gives numbers between records")
+    .help(format!(
+        "write `{name} ~ any`: each record is as probable as the others"
+    ))
+}
+
+pub fn mean_of_a_result(name: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::BadDistribution,
+        format!("`{name}` is a result: the plan does not state its mean"),
+    )
+    .at(span, "around which value?")
+    .help(format!(
+        "write `{name} ~ measured`, or add `mean:` to the distribution"
+    ))
+}

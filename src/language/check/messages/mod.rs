@@ -15,6 +15,7 @@ pub mod golden;
 pub mod inputs;
 pub mod methods;
 pub mod names;
+pub mod rare;
 pub mod rigs;
 pub mod specimens;
 pub mod studies;

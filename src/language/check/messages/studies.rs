@@ -427,7 +427,7 @@ pub fn too_few_runs(most: u64, limit: Span, fewest: u64, at: Option<Span>) -> Di
         diagnostic.at(span, "too few runs")
     });
     diagnostic.help(format!(
-        "write `runs = {}` or more, or `until = decided(at_most: {})`",
+        "write `runs = {}` or more, `until = decided(at_most: {})`, or `sampling = subset`",
         rounded_up(fewest),
         rounded_up(fewest.saturating_mul(10))
     ))

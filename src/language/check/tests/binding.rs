@@ -203,6 +203,7 @@ fn fields_are_bound_as_their_settings_write_them() {
                 text: String::new(),
                 nominal: 0.0,
                 angle: name.ends_with("angle"),
+                is_record: false,
             };
             let setting = input.setting(*value);
             let (name, value) = setting.split_once('=').unwrap();

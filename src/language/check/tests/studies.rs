@@ -7,7 +7,7 @@ use crate::language::check::{Options, ParsedPlan};
 use crate::physics::study::distribution::{Distribution, Spread};
 use crate::physics::study::inputs::{Inputs, Source};
 use crate::physics::study::sampling::Design;
-use crate::plan::study::{Runs, Sampling, Study, StudyEvent};
+use crate::plan::study::{RareEvent, Runs, Sampling, Study, StudyEvent};
 use crate::plan::{Comparison, Plan};
 use crate::text::diagnostic::Code;
 use crate::units::{Dimension, Quantity};
@@ -156,7 +156,7 @@ fn the_end_of_a_study_is_a_number_or_a_rule() {
     assert_eq!(runs("runs = 10000000000"), Runs::Fixed(10_000_000_000));
     let level = |runs| match runs {
         Runs::Decided { confidence, .. } | Runs::HalfWidth { confidence, .. } => confidence.error(),
-        Runs::Fixed(_) => f64::NAN,
+        Runs::Fixed(_) | Runs::Rare(_) => f64::NAN,
     };
     let decided = runs("until = decided(at_most: 5000)\nconfidence = 99 %");
     assert_eq!(decided.at_most(), 5000);
@@ -169,6 +169,16 @@ fn the_end_of_a_study_is_a_number_or_a_rule() {
         (level(own) - 0.1).abs() < 1e-12,
         "the rule's own confidence"
     );
+    assert!(matches!(
+        runs("sampling = subset(points: 500)"),
+        Runs::Rare(RareEvent {
+            points: 500,
+            replicates: 10,
+            numbers: 1,
+            requirement: 0,
+            falls: false
+        })
+    ));
     let width = runs("until = half_width(0.5 %, at_most: 7000)");
     assert!(
         matches!(width, Runs::HalfWidth { half_width, at_most: 7000, .. } if half_width == 0.005)

@@ -10,7 +10,9 @@
 
 mod likelihood;
 mod profile;
+mod split;
 
+pub use split::Split;
 use statrs::function::gamma::gamma_ur;
 use thiserror::Error;
 

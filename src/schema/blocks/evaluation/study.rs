@@ -54,6 +54,9 @@ pub(crate) const UNIT: Field = Field::of_type(
 .default_in_words("that of the column")
 .above_zero();
 
+/// The word of the distribution of ground-motion records.
+pub(crate) const ANY: &str = "any";
+
 const BY_SPREAD: &[Field] = &[SD, CV, MEAN, BETWEEN];
 
 /// The distributions of an input.
@@ -86,15 +89,20 @@ pub(crate) const DISTRIBUTIONS: &[Variant] = &[
         "measured values, each row as probable as the others",
     ),
     Variant::word(
+        ANY,
+        "each ground-motion record of a list as probable as the others: of `record_number`",
+    ),
+    Variant::word(
         "measured",
-        "normal, with the standard uncertainty that the block states for the field (`mass_uncertainty` of `mass`); so does a field without `~`",
+        "normal, with the standard uncertainty that the block states for the field (`mass_uncertainty` of `mass`), or of the result of an identification, as a simulated run gives it; so does an input without `~`",
     ),
 ];
 
 pub(crate) const VARY: Field = Field::of_type(
     "vary",
     FieldType::Inputs(DISTRIBUTIONS),
-    "inputs that differ from run to run: a `param`, a field such as `beam.mass`, an argument such as `beam.behaviour.stiffness`",
+    "inputs that differ from run to run: a `param`, a field such as `beam.mass`, an argument such as `beam.behaviour.stiffness`, the \
+     result of an identification such as `k0.stiffness`",
 )
 .required("vary = [beam.mass ~ normal(cv: 2 %)]");
 
@@ -153,19 +161,57 @@ pub(crate) const UNTIL: Field = Field::choice(
     "end of the study by its results",
 );
 
+const RANDOM: Variant = Variant::word(
+    "random",
+    "independent runs: exact intervals of probabilities",
+);
+const LATIN_HYPERCUBE: Variant = Variant::word(
+    "latin_hypercube",
+    "strata of every input: smoother means; the number of runs is fixed, probabilities have no interval",
+);
+const SOBOL: Variant = Variant::word(
+    "sobol",
+    "scrambled Sobol' sequences, 64 inputs at most: means and sensitivities with fewer runs",
+);
+
+pub(crate) const POINTS: Field = Field::count(
+    "points",
+    100.0,
+    100_000.0,
+    "runs of a level, a multiple of ten",
+)
+.or(1000.0, "");
+
+pub(crate) const LEVEL_REPLICATES: Field = Field::count(
+    "replicates",
+    2.0,
+    1000.0,
+    "independent simulations: their scatter gives the interval",
+)
+.or(10.0, "");
+
+/// Word of `sampling`.
+pub(crate) const SUBSET: &str = "subset";
+
 pub(crate) const SAMPLING: Field = Field::choice(
     "sampling",
     &[
-        Variant::word("random", "independent runs: exact intervals of probabilities"),
-        Variant::word(
-            "latin_hypercube",
-            "strata of every input: smoother means; the number of runs is fixed, probabilities have no interval",
-        ),
-        Variant::word(
-            "sobol",
-            "scrambled Sobol' sequences, 64 inputs at most: means and sensitivities with fewer runs",
+        RANDOM,
+        LATIN_HYPERCUBE,
+        SOBOL,
+        Variant::with(
+            SUBSET,
+            &[POINTS, LEVEL_REPLICATES],
+            "subset simulation of a rare failure, level by level: for the one requirement on a probability of this study",
         ),
     ],
+    "points of the runs",
+)
+.default_in_words("random");
+
+pub(crate) const STRIPE_SAMPLING: Field = Field::choice(
+    "sampling",
+    &[RANDOM, LATIN_HYPERCUBE, SOBOL],
     "points of the runs",
 )
 .default_in_words("random");
@@ -283,7 +329,7 @@ pub(crate) const FRAGILITY: BlockKind = BlockKind {
         EXCEEDS,
         VARY_OTHERS,
         STRIPE_RUNS,
-        SAMPLING,
+        STRIPE_SAMPLING,
         SEED,
         CORRELATE,
         CONFIDENCE,

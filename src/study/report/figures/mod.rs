@@ -5,12 +5,13 @@ mod fragility;
 
 use std::borrow::Cow;
 
+use crate::physics::study::sensitivity::spearman;
 use crate::report::figures::chart::{
     Chart, DASHED, End, Marker, Quantity, Reference, SOLID, Series, Style, palette,
 };
 use crate::report::wording::study as wording;
-use crate::study::answers::{Answers, Histogram, ResultAnswer};
-use crate::study::data_set::{Column, Limit, Metadata};
+use crate::study::answers::{Answers, Histogram, RANKED, ResultAnswer};
+use crate::study::data_set::{Column, Kind, Limit, Metadata, Stopping};
 use crate::units::Dimension;
 use crate::units::display;
 
@@ -61,8 +62,39 @@ pub fn figures(metadata: &Metadata, answers: &Answers) -> Vec<StudyFigure> {
     figures.extend(results().filter_map(drawn));
     let drawn = |(index, result)| tornado(index, metadata, result);
     figures.extend(results().filter_map(drawn));
-    figures.extend(results().filter_map(|(index, _)| scatter(index, metadata, answers)));
+    let drawn = |(index, result)| scatter(index, strongest(result)?, metadata, answers);
+    figures.extend(results().filter_map(drawn));
+    figures.extend(of_levels(metadata, answers));
     figures
+}
+
+/// The runs of all levels of a subset simulation, which come nearer to the limit.
+fn of_levels(metadata: &Metadata, answers: &Answers) -> Option<StudyFigure> {
+    let Kind::Study(Stopping::Rare(rare)) = metadata.kind else {
+        return None;
+    };
+    let limit = metadata.requirements.get(rare.requirement)?.limit?;
+    let kept = &answers.kept;
+    let strength = |input: &usize| {
+        let pairs = kept.inputs[*input].iter().zip(&kept.results[limit.result]);
+        let pairs = pairs.filter_map(|(x, y)| y.map(|y| (*x, y)));
+        let (x, y): (Vec<f64>, Vec<f64>) = pairs.take(RANKED).unzip();
+        spearman::correlation(&x, &y).abs()
+    };
+    let inputs = 0..metadata.inputs.len();
+    let input = inputs.max_by(|a, b| strength(a).total_cmp(&strength(b)).then(b.cmp(a)))?;
+    scatter(limit.result, input, metadata, answers)
+}
+
+/// The input that matters most for a result.
+fn strongest(result: &ResultAnswer) -> Option<usize> {
+    let strength = |at: &usize| {
+        let it = &result.sensitivities[*at];
+        it.rank_correlation.map_or(0.0, |index| index.value.abs())
+            + it.first_order.map_or(0.0, |index| index.value)
+    };
+    let inputs = 0..result.sensitivities.len();
+    inputs.max_by(|a, b| strength(a).total_cmp(&strength(b)).then(b.cmp(a)))
 }
 
 /// Limits of requirements on this result, with their labels.
@@ -328,16 +360,13 @@ pub fn percent(fraction: f64) -> String {
     )
 }
 
-/// The result against the input that matters most, with the worst runs of its first requirement.
-fn scatter(index: usize, metadata: &Metadata, answers: &Answers) -> Option<StudyFigure> {
-    let result = &answers.results[index];
-    let strength = |at: &usize| {
-        let it = &result.sensitivities[*at];
-        it.rank_correlation.map_or(0.0, |index| index.value.abs())
-            + it.first_order.map_or(0.0, |index| index.value)
-    };
-    let inputs = 0..result.sensitivities.len();
-    let input = inputs.max_by(|a, b| strength(a).total_cmp(&strength(b)).then(b.cmp(a)))?;
+/// The result against an input, with the worst runs of its first requirement.
+fn scatter(
+    index: usize,
+    input: usize,
+    metadata: &Metadata,
+    answers: &Answers,
+) -> Option<StudyFigure> {
     let (x, y) = (&metadata.inputs[input], &metadata.results[index]);
     let mut drawn = vec![cloud(answers, input, index)];
     if drawn[0].points.len() < 2 {

@@ -5,7 +5,7 @@ pub mod record;
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::frames as message;
 use crate::plan::Ground;
-use crate::schema::ground::{FILE, SCALE, SCALE_UNCERTAINTY, UNIT};
+use crate::schema::ground::{FILE, RECORD_NUMBER, SCALE, SCALE_UNCERTAINTY, UNIT};
 
 /// A ground motion with a valid record; None if an error was reported.
 pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {
@@ -19,8 +19,26 @@ pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {
     };
     let (_, written) = checker.field(block, FILE.name)?;
     let at = written.value.span;
-    let record = checker.text_field(block, FILE.name)?;
-    let file = checker.data_file(&record, at)?;
+    let records = checker.texts(block, FILE.name)?;
+    // Every file belongs to the plan: another run of a study reads it.
+    let files: Vec<_> = records
+        .iter()
+        .map(|record| checker.data_file(record, at))
+        .collect();
+    let number = checker.constant(block, RECORD_NUMBER.name)?;
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "its range was checked"
+    )]
+    let chosen = number as usize;
+    let count = files.len();
+    let Some(file) = files.into_iter().nth(chosen - 1) else {
+        let entry = checker.field(block, RECORD_NUMBER.name);
+        let span = entry.map_or(at, |(_, entry)| entry.value.span);
+        return checker.fail(message::no_such_record(chosen, count, span, at));
+    };
+    let file = file?;
     let record = match record::read(&file.name, &file.text) {
         Ok(record) => record,
         Err(reason) => return checker.fail(message::bad_record(&file.name, &reason, at)),

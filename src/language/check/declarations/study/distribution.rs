@@ -8,7 +8,7 @@ use super::varied::Law;
 use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::expressions::overrides::InputLocation;
-use crate::language::check::messages::studies as message;
+use crate::language::check::messages::{inputs, studies as message};
 use crate::physics::study::distribution::{Distribution, DistributionError, Spread};
 use crate::plan::Interval;
 use crate::schema::study as schema;
@@ -39,10 +39,25 @@ pub(super) fn law<'a>(
     if name == MEASURED {
         return measured(checker, target, span);
     }
+    match (name == schema::ANY, target.is_record()) {
+        (true, true) => return records(checker, target),
+        (true, false) => return checker.fail(inputs::not_a_record(&target.name, span)),
+        (false, true) if chosen.variant.argument(schema::FILE.name).is_none() => {
+            return checker.fail(inputs::record_drawn(&target.name, span));
+        }
+        (false, _) => {}
+    }
     if chosen.variant.argument(schema::FILE.name).is_some() {
         return samples::column(checker, chosen, target);
     }
     let stated = stated(checker, chosen, target, context)?;
+    let has_mean = !target.nominal.is_nan()
+        || [schema::LIMITS, schema::MEAN]
+            .iter()
+            .any(|field| given(chosen, field.name).is_some());
+    if !has_mean {
+        return checker.fail(inputs::mean_of_a_result(&target.name, span));
+    }
     let missing = |checker: &mut Checker| {
         let limits = chosen.variant.argument(schema::LIMITS.name).is_some();
         checker.fail(message::scatter_missing(name, limits, span))
@@ -194,8 +209,23 @@ const UNCERTAIN: [Uncertain; 4] = [
     },
 ];
 
-/// Normal, with the standard uncertainty that the block states for the field.
+/// The numbers of all records of a ground motion.
+fn records(checker: &mut Checker, target: &Target) -> Option<Law> {
+    let InputLocation::Field { block, .. } = target.location else {
+        return None;
+    };
+    let files = checker.texts(block, ground::FILE.name)?;
+    Some(Law::Column {
+        file: format!("the records of {}", target.name),
+        values: (1_u32..).map(f64::from).take(files.len()).collect(),
+    })
+}
+
+/// Normal, with the standard uncertainty that the block states for the field, or that a run gives the result.
 pub(super) fn measured(checker: &mut Checker, target: &Target, span: Span) -> Option<Law> {
+    if let Some(result) = target.result() {
+        return Some(Law::Measured(result));
+    }
     let InputLocation::Field { block, field, .. } = target.location else {
         return checker.fail(message::no_uncertainty(&target.name, None, span));
     };

@@ -12,6 +12,14 @@ pub(super) fn note(checker: &mut Checker, varied: &[Varied]) {
     for one in varied {
         let ends = match &one.law {
             Law::Distribution(_, reach) => reach.map(|reach| [reach.low, reach.high]),
+            Law::Measured(_) => None,
+            Law::Column { values, .. } if one.target.is_record() => {
+                // Every record is read once.
+                for value in values {
+                    note_ends(checker, &one.target, [*value; 2], one.span);
+                }
+                None
+            }
             Law::Column { values, .. } => {
                 let least = values.iter().copied().fold(f64::INFINITY, f64::min);
                 let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -26,9 +34,14 @@ pub(super) fn note(checker: &mut Checker, varied: &[Varied]) {
 
 /// Notes two values of an input.
 pub(super) fn note_ends(checker: &mut Checker, target: &Target, ends: [f64; 2], span: Span) {
-    checker.ends.extend(ends.map(|value| End {
+    let ends = if ends[0].to_bits() == ends[1].to_bits() {
+        &ends[..1]
+    } else {
+        &ends[..]
+    };
+    checker.ends.extend(ends.iter().map(|value| End {
         name: target.name.clone(),
-        value: Quantity::new(value, target.dimension),
+        value: Quantity::new(*value, target.dimension),
         span,
     }));
 }

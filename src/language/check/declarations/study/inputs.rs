@@ -2,15 +2,16 @@
 //! [`Variation`], in which the columns of one file are next to each other.
 
 use super::target::{Target, target};
-use super::varied::{Law, Varied};
+use super::varied::{Law, Varied, source_of};
 use super::{correlation, distribution, ends, items, sampling, seed, spaced};
 use crate::language::check::checker::{Checker, Context};
 use crate::language::check::messages::{inputs as names, studies as message};
 use crate::language::syntax::ast::{BinaryOperator, Expr, ExprKind};
+use crate::physics::study::distribution::{Distribution, Spread};
 use crate::physics::study::inputs::{InputError, Inputs, Source};
 use crate::physics::study::sampling::sobol::MOST_INPUTS;
 use crate::physics::study::sampling::{Design, DesignError};
-use crate::plan::study::{REPLICATES, Sampling, Variation};
+use crate::plan::study::{Measured, REPLICATES, Sampling, Variation};
 use crate::schema::study as schema;
 use crate::text::source::Span;
 
@@ -64,7 +65,18 @@ pub(super) fn variation(
         Err(_) => return checker.fail(message::varies_nothing(head)),
     }
     ends::note(checker, &varied);
+    let measured = varied.iter().enumerate().filter_map(|(input, one)| {
+        let Law::Measured(result) = one.law else {
+            return None;
+        };
+        Some(Measured {
+            input,
+            source: source_of(&varied, input),
+            result,
+        })
+    });
     Some(Variation {
+        measured: measured.collect(),
         inputs: varied
             .iter()
             .map(|varied| varied.target.input(varied.text.clone()))
@@ -79,7 +91,7 @@ pub(super) fn variation(
 /// A design of any size: only the number of inputs is checked here.
 const fn design(sampling: Sampling) -> Design {
     match sampling {
-        Sampling::Random => Design::Random,
+        Sampling::Random | Sampling::Subset => Design::Random,
         Sampling::LatinHypercube => Design::LatinHypercube { runs: 1 },
         Sampling::Sobol => Design::Sobol {
             replicates: REPLICATES,
@@ -111,6 +123,10 @@ fn sources(varied: &[Varied]) -> Vec<Source> {
             Law::Distribution(distribution, _) => {
                 sources.push(Source::Distribution(*distribution));
             }
+            // Until a run gives its value and uncertainty.
+            Law::Measured(_) => sources.push(Source::Distribution(
+                Distribution::normal(1.0, Spread::Sd(1.0)).expect("a standard deviation above 0"),
+            )),
             Law::Column { file, values } => match sources.last_mut() {
                 Some(Source::Rows(rows)) if before == Some(file) => {
                     rows.iter_mut()

@@ -8,6 +8,7 @@ mod ends;
 mod fragility;
 mod inputs;
 mod probability;
+mod rare;
 mod samples;
 mod samples_file;
 mod target;
@@ -16,7 +17,7 @@ mod varied;
 pub use samples_file::MOST_ROWS as MOST_SAMPLE_ROWS;
 
 use crate::language::check::checker::{Checker, Context, Reads, Shape};
-use crate::language::check::messages::{studies as message, values};
+use crate::language::check::messages::{rare as rare_message, studies as message, values};
 use crate::language::syntax::ast::{Expr, ExprKind};
 use crate::physics::study::Confidence;
 use crate::plan::study::{Collected, MOST_RUNS, Runs, Sampling, Studies, Study};
@@ -34,7 +35,7 @@ pub fn studies(checker: &mut Checker) -> Option<Studies> {
         let of_kind = checker.scope.of_kind(kind);
         of_kind.map(|(index, _)| index).collect::<Vec<usize>>()
     };
-    let studies: Vec<Option<Study>> = blocks(checker, Kind::Study)
+    let mut studies: Vec<Option<Study>> = blocks(checker, Kind::Study)
         .into_iter()
         .map(|block| study(checker, block))
         .collect();
@@ -43,6 +44,13 @@ pub fn studies(checker: &mut Checker) -> Option<Studies> {
         .map(|block| fragility::fragility(checker, block))
         .collect();
     let requirements = probability::requirements(checker, &studies);
+    for (index, study) in studies.iter_mut().enumerate() {
+        if let (Some(of), Some(requirements)) = (&study, &requirements)
+            && matches!(of.runs, Runs::Rare(_))
+        {
+            *study = rare::completed(checker, index, of.clone(), requirements);
+        }
+    }
     Some(Studies {
         studies: studies.into_iter().collect::<Option<_>>()?,
         fragilities: fragilities.into_iter().collect::<Option<_>>()?,
@@ -72,7 +80,12 @@ fn confidence(checker: &mut Checker, block: usize) -> Option<Confidence> {
 /// How the points of a study are chosen.
 fn sampling(checker: &mut Checker, block: usize) -> Option<Sampling> {
     let word = checker.word(block, schema::SAMPLING.name, Sampling::default().name())?;
-    let all = [Sampling::Random, Sampling::LatinHypercube, Sampling::Sobol];
+    let all = [
+        Sampling::Random,
+        Sampling::LatinHypercube,
+        Sampling::Sobol,
+        Sampling::Subset,
+    ];
     all.into_iter().find(|sampling| sampling.name() == word)
 }
 
@@ -101,6 +114,15 @@ fn runs(checker: &mut Checker, block: usize, confidence: Option<Confidence>) -> 
         key(checker, schema::RUNS.name),
         key(checker, schema::UNTIL.name),
     );
+    if let (Some(Sampling::Subset), Some(sampling)) = (
+        sampling(checker, block),
+        key(checker, schema::SAMPLING.name),
+    ) {
+        if let Some(stated) = runs.or(until) {
+            return checker.fail(rare_message::runs_of_subset(sampling, stated));
+        }
+        return rare::levels(checker, block).map(Runs::Rare);
+    }
     let Some(until) = until else {
         return whole(checker, block, schema::RUNS.name).map(Runs::Fixed);
     };
@@ -172,7 +194,8 @@ fn collected<'a>(checker: &mut Checker<'a>, item: &'a Expr, context: Context) ->
     if typed.shape == Shape::List {
         return checker.fail(message::number_wanted(&text, item.span));
     }
-    if !reads_a_result(&typed.formula) {
+    // A result that is an input of the study is a number in each run.
+    if !reads_a_result(&typed.formula) && checker.results.is_empty() {
         return checker.fail(message::reads_no_result(
             &text,
             "hit.max_displacement",

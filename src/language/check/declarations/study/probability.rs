@@ -41,7 +41,7 @@ pub(super) fn requirements(
 /// Whether the rule of a study has a requirement that can end it.
 fn rule_ends(checker: &mut Checker, index: usize, study: &Study, own: bool) {
     let any = match study.runs {
-        Runs::Fixed(_) => return,
+        Runs::Fixed(_) | Runs::Rare(_) => return,
         Runs::Decided { .. } => own,
         Runs::HalfWidth { .. } => !checker.scope.requirements.is_empty(),
     };
@@ -223,7 +223,7 @@ fn warn_of_few_runs(
     let one_sided = Confidence::new(1.0 - 0.5 * study.confidence.error());
     let fewest = one_sided.map_or(0, |confidence| fewest_clean_runs(away, confidence));
     let most = study.runs.at_most();
-    if most < fewest {
+    if most < fewest && !matches!(study.runs, Runs::Rare(_)) {
         let block = checker.scope.of_kind(Kind::Study).nth(index);
         let field = |name| {
             let (block, _) = block.as_ref()?;

@@ -5,7 +5,9 @@ use crate::language::check::expressions::overrides::{self, InputLocation};
 use crate::language::check::messages::{inputs as names, studies as message};
 use crate::language::check::rig;
 use crate::language::syntax::ast::{Expr, ExprKind};
+use crate::plan::formula::ResultReference;
 use crate::plan::study::Input;
+use crate::schema::ground::RECORD_NUMBER;
 use crate::schema::{Field, FieldType, Kind, RigKind};
 use crate::text::source::Span;
 use crate::units::Dimension;
@@ -17,7 +19,7 @@ pub(super) struct Target<'a> {
     pub span: Span,
     pub location: InputLocation<'a>,
     pub dimension: Dimension,
-    /// The value of the plan without the study, SI.
+    /// The value of the plan without the study, SI; NaN for a result, which has it in a run.
     pub nominal: f64,
     pub angle: bool,
 }
@@ -31,6 +33,20 @@ impl Target<'_> {
             text,
             nominal: self.nominal,
             angle: self.angle,
+            is_record: self.is_record(),
+        }
+    }
+
+    /// Whether it is the number of a ground-motion record.
+    pub(super) fn is_record(&self) -> bool {
+        matches!(self.location, InputLocation::Field { field, .. } if field.name == RECORD_NUMBER.name)
+    }
+
+    /// The result that it is, of a procedure.
+    pub(super) fn result(&self) -> Option<ResultReference> {
+        match self.location {
+            InputLocation::Result { reference, .. } => Some(reference),
+            InputLocation::Parameter(_) | InputLocation::Field { .. } => None,
         }
     }
 }
@@ -68,6 +84,7 @@ pub(super) fn target<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option
     };
     let (dimension, nominal, angle) = match location {
         InputLocation::Parameter(index) => of_parameter(checker, index)?,
+        InputLocation::Result { dimension, .. } => (dimension, f64::NAN, false),
         InputLocation::Field {
             block,
             entry,
@@ -132,7 +149,7 @@ fn refuse(
     field: &'static Field,
     span: Span,
 ) -> Option<()> {
-    if matches!(field.ty, FieldType::Count) {
+    if matches!(field.ty, FieldType::Count) && field.name != RECORD_NUMBER.name {
         let help = "vary a number that is not a count";
         return checker.fail(names::cannot_vary(name, "is a whole number", span, help));
     }

@@ -3,6 +3,7 @@
 use super::target::Target;
 use crate::physics::study::distribution::Distribution;
 use crate::plan::Interval;
+use crate::plan::formula::ResultReference;
 use crate::text::source::Span;
 
 /// A varied input.
@@ -19,15 +20,17 @@ pub(super) struct Varied<'a> {
 pub(super) enum Law {
     /// With its limits, where it has some.
     Distribution(Distribution, Option<Interval>),
-    /// A column of a file, SI.
+    /// A column of a file, SI; or the numbers of ground-motion records.
     Column { file: String, values: Vec<f64> },
+    /// Normal, by the value and the uncertainty of this result in a run.
+    Measured(ResultReference),
 }
 
 impl Law {
     /// The file, of a column.
     pub(super) fn file(&self) -> Option<&str> {
         match self {
-            Self::Distribution(..) => None,
+            Self::Distribution(..) | Self::Measured(_) => None,
             Self::Column { file, .. } => Some(file),
         }
     }

@@ -1,0 +1,81 @@
+//! Results of identification as inputs of a study. In: a plan. Out: the same plan, in which each such input has a normal distribution with
+//! the value and the standard uncertainty that one simulated run gives it. The run does not scatter the inputs of the study.
+
+use thiserror::Error;
+
+use crate::physics::study::distribution::{Distribution, Spread};
+use crate::physics::study::inputs::Source;
+use crate::plan::Plan;
+use crate::plan::formula::{ResultValue, Results as _};
+use crate::plan::study::{Measured, Variation};
+use crate::record::Record;
+use crate::rig::virtual_rig;
+use crate::run::{Settings, Unwatched, run_with};
+
+/// The run gives an input no distribution.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum MeasuredError {
+    #[error("a run of the plan does not give `{0}`")]
+    NoValue(String),
+    #[error("a run of the plan gives `{0}` without an uncertainty")]
+    NoUncertainty(String),
+}
+
+/// Runs the plan once if a study varies one of its results.
+///
+/// # Errors
+/// The run does not give the result, or not its uncertainty.
+pub fn known(plan: &mut Plan) -> Result<(), MeasuredError> {
+    let studies = &plan.studies;
+    let of_studies = studies.studies.iter().map(|study| &study.variation);
+    let of_fragilities = studies
+        .fragilities
+        .iter()
+        .filter_map(|it| it.variation.as_ref());
+    if of_studies
+        .chain(of_fragilities)
+        .all(|variation| variation.measured.is_empty())
+    {
+        return Ok(());
+    }
+    let mut rig = virtual_rig(plan);
+    let settings = Settings { uncertainty: true };
+    let record = run_with(plan, rig.as_mut(), &mut Unwatched, settings);
+    let studies = &mut plan.studies;
+    for study in &mut studies.studies {
+        of_variation(&mut study.variation, &record)?;
+    }
+    for fragility in &mut studies.fragilities {
+        if let Some(variation) = &mut fragility.variation {
+            of_variation(variation, &record)?;
+        }
+    }
+    Ok(())
+}
+
+fn of_variation(variation: &mut Variation, record: &Record) -> Result<(), MeasuredError> {
+    for Measured {
+        input,
+        source,
+        result,
+    } in variation.measured.clone()
+    {
+        let input = &mut variation.inputs[input];
+        let Some(ResultValue::Number {
+            value: Some(value),
+            uncertainty,
+        }) = record.result(result)
+        else {
+            return Err(MeasuredError::NoValue(input.name.clone()));
+        };
+        let law = uncertainty
+            .filter(|uncertainty| *uncertainty > 0.0)
+            .and_then(|uncertainty| Distribution::normal(value, Spread::Sd(uncertainty)).ok());
+        let Some(law) = law else {
+            return Err(MeasuredError::NoUncertainty(input.name.clone()));
+        };
+        input.nominal = value;
+        variation.sources[source] = Source::Distribution(law);
+    }
+    Ok(())
+}
