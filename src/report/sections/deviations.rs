@@ -10,7 +10,7 @@ use crate::report::number;
 use crate::report::run::Run;
 use crate::report::status::deviations;
 use crate::report::wording::deviations as wording;
-use crate::uncertainty::known;
+use crate::uncertainty::measurement_uncertainty;
 
 /// Every deviation. A simulation without any has no such section.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
@@ -63,9 +63,9 @@ fn not_distinct(run: &Run<'_>) -> Vec<String> {
             part: Part::Value,
         };
         let value = procedure.number(name)?;
-        let known = known(&result.contributions_of(reference), run.record)?;
-        (value.abs() < known.expanded()).then(|| {
-            let value = number::with_expanded(value, known, result.dimension);
+        let u = measurement_uncertainty(&result.contributions_of(reference), run.record)?;
+        (value.abs() < u.expanded()).then(|| {
+            let value = number::with_expanded(value, u, result.dimension);
             wording::not_distinct(&procedure.name, with_spaces(name), value)
         })
     };
