@@ -48,9 +48,10 @@ fn small_plan() -> bool {
     .is_some()
 }
 
-#[divan::bench]
-fn two_thousand_lines(bencher: divan::Bencher) {
-    let text = long_plan(2000);
+/// Ten times the lines take ten times the time.
+#[divan::bench(args = [2000, 20_000], sample_count = 10)]
+fn many_lines(bencher: divan::Bencher, lines: usize) {
+    let text = long_plan(lines);
     bencher
         .counter(divan::counter::BytesCount::new(text.len()))
         .bench(|| {

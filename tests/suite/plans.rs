@@ -110,9 +110,11 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 
 #[test]
 fn every_plan_runs_to_a_pass() {
+    /// Number of concurrent runs: this test begins late, and its runs would be the last, one after the other.
+    const AT_ONCE: usize = 4;
     let plans = plans();
     assert!(plans.len() >= 11, "five tutorials and six of the paper");
-    for plan in plans {
+    let passes = |plan: &PathBuf| {
         let Run { folder, output } = ran(&plan.file_stem().expect("named").to_string_lossy());
         assert!(
             output.status.success(),
@@ -121,7 +123,12 @@ fn every_plan_runs_to_a_pass() {
             String::from_utf8_lossy(&output.stderr)
         );
         assert_eq!(summary(folder)["verdict"], "pass", "{}", plan.display());
-    }
+    };
+    std::thread::scope(|scope| {
+        for part in plans.chunks(plans.len().div_ceil(AT_ONCE)) {
+            scope.spawn(move || part.iter().for_each(passes));
+        }
+    });
 }
 
 /// The paper's cases to the digits of the derivation: value and half a unit of its last digit.

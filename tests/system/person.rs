@@ -16,11 +16,11 @@ fn held_and_sound(stage: &Stage, ran: &Ended) {
 
 #[test]
 fn the_second_holds_at_once() {
-    // The second step takes ten seconds at this speed: the test does not wait for its end.
+    // A step takes ten seconds at this speed: the test does not wait for its end.
     let slow = |plan: &str| {
         plan.replace(
             "speed      = 20 mm/s",
-            "speed      = 0.05 mm/s\n  resolution = 1 um",
+            "speed      = 0.01 mm/s\n  resolution = 1 um",
         )
         .replace("probe(0.1 mm", "probe(0.02 mm")
     };
@@ -126,7 +126,7 @@ fn the_first_key_after_the_window_got_another_size_holds_the_rig() {
     let slow = |plan: &str| {
         plan.replace(
             "speed      = 20 mm/s",
-            "speed      = 0.05 mm/s\n  resolution = 1 um",
+            "speed      = 0.01 mm/s\n  resolution = 1 um",
         )
         .replace("probe(0.1 mm", "probe(0.02 mm")
     };

@@ -207,7 +207,7 @@ fn position(records: &[(EntryKind, Value)], kind: EntryKind) -> usize {
     records.iter().position(|(of, _)| *of == kind).unwrap()
 }
 
-/// Random damage, the same in each run. The result does not matter, as long as there is one. `PSD_VANDALS=10000` makes so many rounds:
+/// Random damage, the same in each run. The result does not matter, as long as there is one. `PSD_VANDALS=100000` makes so many rounds:
 /// about an hour.
 #[test]
 fn no_vandal_makes_a_record_that_panics() {

@@ -111,9 +111,9 @@ fn between(target: f64, tolerance: f64) -> String {
 
 /// The margin of a condition in the unit of its value; None if it has no margin.
 pub(in crate::report) fn margin(condition: &ConditionOutcome) -> Option<String> {
-    condition.bound?;
     /// Digits of a distance to a limit: a difference has no more.
     const DIGITS: usize = 3;
+    condition.bound?;
     condition
         .margin
         .map(|margin| distance(margin, DIGITS, condition))

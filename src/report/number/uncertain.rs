@@ -153,14 +153,12 @@ pub(super) fn tens(power: i32) -> String {
 
 /// A number to so many decimals; below zero, to tens, hundreds, …
 fn fixed(number: f64, decimals: i32) -> String {
-    match usize::try_from(decimals) {
-        Ok(decimals) => format!("{number:.decimals$}"),
-        Err(_) => {
-            let step = 10.0_f64.powi(-decimals);
-            // Zero is added for a rounded zero without a minus sign.
-            format!("{:.0}", (number / step).round() * step + 0.0)
-        }
+    if let Ok(decimals) = usize::try_from(decimals) {
+        return format!("{number:.decimals$}");
     }
+    let step = 10.0_f64.powi(-decimals);
+    // Zero is added for a rounded zero without a minus sign.
+    format!("{:.0}", (number / step).round() * step + 0.0)
 }
 
 /// Decimals that show two digits of the uncertainty, below zero for tens, hundreds, …; None if plain decimals would not be readable.
