@@ -406,7 +406,7 @@ move to_half {
         assert_eq!(
             counts.lines().last(),
             Some("-19500"),
-            "−200 N, 2 mm from where it stood homed"
+            "−200 N, 2 mm from where it was homed"
         );
     }
 

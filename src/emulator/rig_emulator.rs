@@ -62,11 +62,6 @@ impl RigEmulator {
         &self.rig
     }
 
-    /// For a test that starts a fault by hand.
-    pub const fn rig_mut(&mut self) -> &mut EmulatedRig {
-        &mut self.rig
-    }
-
     /// The number of lines, which are numbered from 0.
     #[must_use]
     pub fn lines(&self) -> usize {

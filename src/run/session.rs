@@ -49,7 +49,7 @@ pub(crate) struct Session<'run> {
     pub(crate) settings: Settings,
     /// Whether rig time is only simulated, and must not pass while the operator decides. An emulator on a line is driven like any rig,
     /// and has a watchdog like any rig.
-    reckoned: bool,
+    is_simulated: bool,
 }
 
 impl<'run> Session<'run> {
@@ -62,7 +62,7 @@ impl<'run> Session<'run> {
         let time = rig.time();
         let axes = rig.degrees_of_freedom();
         let identity = rig.identity();
-        let reckoned = identity.simulated && plan.rig.link.as_real().is_none();
+        let is_simulated = identity.simulated && plan.rig.link.as_real().is_none();
         let datum = rig.datum().is_some();
         let wanted = plan.degrees_of_freedom();
         let guard = if axes == wanted {
@@ -96,7 +96,7 @@ impl<'run> Session<'run> {
                     unloads_at_once: plan.unloads_at_once,
                     attended: false,
                     settings: Settings::default(),
-                    reckoned,
+                    is_simulated,
                 })
             }
             Err(fault) => {
@@ -278,8 +278,8 @@ impl<'run> Session<'run> {
     }
 
     /// Whether no real specimen is moved, so that the specimen behaves exactly as the plan states.
-    pub(crate) const fn reckoned(&self) -> bool {
-        self.reckoned
+    pub(crate) const fn is_simulated(&self) -> bool {
+        self.is_simulated
     }
 
     /// During the propagation of uncertainties: its progress is reported, and a real rig is polled.
@@ -322,7 +322,7 @@ impl<'run> Session<'run> {
     /// A short wait for the operator. A real rig stays at its position meanwhile, and is polled. A request to hold during the wait
     /// is a request to stop: nothing moves.
     pub(super) fn breathe(&mut self) -> Result<(), Stop> {
-        if self.reckoned {
+        if self.is_simulated {
             return Ok(());
         }
         self.guard.pause(BREATH).map_err(|fault| match fault {

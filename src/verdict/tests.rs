@@ -144,7 +144,7 @@ fn what_is_equal_but_for_rounding_is_equal() {
         for limit in [1.0 - 2e-12, f64::NEG_INFINITY] {
             assert!(
                 !Bound::Compare { comparison, limit }.holds(1.0),
-                "what differs is told apart"
+                "different results are distinguished"
             );
         }
     }

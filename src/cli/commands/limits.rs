@@ -52,7 +52,7 @@ pub fn limits() -> Result<Exit, Failure> {
         (plan::MOST_STOREYS, "storeys of one frame"),
     ]
     .map(|(bound, what)| (bound.to_string(), what));
-    let reckoned = [
+    let calculated = [
         (
             stiffness_ramp::MOST_READINGS,
             "readings of one stiffness ramp",
@@ -82,7 +82,7 @@ pub fn limits() -> Result<Exit, Failure> {
         ),
         (plan::study::MOST_RUNS.to_string(), "runs of one study"),
     ];
-    print_result(&counted.iter().chain(&reckoned).chain(&record).fold(
+    print_result(&counted.iter().chain(&calculated).chain(&record).fold(
         String::new(),
         |mut text, (bound, what)| {
             let _ = writeln!(text, "{bound:>11}  {what}");

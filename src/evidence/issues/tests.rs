@@ -101,7 +101,7 @@ fn an_issue_states_and_an_amendment_replaces_it_and_the_record_stays_what_it_is(
     assert_eq!(
         provenance.operator(),
         Some("A. Engineer"),
-        "the record says who stood by"
+        "the record names the operator"
     );
     let issues = provenance.issues.as_ref().unwrap();
     assert_eq!(

@@ -40,6 +40,15 @@ pub enum ContactLaw<N = f64> {
     },
 }
 
+/// The names of the numbers of the laws in a plan.
+pub mod argument {
+    pub const FORCE: &str = "force";
+    pub const COEFFICIENT: &str = "coefficient";
+    pub const STIFFNESS: &str = "stiffness";
+    pub const LOSS: &str = "loss";
+    pub const FORCE_LIMIT: &str = "force_limit";
+}
+
 /// A number of a law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LawNumber<'a, N> {
@@ -88,15 +97,15 @@ impl<N> ContactLaw<N> {
         Some(match word {
             "rigid" => Self::Rigid,
             "limit" => Self::Limit {
-                force: number("force")?,
+                force: number(argument::FORCE)?,
             },
             "restitution" => Self::Restitution {
-                coefficient: number("coefficient")?,
+                coefficient: number(argument::COEFFICIENT)?,
             },
             "hertz" => Self::Hertz {
-                stiffness: number("stiffness")?,
-                loss: number("loss")?,
-                force_limit: number("force_limit"),
+                stiffness: number(argument::STIFFNESS)?,
+                loss: number(argument::LOSS)?,
+                force_limit: number(argument::FORCE_LIMIT),
             },
             _ => return None,
         })
@@ -105,16 +114,16 @@ impl<N> ContactLaw<N> {
     /// Its numbers, in the order of its declaration.
     #[must_use]
     pub fn numbers(&self) -> Vec<LawNumber<'_, N>> {
-        let number = |argument, input, value| LawNumber {
-            argument,
+        let number = |named, input, value| LawNumber {
+            argument: named,
             input,
             value,
         };
         match self {
             Self::Rigid => Vec::new(),
-            Self::Limit { force } => vec![number("force", "force_limit", force)],
+            Self::Limit { force } => vec![number(argument::FORCE, argument::FORCE_LIMIT, force)],
             Self::Restitution { coefficient } => {
-                vec![number("coefficient", "restitution", coefficient)]
+                vec![number(argument::COEFFICIENT, "restitution", coefficient)]
             }
             Self::Hertz {
                 stiffness,
@@ -123,11 +132,13 @@ impl<N> ContactLaw<N> {
             } => {
                 let limit = force_limit.iter();
                 [
-                    number("stiffness", "contact_stiffness", stiffness),
-                    number("loss", "loss", loss),
+                    number(argument::STIFFNESS, "contact_stiffness", stiffness),
+                    number(argument::LOSS, argument::LOSS, loss),
                 ]
                 .into_iter()
-                .chain(limit.map(|force| number("force_limit", "force_limit", force)))
+                .chain(
+                    limit.map(|force| number(argument::FORCE_LIMIT, argument::FORCE_LIMIT, force)),
+                )
                 .collect()
             }
         }

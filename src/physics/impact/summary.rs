@@ -179,16 +179,3 @@ impl<V> Sink<V> for SummaryBuilder {
 pub fn still_rising(velocity: f64, at_largest: bool) -> bool {
     velocity > 0.0 && at_largest
 }
-
-/// The summary of a complete run.
-#[must_use]
-pub fn summarise<'a>(
-    input: &ImpactInput,
-    states: impl IntoIterator<Item = &'a ImpactState>,
-) -> ImpactSummary {
-    let mut builder = SummaryBuilder::new(input);
-    for state in states {
-        builder.push(state);
-    }
-    builder.finish()
-}

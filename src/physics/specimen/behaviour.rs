@@ -79,6 +79,20 @@ pub enum Behaviour {
     Portal(Portal),
 }
 
+/// The names of the numbers of the models in a plan.
+pub mod parameter {
+    pub const STIFFNESS: &str = "stiffness";
+    pub const YIELD_FORCE: &str = "yield_force";
+    pub const POST_YIELD_RATIO: &str = "post_yield_ratio";
+    pub const SHARPNESS: &str = "n";
+    pub const BETA: &str = "beta";
+    pub const HALF_DISPLACEMENT: &str = "half_displacement";
+    pub const RESIDUAL: &str = "residual";
+    pub const BEARING_FORCE: &str = "bearing_force";
+    pub const CLEARANCE: &str = "clearance";
+    pub const SLIP_FORCE: &str = "slip_force";
+}
+
 /// The parameters of a model whose parameters are numbers: each by its name in a plan.
 pub type Numbers = Vec<(&'static str, f64)>;
 
@@ -88,25 +102,25 @@ impl Behaviour {
     pub fn of_numbers(word: &str, number: impl Fn(&str) -> Option<f64>) -> Option<Self> {
         Some(match word {
             "elastic" => Self::Elastic {
-                stiffness: number("stiffness")?,
+                stiffness: number(parameter::STIFFNESS)?,
             },
             "bouc_wen" => Self::BoucWen {
-                stiffness: number("stiffness")?,
-                yield_force: number("yield_force")?,
-                post_yield_ratio: number("post_yield_ratio")?,
-                sharpness: number("n")?,
-                beta: number("beta")?,
+                stiffness: number(parameter::STIFFNESS)?,
+                yield_force: number(parameter::YIELD_FORCE)?,
+                post_yield_ratio: number(parameter::POST_YIELD_RATIO)?,
+                sharpness: number(parameter::SHARPNESS)?,
+                beta: number(parameter::BETA)?,
             },
             "degrading" => Self::Degrading {
-                stiffness: number("stiffness")?,
-                half_displacement: number("half_displacement")?,
-                residual: number("residual")?,
+                stiffness: number(parameter::STIFFNESS)?,
+                half_displacement: number(parameter::HALF_DISPLACEMENT)?,
+                residual: number(parameter::RESIDUAL)?,
             },
             "bolted" => Self::Bolted(Bolted {
-                stiffness: number("stiffness")?,
-                bearing_force: number("bearing_force")?,
-                clearance: number("clearance")?,
-                slip_force: number("slip_force")?,
+                stiffness: number(parameter::STIFFNESS)?,
+                bearing_force: number(parameter::BEARING_FORCE)?,
+                clearance: number(parameter::CLEARANCE)?,
+                slip_force: number(parameter::SLIP_FORCE)?,
             }),
             _ => return None,
         })
@@ -116,7 +130,7 @@ impl Behaviour {
     #[must_use]
     pub fn numbers(&self) -> Option<(&'static str, Numbers)> {
         Some(match self {
-            Self::Elastic { stiffness } => ("elastic", vec![("stiffness", *stiffness)]),
+            Self::Elastic { stiffness } => ("elastic", vec![(parameter::STIFFNESS, *stiffness)]),
             Self::BoucWen {
                 stiffness,
                 yield_force,
@@ -126,11 +140,11 @@ impl Behaviour {
             } => (
                 "bouc_wen",
                 vec![
-                    ("stiffness", *stiffness),
-                    ("yield_force", *yield_force),
-                    ("post_yield_ratio", *post_yield_ratio),
-                    ("n", *sharpness),
-                    ("beta", *beta),
+                    (parameter::STIFFNESS, *stiffness),
+                    (parameter::YIELD_FORCE, *yield_force),
+                    (parameter::POST_YIELD_RATIO, *post_yield_ratio),
+                    (parameter::SHARPNESS, *sharpness),
+                    (parameter::BETA, *beta),
                 ],
             ),
             Self::Degrading {
@@ -140,18 +154,18 @@ impl Behaviour {
             } => (
                 "degrading",
                 vec![
-                    ("stiffness", *stiffness),
-                    ("half_displacement", *half_displacement),
-                    ("residual", *residual),
+                    (parameter::STIFFNESS, *stiffness),
+                    (parameter::HALF_DISPLACEMENT, *half_displacement),
+                    (parameter::RESIDUAL, *residual),
                 ],
             ),
             Self::Bolted(bolted) => (
                 "bolted",
                 vec![
-                    ("stiffness", bolted.stiffness),
-                    ("bearing_force", bolted.bearing_force),
-                    ("clearance", bolted.clearance),
-                    ("slip_force", bolted.slip_force),
+                    (parameter::STIFFNESS, bolted.stiffness),
+                    (parameter::BEARING_FORCE, bolted.bearing_force),
+                    (parameter::CLEARANCE, bolted.clearance),
+                    (parameter::SLIP_FORCE, bolted.slip_force),
                 ],
             ),
             _ => return None,

@@ -14,7 +14,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub use behaviour::Behaviour;
+pub use behaviour::{Behaviour, parameter};
 pub use bilinear::{Bilinear, BilinearCurve};
 pub use bolted::{Bolted, BoltedJoint};
 pub use bouc_wen::BoucWen;

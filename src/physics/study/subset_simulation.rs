@@ -428,7 +428,7 @@ mod tests {
         assert_eq!(certain.probability.value, 1.0);
     }
 
-    /// A response that never comes near the limit ends: it stands still, or its levels run out.
+    /// A response that never comes near the limit ends: it stays, or its levels run out.
     #[test]
     fn an_impossible_event_has_the_probability_zero_and_ends() {
         let bounded = simulation(1)

@@ -89,12 +89,6 @@ impl Dialect {
         matches!(self, Self::Nees { .. })
     }
 
-    /// Whether the device follows smooth paths without a stop.
-    #[must_use]
-    pub const fn follows_paths(&self) -> bool {
-        matches!(self, Self::Native)
-    }
-
     /// Whether the device can move the specimen.
     #[must_use]
     pub const fn moves(&self) -> bool {

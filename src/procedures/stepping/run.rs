@@ -201,7 +201,7 @@ pub(crate) fn stable_on_frame(
     properties: &FrameProperties,
     session: &Session<'_>,
 ) -> Result<(), Stop> {
-    let model = Some(frame).filter(|_| session.reckoned());
+    let model = Some(frame).filter(|_| session.is_simulated());
     stable(
         plan,
         time_step,

@@ -28,6 +28,7 @@ pub enum EntryKind {
     /// The result of the final hold, and the position of the rig.
     Held,
     /// The communication errors recovered, if there were any.
+    #[serde(rename = "TALLY")]
     LineStatistics,
     /// A torn tail was put aside.
     Recover,

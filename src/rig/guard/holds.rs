@@ -173,7 +173,7 @@ mod tests {
         assert_eq!(
             dwells.grown,
             Some(0.25),
-            "the one after the unloading is told only"
+            "only the one after the unloading is reported"
         );
         assert_eq!(held(&[(-0.001, -0.5)]).grown, Some(0.5));
         assert_eq!(

@@ -1,19 +1,27 @@
 //! The restoring-force models of a specimen: the variants of `behaviour`.
 
+use crate::physics::specimen::parameter;
 use crate::schema::types::{Field, Variant};
 use crate::units::Dimension;
 
-pub(crate) const STIFFNESS: Field =
-    Field::quantity("stiffness", Dimension::STIFFNESS, "initial stiffness")
-        .required("stiffness: 300 kN/m")
-        .above_zero();
+pub(crate) const STIFFNESS: Field = Field::quantity(
+    parameter::STIFFNESS,
+    Dimension::STIFFNESS,
+    "initial stiffness",
+)
+.required("stiffness: 300 kN/m")
+.above_zero();
 
-const YIELD_FORCE: Field = Field::quantity("yield_force", Dimension::FORCE, "force at first yield")
-    .required("yield_force: 4 kN")
-    .above_zero();
+const YIELD_FORCE: Field = Field::quantity(
+    parameter::YIELD_FORCE,
+    Dimension::FORCE,
+    "force at first yield",
+)
+.required("yield_force: 4 kN")
+.above_zero();
 
 const POST_YIELD_RATIO: Field = Field::quantity(
-    "post_yield_ratio",
+    parameter::POST_YIELD_RATIO,
     Dimension::NUMBER,
     "post-yield stiffness over initial stiffness",
 )
@@ -146,8 +154,8 @@ pub(crate) const BEHAVIOURS: &[Variant] = &[
             STIFFNESS,
             YIELD_FORCE,
             POST_YIELD_RATIO,
-            Field::quantity("n", Dimension::NUMBER, "sharpness of the yield transition").or(1.0, "").within(1.0, 100.0),
-            Field::quantity("beta", Dimension::NUMBER, "shape of unloading: straight at 0.5; γ is 1 − β")
+            Field::quantity(parameter::SHARPNESS, Dimension::NUMBER, "sharpness of the yield transition").or(1.0, "").within(1.0, 100.0),
+            Field::quantity(parameter::BETA, Dimension::NUMBER, "shape of unloading: straight at 0.5; γ is 1 − β")
                 .or(0.5, "")
                 .within(0.5, 1.0),
         ],
@@ -195,10 +203,10 @@ pub(crate) const BEHAVIOURS: &[Variant] = &[
         "degrading",
         &[
             STIFFNESS,
-            Field::quantity("half_displacement", Dimension::LENGTH, "peak displacement at which half of the loss has occurred")
+            Field::quantity(parameter::HALF_DISPLACEMENT, Dimension::LENGTH, "peak displacement at which half of the loss has occurred")
                 .required("half_displacement: 5 mm")
                 .above_zero(),
-            Field::quantity("residual", Dimension::NUMBER, "stiffness that always remains, over the initial stiffness")
+            Field::quantity(parameter::RESIDUAL, Dimension::NUMBER, "stiffness that always remains, over the initial stiffness")
                 .or(0.0, "")
                 .within(0.0, 1.0),
         ],
@@ -208,11 +216,11 @@ pub(crate) const BEHAVIOURS: &[Variant] = &[
         "bolted",
         &[
             STIFFNESS,
-            Field::quantity("bearing_force", Dimension::FORCE, "force at which a hole yields and elongates")
+            Field::quantity(parameter::BEARING_FORCE, Dimension::FORCE, "force at which a hole yields and elongates")
                 .required("bearing_force: 5 kN")
                 .above_zero(),
-            Field::quantity("clearance", Dimension::LENGTH, "clearance: displacement from centre to bearing").or(0.0, "mm").at_least_zero(),
-            Field::quantity("slip_force", Dimension::FORCE, "friction of the clamped faces").or(0.0, "N").at_least_zero(),
+            Field::quantity(parameter::CLEARANCE, Dimension::LENGTH, "clearance: displacement from centre to bearing").or(0.0, "mm").at_least_zero(),
+            Field::quantity(parameter::SLIP_FORCE, Dimension::FORCE, "friction of the clamped faces").or(0.0, "N").at_least_zero(),
         ],
         "bolted joint: friction, clearance, bearing, holes that elongate",
     ),
@@ -312,7 +320,7 @@ pub(crate) const BEHAVIOURS: &[Variant] = &[
             Field::choice("loads", LOADS, "loads on the frame").required("loads: sway"),
             YOUNGS_MODULUS,
             SECOND_MOMENT,
-            Field::quantity("stiffness", Dimension::STIFFNESS, "initial stiffness, instead of `youngs_modulus` and `second_moment`").above_zero(),
+            Field::quantity(parameter::STIFFNESS, Dimension::STIFFNESS, "initial stiffness, instead of `youngs_modulus` and `second_moment`").above_zero(),
             Field::quantity("column_plastic_moment", Dimension::ENERGY, "Mp of the columns")
                 .above_zero()
                 .default_in_words("equal to the beam's"),

@@ -125,7 +125,7 @@ fn tracking_that_changes_the_energy_holds_the_rig() {
     let held = ended
         .log
         .find("actuator > !")
-        .expect("the rig was told to hold");
+        .expect("the rig was commanded to hold");
     assert!(
         !ended.log[held..].contains(" bench move ") && !ended.emulator.lock().rig().moving(),
         "{}",

@@ -269,7 +269,7 @@ impl Ended {
         let held = self
             .log
             .find("actuator > !")
-            .expect("the rig was told to hold");
+            .expect("the rig was commanded to hold");
         assert!(
             !self.log[held..].contains(" bench move ") && !self.log[held..].contains(">MOVE"),
             "{}",

@@ -92,5 +92,5 @@ fn without_the_guard_a_target_beyond_the_limits_leaves() {
         violations.is_empty() && matches!(outcome, Outcome::Aborted { .. }),
         "{outcome:?}"
     );
-    assert_eq!(outside(false).0, [-0.004], "3 mm from where it stood");
+    assert_eq!(outside(false).0, [-0.004], "3 mm from its position");
 }

@@ -104,7 +104,7 @@ fn replays_on_coarse_rigs_are_held() {
         for (name, (error, reported, held)) in NAMES.into_iter().zip(replayed(240, behaviour, link))
         {
             let case = format!(
-                "{name} by {} N and {} m: {error}, told {reported}, held {held}",
+                "{name} by {} N and {} m: {error}, reported {reported}, held {held}",
                 link.force_resolution, link.resolution
             );
             assert!(held >= 0.93 && reported > 0.85 * error - 1e-9, "{case}");

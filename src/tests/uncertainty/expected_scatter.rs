@@ -32,11 +32,11 @@ fn ratio(plan: &Plan, link: VirtualLink, name: &str, runs: u32) -> f64 {
     };
     let predicted = number(&run_unwatched(&dry(&with(1))), 0, name)
         .1
-        .expect("foretold");
+        .expect("predicted");
     let square = |seed: u32| {
         number(&run_unwatched(&with(u64::from(seed) + 1)), 0, name)
             .1
-            .expect("told")
+            .expect("reported")
             .powi(2)
     };
     (0..runs).map(square).sum::<f64>() / f64::from(runs) / (predicted * predicted)
@@ -55,7 +55,7 @@ fn assert_predicted(
         let within = 4.0 * (2.0 / (f64::from(runs) * degrees)).sqrt() + curved;
         assert!(
             (found - 1.0).abs() < within,
-            "{name}: u² of runs is {found} of what is foretold, within {within}"
+            "{name}: u² of runs is {found} of what is predicted, within {within}"
         );
     }
 }

@@ -134,8 +134,9 @@ fn replays_of_holds_on_a_coarse_load_cell_are_held() {
             )
         };
         for (name, error, reported, held) in replayed(40, names, link, &plan) {
-            let case =
-                format!("{model:?}, {name} by {quantum} N: {error}, told {reported}, held {held}");
+            let case = format!(
+                "{model:?}, {name} by {quantum} N: {error}, reported {reported}, held {held}"
+            );
             assert!(
                 held >= 0.9 && reported > 0.75 * error && reported < 6.0 * error,
                 "{case}"
@@ -174,7 +175,7 @@ fn replays_of_forces_that_relax_with_the_logarithm_are_held() {
     for (name, error, reported, held) in replayed(40, &names, link, &plan) {
         assert!(
             held >= 0.9 && reported > 0.75 * error && reported < 6.0 * error,
-            "{name}: {error}, told {reported}, held {held}"
+            "{name}: {error}, reported {reported}, held {held}"
         );
     }
 }
@@ -212,7 +213,7 @@ fn replays_of_holds_on_a_coarse_transducer_are_held() {
         };
         assert!(
             held >= 0.9 && reported > 0.75 * error && reported < 6.0 * error,
-            "{model:?}: {error}, told {reported}, held {held}"
+            "{model:?}: {error}, reported {reported}, held {held}"
         );
     }
 }
@@ -267,7 +268,7 @@ fn a_secant_is_as_uncertain_as_its_readings() {
         {
             assert!(
                 held >= 0.92 && reported > 0.9 * error && reported < 2.5 * error,
-                "{name}, {link:?}: {error}, told {reported}, held {held}"
+                "{name}, {link:?}: {error}, reported {reported}, held {held}"
             );
         }
     }

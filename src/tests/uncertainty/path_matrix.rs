@@ -448,7 +448,7 @@ fn noise_does_not_hide_what_an_input_does() {
             .sqrt();
         assert!(
             (0.5..2.0).contains(&(u / scatter)),
-            "{scatter} m of runs, {u} m foretold"
+            "{scatter} m of runs, {u} m predicted"
         );
         let of_velocity = parts
             .iter()

@@ -220,7 +220,7 @@ fn a_rig_with_calibration_errors_unloads_as_predicted() {
             let predicted = of(&of_displacement, source);
             assert!(
                 (found - predicted).abs() < 0.02 * u,
-                "{name} by {source:?}: {found} m, foretold {predicted} m of {u} m"
+                "{name} by {source:?}: {found} m, predicted {predicted} m of {u} m"
             );
         }
         // If the specimen carries almost no load, only the zero contributes to the uncertainty of that load.
@@ -331,7 +331,7 @@ fn unloaded_positions_scatter_as_predicted() {
         );
         assert!(
             (u / found - 1.0).abs() < within,
-            "floor {floor}: {found} m of runs, {u} m foretold"
+            "floor {floor}: {found} m of runs, {u} m predicted"
         );
         assert!((combined(&of_force).unwrap() / 20.0 - 1.0).abs() < 1e-9);
     }

@@ -287,7 +287,7 @@ mod tests {
         }
         assert!(
             (growing.over(10.0) / amplitude - 1.0).abs() < 1e-3,
-            "{amplitude}, told {}",
+            "{amplitude}, predicted {}",
             growing.over(10.0)
         );
     }

@@ -65,7 +65,7 @@ report {
 fn the_whole_plan_of_the_reference_checks_to_si() {
     let (checked, reported) = checked(WHOLE, &Files(&[("lib/instron_frame.psd", FRAME)]), &[]);
     assert_eq!(reported, "");
-    let plan = checked.plan.expect("no error stands");
+    let plan = checked.plan.expect("no error");
     assert_eq!(plan.title, "Pultruded GFRP beam, midspan impact");
     assert!((plan.specimens[0].mass - 1850.0 * 564e-6 * 0.7).abs() < 1e-12);
     assert_eq!(plan.strikers[0].velocity, 1.0);
@@ -136,8 +136,5 @@ fn a_setting_replaces_the_parameter() {
         &[("impact_speed", "1500 mm/s")],
     );
     assert_eq!(reported, "");
-    assert_eq!(
-        checked.plan.expect("no error stands").strikers[0].velocity,
-        1.5
-    );
+    assert_eq!(checked.plan.expect("no error").strikers[0].velocity, 1.5);
 }

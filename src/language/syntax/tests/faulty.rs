@@ -226,7 +226,7 @@ fn what_only_looks_like_the_language_is_read_as_it_was_meant() {
         assert_eq!(errors(sound), []);
     }
     let (_, found, _) = read("let a = 1\u{a0}m\nlet b = 2\u{a0}m\nlet c = 3\u{a0}m\n");
-    assert_eq!(found.len(), 1, "told once, however often");
+    assert_eq!(found.len(), 1, "reported once, however often");
     assert!(
         found[0].message.ends_with("here and in 2 other lines"),
         "{}",

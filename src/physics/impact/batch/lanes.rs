@@ -120,7 +120,7 @@ impl Lanes {
         set(&mut self.closing, input.striker_velocity);
     }
 
-    /// A lane without an impact: a mass that stands still.
+    /// A lane without an impact: a mass at rest.
     pub fn rest(&mut self, lane: usize) {
         self.clear(lane);
         self.mass[lane] = 1.0;

@@ -4,9 +4,6 @@
 
 use crate::plan::ModbusNumber;
 
-/// Largest number of registers of one question.
-pub const MOST_REGISTERS: u16 = 125;
-
 /// Length of an exception answer: unit, function, code, CRC.
 const EXCEPTION_LENGTH: usize = 5;
 /// Length of an answer to a write.

@@ -10,7 +10,7 @@ fn a_move_is_seen_no_faster_than_it_went_and_a_little_slower() {
     assert_eq!(stand.rig.seen_speed(), None);
     let mut guard = Guard::new(&mut stand.rig, LIMITS).unwrap();
     guard.move_to(&[0.002], Some(0.001)).unwrap();
-    assert_eq!(guard.speed(), Some(0.001), "as it was told");
+    assert_eq!(guard.speed(), Some(0.001), "as it was commanded");
     // Polled 20 times a second, 2 s appear as up to 2.1 s.
     let seen = stand.rig.seen_speed().unwrap();
     assert!((0.95e-3..=1e-3).contains(&seen), "{seen}");

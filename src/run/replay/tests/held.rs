@@ -300,7 +300,7 @@ fn a_rig_that_was_moved_or_let_go_of_since_is_refused() {
     );
     assert!(
         decided(true, position(), 0.0, true).is_ok(),
-        "somebody answers for the force"
+        "an operator is responsible for the force"
     );
     // The position at rest is not known: only the position on the path is logged, and the operator is asked.
     let decision = decided(false, 2.1e-4, 0.0, false).unwrap();

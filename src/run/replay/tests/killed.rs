@@ -119,7 +119,7 @@ fn go_on_and_compare(
     assert_eq!(
         recovered_events,
         both.map(|line_statistics| line_statistics.to_string()),
-        "call {call}: what was mended before counts too"
+        "call {call}: earlier recoveries count too"
     );
     let carried_out = rig.0.borrow().carried_out.clone();
     if matches!(resumption.target_status, TargetStatus::Stroke { .. }) {

@@ -1,29 +1,34 @@
 //! `impact`: its block and its results.
 
 use super::{SPECIMEN, STIFFNESS, tracking};
+use crate::physics::contact::argument;
 use crate::schema::blocks::{frames, methods};
 use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
 use crate::units::Dimension;
 
-const LIMIT_FORCE: Field = Field::quantity("force", Dimension::FORCE, "largest contact force")
-    .required("1500 N")
-    .above_zero();
+const LIMIT_FORCE: Field =
+    Field::quantity(argument::FORCE, Dimension::FORCE, "largest contact force")
+        .required("1500 N")
+        .above_zero();
 
 const COEFFICIENT: Field = Field::quantity(
-    "coefficient",
+    argument::COEFFICIENT,
     Dimension::NUMBER,
     "separation speed over closing speed",
 )
 .required("0.6")
 .within(0.0, 1.0);
 
-const HERTZ_STIFFNESS: Field =
-    Field::quantity("stiffness", Dimension::HERTZ_STIFFNESS, "k of F = k δ^1.5")
-        .required("stiffness: 1e8 N/m^1.5")
-        .above_zero();
+const HERTZ_STIFFNESS: Field = Field::quantity(
+    argument::STIFFNESS,
+    Dimension::HERTZ_STIFFNESS,
+    "k of F = k δ^1.5",
+)
+.required("stiffness: 1e8 N/m^1.5")
+.above_zero();
 
 const LOSS: Field = Field::quantity(
-    "loss",
+    argument::LOSS,
     Dimension {
         length: crate::units::Exponent::whole(-1),
         mass: crate::units::Exponent::ZERO,
@@ -34,8 +39,12 @@ const LOSS: Field = Field::quantity(
 .or(0.0, "s/m")
 .at_least_zero();
 
-const FORCE_LIMIT: Field =
-    Field::quantity("force_limit", Dimension::FORCE, "largest contact force").above_zero();
+const FORCE_LIMIT: Field = Field::quantity(
+    argument::FORCE_LIMIT,
+    Dimension::FORCE,
+    "largest contact force",
+)
+.above_zero();
 
 /// The contact laws. Readers take every argument of a law, in this order; [`crate::physics::contact::ContactLaw`] names the same ones.
 const CONTACT_LAWS: &[Variant] = &[

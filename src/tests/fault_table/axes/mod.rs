@@ -89,7 +89,7 @@ pub(super) fn stopped(ended: &Ended) {
     let held = ended
         .log
         .find("actuator > !")
-        .expect("the rig was told to hold");
+        .expect("the rig was commanded to hold");
     assert!(
         !ended.completed()
             && !ended.log[held..].contains(" bench move ")

@@ -169,7 +169,7 @@ fn what_one_site_refuses_no_other_begins() {
     assert_eq!(
         ended.log.matches(first).count(),
         ended.log.matches(second).count(),
-        "every step was told to both"
+        "every step was sent to both"
     );
 }
 

@@ -168,14 +168,14 @@ fn it_ends_with_the_first_impact_that_fails() {
         ..given_impact()
     };
     let record = run_unwatched(&elastic_plan(2e4, vec![ProcedureKind::Escalate(plan)]));
-    let reckoned = |velocity: f64| velocity * 10.0 / (2e4_f64 * 11.0).sqrt();
+    let predicted = |velocity: f64| velocity * 10.0 / (2e4_f64 * 11.0).sqrt();
     let fails = velocities
         .iter()
-        .position(|velocity| reckoned(*velocity) >= 0.0150)
+        .position(|velocity| predicted(*velocity) >= 0.0150)
         .unwrap();
     assert_eq!(fails, 3);
     for (peak, velocity) in list(&record, 0, "max_displacements").iter().zip(velocities) {
-        assert!((peak / reckoned(velocity) - 1.0).abs() < 1e-3);
+        assert!((peak / predicted(velocity) - 1.0).abs() < 1e-3);
     }
     let energy = |velocity: f64| Some(0.5 * 10.0 * velocity * velocity);
     assert_eq!(

@@ -40,7 +40,7 @@ fn scatters_as_predicted(
         let deviation = u / scatter - 1.0;
         assert!(
             (-within..most).contains(&deviation),
-            "{name}[{index}]: {scatter} of runs, {u} foretold"
+            "{name}[{index}]: {scatter} of runs, {u} predicted"
         );
     }
 }

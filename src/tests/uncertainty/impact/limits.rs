@@ -93,7 +93,7 @@ fn a_record_that_does_not_reproduce_its_results_reports_no_uncertainty() {
         &mut |_, _| Ok(()),
     );
     let Err(crate::uncertainty::engine::Unknown::Reason(reason)) = found else {
-        panic!("an uncertainty is told")
+        panic!("an uncertainty is reported")
     };
     assert_eq!(
         reason,

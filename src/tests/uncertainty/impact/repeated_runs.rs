@@ -59,7 +59,7 @@ fn repeated_runs_scatter_as_predicted() {
         // The relative standard deviation of a standard deviation of normal numbers is 1/√(2(n − 1)); the limit is three times this.
         assert!(
             (scatter / u - 1.0).abs() < 3.0 / (2.0 * f64::from(RUNS - 1)).sqrt(),
-            "{name}: {scatter} of runs, {u} foretold"
+            "{name}: {scatter} of runs, {u} predicted"
         );
     }
 }
@@ -90,7 +90,7 @@ fn noise_scatters_repeated_runs_as_its_trials_predict() {
     // Both are Monte Carlo estimates: 1/√(2·99) and 1/√(2·64), three standard deviations of their ratio.
     assert!(
         (scatter / u - 1.0).abs() < 3.0 * (1.0 / 198.0_f64 + 1.0 / 128.0).sqrt(),
-        "{scatter} of runs, {u} foretold"
+        "{scatter} of runs, {u} predicted"
     );
     let parts = without_the_time_step(contributions(&with_uncertainty, 0, "max_displacement"));
     assert!(

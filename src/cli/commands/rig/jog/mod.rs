@@ -68,7 +68,8 @@ pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure
     let attendance = real_rig::named(attendance, plan)?;
     let stop_request = StopRequest::default().with_release_allowed(arguments.let_go);
     let _signals = Signals::holding(&stop_request).map_err(Failure::Signals)?;
-    let by = real_rig::operator(plan, &attendance).unwrap_or_else(|| "somebody".to_owned());
+    let by =
+        real_rig::operator(plan, &attendance).unwrap_or_else(|| "an unnamed operator".to_owned());
     let person = Person {
         typed: None,
         stop_request: &stop_request,

@@ -151,10 +151,7 @@ fn no_key_counts_before_a_question_could_be_read() {
         "it has not been drawn"
     );
     dialogue.drawn(dialogue.appeared - 1, LATER);
-    assert!(
-        dialogue.is_new(),
-        "what was drawn is what stood there before"
-    );
+    assert!(dialogue.is_new(), "the page shows the earlier content");
     dialogue.drawn(dialogue.appeared, LATER);
     dialogue.drawn(dialogue.appeared, LATER + DEAF);
     press(

@@ -229,7 +229,7 @@ fn a_held_rig_unloads_for_its_word_alone() {
     assert_eq!(
         typist.person.stay(HELD, &[]),
         Stay::Wait,
-        "somebody still looks at it"
+        "the operator still looks at it"
     );
     let all: [&[&str]; 7] = [
         &["UNLOAD"],

@@ -90,7 +90,7 @@ fn the_same_request_again_is_answered_again_and_does_nothing() {
         "DATA 43 7F3A 2000 1.250000 125.000 -11500 0x0000 IDLE"
     );
     rig.1.advance(2.5);
-    assert_eq!(ask(&mut rig, "MEAS 43 5"), reading, "not measured anew");
+    assert_eq!(ask(&mut rig, "MEAS 43 5"), reading, "not measured again");
     assert_eq!(rig.1.readings(), 5);
 }
 

@@ -186,7 +186,7 @@ fn a_glide_is_passed_and_gone_on_from_until_the_next_one_or_the_hold() {
     assert_eq!(
         ask(&mut rig, "STAT 10"),
         "ACK 10 7F3A HELD 0x0000",
-        "nobody told it where to go on"
+        "no controller knows where to continue"
     );
     assert_eq!(
         ask(

@@ -7,6 +7,7 @@ use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::messages::{shown, specimens as message, values};
 use crate::language::syntax::ast::{Expr, ExprKind};
 use crate::physics::relaxation::logarithmic::LogarithmicRelaxation;
+use crate::physics::specimen::parameter;
 use crate::plan::{Behaviour, Breaks, Pinching};
 use crate::schema::Variant;
 use crate::text::source::Span;
@@ -94,9 +95,9 @@ fn part<'a>(
     match chosen.variant.name {
         "bilinear" => {
             let (stiffness, yield_force, post_yield_ratio) = (
-                number("stiffness"),
-                number("yield_force"),
-                number("post_yield_ratio"),
+                number(parameter::STIFFNESS),
+                number(parameter::YIELD_FORCE),
+                number(parameter::POST_YIELD_RATIO),
             );
             let (exponent, residual) = (
                 number("deterioration_exponent"),
@@ -122,9 +123,9 @@ fn part<'a>(
         }
         "pinching" => {
             let (stiffness, yield_force, post_yield_ratio) = (
-                number("stiffness"),
-                number("yield_force"),
-                number("post_yield_ratio"),
+                number(parameter::STIFFNESS),
+                number(parameter::YIELD_FORCE),
+                number(parameter::POST_YIELD_RATIO),
             );
             let (force, displacement) = (number("force_factor"), number("displacement_factor"));
             let exponent = number("unloading_exponent");
@@ -164,7 +165,8 @@ fn part<'a>(
             })
         }
         "maxwell" => {
-            let (stiffness, time_constant) = (number("stiffness"), number("time_constant"));
+            let (stiffness, time_constant) =
+                (number(parameter::STIFFNESS), number("time_constant"));
             if position == Position::Inside {
                 return checker.fail(message::must_be_outermost("maxwell", expr.span));
             }

@@ -260,7 +260,7 @@ fn an_axis_held_at_rest_is_let_go_of_by_who_held_it_and_by_nobody_else() {
     assert_eq!(
         sent(&port)[6..],
         ["!", "?", "~", "?"],
-        "it stands with its load, and idle"
+        "it is loaded and idle"
     );
     status(&port, "Idle", 0.0);
     reply(&port, "ok\r\n");

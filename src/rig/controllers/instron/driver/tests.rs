@@ -155,7 +155,7 @@ fn an_exact_zero_is_asked_again_and_believed_twice() {
     assert_eq!(
         console.line_statistics().reread,
         1,
-        "a zero that is one mended nothing"
+        "a true zero corrects nothing"
     );
 }
 

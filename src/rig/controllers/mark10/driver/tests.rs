@@ -97,7 +97,7 @@ fn a_target_is_a_limit_that_is_read_back_before_the_stand_sets_off() {
     assert_eq!(
         (here.frames.len(), here.targets[0]),
         (2, 0.001),
-        "it stands there already"
+        "it is there already"
     );
     for (target, speed) in [(1.0, 0.01), (f64::NAN, 0.01), (0.0, 0.0), (0.0, f64::NAN)] {
         assert!(
