@@ -351,6 +351,8 @@ pub enum Comparison {
 pub struct Report {
     pub title: Option<String>,
     pub figures: Vec<Figure>,
+    /// Whether the plan names its figures; the report then prints every one.
+    pub figures_named: bool,
     pub formats: Vec<Format>,
     pub sign: Vec<String>,
     /// The annexes after the first two pages.

@@ -41,6 +41,7 @@ pub(crate) fn empty_plan() -> Plan {
         report: Report {
             title: None,
             figures: Vec::new(),
+            figures_named: false,
             formats: Vec::new(),
             sign: Vec::new(),
             annexes: Annex::DEFAULT.to_vec(),

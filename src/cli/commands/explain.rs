@@ -20,9 +20,10 @@ pub fn explain(code: Option<&str>, full: bool, settings: Settings) -> Result<Exi
         None => list(settings),
         Some(written) => {
             let wanted = written.trim().to_ascii_uppercase();
+            // A code can be given by its number alone: errors and warnings have no number in common.
             let known = Code::ALL
                 .iter()
-                .find(|code| code.id() == wanted)
+                .find(|code| code.id() == wanted || code.id()[1..] == wanted)
                 .ok_or_else(|| unknown(written, &wanted))?;
             if full {
                 full_page(*known, settings)

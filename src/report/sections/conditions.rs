@@ -238,10 +238,7 @@ fn limits(run: &Run<'_>) -> Block {
             with_spaces(&limit.quantity)
         };
         let axis = limit.axis.map_or_else(String::new, wording::comma_axis);
-        (
-            Text::from(name + &axis),
-            Text::from(range(limit.interval(), limit.dimension())),
-        )
+        (Text::from(name + &axis), Text::from(limit_range(limit)))
     };
     let rows: Vec<(Text, Text)> = equipment.limits.iter().map(row).collect();
     if rows.is_empty() {
@@ -249,6 +246,19 @@ fn limits(run: &Run<'_>) -> Block {
     } else {
         Block::Pairs { rows }
     }
+}
+
+/// A limit of a tracking error is a fraction; it is printed in percent.
+fn limit_range(limit: &HeldLimit) -> String {
+    let interval = limit.interval();
+    if limit.dimension() != Dimension::NUMBER {
+        return range(interval, limit.dimension());
+    }
+    let percent = Interval {
+        low: 100.0 * interval.low,
+        high: 100.0 * interval.high,
+    };
+    range(percent, Dimension::NUMBER) + "\u{a0}%"
 }
 
 /// An interval in the unit of its larger end.

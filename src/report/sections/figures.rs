@@ -5,6 +5,7 @@ use super::{Source, headline};
 use crate::plan::FigureKind;
 use crate::report::document::{Block, Figure};
 use crate::report::figures::Drawn;
+use crate::report::wording::figures as wording;
 
 /// The main figure.
 pub(super) fn headline(source: &Source<'_>, body: &mut Vec<Block>) {
@@ -13,19 +14,43 @@ pub(super) fn headline(source: &Source<'_>, body: &mut Vec<Block>) {
     }
 }
 
-/// Every other figure.
+/// Figures of a procedure in the annex, if the plan names none.
+const MOST: usize = 2;
+
+/// Figures that support others. They are printed if the plan names them.
+const SUPPORTING: &[FigureKind] = &[
+    FigureKind::Velocity,
+    FigureKind::StrikerVelocity,
+    FigureKind::ContactForce,
+    FigureKind::Tracking,
+    FigureKind::BaseShear,
+    FigureKind::Ground,
+];
+
+/// The other figures: every one that the plan names, or a few of each procedure.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     let main = main(source);
-    let others = source
-        .figures
-        .iter()
-        .enumerate()
-        .filter(|(index, _)| Some(*index) != main);
-    body.extend(
-        others
-            .enumerate()
-            .map(|(number, (_, figure))| block(figure, number + 2)),
-    );
+    let named = source.run.plan.report.figures_named;
+    let mut printed: Vec<&Drawn> = Vec::new();
+    let mut left = 0_usize;
+    for (index, figure) in source.figures.iter().enumerate() {
+        let own = |other: &&&Drawn| other.procedure == figure.procedure;
+        if Some(index) == main {
+        } else if named
+            || !SUPPORTING.contains(&figure.kind) && printed.iter().filter(own).count() < MOST
+        {
+            printed.push(figure);
+        } else {
+            left += 1;
+        }
+    }
+    let blocks = printed.into_iter().enumerate();
+    body.extend(blocks.map(|(number, figure)| block(figure, number + 2)));
+    match left {
+        0 => {}
+        1 => body.push(Block::note(wording::ONE_MORE)),
+        count => body.push(Block::note(wording::more(count))),
+    }
 }
 
 /// The first figure of the procedure with the most results on the second page; of the last one if there are several. Modes and

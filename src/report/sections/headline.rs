@@ -2,7 +2,7 @@
 
 use super::results::budget_table::{self, Scope};
 use super::results::read::{ReadResult, exists, read_by_requirements};
-use super::{Source, capitalised, with_spaces};
+use super::{Source, capitalised, entry_name, with_spaces};
 use crate::plan::formula::{Part, ProcedureId, ResultReference, ResultValue};
 use crate::procedures;
 use crate::report::budget::coverage_factor;
@@ -177,6 +177,7 @@ fn row(run: &Run<'_>, chosen: &ReadResult) -> Option<Row> {
         }
         ResultValue::List(values) => {
             let entry = chosen.entry_in(values).unwrap_or(0);
+            name = Text::from(capitalised(&entry_name(result.name)));
             let all = measurement_uncertainties(&result.contributions, values.len(), run.record);
             name = name.and(wording::entry(
                 budget_table::entry_kind(result.name, procedure),

@@ -189,6 +189,18 @@ fn with_spaces(name: &str) -> String {
     name.replace('_', " ")
 }
 
+/// The name of one entry of a list: `periods` → `period`, `energies` → `energy`, `stiffnesses` → `stiffness`.
+fn entry_name(list: &str) -> String {
+    let words = with_spaces(list);
+    let plurals = [("ies", "y"), ("sses", "ss"), ("ss", "ss"), ("s", "")];
+    let one = plurals.iter().find_map(|(plural, one)| {
+        words
+            .strip_suffix(plural)
+            .map(|stem| format!("{stem}{one}"))
+    });
+    one.unwrap_or(words)
+}
+
 /// The string with a capital first letter.
 fn capitalised(text: &str) -> String {
     let mut letters = text.chars();

@@ -1,7 +1,7 @@
 //! The statement of conformity: every requirement with value, limit and verdict, and the decision rule. In: a run. Out: blocks.
 
 use super::results::budget_table::{self, Scope};
-use super::{Source, with_spaces};
+use super::{Source, entry_name, with_spaces};
 use crate::plan::formula::{Formula, Part, ResultValue};
 use crate::plan::{Condition, DecisionRule, Requirement};
 use crate::report::budget::coverage_factor;
@@ -213,6 +213,10 @@ fn quantity(run: &Run<'_>, condition: &Condition) -> Option<String> {
     if reference.part != Part::Value {
         return None;
     }
+    let name = match entry {
+        Some(_) => entry_name(reference.name),
+        None => with_spaces(reference.name),
+    };
     let entry = match (entry, run.record.procedures.get(reference.procedure.0)) {
         (None, _) => String::new(),
         (Some(entry), Some(record)) => {
@@ -220,11 +224,7 @@ fn quantity(run: &Run<'_>, condition: &Condition) -> Option<String> {
         }
         (Some(_), None) => return None,
     };
-    Some(wording::quantity(
-        with_spaces(reference.name),
-        entry,
-        &procedure.name,
-    ))
+    Some(wording::quantity(name, entry, &procedure.name))
 }
 
 /// In a simulation, a met requirement has no colour: nothing passed a test.

@@ -277,6 +277,8 @@ wording! {
     }
 
     mod figures {
+        ONE_MORE = "One more figure of this run is in the folder figures.";
+        fn more(count) = "{count} more figures of this run are in the folder figures.";
         fn axes(y, x) = "{y} against {x}.";
         fn curve(name, low, high) = " {name}: {low} to {high}.";
     }

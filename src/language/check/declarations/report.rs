@@ -29,6 +29,7 @@ pub fn report(checker: &mut Checker, procedures: &[Option<Procedure>]) -> Option
         return Some(Report {
             title: None,
             figures: every_figure(procedures),
+            figures_named: false,
             formats: EVERY_FORMAT.to_vec(),
             sign: Vec::new(),
             annexes: Annex::DEFAULT.to_vec(),
@@ -68,6 +69,7 @@ pub fn report(checker: &mut Checker, procedures: &[Option<Procedure>]) -> Option
     Some(Report {
         title: title?,
         figures: figures?,
+        figures_named: checker.field(block, schema::FIGURES.name).is_some(),
         formats: formats?,
         sign: sign?,
         annexes: annexes?,

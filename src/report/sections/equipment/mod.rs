@@ -83,10 +83,26 @@ fn calibration(run: &Run<'_>) -> Block {
         Column::short(due),
         Column::short(state),
     ];
+    // A column without an entry is omitted; the first page names the particulars that a test report lacks.
+    let given = |pick: fn(&Channel) -> bool| equipment.channels.iter().any(pick);
+    let mut is_printed = [true; 8];
+    is_printed[1] = given(|channel| channel.range.is_some());
+    is_printed[2] = given(|channel| channel.class.is_some());
+    is_printed[5] = given(|channel| channel.calibrated.is_some());
+    let rows = equipment.channels.iter().map(row);
     Block::Table(Table {
-        columns,
-        rows: equipment.channels.iter().map(row).collect(),
+        columns: kept(columns, is_printed),
+        rows: rows.map(|row| kept(row, is_printed)).collect(),
     })
+}
+
+/// The entries whose column is printed.
+fn kept<T>(entries: Vec<T>, is_printed: [bool; 8]) -> Vec<T> {
+    let entries = entries.into_iter().zip(is_printed);
+    entries
+        .filter(|(_, is)| *is)
+        .map(|(entry, _)| entry)
+        .collect()
 }
 
 /// Whether a calibration was valid on the last day of the test.

@@ -1,6 +1,7 @@
 //! The uncertainty budgets of a procedure: the contribution of each input to the uncertainty of the results that the
 //! requirements read. In: a run. Out: tables, and the results that are marked †. `summary.json` has the budget of every result.
 
+use super::super::entry_name;
 use super::read::{ReadResult, read_by_requirements};
 use super::with_spaces;
 use crate::plan::formula::{Part, ProcedureId, ResultReference, ResultValue};
@@ -144,7 +145,10 @@ fn table(budget: &Budget<'_>, procedure: &ProcedureRecord, scope: Scope) -> Bloc
             entry + 1
         )
     });
-    let result = with_spaces(budget.result.name);
+    let result = match budget.entry {
+        Some(_) => entry_name(budget.result.name),
+        None => with_spaces(budget.result.name),
+    };
     let [input, sensitivity, contribution, fraction] = wording::COLUMNS;
     let columns = vec![
         Column::words(wording::budget_of(kind, result, entry), 3),

@@ -17,7 +17,10 @@ pub(crate) const ANNEXES: Field = Field::choices(
     &[
         Variant::word("results", "every result, with the method of its procedure"),
         Variant::word("budgets", "uncertainty budgets"),
-        Variant::word("figures", "figures that the second page does not show"),
+        Variant::word(
+            "figures",
+            "the other figures: all that the plan names, or two of each procedure",
+        ),
         Variant::word("equipment", "rig, calibration, conditions, limits"),
         Variant::word("provenance", "program, run log, digests of the files"),
         Variant::word("plan", "text of the plan and of its files"),

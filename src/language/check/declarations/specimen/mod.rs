@@ -342,19 +342,19 @@ pub fn export(checker: &mut Checker, block: usize, name: &str, requested_at: Spa
     }
 }
 
-/// What gives a property that this behaviour does not have.
+/// A way to a property that this behaviour does not have.
 fn help_without(name: &str, behaviour: &Behaviour) -> &'static str {
     let is_mass = ["elastic_mass", "plastic_mass", "lumped_mass"].contains(&name);
     match behaviour {
         _ if name == "capacity" => {
             "remove it, or use a behaviour with a largest force, such as `portal`"
         }
-        Behaviour::Beam(_) if is_mass && name != "plastic_mass" => {
-            "add `area` and `density` to the specimen"
-        }
         Behaviour::Portal(_) if is_mass => {
             "add `mass_per_length` to the `portal`, or `area` and `density` to the specimen"
         }
+        Behaviour::Portal(_) => "remove it, or give the `portal` other `loads`",
+        _ if name == "plastic_mass" => "write the mass as a number, or use a `portal`",
+        Behaviour::Beam(_) if is_mass => "add `area` and `density` to the specimen",
         _ if is_mass => "write the mass as a number, or use a `beam` or a `portal`",
         _ => "remove it, or use a `portal`",
     }
