@@ -40,8 +40,8 @@ phrases! {
     fn at_look(number) = " at look {number}";
     fn intervals(confidence) = "Intervals have a confidence of {confidence} (Clopper–Pearson). A requirement is met or not met if its \
         whole interval is on one side of the limit, otherwise undecided.";
-    BY_LOOKS = "The study chose its own end: a requirement is decided by the interval of the first look that can, which is wider \
-        than the interval above.";
+    BY_LOOKS = "The study chose its own end. Its intervals are those of its last look, which are wider than those of a fixed number \
+        of runs: so they hold with this confidence.";
     NOT_EXACT = "The runs are not independent of each other: the interval is that of as many independent runs.";
 
     // Requirements of the plan.

@@ -57,6 +57,13 @@ impl CountsWithLooks {
         &self.rule.counts
     }
 
+    /// The confidence of the interval of a probability. A study that chose its own end has that of its last look: then the interval holds
+    /// with the confidence of the study, although it was looked at before.
+    pub fn confidence(&self, fixed: Confidence) -> Confidence {
+        let last = self.evaluated.last();
+        last.map_or(fixed, |last| last.look.confidence)
+    }
+
     /// The subset simulation of the study, if it is one.
     pub const fn rare(&self) -> Option<&RareRuns> {
         self.rule.rare()

@@ -246,6 +246,8 @@ fn a_study_with_a_rule_decides_at_a_look() {
     assert!(far.complete);
     // The look spends half of α: its interval is wider than that of a fixed number of runs.
     assert!((far.looks[0].confidence - 0.975).abs() < 1e-12);
+    let shown = far.studied[0].probability.as_ref().unwrap();
+    assert_eq!(shown.interval, far.looks[2].intervals[0]);
     let near = of(4096, 0.0228);
     assert_eq!(
         (near.complete, near.studied[0].decision),
