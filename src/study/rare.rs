@@ -44,10 +44,8 @@ impl RareRuns {
         }
         let outcome = row.outcomes.get(self.event.requirement);
         let result = row.results.get(self.limit.result).copied().flatten();
-        let beyond = result.map(|result| match self.event.falls {
-            true => self.limit.value - result,
-            false => result - self.limit.value,
-        });
+        let sign = if self.event.falls { -1.0 } else { 1.0 };
+        let beyond = result.map(|result| sign * (result - self.limit.value));
         let known = outcome != Some(&Outcome::NoResult);
         self.progress.add(beyond.filter(|_| known));
     }

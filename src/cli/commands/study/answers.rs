@@ -22,7 +22,14 @@ pub fn give(path: &Path, plan: Option<&Path>, format: Format) -> Result<Exit, Fa
     let answers = Answers::of(&reader).map_err(|fault| failure::of_data_set(&fault))?;
     let summary = summary(reader.metadata(), &answers)?;
     let beside = path.with_file_name(SUMMARY);
-    std::fs::write(&beside, &summary).map_err(|error| Failure::file(&beside, plain(&error)))?;
+    // Never half a summary: on a full disk there is none.
+    let aside = beside.with_extension("json.part");
+    std::fs::write(&aside, &summary)
+        .and_then(|()| std::fs::rename(&aside, &beside))
+        .map_err(|error| {
+            let _ = std::fs::remove_file(&aside);
+            Failure::file(&beside, plain(&error))
+        })?;
     let plan = plan.map(|plan| plan.display().to_string());
     let plan = plan.unwrap_or_else(|| reader.metadata().plan.clone());
     print_message(&console::text(reader.metadata(), &plan, &answers));

@@ -61,7 +61,7 @@ pub fn of_collection(fault: CollectionFault) -> Failure {
                 .help("wait for it, or stop it")
         }
         fault @ CollectionFault::UntilInShards => Failure::command_line(fault.to_string())
-            .help("write a fixed number of runs, `runs = 100000`"),
+            .help("omit the shards, or write a fixed number of runs, `runs = 100000`"),
         CollectionFault::OtherShards {
             folder,
             found,

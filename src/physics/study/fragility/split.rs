@@ -126,10 +126,12 @@ fn largest(profile: &impl Fn(f64) -> f64) -> (f64, f64) {
         }
     }
     let middle = 0.5 * (low + high);
-    [(0.0, profile(0.0)), (middle, profile(middle))]
-        .into_iter()
-        .max_by(|one, other| one.1.total_cmp(&other.1))
-        .expect("two of them")
+    let (none, inside) = (profile(0.0), profile(middle));
+    if none >= inside {
+        (0.0, none)
+    } else {
+        (middle, inside)
+    }
 }
 
 /// The largest log-likelihood over ln θ and ln β at a share, and its place, by Newton's method with differences.
