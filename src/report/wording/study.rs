@@ -133,6 +133,8 @@ phrases! {
     DATA_SET = "Data set";
     fn data_set(runs) = "{runs} rows, one a run";
     REPORT = "Report, first digits of the SHA-256 of the data set's metadata";
+    SAME_LEVELS = "A run depends on the seed and on the runs of the level before it. The same plan, seed and program give the same \
+        data set, bit for bit.";
     SAME = "Run i depends on the seed and i alone. The same plan, seed and program give the same data set, bit for bit.";
 
     // Figures.
