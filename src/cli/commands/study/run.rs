@@ -62,7 +62,12 @@ pub fn run(arguments: &RunStudyArguments, settings: Settings) -> Result<Exit, Fa
                 print_message("  all runs were there already\n");
             }
             if shard.is_none() {
-                return answers::give(&path, Some(&arguments.plan), arguments.format);
+                let plan = arguments.plan.display();
+                let plan = match &arguments.choice.plan_settings.rig {
+                    Some(rig) => format!("{plan} --rig {rig}"),
+                    None => plan.to_string(),
+                };
+                return answers::give(&path, Some(&plan), arguments.format);
             }
             print_result(&format!("{}\n", path.display()))?;
             Ok(Exit::Met)
