@@ -3,10 +3,10 @@
 use super::collection::{Collection, Ended};
 use super::data_set::{Kind, Metadata, Outcome, Reader, Row, Stopping};
 use super::definition::Definition;
-use super::measured::{self, MeasuredError};
+use super::definition::measured::{self, MeasuredError};
 use super::metadata;
-use super::rare::RareRuns;
 use super::simulation::Simulation;
+use super::stopping::rare::RareRuns;
 use super::testing::bytes;
 use crate::language::check::{LoadError, Loader, Options, ParsedPlan};
 use crate::physics::study::Confidence;

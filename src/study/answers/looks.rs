@@ -6,8 +6,8 @@ use crate::physics::study::probability::stopping::Look;
 use crate::plan::study::Runs;
 use crate::study::counts::Counts;
 use crate::study::data_set::{Kind, Metadata, Row, Stopping};
-use crate::study::rare::RareRuns;
 use crate::study::stopping::Looks;
+use crate::study::stopping::rare::RareRuns;
 
 /// Counts so far.
 pub struct CountsWithLooks {

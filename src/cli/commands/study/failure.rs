@@ -7,7 +7,7 @@ use crate::study::collection::merge::MergeFault;
 use crate::study::collection::same::Difference;
 use crate::study::data_set::DataSetFault;
 use crate::study::definition::DefinitionError;
-use crate::study::measured::MeasuredError;
+use crate::study::definition::measured::MeasuredError;
 
 pub fn of_definition(error: &DefinitionError) -> Failure {
     let failure = Failure::command_line(error.to_string());

@@ -14,9 +14,9 @@ use crate::study::cluster::shard::Shard;
 use crate::study::collection::{Collection, Ended};
 use crate::study::data_set::Metadata;
 use crate::study::definition::DefinitionError;
-use crate::study::rare::RareRuns;
 use crate::study::simulation::Simulation;
 use crate::study::stopping::Looks;
+use crate::study::stopping::rare::RareRuns;
 use crate::study::{collection, metadata};
 
 /// Stack size for the deepest plan, also in a build without optimisation.
