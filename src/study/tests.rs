@@ -3,10 +3,10 @@
 use super::collection::{Collection, Ended};
 use super::data_set::{Kind, Metadata, Outcome, Reader, Row, Stopping};
 use super::definition::Definition;
-use super::measured::{self, MeasuredError};
+use super::definition::measured::{self, MeasuredError};
 use super::metadata;
-use super::rare::RareRuns;
 use super::simulation::Simulation;
+use super::stopping::rare::RareRuns;
 use super::testing::bytes;
 use crate::language::check::{LoadError, Loader, Options, ParsedPlan};
 use crate::physics::study::Confidence;
@@ -102,7 +102,7 @@ fn a_rare_drift_of_a_frame_has_its_probability_in_closed_form() {
     let usual = usual.evaluate(&record, None).unwrap().value;
     let limit = 2.0 * usual;
     let of = parsed(&frame(&format!(
-        "study rare {{ vary = [motion.scale ~ lognormal(cv: 30 %)]\nsampling = subset(points: 100, replicates: 8) }}\n\
+        "study rare {{ vary = [motion.scale ~ lognormal(cv: 30 %)]\nsampling = subset(points: 100, replicates: 3) }}\n\
          require \"drifts\" max(quake.max_drift) < {limit} m\n\
          require \"rarely\" rare.probability(fails: \"drifts\") < 10 %"
     )));
@@ -114,7 +114,7 @@ fn a_rare_drift_of_a_frame_has_its_probability_in_closed_form() {
     let subset = answers.subset.as_ref().unwrap();
     let [low, high] = subset.interval;
     assert!(low <= truth && truth <= high, "{truth} {subset:?}");
-    assert!(answers.complete && answers.runs < 8 * 400);
+    assert!(answers.complete && answers.runs < 3 * 400);
     assert_eq!(
         answers.studied[0].decision,
         crate::physics::study::probability::Decision::Met

@@ -42,6 +42,13 @@ pub fn unexpected(span: Span, found: &str, expected: &str) -> Diagnostic {
         "`-`" if expected == "`=`" => "write `_` instead of `-` in a name, as in `drop_height`".to_owned(),
         "`=`" | "`:`" if expected == "`{`" => "write the kind, the name and `{`, as in `striker hammer {`".to_owned(),
         "`=`" if expected.contains("`)`") => "write `:` before the value of an argument, as in `elastic(stiffness: 300 kN/m)`".to_owned(),
+        "`=`" if expected.contains("`]`") => "write `~` before the distribution of an input, as in `beam.mass ~ normal(cv: 2 %)`".to_owned(),
+        "`fails`" | "`holds`" if expected.contains("`)`") => {
+            "write the event before the requirement, as in `scatter.probability(fails: \"stays in travel\")`".to_owned()
+        }
+        "`from`" if expected.contains("an operator") => {
+            "write `in` before the values of an intensity, as in `impact_speed in 0.4 .. 1.6 step 0.1 m/s`".to_owned()
+        }
         "`=`" if expected.contains("an operator") => {
             format!("`=` gives a field its value; {COMPARED}")
         }

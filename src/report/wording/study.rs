@@ -40,8 +40,8 @@ phrases! {
     fn at_look(number) = " at look {number}";
     fn intervals(confidence) = "Intervals have a confidence of {confidence} (Clopper–Pearson). A requirement is met or not met if its \
         whole interval is on one side of the limit, otherwise undecided.";
-    BY_LOOKS = "The study chose its own end: a requirement is decided by the interval of the first look that can, which is wider \
-        than the interval above.";
+    BY_LOOKS = "The study chose its own end. Its intervals are those of its last look, which are wider than those of a fixed number \
+        of runs: so they hold with this confidence.";
     NOT_EXACT = "The runs are not independent of each other: the interval is that of as many independent runs.";
 
     // Requirements of the plan.
@@ -133,6 +133,8 @@ phrases! {
     DATA_SET = "Data set";
     fn data_set(runs) = "{runs} rows, one a run";
     REPORT = "Report, first digits of the SHA-256 of the data set's metadata";
+    SAME_LEVELS = "A run depends on the seed and on the runs of the level before it. The same plan, seed and program give the same \
+        data set, bit for bit.";
     SAME = "Run i depends on the seed and i alone. The same plan, seed and program give the same data set, bit for bit.";
 
     // Figures.

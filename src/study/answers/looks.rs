@@ -6,8 +6,8 @@ use crate::physics::study::probability::stopping::Look;
 use crate::plan::study::Runs;
 use crate::study::counts::Counts;
 use crate::study::data_set::{Kind, Metadata, Row, Stopping};
-use crate::study::rare::RareRuns;
 use crate::study::stopping::Looks;
+use crate::study::stopping::rare::RareRuns;
 
 /// Counts so far.
 pub struct CountsWithLooks {
@@ -55,6 +55,13 @@ impl CountsWithLooks {
 
     pub const fn counts(&self) -> &Counts {
         &self.rule.counts
+    }
+
+    /// The confidence of the interval of a probability. A study that chose its own end has that of its last look: then the interval holds
+    /// with the confidence of the study, although it was looked at before.
+    pub fn confidence(&self, fixed: Confidence) -> Confidence {
+        let last = self.evaluated.last();
+        last.map_or(fixed, |last| last.look.confidence)
     }
 
     /// The subset simulation of the study, if it is one.

@@ -137,6 +137,7 @@ impl Pass {
 
     fn finish(self, metadata: &Metadata, confidence: Confidence) -> Answers {
         let subset = subset::answer(&self.counts, confidence);
+        let of_probabilities = self.counts.confidence(confidence);
         let studied = studied::answers(metadata, &self.counts, subset.as_ref(), confidence);
         // The runs of stripes and of levels are not a sample of the results.
         let results = if !is_a_sample(&metadata.kind) {
@@ -153,7 +154,7 @@ impl Pass {
                 metadata,
                 self.counts.counts(),
                 self.worst,
-                confidence,
+                of_probabilities,
             ),
             studied: studied.answers,
             looks: studied.looks,

@@ -71,6 +71,7 @@ pub fn answers(
     confidence: Confidence,
 ) -> Studied {
     let complete = counts.are_complete();
+    let of_probabilities = counts.confidence(confidence);
     let answer = |studied: &StudiedRequirement| {
         let outcomes = counts.counts().of(studied.requirement, studied.event);
         let is_exact = is_independent(metadata.sampling);
@@ -91,7 +92,7 @@ pub fn answers(
             probability: match rare {
                 Some(rare) => Some(rare),
                 None if is_rare => None,
-                None => Probability::of(&outcomes, confidence, is_exact),
+                None => Probability::of(&outcomes, of_probabilities, is_exact),
             },
             limit: studied.limit,
             look,

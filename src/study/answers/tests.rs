@@ -246,6 +246,8 @@ fn a_study_with_a_rule_decides_at_a_look() {
     assert!(far.complete);
     // The look spends half of α: its interval is wider than that of a fixed number of runs.
     assert!((far.looks[0].confidence - 0.975).abs() < 1e-12);
+    let shown = far.studied[0].probability.as_ref().unwrap();
+    assert_eq!(shown.interval, far.looks[2].intervals[0]);
     let near = of(4096, 0.0228);
     assert_eq!(
         (near.complete, near.studied[0].decision),
@@ -253,6 +255,46 @@ fn a_study_with_a_rule_decides_at_a_look() {
     );
     // Between two looks no conclusion is drawn from later runs.
     assert_eq!(of(5000, 0.0228).looks.len(), 6);
+}
+
+/// Twenty records whose medians have the dispersion 0.3, and structures with 0.2 under each: the parts come back.
+#[test]
+fn the_dispersion_between_records_is_divided_from_that_of_the_structures() {
+    let values = [0.4, 0.6, 0.8, 1.0, 1.2];
+    let whole = fragility_metadata(&values, 200);
+    let Kind::Fragility(stripes) = whole.kind.clone() else {
+        panic!("a fragility");
+    };
+    let mut metadata = Metadata {
+        kind: Kind::Fragility(Stripes {
+            record: Some(2),
+            ..stripes
+        }),
+        ..whole
+    };
+    let number = Column::new("motion.record_number", Dimension::NUMBER, "any");
+    metadata.inputs.push(number);
+    let mut rows = fragility_rows(&values, 200);
+    for row in &mut rows {
+        // Each record with each intensity.
+        let record = f64::from(u32::try_from(row.run / 5 % 20).unwrap());
+        let between = 0.3 * normal::quantile((record + 0.5) / 20.0);
+        let used = row.inputs[0] / (0.8 * (between + 0.2 * row.inputs[1]).exp());
+        row.inputs.push(record + 1.0);
+        row.results = vec![Some(0.05 * used)];
+        row.outcomes = vec![if used > 1.0 {
+            Outcome::Met
+        } else {
+            Outcome::NotMet
+        }];
+    }
+    let answers = answers(&metadata, &rows);
+    let fragility = answers.fragility.unwrap();
+    let split = fragility.fits[0].split.unwrap();
+    assert_eq!(split.records, 20);
+    assert!(contains(split.share_interval, 9.0 / 13.0), "{split:?}");
+    assert!((split.record_to_record - 0.3).abs() < 0.06, "{split:?}");
+    assert!((split.modelling - 0.2).abs() < 0.06, "{split:?}");
 }
 
 /// Capacities are lognormal: 8 stripes of 400 runs give back θ = 0.8 and β = 0.4 within their intervals.

@@ -3,6 +3,7 @@
 use super::figures::percent;
 use super::numbers::percents;
 use super::source::Source;
+use crate::plan::study::Sampling;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::wording::study as wording;
 use crate::study::data_set::Kind;
@@ -101,5 +102,10 @@ pub fn section(source: &Source<'_>, body: &mut Vec<Block>) {
             (wording::REPORT.into(), Text::new().id(source.id)),
         ],
     });
-    body.push(Block::note(wording::SAME));
+    let follows = metadata.sampling == Sampling::Subset;
+    body.push(Block::note(if follows {
+        wording::SAME_LEVELS
+    } else {
+        wording::SAME
+    }));
 }

@@ -16,16 +16,22 @@ use crate::study::data_set::Reader;
 use crate::study::report::summary;
 
 /// Writes and prints the answers. The exit code is that of the requirements on probabilities.
-/// `plan`: its path on the command line, for the lines that reproduce a run.
-pub fn give(path: &Path, plan: Option<&Path>, format: Format) -> Result<Exit, Failure> {
+/// `plan`: the plan and its rig on the command line, for the lines that reproduce a run.
+pub fn give(path: &Path, plan: Option<&str>, format: Format) -> Result<Exit, Failure> {
     let reader = Reader::open(path).map_err(|fault| failure::of_data_set(&fault))?;
     let answers = Answers::of(&reader).map_err(|fault| failure::of_data_set(&fault))?;
     let summary = summary(reader.metadata(), &answers)?;
     let beside = path.with_file_name(SUMMARY);
-    std::fs::write(&beside, &summary).map_err(|error| Failure::file(&beside, plain(&error)))?;
-    let plan = plan.map(|plan| plan.display().to_string());
-    let plan = plan.unwrap_or_else(|| reader.metadata().plan.clone());
-    print_message(&console::text(reader.metadata(), &plan, &answers));
+    // Never half a summary: on a full disk there is none.
+    let aside = beside.with_extension("json.part");
+    std::fs::write(&aside, &summary)
+        .and_then(|()| std::fs::rename(&aside, &beside))
+        .map_err(|error| {
+            let _ = std::fs::remove_file(&aside);
+            Failure::file(&beside, plain(&error))
+        })?;
+    let plan = plan.unwrap_or(&reader.metadata().plan);
+    print_message(&console::text(reader.metadata(), plan, &answers));
     let folder = path.parent().unwrap_or(path);
     match format {
         Format::Human => print_result(&format!("{}\n", folder.display()))?,

@@ -7,7 +7,7 @@ use crate::study::collection::merge::MergeFault;
 use crate::study::collection::same::Difference;
 use crate::study::data_set::DataSetFault;
 use crate::study::definition::DefinitionError;
-use crate::study::measured::MeasuredError;
+use crate::study::definition::measured::MeasuredError;
 
 pub fn of_definition(error: &DefinitionError) -> Failure {
     let failure = Failure::command_line(error.to_string());
@@ -61,7 +61,7 @@ pub fn of_collection(fault: CollectionFault) -> Failure {
                 .help("wait for it, or stop it")
         }
         fault @ CollectionFault::UntilInShards => Failure::command_line(fault.to_string())
-            .help("write a fixed number of runs, `runs = 100000`"),
+            .help("omit the shards, or write a fixed number of runs, `runs = 100000`"),
         CollectionFault::OtherShards {
             folder,
             found,

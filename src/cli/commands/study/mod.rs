@@ -18,7 +18,7 @@ use crate::cli::settings::Settings;
 use crate::language::check::ParsedPlan;
 use crate::plan::Plan;
 use crate::study::definition::Definition;
-use crate::study::measured;
+use crate::study::definition::measured;
 use crate::text::sanitize;
 
 /// One command of studies.

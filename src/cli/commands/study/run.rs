@@ -14,9 +14,9 @@ use crate::study::cluster::shard::Shard;
 use crate::study::collection::{Collection, Ended};
 use crate::study::data_set::Metadata;
 use crate::study::definition::DefinitionError;
-use crate::study::rare::RareRuns;
 use crate::study::simulation::Simulation;
 use crate::study::stopping::Looks;
+use crate::study::stopping::rare::RareRuns;
 use crate::study::{collection, metadata};
 
 /// Stack size for the deepest plan, also in a build without optimisation.
@@ -62,7 +62,12 @@ pub fn run(arguments: &RunStudyArguments, settings: Settings) -> Result<Exit, Fa
                 print_message("  all runs were there already\n");
             }
             if shard.is_none() {
-                return answers::give(&path, Some(&arguments.plan), arguments.format);
+                let plan = arguments.plan.display();
+                let plan = match &arguments.choice.plan_settings.rig {
+                    Some(rig) => format!("{plan} --rig {rig}"),
+                    None => plan.to_string(),
+                };
+                return answers::give(&path, Some(&plan), arguments.format);
             }
             print_result(&format!("{}\n", path.display()))?;
             Ok(Exit::Met)

@@ -15,7 +15,6 @@ pub mod golden;
 pub mod inputs;
 pub mod methods;
 pub mod names;
-pub mod rare;
 pub mod rigs;
 pub mod specimens;
 pub mod studies;

@@ -209,12 +209,17 @@ const UNCERTAIN: [Uncertain; 4] = [
     },
 ];
 
+/// The files of a ground motion, in the order of their numbers.
+pub(super) fn files(checker: &mut Checker, target: &Target) -> Option<Vec<String>> {
+    match target.location {
+        InputLocation::Field { block, .. } => checker.texts(block, ground::FILE.name),
+        InputLocation::Parameter(_) | InputLocation::Result { .. } => None,
+    }
+}
+
 /// The numbers of all records of a ground motion.
 fn records(checker: &mut Checker, target: &Target) -> Option<Law> {
-    let InputLocation::Field { block, .. } = target.location else {
-        return None;
-    };
-    let files = checker.texts(block, ground::FILE.name)?;
+    let files = files(checker, target)?;
     Some(Law::Column {
         file: format!("the records of {}", target.name),
         values: (1_u32..).map(f64::from).take(files.len()).collect(),

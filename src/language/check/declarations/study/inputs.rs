@@ -164,10 +164,16 @@ fn varied<'a>(checker: &mut Checker<'a>, item: &'a Expr, context: Context) -> Op
         };
         let (target, chosen) = (target?, chosen?);
         let law = distribution::law(checker, &chosen, &target, right.span, context)?;
+        let mut text = spaced(checker.text(right.span));
+        if target.is_record() && chosen.variant.name == schema::ANY {
+            // The report names the files behind the numbers.
+            let files = distribution::files(checker, &target)?;
+            text = format!("{text} of {}", files.join(", "));
+        }
         return Some(Varied {
             target,
             law,
-            text: spaced(checker.text(right.span)),
+            text,
             span: item.span,
         });
     }

@@ -17,7 +17,7 @@ mod varied;
 pub use samples_file::MOST_ROWS as MOST_SAMPLE_ROWS;
 
 use crate::language::check::checker::{Checker, Context, Reads, Shape};
-use crate::language::check::messages::{rare as rare_message, studies as message, values};
+use crate::language::check::messages::{studies as message, values};
 use crate::language::syntax::ast::{Expr, ExprKind};
 use crate::physics::study::Confidence;
 use crate::plan::study::{Collected, MOST_RUNS, Runs, Sampling, Studies, Study};
@@ -119,7 +119,7 @@ fn runs(checker: &mut Checker, block: usize, confidence: Option<Confidence>) -> 
         key(checker, schema::SAMPLING.name),
     ) {
         if let Some(stated) = runs.or(until) {
-            return checker.fail(rare_message::runs_of_subset(sampling, stated));
+            return checker.fail(message::rare::runs_of_subset(sampling, stated));
         }
         return rare::levels(checker, block).map(Runs::Rare);
     }

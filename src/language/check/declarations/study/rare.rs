@@ -2,7 +2,7 @@
 //! with the one requirement of the plan that it is about.
 
 use crate::language::check::checker::{Checker, Context, Reads};
-use crate::language::check::messages::rare as message;
+use crate::language::check::messages::studies::rare as message;
 use crate::plan::study::{RareEvent, Runs, Study, StudyEvent, StudyRequirement};
 use crate::plan::{Comparison, Test};
 use crate::schema::Kind;

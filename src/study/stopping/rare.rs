@@ -1,10 +1,10 @@
 //! The subset simulation of a study. In: its metadata, then its rows in the order of their runs. Out: the points of the next runs, and the
 //! probability of the rare event. It runs nothing: the rows of a data set give the same answer as those of the process that made them.
 
-use super::data_set::{Kind, Limit, Metadata, Outcome, Row, Stopping};
 use crate::physics::study::Confidence;
 use crate::physics::study::subset_simulation::{Answer, Progress};
 use crate::plan::study::RareEvent;
+use crate::study::data_set::{Kind, Limit, Metadata, Outcome, Row, Stopping};
 
 /// A subset simulation of runs of the plan.
 #[derive(Clone, Debug)]
@@ -44,10 +44,8 @@ impl RareRuns {
         }
         let outcome = row.outcomes.get(self.event.requirement);
         let result = row.results.get(self.limit.result).copied().flatten();
-        let beyond = result.map(|result| match self.event.falls {
-            true => self.limit.value - result,
-            false => result - self.limit.value,
-        });
+        let sign = if self.event.falls { -1.0 } else { 1.0 };
+        let beyond = result.map(|result| sign * (result - self.limit.value));
         let known = outcome != Some(&Outcome::NoResult);
         self.progress.add(beyond.filter(|_| known));
     }

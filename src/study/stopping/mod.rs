@@ -4,14 +4,16 @@
 //! The looks are at 128, 256, 512 … runs (`physics::study::probability::stopping`). A probability that is decided at a look stays
 //! decided; the study goes on until all are.
 
-use super::counts::Counts;
-use super::data_set::{Event, Metadata, Row, StudiedRequirement};
+pub mod rare;
+
 use crate::physics::study::Interval;
 use crate::physics::study::probability::Decision;
 use crate::physics::study::probability::stopping::{Goal, Look, StoppingRule};
 use crate::plan::Comparison;
 use crate::plan::study::Runs;
-use crate::study::rare::RareRuns;
+use crate::study::counts::Counts;
+use crate::study::data_set::{Event, Metadata, Row, StudiedRequirement};
+use rare::RareRuns;
 
 /// A probability that a study is run for.
 #[derive(Clone, Debug)]

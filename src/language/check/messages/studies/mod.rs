@@ -1,5 +1,7 @@
 //! Errors of `study` and `fragility`, and of requirements on their probabilities.
 
+pub mod rare;
+
 use super::{shown, suggestion};
 use crate::physics::study::distribution::DistributionError;
 use crate::plan::study::Sampling;

@@ -1,14 +1,16 @@
 //! A study or a fragility as a list of runs with numbers. In: the studies of a plan, a name, another number of runs. Out: the inputs,
 //! their draws and the number of runs. It runs nothing.
 
+pub mod measured;
+
 use thiserror::Error;
 
-use super::data_set::{Kind, Stopping, Stripes};
-use super::draws::Draws;
 use crate::physics::study::Confidence;
 use crate::physics::study::inputs::InputError;
 use crate::plan::Studies;
 use crate::plan::study::{Collected, Fragility, Input, MOST_RUNS, Runs, Sampling, Study};
+use crate::study::data_set::{Kind, Stopping, Stripes};
+use crate::study::draws::Draws;
 
 /// A study or a fragility of a plan.
 #[derive(Clone, Debug)]

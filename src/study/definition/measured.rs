@@ -12,6 +12,9 @@ use crate::record::Record;
 use crate::rig::virtual_rig;
 use crate::run::{Settings, Unwatched, run_with};
 
+/// An uncertainty below this fraction of the value is only rounding: nothing of the run is uncertain.
+const ROUNDING: f64 = 1e-9;
+
 /// The run gives an input no distribution.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum MeasuredError {
@@ -69,7 +72,7 @@ fn of_variation(variation: &mut Variation, record: &Record) -> Result<(), Measur
             return Err(MeasuredError::NoValue(input.name.clone()));
         };
         let law = uncertainty
-            .filter(|uncertainty| *uncertainty > 0.0)
+            .filter(|uncertainty| *uncertainty > ROUNDING * value.abs())
             .and_then(|uncertainty| Distribution::normal(value, Spread::Sd(uncertainty)).ok());
         let Some(law) = law else {
             return Err(MeasuredError::NoUncertainty(input.name.clone()));
