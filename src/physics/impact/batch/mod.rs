@@ -116,6 +116,16 @@ pub fn run(
     until: Option<Until>,
     steps: u64,
 ) -> Vec<Result<Batched, ImpactError>> {
+    run_on(Level::new(), impacts, until, steps)
+}
+
+/// With these vectors of the processor. The results are the same for all.
+fn run_on(
+    level: Level,
+    impacts: &[Impact],
+    until: Option<Until>,
+    steps: u64,
+) -> Vec<Result<Batched, ImpactError>> {
     // Lanes differ in what their loop contains: yielding specimens, limited forces.
     let mut queues: [Vec<usize>; 4] = Default::default();
     let mut results: Vec<Option<Result<Batched, ImpactError>>> = Vec::new();
@@ -135,8 +145,7 @@ pub fn run(
     let [plain, yielding, limited, both] = queues;
     let ends = until.is_some_and(|until| until == Until::StrikerStop);
     let mut take = |index: usize, result| results[index] = Some(Ok(result));
-    // For the widest vectors of this processor: SSE2, AVX2 or AVX-512.
-    dispatch!(Level::new(), _ => {
+    dispatch!(level, _ => {
         in_lanes::<false, false>(impacts, &plain, ends, steps, &mut take);
         in_lanes::<true, false>(impacts, &yielding, ends, steps, &mut take);
         in_lanes::<false, true>(impacts, &limited, ends, steps, &mut take);
