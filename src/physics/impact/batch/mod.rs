@@ -7,6 +7,8 @@
 
 mod lanes;
 mod reach;
+mod rows;
+mod step;
 #[cfg(test)]
 mod tests;
 
@@ -18,9 +20,10 @@ use crate::contact::ContactLaw;
 use crate::integrator::Integrator;
 use crate::integrator::state::State;
 use crate::specimen::{Bilinear, Elastic, RestoringForce, SpecimenModel};
-use lanes::{End, LANES, Lanes};
+use lanes::Lanes;
 pub use reach::Reach;
 use reach::ReachBuilder;
+use rows::{End, LANES};
 
 /// An impact on an ideal rig from rest at X = 0.
 #[derive(Clone, Debug, PartialEq)]
