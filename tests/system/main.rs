@@ -26,6 +26,7 @@ mod resumed;
 mod served;
 mod signals;
 mod signed;
+mod slurm;
 mod stage;
 mod study;
 mod terminal;

@@ -83,6 +83,20 @@ pub fn faketime() -> bool {
     )
 }
 
+/// Where programs are found: services are not in the search path of every user.
+pub fn search_path() -> String {
+    let path = std::env::var("PATH").unwrap_or_default();
+    format!("{path}:/usr/sbin:/sbin")
+}
+
+/// Whether munge and the daemons and commands of Slurm are installed.
+pub fn slurm() -> bool {
+    let lookup = "command -v munged slurmctld slurmd sbatch srun scancel squeue sinfo scontrol";
+    let mut proof = Command::new("sh");
+    proof.env("PATH", search_path());
+    able("slurm", "be found", proof.args(["-ec", lookup]))
+}
+
 /// Whether a program can have its own terminal, as from a shell.
 pub fn setsid() -> bool {
     able(

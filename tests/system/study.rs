@@ -14,7 +14,8 @@ const PATIENCE: Duration = Duration::from_mins(5);
 /// Far more runs than are done before the first signal.
 const RUNS: &str = "12000";
 
-const PLAN: &str = r#"plan "Scattered impacts" { edition = 1 }
+/// An impact with scattered speed and mass.
+pub const PLAN: &str = r#"plan "Scattered impacts" { edition = 1 }
 
 param speed = 1 m/s
 

@@ -2,8 +2,12 @@
 
 use std::fmt::Write as _;
 
-/// Seconds before the time limit at which a task is told to end: more than a round of runs and the merge of its pieces.
+/// Seconds before the time limit at which Slurm sends a signal: more than a round of runs and the merge of its pieces.
 const NOTICE: u32 = 120;
+/// The script of the job array in the folder of a study.
+pub const ARRAY_SCRIPT: &str = "array.sbatch";
+/// The script that merges.
+pub const MERGE_SCRIPT: &str = "merge.sbatch";
 
 /// What is submitted.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,8 +34,9 @@ pub struct Job {
 impl Job {
     /// The job array: one task a shard, numbered as the shards.
     ///
-    /// Slurm sends TERM two minutes before the time limit, to the script alone, which passes it on. psd then keeps its runs and ends with
-    /// 75, and the task is put back into the queue. A task that is interrupted or runs twice does no harm: a finished shard is not run again.
+    /// Slurm sends USR1 two minutes before the time limit, to the script alone. The script sends TERM to psd, which keeps its runs and ends
+    /// with 75, and the task is put back into the queue. `scancel` sends TERM: the runs are kept as well, but the task stays cancelled. A task
+    /// that is interrupted or runs twice does no harm: a finished shard is not run again.
     #[must_use]
     pub fn array(&self) -> String {
         let throttle = self
@@ -41,15 +46,17 @@ impl Job {
         let _ = write!(
             text,
             "#SBATCH --array=1-{}{throttle}\n\
-             #SBATCH --signal=B:TERM@{NOTICE}\n\
+             #SBATCH --signal=B:USR1@{NOTICE}\n\
              #SBATCH --requeue\n\n\
              {} --shard env/{} --jobs \"${{SLURM_CPUS_PER_TASK:-{}}}\" &\n\
              study=$!\n\
              trap 'kill -TERM \"$study\"' TERM\n\
+             # The time limit is near.\n\
+             trap 'again=1; kill -TERM \"$study\"' USR1\n\
              wait \"$study\"; code=$?\n\
              # A signal ends `wait`, not psd.\n\
              while kill -0 \"$study\" 2>/dev/null; do wait \"$study\"; code=$?; done\n\
-             if [ \"$code\" -eq 75 ]; then\n\
+             if [ -n \"$again\" ] && [ \"$code\" -eq 75 ]; then\n\
              \x20 scontrol requeue \"${{SLURM_ARRAY_JOB_ID}}_${{SLURM_ARRAY_TASK_ID}}\"\n\
              fi\n\
              exit \"$code\"\n",
@@ -132,7 +139,7 @@ mod tests {
         for line in [
             "#SBATCH --array=1-64%16",
             "#SBATCH --open-mode=append",
-            "#SBATCH --signal=B:TERM@120",
+            "#SBATCH --signal=B:USR1@120",
             "#SBATCH --requeue",
             "#SBATCH --cpus-per-task=8",
             "#SBATCH --partition=short",
@@ -153,9 +160,8 @@ mod tests {
         assert_eq!(quoted("$(rm)"), "'$(rm)'");
     }
 
-    /// Run by a shell, with programs in place of psd and scontrol: a TERM reaches psd, whose exit code 75 puts the task back.
-    #[test]
-    fn the_script_passes_a_signal_on_and_puts_the_task_back() {
+    /// Run by a shell, with programs in place of psd and scontrol. Returns the arguments of scontrol, if it is called.
+    fn signalled(signal: rustix::process::Signal) -> Option<String> {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
         let program = |name: &str, text: &str| {
@@ -188,10 +194,16 @@ mod tests {
             std::thread::sleep(std::time::Duration::from_millis(10));
         }
         let id = rustix::process::Pid::from_child(&shell);
-        rustix::process::kill_process(id, rustix::process::Signal::TERM).unwrap();
+        rustix::process::kill_process(id, signal).unwrap();
         let status = shell.wait().unwrap();
         assert_eq!(status.code(), Some(75));
-        let requeued = std::fs::read_to_string(path("requeued")).unwrap();
-        assert_eq!(requeued, "requeue 7_3\n");
+        std::fs::read_to_string(path("requeued")).ok()
+    }
+
+    #[test]
+    fn a_task_at_its_time_limit_is_put_back_and_a_cancelled_one_is_not() {
+        use rustix::process::Signal;
+        assert_eq!(signalled(Signal::USR1).as_deref(), Some("requeue 7_3\n"));
+        assert_eq!(signalled(Signal::TERM), None);
     }
 }

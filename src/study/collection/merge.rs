@@ -9,6 +9,7 @@ use super::folder::{self, DataSetFiles};
 use super::joined;
 use super::same::{Difference, same};
 use crate::study::cluster::shard::Shard;
+use crate::study::cluster::slurm;
 use crate::study::data_set::{DataSetFault, Metadata, Reader};
 
 /// Why shards cannot be put together.
@@ -21,7 +22,11 @@ pub enum MergeFault {
     #[error("{}: shards of {} and of {} are here", folder.display(), of[0], of[1])]
     SeveralDivisions { folder: PathBuf, of: [u32; 2] },
     #[error("{} of {of} shards are missing: {}", missing.len(), listed(missing))]
-    Missing { missing: Vec<u32>, of: u32 },
+    Missing {
+        folder: PathBuf,
+        missing: Vec<u32>,
+        of: u32,
+    },
     #[error("{}: {difference}", path.display())]
     Other {
         path: PathBuf,
@@ -41,9 +46,12 @@ impl MergeFault {
     #[must_use]
     pub fn help(&self) -> Option<String> {
         match self {
-            Self::Missing { missing, .. } => {
-                Some(format!("submit them again: `--array={}`", listed(missing)))
-            }
+            Self::Missing {
+                folder, missing, ..
+            } => Some(format!(
+                "submit them again: {}",
+                resubmission(folder, missing)
+            )),
             Self::NoShards { .. } => {
                 Some("name the folder in which `psd study run --shard` has written them".to_owned())
             }
@@ -78,6 +86,19 @@ pub fn listed(numbers: &[u32]) -> String {
     texts.collect::<Vec<_>>().join(",")
 }
 
+/// What submits shards again: the command, if the folder has the script of its job array; the option of the batch system if not.
+#[must_use]
+pub fn resubmission(folder: &Path, numbers: &[u32]) -> String {
+    let option = format!("--array={}", listed(numbers));
+    let script = folder.join(slurm::ARRAY_SCRIPT);
+    if script.exists() {
+        let script = slurm::quoted(&script.display().to_string());
+        format!("sbatch {option} {script}")
+    } else {
+        option
+    }
+}
+
 /// Puts the shards of a folder together. Returns the path of the study and its metadata.
 ///
 /// # Errors
@@ -101,7 +122,12 @@ pub fn merge(folder: &Path) -> Result<(PathBuf, Metadata), MergeFault> {
     let path = |number| DataSetFiles::of(folder, Some(Shard { number, of })).path();
     let missing: Vec<u32> = (1..=of).filter(|number| !path(*number).exists()).collect();
     if !missing.is_empty() {
-        return Err(MergeFault::Missing { missing, of });
+        let folder = folder.to_owned();
+        return Err(MergeFault::Missing {
+            folder,
+            missing,
+            of,
+        });
     }
     let readers = (1..=of)
         .map(|number| Reader::open(&path(number)))

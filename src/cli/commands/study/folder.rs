@@ -3,11 +3,11 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use super::{answers, failure};
+use super::{answers, failure, slurm};
 use crate::cli::args::Format;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::{print_message, print_result};
-use crate::study::collection::merge::{self, listed};
+use crate::study::collection::merge::{self, resubmission};
 use crate::study::collection::status::{self, Part};
 
 /// Shows the runs that are there, and the shards that are not finished.
@@ -35,9 +35,16 @@ pub fn status(folder: &Path) -> Result<Exit, Failure> {
         for part in shards.filter(|part| !part.finished && part.runs > 0) {
             text += &unfinished(part);
         }
-        let missing = status.unfinished();
+        let queue = slurm::queue(folder);
+        if !queue.is_empty() {
+            let states = queue.states();
+            let _ = writeln!(text, "  in the queue of Slurm: {states}");
+        }
+        let mut missing = status.unfinished();
+        missing.retain(|number| !queue.contains(*number));
         if !missing.is_empty() {
-            let _ = writeln!(text, "  submit again: --array={}", listed(&missing));
+            let again = resubmission(folder, &missing);
+            let _ = writeln!(text, "  submit again: {again}");
         }
     }
     for part in status.parts.iter().filter(|part| part.shard.is_none()) {

@@ -7,6 +7,7 @@ mod folder;
 mod progress;
 mod report;
 mod run;
+mod slurm;
 mod submit;
 
 use std::path::{Path, PathBuf};

@@ -2,8 +2,8 @@
 //! submitted jobs. The plan is checked here, so that no array fails on its error.
 
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
+use super::slurm::{self, NodeView};
 use super::{failure, open};
 use crate::cli::args::SubmitArguments;
 use crate::cli::exit::{Exit, Failure};
@@ -11,11 +11,8 @@ use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::files::failure::plain;
 use crate::plan::study::Runs;
-use crate::study::cluster::slurm::Job;
+use crate::study::cluster::slurm::{ARRAY_SCRIPT, Job, MERGE_SCRIPT};
 use crate::study::collection::CollectionFault;
-
-/// The largest index of an array where Slurm does not state another one (its default of `MaxArraySize` is 1001).
-const USUAL_ARRAY: u32 = 1001;
 
 /// Prints or submits the scripts.
 pub fn submit(arguments: &SubmitArguments, settings: Settings) -> Result<Exit, Failure> {
@@ -56,7 +53,7 @@ pub fn submit(arguments: &SubmitArguments, settings: Settings) -> Result<Exit, F
         ),
         command,
         merge: words(&["study", "merge", &folder]),
-        shards: arguments.shards,
+        shards: folded(arguments.shards),
         throttle: arguments.throttle,
         processors: arguments.processors,
         time: arguments.time.clone(),
@@ -79,25 +76,48 @@ pub fn submit(arguments: &SubmitArguments, settings: Settings) -> Result<Exit, F
     }
 }
 
+/// At most as many shards as an array of this cluster has tasks. Fewer shards have more runs each; the study is the same.
+fn folded(shards: u32) -> u32 {
+    match slurm::largest_array() {
+        Some(most) if shards > most => {
+            print_message(&format!(
+                "  an array of this cluster has at most {most} tasks: {most} shards instead of {shards}\n"
+            ));
+            most
+        }
+        _ => shards,
+    }
+}
+
 /// Writes the scripts into the folder, and submits both jobs.
 fn submitted(job: &Job, folder: &Path) -> Result<Exit, Failure> {
-    if let Some(most) = largest_array().filter(|most| job.shards >= *most) {
-        return Err(Failure::command_line(format!(
-            "an array of this cluster has at most {} tasks",
-            most - 1
-        ))
-        .help("use fewer shards; each takes all processors of its task"));
-    }
     std::fs::create_dir_all(folder).map_err(|error| Failure::file(folder, plain(&error)))?;
     let write = |name: &str, text: &str| -> Result<PathBuf, Failure> {
         let path = folder.join(name);
         std::fs::write(&path, text).map_err(|error| Failure::file(&path, plain(&error)))?;
         Ok(path)
     };
-    let array = write("array.sbatch", &job.array())?;
-    let merging = write("merge.sbatch", &job.merging())?;
-    let first = sbatch(&[], &array)?;
-    let second = sbatch(&[format!("--dependency=afterany:{first}")], &merging)?;
+    let array = write(ARRAY_SCRIPT, &job.array())?;
+    let merging = write(MERGE_SCRIPT, &job.merging())?;
+    match slurm::node_view(job, &array) {
+        NodeView::Sees => {}
+        NodeView::NoFolder => {
+            return Err(Failure::file(folder, "a node does not see this folder")
+                .help("name a folder that all nodes share, with `--out`"));
+        }
+        NodeView::NoProgram => {
+            return Err(
+                Failure::file(&job.command[0], "a node does not see this program")
+                    .help("install psd where all nodes see it"),
+            );
+        }
+        NodeView::Unknown(reason) => print_message(&format!(
+            "  not checked: whether a node sees {}: {reason}\n",
+            job.folder
+        )),
+    }
+    let first = slurm::sbatch(&[], &array)?;
+    let second = slurm::sbatch(&[format!("--dependency=afterany:{first}")], &merging)?;
     print_message(&format!(
         "  {} shards are job {first}; job {second} merges them\n  look with: psd study status {}\n",
         job.shards,
@@ -105,35 +125,4 @@ fn submitted(job: &Job, folder: &Path) -> Result<Exit, Failure> {
     ));
     print_result(&format!("{first}\n"))?;
     Ok(Exit::Met)
-}
-
-/// Submits a script; returns the number of the job.
-fn sbatch(options: &[String], script: &Path) -> Result<String, Failure> {
-    let output = Command::new("sbatch")
-        .arg("--parsable")
-        .args(options)
-        .arg(script)
-        .output()
-        .map_err(|error| {
-            Failure::file("sbatch", plain(&error))
-                .help("submit from a computer of the cluster, or omit `--submit`")
-        })?;
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).trim().to_owned();
-    if !output.status.success() {
-        return Err(Failure::file("sbatch", text(&output.stderr)));
-    }
-    // `--parsable` gives JOB or JOB;CLUSTER.
-    let job = text(&output.stdout);
-    Ok(job.split(';').next().unwrap_or_default().to_owned())
-}
-
-/// `MaxArraySize` of the cluster, which the index of a task stays below; None if Slurm does not answer.
-fn largest_array() -> Option<u32> {
-    let output = Command::new("scontrol").args(["show", "config"]).output();
-    let text = String::from_utf8_lossy(&output.ok()?.stdout).into_owned();
-    let stated = text.lines().find_map(|line| {
-        let (name, value) = line.split_once('=')?;
-        (name.trim() == "MaxArraySize").then(|| value.trim().parse().ok())?
-    });
-    stated.or(Some(USUAL_ARRAY))
 }

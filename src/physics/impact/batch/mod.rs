@@ -7,8 +7,12 @@
 
 mod lanes;
 mod reach;
+mod rows;
+mod step;
 #[cfg(test)]
 mod tests;
+
+use fearless_simd::{Level, dispatch};
 
 use super::summary::{ImpactSummary, SummaryBuilder};
 use super::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink, Until};
@@ -16,9 +20,10 @@ use crate::contact::ContactLaw;
 use crate::integrator::Integrator;
 use crate::integrator::state::State;
 use crate::specimen::{Bilinear, Elastic, RestoringForce, SpecimenModel};
-use lanes::{LANES, Lanes};
+use lanes::Lanes;
 pub use reach::Reach;
 use reach::ReachBuilder;
+use rows::{End, LANES};
 
 /// An impact on an ideal rig from rest at X = 0.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,6 +119,16 @@ pub fn run(
     until: Option<Until>,
     steps: u64,
 ) -> Vec<Result<Batched, ImpactError>> {
+    run_on(Level::new(), impacts, until, steps)
+}
+
+/// With these vectors of the processor. The results are the same for all.
+fn run_on(
+    level: Level,
+    impacts: &[Impact],
+    until: Option<Until>,
+    steps: u64,
+) -> Vec<Result<Batched, ImpactError>> {
     // Lanes differ in what their loop contains: yielding specimens, limited forces.
     let mut queues: [Vec<usize>; 4] = Default::default();
     let mut results: Vec<Option<Result<Batched, ImpactError>>> = Vec::new();
@@ -133,10 +148,12 @@ pub fn run(
     let [plain, yielding, limited, both] = queues;
     let ends = until.is_some_and(|until| until == Until::StrikerStop);
     let mut take = |index: usize, result| results[index] = Some(Ok(result));
-    in_lanes::<false, false>(impacts, &plain, ends, steps, &mut take);
-    in_lanes::<true, false>(impacts, &yielding, ends, steps, &mut take);
-    in_lanes::<false, true>(impacts, &limited, ends, steps, &mut take);
-    in_lanes::<true, true>(impacts, &both, ends, steps, &mut take);
+    dispatch!(level, _ => {
+        in_lanes::<false, false>(impacts, &plain, ends, steps, &mut take);
+        in_lanes::<true, false>(impacts, &yielding, ends, steps, &mut take);
+        in_lanes::<false, true>(impacts, &limited, ends, steps, &mut take);
+        in_lanes::<true, true>(impacts, &both, ends, steps, &mut take);
+    });
     let finished = impacts
         .iter()
         .zip(results)
@@ -153,7 +170,12 @@ fn is_finite(summary: &ImpactSummary) -> bool {
     summary.energy_error.is_finite() && summary.final_displacement.is_finite()
 }
 
-/// Steps the impacts at these places, sixteen at a time.
+/// Steps the impacts at these places, sixteen at a time. A part of its caller, which is compiled for several vector units.
+#[allow(
+    clippy::inline_always,
+    reason = "a function of its own has the vectors of the portable build"
+)]
+#[inline(always)]
 fn in_lanes<const YIELDS: bool, const LIMITED: bool>(
     impacts: &[Impact],
     indices: &[usize],
@@ -177,22 +199,34 @@ fn in_lanes<const YIELDS: bool, const LIMITED: bool>(
         *running = begin(&mut lanes, lane);
     }
     #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]
-    let last = steps as f64;
-    while running.iter().any(Option::is_some) {
-        if !lanes.step::<YIELDS, LIMITED>(ends_at_stop, last) {
-            continue;
-        }
+    let end = End {
+        ends_at_stop,
+        last: steps as f64,
+    };
+    let mut refill = |lanes: &mut Lanes| {
         for (lane, running) in running.iter_mut().enumerate() {
             if let Some(index) = *running
-                && lanes.is_over(lane, ends_at_stop, last)
+                && lanes.is_over(lane, end)
             {
                 let result = Batched {
                     summary: lanes.summary(lane, &impacts[index].input),
                     reach: lanes.reach(lane),
                 };
                 take(index, result);
-                *running = begin(&mut lanes, lane);
+                *running = begin(lanes, lane);
             }
+        }
+        running.iter().any(Option::is_some)
+    };
+    if indices.is_empty() {
+        return;
+    }
+    loop {
+        if lanes.step::<YIELDS, LIMITED, 0>(end) && !refill(&mut lanes) {
+            break;
+        }
+        if lanes.step::<YIELDS, LIMITED, 1>(end) && !refill(&mut lanes) {
+            break;
         }
     }
 }

@@ -100,6 +100,35 @@ fn compare(impacts: &[Impact], until: Option<Until>, steps: u64) {
     }
 }
 
+/// The vectors of this processor, and the narrower ones that it has as well.
+#[cfg(target_arch = "x86_64")]
+fn levels() -> Vec<Level> {
+    let widest = Level::new();
+    let narrower = [
+        widest.as_sse2().map(Level::Sse2),
+        widest.as_sse4_2().map(Level::Sse4_2),
+        widest.as_avx2().map(Level::Avx2),
+    ];
+    narrower.into_iter().flatten().chain([widest]).collect()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn all_vectors_give_the_same_bits() {
+    for law in [ContactLaw::Rigid, ContactLaw::Limit { force: 60.0 }] {
+        for yields in [false, true] {
+            let impacts: Vec<Impact> = (0..40).map(|run| impact(run, law, yields)).collect();
+            let results = levels().into_iter().map(|level| {
+                let results = run_on(level, &impacts, Some(Until::Duration), 700);
+                let bits = |result: &Result<Batched, ImpactError>| bits(result.as_ref().unwrap());
+                results.iter().map(bits).collect::<Vec<_>>()
+            });
+            let results: Vec<_> = results.collect();
+            assert!(results.windows(2).all(|two| two[0] == two[1]));
+        }
+    }
+}
+
 #[test]
 fn a_batched_impact_is_the_impact_alone() {
     for law in [ContactLaw::Rigid, ContactLaw::Limit { force: 60.0 }] {

@@ -1,0 +1,175 @@
+//! The bench table: every case with its peer, its goal and what is measured here, `cargo bench --bench table`. Times are of the processor,
+//! the fastest of several: other work on the machine makes them longer, not shorter. The other benches have the details of one case each.
+
+use std::hint::black_box;
+use std::process::{Command, Stdio};
+
+use psd::physics::contact::ContactLaw;
+use psd::physics::impact::batch::{self, Impact};
+use psd::physics::impact::{Columns, ImpactInput, Until, simulate};
+use psd::physics::specimen::{Bilinear, BilinearCurve, Elastic, SpecimenModel};
+use psd::plan::Integrator;
+
+const SPECIMEN: Elastic = Elastic { stiffness: 327.65 };
+const STEPS: u64 = 100_000;
+const RUNS: u32 = 10_000;
+
+/// Example 1 of the paper with short steps.
+fn example_1() -> ImpactInput {
+    black_box(ImpactInput {
+        mass: 1.0,
+        damping: 0.0,
+        stiffness: SPECIMEN.stiffness,
+        striker_mass: 10.0,
+        striker_velocity: 1.0,
+        gap: 0.0,
+        gravity: 0.0,
+        time_step: 1e-6,
+        max_tangent_ratio: 2.0,
+        law: ContactLaw::Rigid,
+        integrator: Integrator::Tangent,
+        operator_stiffness: SPECIMEN.stiffness,
+        i_modification: false,
+        force_noise: 0.0,
+        resolution: 0.0,
+    })
+}
+
+/// Time of this thread on a processor \[s\].
+fn own_time() -> f64 {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").expect("Linux");
+    let nanoseconds = text.split(' ').next().and_then(|text| text.parse().ok());
+    nanoseconds.unwrap_or(f64::NAN) * 1e-9
+}
+
+/// Time of ended children on all processors \[s\], in hundredths.
+fn time_of_children() -> f64 {
+    let text = std::fs::read_to_string("/proc/self/stat").expect("Linux");
+    let after_name = text.rsplit(')').next().unwrap_or_default();
+    let ticks = after_name.split_whitespace().skip(13).take(2);
+    ticks
+        .filter_map(|text| text.parse::<f64>().ok())
+        .sum::<f64>()
+        * 0.01
+}
+
+/// The shortest of some times of a piece of work \[s\].
+fn fastest(times: usize, mut work: impl FnMut()) -> f64 {
+    let mut least = f64::INFINITY;
+    for _ in 0..times {
+        let before = own_time();
+        work();
+        least = least.min(own_time() - before);
+    }
+    least
+}
+
+/// Mean time of a psd process \[s\].
+fn process(times: u32, arguments: &[&str]) -> f64 {
+    let before = time_of_children();
+    for _ in 0..times {
+        let status = Command::new(env!("CARGO_BIN_EXE_psd"))
+            .args(arguments)
+            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .status();
+        assert!(status.is_ok_and(|status| status.success()), "{arguments:?}");
+    }
+    (time_of_children() - before) / f64::from(times)
+}
+
+/// Impacts with scattered speeds, all in lanes.
+fn impacts(law: ContactLaw, specimen: &SpecimenModel) -> Vec<Impact> {
+    let impact = |run: u32| Impact {
+        input: ImpactInput {
+            striker_velocity: 1.0 + 1e-5 * f64::from(run),
+            time_step: 1e-4,
+            law,
+            ..example_1()
+        },
+        specimen: specimen.clone(),
+    };
+    (0..RUNS).map(impact).collect()
+}
+
+fn line(case: &str, peer: &str, goal: &str, today: f64, unit: &str) {
+    println!("| {case} | {peer} | {goal} | {today:.1} {unit} |");
+}
+
+fn main() {
+    println!("| case | peer | goal | here |\n|---|---|---|---|");
+    #[expect(clippy::cast_precision_loss, reason = "a number of steps")]
+    let per_step = 1e9 / STEPS as f64;
+    let input = example_1();
+    let bare = fastest(100, || {
+        black_box(simulate(&input, &mut { SPECIMEN }, None, STEPS, &mut ())).expect("an impact");
+    });
+    line(
+        "impact step, bare",
+        "Numba 11 ns",
+        "",
+        bare * per_step,
+        "ns",
+    );
+    let rows = usize::try_from(STEPS).expect("fits");
+    let mut columns = Columns::default();
+    let recorded = fastest(100, || {
+        columns.prepare(rows);
+        simulate(&input, &mut { SPECIMEN }, None, STEPS, &mut columns).expect("an impact");
+    });
+    let peer = "OpenSees 2.6–3.3 µs";
+    line(
+        "impact step, 8 columns recorded",
+        peer,
+        "≤ 13 ns",
+        recorded * per_step,
+        "ns",
+    );
+
+    let elastic = SpecimenModel::Elastic(SPECIMEN);
+    let yielding = SpecimenModel::Bilinear(Bilinear::new(BilinearCurve {
+        stiffness: SPECIMEN.stiffness,
+        yield_force: 20.0,
+        post_yield_ratio: 0.1,
+    }));
+    let limited = ContactLaw::Limit { force: 100.0 };
+    for (name, law, specimen, goal) in [
+        ("elastic", ContactLaw::Rigid, &elastic, "≤ 70 ms with AVX2"),
+        ("bilinear", ContactLaw::Rigid, &yielding, ""),
+        ("elastic, limit force", limited, &elastic, ""),
+    ] {
+        let impacts = impacts(law, specimen);
+        let study = fastest(5, || {
+            black_box(batch::run(&impacts, Some(Until::Duration), 3000));
+        });
+        let case = format!("study of 10⁴ × 3000 steps, {name}");
+        line(
+            &case,
+            "NumPy 0.39 s, OpenSees 104 s",
+            goal,
+            study * 1e3,
+            "ms",
+        );
+    }
+
+    let check = process(50, &["check", "plans/01_first_blow.psd"]);
+    line(
+        "`psd check`, small plan, process",
+        "",
+        "≤ 5 ms",
+        check * 1e3,
+        "ms",
+    );
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().display().to_string();
+    let run = ["run", "plans/example_1.psd", "--force", "--out", &out];
+    let report = process(10, &run);
+    line(
+        "`psd run`, full report, process",
+        "",
+        "≤ 250 ms",
+        report * 1e3,
+        "ms",
+    );
+}
