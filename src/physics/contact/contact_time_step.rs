@@ -78,17 +78,17 @@ mod tests {
     use crate::structure::frame::Frame;
     use crate::structure::frame_properties::FrameProperties;
 
-    const fn hertz(stiffness: f64) -> Option<ContactSpring> {
-        Some(ContactSpring {
+    const fn hertz(stiffness: f64) -> ContactSpring {
+        ContactSpring {
             stiffness,
             exponent: 1.5,
-        })
+        }
     }
 
     const HARD: Approach = Approach {
         striker_mass: 10.0,
         speed: 1.0,
-        spring: hertz(1e9),
+        spring: Some(hertz(1e9)),
     };
 
     #[test]
@@ -118,7 +118,7 @@ mod tests {
                 Approach {
                     striker_mass: 0.5,
                     speed: 3.0,
-                    spring: hertz(2e8),
+                    spring: Some(hertz(2e8)),
                 },
             ),
             (
@@ -127,7 +127,7 @@ mod tests {
                 Approach {
                     striker_mass: 1.0,
                     speed: 1e-6,
-                    spring: hertz(1.0),
+                    spring: Some(hertz(1.0)),
                 },
             ),
         ] {

@@ -17,19 +17,22 @@ pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<Contact> {
     };
     let context = checker.context_of(block, entry);
     let chosen = checker.choice(block, schema::CONTACT.name)?;
-    let mut numbers = Vec::new();
+    let (mut numbers, mut is_faulty) = (Vec::new(), false);
     for field in chosen.variant.arguments {
-        let is_given = field.default_number().is_some() || chosen.span(field.name).is_some();
-        let number = is_given.then(|| checker.argument(&chosen, field.name, context));
-        numbers.push((field.name, number));
+        if field.default_number().is_none() && chosen.span(field.name).is_none() {
+            continue;
+        }
+        match checker.argument(&chosen, field.name, context) {
+            Some(number) => numbers.push((field.name, number)),
+            None => is_faulty = true,
+        }
     }
-    let is_faulty = |number: &Option<Option<Formula>>| matches!(number, Some(None));
-    if numbers.iter().any(|(_, number)| is_faulty(number)) {
+    if is_faulty {
         return None;
     }
     Contact::of_numbers(chosen.variant.name, |argument| {
-        let named = numbers.iter_mut().find(|(name, _)| *name == argument);
-        named.and_then(|(_, number)| number.take().flatten())
+        let index = numbers.iter().position(|(name, _)| *name == argument)?;
+        Some(numbers.swap_remove(index).1)
     })
 }
 
