@@ -548,6 +548,7 @@ fn plan() -> Plan {
         report: Report {
             title: None,
             figures,
+            figures_named: true,
             formats: Vec::new(),
             sign: vec!["Test engineer".into(), "Quality".into()],
             annexes: Annex::ALL.to_vec(),
