@@ -31,6 +31,7 @@ pub(crate) fn facts(impact: &Impact) -> Facts<'_> {
             },
             figures: figures::FIGURES,
             shared_figures: figures::SHARED,
+            unprinted: [shared.unprinted, report::undamped(point)].concat(),
             ..shared
         },
         ImpactTarget::Storey(storey) => Facts {

@@ -25,6 +25,7 @@ const SUPPORTING: &[FigureKind] = &[
     FigureKind::Tracking,
     FigureKind::BaseShear,
     FigureKind::Ground,
+    FigureKind::Modes,
 ];
 
 /// The other figures: every one that the plan names, or a few of each procedure.

@@ -79,9 +79,13 @@ fn rows(run: &Run<'_>) -> Vec<Row> {
         .collect()
 }
 
-/// Whether a value of this section is marked as an estimate.
-pub(super) fn prints_mark(run: &Run<'_>) -> bool {
-    rows(run).iter().any(|row| row.marked)
+/// The note on the mark † if only the annex with all results has a marked value.
+pub(super) fn mark_of_the_annex(source: &Source<'_>, body: &mut Vec<Block>) {
+    let run = source.run;
+    let explained = super::requirements::prints_mark(run) || rows(run).iter().any(|row| row.marked);
+    if !explained && run.record.procedures.iter().any(budget_table::is_marked) {
+        body.push(Block::note(common::MARKED));
+    }
 }
 
 /// A row of the table.

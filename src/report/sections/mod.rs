@@ -50,7 +50,10 @@ const SECTIONS: &[(Division, &[Section])] = &[
             statements::section,
         ],
     ),
-    (Division::Annex(Annex::Results), &[results::section]),
+    (
+        Division::Annex(Annex::Results),
+        &[results::section, headline::mark_of_the_annex],
+    ),
     (Division::Annex(Annex::Budgets), &[results::budgets]),
     (
         Division::Annex(Annex::Figures),

@@ -47,6 +47,15 @@ pub(crate) fn unprinted(contact: &Contact) -> Vec<&'static str> {
     [&of_contact, &of_method[..], stepping::report::TRACKING].concat()
 }
 
+/// The energy of a damping that the plan states as zero.
+pub(crate) fn undamped(point: &PointTarget) -> Vec<&'static str> {
+    if point.damping.constant() == Some(0.0) {
+        vec![schema::DAMPING_ENERGY.name]
+    } else {
+        Vec::new()
+    }
+}
+
 /// The blocks below its results.
 pub(crate) fn report(
     run: &Run<'_>,
@@ -211,6 +220,9 @@ pub(crate) fn contact_work(run: &Run<'_>, index: usize) -> &'static str {
     }
 }
 
+/// The energy of the damping in the balance; omitted without damping.
+const DAMPING: &str = "damping, ∫CẊ dX";
+
 /// The balance of the striker's energy at the end of the run.
 pub(crate) fn energy_balance(
     contact_work: &'static str,
@@ -222,14 +234,17 @@ pub(crate) fn energy_balance(
     };
     let e = last.energies;
     let input = first.energies.striker + e.weight;
-    let parts = [
+    let mut parts = vec![
         ("striker, kinetic", e.striker),
         ("structure, kinetic", e.structure),
         ("restoring force, ∫R dX", e.restoring),
-        ("damping, ∫CẊ dX", e.damping),
+        (DAMPING, e.damping),
         (contact_work, e.contact_loss),
         ("integration error", e.error),
     ];
+    if e.damping == 0.0 {
+        parts.retain(|(name, _)| *name != DAMPING);
+    }
     let name = if e.weight == 0.0 {
         "input, ½MsV₀²"
     } else {

@@ -7,7 +7,7 @@ pub(crate) mod line_fit;
 pub(super) mod read;
 pub(crate) mod tracking;
 
-use super::{Source, headline, requirements, with_spaces};
+use super::{Source, with_spaces};
 use crate::plan::formula::{Estimate, Part, ProcedureId, ResultReference, ResultValue};
 use crate::procedures;
 use crate::record::{NamedResult, ProcedureRecord};
@@ -35,10 +35,6 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
         inputs(procedure, body);
         results(run, index, procedure, body);
         procedures::report(run, index, procedure, body);
-    }
-    let explained = requirements::prints_mark(run) || headline::prints_mark(run);
-    if !explained && run.record.procedures.iter().any(budget_table::is_marked) {
-        body.push(Block::note(common::MARKED));
     }
 }
 
