@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
+use psd::study::collection::merge;
 use rustix::process::{Pid, Signal, kill_process};
 use tempfile::TempDir;
 
@@ -17,8 +18,8 @@ use crate::study::PLAN;
 
 /// Longest wait for anything.
 const PATIENCE: Duration = Duration::from_mins(3);
-/// Some seconds of one processor, one by one.
-const RUNS: &str = "20000";
+/// Some seconds of one processor.
+const RUNS: &str = "30000";
 
 /// The three services, and the folder with their configuration.
 struct Cluster {
@@ -177,6 +178,14 @@ fn task(shard: u32) -> Option<Pid> {
     })
 }
 
+/// Whether the runs of a shard are simulated now.
+fn is_simulated(work: &Path, shard: u32) -> bool {
+    let start = format!("shard-{shard:03}-of-008.piece");
+    let files = fs::read_dir(work.join("shards")).unwrap().flatten();
+    let mut names = files.map(|file| file.file_name().to_string_lossy().into_owned());
+    names.any(|name| name.starts_with(&start) && name.ends_with(".part"))
+}
+
 #[test]
 fn an_array_that_loses_shards_has_the_bytes_of_one_process() {
     if !needs::slurm() {
@@ -185,7 +194,6 @@ fn an_array_that_loses_shards_has_the_bytes_of_one_process() {
     let cluster = Cluster::start();
     let work = cluster.path("work");
     fs::create_dir(&work).unwrap();
-    // Every time step by itself: a batch of runs would be over before it is killed.
     fs::write(work.join("plan.psd"), PLAN.replace("10 ms", "0.2 ms")).unwrap();
     let psd = |arguments: &[&str]| {
         let mut command = cluster.command(PSD);
@@ -212,49 +220,62 @@ fn an_array_that_loses_shards_has_the_bytes_of_one_process() {
     whole.current_dir(&work).stderr(Stdio::null());
     let mut whole = whole.stdout(Stdio::null()).spawn().unwrap();
 
-    // Slurm's own notice of the time limit for shard 1, TERM for shard 3, KILL for shard 5: each while its runs are simulated.
-    let runs = |number: u32| {
-        let name = format!("shard-{number:03}-of-008.piece");
-        let files = fs::read_dir(work.join("shards")).unwrap().flatten();
-        let mut names = files.map(|file| file.file_name().to_string_lossy().into_owned());
-        names.any(|found| found.starts_with(&name))
-    };
-    for (number, signal) in [(1, "USR1"), (3, "TERM"), (5, "KILL")] {
-        until("the runs of a shard", || runs(number));
-        if signal == "KILL" {
-            kill_process(task(number).expect("a task"), Signal::KILL).unwrap();
-        } else {
-            let mut cancel = cluster.command("scancel");
-            cancel.args([format!("--signal={signal}"), "--batch".to_owned()]);
-            let output = cancel.arg(format!("{job}_{number}")).output().unwrap();
-            assert!(output.status.success(), "{}", printed(&output));
-        }
+    // The notice of the time limit, TERM and KILL: each for a shard whose runs are simulated, as soon as there is one.
+    let mut hit: Vec<u32> = Vec::new();
+    for signal in ["USR1", "TERM", "KILL"] {
+        until("the runs of a shard", || {
+            let found = (1..=8)
+                .filter(|number| !hit.contains(number) && is_simulated(&work, *number))
+                .find(|number| {
+                    if signal == "KILL" {
+                        return task(*number)
+                            .is_some_and(|id| kill_process(id, Signal::KILL).is_ok());
+                    }
+                    let mut cancel = cluster.command("scancel");
+                    cancel.args([format!("--signal={signal}"), "--batch".to_owned()]);
+                    let output = cancel.arg(format!("{job}_{number}")).output().unwrap();
+                    output.status.success()
+                });
+            hit.extend(found);
+            found.is_some()
+        });
     }
-    let status = psd(&["status", "shards"]);
-    assert_eq!(status.status.code(), Some(75), "{}", printed(&status));
-    let text = printed(&status);
+    let [back, terminated, killed] = hit[..] else {
+        unreachable!("three signals")
+    };
+    // The runs of the task that was terminated are durable.
+    let mut text = String::new();
+    until("durable runs", || {
+        let status = psd(&["status", "shards"]);
+        text = printed(&status);
+        status.status.code() == Some(75)
+    });
     assert!(text.contains("in the queue of Slurm: "), "{text}");
     until("the array", || cluster.is_idle());
 
-    // The merge that waited for the array names what is missing. Shard 1 was put back, and has gone on.
+    // The merge that waited for the array names what is missing. The first shard was put back, and has gone on.
     let log = |name: &str| fs::read_to_string(work.join("shards").join(name)).unwrap();
-    assert!(log(&format!("{job}_1.log")).contains("STOPPED"));
-    assert!(log(&format!("{job}_3.log")).contains("STOPPED"));
+    assert!(log(&format!("{job}_{back}.log")).contains("STOPPED"));
+    assert!(log(&format!("{job}_{terminated}.log")).contains("STOPPED"));
     let merging = job.parse::<u32>().unwrap() + 1;
     let text = log(&format!("{merging}.log"));
-    assert!(text.contains("2 of 8 shards are missing: 3,5"), "{text}");
+    let mut missing = vec![terminated, killed];
+    missing.sort_unstable();
+    let listed = format!("2 of 8 shards are missing: {}", merge::listed(&missing));
+    assert!(text.contains(&listed), "{text}");
 
-    // One more is lost, and one is damaged.
-    fs::remove_file(shard(7)).unwrap();
-    let mut bytes = fs::read(shard(8)).unwrap();
-    let middle = bytes.len() / 2;
-    bytes[middle] ^= 1;
-    let sound = fs::read(shard(8)).unwrap();
+    // One more is lost.
+    let mut others = (1..=8).filter(|number| !hit.contains(number));
+    let (lost, damaged) = (others.next().unwrap(), others.next().unwrap());
+    fs::remove_file(shard(lost)).unwrap();
+    missing.push(lost);
+    missing.sort_unstable();
     let merge = psd(&["merge", "shards"]);
     assert_eq!(merge.status.code(), Some(3), "{}", printed(&merge));
     let text = printed(&merge);
-    let line = "sbatch --array=3,5,7 shards/array.sbatch";
-    assert!(text.contains(line), "{text}");
+    let numbers = merge::listed(&missing);
+    let line = format!("sbatch --array={numbers} shards/array.sbatch");
+    assert!(text.contains(&line), "{text}");
     let status = psd(&["status", "shards"]);
     assert!(
         printed(&status).contains(&format!("submit again: {line}")),
@@ -263,24 +284,31 @@ fn an_array_that_loses_shards_has_the_bytes_of_one_process() {
     );
     let again = cluster
         .command("sh")
-        .args(["-c", line])
+        .args(["-c", &line])
         .current_dir(&work)
         .output();
     let again = again.unwrap();
     assert!(again.status.success(), "{}", printed(&again));
     until("the shards that were lost", || cluster.is_idle());
 
-    fs::write(shard(8), bytes).unwrap();
+    // One is damaged.
+    let sound = fs::read(shard(damaged)).unwrap();
+    let mut bytes = sound.clone();
+    bytes[sound.len() / 2] ^= 1;
+    fs::write(shard(damaged), bytes).unwrap();
     let merge = psd(&["merge", "shards"]);
     assert_eq!(merge.status.code(), Some(3), "{}", printed(&merge));
     let text = printed(&merge);
-    assert!(text.contains("shard-008-of-008.parquet"), "{text}");
-    fs::write(shard(8), sound).unwrap();
+    assert!(
+        text.contains(&format!("shard-{damaged:03}-of-008.parquet")),
+        "{text}"
+    );
+    fs::write(shard(damaged), sound).unwrap();
     let merge = psd(&["merge", "shards"]);
     assert_eq!(merge.status.code(), Some(0), "{}", printed(&merge));
 
     assert!(whole.wait().unwrap().success());
     let file = |folder: &str| fs::read(work.join(folder).join("study.parquet")).unwrap();
     assert!(file("shards") == file("whole"), "the bytes differ");
-    assert!(Path::new(&work.join("shards/summary.json")).exists());
+    assert!(work.join("shards/summary.json").exists());
 }

@@ -172,7 +172,7 @@ impl Lanes {
             clippy::cast_sign_loss,
             reason = "a count below 2^53"
         )]
-        let contacts = self.contacts.contacts[lane] as u64;
+        let contacts = self.contacts.count[lane] as u64;
         ImpactSummary {
             max_displacement: state.max_displacement[lane],
             time_of_max_displacement: state.time_of_max_displacement[lane],

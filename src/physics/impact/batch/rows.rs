@@ -67,7 +67,7 @@ rows! {
 
 rows! {
     /// The number of contacts, and of the first one: begun, ended, closing speed before it, closing speed after it.
-    Contacts { contacts, begun, ended, closing, separating }
+    Contacts { count, begun, ended, closing, separating }
 }
 
 /// When an impact ends.

@@ -200,7 +200,7 @@ fn follow_first_contact(from: &States, to: &States, contacts: &mut Contacts) {
         contacts.ended[lane] = select(ends_now, YES, over);
         contacts.begun[lane] = select(touching, YES, begun);
         let begins = touching & (from.touching[lane] == NO);
-        contacts.contacts[lane] += select(begins, 1.0, 0.0);
+        contacts.count[lane] += select(begins, 1.0, 0.0);
     }
 }
 
