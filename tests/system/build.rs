@@ -9,7 +9,7 @@ use crate::stage::PSD;
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 #[test]
-fn anybody_reckons_the_name_of_the_program_from_its_sources() {
+fn the_identifier_of_the_program_follows_from_its_sources() {
     let page = fs::read_to_string(Path::new(ROOT).join("docs/record.md")).unwrap();
     let script = page
         .split("```")
@@ -19,8 +19,8 @@ fn anybody_reckons_the_name_of_the_program_from_its_sources() {
     shell
         .args(["-c", script.trim_start_matches("sh")])
         .current_dir(ROOT);
-    let reckoned = String::from_utf8(shell.output().unwrap().stdout).unwrap();
-    let digest = reckoned
+    let calculated = String::from_utf8(shell.output().unwrap().stdout).unwrap();
+    let digest = calculated
         .split_whitespace()
         .next()
         .expect("it says a digest");
