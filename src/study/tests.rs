@@ -66,7 +66,7 @@ fn a_study_draws_a_ground_motion_record_for_each_run() {
     let mut counts = [0; 2];
     let mut drifts = [0.0; 2];
     for row in rows(&of, 40) {
-        let at = if row.inputs == [1.0] { 0 } else { 1 };
+        let at = usize::from(row.inputs != [1.0]);
         assert_eq!(row.inputs, [[1.0], [2.0]][at]);
         counts[at] += 1;
         drifts[at] = row.results[0].unwrap();

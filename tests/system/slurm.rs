@@ -182,8 +182,11 @@ fn task(shard: u32) -> Option<Pid> {
 fn is_simulated(work: &Path, shard: u32) -> bool {
     let start = format!("shard-{shard:03}-of-008.piece");
     let files = fs::read_dir(work.join("shards")).unwrap().flatten();
-    let mut names = files.map(|file| file.file_name().to_string_lossy().into_owned());
-    names.any(|name| name.starts_with(&start) && name.ends_with(".part"))
+    let mut paths = files.map(|file| file.path());
+    paths.any(|path| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        name.starts_with(&start) && path.extension().is_some_and(|end| end == "part")
+    })
 }
 
 #[test]

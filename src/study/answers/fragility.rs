@@ -140,7 +140,7 @@ impl StripeCounts {
 /// None of a study.
 pub fn answer(
     metadata: &Metadata,
-    counts: StripeCounts,
+    counts: &StripeCounts,
     confidence: Confidence,
 ) -> Option<FragilityAnswer> {
     let Kind::Fragility(Stripes {

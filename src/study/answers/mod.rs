@@ -140,10 +140,10 @@ impl Pass {
         let of_probabilities = self.counts.confidence(confidence);
         let studied = studied::answers(metadata, &self.counts, subset.as_ref(), confidence);
         // The runs of stripes and of levels are not a sample of the results.
-        let results = if !is_a_sample(&metadata.kind) {
-            Vec::new()
-        } else {
+        let results = if is_a_sample(&metadata.kind) {
             self.distributions.answers(metadata, &self.kept, confidence)
+        } else {
+            Vec::new()
         };
         Answers {
             runs: self.counts.counts().runs,
@@ -161,7 +161,7 @@ impl Pass {
             results,
             reasons: self.reasons.answers(),
             subset,
-            fragility: fragility::answer(metadata, self.stripes, confidence),
+            fragility: fragility::answer(metadata, &self.stripes, confidence),
             kept: self.kept,
         }
     }
