@@ -48,11 +48,14 @@ impl Job {
             "#SBATCH --array=1-{}{throttle}\n\
              #SBATCH --signal=B:USR1@{NOTICE}\n\
              #SBATCH --requeue\n\n\
+             stop() {{ stopped=1; [ -z \"$study\" ] || kill -TERM \"$study\"; }}\n\
+             trap stop TERM\n\
+             # The time limit is near.\n\
+             trap 'again=1; stop' USR1\n\
              {} --shard env/{} --jobs \"${{SLURM_CPUS_PER_TASK:-{}}}\" &\n\
              study=$!\n\
-             trap 'kill -TERM \"$study\"' TERM\n\
-             # The time limit is near.\n\
-             trap 'again=1; kill -TERM \"$study\"' USR1\n\
+             # A signal that came before psd.\n\
+             [ -z \"$stopped\" ] || kill -TERM \"$study\"\n\
              wait \"$study\"; code=$?\n\
              # A signal ends `wait`, not psd.\n\
              while kill -0 \"$study\" 2>/dev/null; do wait \"$study\"; code=$?; done\n\
@@ -172,7 +175,7 @@ mod tests {
         };
         program(
             "psd",
-            "trap 'exit 75' TERM; touch started; while :; do sleep 0.05; done",
+            "trap 'exit 75' TERM; touch started; for turn in $(seq 1200); do sleep 0.05; done",
         );
         program("scontrol", "echo \"$@\" > requeued");
         let script = path("array.sbatch");
