@@ -9,6 +9,7 @@ use psd::physics::impact::batch::{self, Impact};
 use psd::physics::impact::{Columns, ImpactInput, Until, simulate};
 use psd::physics::specimen::{Bilinear, BilinearCurve, Elastic, SpecimenModel};
 use psd::plan::Integrator;
+use rustix::time::{ClockId, clock_gettime};
 
 const SPECIMEN: Elastic = Elastic { stiffness: 327.65 };
 const STEPS: u64 = 100_000;
@@ -37,9 +38,10 @@ fn example_1() -> ImpactInput {
 
 /// Time of this thread on a processor \[s\].
 fn own_time() -> f64 {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").expect("Linux");
-    let nanoseconds = text.split(' ').next().and_then(|text| text.parse().ok());
-    nanoseconds.unwrap_or(f64::NAN) * 1e-9
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    #[expect(clippy::cast_precision_loss, reason = "less than 2^53 ns")]
+    let [whole, nanoseconds] = [time.tv_sec, time.tv_nsec].map(|part| part as f64);
+    whole + nanoseconds * 1e-9
 }
 
 /// Time of ended children on all processors \[s\], in hundredths.
