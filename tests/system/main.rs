@@ -30,6 +30,5 @@ mod slurm;
 mod stage;
 mod study;
 mod terminal;
-mod tutorial;
 mod twice;
 mod unasked;

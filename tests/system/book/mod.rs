@@ -1,5 +1,7 @@
 //! mdBook builds the book of `docs/` without a warning, and finds its pages by search. Skipped without mdBook.
 
+mod emulator;
+
 use std::fs;
 use std::process::Command;
 
