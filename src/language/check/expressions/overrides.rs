@@ -273,15 +273,7 @@ impl<'a> Checker<'a> {
         };
         let head = self.scope.blocks[owner].block.head;
         let typed = match setting {
-            Setting::Written(set) => {
-                let context = Context {
-                    entry: None,
-                    reads: Reads::Nothing("a setting"),
-                    critical: false,
-                };
-                self.single(set, context)
-                    .and_then(|typed| self.expect(typed, dimension, name, set))
-            }
+            Setting::Written(set) => self.setting(set, dimension, name),
             Setting::Bound(quantity) if quantity.dimension == dimension => {
                 let formula = Formula::Constant(quantity.value);
                 Some(Typed::number(formula, dimension, head))
@@ -291,6 +283,17 @@ impl<'a> Checker<'a> {
         if let Some(typed) = typed {
             self.results.push((reference, typed));
         }
+    }
+
+    /// The number of a setting, of this dimension. It reads nothing of the plan.
+    fn setting(&mut self, set: &'a Expr, dimension: Dimension, name: &str) -> Option<Typed> {
+        let context = Context {
+            entry: None,
+            reads: Reads::Nothing("a setting"),
+            critical: false,
+        };
+        let typed = self.single(set, context)?;
+        self.expect(typed, dimension, name, set)
     }
 
     /// The value given from outside the plan for a field or argument, checked as the plan's own would be. None: there is none.
@@ -306,16 +309,7 @@ impl<'a> Checker<'a> {
         let (name, setting) = self.overrides.get(&written.span).copied()?;
         let dimension = field.dimension()?;
         Some(match setting {
-            Setting::Written(set) => {
-                let context = Context {
-                    entry: None,
-                    reads: Reads::Nothing("a setting"),
-                    critical: false,
-                };
-                self.single(set, context)
-                    .and_then(|typed| self.expect(typed, dimension, name, set))
-                    .map(|typed| (typed, set))
-            }
+            Setting::Written(set) => self.setting(set, dimension, name).map(|typed| (typed, set)),
             Setting::Bound(quantity) => self
                 .bound(field, *quantity, written.span)
                 .map(|typed| (typed, written)),
