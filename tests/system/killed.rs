@@ -9,7 +9,7 @@ use crate::needs;
 use crate::stage::{PSD, Stage, wait};
 
 /// Number of concurrent runs: nearly all of their time is waiting.
-const AT_ONCE: usize = 16;
+const AT_ONCE: usize = 8;
 
 /// The event at which the program is killed.
 #[derive(Clone, Copy, Debug)]
@@ -67,6 +67,7 @@ fn one(whole: &Whole, at: At, count: usize) -> bool {
     if !killed(&stage, at, count) {
         return false;
     }
+    stage.after_hosts();
     let resumed = wait(&mut stage.resume_with(&[]));
     if stage.moves().is_empty() {
         // Before the run log contains the rig, the run cannot be resumed, and a message says so.

@@ -228,6 +228,19 @@ impl Stage {
             .count()
     }
 
+    /// Waits until the emulator has closed the connection of every host that ended, and prepared for the next.
+    pub fn after_hosts(&self) {
+        let count = |what: &str| {
+            self.log()
+                .lines()
+                .filter(|line| line.ends_with(what))
+                .count()
+        };
+        until("the last host has left", || {
+            count("(opened)") == count("(host left)")
+        });
+    }
+
     /// Waits until this number of moves is done.
     pub fn after_moves(&self, count: usize) {
         until("the run moves", || self.moves().len() >= count);

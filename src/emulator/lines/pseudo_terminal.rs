@@ -3,7 +3,7 @@
 
 use std::fs::{self, File};
 use std::io::{self, Error, ErrorKind};
-use std::os::fd::OwnedFd;
+use std::os::fd::{AsFd as _, BorrowedFd, OwnedFd};
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 
@@ -80,6 +80,10 @@ impl Carrier for PseudoTerminal {
         fs::rename(&beside, &self.link)?;
         (self.master, self.end) = (master, end);
         Ok(())
+    }
+
+    fn descriptor(&self) -> BorrowedFd<'_> {
+        self.master.as_fd()
     }
 }
 

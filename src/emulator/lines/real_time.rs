@@ -2,12 +2,19 @@
 //! the controllers until it is stopped. It knows no protocol. It accesses a line only through [`Carrier`].
 
 use std::io;
-use std::time::{Duration, Instant};
+use std::os::fd::BorrowedFd;
+use std::time::Instant;
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::io::Errno;
 
 use crate::emulator::RigEmulator;
 
-/// Interval between two checks of the lines.
-const NAP: Duration = Duration::from_millis(1);
+/// Longest interval between two checks of the lines, 4 ms. Bytes of a host end it.
+const NAP: Timespec = Timespec {
+    tv_sec: 0,
+    tv_nsec: 4_000_000,
+};
 /// Bytes stored for a host that does not read. Further bytes are lost, as on a wire.
 const OUTBOX: usize = 4 << 20;
 
@@ -36,6 +43,9 @@ pub trait Carrier: Send {
     /// # Errors
     /// The line cannot be served any more.
     fn renew(&mut self) -> io::Result<()>;
+
+    /// The descriptor of the connected host.
+    fn descriptor(&self) -> BorrowedFd<'_>;
 }
 
 /// The conditions that end the serving.
@@ -83,10 +93,23 @@ pub fn serve(
             return Ok(());
         }
         if !busy {
-            std::thread::sleep(NAP);
+            wait_for_bytes(emulator, &lines)?;
         }
     }
     Ok(())
+}
+
+/// Waits until a connected host sends bytes or disconnects, at most [`NAP`].
+fn wait_for_bytes(emulator: &RigEmulator, lines: &[Served<'_>]) -> io::Result<()> {
+    // Unread bytes of a line that does not read would end the wait at once.
+    let mut hosts: Vec<PollFd<'_>> = (lines.iter().enumerate())
+        .filter(|(at, line)| line.present && emulator.reads(*at))
+        .map(|(_, line)| PollFd::from_borrowed_fd(line.carrier.descriptor(), PollFlags::IN))
+        .collect();
+    match poll(&mut hosts, Some(&NAP)) {
+        Ok(_) | Err(Errno::INTR) => Ok(()),
+        Err(error) => Err(error.into()),
+    }
 }
 
 impl Served<'_> {

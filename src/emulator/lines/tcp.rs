@@ -3,6 +3,7 @@
 
 use std::io::{self, Error, ErrorKind, Read as _, Write as _};
 use std::net::{SocketAddr, TcpListener, TcpStream, ToSocketAddrs as _};
+use std::os::fd::{AsFd as _, BorrowedFd};
 
 use super::real_time::Carrier;
 
@@ -94,6 +95,13 @@ impl Carrier for TcpLine {
     fn renew(&mut self) -> io::Result<()> {
         self.stream = None;
         Ok(())
+    }
+
+    fn descriptor(&self) -> BorrowedFd<'_> {
+        match &self.stream {
+            Some(stream) => stream.as_fd(),
+            None => self.listener.as_fd(),
+        }
     }
 }
 
