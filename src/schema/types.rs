@@ -227,7 +227,7 @@ pub struct ResultKind {
 }
 
 /// One variant of a choice, with its arguments.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Variant {
     pub name: &'static str,
     pub arguments: &'static [Field],
