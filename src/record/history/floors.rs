@@ -81,14 +81,14 @@ impl<F: Floors> Floors for &F {
 }
 
 /// Drift of each storey \[m\], from the displacement of each floor \[m\].
-pub(super) fn drift_of(floors: &[f64]) -> Vec<f64> {
+pub(crate) fn drift_of(floors: &[f64]) -> Vec<f64> {
     let mut drift = vec![0.0; floors.len()];
     drifts(floors, &mut drift);
     drift
 }
 
 /// Shear of each storey \[N\], from the force of each floor \[N\].
-pub(super) fn shear_of(floors: &[f64]) -> Vec<f64> {
+pub(crate) fn shear_of(floors: &[f64]) -> Vec<f64> {
     let mut shear = vec![0.0; floors.len()];
     shears(floors, &mut shear);
     shear

@@ -2,6 +2,8 @@
 //! In: a solver at the present position of the rig. Out: the history and its summary. `step_loop` takes the steps on the rig; the
 //! equations are in `physics`.
 
+pub(crate) mod batched;
+
 use super::summary::StruckSummary;
 use crate::physics::impact::ImpactSolver;
 use crate::physics::integrator::tangents::HasTangents;
