@@ -418,7 +418,7 @@ pub(crate) fn readings(history: &History, give: &mut dyn FnMut(&[f64], &[f64])) 
         }
         History::Shake(shake) => {
             let steps = shake.steps.iter();
-            steps.for_each(|step| give(&step.displacement, &step.restoring_force));
+            steps.for_each(|step| give(&step.floors.displacement, &step.floors.restoring_force));
         }
         History::FrameUnload(steps) => {
             let steps = steps.iter();
