@@ -81,7 +81,7 @@ pub const RENAMED: &[Renamed] = &[
     },
 ];
 
-/// The row of a name at a place that `at` accepts.
+/// The row of a name at a position that `at` accepts.
 #[must_use]
 pub fn renamed_at(name: &str, at: impl Fn(NameRole) -> bool) -> Option<&'static Renamed> {
     RENAMED.iter().find(|row| row.old == name && at(row.role))

@@ -291,13 +291,13 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
                 path.display()
             )));
         };
-        let nobody = record_file::Circumstances::default();
+        let none_known = record_file::Circumstances::default();
         let now = record_file::header(
             &given,
             was.device.clone(),
             &options,
             &provenance::of(&given, options.date.as_deref()),
-            nobody,
+            none_known,
         );
         differences.extend(changed_files(recorded, &now));
         header = Header {
