@@ -74,7 +74,7 @@ fn changed(kind: &str) -> Vec<(&'static str, &'static str)> {
     let last = AT_THE_LAST_STEP.into_iter().filter(|_| {
         matches!(
             kind,
-            Kind::Procedure(ProcedureBlock::Impact) | Kind::Procedure(ProcedureBlock::Shake)
+            Kind::Procedure(ProcedureBlock::Impact | ProcedureBlock::Shake)
         )
     });
     let results = RENAMED

@@ -76,7 +76,7 @@ pub enum Command {
 
 impl Command {
     /// Runs it.
-    pub fn run(&self, settings: Settings) -> Result<Exit, Failure> {
+    pub(super) fn run(&self, settings: Settings) -> Result<Exit, Failure> {
         match self {
             Self::Run(arguments) => run::run(arguments, settings),
             Self::Resume(arguments) => run::resume::resume(arguments, settings),

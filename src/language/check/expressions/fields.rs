@@ -172,9 +172,9 @@ impl<'a> Checker<'a> {
         };
         let critical = matches!(
             declared.kind.kind,
-            Kind::Procedure(ProcedureBlock::Impact)
-                | Kind::Procedure(ProcedureBlock::Escalate)
-                | Kind::Procedure(ProcedureBlock::Shake)
+            Kind::Procedure(
+                ProcedureBlock::Impact | ProcedureBlock::Escalate | ProcedureBlock::Shake
+            )
         ) && declared.block.fields[entry].key.node == TIME_STEP.name;
         Context {
             entry: Some((block, entry)),

@@ -70,8 +70,7 @@ pub fn find_input<'a>(scope: &Scope<'a>, path: &[&str]) -> Result<InputLocation<
         (declared.kind.result(name), declared.procedure, rest)
         && matches!(
             declared.kind.kind,
-            Kind::Procedure(ProcedureBlock::StiffnessRamp)
-                | Kind::Procedure(ProcedureBlock::DampingSweep)
+            Kind::Procedure(ProcedureBlock::StiffnessRamp | ProcedureBlock::DampingSweep)
         )
         && result.measured
         && !result.list

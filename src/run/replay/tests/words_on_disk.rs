@@ -193,7 +193,7 @@ fn every_body_has_its_words_on_disk() {
                         "noise": {"force": 0.5, "resolution": 1e-6}, "own_speed": 1e-3,
                         "last_move": {"id": 4, "target": target}, "datum": [0.05], "said": ["OK"]
                     })
-                }))
+                }));
             }
             EntryKind::Intent => stable::<IntentBody>(&[json!({
                 "n": 1, "t": 0.5, "to": [1e-3], "speed": -1e-3, "said": [1e-3], "rate": 1e-3,
