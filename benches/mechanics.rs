@@ -1,41 +1,17 @@
 //! Cost of a step: example 1 at 1 µs for 100,000 steps, bare, recorded, and step by step as with a rig; and a study of 10,000 impacts
 //! with 3000 steps each. Items are steps.
 
-use std::hint::black_box;
+mod common;
 
+use common::{SPECIMEN, STEPS, example_1};
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use psd::physics::contact::ContactLaw;
 use psd::physics::impact::batch::{self, Impact};
 use psd::physics::impact::{Columns, ImpactInput, ImpactSolver, Until, simulate};
-use psd::physics::specimen::{Elastic, RestoringForce, SpecimenModel};
-use psd::plan::Integrator;
-
-const STEPS: u64 = 100_000;
-const SPECIMEN: Elastic = Elastic { stiffness: 327.65 };
+use psd::physics::specimen::{RestoringForce, SpecimenModel};
 
 fn main() {
     divan::main();
-}
-
-fn example_1() -> ImpactInput {
-    black_box(ImpactInput {
-        mass: 1.0,
-        damping: 0.0,
-        stiffness: SPECIMEN.stiffness,
-        striker_mass: 10.0,
-        striker_velocity: 1.0,
-        gap: 0.0,
-        gravity: 0.0,
-        time_step: 1e-6,
-        max_tangent_ratio: 2.0,
-        law: ContactLaw::Rigid,
-        integrator: Integrator::Tangent,
-        operator_stiffness: SPECIMEN.stiffness,
-        i_modification: false,
-        force_noise: 0.0,
-        resolution: 0.0,
-    })
 }
 
 #[divan::bench]

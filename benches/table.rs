@@ -1,40 +1,19 @@
 //! The bench table: every case with its peer, its goal and what is measured here, `cargo bench --bench table`. Times are of the processor,
 //! the fastest of several: other work on the machine makes them longer, not shorter. The other benches have the details of one case each.
 
+mod common;
+
 use std::hint::black_box;
 use std::process::{Command, Stdio};
 
+use common::{SPECIMEN, STEPS, example_1};
 use psd::physics::contact::ContactLaw;
 use psd::physics::impact::batch::{self, Impact};
 use psd::physics::impact::{Columns, ImpactInput, Until, simulate};
-use psd::physics::specimen::{Bilinear, BilinearCurve, Elastic, SpecimenModel};
-use psd::plan::Integrator;
+use psd::physics::specimen::{Bilinear, BilinearCurve, SpecimenModel};
 use rustix::time::{ClockId, clock_gettime};
 
-const SPECIMEN: Elastic = Elastic { stiffness: 327.65 };
-const STEPS: u64 = 100_000;
 const RUNS: u32 = 10_000;
-
-/// Example 1 of the paper with short steps.
-fn example_1() -> ImpactInput {
-    black_box(ImpactInput {
-        mass: 1.0,
-        damping: 0.0,
-        stiffness: SPECIMEN.stiffness,
-        striker_mass: 10.0,
-        striker_velocity: 1.0,
-        gap: 0.0,
-        gravity: 0.0,
-        time_step: 1e-6,
-        max_tangent_ratio: 2.0,
-        law: ContactLaw::Rigid,
-        integrator: Integrator::Tangent,
-        operator_stiffness: SPECIMEN.stiffness,
-        i_modification: false,
-        force_noise: 0.0,
-        resolution: 0.0,
-    })
-}
 
 /// Time of this thread on a processor \[s\].
 fn own_time() -> f64 {

@@ -76,13 +76,13 @@ pub fn of_plan(
     let mut controllers = of_role("actuator", link.actuators());
     controllers.extend(of_role("load cell", link.load_cells()));
     let names: Vec<String> = controllers.iter().map(|(name, _)| name.clone()).collect();
-    let nobody = |fault: &&super::script::Fault| {
+    let unreachable = |fault: &&super::script::Fault| {
         fault.own_of.is_some() && fault.line_index(&names).is_none()
     };
     if let Some(axis) = script
         .faults
         .iter()
-        .find(nobody)
+        .find(unreachable)
         .and_then(|fault| fault.own_of)
     {
         return Err(NoStandIn::NoOwnDevice { axis: axis + 1 });

@@ -1,5 +1,6 @@
 //! Summaries of older versions. In: the text of a `summary.json`. Out: the same with the present names.
 
+use crate::plan::ProcedureBlock;
 use crate::schema::procedures::impact_series;
 use crate::schema::{self, Kind, NameRole, RENAMED};
 use serde_json::{Map, Value};
@@ -70,9 +71,12 @@ fn changed(kind: &str) -> Vec<(&'static str, &'static str)> {
     let Some(kind) = schema::block_of_words(&words).map(|block| block.kind) else {
         return Vec::new();
     };
-    let last = AT_THE_LAST_STEP
-        .into_iter()
-        .filter(|_| matches!(kind, Kind::Impact | Kind::Shake));
+    let last = AT_THE_LAST_STEP.into_iter().filter(|_| {
+        matches!(
+            kind,
+            Kind::Procedure(ProcedureBlock::Impact | ProcedureBlock::Shake)
+        )
+    });
     let results = RENAMED
         .iter()
         .filter(|row| matches!(row.role, NameRole::Result(kinds) if kinds.contains(&kind)))

@@ -46,7 +46,7 @@ fn procedures(trees: &[Ast]) -> BTreeMap<String, Kind> {
             return None;
         };
         let (kind, name) = (kind(block)?, block.words.last()?);
-        kind.procedure.then(|| (name.node.clone(), kind.kind))
+        kind.is_procedure().then(|| (name.node.clone(), kind.kind))
     });
     named.collect()
 }

@@ -33,7 +33,7 @@ pub use crate::physics::structure::portal::{
     ElasticStiffnesses, FrameMasses, Loads, Mechanism, Portal, Sections, elastic_stiffnesses,
 };
 
-pub use procedure::ProcedureKind;
+pub use procedure::base_excitation::Shake;
 pub use procedure::cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use procedure::damping_sweep::DampingSweep;
 pub use procedure::identification::{
@@ -46,6 +46,7 @@ pub use procedure::move_to::Move;
 pub use procedure::stepping::{MOST_RECORDED_STEPS, MOST_STEPS, Stepping, step_count, steps_in};
 pub use procedure::structure::Structure;
 pub use procedure::unload::{FrameUnload, Unload};
+pub use procedure::{ProcedureBlock, ProcedureKind};
 pub use report::annex::Annex;
 pub use report::figure::{Figure, FigureKind, MOST_TOGETHER};
 pub use report::golden::{ColumnTolerance, Golden, ResultTolerance, Tolerance};
@@ -61,7 +62,7 @@ pub use rig::{
     PretestCheck, ReadingErrors, ReadingRules, RealLink, RigPlan, SafeState, Settle, VIRTUAL_SPEED,
     VirtualLink, ZeroAfter,
 };
-pub use specimen::frame::{Ground, MOST_STOREYS, Shake, ShakeDamping, rayleigh};
+pub use specimen::frame::{Ground, MOST_STOREYS, ShakeDamping, rayleigh};
 pub use study::{Collected, Fragility, Studies, Study, StudyEvent, StudyRequirement};
 
 /// Everything that a run needs to know beforehand, in SI units. Names are resolved to indices into its lists.

@@ -19,7 +19,8 @@ use crate::language::check::declarations::limits::CheckedLimits;
 use crate::language::check::declared::Declared;
 use crate::physics::self_test::Part;
 use crate::plan::{
-    DeclaredNoise, Figure, FigureKind, Ground, Impact, Plan, Procedure, ProcedureKind,
+    DeclaredNoise, Figure, FigureKind, Ground, Impact, Plan, Procedure, ProcedureBlock,
+    ProcedureKind,
 };
 use crate::record::{CycleStep, History, NamedResult, ProcedureRecord, RampHistory, SweepStep};
 use crate::report::Run;
@@ -35,26 +36,19 @@ use facts::{Delay, Facts, Leaves, Recorded, Tests};
 
 /// Check: the procedure that a block specifies; None after an error, and for a block that does not declare a procedure.
 pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
-    match checker.scope.blocks[block].kind.kind {
-        Kind::StiffnessRamp => stiffness_ramp::check::stiffness_ramp(checker, block),
-        Kind::DampingSweep => damping_sweep::check::damping_sweep(checker, block),
-        Kind::Impact => impact::check::impact(checker, block),
-        Kind::Shake => base_excitation::check::shake(checker, block),
-        Kind::Cycle => cycle::check::cycle(checker, block),
-        Kind::Escalate => impact_series::check::escalate(checker, block),
-        Kind::Unload => unload::check::unload(checker, block),
-        Kind::Move => move_to::check::move_block(checker, block),
-        Kind::Inspect => inspect::check::inspect(checker, block),
-        Kind::Plan
-        | Kind::Specimen
-        | Kind::Striker
-        | Kind::Limits
-        | Kind::Rig
-        | Kind::Ground
-        | Kind::Report
-        | Kind::Golden
-        | Kind::Study
-        | Kind::Fragility => None,
+    let Kind::Procedure(procedure) = checker.scope.blocks[block].kind.kind else {
+        return None;
+    };
+    match procedure {
+        ProcedureBlock::StiffnessRamp => stiffness_ramp::check::stiffness_ramp(checker, block),
+        ProcedureBlock::DampingSweep => damping_sweep::check::damping_sweep(checker, block),
+        ProcedureBlock::Impact => impact::check::impact(checker, block),
+        ProcedureBlock::Shake => base_excitation::check::shake(checker, block),
+        ProcedureBlock::Cycle => cycle::check::cycle(checker, block),
+        ProcedureBlock::Escalate => impact_series::check::escalate(checker, block),
+        ProcedureBlock::Unload => unload::check::unload(checker, block),
+        ProcedureBlock::Move => move_to::check::move_block(checker, block),
+        ProcedureBlock::Inspect => inspect::check::inspect(checker, block),
     }
 }
 
@@ -337,26 +331,19 @@ pub(crate) fn tables(procedure: &ProcedureRecord) -> Vec<Table<'_>> {
 
 /// Check and accepted results: the numeric columns of the tables of a block, each once; none without tables.
 pub fn columns(kind: Kind) -> impl Iterator<Item = Column> {
-    let all = match kind {
-        Kind::StiffnessRamp => stiffness_ramp::tables::columns(),
-        Kind::Move => numeric(stiffness_ramp::tables::STEPS),
-        Kind::Unload => unload::tables::columns(),
-        Kind::DampingSweep => numeric(damping_sweep::tables::STEPS),
-        Kind::Impact => impact::tables::columns(),
-        Kind::Cycle => cycle::tables::columns(),
-        Kind::Shake => numeric(&base_excitation::tables::shake()),
-        Kind::Escalate => impact_series::tables::columns(),
-        Kind::Inspect
-        | Kind::Plan
-        | Kind::Specimen
-        | Kind::Striker
-        | Kind::Limits
-        | Kind::Rig
-        | Kind::Ground
-        | Kind::Report
-        | Kind::Golden
-        | Kind::Study
-        | Kind::Fragility => Vec::new(),
+    let Kind::Procedure(procedure) = kind else {
+        return Vec::new().into_iter();
+    };
+    let all = match procedure {
+        ProcedureBlock::StiffnessRamp => stiffness_ramp::tables::columns(),
+        ProcedureBlock::Move => numeric(stiffness_ramp::tables::STEPS),
+        ProcedureBlock::Unload => unload::tables::columns(),
+        ProcedureBlock::DampingSweep => numeric(damping_sweep::tables::STEPS),
+        ProcedureBlock::Impact => impact::tables::columns(),
+        ProcedureBlock::Cycle => cycle::tables::columns(),
+        ProcedureBlock::Shake => numeric(&base_excitation::tables::shake()),
+        ProcedureBlock::Escalate => impact_series::tables::columns(),
+        ProcedureBlock::Inspect => Vec::new(),
     };
     each_once(all).into_iter()
 }
@@ -431,7 +418,7 @@ pub(crate) fn readings(history: &History, give: &mut dyn FnMut(&[f64], &[f64])) 
         }
         History::Shake(shake) => {
             let steps = shake.steps.iter();
-            steps.for_each(|step| give(&step.displacement, &step.restoring_force));
+            steps.for_each(|step| give(&step.floors.displacement, &step.floors.restoring_force));
         }
         History::FrameUnload(steps) => {
             let steps = steps.iter();

@@ -29,7 +29,7 @@ pub use held::Held;
 pub use history::History;
 pub use history::base_excitation::{ShakeHistory, ShakeStep};
 pub use history::cycle::{CycleHistory, CycleStep, WholeCycle};
-pub use history::floors::{FloorStep, Floors, FloorsAt, StruckFrame};
+pub use history::floors::{FloorMotion, FloorStep, Floors, FloorsAt, StruckFrame};
 pub use history::impact::{ImpactHistory, ImpactStep};
 pub use history::impact_series::{EscalateHistory, SeriesImpact};
 pub use history::ramp::{RampHistory, RampStep};

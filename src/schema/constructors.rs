@@ -19,27 +19,27 @@ impl Field {
         }
     }
 
-    pub(super) const fn of_type(name: &'static str, ty: FieldType, doc: &'static str) -> Self {
+    pub(crate) const fn of_type(name: &'static str, ty: FieldType, doc: &'static str) -> Self {
         Self::new(name, ty, doc)
     }
 
-    pub(super) const fn text(name: &'static str, doc: &'static str) -> Self {
+    pub(crate) const fn text(name: &'static str, doc: &'static str) -> Self {
         Self::new(name, FieldType::Text, doc)
     }
 
-    pub(super) const fn texts(name: &'static str, doc: &'static str) -> Self {
+    pub(crate) const fn texts(name: &'static str, doc: &'static str) -> Self {
         Self::new(name, FieldType::Texts, doc)
     }
 
-    pub(super) const fn inner(name: &'static str, doc: &'static str) -> Self {
+    pub(crate) const fn inner(name: &'static str, doc: &'static str) -> Self {
         Self::new(name, FieldType::Inner, doc)
     }
 
-    pub(super) const fn inners(name: &'static str, doc: &'static str) -> Self {
+    pub(crate) const fn inners(name: &'static str, doc: &'static str) -> Self {
         Self::new(name, FieldType::Inners, doc)
     }
 
-    pub(super) const fn quantity(
+    pub(crate) const fn quantity(
         name: &'static str,
         dimension: Dimension,
         doc: &'static str,
@@ -47,14 +47,14 @@ impl Field {
         Self::new(name, FieldType::Quantity(dimension), doc)
     }
 
-    pub(super) const fn angle(name: &'static str, doc: &'static str) -> Self {
+    pub(crate) const fn angle(name: &'static str, doc: &'static str) -> Self {
         Self {
             angle: true,
             ..Self::quantity(name, Dimension::NUMBER, doc)
         }
     }
 
-    pub(super) const fn quantities(
+    pub(crate) const fn quantities(
         name: &'static str,
         dimension: Dimension,
         doc: &'static str,
@@ -62,7 +62,7 @@ impl Field {
         Self::new(name, FieldType::Quantities(dimension), doc)
     }
 
-    pub(super) const fn bounds(
+    pub(crate) const fn bounds(
         name: &'static str,
         dimension: Dimension,
         symmetric: bool,
@@ -78,7 +78,7 @@ impl Field {
         )
     }
 
-    pub(super) const fn interval(
+    pub(crate) const fn interval(
         name: &'static str,
         dimension: Dimension,
         doc: &'static str,
@@ -86,7 +86,7 @@ impl Field {
         Self::new(name, FieldType::Interval(dimension), doc)
     }
 
-    pub(super) const fn count(name: &'static str, low: f64, high: f64, doc: &'static str) -> Self {
+    pub(crate) const fn count(name: &'static str, low: f64, high: f64, doc: &'static str) -> Self {
         let mut field = Self::new(name, FieldType::Count, doc);
         field.range = Range {
             low,
@@ -96,7 +96,7 @@ impl Field {
         field
     }
 
-    pub(super) const fn choice(
+    pub(crate) const fn choice(
         name: &'static str,
         variants: &'static [Variant],
         doc: &'static str,
@@ -104,7 +104,7 @@ impl Field {
         Self::new(name, FieldType::Choice(variants), doc)
     }
 
-    pub(super) const fn choices(
+    pub(crate) const fn choices(
         name: &'static str,
         variants: &'static [Variant],
         doc: &'static str,
@@ -112,33 +112,33 @@ impl Field {
         Self::new(name, FieldType::Choices(variants), doc)
     }
 
-    pub(super) const fn reference(name: &'static str, kind: Kind, doc: &'static str) -> Self {
+    pub(crate) const fn reference(name: &'static str, kind: Kind, doc: &'static str) -> Self {
         Self::new(name, FieldType::Reference(kind), doc)
     }
 
-    pub(super) const fn figures(name: &'static str, doc: &'static str) -> Self {
+    pub(crate) const fn figures(name: &'static str, doc: &'static str) -> Self {
         Self::new(name, FieldType::Figures, doc)
     }
 
-    pub(super) const fn condition(name: &'static str, doc: &'static str) -> Self {
+    pub(crate) const fn condition(name: &'static str, doc: &'static str) -> Self {
         Self::new(name, FieldType::Condition, doc)
     }
 
     /// The same field with another description, of a block that shares it.
-    pub(super) const fn described(mut self, doc: &'static str) -> Self {
+    pub(crate) const fn described(mut self, doc: &'static str) -> Self {
         self.doc = doc;
         self
     }
 
     /// The field is required; the example is a valid line.
-    pub(super) const fn required(mut self, example: &'static str) -> Self {
+    pub(crate) const fn required(mut self, example: &'static str) -> Self {
         self.presence = Presence::Required;
         self.example = example;
         self
     }
 
     /// The field is required on a rig of this kind; `otherwise` describes the default on the other.
-    pub(super) const fn required_on(
+    pub(crate) const fn required_on(
         mut self,
         rig: RigKind,
         example: &'static str,
@@ -149,33 +149,33 @@ impl Field {
         self
     }
 
-    pub(super) const fn of_real_rigs(mut self) -> Self {
+    pub(crate) const fn of_real_rigs(mut self) -> Self {
         self.real_rig_only = true;
         self
     }
 
-    pub(super) const fn of_frames(mut self) -> Self {
+    pub(crate) const fn of_frames(mut self) -> Self {
         self.of_frames = true;
         self
     }
 
     /// Few plans set it.
-    pub(super) const fn advanced(mut self) -> Self {
+    pub(crate) const fn advanced(mut self) -> Self {
         self.advanced = true;
         self
     }
 
-    pub(super) const fn or(mut self, number: f64, unit: &'static str) -> Self {
+    pub(crate) const fn or(mut self, number: f64, unit: &'static str) -> Self {
         self.presence = Presence::Default { number, unit };
         self
     }
 
-    pub(super) const fn default_in_words(mut self, words: &'static str) -> Self {
+    pub(crate) const fn default_in_words(mut self, words: &'static str) -> Self {
         self.presence = Presence::DefaultInWords(words);
         self
     }
 
-    pub(super) const fn above_zero(mut self) -> Self {
+    pub(crate) const fn above_zero(mut self) -> Self {
         self.range = Range {
             low: 0.0,
             above: true,
@@ -184,7 +184,7 @@ impl Field {
         self
     }
 
-    pub(super) const fn at_least_zero(mut self) -> Self {
+    pub(crate) const fn at_least_zero(mut self) -> Self {
         self.range = Range {
             low: 0.0,
             above: false,
@@ -194,7 +194,7 @@ impl Field {
     }
 
     /// Above 0 and at most `high`.
-    pub(super) const fn above_zero_up_to(mut self, high: f64) -> Self {
+    pub(crate) const fn above_zero_up_to(mut self, high: f64) -> Self {
         self.range = Range {
             low: 0.0,
             above: true,
@@ -203,7 +203,7 @@ impl Field {
         self
     }
 
-    pub(super) const fn within(mut self, low: f64, high: f64) -> Self {
+    pub(crate) const fn within(mut self, low: f64, high: f64) -> Self {
         self.range = Range {
             low,
             above: false,
@@ -214,7 +214,7 @@ impl Field {
 }
 
 impl Variant {
-    pub(super) const fn word(name: &'static str, doc: &'static str) -> Self {
+    pub(crate) const fn word(name: &'static str, doc: &'static str) -> Self {
         Self {
             name,
             arguments: &[],
@@ -222,7 +222,7 @@ impl Variant {
         }
     }
 
-    pub(super) const fn with(
+    pub(crate) const fn with(
         name: &'static str,
         arguments: &'static [Field],
         doc: &'static str,
@@ -236,7 +236,7 @@ impl Variant {
 }
 
 impl ResultKind {
-    pub(super) const fn new(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
+    pub(crate) const fn new(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
         Self {
             name,
             dimension,
@@ -249,14 +249,14 @@ impl ResultKind {
     }
 
     /// An impact has it on a storey only.
-    pub(super) const fn of_storey(self) -> Self {
+    pub(crate) const fn of_storey(self) -> Self {
         Self {
             of_storey: true,
             ..self
         }
     }
 
-    pub(super) const fn measured(
+    pub(crate) const fn measured(
         name: &'static str,
         dimension: Dimension,
         doc: &'static str,
@@ -267,7 +267,7 @@ impl ResultKind {
         }
     }
 
-    pub(super) const fn count(name: &'static str, doc: &'static str) -> Self {
+    pub(crate) const fn count(name: &'static str, doc: &'static str) -> Self {
         Self {
             count: true,
             ..Self::new(name, Dimension::NUMBER, doc)
@@ -275,7 +275,7 @@ impl ResultKind {
     }
 
     /// Several numbers of one dimension.
-    pub(super) const fn list(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
+    pub(crate) const fn list(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
         Self {
             list: true,
             ..Self::new(name, dimension, doc)
@@ -283,7 +283,7 @@ impl ResultKind {
     }
 
     /// The same, each with its standard uncertainty.
-    pub(super) const fn measured_list(
+    pub(crate) const fn measured_list(
         name: &'static str,
         dimension: Dimension,
         doc: &'static str,

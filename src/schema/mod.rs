@@ -87,16 +87,17 @@ pub fn block(kind: Kind) -> &'static BlockKind {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::ProcedureBlock;
 
     #[test]
     fn the_longest_keyword_wins_and_a_name_is_no_part_of_it() {
         assert_eq!(
             block_of_words(&["stiffness", "ramp", "k0"]).map(|block| block.kind),
-            Some(Kind::StiffnessRamp)
+            Some(Kind::Procedure(ProcedureBlock::StiffnessRamp))
         );
         assert_eq!(
             block_of_words(&["inspect"]).map(|block| block.kind),
-            Some(Kind::Inspect)
+            Some(Kind::Procedure(ProcedureBlock::Inspect))
         );
         assert!(block_of_words(&["stiffness", "k0"]).is_none());
     }

@@ -2,6 +2,7 @@
 //! summaries use this one table. It knows no syntax.
 
 use super::types::Kind;
+use crate::plan::ProcedureBlock;
 
 /// Where a name appears.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,8 +40,11 @@ const fn renamed(role: NameRole, old: &'static str, new: &'static str) -> Rename
 const YIELDING: NameRole = NameRole::Argument(&["bilinear", "bouc_wen", "pinching"]);
 const AXIS: NameRole = NameRole::Argument(&["axis"]);
 const RIG: NameRole = NameRole::Field(Kind::Rig);
-const RAMP: NameRole = NameRole::Result(&[Kind::StiffnessRamp]);
-const FITTED: NameRole = NameRole::Result(&[Kind::StiffnessRamp, Kind::Cycle]);
+const RAMP: NameRole = NameRole::Result(&[Kind::Procedure(ProcedureBlock::StiffnessRamp)]);
+const FITTED: NameRole = NameRole::Result(&[
+    Kind::Procedure(ProcedureBlock::StiffnessRamp),
+    Kind::Procedure(ProcedureBlock::Cycle),
+]);
 
 /// Every name that has changed since version 0.1.
 pub const RENAMED: &[Renamed] = &[
@@ -64,7 +68,11 @@ pub const RENAMED: &[Renamed] = &[
     renamed(RIG, "drift", "zero_drift"),
     renamed(NameRole::Argument(&["virtual"]), "drift", "zero_drift"),
     renamed(NameRole::Field(Kind::Ground), "record", "file"),
-    renamed(NameRole::Result(&[Kind::Escalate]), "blows", "impacts"),
+    renamed(
+        NameRole::Result(&[Kind::Procedure(ProcedureBlock::Escalate)]),
+        "blows",
+        "impacts",
+    ),
     renamed(NameRole::Word(&["figures"]), "blows", "impacts"),
     renamed(NameRole::Word(&["results", "columns"]), "near", "tolerance"),
     Renamed {
@@ -73,7 +81,7 @@ pub const RENAMED: &[Renamed] = &[
     },
 ];
 
-/// The row of a name at a place that `at` accepts.
+/// The row of a name at a position that `at` accepts.
 #[must_use]
 pub fn renamed_at(name: &str, at: impl Fn(NameRole) -> bool) -> Option<&'static Renamed> {
     RENAMED.iter().find(|row| row.old == name && at(row.role))

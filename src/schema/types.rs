@@ -1,5 +1,6 @@
 //! The types of the schema's entries, and small look-ups in them.
 
+use crate::plan::ProcedureBlock;
 use crate::units::Dimension;
 
 /// The kind of a block.
@@ -10,20 +11,12 @@ pub enum Kind {
     Striker,
     Limits,
     Rig,
-    StiffnessRamp,
-    DampingSweep,
-    Impact,
     Ground,
-    Shake,
-    Cycle,
-    Unload,
-    Escalate,
-    Move,
-    Inspect,
     Report,
     Golden,
     Study,
     Fragility,
+    Procedure(ProcedureBlock),
 }
 
 /// The part between the keyword and the brace.
@@ -45,8 +38,6 @@ pub struct BlockKind {
     pub kind: Kind,
     pub keyword: &'static [&'static str],
     pub naming: Naming,
-    /// Whether it is run, in the order of the plan.
-    pub procedure: bool,
     pub fields: &'static [Field],
     /// Values that other expressions may read besides the fields: `pendulum.energy`.
     pub exports: &'static [ResultKind],
@@ -227,7 +218,7 @@ pub struct ResultKind {
 }
 
 /// One variant of a choice, with its arguments.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Variant {
     pub name: &'static str,
     pub arguments: &'static [Field],
@@ -239,6 +230,12 @@ impl BlockKind {
     #[must_use]
     pub fn words(&self) -> String {
         self.keyword.join(" ")
+    }
+
+    /// Whether it is run, in the order of the plan.
+    #[must_use]
+    pub const fn is_procedure(&self) -> bool {
+        matches!(self.kind, Kind::Procedure(_))
     }
 
     #[must_use]

@@ -195,7 +195,7 @@ fn of_impact(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> O
         && is(result, &PUSHED)
         && !(is(result, &[schema::MAX_DISPLACEMENT]) && impact.still_rising())
     {
-        let entries = (0..floors.last().map_or(1, |floor| floor.computed.len())).collect();
+        let entries = (0..floors.last().map_or(1, |floor| floor.floors.computed.len())).collect();
         let touched = impact.steps.iter().any(|step| step.contact_force > 0.0);
         let what = if touched {
             "the striker was still pushing"
@@ -238,7 +238,7 @@ fn of_impact(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> O
         let growing = last_largest(
             &mut floors
                 .iter()
-                .map(|floor| floor.restoring_force.iter().sum::<f64>().abs()),
+                .map(|floor| floor.floors.restoring_force.iter().sum::<f64>().abs()),
         );
         number(
             growing,
@@ -246,8 +246,8 @@ fn of_impact(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> O
         )
     } else if is(result, &[schema::FLOOR_DISPLACEMENT]) {
         list(
-            |floor| floor.computed.clone(),
-            |floor| floor.velocity.clone(),
+            |floor| floor.floors.computed.clone(),
+            |floor| floor.floors.velocity.clone(),
             "floor",
             "displacement",
         )
@@ -274,8 +274,8 @@ const PUSHED: [ResultKind; 6] = [
 ];
 
 fn drift_rate(floor: &FloorStep) -> Vec<f64> {
-    let mut rate = vec![0.0; floor.velocity.len()];
-    crate::physics::structure::drifts(&floor.velocity, &mut rate);
+    let mut rate = vec![0.0; floor.floors.velocity.len()];
+    crate::physics::structure::drifts(&floor.floors.velocity, &mut rate);
     rate
 }
 
@@ -311,7 +311,7 @@ fn of_own(steps: Steps<'_>, result: &str, name: &str) -> Option<Growth> {
     } else if is(result, &[series::RESIDUAL_DRIFT, series::FINAL_DRIFT]) {
         let growth = of(schema::MAX_DISPLACEMENT).or_else(|| of(schema::MAX_DRIFT))?;
         Some(Growth {
-            entries: (0..steps.floors.last()?.computed.len()).collect(),
+            entries: (0..steps.floors.last()?.floors.computed.len()).collect(),
             ..growth
         })
     } else {

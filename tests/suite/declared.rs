@@ -9,12 +9,8 @@ use psd::schema::{BLOCKS, Field, FieldType};
 use super::import_graph::{is_of_tests, without_comments_and_tests};
 use super::source_text::{SourceText, none, rust_files};
 
-/// Where names are declared. The numbers of contact laws and of models have their names in the physics, which the schema takes.
-const DECLARATIONS: &[&str] = &[
-    "schema",
-    "physics/contact/mod.rs",
-    "physics/specimen/behaviour.rs",
-];
+/// Where names are declared, beside the data of each procedure. The numbers of contact laws and of models have their names in the physics, which the schema takes.
+const DECLARATIONS: &[&str] = &["schema", "physics/contact/mod.rs", "physics/specimen"];
 
 /// Files that have such a name as a string with another meaning, and why.
 const OTHER_MEANINGS: &[(&str, &str, &str)] = &[
@@ -41,15 +37,6 @@ const OTHER_MEANINGS: &[(&str, &str, &str)] = &[
         "acceleration_m_per_s2",
         "the head of a file that others write",
     ),
-];
-
-/// Readers of the arguments of restoring-force models. They still name them by strings; the list may only shrink.
-const READERS_OF_MODELS: &[&str] = &[
-    "language/check/declarations/specimen/backbone.rs",
-    "language/check/declarations/specimen/beam.rs",
-    "language/check/declarations/specimen/behaviour.rs",
-    "language/check/declarations/specimen/frame.rs",
-    "language/check/declarations/specimen/portal.rs",
 ];
 
 /// Functions that read a field of a block by its name.
@@ -87,8 +74,13 @@ const READ_BY_NAME: &[&str] = &[
 
 /// The files of the product that declare no name.
 fn users() -> Vec<SourceText> {
-    let declares =
-        |file: &SourceText| file.is_in(DECLARATIONS) || DECLARATIONS.contains(&file.path.as_str());
+    let declares = |file: &SourceText| {
+        file.is_in(DECLARATIONS)
+            || DECLARATIONS.contains(&file.path.as_str())
+            || ["/data/block.rs", "/data/parameters.rs"]
+                .iter()
+                .any(|name| file.path.ends_with(name))
+    };
     let product = |file: &SourceText| !is_of_tests(&file.path) && !declares(file);
     rust_files("src").into_iter().filter(product).collect()
 }
@@ -155,9 +147,6 @@ fn names_are_strings_where_they_are_declared_only() {
     let mut found = Vec::new();
     let mut met = BTreeSet::new();
     for file in users() {
-        if READERS_OF_MODELS.contains(&file.path.as_str()) {
-            continue;
-        }
         let code = without_comments_and_tests(&file.text);
         for (before, text) in literals(&code) {
             if !names.contains(text) || declares(before) {
@@ -207,22 +196,13 @@ fn no_reader_names_a_field_by_a_string() {
         .iter()
         .filter(|file| file.is_in(&["language/check", "procedures"]));
     let mut found = Vec::new();
-    let mut of_models = BTreeSet::new();
     for file in readers {
         let code = without_comments_and_tests(&file.text);
         for (before, text) in literals(&code) {
-            let of_model = READERS_OF_MODELS.contains(&file.path.as_str());
-            let argument = calls(before, READ_BY_NAME);
-            if of_model && argument {
-                of_models.insert(file.path.clone());
-            } else if argument || calls(before, READ_A_FIELD) {
+            if calls(before, READ_BY_NAME) || calls(before, READ_A_FIELD) {
                 found.push(format!("{}: \"{text}\"", file.path));
             }
         }
     }
-    let idle = READERS_OF_MODELS
-        .iter()
-        .filter(|path| !of_models.contains(**path));
-    found.extend(idle.map(|path| format!("{path}: no such string, remove it from the list")));
     none(&found, "a reader names its fields by their constants");
 }

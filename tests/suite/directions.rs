@@ -24,6 +24,13 @@ const ORDER: &[&[&str]] = &[
     &["cli"],
 ];
 
+/// The data of a procedure are files of its own folder, and each belongs to an earlier stage.
+const DATA_OF_PROCEDURES: &[(&str, &str)] = &[
+    ("parameters.rs", "plan"),
+    ("block.rs", "schema"),
+    ("history.rs", "record"),
+];
+
 /// The one file that lists the procedures.
 const DISPATCH: &str = "procedures/mod.rs";
 
@@ -66,8 +73,15 @@ fn position_in_order(folder: &str) -> Option<usize> {
     ORDER.iter().position(|line| line.contains(&folder))
 }
 
+/// The folder of `src` whose place in the order a file has.
 fn folder_of(file: &str) -> &str {
-    file.split('/').next().unwrap_or_default()
+    let folder = file.split('/').next().unwrap_or_default();
+    let data = file.split_once("/data/").filter(|_| folder == "procedures");
+    let stage = data.and_then(|(_, name)| {
+        let mut listed = DATA_OF_PROCEDURES.iter();
+        listed.find(|(data, _)| *data == name)
+    });
+    stage.map_or(folder, |(_, stage)| stage)
 }
 
 #[test]

@@ -83,7 +83,7 @@ fn peaks(steps: &[ShakeStep]) -> [f64; 2] {
     [0, 1].map(|floor| {
         steps
             .iter()
-            .map(|step| step.computed[floor].abs())
+            .map(|step| step.floors.computed[floor].abs())
             .fold(0.0, f64::max)
     })
 }
@@ -147,20 +147,22 @@ fn the_damping_of_the_material_is_in_the_force() {
         let steps = steps(&record);
         let (mut beside, mut missed) = (0.0_f64, 0.0_f64);
         for three in steps.windows(3) {
-            let command_change = |floor: usize| three[2].command[floor] - three[0].command[floor];
-            let velocity =
-                [0, 1].map(|floor: usize| command_change(floor) / (three[2].time - three[0].time));
+            let command_change =
+                |floor: usize| three[2].floors.command[floor] - three[0].floors.command[floor];
+            let velocity = [0, 1].map(|floor: usize| {
+                command_change(floor) / (three[2].floors.time - three[0].floors.time)
+            });
             let now = &three[1];
             let shear = |storey: usize, of: &dyn Fn(usize) -> f64| {
                 of(storey) - if storey > 0 { of(storey - 1) } else { 0.0 }
             };
             let storey = [0, 1].map(|storey: usize| {
-                STIFFNESS * shear(storey, &|floor| now.command[floor])
+                STIFFNESS * shear(storey, &|floor| now.floors.command[floor])
                     + DAMPER * shear(storey, &|floor| velocity[floor])
             });
             let expected = [storey[0] - storey[1], storey[1]];
             for (floor, expected) in expected.iter().enumerate() {
-                missed = missed.max((now.restoring_force[floor] - expected).abs());
+                missed = missed.max((now.floors.restoring_force[floor] - expected).abs());
             }
             beside = beside.max((DAMPER * (velocity[1] - velocity[0])).abs());
         }
@@ -234,8 +236,11 @@ fn without_damping_both_modes_are_the_same_run() {
     assert_eq!(one.len(), other.len());
     for (one, other) in one.iter().zip(other) {
         for floor in 0..2 {
-            assert!((one.command[floor] - other.command[floor]).abs() < 1e-12);
-            assert!((one.restoring_force[floor] - other.restoring_force[floor]).abs() < 1e-7);
+            assert!((one.floors.command[floor] - other.floors.command[floor]).abs() < 1e-12);
+            assert!(
+                (one.floors.restoring_force[floor] - other.floors.restoring_force[floor]).abs()
+                    < 1e-7
+            );
         }
     }
     assert!(

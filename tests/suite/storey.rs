@@ -147,7 +147,7 @@ fn central_differences(times: &[f64], again: f64) -> Vec<[f64; 3]> {
 /// Largest difference of any floor at any step, over the largest displacement.
 fn difference(record: &Record) -> f64 {
     let floors = &history(record).floors;
-    let times: Vec<f64> = floors.iter().map(|step| step.time).collect();
+    let times: Vec<f64> = floors.iter().map(|step| step.floors.time).collect();
     let reference = central_differences(&times, f64::INFINITY);
     let largest = reference
         .iter()
@@ -156,7 +156,7 @@ fn difference(record: &Record) -> f64 {
     let pairs = floors
         .iter()
         .zip(&reference)
-        .flat_map(|(found, exact)| found.computed.iter().zip(exact));
+        .flat_map(|(found, exact)| found.floors.computed.iter().zip(exact));
     pairs
         .map(|(found, exact)| (found - exact).abs())
         .fold(0.0, f64::max)
@@ -223,19 +223,22 @@ fn a_second_impact_meets_the_damage_of_the_first() {
         other => panic!("{other:?}"),
     };
     let (first, second) = (of(0), of(1));
-    assert_eq!(second[0].computed, first.last().expect("steps").command);
-    let times: Vec<f64> = second.iter().map(|step| 0.4 + step.time).collect();
+    assert_eq!(
+        second[0].floors.computed,
+        first.last().expect("steps").floors.command
+    );
+    let times: Vec<f64> = second.iter().map(|step| 0.4 + step.floors.time).collect();
     let reference = central_differences(&times, 0.4);
     let largest = reference
         .iter()
         .flatten()
         .fold(0.0_f64, |largest, x| largest.max(x.abs()));
     for (found, exact) in second.iter().zip(&reference) {
-        for (found, exact) in found.computed.iter().zip(exact) {
+        for (found, exact) in found.floors.computed.iter().zip(exact) {
             assert!(
                 (found - exact).abs() < 5e-3 * largest,
                 "{found} and {exact} at {} s",
-                0.4 + second[0].time
+                0.4 + second[0].floors.time
             );
         }
     }
@@ -266,11 +269,11 @@ fn floors_that_never_stop_are_struck_as_those_that_do() {
             .iter()
             .zip(&history(&continuous).floors)
         {
-            for (one, other) in one.computed.iter().zip(&other.computed) {
+            for (one, other) in one.floors.computed.iter().zip(&other.floors.computed) {
                 assert!(
                     (one - other).abs() < 1e-9 * largest,
                     "{integrator} at {} s: {one} and {other}",
-                    history(&stepped).floors[0].time
+                    history(&stepped).floors[0].floors.time
                 );
             }
         }
@@ -314,7 +317,7 @@ fn results_per_storey_add_up_to_the_balance() {
     let shear = history(&record)
         .floors
         .iter()
-        .map(|step| step.restoring_force.iter().sum::<f64>().abs());
+        .map(|step| step.floors.restoring_force.iter().sum::<f64>().abs());
     assert_eq!(number(&record, "max_base_shear"), shear.reduce(f64::max));
 }
 

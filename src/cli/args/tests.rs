@@ -1,13 +1,6 @@
-//! Tests of the parsed command line.
-
-use clap::CommandFactory as _;
+//! Tests of the values of common flags.
 
 use super::*;
-
-#[test]
-fn the_command_line_is_sound() {
-    Arguments::command().debug_assert();
-}
 
 #[test]
 fn a_date_is_a_day_of_the_calendar() {

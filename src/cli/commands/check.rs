@@ -1,13 +1,32 @@
 //! `psd check`: all diagnostics of all plans; nothing moves.
 
+use std::path::PathBuf;
+
+use clap::Args;
+
 use super::explain_plan;
-use crate::cli::args::{CheckArguments, Format};
+use crate::cli::args::{Format, PlanSettings};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::plan_file;
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::text::diagnostic::excerpt::one_line;
 use crate::text::diagnostic::json;
+
+#[derive(Debug, Args)]
+pub struct CheckArguments {
+    /// The plans, `.psd` files or Markdown documents
+    #[arg(value_name = "PLAN", required = true)]
+    pub plans: Vec<PathBuf>,
+    #[command(flatten)]
+    pub plan_settings: PlanSettings,
+    /// Predict the run by a dry run on an ideal virtual rig
+    #[arg(long)]
+    pub explain: bool,
+    /// Diagnostics as text on standard error, or JSON on standard output
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub format: Format,
+}
 
 /// Checks every plan, and with `--explain` prints the prediction of its run.
 pub fn check(arguments: &CheckArguments, settings: Settings) -> Result<Exit, Failure> {

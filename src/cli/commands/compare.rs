@@ -1,10 +1,11 @@
 //! `psd compare RUN RUN…`: comparison of runs. In: run folders, read from their run logs, or folders of accepted results. Out: tables on
 //! standard output; with `--out` also a page, a CSV and the figures. It opens no rig and changes no run.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
 
 use super::prediction::prediction;
-use crate::cli::args::CompareArguments;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::accepted::truth_in;
 use crate::cli::files::record_file;
@@ -18,6 +19,16 @@ use crate::golden::comparison::{Comparison, Side};
 use crate::golden::{FIGURES, SUMMARY, older};
 use crate::report::summary::Summary;
 use crate::report::{Figures, OutputError, OutputFile, figure_data};
+
+#[derive(Debug, Args)]
+pub struct CompareArguments {
+    /// Run folders, or folders of accepted results; at least two
+    #[arg(value_name = "RUN", num_args = 2.., required = true)]
+    pub runs: Vec<PathBuf>,
+    /// Also write a page, a CSV and figures into this new folder
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
 
 /// Compares runs.
 pub fn compare(arguments: &CompareArguments) -> Result<Exit, Failure> {

@@ -1,6 +1,7 @@
 //! `psd explain`: the page of a diagnostic code, or the list of all. A page shows the lines in which its wrong and its right plan differ;
 //! `--full` shows both plans.
 
+use clap::Args;
 use std::fmt::Write as _;
 
 use similar::{Algorithm, DiffOp, capture_diff_slices};
@@ -13,6 +14,15 @@ use crate::text::suggest::nearest;
 
 /// Changed lines of a page without `--full`.
 const MOST_LINES: usize = 12;
+
+#[derive(Debug, Args)]
+pub struct ExplainArguments {
+    /// Diagnostic code
+    pub code: Option<String>,
+    /// Show the wrong and the right plan in full
+    #[arg(long, requires = "code")]
+    pub full: bool,
+}
 
 /// Prints the page of `code`.
 pub fn explain(code: Option<&str>, full: bool, settings: Settings) -> Result<Exit, Failure> {

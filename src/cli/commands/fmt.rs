@@ -4,9 +4,9 @@
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
+use clap::Args;
 use similar::TextDiff;
 
-use crate::cli::args::FmtArguments;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::loader::{is_plan, read_plan};
 use crate::cli::files::plan_file::name_of;
@@ -18,6 +18,16 @@ use crate::text::diagnostic::excerpt::one_line;
 use crate::text::diagnostic::render::render_all;
 use crate::text::markdown::is_document;
 use crate::text::source::Sources;
+
+#[derive(Debug, Args)]
+pub struct FmtArguments {
+    /// Plans, or folders of plans
+    #[arg(value_name = "PATH", required = true)]
+    pub paths: Vec<PathBuf>,
+    /// Print the difference only; exit with 1 if there is one
+    #[arg(long)]
+    pub check: bool,
+}
 
 /// Formats every named file and every plan under every named folder.
 pub fn fmt(arguments: &FmtArguments, settings: Settings) -> Result<Exit, Failure> {

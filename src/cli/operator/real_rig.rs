@@ -35,7 +35,7 @@ pub fn named(attendance: Attendance, plan: &Plan) -> Result<Attendance, Failure>
     if plan.rig.link.as_real().is_none() || operator(plan, &attendance).is_some() {
         return Ok(attendance);
     }
-    let nobody = || {
+    let unnamed = || {
         Failure::command_line("no operator is named: nothing was opened")
             .help("--operator \"A. Tester\"")
     };
@@ -46,10 +46,10 @@ pub fn named(attendance: Attendance, plan: &Plan) -> Result<Attendance, Failure>
         let mut line = String::new();
         let count = std::io::stdin()
             .read_line(&mut line)
-            .map_err(|_| nobody())?;
+            .map_err(|_| unnamed())?;
         if count == 0 {
             print_message("\n");
-            return Err(nobody());
+            return Err(unnamed());
         }
         match name(&line) {
             Ok(name) => {

@@ -293,7 +293,9 @@ impl<'a> Scope<'a> {
         {
             self.nameless.push(kind);
         }
-        let procedure = kind.procedure.then_some(ProcedureId(self.procedures.len()));
+        let procedure = kind
+            .is_procedure()
+            .then_some(ProcedureId(self.procedures.len()));
         self.procedures.extend(procedure.map(|_| self.blocks.len()));
         self.count_kind(kind.kind);
         self.blocks.push(DeclaredBlock {

@@ -156,7 +156,7 @@ mod tests {
         assert_eq!(
             followed(0.0, [(0.0, 5.0)]),
             INITIAL,
-            "no motion tells nothing"
+            "without motion there is no tangent"
         );
     }
 

@@ -1,175 +1,27 @@
-//! The parameters of every specimen model: restoring force against displacement. In: numbers in SI. Out: data that
-//! [`SpecimenModel::new`](super::SpecimenModel::new) takes, and their stiffnesses and capacity. It has no state.
+//! What follows from the parameters of a model: its stiffnesses, its capacity, its masses. In: a [`Behaviour`]. Out: numbers in SI. It
+//! has no state.
 
-use super::{Bolted, Breaks, Deterioration, Pinching, Table};
+use super::declaration::{Numbers, Stated};
+use super::{Behaviour, Breaks, MODELS, Pinching};
 use crate::relaxation::logarithmic::LogarithmicRelaxation;
-use crate::structure::beam::{self, Beam, EquivalentMasses};
+use crate::structure::beam::{self, EquivalentMasses};
 use crate::structure::portal::Portal;
 use crate::structure::portal::mass;
-
-/// Restoring force of a simulated specimen against displacement.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Behaviour {
-    /// R = K X, K \[N/m\].
-    Elastic { stiffness: f64 },
-    /// Elastic–plastic with kinematic hardening; `post_yield_ratio` is the post-yield stiffness ratio.
-    Bilinear {
-        stiffness: f64,
-        yield_force: f64,
-        post_yield_ratio: f64,
-    },
-    /// The same, with cyclic deterioration by absorbed energy.
-    DeterioratingBilinear {
-        stiffness: f64,
-        yield_force: f64,
-        post_yield_ratio: f64,
-        deterioration: Deterioration,
-    },
-    /// A beam by geometry.
-    Beam(Beam),
-    /// Piecewise linear, with kinematic hardening: backbone points, displacement \[m\] and force \[N\], both rising, each segment softer
-    /// than the one before; the last one continues.
-    Multilinear { corners: Vec<[f64; 2]> },
-    /// Smooth hysteresis after Bouc and Wen. `sharpness` is n; γ = 1 − `beta`.
-    BoucWen {
-        stiffness: f64,
-        yield_force: f64,
-        post_yield_ratio: f64,
-        sharpness: f64,
-        beta: f64,
-    },
-    /// Pinched hysteresis, peak-oriented, after Ibarra, Medina & Krawinkler.
-    Pinching(Pinching),
-    /// R = K(x) X with K(x) = K (r + (1 − r)/(1 + x/h)), x the peak displacement so far; half of the loss occurs at h.
-    Degrading {
-        stiffness: f64,
-        half_displacement: f64,
-        residual: f64,
-    },
-    /// A bolted joint: friction, clearance, bearing, holes that grow.
-    Bolted(Bolted),
-    /// Measured points.
-    Table(Table),
-    /// Intact until fracture, zero force after.
-    Fracture { of: Box<Behaviour>, at: Breaks },
-    /// One force, displacements add.
-    Series(Vec<Behaviour>),
-    /// One displacement, forces add.
-    Parallel(Vec<Behaviour>),
-    /// Rate-dependent: the load cell measures R (1 + (|v|/`reference_velocity`)^`exponent`) at the velocity v.
-    Rate {
-        of: Box<Behaviour>,
-        reference_velocity: f64,
-        exponent: f64,
-    },
-    /// A Maxwell branch (spring and dashpot in series) in parallel with the rest. `stiffness` \[N/m\], `time_constant` \[s\].
-    Maxwell {
-        of: Box<Behaviour>,
-        stiffness: f64,
-        time_constant: f64,
-    },
-    /// The force relaxes with the logarithm of time: every newton loses `share`·ln(1 + t/`reference_time`), until `longest` \[s\].
-    Logarithmic {
-        of: Box<Behaviour>,
-        share: f64,
-        reference_time: f64,
-        longest: f64,
-    },
-    /// A portal frame by plastic hinges.
-    Portal(Portal),
-}
-
-/// The names of the numbers of the models in a plan.
-pub mod parameter {
-    pub const STIFFNESS: &str = "stiffness";
-    pub const YIELD_FORCE: &str = "yield_force";
-    pub const POST_YIELD_RATIO: &str = "post_yield_ratio";
-    pub const SHARPNESS: &str = "n";
-    pub const BETA: &str = "beta";
-    pub const HALF_DISPLACEMENT: &str = "half_displacement";
-    pub const RESIDUAL: &str = "residual";
-    pub const BEARING_FORCE: &str = "bearing_force";
-    pub const CLEARANCE: &str = "clearance";
-    pub const SLIP_FORCE: &str = "slip_force";
-}
-
-/// The parameters of a model whose parameters are numbers: each by its name in a plan.
-pub type Numbers = Vec<(&'static str, f64)>;
 
 impl Behaviour {
     /// The model with this word in a plan, if its parameters are numbers. `number` gives a parameter by its name. None for the word of
     /// another model, or without a number that it requires.
     pub fn of_numbers(word: &str, number: impl Fn(&str) -> Option<f64>) -> Option<Self> {
-        Some(match word {
-            "elastic" => Self::Elastic {
-                stiffness: number(parameter::STIFFNESS)?,
-            },
-            "bouc_wen" => Self::BoucWen {
-                stiffness: number(parameter::STIFFNESS)?,
-                yield_force: number(parameter::YIELD_FORCE)?,
-                post_yield_ratio: number(parameter::POST_YIELD_RATIO)?,
-                sharpness: number(parameter::SHARPNESS)?,
-                beta: number(parameter::BETA)?,
-            },
-            "degrading" => Self::Degrading {
-                stiffness: number(parameter::STIFFNESS)?,
-                half_displacement: number(parameter::HALF_DISPLACEMENT)?,
-                residual: number(parameter::RESIDUAL)?,
-            },
-            "bolted" => Self::Bolted(Bolted {
-                stiffness: number(parameter::STIFFNESS)?,
-                bearing_force: number(parameter::BEARING_FORCE)?,
-                clearance: number(parameter::CLEARANCE)?,
-                slip_force: number(parameter::SLIP_FORCE)?,
-            }),
-            _ => return None,
-        })
+        let declared = MODELS.iter().find(|declared| declared.word == word)?;
+        (declared.model)(Stated(&number))
     }
 
     /// Its word in a plan and its numbers, as [`Self::of_numbers`] takes them; None for a model with other parameters.
     #[must_use]
     pub fn numbers(&self) -> Option<(&'static str, Numbers)> {
-        Some(match self {
-            Self::Elastic { stiffness } => ("elastic", vec![(parameter::STIFFNESS, *stiffness)]),
-            Self::BoucWen {
-                stiffness,
-                yield_force,
-                post_yield_ratio,
-                sharpness,
-                beta,
-            } => (
-                "bouc_wen",
-                vec![
-                    (parameter::STIFFNESS, *stiffness),
-                    (parameter::YIELD_FORCE, *yield_force),
-                    (parameter::POST_YIELD_RATIO, *post_yield_ratio),
-                    (parameter::SHARPNESS, *sharpness),
-                    (parameter::BETA, *beta),
-                ],
-            ),
-            Self::Degrading {
-                stiffness,
-                half_displacement,
-                residual,
-            } => (
-                "degrading",
-                vec![
-                    (parameter::STIFFNESS, *stiffness),
-                    (parameter::HALF_DISPLACEMENT, *half_displacement),
-                    (parameter::RESIDUAL, *residual),
-                ],
-            ),
-            Self::Bolted(bolted) => (
-                "bolted",
-                vec![
-                    (parameter::STIFFNESS, bolted.stiffness),
-                    (parameter::BEARING_FORCE, bolted.bearing_force),
-                    (parameter::CLEARANCE, bolted.clearance),
-                    (parameter::SLIP_FORCE, bolted.slip_force),
-                ],
-            ),
-            _ => return None,
-        })
+        MODELS
+            .iter()
+            .find_map(|declared| Some((declared.word, (declared.numbers)(self)?)))
     }
 
     /// Initial stiffness without relaxation \[N/m\]; for a joint with clearance and no friction, that in bearing.

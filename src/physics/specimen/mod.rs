@@ -5,6 +5,7 @@ mod behaviour;
 mod bilinear;
 mod bolted;
 mod bouc_wen;
+pub mod declaration;
 mod degrading;
 mod deterioration;
 mod fracture;
@@ -14,18 +15,104 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub use behaviour::{Behaviour, parameter};
 pub use bilinear::{Bilinear, BilinearCurve};
 pub use bolted::{Bolted, BoltedJoint};
 pub use bouc_wen::BoucWen;
+pub use declaration::{Declaration, Parameter};
 pub use degrading::{Degrading, DegradingCurve};
 pub use deterioration::Deterioration;
 pub use deterioration::bilinear::DeterioratingBilinear;
-pub use deterioration::pinching::{Capping, PinchedHysteresis, Pinching};
+pub use deterioration::pinching::{self, Capping, PinchedHysteresis, Pinching};
 pub use fracture::{Breaks, Fracture};
 pub use multilinear::Multilinear;
 pub use series::Series;
 pub use table::{AlongTheCurve, PlasticCurve, Table, Unloading};
+
+use crate::structure::beam::Beam;
+use crate::structure::portal::Portal;
+use declaration::{STIFFNESS, declaration};
+
+/// The models whose parameters are numbers. Each is declared in its own file.
+pub static MODELS: [&Declaration; 6] = [
+    &ELASTIC,
+    &deterioration::bilinear::DECLARATION,
+    &bouc_wen::DECLARATION,
+    &deterioration::pinching::DECLARATION,
+    &degrading::DECLARATION,
+    &bolted::DECLARATION,
+];
+
+/// Restoring force of a simulated specimen against displacement.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Behaviour {
+    /// R = K X, K \[N/m\].
+    Elastic { stiffness: f64 },
+    /// Elastic–plastic with kinematic hardening; `post_yield_ratio` is the post-yield stiffness ratio.
+    Bilinear {
+        stiffness: f64,
+        yield_force: f64,
+        post_yield_ratio: f64,
+    },
+    /// The same, with cyclic deterioration by absorbed energy.
+    DeterioratingBilinear {
+        stiffness: f64,
+        yield_force: f64,
+        post_yield_ratio: f64,
+        deterioration: Deterioration,
+    },
+    /// A beam by geometry.
+    Beam(Beam),
+    /// Piecewise linear, with kinematic hardening: backbone points, displacement \[m\] and force \[N\], both rising, each segment softer
+    /// than the one before; the last one continues.
+    Multilinear { corners: Vec<[f64; 2]> },
+    /// Smooth hysteresis after Bouc and Wen. `sharpness` is n; γ = 1 − `beta`.
+    BoucWen {
+        stiffness: f64,
+        yield_force: f64,
+        post_yield_ratio: f64,
+        sharpness: f64,
+        beta: f64,
+    },
+    /// Pinched hysteresis, peak-oriented, after Ibarra, Medina & Krawinkler.
+    Pinching(Pinching),
+    /// R = K(x) X with K(x) = K (r + (1 − r)/(1 + x/h)), x the peak displacement so far; half of the loss occurs at h.
+    Degrading {
+        stiffness: f64,
+        half_displacement: f64,
+        residual: f64,
+    },
+    /// A bolted joint: friction, clearance, bearing, holes that grow.
+    Bolted(Bolted),
+    /// Measured points.
+    Table(Table),
+    /// Intact until fracture, zero force after.
+    Fracture { of: Box<Behaviour>, at: Breaks },
+    /// One force, displacements add.
+    Series(Vec<Behaviour>),
+    /// One displacement, forces add.
+    Parallel(Vec<Behaviour>),
+    /// Rate-dependent: the load cell measures R (1 + (|v|/`reference_velocity`)^`exponent`) at the velocity v.
+    Rate {
+        of: Box<Behaviour>,
+        reference_velocity: f64,
+        exponent: f64,
+    },
+    /// A Maxwell branch (spring and dashpot in series) in parallel with the rest. `stiffness` \[N/m\], `time_constant` \[s\].
+    Maxwell {
+        of: Box<Behaviour>,
+        stiffness: f64,
+        time_constant: f64,
+    },
+    /// The force relaxes with the logarithm of time: every newton loses `share`·ln(1 + t/`reference_time`), until `longest` \[s\].
+    Logarithmic {
+        of: Box<Behaviour>,
+        share: f64,
+        reference_time: f64,
+        longest: f64,
+    },
+    /// A portal frame by plastic hinges.
+    Portal(Portal),
+}
 
 /// A restoring-force (hysteretic) model.
 pub trait RestoringForce {
@@ -40,6 +127,14 @@ pub trait RestoringForce {
 pub struct Elastic {
     pub stiffness: f64,
 }
+
+static ELASTIC: Declaration = declaration!(
+    "elastic",
+    "linear spring",
+    Elastic {
+        stiffness: STIFFNESS
+    }
+);
 
 impl RestoringForce for Elastic {
     fn move_to(&mut self, displacement: f64) -> f64 {

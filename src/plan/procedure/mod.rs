@@ -1,21 +1,36 @@
-//! The procedures of a plan: the list of them, and their parameters in SI, one file per procedure. They
-//! are data: they check nothing and run nothing.
+//! The procedures of a plan: the list of them, and their parameters in SI, one file in the folder of each
+//! procedure. They are data: they check nothing and run nothing.
 
-pub(crate) mod cycle;
-pub(crate) mod damping_sweep;
-pub(crate) mod identification;
-pub(crate) mod impact;
-pub(crate) mod impact_series;
 pub(crate) mod known_steps;
 pub(crate) mod mode;
-pub(crate) mod move_to;
 pub(crate) mod stepping;
 pub(crate) mod structure;
-pub(crate) mod unload;
 
 use crate::plan::{
     Cycle, DampingSweep, Escalate, FrameUnload, Impact, Move, Shake, StiffnessRamp, Unload,
 };
+pub(crate) use crate::procedures::base_excitation::data::parameters as base_excitation;
+pub(crate) use crate::procedures::cycle::data::parameters as cycle;
+pub(crate) use crate::procedures::damping_sweep::data::parameters as damping_sweep;
+pub(crate) use crate::procedures::impact::data::parameters as impact;
+pub(crate) use crate::procedures::impact_series::data::parameters as impact_series;
+pub(crate) use crate::procedures::move_to::data::parameters as move_to;
+pub(crate) use crate::procedures::stiffness_ramp::data::parameters as identification;
+pub(crate) use crate::procedures::unload::data::parameters as unload;
+
+/// The blocks of the procedures: a plan writes each by its keyword.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProcedureBlock {
+    StiffnessRamp,
+    DampingSweep,
+    Impact,
+    Shake,
+    Cycle,
+    Unload,
+    Escalate,
+    Move,
+    Inspect,
+}
 
 /// The parameters of a procedure.
 #[derive(Clone, Debug)]

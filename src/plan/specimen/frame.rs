@@ -2,7 +2,6 @@
 //! In: numbers that `check` read from the plan and its data files. Out: SI numbers. It computes no motion.
 
 use crate::physics::structure::Damping;
-use crate::plan::Stepping;
 use crate::plan::formula::Formula;
 
 /// Most degrees of freedom of one frame: each has its own actuator and load cell.
@@ -48,23 +47,6 @@ impl Ground {
             .iter()
             .fold(0.0, |peak: f64, acceleration| peak.max(acceleration.abs()))
     }
-}
-
-/// A frame on moving ground.
-#[derive(Clone, Debug)]
-pub struct Shake {
-    /// Index into `Plan::specimens`; it has a frame.
-    pub specimen: usize,
-    /// Index into `Plan::grounds`.
-    pub ground: usize,
-    pub damping: ShakeDamping,
-    /// Standard uncertainty of each damping ratio; 0 where none is stated.
-    pub damping_uncertainty: f64,
-    pub stepping: Stepping,
-    /// Factor on the record.
-    pub scale: Formula,
-    /// Simulated time \[s\]. None: until the end of the record.
-    pub duration: Option<Formula>,
 }
 
 /// Fractions of critical damping.

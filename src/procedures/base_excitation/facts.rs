@@ -38,8 +38,12 @@ pub(crate) fn recorded(history: &ShakeHistory) -> Recorded {
     let ends = history.steps.first().zip(history.steps.last());
     Recorded {
         lists_are_tabled: true,
-        time_spans: ends
-            .map(|(first, last)| (last.time - first.time, last.wall_time - first.wall_time)),
+        time_spans: ends.map(|(first, last)| {
+            (
+                last.floors.time - first.floors.time,
+                last.wall_time - first.wall_time,
+            )
+        }),
         budgeted: stepping::report::FRAME_BUDGET,
         entries: "floor",
         uncertainty: stepping::report::UNCERTAINTY,

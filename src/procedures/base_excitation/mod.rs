@@ -2,6 +2,7 @@
 //! guard. Out: parameters, history, results, tables, figures, report text.
 
 pub(crate) mod check;
+pub(crate) mod data;
 pub(crate) mod facts;
 pub(crate) mod figures;
 pub(crate) mod left;

@@ -13,7 +13,7 @@ use crate::procedures::stepping::start::{Start, not_stepped};
 use crate::procedures::stepping::step_loop;
 use crate::procedures::stepping::step_loop::{Balance, Stepped};
 use crate::procedures::stepping::tracking::tracking_summary::Followed;
-use crate::record::{ShakeHistory, ShakeStep};
+use crate::record::{FloorMotion, ShakeHistory, ShakeStep};
 use crate::rig::Reading;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
@@ -139,17 +139,19 @@ impl Stepped for Shaken<'_> {
         let state = self.solver.state();
         self.history.steps.push(ShakeStep {
             step: state.step,
-            time: state.time,
             wall_time: session.guard.time(),
             ground_acceleration: self.ground_acceleration,
-            command: state.target.clone(),
-            displacement: state.measured_displacement.clone(),
-            computed: state.displacement.clone(),
-            velocity: state.velocity.clone(),
-            acceleration: state.acceleration.clone(),
-            restoring_force: state.restoring_force.clone(),
+            floors: FloorMotion {
+                time: state.time,
+                command: state.target.clone(),
+                displacement: state.measured_displacement.clone(),
+                computed: state.displacement.clone(),
+                velocity: state.velocity.clone(),
+                acceleration: state.acceleration.clone(),
+                restoring_force: state.restoring_force.clone(),
+                tracking: axes.to_vec(),
+            },
             energies: state.energies,
-            tracking: axes.to_vec(),
         });
         self.summary.push(state);
         // The input energy is 0 at the start: until it is larger, the reference is the energy that the ground motion can put in.

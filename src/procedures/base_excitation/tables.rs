@@ -92,7 +92,10 @@ fn tracking<'a, S>() -> Vec<TableColumn<Row<'a, S>>> {
 
 /// The table of a ground-motion test under this name.
 pub(crate) fn table(name: String, history: &ShakeHistory) -> Table<'_> {
-    let storeys = history.steps.first().map_or(1, |step| step.computed.len());
+    let storeys = history
+        .steps
+        .first()
+        .map_or(1, |step| step.floors.computed.len());
     Table::of_steps(name, history.steps.len(), storeys, |range| {
         written(&shake(), &rows_of(&history.steps[range]))
     })

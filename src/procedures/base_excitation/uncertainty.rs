@@ -4,7 +4,7 @@
 use super::setting::Setting;
 use crate::physics::integrator::input::FrameError;
 use crate::physics::reintegration::frame::{Floors, FloorsOutcome, FrameRun};
-use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
+use crate::physics::reintegration::frame_path::FramePath;
 use crate::physics::reintegration::perturbation::Perturbation;
 use crate::physics::structure::ground::acceleration_at;
 use crate::plan::{Ground, Shake};
@@ -13,7 +13,7 @@ use crate::procedures::common::results::{Evaluated, flat, give, index_of, layout
 use crate::procedures::stepping;
 use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there};
 use crate::procedures::stepping::run::Steps;
-use crate::record::{NamedResult, ShakeHistory, ShakeStep};
+use crate::record::{NamedResult, ShakeHistory};
 use crate::run::stop::Stop;
 use crate::schema::procedures::base_excitation as schema;
 use crate::uncertainty::Source;
@@ -45,12 +45,10 @@ pub(crate) fn propagate(
         ground,
         setting,
     } = shake;
-    let reading = |step: &ShakeStep| FrameReading {
-        target: step.command.clone(),
-        displacement: step.displacement.clone(),
-        force: step.restoring_force.clone(),
-    };
-    let path = uncertainty.path(&setting.frame, history.steps.iter().map(reading).collect())?;
+    let path = uncertainty.path(
+        &setting.frame,
+        history.steps.iter().map(|step| &step.floors),
+    )?;
     let Steps {
         time_step,
         count: steps,

@@ -12,7 +12,7 @@ pub(crate) fn of_impact(history: &ImpactHistory, give: &mut dyn FnMut(&[f64], &[
         Some(frame) => frame
             .floors
             .iter()
-            .for_each(|step| give(&step.displacement, &step.restoring_force)),
+            .for_each(|step| give(&step.floors.displacement, &step.floors.restoring_force)),
     }
 }
 

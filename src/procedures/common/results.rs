@@ -99,7 +99,7 @@ pub(crate) fn flat(evaluated: Evaluated) -> Vec<f64> {
         .collect()
 }
 
-/// The place of the first value of a result in a layout.
+/// The position of the first value of a result in a layout.
 pub(crate) fn index_of(layout: &[(&'static str, usize)], kind: ResultKind) -> Option<usize> {
     let at = layout.iter().position(|(name, _)| *name == kind.name)?;
     Some(layout[..at].iter().map(|(_, count)| count).sum())

@@ -2,6 +2,7 @@
 //! the guard. Out: parameters, history, the damping with its standard uncertainty.
 
 pub(crate) mod check;
+pub(crate) mod data;
 pub(crate) mod facts;
 pub(crate) mod figures;
 mod findings;

@@ -53,7 +53,9 @@ pub(crate) fn table(name: String, history: &ImpactHistory) -> Table<'_> {
     let Some(StruckFrame { floors, .. }) = &history.frame else {
         return Table::of(name, &history.steps, |steps| written(STEPS, steps));
     };
-    let storeys = floors.first().map_or(1, |floors| floors.computed.len());
+    let storeys = floors
+        .first()
+        .map_or(1, |floors| floors.floors.computed.len());
     let columns = |range: Range<usize>| {
         base_excitation::tables::storey_impact(&history.steps[range.clone()], &floors[range])
     };

@@ -179,7 +179,7 @@ pub(crate) fn drift(history: &EscalateHistory) -> Chart {
         .storeys()
         .next()
         .and_then(|impact| impact.floors.first())
-        .map_or(0, |floors| floors.computed.len());
+        .map_or(0, |floors| floors.floors.computed.len());
     let largest = |impact: &SeriesImpact, storey: usize| {
         impact.list(schema::MAX_DRIFT.name)?.get(storey).copied()
     };

@@ -3,6 +3,7 @@
 //! itself is in `impact`.
 
 pub(crate) mod check;
+pub(crate) mod data;
 pub(crate) mod declared;
 pub(crate) mod facts;
 pub(crate) mod figures;

@@ -161,7 +161,7 @@ fn storey_rows(history: &EscalateHistory) -> Vec<StoreyRow<'_>> {
         .storeys()
         .next()
         .and_then(|impact| impact.floors.first())
-        .map_or(0, |floors| floors.computed.len());
+        .map_or(0, |floors| floors.floors.computed.len());
     let rows_of = |(number, impact)| {
         (0..storeys).map(move |storey| StoreyRow {
             number,

@@ -2,4 +2,5 @@
 //! readings.
 
 pub(crate) mod check;
+pub(crate) mod data;
 pub(crate) mod run;

@@ -10,7 +10,7 @@ use crate::physics::statistics::ReadingNoise;
 use crate::plan::formula::{Formula, Operator, ProcedureId, ResultValue, Results};
 use crate::plan::{Frame, Impact, Mode, Plan, Shake, ShakeDamping, Stepping, StoreyTarget};
 use crate::procedures::common::perturbed_inputs::{out_of_bounds, uncertain_inputs, with_shifts};
-use crate::record::NamedResult;
+use crate::record::{FloorMotion, NamedResult};
 use crate::rig::DeclaredNoise;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
@@ -290,12 +290,17 @@ impl<'run> FrameUncertainty<'run> {
     }
 
     /// The recorded path.
-    pub fn path(
+    pub fn path<'r>(
         &self,
         steps: &FrameSteps,
-        readings: Vec<FrameReading>,
+        recorded: impl Iterator<Item = &'r FloorMotion>,
     ) -> Result<FramePath, String> {
-        self.passed(steps, readings, Vec::new())
+        let reading = |floors: &FloorMotion| FrameReading {
+            target: floors.command.clone(),
+            displacement: floors.displacement.clone(),
+            force: floors.restoring_force.clone(),
+        };
+        self.passed(steps, recorded.map(reading).collect(), Vec::new())
     }
 
     /// The recorded path with the velocities at its targets \[m/s\].

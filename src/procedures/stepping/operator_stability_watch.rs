@@ -451,7 +451,7 @@ mod tests {
         assert_eq!(
             stiffer.assess((0.001_004, 0.5), "the specimen"),
             None,
-            "a move of four quanta tells nothing"
+            "a move of four quanta gives no stiffness"
         );
         assert!(
             stiffer.assess((0.02, 8.0), "the specimen").is_some(),

@@ -4,6 +4,7 @@
 
 pub(crate) mod check;
 pub(crate) mod curve;
+pub(crate) mod data;
 pub(crate) mod facts;
 pub(crate) mod figures;
 pub(crate) mod fits;

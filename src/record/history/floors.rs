@@ -81,22 +81,22 @@ impl<F: Floors> Floors for &F {
 }
 
 /// Drift of each storey \[m\], from the displacement of each floor \[m\].
-pub(super) fn drift_of(floors: &[f64]) -> Vec<f64> {
+pub(crate) fn drift_of(floors: &[f64]) -> Vec<f64> {
     let mut drift = vec![0.0; floors.len()];
     drifts(floors, &mut drift);
     drift
 }
 
 /// Shear of each storey \[N\], from the force of each floor \[N\].
-pub(super) fn shear_of(floors: &[f64]) -> Vec<f64> {
+pub(crate) fn shear_of(floors: &[f64]) -> Vec<f64> {
     let mut shear = vec![0.0; floors.len()];
     shears(floors, &mut shear);
     shear
 }
 
-/// All floors of one step of an impact on a storey. The impact step contains the step, the striker and the contact.
+/// All floors of one step of a procedure that integrates.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FloorStep {
+pub struct FloorMotion {
     /// Simulated time \[s\].
     pub time: f64,
     /// Targets \[m\].
@@ -111,13 +111,11 @@ pub struct FloorStep {
     pub acceleration: Vec<f64>,
     /// Measured, of each floor \[N\].
     pub restoring_force: Vec<f64>,
-    /// ∫ shear d(storey drift) of each storey up to this step \[J\]; their sum is the energy of the restoring forces.
-    pub storey_energy: Vec<f64>,
     /// For each axis.
     pub tracking: Vec<Tracking>,
 }
 
-impl Floors for FloorStep {
+impl Floors for FloorMotion {
     fn at(&self) -> FloorsAt<'_> {
         FloorsAt {
             time: self.time,
@@ -129,6 +127,20 @@ impl Floors for FloorStep {
             restoring_force: &self.restoring_force,
             tracking: &self.tracking,
         }
+    }
+}
+
+/// All floors of one step of an impact on a storey. The impact step contains the step, the striker and the contact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FloorStep {
+    pub floors: FloorMotion,
+    /// ∫ shear d(storey drift) of each storey up to this step \[J\]; their sum is the energy of the restoring forces.
+    pub storey_energy: Vec<f64>,
+}
+
+impl Floors for FloorStep {
+    fn at(&self) -> FloorsAt<'_> {
+        self.floors.at()
     }
 }
 

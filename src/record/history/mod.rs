@@ -1,15 +1,15 @@
 //! The history of a procedure, one file a procedure: its steps, as they were read and computed. In: numbers of a run, SI. Out: data. It
 //! computes no motion.
 
-pub(crate) mod base_excitation;
-pub(crate) mod cycle;
 pub(crate) mod floors;
-pub(crate) mod impact;
-pub(crate) mod impact_series;
-pub(crate) mod ramp;
-pub(crate) mod sweep;
-pub(crate) mod unload;
 
+pub(crate) use crate::procedures::base_excitation::data::history as base_excitation;
+pub(crate) use crate::procedures::cycle::data::history as cycle;
+pub(crate) use crate::procedures::damping_sweep::data::history as sweep;
+pub(crate) use crate::procedures::impact::data::history as impact;
+pub(crate) use crate::procedures::impact_series::data::history as impact_series;
+pub(crate) use crate::procedures::stiffness_ramp::data::history as ramp;
+pub(crate) use crate::procedures::unload::data::history as unload;
 use crate::record::{
     CycleHistory, EscalateHistory, ImpactHistory, RampHistory, RampStep, ShakeHistory,
     SweepHistory, UnloadStep,

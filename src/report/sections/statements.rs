@@ -27,7 +27,7 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     body.push(Block::paragraph(sentences.join(" ")));
 }
 
-/// A line for each signatory that the plan names. Nobody signs a simulation as a test.
+/// A line for each signatory that the plan names. A simulation is not signed as a test.
 pub(super) fn signatures(source: &Source<'_>, body: &mut Vec<Block>) {
     let signatories = &source.run.plan.report.sign;
     if !signatories.is_empty() && !source.run.record.rig.simulated {

@@ -32,7 +32,7 @@ impl RealRig {
         let mut rig = Self {
             settle: plan.settle,
             axes: axes(plan, &link, limits),
-            identity: nobody(&plan.name),
+            identity: unidentified(&plan.name),
             introduction: Vec::new(),
             actuator,
             load_cell,
@@ -237,7 +237,7 @@ pub const fn commands_only(link: &RealLink) -> bool {
     matches!(link.actuator.dialect, Dialect::Grbl)
 }
 
-fn nobody(name: &str) -> Identity {
+fn unidentified(name: &str) -> Identity {
     let unknown = String::new;
     let name = name.to_owned();
     Identity {

@@ -134,12 +134,12 @@ mod tests {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let address = listener.local_addr().unwrap().to_string();
         drop(listener);
-        let nobody = TcpPort::connect(&address, LONG).err().unwrap();
+        let refused = TcpPort::connect(&address, LONG).err().unwrap();
         assert!(
-            nobody
+            refused
                 .to_string()
                 .starts_with(&format!("`{address}` cannot be reached")),
-            "{nobody}"
+            "{refused}"
         );
     }
 

@@ -1,42 +1,59 @@
-//! The restoring-force models of a specimen: the variants of `behaviour`.
+//! The restoring-force models of a specimen: the variants of `behaviour`. A model of numbers has its entry from its declaration in
+//! `physics::specimen`; the others are here.
 
-use crate::physics::specimen::parameter;
-use crate::schema::types::{Field, Variant};
-use crate::units::Dimension;
+use crate::physics::specimen::declaration::{self, Parameter, Presence, Unit};
+use crate::physics::specimen::{Declaration, MODELS};
+use crate::schema::types::{self, Field, FieldType, Range, Variant};
+use crate::units::{Dimension, Exponent};
 
-pub(crate) const STIFFNESS: Field = Field::quantity(
-    parameter::STIFFNESS,
-    Dimension::STIFFNESS,
-    "initial stiffness",
-)
-.required("stiffness: 300 kN/m")
-.above_zero();
+pub(crate) const STIFFNESS: Field = entry(&declaration::STIFFNESS);
 
-const YIELD_FORCE: Field = Field::quantity(
-    parameter::YIELD_FORCE,
-    Dimension::FORCE,
-    "force at first yield",
-)
-.required("yield_force: 4 kN")
-.above_zero();
-
-const POST_YIELD_RATIO: Field = Field::quantity(
-    parameter::POST_YIELD_RATIO,
-    Dimension::NUMBER,
-    "post-yield stiffness over initial stiffness",
-)
-.or(0.0, "")
-.within(0.0, 1.0);
+/// The names of the arguments of models with other parameters than numbers.
+pub(crate) mod argument {
+    pub(crate) const YOUNGS_MODULUS: &str = "youngs_modulus";
+    pub(crate) const SECOND_MOMENT: &str = "second_moment";
+    pub(crate) const ROTATIONAL_STIFFNESS: &str = "rotational_stiffness";
+    pub(crate) const FACTOR: &str = "factor";
+    pub(crate) const BEAM_LOAD: &str = "beam_load";
+    pub(crate) const SWAY_LOAD: &str = "sway_load";
+    pub(crate) const DISPLACEMENTS: &str = "displacements";
+    pub(crate) const FORCES: &str = "forces";
+    pub(crate) const FILE: &str = "file";
+    pub(crate) const UNLOADING: &str = "unloading";
+    pub(crate) const OF: &str = "of";
+    pub(crate) const DISPLACEMENT: &str = "displacement";
+    pub(crate) const FORCE: &str = "force";
+    pub(crate) const REFERENCE_VELOCITY: &str = "reference_velocity";
+    pub(crate) const EXPONENT: &str = "exponent";
+    pub(crate) const TIME_CONSTANT: &str = "time_constant";
+    pub(crate) const SHARE: &str = "share";
+    pub(crate) const REFERENCE_TIME: &str = "reference_time";
+    pub(crate) const LONGEST: &str = "longest";
+    pub(crate) const LENGTH: &str = "length";
+    pub(crate) const ENDS: &str = "ends";
+    pub(crate) const SHEAR_MODULUS: &str = "shear_modulus";
+    pub(crate) const SHEAR_AREA: &str = "shear_area";
+    pub(crate) const SPAN: &str = "span";
+    pub(crate) const HEIGHT: &str = "height";
+    pub(crate) const PLASTIC_MOMENT: &str = "plastic_moment";
+    pub(crate) const LOADS: &str = "loads";
+    pub(crate) const COLUMN_PLASTIC_MOMENT: &str = "column_plastic_moment";
+    pub(crate) const COLUMN_SECOND_MOMENT: &str = "column_second_moment";
+    pub(crate) const MASS_PER_LENGTH: &str = "mass_per_length";
+    pub(crate) const COLUMN_MASS_PER_LENGTH: &str = "column_mass_per_length";
+    pub(crate) const MIDSPAN_MASS: &str = "midspan_mass";
+    pub(crate) const CORNER_MASS: &str = "corner_mass";
+}
 
 const YOUNGS_MODULUS: Field = Field::quantity(
-    "youngs_modulus",
+    argument::YOUNGS_MODULUS,
     Dimension::PRESSURE,
     "modulus of elasticity",
 )
 .above_zero();
 
 const SECOND_MOMENT: Field = Field::quantity(
-    "second_moment",
+    argument::SECOND_MOMENT,
     Dimension::SECOND_MOMENT,
     "second moment of area",
 )
@@ -49,7 +66,7 @@ const ENDS: &[Variant] = &[
     Variant::with(
         "partly_built_in",
         &[Field::quantity(
-            "rotational_stiffness",
+            argument::ROTATIONAL_STIFFNESS,
             Dimension::ENERGY,
             "moment over rotation of each end, N*m/rad",
         )
@@ -60,7 +77,7 @@ const ENDS: &[Variant] = &[
     Variant::with(
         "fixity",
         &[Field::quantity(
-            "factor",
+            argument::FACTOR,
             Dimension::NUMBER,
             "0 pinned, 1 fixed: p = 1/(1 + 3EI/(k_θL))",
         )
@@ -69,39 +86,6 @@ const ENDS: &[Variant] = &[
         "partly fixed, by fixity factor: r = 3p/(1−p)",
     ),
 ];
-
-const ENERGY_CAPACITY: Field = Field::quantity(
-    "energy_capacity",
-    Dimension::NUMBER,
-    "γ: energy at which all strength is lost, over F_y x_y",
-)
-.above_zero()
-.default_in_words("no loss of strength");
-
-const UNLOADING_CAPACITY: Field = Field::quantity(
-    "unloading_capacity",
-    Dimension::NUMBER,
-    "γ of the unloading stiffness",
-)
-.above_zero()
-.default_in_words("no loss");
-
-const DETERIORATION_EXPONENT: Field = Field::quantity(
-    "deterioration_exponent",
-    Dimension::NUMBER,
-    "exponent c of the deterioration in each mode",
-)
-.or(1.0, "")
-.within(0.5, 4.0)
-.advanced();
-
-const RESIDUAL_STRENGTH: Field = Field::quantity(
-    "residual_strength",
-    Dimension::NUMBER,
-    "strength that always remains, over the initial strength",
-)
-.or(0.05, "")
-.within(0.01, 1.0);
 
 const UNLOADING: &[Variant] = &[
     Variant::word(
@@ -120,158 +104,81 @@ const LOADS: &[Variant] = &[
     Variant::with(
         "combined",
         &[
-            Field::quantity("beam_load", Dimension::FORCE, "W₀ at midspan")
+            Field::quantity(argument::BEAM_LOAD, Dimension::FORCE, "W₀ at midspan")
                 .required("beam_load: 20 kN")
                 .above_zero(),
-            Field::quantity("sway_load", Dimension::FORCE, "H₀ at the level of the beam")
-                .required("sway_load: 10 kN")
-                .above_zero(),
+            Field::quantity(
+                argument::SWAY_LOAD,
+                Dimension::FORCE,
+                "H₀ at the level of the beam",
+            )
+            .required("sway_load: 10 kN")
+            .above_zero(),
         ],
         "both loads, growing in this ratio; the force is their sum",
     ),
 ];
 
-pub(crate) const BEHAVIOURS: &[Variant] = &[
-    Variant::with("elastic", &[STIFFNESS], "linear spring"),
-    Variant::with(
-        "bilinear",
-        &[STIFFNESS, YIELD_FORCE, POST_YIELD_RATIO, ENERGY_CAPACITY, UNLOADING_CAPACITY, DETERIORATION_EXPONENT, RESIDUAL_STRENGTH],
-        "elastic–plastic with kinematic hardening; deteriorates if a capacity is given",
-    ),
+/// The models with other parameters than numbers.
+const OF_OTHER_PARAMETERS: &[Variant] = &[
     Variant::with(
         "multilinear",
         &[
-            Field::quantities("displacements", Dimension::LENGTH, "backbone points, from first yield on")
+            Field::quantities(argument::DISPLACEMENTS, Dimension::LENGTH, "backbone points, from first yield on")
                 .required("displacements: [1, 3, 8] mm"),
-            Field::quantities("forces", Dimension::FORCE, "forces at these points; each segment is softer than the one before")
+            Field::quantities(argument::FORCES, Dimension::FORCE, "forces at these points; each segment is softer than the one before")
                 .required("forces: [10, 20, 25] kN"),
         ],
         "piecewise linear with kinematic hardening; the last slope continues",
     ),
     Variant::with(
-        "bouc_wen",
-        &[
-            STIFFNESS,
-            YIELD_FORCE,
-            POST_YIELD_RATIO,
-            Field::quantity(parameter::SHARPNESS, Dimension::NUMBER, "sharpness of the yield transition").or(1.0, "").within(1.0, 100.0),
-            Field::quantity(parameter::BETA, Dimension::NUMBER, "shape of unloading: straight at 0.5; γ is 1 − β")
-                .or(0.5, "")
-                .within(0.5, 1.0),
-        ],
-        "smooth hysteresis of Bouc and Wen",
-    ),
-    Variant::with(
-        "pinching",
-        &[
-            STIFFNESS,
-            YIELD_FORCE,
-            POST_YIELD_RATIO,
-            Field::quantity("force_factor", Dimension::NUMBER, "κ_F: force at the break point over the force without pinching")
-                .or(0.25, "")
-                .within(0.0, 1.0),
-            Field::quantity(
-                "displacement_factor",
-                Dimension::NUMBER,
-                "κ_D: 1 − break point over largest permanent displacement",
-            )
-            .or(0.5, "")
-            .within(0.0, 1.0),
-            Field::quantity("unloading_exponent", Dimension::NUMBER, "exponent a of the unloading stiffness K (x_y/x_max)^a")
-                .or(0.0, "")
-                .within(0.0, 1.0),
-            ENERGY_CAPACITY,
-            UNLOADING_CAPACITY,
-            Field::quantity("reloading_capacity", Dimension::NUMBER, "γ of the reloading peak, which moves outward")
-                .above_zero()
-                .default_in_words("no loss"),
-            Field::quantity("capping_displacement", Dimension::LENGTH, "x_c, at which strength begins to fall")
-                .above_zero()
-                .default_in_words("never"),
-            Field::quantity("capping_slope", Dimension::NUMBER, "slope of the falling branch over the initial stiffness")
-                .or(0.1, "")
-                .above_zero_up_to(10.0),
-            Field::quantity("capping_capacity", Dimension::NUMBER, "γ of the falling branch, which moves inward")
-                .above_zero()
-                .default_in_words("no loss"),
-            DETERIORATION_EXPONENT,
-            RESIDUAL_STRENGTH,
-        ],
-        "pinched, peak-oriented hysteresis (Ibarra, Medina and Krawinkler)",
-    ),
-    Variant::with(
-        "degrading",
-        &[
-            STIFFNESS,
-            Field::quantity(parameter::HALF_DISPLACEMENT, Dimension::LENGTH, "peak displacement at which half of the loss has occurred")
-                .required("half_displacement: 5 mm")
-                .above_zero(),
-            Field::quantity(parameter::RESIDUAL, Dimension::NUMBER, "stiffness that always remains, over the initial stiffness")
-                .or(0.0, "")
-                .within(0.0, 1.0),
-        ],
-        "stiffness falls with the peak displacement; unloads to the origin",
-    ),
-    Variant::with(
-        "bolted",
-        &[
-            STIFFNESS,
-            Field::quantity(parameter::BEARING_FORCE, Dimension::FORCE, "force at which a hole yields and elongates")
-                .required("bearing_force: 5 kN")
-                .above_zero(),
-            Field::quantity(parameter::CLEARANCE, Dimension::LENGTH, "clearance: displacement from centre to bearing").or(0.0, "mm").at_least_zero(),
-            Field::quantity(parameter::SLIP_FORCE, Dimension::FORCE, "friction of the clamped faces").or(0.0, "N").at_least_zero(),
-        ],
-        "bolted joint: friction, clearance, bearing, holes that elongate",
-    ),
-    Variant::with(
         "table",
         &[
-            Field::text("file", "CSV file of points in the plan's folder, header `displacement_m,force_n` (also `_mm`, `_kn`)")
+            Field::text(argument::FILE, "CSV file of points in the plan's folder, header `displacement_m,force_n` (also `_mm`, `_kn`)")
                 .required("file: \"loop.csv\""),
-            Field::choice("unloading", UNLOADING, "unloading rule").default_in_words("initial_stiffness"),
+            Field::choice(argument::UNLOADING, UNLOADING, "unloading rule").default_in_words("initial_stiffness"),
         ],
         "measured points from a file; one-sided points apply in both directions; constant force beyond the last point",
     ),
     Variant::with(
         "fracture",
         &[
-            Field::inner("of", "model that breaks").required("of: elastic(stiffness: 300 kN/m)"),
-            Field::quantity("displacement", Dimension::LENGTH, "breaks at this displacement, in either direction; or give `force`").above_zero(),
-            Field::quantity("force", Dimension::FORCE, "breaks at this force, in either direction").above_zero(),
+            Field::inner(argument::OF, "model that breaks").required("of: elastic(stiffness: 300 kN/m)"),
+            Field::quantity(argument::DISPLACEMENT, Dimension::LENGTH, "breaks at this displacement, in either direction; or give `force`").above_zero(),
+            Field::quantity(argument::FORCE, Dimension::FORCE, "breaks at this force, in either direction").above_zero(),
         ],
         "intact until it breaks; zero force after that",
     ),
     Variant::with(
         "series",
-        &[Field::inners("of", "models in series")
+        &[Field::inners(argument::OF, "models in series")
             .required("of: [elastic(stiffness: 300 kN/m), elastic(stiffness: 1 MN/m)]")],
         "in series: equal force, displacements add",
     ),
     Variant::with(
         "parallel",
-        &[Field::inners("of", "models in parallel")
+        &[Field::inners(argument::OF, "models in parallel")
             .required("of: [elastic(stiffness: 300 kN/m), elastic(stiffness: 1 MN/m)]")],
         "in parallel: equal displacement, forces add",
     ),
     Variant::with(
         "rate",
         &[
-            Field::inner("of", "model at slow loading").required("of: elastic(stiffness: 300 kN/m)"),
-            Field::quantity("reference_velocity", Dimension::VELOCITY, "velocity at which the force doubles")
+            Field::inner(argument::OF, "model at slow loading").required("of: elastic(stiffness: 300 kN/m)"),
+            Field::quantity(argument::REFERENCE_VELOCITY, Dimension::VELOCITY, "velocity at which the force doubles")
                 .required("reference_velocity: 1 m/s")
                 .above_zero(),
-            Field::quantity("exponent", Dimension::NUMBER, "1/q of Cowper and Symonds").or(0.2, "").above_zero_up_to(1.0),
+            Field::quantity(argument::EXPONENT, Dimension::NUMBER, "1/q of Cowper and Symonds").or(0.2, "").above_zero_up_to(1.0),
         ],
         "rate effect: the load cell reads R (1 + (v/v₀)^exponent) during motion; must be the outermost model",
     ),
     Variant::with(
         "maxwell",
         &[
-            Field::inner("of", "model in parallel with it; may be another `maxwell` or a `logarithmic`")
+            Field::inner(argument::OF, "model in parallel with it; may be another `maxwell` or a `logarithmic`")
                 .required("of: elastic(stiffness: 300 kN/m)"),
             STIFFNESS,
-            Field::quantity("time_constant", Dimension::TIME, "τ: its force decays to 1/e in this time at rest")
+            Field::quantity(argument::TIME_CONSTANT, Dimension::TIME, "τ: its force decays to 1/e in this time at rest")
                 .required("time_constant: 2 s")
                 .above_zero(),
         ],
@@ -280,12 +187,12 @@ pub(crate) const BEHAVIOURS: &[Variant] = &[
     Variant::with(
         "logarithmic",
         &[
-            Field::inner("of", "model whose force relaxes").required("of: bilinear(stiffness: 300 kN/m, yield_force: 6 kN)"),
-            Field::quantity("share", Dimension::NUMBER, "a: fraction of the unrelaxed force lost for each e-fold growth of 1 + t/t₀")
+            Field::inner(argument::OF, "model whose force relaxes").required("of: bilinear(stiffness: 300 kN/m, yield_force: 6 kN)"),
+            Field::quantity(argument::SHARE, Dimension::NUMBER, "a: fraction of the unrelaxed force lost for each e-fold growth of 1 + t/t₀")
                 .required("share: 1 %")
                 .above_zero_up_to(1.0),
-            Field::quantity("reference_time", Dimension::TIME, "t₀ of ln(1 + t/t₀)").required("reference_time: 1 s").above_zero(),
-            Field::quantity("longest", Dimension::TIME, "time after which no more is lost")
+            Field::quantity(argument::REFERENCE_TIME, Dimension::TIME, "t₀ of ln(1 + t/t₀)").required("reference_time: 1 s").above_zero(),
+            Field::quantity(argument::LONGEST, Dimension::TIME, "time after which no more is lost")
                 .above_zero()
                 .default_in_words("10⁶ × `reference_time`")
                 .advanced(),
@@ -295,54 +202,139 @@ pub(crate) const BEHAVIOURS: &[Variant] = &[
     Variant::with(
         "beam",
         &[
-            Field::quantity("length", Dimension::LENGTH, "span").required("length: 1.4 m").above_zero(),
+            Field::quantity(argument::LENGTH, Dimension::LENGTH, "span").required("length: 1.4 m").above_zero(),
             YOUNGS_MODULUS.required("youngs_modulus: 26 GPa"),
             SECOND_MOMENT.required("second_moment: 12e4 mm^4"),
-            Field::choice("ends", ENDS, "end supports").required("ends: simply_supported"),
-            Field::quantity("shear_modulus", Dimension::PRESSURE, "G, with `shear_area`: adds the shear deflection")
+            Field::choice(argument::ENDS, ENDS, "end supports").required("ends: simply_supported"),
+            Field::quantity(argument::SHEAR_MODULUS, Dimension::PRESSURE, "G, with `shear_area`: adds the shear deflection")
                 .above_zero(),
-            Field::quantity("shear_area", Dimension::AREA, "κA, effective shear area").above_zero(),
+            Field::quantity(argument::SHEAR_AREA, Dimension::AREA, "κA, effective shear area").above_zero(),
         ],
         "elastic beam from its geometry; shear adds flexibility L/(4κGA); L/(κGA) for a cantilever",
     ),
     Variant::with(
         "portal",
         &[
-            Field::quantity("span", Dimension::LENGTH, "L between the columns").required("span: 4 m").above_zero(),
-            Field::quantity("height", Dimension::LENGTH, "h of the columns").required("height: 3 m").above_zero(),
+            Field::quantity(argument::SPAN, Dimension::LENGTH, "L between the columns").required("span: 4 m").above_zero(),
+            Field::quantity(argument::HEIGHT, Dimension::LENGTH, "h of the columns").required("height: 3 m").above_zero(),
             Field::quantity(
-                "plastic_moment",
+                argument::PLASTIC_MOMENT,
                 Dimension::ENERGY,
                 "Mp of the section; of the beam if the columns have their own",
             )
             .required("plastic_moment: 20 kN*m")
             .above_zero(),
-            Field::choice("loads", LOADS, "loads on the frame").required("loads: sway"),
+            Field::choice(argument::LOADS, LOADS, "loads on the frame").required("loads: sway"),
             YOUNGS_MODULUS,
             SECOND_MOMENT,
-            Field::quantity(parameter::STIFFNESS, Dimension::STIFFNESS, "initial stiffness, instead of `youngs_modulus` and `second_moment`").above_zero(),
-            Field::quantity("column_plastic_moment", Dimension::ENERGY, "Mp of the columns")
+            Field::quantity(STIFFNESS.name, Dimension::STIFFNESS, "initial stiffness, instead of `youngs_modulus` and `second_moment`").above_zero(),
+            Field::quantity(argument::COLUMN_PLASTIC_MOMENT, Dimension::ENERGY, "Mp of the columns")
                 .above_zero()
                 .default_in_words("equal to the beam's"),
-            Field::quantity("column_second_moment", Dimension::SECOND_MOMENT, "second moment of area of the columns")
+            Field::quantity(argument::COLUMN_SECOND_MOMENT, Dimension::SECOND_MOMENT, "second moment of area of the columns")
                 .above_zero()
                 .default_in_words("equal to the beam's"),
             Field::quantity(
-                "mass_per_length",
+                argument::MASS_PER_LENGTH,
                 Dimension::MASS_PER_LENGTH,
                 "of the beam; gives the mass of the specimen if `mass` is absent",
             )
             .above_zero()
             .default_in_words("density * area of the specimen"),
-            Field::quantity("column_mass_per_length", Dimension::MASS_PER_LENGTH, "of the columns")
+            Field::quantity(argument::COLUMN_MASS_PER_LENGTH, Dimension::MASS_PER_LENGTH, "of the columns")
                 .above_zero()
                 .default_in_words("equal to the beam's"),
-            Field::quantity("midspan_mass", Dimension::MASS, "mass at midspan").or(0.0, "kg").at_least_zero(),
-            Field::quantity("corner_mass", Dimension::MASS, "mass at each corner").or(0.0, "kg").at_least_zero(),
+            Field::quantity(argument::MIDSPAN_MASS, Dimension::MASS, "mass at midspan").or(0.0, "kg").at_least_zero(),
+            Field::quantity(argument::CORNER_MASS, Dimension::MASS, "mass at each corner").or(0.0, "kg").at_least_zero(),
         ],
         "portal frame with fixed feet by plastic hinges: elastic up to the lowest collapse load",
     ),
 ];
+
+/// Every model: those of numbers first.
+pub(crate) const BEHAVIOURS: &[Variant] = &ALL;
+
+const ALL: [Variant; MODELS.len() + OF_OTHER_PARAMETERS.len()] = {
+    let mut all = [Variant::word("", ""); MODELS.len() + OF_OTHER_PARAMETERS.len()];
+    let (mut position, mut first) = (0, 0);
+    while position < MODELS.len() {
+        let Declaration {
+            word,
+            parameters,
+            about,
+            ..
+        } = MODELS[position];
+        let (_, arguments) = ENTRIES.split_at(first);
+        let (arguments, _) = arguments.split_at(parameters.len());
+        all[position] = Variant::with(word, arguments, about);
+        (position, first) = (position + 1, first + parameters.len());
+    }
+    let mut other = 0;
+    while other < OF_OTHER_PARAMETERS.len() {
+        all[position] = OF_OTHER_PARAMETERS[other];
+        (position, other) = (position + 1, other + 1);
+    }
+    all
+};
+
+/// The numbers of all models, one model after another.
+const ENTRIES: &[Field] = &{
+    let mut entries = [STIFFNESS; number_count()];
+    let (mut model, mut position) = (0, 0);
+    while model < MODELS.len() {
+        let mut number = 0;
+        while number < MODELS[model].parameters.len() {
+            entries[position] = entry(&MODELS[model].parameters[number]);
+            (position, number) = (position + 1, number + 1);
+        }
+        model += 1;
+    }
+    entries
+};
+
+const fn number_count() -> usize {
+    let (mut count, mut model) = (0, 0);
+    while model < MODELS.len() {
+        count += MODELS[model].parameters.len();
+        model += 1;
+    }
+    count
+}
+
+/// The entry of a number.
+const fn entry(parameter: &Parameter) -> Field {
+    let Unit {
+        metre,
+        kilogram,
+        second,
+    } = parameter.unit;
+    let dimension = Dimension {
+        length: Exponent::whole(metre),
+        mass: Exponent::whole(kilogram),
+        time: Exponent::whole(second),
+    };
+    let (presence, example) = match parameter.presence {
+        Presence::Required(example) => (types::Presence::Required, example),
+        Presence::Default(number, unit) => (types::Presence::Default { number, unit }, ""),
+        Presence::Optional(words) if words.is_empty() => (types::Presence::Optional, ""),
+        Presence::Optional(words) => (types::Presence::DefaultInWords(words), ""),
+    };
+    Field {
+        presence,
+        example,
+        range: Range {
+            low: parameter.low,
+            above: parameter.above_low,
+            high: parameter.high,
+        },
+        advanced: parameter.advanced,
+        ..Field::of_type(
+            parameter.name,
+            FieldType::Quantity(dimension),
+            parameter.about,
+        )
+    }
+}
 
 /// The dimension of a number of a model.
 pub(crate) fn dimension(model: &str, argument: &str) -> Dimension {

@@ -4,10 +4,23 @@ use super::behaviours::{BEHAVIOURS, STIFFNESS};
 use crate::schema::types::{Field, Variant};
 use crate::units::Dimension;
 
+/// The names of the arguments of a storey.
+pub(crate) mod storey {
+    pub(crate) const STIFFNESS: &str = super::STIFFNESS.name;
+    pub(crate) const MASS: &str = "mass";
+    pub(crate) const COLUMN_STIFFNESS: &str = "column_stiffness";
+    pub(crate) const MASS_UNCERTAINTY: &str = "mass_uncertainty";
+    pub(crate) const STIFFNESS_UNCERTAINTY: &str = "stiffness_uncertainty";
+    pub(crate) const HEIGHT: &str = "height";
+    pub(crate) const BEHAVIOUR: &str = "behaviour";
+    pub(crate) const DAMPING: &str = "damping";
+    pub(crate) const COULOMB: &str = "coulomb";
+}
+
 const STOREY: &[Variant] = &[Variant::with(
     "storey",
     &[
-        Field::quantity("mass", Dimension::MASS, "mass of the floor")
+        Field::quantity(storey::MASS, Dimension::MASS, "mass of the floor")
             .required("mass: 2 t")
             .above_zero(),
         Field {
@@ -15,41 +28,41 @@ const STOREY: &[Variant] = &[Variant::with(
             ..STIFFNESS.default_in_words("that of the behaviour, or 2 × `column_stiffness`")
         },
         Field::quantity(
-            "column_stiffness",
+            storey::COLUMN_STIFFNESS,
             Dimension::STIFFNESS,
             "stiffness of one of its two columns",
         )
         .above_zero(),
         Field::quantity(
-            "mass_uncertainty",
+            storey::MASS_UNCERTAINTY,
             Dimension::MASS,
             "standard uncertainty of the mass",
         )
         .or(0.0, "kg")
         .at_least_zero(),
         Field::quantity(
-            "stiffness_uncertainty",
+            storey::STIFFNESS_UNCERTAINTY,
             Dimension::STIFFNESS,
             "standard uncertainty of the stiffness of the storey",
         )
         .or(0.0, "N/m")
         .at_least_zero(),
-        Field::quantity("height", Dimension::LENGTH, "height of the storey").above_zero(),
+        Field::quantity(storey::HEIGHT, Dimension::LENGTH, "height of the storey").above_zero(),
         Field::choice(
-            "behaviour",
+            storey::BEHAVIOUR,
             BEHAVIOURS,
             "restoring-force model of a virtual rig: storey shear against drift",
         )
         .default_in_words("elastic with `stiffness`"),
         Field::quantity(
-            "damping",
+            storey::DAMPING,
             Dimension::DAMPING,
             "viscous damping, c times drift velocity, in the force of a virtual rig",
         )
         .or(0.0, "N*s/m")
         .at_least_zero(),
         Field::quantity(
-            "coulomb",
+            storey::COULOMB,
             Dimension::FORCE,
             "friction against the drift, in the force of a virtual rig",
         )

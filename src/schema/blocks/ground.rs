@@ -41,7 +41,6 @@ pub(crate) const GROUND: BlockKind = BlockKind {
     kind: Kind::Ground,
     keyword: &["ground"],
     naming: Naming::Named,
-    procedure: false,
     fields: &[FILE, RECORD_NUMBER, SCALE, SCALE_UNCERTAINTY, UNIT],
     exports: &[],
     results: &[],

@@ -10,7 +10,6 @@ pub(crate) const LIMITS: BlockKind = BlockKind {
     kind: Kind::Limits,
     keyword: &["limits"],
     naming: Naming::MaybeNamed,
-    procedure: false,
     fields: limits_fields!(fields),
     exports: &[],
     results: &[],

@@ -105,7 +105,6 @@ pub(crate) const PLAN: BlockKind = BlockKind {
     kind: Kind::Plan,
     keyword: &["plan"],
     naming: Naming::Titled,
-    procedure: false,
     fields: &[
         EDITION,
         STANDARD,

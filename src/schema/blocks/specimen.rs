@@ -66,7 +66,6 @@ pub(crate) const SPECIMEN: BlockKind = BlockKind {
     kind: Kind::Specimen,
     keyword: &["specimen"],
     naming: Naming::Named,
-    procedure: false,
     fields: &[
         MASS,
         MASS_UNCERTAINTY,

@@ -71,7 +71,6 @@ pub(crate) const STRIKER: BlockKind = BlockKind {
     kind: Kind::Striker,
     keyword: &["striker"],
     naming: Naming::Named,
-    procedure: false,
     fields: &[
         MASS,
         MASS_UNCERTAINTY,

@@ -23,7 +23,7 @@ pub(super) fn write(
         Naming::MaybeNamed => " [NAME]",
     };
     let words = block.words();
-    let kind = if block.procedure {
+    let kind = if block.is_procedure() {
         "Procedure"
     } else {
         "Block"

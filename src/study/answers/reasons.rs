@@ -1,5 +1,5 @@
 //! Why runs have no result. In: rows. Out: each reason with the number of its runs and the first of them. Only so many different reasons
-//! are told apart; the rest is counted together.
+//! are distinguished; the rest is counted together.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::study::data_set::Row;
 
-/// Reasons that are told apart.
+/// Reasons that are distinguished.
 const MOST: usize = 50;
 
 /// A reason and its runs.

@@ -93,7 +93,7 @@ pub enum CollectionFault {
 }
 
 impl Collection<'_> {
-    /// Simulates the runs that are not there yet. `observe` is told after each round, and stops the collection with `false`.
+    /// Simulates the runs that are not there yet. `observe` is called after each round, and stops the collection with `false`.
     ///
     /// # Errors
     /// The folder contains another study, or cannot be written.

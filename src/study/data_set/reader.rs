@@ -1,5 +1,5 @@
 //! Reads a data set, a row group at a time. In: a file. Out: its metadata, and its rows in the order of their runs. A file that is cut,
-//! changed or of another program is an error with its place; no byte is decoded before its digest is verified.
+//! changed or of another program is an error with its position; no byte is decoded before its digest is verified.
 
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
@@ -120,7 +120,7 @@ impl Reader {
             })
     }
 
-    /// One row group: `first` is the number of its first run, `from` the place of its first byte.
+    /// One row group: `first` is the number of its first run, `from` the position of its first byte.
     fn block(&self, at: usize, first: u64, from: u64) -> Result<Block, DataSetFault> {
         let group = &self.groups[at];
         let last = first + group.rows.saturating_sub(1);

@@ -195,12 +195,12 @@ fn numbers(record: &Record) -> [f64; 7] {
         Peak::default(),
     );
     for step in &history.steps {
-        let (x, v) = (&step.computed, &step.velocity);
+        let (x, v) = (&step.floors.computed, &step.floors.velocity);
         displacements.take([(x[0], v[0]), (x[1], v[1])].into_iter());
         drifts.take([(x[0], v[0]), (x[1] - x[0], v[1] - v[0])].into_iter());
-        shear.take(step.restoring_force.iter().sum());
+        shear.take(step.floors.restoring_force.iter().sum());
     }
-    let last = &history.steps.last().unwrap().computed;
+    let last = &history.steps.last().unwrap().floors.computed;
     let (displacements, drifts) = (displacements.largest(), drifts.largest());
     [
         displacements[0],

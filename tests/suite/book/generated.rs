@@ -70,7 +70,7 @@ fn every_column_is_explained_and_listed() {
     let mut text = "\n| procedure | numeric columns |\n|---|---|\n".to_owned();
     let mut units = BTreeMap::new();
     let mut earlier: Vec<Listed> = Vec::new();
-    for block in BLOCKS.iter().filter(|block| block.procedure) {
+    for block in BLOCKS.iter().filter(|block| block.is_procedure()) {
         let names = columns(block.kind).map(|column| column.name);
         units.extend(columns(block.kind).map(|column| (column.name, si_unit(column.dimension))));
         let mut once: Vec<&str> = Vec::new();

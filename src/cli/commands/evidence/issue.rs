@@ -2,12 +2,13 @@
 //! report. In: a run folder that verifies, the particulars, the day, the issuer and the reason. Out: a new folder beside it with the same
 //! run log. The original folder and all measured numbers are not changed.
 
-use crate::schema::plan_block::{AUTHORISED_BY, ISSUED};
 use std::path::{Path, PathBuf};
+
+use clap::Args;
 
 use super::replayed::finish_replayed;
 use super::verify::refuse_unproven;
-use crate::cli::args::{IssueArguments, ReportArguments};
+use crate::cli::args::{date, name, particular, reason};
 use crate::cli::commands::prediction::prediction;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::record_file;
@@ -20,6 +21,7 @@ use crate::evidence::{
 use crate::files::failure::plain;
 use crate::files::recorded_run::JOURNAL;
 use crate::report::OutputFile;
+use crate::schema::plan_block::{AUTHORISED_BY, ISSUED};
 use crate::text::diagnostic::excerpt::one_line;
 
 /// The largest file of particulars \[bytes\].
@@ -34,6 +36,37 @@ struct Wanted<'a> {
     by: String,
     reason: Option<String>,
     particulars: Vec<(String, String)>,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "psd writes a new folder, RUN-issued, with the same run log and all results recomputed from it. Only particulars of the `plan` \
+    block can be stated, such as `condition`, `temperature`, `humidity` or `deviations`. To change an issued report, use \
+    `psd report --amend`.\n\n\
+    Exit codes:\n\
+    \x20 0  issued\n\
+    \x20 2  error on the command line, or dates out of order\n\
+    \x20 3  the folder does not verify, or fault of a file"
+)]
+pub struct IssueArguments {
+    /// The run folder; it must verify
+    #[arg(value_name = "RUN")]
+    pub run: PathBuf,
+    /// Person authorising the report
+    #[arg(long, value_name = "NAME", value_parser = name)]
+    pub authorised_by: String,
+    /// Date of issue
+    #[arg(long, value_name = "YYYY-MM-DD", value_parser = date)]
+    pub date: String,
+    /// State a particular; an empty text removes it
+    #[arg(long, value_name = "FIELD=TEXT", value_parser = particular)]
+    pub set_particular: Vec<(String, String)>,
+    /// File of particulars, one `field = text` per line
+    #[arg(long, value_name = "FILE")]
+    pub particulars: Option<PathBuf>,
+    /// New or empty folder for the issued report [default: RUN-issued]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 /// Issues a report: issuer, day, and particulars that are known only after the test.
@@ -69,8 +102,36 @@ pub fn issue(arguments: &IssueArguments, settings: Settings) -> Result<Exit, Fai
     )
 }
 
+/// An amendment of a report.
+#[derive(Debug, Args)]
+pub struct AmendmentArguments {
+    /// Create a report that replaces the one in RUN
+    #[arg(long, requires = "by", requires = "reason", requires = "date")]
+    pub amend: bool,
+    /// Person authorising the amendment
+    #[arg(long, value_name = "NAME", value_parser = name, requires = "amend")]
+    pub by: Option<String>,
+    /// Date of the amendment, and of issue of the new report
+    #[arg(long, value_name = "YYYY-MM-DD", value_parser = date, requires = "amend")]
+    pub date: Option<String>,
+    /// Reason of the amendment
+    #[arg(long, value_name = "TEXT", value_parser = reason, requires = "amend")]
+    pub reason: Option<String>,
+    /// Change a particular; an empty text removes it
+    #[arg(long, value_name = "FIELD=TEXT", value_parser = particular, requires = "amend")]
+    pub set_particular: Vec<(String, String)>,
+    /// File of particulars, one `field = text` per line
+    #[arg(long, value_name = "FILE", requires = "amend")]
+    pub particulars: Option<PathBuf>,
+}
+
 /// Makes one amendment report.
-pub fn amend(arguments: &ReportArguments, settings: Settings) -> Result<Exit, Failure> {
+pub fn amend(
+    run: &Path,
+    out: Option<&Path>,
+    arguments: &AmendmentArguments,
+    settings: Settings,
+) -> Result<Exit, Failure> {
     let (Some(by), Some(reason), Some(date)) = (&arguments.by, &arguments.reason, &arguments.date)
     else {
         return Err(Failure::command_line(
@@ -84,8 +145,8 @@ pub fn amend(arguments: &ReportArguments, settings: Settings) -> Result<Exit, Fa
     }
     make(
         Wanted {
-            run: &arguments.run,
-            out: arguments.out.as_deref(),
+            run,
+            out,
             kind: OneKind::Amendment,
             date,
             by: by.clone(),

@@ -5,9 +5,10 @@
 
 use std::path::{Path, PathBuf};
 
-use super::issue::amend;
+use clap::Args;
+
+use super::issue::{AmendmentArguments, amend};
 use super::replayed::finish_replayed;
-use crate::cli::args::ReportArguments;
 use crate::cli::commands::prediction::prediction;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::record_file;
@@ -19,12 +20,33 @@ use crate::evidence::{Folder, IssueFile, MANIFEST, ReplayedRun, check_consistenc
 use crate::files::failure::plain;
 use crate::record::journal::FileStorage;
 
+#[derive(Debug, Args)]
+#[command(
+    after_help = "An amendment changes particulars of the `plan` block, such as the name of the customer. It never changes a measured or computed \
+    number. Both reports are kept, each with its own id."
+)]
+pub struct ReportArguments {
+    /// The run folder
+    #[arg(value_name = "RUN")]
+    pub run: PathBuf,
+    /// New or empty folder for the results [default: the run folder, or RUN-amended-N]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub amendment: AmendmentArguments,
+}
+
 /// Regenerates the results of one run.
 pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, Failure> {
-    if arguments.amend {
-        return amend(arguments, settings);
-    }
     let run = &arguments.run;
+    if arguments.amendment.amend {
+        return amend(
+            run,
+            arguments.out.as_deref(),
+            &arguments.amendment,
+            settings,
+        );
+    }
     let journal = journal_of(run);
     let _still = journal
         .exists()

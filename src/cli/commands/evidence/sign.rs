@@ -1,10 +1,12 @@
 //! `psd sign RUN --key FILE` and `psd keygen FILE`: the signature of a run folder. In: a folder that verifies, and a key outside it. Out:
 //! one signature file over its manifest. It overwrites nothing.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
 
 use super::verify::refuse_unproven;
-use crate::cli::args::{KeygenArguments, SignArguments};
+use crate::cli::args::name;
 use crate::cli::commands::prediction::prediction;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::run_folder::write_new;
@@ -15,6 +17,33 @@ use crate::evidence::keys::Protection;
 use crate::evidence::{Folder, MANIFEST, Rebuilt, Statement, examine, file_name, sign_manifest};
 use crate::report::OutputFile;
 use crate::text::diagnostic::excerpt::one_line;
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "psd writes manifest.sha256.minisig, or manifest.sha256.ROLE.minisig, into the run folder. Check it with \
+    `psd verify RUN --key KEY.pub` or `minisign -Vm manifest.sha256 -p KEY.pub`.\n\n\
+    Exit codes:\n\
+    \x20 0  signed\n\
+    \x20 2  error on the command line\n\
+    \x20 3  the folder does not verify, or fault of a file"
+)]
+pub struct SignArguments {
+    /// The run folder; it must verify
+    #[arg(value_name = "RUN")]
+    pub run: PathBuf,
+    /// Secret key of `psd keygen` or minisign, outside the run folder
+    #[arg(long, value_name = "FILE")]
+    pub key: PathBuf,
+    /// Role, as listed under `sign` in the plan's `report` block
+    #[arg(long, value_name = "ROLE", value_parser = name)]
+    pub role: Option<String>,
+    /// Name of the signatory
+    #[arg(long, value_name = "NAME", value_parser = name)]
+    pub name: Option<String>,
+    /// File with the password in its first line [default: prompt]
+    #[arg(long, value_name = "FILE")]
+    pub password_file: Option<PathBuf>,
+}
 
 /// Signs a run folder.
 pub fn sign(arguments: &SignArguments, settings: Settings) -> Result<Exit, Failure> {
@@ -84,6 +113,22 @@ fn role<'a>(given: Option<&'a str>, roles: &'a [String]) -> Result<Option<&'a st
                     .help(format!("the plan names {}", known()))
             }),
     }
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "psd writes the secret key to FILE and the public key to FILE.pub, in the format of minisign."
+)]
+pub struct KeygenArguments {
+    /// New file for the secret key, outside every run folder
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// File with the password in its first line [default: prompt]
+    #[arg(long, value_name = "FILE", conflicts_with = "no_password")]
+    pub password_file: Option<PathBuf>,
+    /// Create a key without a password: every reader can sign
+    #[arg(long)]
+    pub no_password: bool,
 }
 
 /// Makes a pair of keys.

@@ -2,9 +2,10 @@
 //! of the folder matches the manifest; and the signatures. It moves nothing and writes nothing.
 
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use crate::cli::args::VerifyArguments;
+use clap::Args;
+
 use crate::cli::commands::prediction::prediction;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::record_file::{JOURNAL, journal_of};
@@ -13,6 +14,24 @@ use crate::cli::settings::Settings;
 use crate::evidence::{Finding, Folder, Rebuilt, examine, keys};
 use crate::record::journal::{FileFault, FileStorage};
 use crate::text::diagnostic::excerpt::one_line;
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "psd recomputes targets, results, figures, report and manifest from the run log, and compares them with the files. An unsigned \
+    folder is reported as unsigned; this is not an error.\n\n\
+    Exit codes:\n\
+    \x20 0  everything is verified\n\
+    \x20 2  error on the command line\n\
+    \x20 3  a difference, or a named key did not sign"
+)]
+pub struct VerifyArguments {
+    /// The run folder
+    #[arg(value_name = "RUN")]
+    pub run: PathBuf,
+    /// Required public key; repeat for each signatory
+    #[arg(long, value_name = "FILE")]
+    pub key: Vec<PathBuf>,
+}
 
 /// Verifies a run folder. A run that is still in progress cannot be verified.
 pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, Failure> {

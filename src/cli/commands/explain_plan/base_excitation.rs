@@ -94,7 +94,7 @@ pub fn steps(history: &ShakeHistory) -> Vec<Vec<String>> {
     } else {
         "of it"
     };
-    let ends = history.steps.last().map_or(0.0, |step| step.time);
+    let ends = history.steps.last().map_or(0.0, |step| step.floors.time);
     let row = |name: &str, value: String| vec![name.to_owned(), value];
     let mut rows = vec![
         row(

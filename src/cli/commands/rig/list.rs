@@ -1,6 +1,7 @@
 //! `psd rig list`: the serial ports of this machine, one per line, with the system's data of each port. It also lists the persistent
 //! names, which do not change when cables are exchanged. It opens no port.
 
+use clap::Args;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -14,6 +15,13 @@ use crate::text::diagnostic::excerpt::escape;
 
 /// The folder of names made of manufacturer and serial number, each a link to its port.
 const NAMES: &str = "/dev/serial/by-id";
+
+#[derive(Debug, Args)]
+pub struct ListArguments {
+    /// Output format: one line per port, or JSON
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub format: Format,
+}
 
 /// Prints the ports; no port is not an error.
 pub fn list(format: Format) -> Result<Exit, Failure> {

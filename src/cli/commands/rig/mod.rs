@@ -1,6 +1,7 @@
 //! `psd rig …`, one file per subcommand. In: the arguments and the plan's rig. Out: an exit code.
 //! Every motion stays inside the limits of the plan.
 
+mod client_protocol;
 mod jog;
 mod list;
 mod monitor;
@@ -11,36 +12,51 @@ mod typed;
 
 use std::path::Path;
 
-use crate::cli::args::{PlanSettings, RigCommand};
+use clap::Subcommand;
+
+use crate::cli::args::PlanSettings;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::plan_file;
 use crate::cli::settings::Settings;
 use crate::plan::{Link, Plan};
 use crate::rig::{Rig, StopRequest, connect, virtual_rig};
 
+#[derive(Debug, Subcommand)]
+pub enum RigCommand {
+    /// List serial ports of this machine, with their stable names
+    List(list::ListArguments),
+    /// Identify the rig and show its readings and margins (no motion)
+    Probe(probe::ProbeArguments),
+    /// Show the readings continuously (no motion)
+    Monitor(monitor::MonitorArguments),
+    /// MOVE the rig by hand within the plan's limits
+    Jog(jog::JogArguments),
+    /// Emulate the rig of a plan at its own port, until Ctrl-C
+    Simulate(simulate::SimulateArguments),
+    /// Let a coordinator or OpenSees MOVE the rig within the plan's limits
+    Serve(serve::ServeArguments),
+}
+
 /// Runs one of the commands.
 pub fn rig(command: &RigCommand, settings: Settings) -> Result<Exit, Failure> {
     match command {
-        RigCommand::List { format } => list::list(*format),
-        RigCommand::Probe {
-            plan,
-            plan_settings,
-        } => with_rig(plan, plan_settings, settings, |rig, plan, _| {
-            probe::probe(rig, plan)
-        }),
-        RigCommand::Monitor {
-            plan,
-            plan_settings,
-            count,
-            every,
-        } => {
-            let request = monitor::MonitorRequest {
-                every: typed::every(every)?,
-                count: *count,
-            };
-            with_rig(plan, plan_settings, settings, |rig, plan, stop_request| {
-                monitor::monitor(rig, plan, &request, stop_request, settings)
-            })
+        RigCommand::List(arguments) => list::list(arguments.format),
+        RigCommand::Probe(arguments) => with_rig(
+            &arguments.plan,
+            &arguments.plan_settings,
+            settings,
+            |rig, plan, _| probe::probe(rig, plan),
+        ),
+        RigCommand::Monitor(arguments) => {
+            let request = monitor::MonitorRequest::of(arguments)?;
+            with_rig(
+                &arguments.plan,
+                &arguments.plan_settings,
+                settings,
+                |rig, plan, stop_request| {
+                    monitor::monitor(rig, plan, &request, stop_request, settings)
+                },
+            )
         }
         RigCommand::Jog(arguments) => jog::jog(arguments, settings),
         RigCommand::Simulate(arguments) => simulate::simulate(arguments, settings),

@@ -1,7 +1,12 @@
 //! `psd rig monitor`: continuous readings, on the live screen of a terminal or one line per reading in a pipe. Nothing moves.
 
+use std::path::PathBuf;
 use std::time::Duration;
 
+use clap::Args;
+
+use super::typed;
+use crate::cli::args::PlanSettings;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::operator::screen::{Screen, is_large_enough};
 use crate::cli::operator::watch::Signals;
@@ -11,12 +16,42 @@ use crate::plan::Plan;
 use crate::rig::{Reading, Rig, StopRequest};
 use crate::run::{AxisReport, Observer as _, StepReport};
 
+#[derive(Debug, Args)]
+#[command(after_help = "In a pipe: one line per reading, in SI units.\n\n\
+Exit codes:\n\
+\x20 0  ended by Ctrl-C, `q`, `--count` or its reader\n\
+\x20 2  error in the plan or on the command line\n\
+\x20 3  fault of the rig, or no answer")]
+pub struct MonitorArguments {
+    /// The plan, a `.psd` file or a Markdown document
+    #[arg(value_name = "PLAN")]
+    pub plan: PathBuf,
+    #[command(flatten)]
+    pub plan_settings: PlanSettings,
+    /// Stop after this number of readings
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub count: Option<u64>,
+    /// Time between two readings, from 10 ms to 1 min
+    #[arg(long, value_name = "TIME", default_value = "100 ms")]
+    pub every: String,
+}
+
 /// Interval and number of readings.
 pub struct MonitorRequest {
     /// Time from one reading to the next \[s\].
     pub every: f64,
     /// None: until Ctrl-C.
     pub count: Option<u64>,
+}
+
+impl MonitorRequest {
+    /// The request of the command line.
+    pub fn of(arguments: &MonitorArguments) -> Result<Self, Failure> {
+        Ok(Self {
+            every: typed::every(&arguments.every)?,
+            count: arguments.count,
+        })
+    }
 }
 
 /// Reads until Ctrl-C, `q`, `count` readings, or until the reader of the lines has gone.

@@ -1,6 +1,11 @@
 //! `psd rig probe`: the identity of the rig, its readings at rest, their scatter and zero drift, and its margin to each limit. Nothing
 //! moves.
 
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::args::PlanSettings;
 use std::fmt::Write as _;
 
 use crate::cli::exit::{Exit, Failure};
@@ -18,6 +23,20 @@ const APART: f64 = 0.1;
 
 /// Relative rounding error of the mean of ten equal readings.
 const DUST: f64 = 1e-12;
+
+#[derive(Debug, Args)]
+#[command(after_help = "Exit codes:\n\
+\x20 0  the rig answers and is within its limits\n\
+\x20 2  error in the plan or on the command line\n\
+\x20 3  no rig answers, or a different rig than the plan names\n\
+\x20 4  the rig is outside a limit")]
+pub struct ProbeArguments {
+    /// The plan, a `.psd` file or a Markdown document
+    #[arg(value_name = "PLAN")]
+    pub plan: PathBuf,
+    #[command(flatten)]
+    pub plan_settings: PlanSettings,
+}
 
 /// Prints the report; exit 4 if the rig is outside a limit.
 pub fn probe(rig: &mut dyn Rig, plan: &Plan) -> Result<Exit, Failure> {

@@ -3,8 +3,12 @@
 //! implements no protocol.
 
 use std::net::{SocketAddr, TcpListener};
+use std::path::PathBuf;
 
-use crate::cli::args::{ServeArguments, ServedProtocol};
+use clap::Args;
+
+use super::client_protocol::{ClientArguments, protocol};
+use crate::cli::args::{PlanSettings, name};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::finish_run::write_made;
 use crate::cli::files::record_file;
@@ -23,14 +27,48 @@ use crate::remote;
 use crate::remote::{Ended, Event, Protocol, Session};
 use crate::report;
 use crate::report::Provenance;
-use crate::rig::{Rig, StopRequest, VirtualRig, virtual_rig};
+use crate::rig::{Rig, StopRequest, virtual_rig};
 use crate::run::client_run::Driver;
 use crate::run::replay;
 use crate::run::replay::{OpenLog, Recorded, Wall};
 use crate::text::diagnostic::excerpt::escape;
 use crate::units::Dimension;
 use crate::units::display::readable;
-use crate::units::unit;
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "THE RIG MOVES as the client requests. psd prints `ready` when it listens, and a summary after each session.\n\n\
+    Exit codes:\n\
+    \x20 0  closed by the client\n\
+    \x20 2  error in the plan or on the command line\n\
+    \x20 3  fault of the client or the rig\n\
+    \x20 4  stopped by a limit or by the operator\n\
+    The worst session determines the code."
+)]
+pub struct ServeArguments {
+    /// The plan: its rig, specimen and limits apply
+    #[arg(value_name = "PLAN")]
+    pub plan: PathBuf,
+    #[command(flatten)]
+    pub plan_settings: PlanSettings,
+    #[command(flatten)]
+    pub client: ClientArguments,
+    /// Address to listen at; port 0 is any free port
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8090")]
+    pub listen: std::net::SocketAddr,
+    /// End after the first session
+    #[arg(long)]
+    pub once: bool,
+    /// Run folder, new or empty [default: runs/PLAN-N]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Answer every prompt with yes: a real rig MOVES immediately
+    #[arg(long)]
+    pub yes: bool,
+    /// Operator at the rig [default: the plan's `operator`]
+    #[arg(long, value_name = "NAME", value_parser = name)]
+    pub operator: Option<String>,
+}
 
 /// Serves until a client or the operator ends it.
 pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Failure> {
@@ -47,7 +85,7 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
     let Some(plan) = &checked.plan else {
         return Ok(Exit::Wrong);
     };
-    let protocol = protocol(arguments, plan)?;
+    let protocol = protocol(&arguments.client, plan)?;
     named(arguments, plan)?;
     let attendance = real_rig::named(attendance, plan)?;
     let clients = ClientListener::open(arguments)?;
@@ -65,7 +103,7 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
             let signals = Signals::caught(&stop_request).map_err(Failure::Signals)?;
             let mut watcher = Watcher::in_lines(settings, &attendance, plan, true, signals);
             let circumstances = Circumstances {
-                served: Some(arguments.protocol.name().to_owned()),
+                served: Some(arguments.client.protocol.name().to_owned()),
                 ..Circumstances::default()
             };
             let provenance = provenance::of(plan, arguments.plan_settings.date.as_deref());
@@ -87,7 +125,7 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
                 })?;
             let circumstances = real_rig::circumstances(plan, &attendance);
             let circumstances = Circumstances {
-                served: Some(arguments.protocol.name().to_owned()),
+                served: Some(arguments.client.protocol.name().to_owned()),
                 ..circumstances
             };
             let provenance = provenance::of_real_run(
@@ -263,7 +301,7 @@ fn on_record(
             // The program that started this one waits for the line.
             printed = print_result(&format!(
                 "ready: {} on {}\n",
-                arguments.protocol.name(),
+                arguments.client.protocol.name(),
                 clients.address
             ));
             let mut print_event = |event: Event<'_>| match event {
@@ -293,101 +331,6 @@ fn on_record(
         clients: served,
         printed,
     })
-}
-
-/// The protocol of the client, with the stiffness that it may request.
-fn protocol(arguments: &ServeArguments, plan: &Plan) -> Result<Protocol, Failure> {
-    let given = arguments.stiffness.as_deref().map(stiffness).transpose()?;
-    match arguments.protocol {
-        ServedProtocol::Nees if given.is_some() => Err(Failure::command_line(
-            "NEES has no request for a stiffness: `--stiffness` is for generic-client",
-        )),
-        ServedProtocol::Nees => Ok(Protocol::Nees {
-            control_points: control_points(arguments, plan)?,
-        }),
-        ServedProtocol::GenericClient if arguments.control_points.is_some() => {
-            Err(Failure::command_line(
-                "a generic client numbers its axes: `--control-points` is for nees",
-            ))
-        }
-        ServedProtocol::GenericClient => {
-            let specimen = VirtualRig::specimen_of(plan);
-            if let Some(frame) = specimen.and_then(|specimen| specimen.frame.as_ref()) {
-                if given.is_some() {
-                    return Err(Failure::command_line(
-                        "a frame has its own stiffness matrix: remove `--stiffness`",
-                    ));
-                }
-                return Ok(Protocol::GenericClient {
-                    stiffness: frame.stiffness.concat(),
-                });
-            }
-            let behaviour = specimen.and_then(|specimen| specimen.behaviour.as_ref());
-            let known = given.or_else(|| behaviour.map(crate::plan::Behaviour::initial_stiffness));
-            let stiffness = known.ok_or_else(|| {
-                Failure::command_line(
-                    "the stiffness for the client is not known: the specimen has no behaviour",
-                )
-                .help("give it: --stiffness \"300 kN/m\"")
-            })?;
-            Ok(Protocol::GenericClient {
-                stiffness: vec![stiffness],
-            })
-        }
-    }
-}
-
-/// The names of the rig's axes, for a coordinator.
-fn control_points(arguments: &ServeArguments, plan: &Plan) -> Result<Vec<String>, Failure> {
-    let axes = plan.degrees_of_freedom();
-    let Some(given) = &arguments.control_points else {
-        return Ok(remote::usual_names(axes));
-    };
-    let names: Vec<String> = given
-        .split(',')
-        .map(|name| name.trim().to_owned())
-        .collect();
-    let is_name = |name: &String| {
-        name.starts_with("MDL-") && name.bytes().all(|byte| byte.is_ascii_graphic())
-    };
-    let twice = names
-        .iter()
-        .enumerate()
-        .any(|(at, name)| names[..at].contains(name));
-    if names.len() != axes || twice || !names.iter().all(is_name) {
-        let example: Vec<String> = (1..=axes).map(|axis| format!("MDL-00-{axis:02}")).collect();
-        return Err(Failure::command_line(format!(
-            "--control-points {given}: write {axes} different names that begin with MDL-"
-        ))
-        .help(format!(
-            "write them as \"{}\", the lowest storey first",
-            example.join(", ")
-        )));
-    }
-    Ok(names)
-}
-
-/// `300 kN/m`, in N/m.
-fn stiffness(text: &str) -> Result<f64, Failure> {
-    let wrong = |reason: &str| {
-        Failure::command_line(format!(
-            "--stiffness {text}: {reason}; write it as \"300 kN/m\""
-        ))
-    };
-    let (number, token) = text
-        .split_once(' ')
-        .ok_or_else(|| wrong("the number or its unit is missing"))?;
-    let number: f64 = number.parse().map_err(|_| wrong("not a number"))?;
-    let unit = unit::parse(token.trim()).map_err(|error| wrong(&error.to_string()))?;
-    if Dimension::FORCE.over(Dimension::LENGTH) != Some(unit.dimension) {
-        return Err(wrong("not a unit of stiffness"));
-    }
-    let stiffness = number * unit.factor;
-    if stiffness >= 0.0 && stiffness.is_finite() {
-        Ok(stiffness)
-    } else {
-        Err(wrong("a stiffness must be at least 0"))
-    }
 }
 
 fn open_listener(address: SocketAddr, settings: Settings) -> String {
@@ -429,23 +372,6 @@ mod tests {
     use super::*;
     use crate::remote::Driven;
     use crate::rig::RigFault;
-
-    #[test]
-    fn a_stiffness_has_its_unit() {
-        assert_eq!(stiffness("300 kN/m").unwrap(), 3e5);
-        assert_eq!(stiffness("0.3 kN/mm").unwrap(), 3e5);
-        for wrong in [
-            "300",
-            "300 kN",
-            "x kN/m",
-            "-1 N/m",
-            "nan N/m",
-            "1e400 N/m",
-            "300 foo/m",
-        ] {
-            assert_eq!(stiffness(wrong).unwrap_err().exit(), Exit::Wrong, "{wrong}");
-        }
-    }
 
     #[test]
     fn a_session_ends_as_the_reference_specifies() {

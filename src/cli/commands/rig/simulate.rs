@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::cli::args::SimulateArguments;
+use clap::Args;
+
+use crate::cli::args::PlanSettings;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::plan_file;
 use crate::cli::output::print_message;
@@ -15,6 +17,37 @@ use crate::emulator::lines::real_time::{Carrier, Until, serve};
 use crate::emulator::{Log, PseudoTerminal, RigEmulator, Script, TcpLine, of_plan};
 use crate::plan::{DeviceLink, Plan, PortPlan, RealLink};
 use crate::text::diagnostic::excerpt::escape;
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The script has one fault per line, as TIME: FAULT. Times are `at 4.5 s`, `after 12 moves`, `after 20 readings`, `after 3 replies`, \
+    `each reply with 0.01`. Faults are, among others, `drop replies 3`, `delay reply 0.4 s`, `flip a bit`, `hang up`, `reboot`, \
+    `freeze force`, `scale force by -1`. See docs/reference/emulator-faults.md.\n\n\
+    Exit codes:\n\
+    \x20 0  all targets within the limits\n\
+    \x20 2  error in the plan, the script or on the command line\n\
+    \x20 3  fault of a port or a file\n\
+    \x20 4  a target outside the limits"
+)]
+pub struct SimulateArguments {
+    /// The plan, a `.psd` file or a Markdown document
+    #[arg(value_name = "PLAN")]
+    pub plan: PathBuf,
+    #[command(flatten)]
+    pub plan_settings: PlanSettings,
+    /// Script of faults, such as `after 12 moves: drop replies 3`
+    #[arg(long, value_name = "FILE")]
+    pub script: Option<PathBuf>,
+    /// New log file of all bytes and moves, with their times
+    #[arg(long, value_name = "FILE")]
+    pub log: Option<PathBuf>,
+    /// Seed of random noise and faults
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// End when the last host has disconnected
+    #[arg(long)]
+    pub once: bool,
+}
 
 /// Emulates the rig of a plan.
 pub fn simulate(arguments: &SimulateArguments, settings: Settings) -> Result<Exit, Failure> {

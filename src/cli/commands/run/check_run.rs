@@ -2,8 +2,9 @@
 //! The rest runs on a simulated specimen with the measured stiffness. In: a checked plan. Out: a run folder marked as a check run, and
 //! the predicted margin of the whole run to each limit.
 
+use super::RunArguments;
 use super::on_rig::{End, on_its_rig};
-use crate::cli::args::{Format, RunArguments};
+use crate::cli::args::Format;
 use crate::cli::commands::explain_plan::DryRun;
 use crate::cli::commands::prediction::rig_and_specimen;
 use crate::cli::exit::{Exit, Failure};

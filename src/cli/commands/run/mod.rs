@@ -2,9 +2,14 @@
 
 pub(crate) mod check_run;
 pub(crate) mod on_rig;
+mod recorded_folder;
 pub(crate) mod resume;
 
-use crate::cli::args::{Format, RunArguments};
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::args::{Format, PlanSettings, name};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::accepted::AcceptedFolder;
 use crate::cli::files::golden_run;
@@ -19,6 +24,43 @@ use crate::golden::{Outcome, Tested};
 use crate::text::diagnostic::json;
 use check_run::check_run;
 use on_rig::{End, on_its_rig};
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "A REAL RIG MOVES after its release. psd first shows how far, how fast and with which force; the operator then types RELEASE. \
+    With `--yes` it MOVES without this prompt. With `--check-run` it MOVES for the pre-test check and the first stiffness ramps.\n\n\
+    Exit codes:\n\
+    \x20 0  all requirements met\n\
+    \x20 1  a requirement failed or is inconclusive\n\
+    \x20 2  error in the plan or on the command line\n\
+    \x20 3  fault of the rig or a file\n\
+    \x20 4  stopped by a limit or by the operator"
+)]
+pub struct RunArguments {
+    /// The plan, a `.psd` file or a Markdown document
+    #[arg(value_name = "PLAN")]
+    pub plan: PathBuf,
+    /// Run folder, new or empty [default: runs/PLAN-N]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub plan_settings: PlanSettings,
+    /// Answer every prompt with yes, including the motion release
+    #[arg(long)]
+    pub yes: bool,
+    /// Operator name [default: the plan's `operator`]
+    #[arg(long, value_name = "NAME", value_parser = name)]
+    pub operator: Option<String>,
+    /// Standard output: the run folder, or the summary as JSON
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub format: Format,
+    /// Also replace the accepted results in reports/PLAN
+    #[arg(long, alias = "bless")]
+    pub accept: bool,
+    /// Check run (A REAL RIG MOVES), and prediction of the rest
+    #[arg(long, alias = "rehearse", conflicts_with = "accept")]
+    pub check_run: bool,
+}
 
 /// Runs one plan.
 pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure> {

@@ -1,7 +1,8 @@
 //! A run on the rig that the plan names, with its run log. In: a checked plan. Out: the recorded run.
 
+use super::RunArguments;
 use super::resume;
-use crate::cli::args::{Format, RunArguments};
+use crate::cli::args::Format;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::finish_run::{finish_run, summary};
 use crate::cli::files::provenance;

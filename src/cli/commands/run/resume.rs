@@ -5,7 +5,9 @@
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
-use crate::cli::args::ResumeArguments;
+use clap::Args;
+
+use super::recorded_folder::{changed_files, equipment_of, put_results_aside};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::finish_run::finish_run;
 use crate::cli::files::record_file;
@@ -16,10 +18,9 @@ use crate::cli::operator::{confirm_release, expected, held, real_rig};
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::evidence::MANIFEST;
-use crate::files::failure::plain;
 use crate::files::provenance::{BUILD, TOOLCHAIN};
 use crate::plan::{Plan, RealLink};
-use crate::record::equipment::{Device, Equipment};
+use crate::record::equipment::Equipment;
 use crate::record::journal::{Durability, EntryKind, FileStorage, Journal};
 use crate::report::Provenance;
 use crate::rig::real::RealRig;
@@ -29,6 +30,47 @@ use crate::run::replay::{
     AmendBody, Assurance, Bands, Continuation, Header, LoggedRun, Recorded, RecoverBody,
     ResumeBody, RigBody,
 };
+
+#[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
+#[command(
+    after_help = "A REAL RIG MOVES after its release. Before that, psd checks that run log, plan, program and rig belong to the run, and reads the \
+    state of the last target from the rig. See docs/how-to/resume.md.\n\n\
+    Exit codes:\n\
+    \x20 as for `psd run`; 3 also if the run must not continue"
+)]
+pub struct ResumeArguments {
+    /// The run folder
+    #[arg(value_name = "RUN")]
+    pub run: PathBuf,
+    /// Person authorising the resumption (logged)
+    #[arg(long, value_name = "NAME")]
+    pub operator: String,
+    /// Reason of the interruption, and why the run may continue (logged)
+    #[arg(long, value_name = "TEXT")]
+    pub reason: String,
+    /// Plan to compare, or with --amend to use instead
+    #[arg(long, value_name = "PLAN")]
+    pub plan: Option<PathBuf>,
+    /// Accept a different plan or program (logged)
+    #[arg(long)]
+    pub amend: bool,
+    /// Confirm that the restarted rig was referenced (logged)
+    #[arg(long)]
+    pub re_referenced: bool,
+    /// Confirm that the rig was not power-cycled (logged)
+    #[arg(long)]
+    pub same_power_up: bool,
+    /// Clear the hold of an axis without moving it (logged)
+    #[arg(long)]
+    pub let_go: bool,
+    /// Confirm a force change after inspecting the specimen (logged)
+    #[arg(long)]
+    pub accept_relaxation: bool,
+    /// Answer every prompt with yes, including the motion release
+    #[arg(long)]
+    pub yes: bool,
+}
 
 /// Resumes one run.
 pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, Failure> {
@@ -249,13 +291,13 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
                 path.display()
             )));
         };
-        let nobody = record_file::Circumstances::default();
+        let none_known = record_file::Circumstances::default();
         let now = record_file::header(
             &given,
             was.device.clone(),
             &options,
             &provenance::of(&given, options.date.as_deref()),
-            nobody,
+            none_known,
         );
         differences.extend(changed_files(recorded, &now));
         header = Header {
@@ -315,54 +357,6 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Fa
     ))
 }
 
-/// The equipment that the run log states; for version 1, the equipment that plan and rig state.
-fn equipment_of(read: &ReadRecord) -> Result<Equipment, Failure> {
-    if let Some(stated) = &read.logged.header.equipment {
-        return Ok(stated.clone());
-    }
-    let rig = read
-        .logged
-        .rig
-        .as_ref()
-        .ok_or(replay::ResumeRefusal::NothingRecorded)?;
-    Ok(Equipment::of(
-        &read.plan,
-        Device::of(&rig.identity, rig.noise),
-    ))
-}
-
-/// Files whose digests differ, or that only one of the two has.
-fn changed_files(recorded: &Header, now: &Header) -> Vec<String> {
-    let of = |header: &Header, name: &str| {
-        header
-            .files
-            .iter()
-            .find(|file| file.name == name)
-            .map(|file| file.sha256.clone())
-    };
-    let mut names: Vec<&str> = recorded
-        .files
-        .iter()
-        .chain(&now.files)
-        .map(|file| file.name.as_str())
-        .collect();
-    names.sort_unstable();
-    names.dedup();
-    let digest_text = |digest: Option<String>| digest.unwrap_or_else(|| "nothing".to_owned());
-    let changed = names
-        .into_iter()
-        .filter(|name| of(recorded, name) != of(now, name));
-    changed
-        .map(|name| {
-            format!(
-                "{name}: {} became {}",
-                digest_text(of(recorded, name)),
-                digest_text(of(now, name))
-            )
-        })
-        .collect()
-}
-
 /// Reads from the rig, without a move, whether it reached the last target. Then asks the operator whether it may move.
 fn settle(
     arguments: &ResumeArguments,
@@ -413,29 +407,6 @@ fn assured(arguments: &ResumeArguments) -> Vec<Assurance> {
         .filter(|(is_given, _)| *is_given)
         .map(|(_, assured)| assured)
         .collect()
-}
-
-/// Keeps the results of the interrupted run, beside the future ones.
-fn put_results_aside(run: &Path) -> Result<(), Failure> {
-    let failed = |path: PathBuf| move |error: std::io::Error| Failure::file(path, plain(&error));
-    let entries = std::fs::read_dir(run).map_err(failed(run.to_owned()))?;
-    let is_result =
-        |name: &str| !name.starts_with("journal.") && !name.starts_with("before-resume-");
-    let names: Vec<String> = entries
-        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-        .filter(|name| is_result(name))
-        .collect();
-    if names.is_empty() {
-        return Ok(());
-    }
-    let aside = (1..u32::MAX)
-        .map(|number| run.join(format!("before-resume-{number}")))
-        .find(|path| !path.exists());
-    let Some(aside) = aside else { return Ok(()) };
-    std::fs::create_dir(&aside).map_err(failed(aside.clone()))?;
-    names.into_iter().try_for_each(|name| {
-        std::fs::rename(run.join(&name), aside.join(&name)).map_err(failed(run.join(name)))
-    })
 }
 
 /// Resumes the run as `psd resume` does, for the operator who observed the rig without a break. None: the operator refused, and the run

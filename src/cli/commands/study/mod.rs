@@ -12,7 +12,9 @@ mod submit;
 
 use std::path::{Path, PathBuf};
 
-use crate::cli::args::{StudyChoice, StudyCommand};
+use clap::{Args, Subcommand};
+
+use crate::cli::args::PlanSettings;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::plan_file;
 use crate::cli::settings::Settings;
@@ -21,6 +23,58 @@ use crate::plan::Plan;
 use crate::study::definition::Definition;
 use crate::study::definition::measured;
 use crate::text::sanitize;
+
+#[derive(Debug, Subcommand)]
+pub enum StudyCommand {
+    /// Run a study of a plan, or continue one (no motion)
+    Run(run::RunStudyArguments),
+    /// Show the progress of a study or of its shards
+    Status {
+        /// The folder of the study
+        #[arg(value_name = "FOLDER")]
+        folder: PathBuf,
+    },
+    /// Put the shards of a study together
+    #[command(
+        after_help = "The file is that of a study run by one process, byte for byte.\n\n\
+    Exit codes:\n\
+    \x20 0  all requirements on probabilities are met, or there is none\n\
+    \x20 1  a requirement on a probability is not met or undecided\n\
+    \x20 3  a shard is missing, damaged or of another study"
+    )]
+    Merge {
+        /// The folder of the shards
+        #[arg(value_name = "FOLDER")]
+        folder: PathBuf,
+    },
+    /// Make summary, figures and report of a study from its data set
+    #[command(
+        after_help = "Needs neither the plan nor the build of psd that ran the study. Equal data sets give equal files.\n\n\
+    Exit codes:\n\
+    \x20 0  all requirements on probabilities are met, or there is none\n\
+    \x20 1  a requirement on a probability is not met or undecided\n\
+    \x20 3  the data set is missing or damaged, or a file cannot be written"
+    )]
+    Report(report::ReportStudyArguments),
+    /// Print the scripts of a job array, or submit them
+    Submit(submit::SubmitArguments),
+}
+
+/// A study of a plan, and where it is kept.
+#[derive(Debug, Args)]
+pub struct StudyChoice {
+    /// The study or fragility, if the plan has several
+    #[arg(long, value_name = "NAME")]
+    pub study: Option<String>,
+    /// Number of runs, or most runs, instead of the plan's
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub runs: Option<u64>,
+    /// Folder of the study [default: studies/PLAN-STUDY]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub plan_settings: PlanSettings,
+}
 
 /// One command of studies.
 pub fn study(command: &StudyCommand, settings: Settings) -> Result<Exit, Failure> {

@@ -1,10 +1,11 @@
 //! `psd study report FOLDER`: summary, figures and report of a study. In: its data set alone. Out: files beside it, which replace older
 //! ones: equal data sets give equal files. It reads no plan and simulates nothing.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
 
 use super::{answers, failure};
-use crate::cli::args::ReportStudyArguments;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::run_folder::FolderSink;
 use crate::cli::files::writing::ProgressSink;
@@ -15,6 +16,16 @@ use crate::study::answers::Answers;
 use crate::study::collection::folder::DataSetFiles;
 use crate::study::data_set::Reader;
 use crate::study::report;
+
+#[derive(Debug, Args)]
+pub struct ReportStudyArguments {
+    /// The folder of the study, or a data set in it
+    #[arg(value_name = "FOLDER")]
+    pub folder: PathBuf,
+    /// Write into this folder [default: that of the data set]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
 
 /// Makes the files of a study.
 pub fn report(arguments: &ReportStudyArguments, settings: Settings) -> Result<Exit, Failure> {

@@ -1,16 +1,21 @@
 //! `psd study run`: the runs of a study, or of one of its shards. In: a plan. Out: the data set, and its answers on the terminal and in
 //! `summary.json`. A study that is there already is continued.
 
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::Args;
+
 use super::progress::StudyProgress;
-use super::{answers, failure, open};
-use crate::cli::args::RunStudyArguments;
+use super::{StudyChoice, answers, failure, open};
+use crate::cli::args::Format;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::operator::watch::Signals;
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::{Settings, variable};
 use crate::plan::study::Sampling;
 use crate::rig::StopRequest;
-use crate::study::cluster::shard::Shard;
+use crate::study::cluster::shard::{self, NamedShard, Shard};
 use crate::study::collection::{Collection, Ended};
 use crate::study::data_set::Metadata;
 use crate::study::definition::DefinitionError;
@@ -21,6 +26,41 @@ use crate::study::{collection, metadata};
 
 /// Stack size for the deepest plan, also in a build without optimisation.
 const STACK: usize = 32 << 20;
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "The same command continues a study that was stopped, and adds runs to a finished one if `--runs` is larger. Ctrl-C or TERM \
+    stops it after the present runs; nothing is lost.\n\n\
+    Exit codes:\n\
+    \x20 0  all requirements on probabilities are met, or there is none\n\
+    \x20 1  a requirement on a probability is not met or undecided\n\
+    \x20 2  error in the plan or on the command line\n\
+    \x20 3  fault of a file, or the folder contains another study\n\
+    \x2075  stopped before all runs were done"
+)]
+pub struct RunStudyArguments {
+    /// The plan, a `.psd` file
+    #[arg(value_name = "PLAN")]
+    pub plan: PathBuf,
+    #[command(flatten)]
+    pub choice: StudyChoice,
+    /// Run one of several shards: 3/8, `env/8` or `env`
+    #[arg(long, value_name = "I/N", value_parser = named_shard)]
+    pub shard: Option<NamedShard>,
+    /// Number of threads [default: number of processors]
+    #[arg(long, value_name = "N")]
+    pub jobs: Option<NonZeroUsize>,
+    /// Simulate each run separately, also where batches are faster
+    #[arg(long)]
+    pub one_by_one: bool,
+    /// Standard output: the study folder, or the summary as JSON
+    #[arg(long, value_enum, default_value_t = Format::Human)]
+    pub format: Format,
+}
+
+fn named_shard(text: &str) -> Result<NamedShard, String> {
+    shard::parse(text).map_err(|error| error.to_string())
+}
 
 pub fn run(arguments: &RunStudyArguments, settings: Settings) -> Result<Exit, Failure> {
     let shard = arguments

@@ -3,16 +3,52 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::Args;
+
 use super::slurm::{self, NodeView};
-use super::{failure, open};
-use crate::cli::args::SubmitArguments;
+use super::{StudyChoice, failure, open};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::files::failure::plain;
 use crate::plan::study::Runs;
+use crate::study::cluster::shard;
 use crate::study::cluster::slurm::{ARRAY_SCRIPT, Job, MERGE_SCRIPT};
 use crate::study::collection::CollectionFault;
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "psd prints two scripts: the job array, and the job that merges its shards. With `--submit` it writes them into the folder of the \
+    study and calls `sbatch`. See docs/how-to/clusters.md."
+)]
+pub struct SubmitArguments {
+    /// The plan, a `.psd` file
+    #[arg(value_name = "PLAN")]
+    pub plan: PathBuf,
+    /// Write scripts for Slurm
+    #[arg(long, required = true)]
+    pub slurm: bool,
+    /// Number of shards, the tasks of the array
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(shard::MOST_SHARDS)))]
+    pub shards: u32,
+    #[command(flatten)]
+    pub choice: StudyChoice,
+    /// Most tasks at a time
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub throttle: Option<u32>,
+    /// Processors of each task
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    pub processors: u32,
+    /// Time limit of each task, as Slurm writes it
+    #[arg(long, value_name = "TIME", default_value = "01:00:00")]
+    pub time: String,
+    /// Another option of sbatch, such as `--partition=short`; repeat
+    #[arg(long, value_name = "OPTION", allow_hyphen_values = true)]
+    pub option: Vec<String>,
+    /// Submit the jobs
+    #[arg(long)]
+    pub submit: bool,
+}
 
 /// Prints or submits the scripts.
 pub fn submit(arguments: &SubmitArguments, settings: Settings) -> Result<Exit, Failure> {

@@ -4,8 +4,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use super::TestArguments;
 use super::shown;
-use crate::cli::args::TestArguments;
 use crate::cli::exit::Failure;
 use crate::cli::files::accepted::AcceptedFolder;
 use crate::cli::files::loader::is_plan;

@@ -6,9 +6,11 @@ mod failures;
 mod overlay;
 mod trials;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use crate::cli::args::{Format, TestArguments};
+use clap::Args;
+
+use crate::cli::args::Format;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
@@ -18,6 +20,59 @@ use crate::golden::Report;
 use crate::golden::print::console;
 use cases::Case;
 use trials::Trials;
+
+#[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
+#[command(
+    after_help = "The accepted results of plans/NAME.psd are in reports/NAME, beside the folder of the plans. The `golden` block of a plan sets the \
+    tolerances; see docs/golden.md.\n\n\
+    Exit codes:\n\
+    \x20 0  all results as accepted\n\
+    \x20 2  error on the command line\n\
+    \x20 3  fault of a file\n\
+    \x20 5  a plan differs, has no accepted results, or could not run"
+)]
+pub struct TestArguments {
+    /// Plans, or folders of plans (not recursive) [default: plans]
+    #[arg(value_name = "PATH")]
+    pub paths: Vec<PathBuf>,
+    /// Folder of the accepted results [default: reports]
+    #[arg(long, value_name = "DIR")]
+    pub golden: Option<PathBuf>,
+    /// Accept the present results, and report the changes
+    #[arg(long, alias = "bless", conflicts_with_all = ["list", "fail_fast"])]
+    pub accept: bool,
+    /// With --accept: also write the files of unchanged results
+    #[arg(long, requires = "accept")]
+    pub anew: bool,
+    /// With --accept: also keep report and pictures
+    #[arg(long, requires = "accept")]
+    pub pages: bool,
+    /// Only plans with this text in their path
+    #[arg(long, value_name = "TEXT")]
+    pub filter: Option<String>,
+    /// List the plans without running them
+    #[arg(long)]
+    pub list: bool,
+    /// Number of plans run in parallel [default: number of processors]
+    #[arg(long, value_name = "N")]
+    pub jobs: Option<std::num::NonZeroUsize>,
+    /// Stop at the first plan that fails
+    #[arg(long)]
+    pub fail_fast: bool,
+    /// Folder for new results of plans that differ, with overlay pictures
+    #[arg(long, value_name = "DIR", default_value = "runs/golden-failures")]
+    pub out: PathBuf,
+    /// Also write the outcome as JUnit XML
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+    /// Write the outcome as TAP on standard output
+    #[arg(long)]
+    pub tap: bool,
+    /// Outcome as text on standard error, or JSON on standard output
+    #[arg(long, value_enum, default_value_t = Format::Human, conflicts_with = "tap")]
+    pub format: Format,
+}
 
 /// Tests plans, or accepts their results.
 pub fn test(arguments: &TestArguments, settings: Settings) -> Result<Exit, Failure> {

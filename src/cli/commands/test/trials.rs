@@ -7,9 +7,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
+use super::TestArguments;
 use super::cases::Case;
 use super::failures;
-use crate::cli::args::TestArguments;
 use crate::cli::exit::Failure;
 use crate::cli::files::accepted::truth_of;
 use crate::cli::files::golden_run;

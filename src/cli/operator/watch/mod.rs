@@ -72,9 +72,9 @@ enum Asking {
     /// An operator who types lines.
     Person(Person),
     /// No terminal, and no real rig moves.
-    NobodyNeeded,
+    NoOperatorNeeded,
     /// No terminal, and a real rig waits for an answer that cannot come.
-    Nobody,
+    NoOperator,
 }
 
 /// The command-line options about the operator.
@@ -146,8 +146,8 @@ impl Watcher {
             (true, ..) => Asking::Yes,
             (false, true, _, Face::Screen(_)) => Asking::Screen,
             (false, true, ..) => Asking::Person(Person::default()),
-            (false, false, true, _) => Asking::NobodyNeeded,
-            (false, false, false, _) => Asking::Nobody,
+            (false, false, true, _) => Asking::NoOperatorNeeded,
+            (false, false, false, _) => Asking::NoOperator,
         };
         if !matches!(face, Face::Screen(_)) {
             signals.print_signals(settings.stderr_terminal);
@@ -342,11 +342,11 @@ impl Watcher {
                 note: Some("answered by --yes".to_owned()),
                 by,
             },
-            Asking::NobodyNeeded => Inspection::GoOn {
+            Asking::NoOperatorNeeded => Inspection::GoOn {
                 note: Some(NO_OPERATOR_ASKED.to_owned()),
                 by: None,
             },
-            Asking::Nobody => Inspection::Stop {
+            Asking::NoOperator => Inspection::Stop {
                 reason: "no operator can be asked at an inspection: no terminal, and no --yes"
                     .to_owned(),
                 by: None,

@@ -10,7 +10,7 @@ use crate::plan::formula::{Part, ProcedureId};
 use crate::plan::{ColumnTolerance, Golden, ResultTolerance, Tolerance};
 use crate::procedures;
 use crate::schema::golden as schema;
-use crate::schema::{Column, Kind};
+use crate::schema::{BlockKind, Column, Kind};
 use crate::text::source::Span;
 use crate::units::Dimension;
 
@@ -147,7 +147,7 @@ fn column(checker: &mut Checker, of: &Expr) -> Option<(Option<ProcedureId>, Colu
                     block
                 }
                 None if checker.may_be_lost(owner)
-                    || checker.scope.nameless().any(|kind| kind.procedure) =>
+                    || checker.scope.nameless().any(BlockKind::is_procedure) =>
                 {
                     return None;
                 }

@@ -12,8 +12,8 @@ use crate::plan::{
     Annex, Figure, FigureKind, Format, MOST_PHOTOS, MOST_TOGETHER, Picture, PictureKind, Procedure,
     Report,
 };
-use crate::schema::Kind;
 use crate::schema::report as schema;
+use crate::schema::{BlockKind, Kind};
 use crate::text::source::{Span, Spanned};
 
 const EVERY_FORMAT: [Format; 4] = [Format::Html, Format::Pdf, Format::Csv, Format::Parquet];
@@ -275,7 +275,9 @@ fn drawn_of(
         Some(Meaning::Poisoned) => return None,
         Some(Meaning::Block(block)) => block,
         Some(Meaning::Value(_)) => return checker.fail(types::procedure_wanted(of, span)),
-        None if checker.may_be_lost(of) || checker.scope.nameless().any(|kind| kind.procedure) => {
+        None if checker.may_be_lost(of)
+            || checker.scope.nameless().any(BlockKind::is_procedure) =>
+        {
             return None;
         }
         None => {

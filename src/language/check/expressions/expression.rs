@@ -5,6 +5,7 @@ use crate::language::check::checker::{Checker, Context, Shape, Typed, literal};
 use crate::language::check::declarations::specimen::frame;
 use crate::language::check::messages::{studies, types as message, values};
 use crate::language::syntax::ast::{BinaryOperator, Expr, ExprKind};
+use crate::plan::ProcedureBlock;
 use crate::plan::formula::{Formula, Operator};
 use crate::schema::{self, Kind};
 use crate::text::source::Span;
@@ -206,14 +207,18 @@ impl<'a> Checker<'a> {
         let block = self.procedure(reference.procedure)?;
         let kind = self.scope.blocks[block].kind;
         // A condition on an impact reads the results of that impact.
-        let of_storey = [Some(kind), Some(schema::block(Kind::Impact))]
-            .into_iter()
-            .flatten();
+        let of_storey = [
+            Some(kind),
+            Some(schema::block(Kind::Procedure(ProcedureBlock::Impact))),
+        ]
+        .into_iter()
+        .flatten();
         let mut of_storey = of_storey
             .filter_map(|kind| kind.result(reference.name))
             .take(1)
             .map(|result| result.of_storey);
-        if kind.kind != Kind::Shake && !of_storey.next().unwrap_or(false) {
+        if kind.kind != Kind::Procedure(ProcedureBlock::Shake) && !of_storey.next().unwrap_or(false)
+        {
             return None;
         }
         let specimen = self.tested(block)?;

@@ -5,6 +5,7 @@ use crate::language::check::checker::{Checker, Context, Node, Reads, Typed};
 use crate::language::check::messages::{names as message, types, values};
 use crate::language::check::scope::Meaning;
 use crate::language::syntax::ast::{Entry, Expr, ExprKind};
+use crate::plan::ProcedureBlock;
 use crate::plan::formula::Formula;
 use crate::schema::methods::TIME_STEP;
 use crate::schema::procedures::STIFFNESS;
@@ -111,7 +112,7 @@ impl<'a> Checker<'a> {
                 field == rig::LINK.name && (has(rig::ACTUATOR.name) || has(rig::LOAD_CELL.name))
             }
             // Storeys have their own stiffnesses.
-            Kind::Unload => {
+            Kind::Procedure(ProcedureBlock::Unload) => {
                 field == STIFFNESS.name
                     && self.tested(block).is_some_and(|tested| {
                         crate::language::check::declarations::specimen::frame::is_frame(
@@ -171,7 +172,9 @@ impl<'a> Checker<'a> {
         };
         let critical = matches!(
             declared.kind.kind,
-            Kind::Impact | Kind::Escalate | Kind::Shake
+            Kind::Procedure(
+                ProcedureBlock::Impact | ProcedureBlock::Escalate | ProcedureBlock::Shake
+            )
         ) && declared.block.fields[entry].key.node == TIME_STEP.name;
         Context {
             entry: Some((block, entry)),

@@ -7,6 +7,7 @@ use crate::language::check::declarations::striker;
 use crate::language::check::messages::{frames, names as message, types, values};
 use crate::language::check::scope::Meaning;
 use crate::language::syntax::ast::{Expr, ExprKind, Ident};
+use crate::plan::ProcedureBlock;
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
 use crate::schema::{self, BlockKind, Kind};
 use crate::text::source::Span;
@@ -101,7 +102,7 @@ impl<'a> Checker<'a> {
                 let known: Vec<&str> = known.collect();
                 let (results, storey) = match context.reads {
                     Reads::Impact(procedure) => (
-                        schema::block(Kind::Impact).results,
+                        schema::block(Kind::Procedure(ProcedureBlock::Impact)).results,
                         self.strikes_a_storey(procedure),
                     ),
                     _ => (&[][..], false),
@@ -241,7 +242,7 @@ impl<'a> Checker<'a> {
         }
         let known = renamed.or_else(|| declared.kind.result(&name.node));
         if let (Some(result), Some(procedure)) = (known, declared.procedure) {
-            let unloads = declared.kind.kind == Kind::Unload;
+            let unloads = declared.kind.kind == Kind::Procedure(ProcedureBlock::Unload);
             if result.of_storey && !unloads && frame::struck_frame(self, block).is_none() {
                 let diagnostic =
                     frames::result_of_a_storey(result.name, name.span, declared.block.head);

@@ -1,6 +1,7 @@
 //! Inputs of a plan by name: a `param`, a field such as `beam.mass`, an argument such as `beam.behaviour.stiffness`. In: the name and the
-//! declarations. Out: the place where the plan writes its value, or why there is none; and the values given from outside for such places.
+//! declarations. Out: the position at which the plan writes its value, or why there is none; and the values given from outside for such places.
 
+use crate::plan::ProcedureBlock;
 use std::collections::BTreeMap;
 
 use crate::language::check::checker::{Checker, Context, Reads, Typed};
@@ -33,7 +34,7 @@ pub enum InputLocation<'a> {
     },
 }
 
-/// The place of the input with this path.
+/// The position of the input with this path.
 pub fn find_input<'a>(scope: &Scope<'a>, path: &[&str]) -> Result<InputLocation<'a>, NoInput> {
     let (&owner, rest) = path.split_first().unwrap_or((&"", &[]));
     let block = match scope.meaning(owner) {
@@ -67,7 +68,10 @@ pub fn find_input<'a>(scope: &Scope<'a>, path: &[&str]) -> Result<InputLocation<
     let written = entries.find(|(_, entry)| entry.key.node == name);
     if let (Some(result), Some(procedure), []) =
         (declared.kind.result(name), declared.procedure, rest)
-        && matches!(declared.kind.kind, Kind::StiffnessRamp | Kind::DampingSweep)
+        && matches!(
+            declared.kind.kind,
+            Kind::Procedure(ProcedureBlock::StiffnessRamp | ProcedureBlock::DampingSweep)
+        )
         && result.measured
         && !result.list
     {

@@ -8,7 +8,7 @@ use crate::language::check::checker::Checker;
 use crate::language::check::messages::values;
 use crate::language::syntax::ast::ExprKind;
 use crate::plan::formula::{Formula, Part, ResultReference};
-use crate::plan::{Condition, Procedure, Requirement};
+use crate::plan::{Condition, Procedure, ProcedureBlock, Requirement};
 use crate::schema::{self, Kind, ResultKind};
 
 /// Results after unloading, and the same at the last step.
@@ -42,11 +42,11 @@ impl Checker<'_> {
     /// A result of the impact that has just ended, as `while` reads it: its own result, and the residual one if it is unloaded.
     pub fn result_of_impact(&self, block: usize, name: &str) -> Option<&'static ResultKind> {
         let of_unload = || {
-            schema::block(Kind::Unload)
+            schema::block(Kind::Procedure(ProcedureBlock::Unload))
                 .result(name)
                 .filter(|_| LEFT.iter().any(|(residual, _)| name == *residual))
         };
-        schema::block(Kind::Impact)
+        schema::block(Kind::Procedure(ProcedureBlock::Impact))
             .result(name)
             .or_else(|| of_unload().filter(|_| self.unloads(block)))
     }
@@ -58,8 +58,8 @@ impl Checker<'_> {
                 .map(|(_, entry)| &entry.value.kind)
         };
         match self.scope.blocks[block].kind.kind {
-            Kind::Unload => true,
-            Kind::Escalate => between()
+            Kind::Procedure(ProcedureBlock::Unload) => true,
+            Kind::Procedure(ProcedureBlock::Escalate) => between()
                 .is_none_or(|between| matches!(between, ExprKind::Name(word) if word == "unload")),
             _ => false,
         }

@@ -1,8 +1,118 @@
 //! Peak-oriented pinched hysteresis. In: a displacement. Out: the force there, exact for a move of any length: every branch is straight,
 //! and a move is divided at their ends.
 
-use super::{Degradation, Deterioration};
-use crate::specimen::RestoringForce;
+use super::{
+    Degradation, Deterioration, ENERGY_CAPACITY, EXPONENT, FurtherCapacities, RESIDUAL_STRENGTH,
+    UNLOADING_CAPACITY,
+};
+use crate::specimen::declaration::{
+    Declaration, POST_YIELD_RATIO, Parameter, STIFFNESS, Unit, YIELD_FORCE,
+};
+use crate::specimen::{Behaviour, RestoringForce};
+
+const FORCE_FACTOR: Parameter = Parameter::new(
+    "force_factor",
+    Unit::ONE,
+    "κ_F: force at the break point over the force without pinching",
+)
+.or(0.25, "")
+.within(0.0, 1.0);
+
+const DISPLACEMENT_FACTOR: Parameter = Parameter::new(
+    "displacement_factor",
+    Unit::ONE,
+    "κ_D: 1 − break point over largest permanent displacement",
+)
+.or(0.5, "")
+.within(0.0, 1.0);
+
+const UNLOADING_EXPONENT: Parameter = Parameter::new(
+    "unloading_exponent",
+    Unit::ONE,
+    "exponent a of the unloading stiffness K (x_y/x_max)^a",
+)
+.or(0.0, "")
+.within(0.0, 1.0);
+
+const RELOADING_CAPACITY: Parameter = Parameter::new(
+    "reloading_capacity",
+    Unit::ONE,
+    "γ of the reloading peak, which moves outward",
+)
+.above_zero()
+.default_in_words("no loss");
+
+pub const CAPPING_DISPLACEMENT: Parameter = Parameter::new(
+    "capping_displacement",
+    Unit::METRE,
+    "x_c, at which strength begins to fall",
+)
+.above_zero()
+.default_in_words("never");
+
+pub const CAPPING_SLOPE: Parameter = Parameter::new(
+    "capping_slope",
+    Unit::ONE,
+    "slope of the falling branch over the initial stiffness",
+)
+.or(0.1, "")
+.above_zero()
+.up_to(10.0);
+
+pub const CAPPING_CAPACITY: Parameter = Parameter::new(
+    "capping_capacity",
+    Unit::ONE,
+    "γ of the falling branch, which moves inward",
+)
+.above_zero()
+.default_in_words("no loss");
+
+pub(in crate::specimen) static DECLARATION: Declaration = Declaration {
+    word: "pinching",
+    parameters: &[
+        STIFFNESS,
+        YIELD_FORCE,
+        POST_YIELD_RATIO,
+        FORCE_FACTOR,
+        DISPLACEMENT_FACTOR,
+        UNLOADING_EXPONENT,
+        ENERGY_CAPACITY,
+        UNLOADING_CAPACITY,
+        RELOADING_CAPACITY,
+        CAPPING_DISPLACEMENT,
+        CAPPING_SLOPE,
+        CAPPING_CAPACITY,
+        EXPONENT,
+        RESIDUAL_STRENGTH,
+    ],
+    about: "pinched, peak-oriented hysteresis (Ibarra, Medina and Krawinkler)",
+    model: |stated| {
+        let further = FurtherCapacities {
+            capping: stated.number(CAPPING_CAPACITY),
+            reloading: stated.number(RELOADING_CAPACITY),
+        };
+        let (slope, residual) = (
+            stated.number(CAPPING_SLOPE)?,
+            stated.number(RESIDUAL_STRENGTH)?,
+        );
+        let capping = stated.number(CAPPING_DISPLACEMENT);
+        Some(Behaviour::Pinching(Pinching {
+            stiffness: stated.number(STIFFNESS)?,
+            yield_force: stated.number(YIELD_FORCE)?,
+            post_yield_ratio: stated.number(POST_YIELD_RATIO)?,
+            force_factor: stated.number(FORCE_FACTOR)?,
+            displacement_factor: stated.number(DISPLACEMENT_FACTOR)?,
+            unloading_exponent: stated.number(UNLOADING_EXPONENT)?,
+            capping: capping.map(|displacement| Capping {
+                displacement,
+                slope,
+                residual,
+            }),
+            deterioration: Deterioration::of_numbers(stated, &further)?,
+        }))
+    },
+    numbers: |_| None,
+};
 
 /// Parameters of a pinched hysteresis.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -98,7 +98,7 @@ pub fn maximum(counts: &[Count], start: [f64; 2]) -> Option<[f64; 2]> {
     None
 }
 
-/// The largest log-likelihood on the line `through` + s `along`, and its place s, from a start.
+/// The largest log-likelihood on the line `through` + s `along`, and its position s, from a start.
 pub fn maximum_on_line(
     counts: &[Count],
     through: [f64; 2],

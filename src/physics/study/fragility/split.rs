@@ -134,7 +134,7 @@ fn largest(profile: &impl Fn(f64) -> f64) -> (f64, f64) {
     }
 }
 
-/// The largest log-likelihood over ln θ and ln β at a share, and its place, by Newton's method with differences.
+/// The largest log-likelihood over ln θ and ln β at a share, and its position, by Newton's method with differences.
 fn maximum(records: &[Vec<Count>], share: f64, start: [f64; 2]) -> (f64, [f64; 2]) {
     let value = |at: [f64; 2]| likelihood(records, share, at);
     let h = 1e-3;

@@ -40,13 +40,13 @@ impl Permutation {
         }
     }
 
-    /// The number at this place.
+    /// The number at this position.
     ///
     /// # Panics
-    /// If there is no such place.
+    /// If there is no such position.
     #[must_use]
     pub fn at(&self, run: u64) -> u64 {
-        assert!(run < self.count, "place {run} of {}", self.count);
+        assert!(run < self.count, "position {run} of {}", self.count);
         self.rounds.iter().fold(run, |number, round| {
             let partner = if number <= round.sum {
                 round.sum - number

@@ -1,4 +1,4 @@
-//! Sobol' sequences with Owen's scramble. In: the place of a point, a dimension, a key. Out: the coordinate. Every point is made without
+//! Sobol' sequences with Owen's scramble. In: the index of a point, a dimension, a key. Out: the coordinate. Every point is made without
 //! those before it.
 //!
 //! In base two, the coordinate of point i is the sum modulo 2 of the direction numbers of the bits of i (I. M. Sobol', USSR Comput. Math.

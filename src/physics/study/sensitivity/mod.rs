@@ -14,7 +14,7 @@ pub struct Index {
 }
 
 impl Index {
-    /// The study is too small to tell the index from zero.
+    /// The study is too small to distinguish the index from zero.
     #[must_use]
     pub fn may_be_zero(&self) -> bool {
         self.interval.contains(0.0)

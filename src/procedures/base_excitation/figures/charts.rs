@@ -155,7 +155,7 @@ pub(crate) fn energy(history: &ShakeHistory) -> Chart {
         ),
     ];
     let mut chart = over_time(Quantity::of("Energy", Dimension::ENERGY));
-    chart.series = nonzero_curves(&history.steps, |step| step.time, curves);
+    chart.series = nonzero_curves(&history.steps, |step| step.floors.time, curves);
     chart
 }
 

@@ -153,15 +153,20 @@ pub(crate) fn shared(kind: FigureKind, history: &ShakeHistory) -> Option<SharedC
 
 fn points(kind: FigureKind, ShakeHistory { steps, .. }: &ShakeHistory) -> Option<Points> {
     let lowest = |values: Vec<f64>| values.first().copied().unwrap_or(0.0);
-    let base_shear = |step: &ShakeStep| step.restoring_force.iter().sum();
+    let base_shear = |step: &ShakeStep| step.floors.restoring_force.iter().sum();
     Some(match kind {
         FigureKind::Displacement => steps
             .iter()
-            .map(|step| (step.time, step.computed.last().copied().unwrap_or(0.0)))
+            .map(|step| {
+                (
+                    step.floors.time,
+                    step.floors.computed.last().copied().unwrap_or(0.0),
+                )
+            })
             .collect(),
         FigureKind::Drift => steps
             .iter()
-            .map(|step| (step.time, lowest(step.drift())))
+            .map(|step| (step.floors.time, lowest(step.drift())))
             .collect(),
         FigureKind::Hysteresis => steps
             .iter()
@@ -169,7 +174,7 @@ fn points(kind: FigureKind, ShakeHistory { steps, .. }: &ShakeHistory) -> Option
             .collect(),
         FigureKind::BaseShear => steps
             .iter()
-            .map(|step| (step.time, base_shear(step)))
+            .map(|step| (step.floors.time, base_shear(step)))
             .collect(),
         _ => return None,
     })

@@ -125,7 +125,7 @@ fn striker(history: &ImpactHistory, frame: &StruckFrame) -> Series {
     let positions = frame
         .floors
         .iter()
-        .flat_map(|floors| floors.computed.iter().copied());
+        .flat_map(|floors| floors.floors.computed.iter().copied());
     charts::striker_near(history, positions, Style::line(palette::BLACK, 1.4, DASHED))
 }
 

@@ -8,7 +8,7 @@ use super::{at_least, no_known_force, same, striker_sources, whole_steps};
 use crate::physics::impact::ImpactInput;
 use crate::physics::impact::summary::ImpactSummary;
 use crate::physics::reintegration::frame::{FloorImpact, Floors, FrameRun, StrikerOutcome};
-use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
+use crate::physics::reintegration::frame_path::FramePath;
 use crate::physics::reintegration::impact::ImpactValues;
 use crate::physics::reintegration::perturbation::Perturbation;
 use crate::plan::{Impact, StoreyTarget, Striker};
@@ -44,15 +44,10 @@ pub(crate) fn propagate(
         floors: history,
         summary,
     } = recorded;
-    let reading = |step: &FloorStep| FrameReading {
-        target: step.command.clone(),
-        displacement: step.displacement.clone(),
-        force: step.restoring_force.clone(),
-    };
     let (Some(target), Some(frame)) = (plan.storey(), setting.frame()) else {
         return Err("no floor of a frame is struck".to_owned().into());
     };
-    let path = uncertainty.path(frame, history.iter().map(reading).collect())?;
+    let path = uncertainty.path(frame, history.iter().map(|step| &step.floors))?;
     let floors = uncertainty.floors();
     let mut evaluate = RecordedStoreyImpact {
         uncertainty,

@@ -92,7 +92,7 @@ pub(super) fn measured(record: &Record) -> String {
                     writeln!(
                         text,
                         "{:?} {:?} {:?}",
-                        step.command, step.displacement, step.restoring_force
+                        step.floors.command, step.floors.displacement, step.floors.restoring_force
                     )
                     .unwrap();
                 }

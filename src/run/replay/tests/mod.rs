@@ -7,6 +7,7 @@ mod killed;
 mod measured;
 mod procedures;
 mod resumed;
+mod words_on_disk;
 
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -56,7 +56,6 @@ pub(crate) const GOLDEN: BlockKind = BlockKind {
     kind: Kind::Golden,
     keyword: &["golden"],
     naming: Naming::Unnamed,
-    procedure: false,
     fields: &[TOLERANCE, RESULTS, COLUMNS],
     exports: &[],
     results: &[],

@@ -66,7 +66,6 @@ pub(crate) const REPORT: BlockKind = BlockKind {
     kind: Kind::Report,
     keyword: &["report"],
     naming: Naming::Unnamed,
-    procedure: false,
     fields: &[
         TITLE, RESULTS, ANNEXES, FIGURES, FORMATS, LOGO, PHOTOS, SIGN,
     ],

@@ -308,7 +308,6 @@ pub(crate) const STUDY: BlockKind = BlockKind {
     kind: Kind::Study,
     keyword: &["study"],
     naming: Naming::Named,
-    procedure: false,
     fields: &[
         VARY, RUNS, UNTIL, SAMPLING, SEED, COLLECT, CORRELATE, CONFIDENCE,
     ],
@@ -323,7 +322,6 @@ pub(crate) const FRAGILITY: BlockKind = BlockKind {
     kind: Kind::Fragility,
     keyword: &["fragility"],
     naming: Naming::Named,
-    procedure: false,
     fields: &[
         INTENSITY,
         EXCEEDS,

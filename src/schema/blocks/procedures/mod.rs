@@ -1,18 +1,19 @@
-//! The procedures of the language, one file each: its block and its results. The list of them is here.
+//! The procedures of the language, one file in the folder of each: its block and its results. The list of them is here.
 
-pub(crate) mod base_excitation;
-pub(crate) mod cycle;
-pub(crate) mod damping_sweep;
-pub(crate) mod impact;
-pub(crate) mod impact_series;
-pub(crate) mod inspect;
-pub(crate) mod move_to;
-pub(crate) mod stiffness_ramp;
+mod common;
 pub(crate) mod tracking;
-pub(crate) mod unload;
 
-use crate::schema::types::{BlockKind, Field, Kind, RigKind};
-use crate::units::Dimension;
+pub(crate) use crate::procedures::base_excitation::data::block as base_excitation;
+pub(crate) use crate::procedures::cycle::data::block as cycle;
+pub(crate) use crate::procedures::damping_sweep::data::block as damping_sweep;
+pub(crate) use crate::procedures::impact::data::block as impact;
+pub(crate) use crate::procedures::impact_series::data::block as impact_series;
+pub(crate) use crate::procedures::inspect::data::block as inspect;
+pub(crate) use crate::procedures::move_to::data::block as move_to;
+pub(crate) use crate::procedures::stiffness_ramp::data::block as stiffness_ramp;
+pub(crate) use crate::procedures::unload::data::block as unload;
+use crate::schema::types::BlockKind;
+pub(crate) use common::{SPECIMEN, SPEED, STIFFNESS};
 
 /// The blocks of the procedures, in the order of the reference.
 pub(crate) const BLOCKS: &[&BlockKind] = &[
@@ -26,35 +27,3 @@ pub(crate) const BLOCKS: &[&BlockKind] = &[
     &move_to::BLOCK,
     &inspect::BLOCK,
 ];
-
-pub(crate) const SPECIMEN: Field = Field::specimen("specimen");
-
-pub(crate) const SPEED: Field = Field::speed("speed");
-
-/// The initial stiffness of the specimen, of a procedure that needs it.
-pub(crate) const STIFFNESS: Field = Field::quantity(
-    "stiffness",
-    Dimension::STIFFNESS,
-    "initial stiffness K0, before the first tangent",
-)
-.above_zero()
-.required_on(
-    RigKind::Real,
-    "stiffness = k0.stiffness",
-    "the behaviour's initial stiffness",
-);
-
-impl Field {
-    /// The specimen that a procedure tests.
-    pub(crate) const fn specimen(name: &'static str) -> Self {
-        Self::reference(name, Kind::Specimen, "specimen under test")
-            .default_in_words("the only one declared")
-    }
-
-    /// The speed of the actuators.
-    pub(crate) const fn speed(name: &'static str) -> Self {
-        Self::quantity(name, Dimension::VELOCITY, "actuator speed")
-            .above_zero()
-            .default_in_words("the rig's own")
-    }
-}

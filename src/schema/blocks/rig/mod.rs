@@ -278,7 +278,6 @@ pub(crate) const RIG: BlockKind = BlockKind {
     kind: Kind::Rig,
     keyword: &["rig"],
     naming: Naming::Named,
-    procedure: false,
     fields: &[
         LINK,
         ACTUATOR,

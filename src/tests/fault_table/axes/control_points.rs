@@ -1,10 +1,11 @@
 //! A frame behind the NEES protocol, with one control point per floor. A run over the real driver and the rig emulator equals the virtual
 //! run. A floor that refuses a command, or does not execute it, holds all floors.
 
+use super::held;
 use super::two_axes::{checked, ideal, results, same};
 use crate::plan::Plan;
 use crate::rig::LineStatistics;
-use crate::tests::fault_table::stage::{Ended, run};
+use crate::tests::fault_table::stage::run;
 
 const SINE: &str = include_str!("../../../../plans/two_storeys_sine.psd");
 const LIBRARY: &str = include_str!("../../../../plans/lib/two_actuator_frame.psd");
@@ -65,15 +66,6 @@ fn two_storeys_over_two_control_points_are_the_virtual_run() {
         "{proposals:#?}"
     );
     assert_eq!(proposals.len(), ended.emulator.lock().rig().moves().len());
-}
-
-fn held(ended: &Ended, why: &str) {
-    assert!(
-        !ended.completed() && ended.reason().contains(why),
-        "{}",
-        ended.reason()
-    );
-    assert!(!ended.emulator.lock().rig().moving());
 }
 
 #[test]

@@ -84,6 +84,16 @@ fn the_pretest_check_measures_the_stiffness_matrix_column_by_column() {
     );
 }
 
+/// On hold, with no axis moving.
+pub(super) fn held(ended: &Ended, why: &str) {
+    assert!(
+        !ended.completed() && ended.reason().contains(why),
+        "{why}: {}",
+        ended.reason()
+    );
+    assert!(!ended.emulator.lock().rig().moving(), "{why}");
+}
+
 /// Commanded to hold; nothing moved after that.
 pub(super) fn stopped(ended: &Ended) {
     let held = ended

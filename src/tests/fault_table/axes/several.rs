@@ -2,13 +2,14 @@
 //! own port. Other rigs have sites that speak NEES, each behind its own port. A run equals the virtual run. A fault of one device holds
 //! every axis, and the message names that device. If one site refuses a move, no other site starts it.
 
+use super::held;
 use super::two_axes::{LINK, checked, ideal, results, same, upper, with_devices};
 use crate::plan::{Interval, Plan};
 use crate::record::Outcome;
 use crate::rig::LineStatistics;
 use crate::rig::safety::failpoint::Guarding;
 use crate::tests::fault_table::interrupted::cut_off::cut_off_anywhere;
-use crate::tests::fault_table::stage::{Ended, run, run_without};
+use crate::tests::fault_table::stage::{run, run_without};
 
 const LOWER: &str = "    axis(pretest_check:";
 const UPPER: &str = "    axis(polarity: negative,";
@@ -84,16 +85,6 @@ fn each_layout_gives_what_the_virtual_rig_gives() {
         assert_eq!(ended.line_statistics, LineStatistics::default());
         same(&results(&ended.record), &ideal(&text), as_near_as(near));
     }
-}
-
-/// On hold, with no axis moving.
-fn held(ended: &Ended, why: &str) {
-    assert!(
-        !ended.completed() && ended.reason().contains(why),
-        "{why}: {}",
-        ended.reason()
-    );
-    assert!(!ended.emulator.lock().rig().moving(), "{why}");
 }
 
 #[test]

@@ -131,9 +131,10 @@ fn an_impact_series_on_a_storey_equals_its_impacts_one_by_one() {
         // The next impact begins there; no elastic deformation is left.
         if let Some(next) = impacts(&series).impacts.get(index + 1) {
             let start = &next.storey().unwrap().floors[0];
-            close(&start.computed, &rest.displacement, 1e-15);
+            close(&start.floors.computed, &rest.displacement, 1e-15);
             assert!(
                 start
+                    .floors
                     .restoring_force
                     .iter()
                     .all(|force| force.abs() < 1e-10),
@@ -255,6 +256,6 @@ fn a_series_on_a_storey_ends_with_the_first_failed_impact() {
     let (first, next) = (&impacts(&stay).impacts[0], &impacts(&stay).impacts[1]);
     assert_eq!(
         first.rest.as_ref().unwrap().force,
-        next.storey().unwrap().floors[0].restoring_force
+        next.storey().unwrap().floors[0].floors.restoring_force
     );
 }

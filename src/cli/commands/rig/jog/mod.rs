@@ -3,10 +3,12 @@
 
 mod session;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
 
 use super::typed::{number, positions};
-use crate::cli::args::JogArguments;
+use crate::cli::args::{PlanSettings, name};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::finish_run::write_made;
 use crate::cli::files::record_file;
@@ -31,6 +33,44 @@ use crate::run::replay::{BY_HAND, Header, OpenLog, Recorded};
 use crate::units::Dimension;
 use crate::units::display::readable;
 use session::{JogSession, Person};
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "THE RIG MOVES. On a real rig every question, answer and move is logged in a run folder for `psd verify`.\n\n\
+    Exit codes:\n\
+    \x20 0  all targets reached\n\
+    \x20 2  error in the plan or on the command line\n\
+    \x20 3  fault of the rig\n\
+    \x20 4  stopped by a limit or by the operator"
+)]
+pub struct JogArguments {
+    /// The plan, a `.psd` file or a Markdown document
+    #[arg(value_name = "PLAN")]
+    pub plan: PathBuf,
+    #[command(flatten)]
+    pub plan_settings: PlanSettings,
+    /// Target, such as "1 mm" or "1 mm, 2 mm" [default: typed]
+    #[arg(long, value_name = "POSITION", allow_hyphen_values = true)]
+    pub to: Option<String>,
+    /// Speed, such as "0.5 mm/s" [default: the rig's own speed]
+    #[arg(long, value_name = "SPEED")]
+    pub speed: Option<String>,
+    /// Answer every prompt with yes: the rig MOVES immediately
+    #[arg(long)]
+    pub yes: bool,
+    /// Clear the hold of an axis without moving it (logged)
+    #[arg(long)]
+    pub let_go: bool,
+    /// Count positions from the zero of this run (`datum = here`)
+    #[arg(long, value_name = "RUN")]
+    pub datum: Option<PathBuf>,
+    /// Operator name [default: the plan's `operator`]
+    #[arg(long, value_name = "NAME", value_parser = name)]
+    pub operator: Option<String>,
+    /// Run folder on a real rig, new or empty [default: runs/PLAN-N]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
 
 /// Moves the rig; each move needs the consent of the operator.
 pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure> {

@@ -1,91 +1,45 @@
-//! Backbone curves of a restoring-force model: points, a table, the capping point, the capacities of its deterioration. In: the variant as
-//! it is written. Out: parts of a [`Behaviour`] in SI.
+//! Backbone curves of a restoring-force model: points, a table, the capping point. In: the variant as it is written. Out: a
+//! [`Behaviour`] in SI, or an error.
 
 use super::table_file;
 use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::messages::specimens as message;
-use crate::plan::{Behaviour, Capping, Deterioration, Pinching, Table, Unloading};
-
-/// The capacities of the deterioration modes; Some(None) where none is stated.
-#[expect(
-    clippy::option_option,
-    reason = "left out and faulty are different things here"
-)]
-pub fn deterioration<'a>(
-    checker: &mut Checker<'a>,
-    chosen: &Chosen<'a>,
-    context: Context,
-    exponent: f64,
-    residual: f64,
-) -> Option<Option<Deterioration>> {
-    // A bilinear backbone has no cap, and its reloading branch is a separate one.
-    let mut of = |name| match chosen.find(name) {
-        Some(_) => checker.optional_argument(chosen, name, context),
-        None => Some(None),
-    };
-    let stated = [
-        of("energy_capacity"),
-        of("capping_capacity"),
-        of("unloading_capacity"),
-        of("reloading_capacity"),
-    ];
-    let [strength, capping, unloading, reloading] = stated;
-    let all = [strength?, capping?, unloading?, reloading?];
-    let [strength, capping, unloading, reloading] =
-        all.map(|capacity| capacity.unwrap_or(f64::INFINITY));
-    let rule = Deterioration {
-        strength,
-        capping,
-        unloading,
-        reloading,
-        exponent,
-        residual,
-    };
-    Some(all.iter().any(Option::is_some).then_some(rule))
-}
+use crate::physics::specimen::pinching::{CAPPING_CAPACITY, CAPPING_DISPLACEMENT, CAPPING_SLOPE};
+use crate::plan::{Behaviour, Pinching, Table, Unloading};
+use crate::schema::behaviours::argument;
 
 /// The capping point of a backbone: after yield, and only together with its other arguments.
-#[expect(
-    clippy::option_option,
-    reason = "left out and faulty are different things here"
-)]
-pub fn capping<'a>(
+pub fn check_capping<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
-    context: Context,
     pinching: &Pinching,
-    residual: f64,
-) -> Option<Option<Capping>> {
-    let displacement = checker.optional_argument(chosen, "capping_displacement", context)?;
-    let slope = checker.constant_argument(chosen, "capping_slope", context)?;
+) -> Option<()> {
     let given = |name: &str| {
         chosen
             .find(name)
             .and_then(|(_, written)| written)
             .map(|written| written.span)
     };
-    let Some(displacement) = displacement else {
-        return match ["capping_slope", "capping_capacity"]
+    let Some(capping) = pinching.capping else {
+        let alone = [CAPPING_SLOPE.name, CAPPING_CAPACITY.name]
             .into_iter()
-            .find_map(|name| Some((name, given(name)?)))
-        {
-            Some((name, span)) => {
-                checker.fail(message::missing_partner(name, "capping_displacement", span))
-            }
-            None => Some(None),
+            .find_map(|name| Some((name, given(name)?)));
+        let Some((name, span)) = alone else {
+            return Some(());
         };
+        return checker.fail(message::missing_partner(
+            name,
+            CAPPING_DISPLACEMENT.name,
+            span,
+        ));
     };
     let yielded = pinching.yield_force / pinching.stiffness;
-    match given("capping_displacement") {
-        Some(span) if displacement <= yielded => {
-            checker.fail(message::capped_before_yield(displacement, yielded, span))
-        }
-        _ => Some(Some(Capping {
-            displacement,
-            slope,
-            residual,
-        })),
+    match given(CAPPING_DISPLACEMENT.name) {
+        Some(span) if capping.displacement <= yielded => checker.fail(
+            message::capped_before_yield(capping.displacement, yielded, span),
+        ),
+        _ => Some(()),
     }
 }
 
@@ -95,10 +49,13 @@ pub fn multilinear<'a>(
     chosen: &Chosen<'a>,
     context: Context,
 ) -> Option<Behaviour> {
-    let displacements = checker.list_argument(chosen, "displacements", context);
-    let forces = checker.list_argument(chosen, "forces", context);
+    let displacements = checker.list_argument(chosen, argument::DISPLACEMENTS, context);
+    let forces = checker.list_argument(chosen, argument::FORCES, context);
     let (displacements, forces) = (displacements?, forces?);
-    let (displacements_at, forces_at) = (chosen.span("displacements")?, chosen.span("forces")?);
+    let (displacements_at, forces_at) = (
+        chosen.span(argument::DISPLACEMENTS)?,
+        chosen.span(argument::FORCES)?,
+    );
     if displacements.len() != forces.len() {
         let counts = (displacements.len(), forces.len());
         return checker.fail(message::backbone_lists_differ(
@@ -150,10 +107,10 @@ pub fn multilinear<'a>(
 }
 
 pub fn table<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>) -> Option<Behaviour> {
-    let named = checker.text_argument(chosen, "file").flatten();
-    let unloading = match chosen.span("unloading") {
+    let named = checker.text_argument(chosen, argument::FILE).flatten();
+    let unloading = match chosen.span(argument::UNLOADING) {
         Some(_) => checker
-            .chosen_argument(chosen, "unloading")
+            .chosen_argument(chosen, argument::UNLOADING)
             .map(|chosen| chosen.variant.name),
         None => Some("initial_stiffness"),
     };

@@ -5,6 +5,7 @@ use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::messages::specimens as message;
 use crate::physics::structure::beam::{self, Span};
 use crate::plan::{Beam, Behaviour, Ends};
+use crate::schema::behaviours::argument;
 
 /// Stiffness of a beam at midspan or at its tip; the formulas are in `physics/structure/beam.rs`.
 pub fn beam<'a>(
@@ -13,20 +14,20 @@ pub fn beam<'a>(
     context: Context,
     own_mass: Option<f64>,
 ) -> Option<Behaviour> {
-    let length = checker.constant_argument(chosen, "length", context);
-    let youngs_modulus = checker.constant_argument(chosen, "youngs_modulus", context);
-    let second_moment = checker.constant_argument(chosen, "second_moment", context);
-    let modulus = checker.optional_argument(chosen, "shear_modulus", context);
-    let area = checker.optional_argument(chosen, "shear_area", context);
-    let ends = checker.chosen_argument(chosen, "ends")?;
+    let length = checker.constant_argument(chosen, argument::LENGTH, context);
+    let youngs_modulus = checker.constant_argument(chosen, argument::YOUNGS_MODULUS, context);
+    let second_moment = checker.constant_argument(chosen, argument::SECOND_MOMENT, context);
+    let modulus = checker.optional_argument(chosen, argument::SHEAR_MODULUS, context);
+    let area = checker.optional_argument(chosen, argument::SHEAR_AREA, context);
+    let ends = checker.chosen_argument(chosen, argument::ENDS)?;
     let rotational_stiffness = match ends.variant.name {
         "partly_built_in" => {
-            Some(checker.constant_argument(&ends, "rotational_stiffness", context)?)
+            Some(checker.constant_argument(&ends, argument::ROTATIONAL_STIFFNESS, context)?)
         }
         _ => None,
     };
     let fixity = match ends.variant.name {
-        "fixity" => Some(checker.constant_argument(&ends, "factor", context)?),
+        "fixity" => Some(checker.constant_argument(&ends, argument::FACTOR, context)?),
         _ => None,
     };
     let (length, youngs_modulus, second_moment) = (length?, youngs_modulus?, second_moment?);
@@ -35,16 +36,16 @@ pub fn beam<'a>(
         (None, None) => None,
         (Some(_), None) => {
             return checker.fail(message::missing_partner(
-                "shear_modulus",
-                "shear_area",
-                chosen.span("shear_modulus")?,
+                argument::SHEAR_MODULUS,
+                argument::SHEAR_AREA,
+                chosen.span(argument::SHEAR_MODULUS)?,
             ));
         }
         (None, Some(_)) => {
             return checker.fail(message::missing_partner(
-                "shear_area",
-                "shear_modulus",
-                chosen.span("shear_area")?,
+                argument::SHEAR_AREA,
+                argument::SHEAR_MODULUS,
+                chosen.span(argument::SHEAR_AREA)?,
             ));
         }
     };

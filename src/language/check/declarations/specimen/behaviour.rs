@@ -1,15 +1,15 @@
 //! `behaviour = series(…)`: the restoring-force model of a specimen. In: its expression. Out: a [`Behaviour`] in SI.
 
-use super::backbone::{capping, deterioration, multilinear, table};
+use super::backbone::{check_capping, multilinear, table};
 use super::{beam, portal};
 use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::messages::{shown, specimens as message, values};
 use crate::language::syntax::ast::{Expr, ExprKind};
 use crate::physics::relaxation::logarithmic::LogarithmicRelaxation;
-use crate::physics::specimen::parameter;
-use crate::plan::{Behaviour, Breaks, Pinching};
-use crate::schema::Variant;
+use crate::plan::{Behaviour, Breaks};
+use crate::schema::behaviours::{STIFFNESS, argument};
+use crate::schema::{Presence, Variant};
 use crate::text::source::Span;
 use crate::units::Dimension;
 
@@ -93,67 +93,11 @@ fn part<'a>(
     let chosen = checker.chosen(written.field, written.variants, expr)?;
     let mut number = |name: &str| checker.constant_argument(&chosen, name, context);
     match chosen.variant.name {
-        "bilinear" => {
-            let (stiffness, yield_force, post_yield_ratio) = (
-                number(parameter::STIFFNESS),
-                number(parameter::YIELD_FORCE),
-                number(parameter::POST_YIELD_RATIO),
-            );
-            let (exponent, residual) = (
-                number("deterioration_exponent"),
-                number("residual_strength"),
-            );
-            let (stiffness, yield_force, post_yield_ratio) =
-                (stiffness?, yield_force?, post_yield_ratio?);
-            Some(
-                match deterioration(checker, &chosen, context, exponent?, residual?)? {
-                    None => Behaviour::Bilinear {
-                        stiffness,
-                        yield_force,
-                        post_yield_ratio,
-                    },
-                    Some(deterioration) => Behaviour::DeterioratingBilinear {
-                        stiffness,
-                        yield_force,
-                        post_yield_ratio,
-                        deterioration,
-                    },
-                },
-            )
-        }
-        "pinching" => {
-            let (stiffness, yield_force, post_yield_ratio) = (
-                number(parameter::STIFFNESS),
-                number(parameter::YIELD_FORCE),
-                number(parameter::POST_YIELD_RATIO),
-            );
-            let (force, displacement) = (number("force_factor"), number("displacement_factor"));
-            let exponent = number("unloading_exponent");
-            let (rate, residual) = (
-                number("deterioration_exponent"),
-                number("residual_strength"),
-            );
-            let (rate, residual) = (rate?, residual?);
-            let pinching = Pinching {
-                stiffness: stiffness?,
-                yield_force: yield_force?,
-                post_yield_ratio: post_yield_ratio?,
-                force_factor: force?,
-                displacement_factor: displacement?,
-                unloading_exponent: exponent?,
-                capping: None,
-                deterioration: None,
-            };
-            let deterioration = deterioration(checker, &chosen, context, rate, residual)?;
-            let capping = capping(checker, &chosen, context, &pinching, residual)?;
-            Some(Behaviour::Pinching(Pinching {
-                capping,
-                deterioration,
-                ..pinching
-            }))
-        }
         "rate" => {
-            let (reference_velocity, exponent) = (number("reference_velocity"), number("exponent"));
+            let (reference_velocity, exponent) = (
+                number(argument::REFERENCE_VELOCITY),
+                number(argument::EXPONENT),
+            );
             if position != Position::Outermost {
                 return checker.fail(message::must_be_outermost("rate", expr.span));
             }
@@ -166,11 +110,11 @@ fn part<'a>(
         }
         "maxwell" => {
             let (stiffness, time_constant) =
-                (number(parameter::STIFFNESS), number("time_constant"));
+                (number(STIFFNESS.name), number(argument::TIME_CONSTANT));
             if position == Position::Inside {
                 return checker.fail(message::must_be_outermost("maxwell", expr.span));
             }
-            let (_, beside) = chosen.find("of")?;
+            let (_, beside) = chosen.find(argument::OF)?;
             let of = Box::new(part(checker, written, beside?, Position::BesideBranch)?);
             Some(Behaviour::Maxwell {
                 of,
@@ -194,18 +138,40 @@ fn part<'a>(
         ),
         "beam" => beam::beam(checker, &chosen, context, written.material.own_mass),
         word => {
-            let fields = chosen.variant.arguments.iter();
-            let read: Vec<(&str, Option<f64>)> = fields
-                .map(|field| {
-                    let number = checker.constant_argument(&chosen, field.name, context);
-                    (field.name, number)
-                })
-                .collect();
-            Behaviour::of_numbers(word, |name| {
-                read.iter().find(|(field, _)| *field == name)?.1
-            })
+            let numbers = numbers(checker, &chosen, context)?;
+            let found = Behaviour::of_numbers(word, |name| {
+                let number = numbers.iter().find(|(field, _)| *field == name);
+                number.and_then(|(_, number)| *number)
+            })?;
+            if let Behaviour::Pinching(pinching) = &found {
+                check_capping(checker, &chosen, pinching)?;
+            }
+            Some(found)
         }
     }
+}
+
+/// The numbers of a model that has no other parameters; None of those that are left out and have no default.
+fn numbers<'a>(
+    checker: &mut Checker<'a>,
+    chosen: &Chosen<'a>,
+    context: Context,
+) -> Option<Vec<(&'static str, Option<f64>)>> {
+    let fields = chosen.variant.arguments.iter();
+    let read: Vec<_> = fields
+        .map(|field| {
+            let number = match field.presence {
+                Presence::Optional | Presence::DefaultInWords(_) => {
+                    checker.optional_argument(chosen, field.name, context)
+                }
+                _ => checker
+                    .constant_argument(chosen, field.name, context)
+                    .map(Some),
+            };
+            Some((field.name, number?))
+        })
+        .collect();
+    read.into_iter().collect()
 }
 
 /// The instantaneous force relaxes with the logarithm of time, at most to zero.
@@ -217,10 +183,10 @@ fn logarithmic<'a>(
     position: Position,
 ) -> Option<Behaviour> {
     let (share, time) = (
-        checker.constant_argument(chosen, "share", written.context),
-        checker.constant_argument(chosen, "reference_time", written.context),
+        checker.constant_argument(chosen, argument::SHARE, written.context),
+        checker.constant_argument(chosen, argument::REFERENCE_TIME, written.context),
     );
-    let longest = checker.optional_argument(chosen, "longest", written.context)?;
+    let longest = checker.optional_argument(chosen, argument::LONGEST, written.context)?;
     if position == Position::Inside {
         return checker.fail(message::must_be_outermost("logarithmic", span));
     }
@@ -259,7 +225,7 @@ fn inner<'a>(
     written: &Written<'a>,
     chosen: &Chosen<'a>,
 ) -> Option<Behaviour> {
-    let (_, expr) = chosen.find("of")?;
+    let (_, expr) = chosen.find(argument::OF)?;
     part(checker, written, expr?, Position::Inside)
 }
 
@@ -270,7 +236,7 @@ fn parts<'a>(
     chosen: &Chosen<'a>,
     span: Span,
 ) -> Option<Vec<(Behaviour, Span)>> {
-    let exprs = chosen.several("of");
+    let exprs = chosen.several(argument::OF);
     if exprs.len() < 2 {
         return checker.fail(message::too_few_parts(chosen.variant.name, span));
     }
@@ -307,8 +273,8 @@ fn fracture<'a>(
     span: Span,
 ) -> Option<Behaviour> {
     let of = inner(checker, written, chosen);
-    let displacement = checker.optional_argument(chosen, "displacement", written.context);
-    let force = checker.optional_argument(chosen, "force", written.context);
+    let displacement = checker.optional_argument(chosen, argument::DISPLACEMENT, written.context);
+    let force = checker.optional_argument(chosen, argument::FORCE, written.context);
     let at = match (displacement?, force?) {
         (Some(displacement), None) => Breaks::Displacement(displacement),
         (None, Some(force)) => Breaks::Force(force),
@@ -319,7 +285,7 @@ fn fracture<'a>(
         }
     };
     let of = of?;
-    if let (Breaks::Force(force), Some(span)) = (at, chosen.span("force"))
+    if let (Breaks::Force(force), Some(span)) = (at, chosen.span(argument::FORCE))
         && force > of.capacity()
     {
         let (force, most) = (

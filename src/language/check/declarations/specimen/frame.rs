@@ -1,7 +1,6 @@
 //! The frame of a specimen: `storeys = [storey(…), …]`, or the files of its matrices. In: a `specimen` block. Out: a
 //! [`Frame`], evaluated once.
 
-use crate::schema::procedures::impact;
 use std::rc::Rc;
 
 use super::behaviour::{self, Material, Written};
@@ -12,6 +11,8 @@ use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::messages::{frames as message, values};
 use crate::language::syntax::ast::ExprKind;
 use crate::plan::{Behaviour, Frame, MOST_STOREYS, Storey};
+use crate::schema::frames::storey;
+use crate::schema::procedures::impact;
 use crate::schema::specimen as fields;
 use crate::schema::{Field, FieldType};
 use crate::text::source::{Span, Spanned};
@@ -150,13 +151,14 @@ fn storey<'a>(
     at: Span,
     context: Context,
 ) -> Option<Storey> {
-    let mass = checker.constant_argument(chosen, "mass", context);
-    let mass_uncertainty = checker.constant_argument(chosen, "mass_uncertainty", context);
-    let stiffness_uncertainty = checker.constant_argument(chosen, "stiffness_uncertainty", context);
-    let height = checker.optional_argument(chosen, "height", context);
-    let total = checker.optional_argument(chosen, "stiffness", context);
-    let column = checker.optional_argument(chosen, "column_stiffness", context);
-    let behaviour = match chosen.find("behaviour") {
+    let mass = checker.constant_argument(chosen, storey::MASS, context);
+    let mass_uncertainty = checker.constant_argument(chosen, storey::MASS_UNCERTAINTY, context);
+    let stiffness_uncertainty =
+        checker.constant_argument(chosen, storey::STIFFNESS_UNCERTAINTY, context);
+    let height = checker.optional_argument(chosen, storey::HEIGHT, context);
+    let total = checker.optional_argument(chosen, storey::STIFFNESS, context);
+    let column = checker.optional_argument(chosen, storey::COLUMN_STIFFNESS, context);
+    let behaviour = match chosen.find(storey::BEHAVIOUR) {
         Some((
             Field {
                 ty: FieldType::Choice(variants),
@@ -165,7 +167,7 @@ fn storey<'a>(
             Some(expr),
         )) => {
             let written = Written {
-                field: "behaviour",
+                field: storey::BEHAVIOUR,
                 variants,
                 expr,
                 context,
@@ -175,13 +177,13 @@ fn storey<'a>(
         }
         _ => Some(None),
     };
-    let damping = checker.constant_argument(chosen, "damping", context);
-    let coulomb = checker.constant_argument(chosen, "coulomb", context);
+    let damping = checker.constant_argument(chosen, storey::DAMPING, context);
+    let coulomb = checker.constant_argument(chosen, storey::COULOMB, context);
     let (mass, height, behaviour, damping, coulomb) =
         (mass?, height?, behaviour?, damping?, coulomb?);
     let stiffness = match (total?, column?, &behaviour) {
         (Some(_), Some(_), _) => {
-            let again = chosen.span("column_stiffness").unwrap_or(at);
+            let again = chosen.span(storey::COLUMN_STIFFNESS).unwrap_or(at);
             return checker.fail(message::storey_stiffness_twice(number, again));
         }
         (Some(stiffness), None, _) => stiffness,
@@ -194,11 +196,11 @@ fn storey<'a>(
         && (stiffness - initial).abs()
             > SAME * stiffness.max(initial) + WITHIN * stiffness_uncertainty
     {
-        let given = ["stiffness", "column_stiffness"]
+        let given = [storey::STIFFNESS, storey::COLUMN_STIFFNESS]
             .into_iter()
             .find_map(|field| Some((field, chosen.span(field)?)));
-        let (field, given) = given.unwrap_or(("stiffness", at));
-        let bends = chosen.span("behaviour").unwrap_or(at);
+        let (field, given) = given.unwrap_or((storey::STIFFNESS, at));
+        let bends = chosen.span(storey::BEHAVIOUR).unwrap_or(at);
         return checker.fail(message::storey_bends_otherwise(
             number,
             field,
@@ -208,9 +210,14 @@ fn storey<'a>(
     }
     let behaviour = behaviour.unwrap_or(Behaviour::Elastic { stiffness });
     let stated = [
-        ("mass_uncertainty", mass_uncertainty, mass, Dimension::MASS),
         (
-            "stiffness_uncertainty",
+            storey::MASS_UNCERTAINTY,
+            mass_uncertainty,
+            mass,
+            Dimension::MASS,
+        ),
+        (
+            storey::STIFFNESS_UNCERTAINTY,
             stiffness_uncertainty,
             stiffness,
             Dimension::STIFFNESS,

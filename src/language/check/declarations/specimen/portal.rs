@@ -5,6 +5,7 @@ use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::messages::specimens as message;
 use crate::plan::{Behaviour, FrameMasses, Loads, Portal, Sections};
+use crate::schema::behaviours::{STIFFNESS, argument};
 use crate::text::source::Span;
 
 /// The frame as the plan specifies it; `mass_per_length` \[kg/m\] comes from the material data of the specimen.
@@ -16,21 +17,24 @@ pub fn portal<'a>(
     mass_per_length: Option<f64>,
 ) -> Option<Behaviour> {
     let mut number = |name: &str| checker.constant_argument(chosen, name, context);
-    let (length, height, plastic_moment) =
-        (number("span"), number("height"), number("plastic_moment"));
-    let modulus = checker.optional_argument(chosen, "youngs_modulus", context);
-    let second_moment = checker.optional_argument(chosen, "second_moment", context);
-    let column_moment = checker.optional_argument(chosen, "column_plastic_moment", context);
-    let column_second = checker.optional_argument(chosen, "column_second_moment", context);
-    let stiffness = checker.optional_argument(chosen, "stiffness", context);
+    let (length, height, plastic_moment) = (
+        number(argument::SPAN),
+        number(argument::HEIGHT),
+        number(argument::PLASTIC_MOMENT),
+    );
+    let modulus = checker.optional_argument(chosen, argument::YOUNGS_MODULUS, context);
+    let second_moment = checker.optional_argument(chosen, argument::SECOND_MOMENT, context);
+    let column_moment = checker.optional_argument(chosen, argument::COLUMN_PLASTIC_MOMENT, context);
+    let column_second = checker.optional_argument(chosen, argument::COLUMN_SECOND_MOMENT, context);
+    let stiffness = checker.optional_argument(chosen, STIFFNESS.name, context);
     let masses = masses(checker, chosen, context, mass_per_length);
-    let loads = checker.chosen_argument(chosen, "loads")?;
+    let loads = checker.chosen_argument(chosen, argument::LOADS)?;
     let loads = match loads.variant.name {
         "sway" => Loads::Sway,
         "beam" => Loads::Beam,
         _ => {
             let mut number = |name: &str| checker.constant_argument(&loads, name, context);
-            let (beam_load, sway_load) = (number("beam_load"), number("sway_load"));
+            let (beam_load, sway_load) = (number(argument::BEAM_LOAD), number(argument::SWAY_LOAD));
             Loads::Combined {
                 beam_load: beam_load?,
                 sway_load: sway_load?,
@@ -45,9 +49,9 @@ pub fn portal<'a>(
     let (second_moment, column_second) = (second_moment?, column_second?);
     if let (Some(_), None) = (column_second, second_moment) {
         return checker.fail(message::missing_partner(
-            "column_second_moment",
-            "second_moment",
-            chosen.span("column_second_moment")?,
+            argument::COLUMN_SECOND_MOMENT,
+            argument::SECOND_MOMENT,
+            chosen.span(argument::COLUMN_SECOND_MOMENT)?,
         ));
     }
     let portal = match (modulus?, second_moment, stiffness?) {
@@ -69,16 +73,16 @@ pub fn portal<'a>(
         },
         (Some(_), None, None) => {
             return checker.fail(message::missing_partner(
-                "youngs_modulus",
-                "second_moment",
-                chosen.span("youngs_modulus")?,
+                argument::YOUNGS_MODULUS,
+                argument::SECOND_MOMENT,
+                chosen.span(argument::YOUNGS_MODULUS)?,
             ));
         }
         (None, Some(_), None) => {
             return checker.fail(message::missing_partner(
-                "second_moment",
-                "youngs_modulus",
-                chosen.span("second_moment")?,
+                argument::SECOND_MOMENT,
+                argument::YOUNGS_MODULUS,
+                chosen.span(argument::SECOND_MOMENT)?,
             ));
         }
         (modulus, second_moment, _) => {
@@ -107,16 +111,16 @@ fn masses<'a>(
     context: Context,
     of_specimen: Option<f64>,
 ) -> Option<Option<FrameMasses>> {
-    let beam = checker.optional_argument(chosen, "mass_per_length", context);
-    let column = checker.optional_argument(chosen, "column_mass_per_length", context);
-    let midspan = checker.constant_argument(chosen, "midspan_mass", context);
-    let corner = checker.constant_argument(chosen, "corner_mass", context);
+    let beam = checker.optional_argument(chosen, argument::MASS_PER_LENGTH, context);
+    let column = checker.optional_argument(chosen, argument::COLUMN_MASS_PER_LENGTH, context);
+    let midspan = checker.constant_argument(chosen, argument::MIDSPAN_MASS, context);
+    let corner = checker.constant_argument(chosen, argument::CORNER_MASS, context);
     let (beam, column, midspan, corner) = (beam?.or(of_specimen), column?, midspan?, corner?);
     if let (None, Some(_)) = (beam, column) {
-        let span = chosen.span("column_mass_per_length")?;
+        let span = chosen.span(argument::COLUMN_MASS_PER_LENGTH)?;
         return checker.fail(message::missing_partner(
-            "column_mass_per_length",
-            "mass_per_length",
+            argument::COLUMN_MASS_PER_LENGTH,
+            argument::MASS_PER_LENGTH,
             span,
         ));
     }

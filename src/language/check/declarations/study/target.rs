@@ -1,4 +1,4 @@
-//! An input as a study names it: `impact_speed`, `beam.mass`. In: the expression. Out: its place, dimension and value in the plan.
+//! An input as a study names it: `impact_speed`, `beam.mass`. In: the expression. Out: its position, dimension and value in the plan.
 
 use crate::language::check::checker::{Checker, Shape, literal};
 use crate::language::check::expressions::overrides::{self, InputLocation};

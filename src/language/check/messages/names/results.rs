@@ -2,6 +2,7 @@
 
 use crate::language::check::messages::{owner, suggestion};
 use crate::language::syntax::ast::Ident;
+use crate::plan::ProcedureBlock;
 use crate::schema::{BlockKind, Kind};
 use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::Span;
@@ -25,7 +26,9 @@ pub fn left_under_another_name(kind: &BlockKind, name: &str, now: &str, span: Sp
     };
     let help = match (unloads, kind.kind) {
         (true, _) => format!("read `{now}`"),
-        (false, Kind::Escalate) => format!("read `{now}`, or write `between = unload`"),
+        (false, Kind::Procedure(ProcedureBlock::Escalate)) => {
+            format!("read `{now}`, or write `between = unload`")
+        }
         (false, _) => {
             format!("read `{now}`, or unload first: `unload rest {{ }}`, then `rest.{name}`")
         }
@@ -50,7 +53,11 @@ pub fn unknown_result(
         .chain(kind.exports)
         .map(|result| result.name)
         .collect();
-    let what = if kind.procedure { "result" } else { "value" };
+    let what = if kind.is_procedure() {
+        "result"
+    } else {
+        "value"
+    };
     Diagnostic::new(
         Code::UnknownResult,
         format!("{} has no {what} `{member}`", owner(kind, name)),

@@ -338,7 +338,7 @@ pub fn number_wanted(text: &str, span: Span) -> Diagnostic {
     .help(format!("write `max({text})`, or one entry: `{text}[0]`"))
 }
 
-/// The wrong place of a probability of a study.
+/// The wrong position of a probability of a study.
 pub fn probability_misplaced(span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::ProbabilityMisplaced,

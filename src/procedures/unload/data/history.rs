@@ -1,6 +1,6 @@
 //! The history of the unloading of a frame: the floors after every move. In: numbers of a run, SI. It moves nothing.
 
-use super::floors::{Floors, FloorsAt, drift_of, shear_of};
+use crate::record::history::floors::{Floors, FloorsAt, drift_of, shear_of};
 use crate::uncertainty::{Contribution, share};
 
 /// All floors after one move, from the ground up; step 0 is the start of the unloading.

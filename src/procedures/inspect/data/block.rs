@@ -1,15 +1,15 @@
 //! `inspect`: its block.
 
-use crate::schema::types::{BlockKind, Field, Kind, Naming};
+use crate::plan::ProcedureBlock;
+use crate::schema::{BlockKind, Field, Kind, Naming};
 
 pub(crate) const NOTE: Field = Field::text("note", "instruction to the operator")
     .required("note = \"look for cracks at the supports\"");
 
 pub(crate) const BLOCK: BlockKind = BlockKind {
-    kind: Kind::Inspect,
+    kind: Kind::Procedure(ProcedureBlock::Inspect),
     keyword: &["inspect"],
     naming: Naming::Named,
-    procedure: true,
     fields: &[NOTE],
     exports: &[],
     results: &[],

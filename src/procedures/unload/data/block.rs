@@ -1,7 +1,8 @@
 //! `unload`: its block and results.
 
-use super::{SPECIMEN, SPEED, STIFFNESS};
-use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind};
+use crate::plan::ProcedureBlock;
+use crate::schema::procedures::{SPECIMEN, SPEED, STIFFNESS};
+use crate::schema::{BlockKind, Field, Kind, Naming, ResultKind};
 use crate::units::Dimension;
 
 pub(crate) const RESIDUAL_DISPLACEMENT: ResultKind = ResultKind::measured(
@@ -55,10 +56,9 @@ pub(crate) const WITHIN: Field = Field::quantity(
 .default_in_words("0.1 % of the initial force, or the smallest detectable force if larger");
 
 pub(crate) const BLOCK: BlockKind = BlockKind {
-    kind: Kind::Unload,
+    kind: Kind::Procedure(ProcedureBlock::Unload),
     keyword: &["unload"],
     naming: Naming::Named,
-    procedure: true,
     fields: &[
         SPECIMEN.described("specimen to unload"),
         STIFFNESS.described("expected unloading stiffness; the storeys of a frame have their own"),

@@ -1,8 +1,9 @@
 //! `shake`: its block and its results.
 
-use super::{SPECIMEN, tracking};
-use crate::schema::blocks::{frames, methods};
-use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind};
+use crate::plan::ProcedureBlock;
+use crate::schema::procedures::{SPECIMEN, tracking};
+use crate::schema::{BlockKind, Field, Kind, Naming, ResultKind};
+use crate::schema::{frames, methods};
 use crate::units::Dimension;
 
 pub(crate) const MAX_DISPLACEMENT: ResultKind = ResultKind::measured_list(
@@ -66,10 +67,9 @@ pub(crate) const SCALE: Field =
     Field::quantity("scale", Dimension::NUMBER, "factor on the record").or(1.0, "");
 
 pub(crate) const BLOCK: BlockKind = BlockKind {
-    kind: Kind::Shake,
+    kind: Kind::Procedure(ProcedureBlock::Shake),
     keyword: &["shake"],
     naming: Naming::Named,
-    procedure: true,
     fields: &[
         GROUND,
         SPECIMEN,

@@ -2,6 +2,8 @@
 //! In: a solver at the present position of the rig. Out: the history and its summary. `step_loop` takes the steps on the rig; the
 //! equations are in `physics`.
 
+pub(crate) mod batched;
+
 use super::summary::StruckSummary;
 use crate::physics::impact::ImpactSolver;
 use crate::physics::integrator::tangents::HasTangents;
@@ -14,7 +16,7 @@ use crate::procedures::stepping::step_loop;
 use crate::procedures::stepping::step_loop::pace::Pace;
 use crate::procedures::stepping::step_loop::{Balance, Stepped};
 use crate::procedures::stepping::tracking::tracking_summary::Followed;
-use crate::record::{FloorStep, ImpactStep};
+use crate::record::{FloorMotion, FloorStep, ImpactStep};
 use crate::rig::Reading;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
@@ -160,15 +162,17 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
             let structure = self.solver.structure();
             let of = |vector: &V| vector.as_slice().to_vec();
             self.floors.push(FloorStep {
-                time: structure.time,
-                command: of(&structure.target),
-                displacement: of(&structure.measured_displacement),
-                computed: of(&structure.displacement),
-                velocity: of(&structure.velocity),
-                acceleration: of(&structure.acceleration),
-                restoring_force: of(&structure.restoring_force),
+                floors: FloorMotion {
+                    time: structure.time,
+                    command: of(&structure.target),
+                    displacement: of(&structure.measured_displacement),
+                    computed: of(&structure.displacement),
+                    velocity: of(&structure.velocity),
+                    acceleration: of(&structure.acceleration),
+                    restoring_force: of(&structure.restoring_force),
+                    tracking: axes.to_vec(),
+                },
                 storey_energy: floors.storey_energy().to_vec(),
-                tracking: axes.to_vec(),
             });
         }
         Balance {

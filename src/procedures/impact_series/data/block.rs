@@ -1,8 +1,9 @@
 //! `escalate`: its block and its results.
 
-use super::impact;
-use crate::schema::blocks::methods::TRUTH;
-use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
+use crate::plan::ProcedureBlock;
+use crate::schema::methods::TRUTH;
+use crate::schema::procedures::impact;
+use crate::schema::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
 use crate::units::Dimension;
 
 pub(crate) const SPEEDS: Field = Field::quantities(
@@ -218,10 +219,9 @@ pub(crate) const RESULTS: &[ResultKind] = &[
 ];
 
 pub(crate) const BLOCK: BlockKind = BlockKind {
-    kind: Kind::Escalate,
+    kind: Kind::Procedure(ProcedureBlock::Escalate),
     keyword: &["escalate"],
     naming: Naming::Named,
-    procedure: true,
     fields: &FIELDS,
     exports: &[],
     results: RESULTS,

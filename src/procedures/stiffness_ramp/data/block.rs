@@ -1,10 +1,11 @@
 //! `stiffness ramp`: its block and its results.
 
+use crate::plan::ProcedureBlock;
 use crate::plan::declaration::{fields, names};
 use crate::plan::procedure::identification::stiffness_ramp_fields;
-use crate::schema::blocks::curves;
-use crate::schema::blocks::methods::TRUTH;
-use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
+use crate::schema::curves;
+use crate::schema::methods::TRUTH;
+use crate::schema::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
 use crate::units::Dimension;
 
 pub(crate) const ACCURACY: Field = Field::quantity(
@@ -233,10 +234,9 @@ pub(crate) const RESULTS: &[ResultKind] = &[
 stiffness_ramp_fields!(names);
 
 pub(crate) const BLOCK: BlockKind = BlockKind {
-    kind: Kind::StiffnessRamp,
+    kind: Kind::Procedure(ProcedureBlock::StiffnessRamp),
     keyword: &["stiffness", "ramp"],
     naming: Naming::Named,
-    procedure: true,
     fields: stiffness_ramp_fields!(fields),
     exports: &[],
     results: RESULTS,

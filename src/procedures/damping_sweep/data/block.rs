@@ -1,8 +1,9 @@
 //! `damping sweep`: its block and its results.
 
+use crate::plan::ProcedureBlock;
 use crate::plan::declaration::{fields, names};
 use crate::plan::procedure::damping_sweep::damping_sweep_fields;
-use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind};
+use crate::schema::{BlockKind, Field, Kind, Naming, ResultKind};
 use crate::units::Dimension;
 
 pub(crate) const DAMPING: ResultKind = ResultKind::measured(
@@ -47,10 +48,9 @@ pub(crate) const RESULTS: &[ResultKind] = &[
 damping_sweep_fields!(names);
 
 pub(crate) const BLOCK: BlockKind = BlockKind {
-    kind: Kind::DampingSweep,
+    kind: Kind::Procedure(ProcedureBlock::DampingSweep),
     keyword: &["damping", "sweep"],
     naming: Naming::Named,
-    procedure: true,
     fields: damping_sweep_fields!(fields),
     exports: &[],
     results: RESULTS,

@@ -1,17 +1,17 @@
 //! `move`: its block.
 
+use crate::plan::ProcedureBlock;
 use crate::plan::declaration::{fields, names};
 use crate::plan::procedure::move_to::move_fields;
-use crate::schema::types::{BlockKind, Field, Kind, Naming};
+use crate::schema::{BlockKind, Field, Kind, Naming};
 use crate::units::Dimension;
 
 move_fields!(names);
 
 pub(crate) const BLOCK: BlockKind = BlockKind {
-    kind: Kind::Move,
+    kind: Kind::Procedure(ProcedureBlock::Move),
     keyword: &["move"],
     naming: Naming::Named,
-    procedure: true,
     fields: move_fields!(fields),
     exports: &[],
     results: &[],

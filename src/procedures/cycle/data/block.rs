@@ -1,8 +1,9 @@
 //! `cycle`: cycles of displacement, their protocols and results.
 
-use super::{SPECIMEN, SPEED};
-use crate::schema::blocks::curves;
-use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
+use crate::plan::ProcedureBlock;
+use crate::schema::curves;
+use crate::schema::procedures::{SPECIMEN, SPEED};
+use crate::schema::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
 use crate::units::Dimension;
 
 pub(crate) const FIRST: Field = Field::quantity("first", Dimension::LENGTH, "smallest amplitude")
@@ -249,10 +250,9 @@ pub(crate) const FIT: Field = Field::choice(
 .default_in_words("nothing");
 
 pub(crate) const BLOCK: BlockKind = BlockKind {
-    kind: Kind::Cycle,
+    kind: Kind::Procedure(ProcedureBlock::Cycle),
     keyword: &["cycle"],
     naming: Naming::Named,
-    procedure: true,
     fields: &[
         SPECIMEN,
         GIVEN_AMPLITUDES,

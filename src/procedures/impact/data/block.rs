@@ -1,9 +1,10 @@
 //! `impact`: its block and its results.
 
-use super::{SPECIMEN, STIFFNESS, tracking};
 use crate::physics::contact::argument;
-use crate::schema::blocks::{frames, methods};
-use crate::schema::types::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
+use crate::plan::ProcedureBlock;
+use crate::schema::procedures::{SPECIMEN, STIFFNESS, tracking};
+use crate::schema::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
+use crate::schema::{frames, methods};
 use crate::units::Dimension;
 
 const LIMIT_FORCE: Field =
@@ -313,10 +314,9 @@ pub(crate) const UNTIL: Field = Field::choice(
 .default_in_words("striker_stop");
 
 pub(crate) const BLOCK: BlockKind = BlockKind {
-    kind: Kind::Impact,
+    kind: Kind::Procedure(ProcedureBlock::Impact),
     keyword: &["impact"],
     naming: Naming::Named,
-    procedure: true,
     fields: &[
         STRIKER,
         SPECIMEN,
