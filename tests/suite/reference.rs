@@ -64,7 +64,7 @@ fn the_generated_parts_are_those_of_the_schema() {
     compare("docs/reference/diagnostics.md", "", &codes());
     for page in PAGES {
         for (part, text) in page.parts() {
-            compare(&format!("docs/{}.md", page.page), part, &text);
+            compare(&format!("docs/{}.md", page.path), part, &text);
         }
     }
 }

@@ -12,7 +12,7 @@ pub struct Page {
     kind: Kind,
     field: &'static str,
     /// The name of the page in `docs/`, without its ending.
-    pub page: &'static str,
+    pub path: &'static str,
     /// The text and the label of the link to it: `[Specimen models][models]`.
     title: &'static str,
     label: &'static str,
@@ -25,7 +25,7 @@ pub const PAGES: &[Page] = &[
     Page {
         kind: Kind::Specimen,
         field: "behaviour",
-        page: "specimens",
+        path: "specimens",
         title: "Specimen models",
         label: "models",
         has_tables: true,
@@ -33,7 +33,7 @@ pub const PAGES: &[Page] = &[
     Page {
         kind: Kind::Rig,
         field: "link",
-        page: "rigs",
+        path: "rigs",
         title: "Controllers",
         label: "links",
         has_tables: true,
@@ -41,7 +41,7 @@ pub const PAGES: &[Page] = &[
     Page {
         kind: Kind::Study,
         field: "vary",
-        page: "how-to/studies",
+        path: "how-to/studies",
         title: "Studies",
         label: "distributions",
         has_tables: false,
