@@ -158,6 +158,9 @@ pub enum RigFault {
     Device(String),
 }
 
+/// Between a value and its limit, in the text of a limit that was broken.
+pub(crate) const IS_OUTSIDE: &str = " is outside its limit ";
+
 /// Six digits, because a value just beyond its limit must not appear equal to the limit.
 fn breach(
     quantity: LimitedQuantity,
@@ -168,7 +171,7 @@ fn breach(
 ) -> String {
     let shown = |value| display::plain(value, quantity.dimension(), 6);
     format!(
-        "{quantity}{} {} is outside its limit {} .. {}",
+        "{quantity}{} {}{IS_OUTSIDE}{} .. {}",
         of_axis(axis),
         shown(value),
         shown(low),

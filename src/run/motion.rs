@@ -63,6 +63,12 @@ impl Motion {
         self
     }
 
+    /// The expected duration of one move over `distance` \[m\] at `speed` \[m/s\], with its settling \[s\].
+    #[must_use]
+    pub fn duration(plan: &Plan, distance: f64, speed: f64) -> f64 {
+        distance / speed + plan.rig.settle.dwell
+    }
+
     /// The lines of a prompt: rig, motion, displacement, force, speed, duration.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
@@ -157,17 +163,16 @@ fn span(
     format!("{} .. {}", end(low, high), end(high, low))
 }
 
-/// The duration of a motion, as text.
+/// The duration of a motion, as text. Below ten seconds in whole seconds, at least one.
 fn about(seconds: f64) -> String {
-    match seconds {
-        seconds if seconds < 60.0 => {
-            format!("about {} s", plain(seconds.max(0.1), Dimension::NUMBER, 2))
-        }
-        seconds if seconds < 5400.0 => {
-            format!("about {} min", plain(seconds / 60.0, Dimension::NUMBER, 2))
-        }
-        seconds => format!("about {} h", plain(seconds / 3600.0, Dimension::NUMBER, 2)),
-    }
+    let (number, unit) = match seconds {
+        seconds if seconds < 10.0 => (seconds.ceil().max(1.0), "s"),
+        seconds if seconds < 60.0 => (seconds, "s"),
+        seconds if seconds < 5400.0 => (seconds / 60.0, "min"),
+        seconds => (seconds / 3600.0, "h"),
+    };
+    let number = plain(number, Dimension::NUMBER, 2);
+    format!("about {number} {unit}, with settling")
 }
 
 #[cfg(test)]
@@ -228,7 +233,7 @@ mod tests {
             "{lines:#?}"
         );
         assert!(
-            lines[4].contains("20.00 mm/s") && lines[5] == "duration  about 1.5 min",
+            lines[4].contains("20.00 mm/s") && lines[5] == "duration  about 1.5 min, with settling",
             "{lines:#?}"
         );
         let light = Interval {

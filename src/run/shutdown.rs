@@ -135,7 +135,7 @@ impl Session<'_> {
             travel: over(&mut from.iter().chain(&self.home).copied()),
             force: found.and_then(|(_, force)| over(&mut force.iter().copied().chain([0.0]))),
             speed,
-            duration: speed.map(|speed| longest / speed),
+            duration: speed.map(|speed| Motion::duration(plan, longest, speed)),
         };
         let does = "it MOVES back to its start position".to_owned();
         Motion {

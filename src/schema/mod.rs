@@ -17,7 +17,7 @@ pub(crate) use blocks::{
 };
 pub use columns::Column;
 pub use functions::{FUNCTIONS, FunctionKind};
-pub use reference::{codes, reference};
+pub use reference::{PAGES, codes, reference};
 pub use renamed::{NameRole, RENAMED, Renamed, renamed_at, renamed_result};
 pub use types::{
     BlockKind, Field, FieldType, Kind, Naming, Presence, Range, ResultKind, RigKind, Variant,

@@ -6,12 +6,11 @@ use std::path::PathBuf;
 
 use psd::language::check::{LoadError, Loader, Options, check};
 use psd::language::syntax::{format, parse};
-use psd::schema::{BLOCKS, codes, reference};
+use psd::schema::{BLOCKS, PAGES, codes, reference};
 use psd::text::diagnostic::Code;
 use psd::text::diagnostic::render::{Appearance, render_all};
 use psd::text::source::Sources;
 
-const START: &str = "<!-- generated -->\n";
 const END: &str = "<!-- end of generated -->\n";
 
 fn path() -> PathBuf {
@@ -31,17 +30,21 @@ impl Loader for NoFiles {
     }
 }
 
-/// Compares the generated part of a page with `text`, or writes it.
-fn compare(name: &str, text: &str) {
+/// Compares a generated part of a page with `text`, or writes it. The part begins with `<!-- generated: PART -->`.
+fn compare(name: &str, part: &str, text: &str) {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(name);
     let page = fs::read_to_string(&path).expect("the page is there");
+    let start = match part {
+        "" => "<!-- generated -->\n".to_owned(),
+        part => format!("<!-- generated: {part} -->\n"),
+    };
     let (before, rest) = page
-        .split_once(START)
-        .expect("the generated part has a start");
+        .split_once(&start)
+        .unwrap_or_else(|| panic!("{name} has no `{}`", start.trim()));
     let (generated, after) = rest.split_once(END).expect("the generated part has an end");
     let wanted = format!("\n{text}\n");
     if std::env::var_os("PSD_BLESS").is_some() {
-        fs::write(path, format!("{before}{START}{wanted}{END}{after}"))
+        fs::write(path, format!("{before}{start}{wanted}{END}{after}"))
             .expect("the page can be written");
         return;
     }
@@ -57,8 +60,13 @@ fn compare(name: &str, text: &str) {
 
 #[test]
 fn the_generated_parts_are_those_of_the_schema() {
-    compare("grammar/LANGUAGE.md", &reference());
-    compare("docs/reference/diagnostics.md", &codes());
+    compare("grammar/LANGUAGE.md", "", &reference());
+    compare("docs/reference/diagnostics.md", "", &codes());
+    for page in PAGES {
+        for (part, text) in page.parts() {
+            compare(&format!("docs/{}.md", page.path), part, &text);
+        }
+    }
 }
 
 /// The part of the page on a block, without the heading.

@@ -289,12 +289,12 @@ pub(crate) fn unloaded(
     let frame = specimen.and_then(|specimen| frame_of(run, specimen));
     let moves = steps.len() - 1;
     let by = if frame.is_some_and(|frame| !of_storeys(frame)) {
-        "with the inverse of the initial stiffness matrix"
+        "each with the initial stiffness matrix"
     } else {
-        "with the stiffness of each storey in its last move"
+        "each with the storey stiffnesses last measured"
     };
     body.push(Block::paragraph(format!(
-        "All floors moved together to zero restoring force, in {moves} {}: {by}.",
+        "All floors moved together to zero restoring force, in {moves} {}, {by}.",
         if moves == 1 { "move" } else { "moves" }
     )));
     let whole = |values: &[f64]| {

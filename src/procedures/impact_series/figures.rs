@@ -264,7 +264,7 @@ fn over_each_other(
             },
             points: impact.impact().steps.iter().map(&of).collect(),
             style: if index == last {
-                Style::line(palette::VERMILION, 2.0, SOLID)
+                Style::line(palette::VERMILION, 2.0, DASHED)
             } else {
                 Style::line(shade(index, last), 1.5, SOLID)
             },

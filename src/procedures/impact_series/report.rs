@@ -199,8 +199,8 @@ fn rows(procedure: &ProcedureRecord, impacts: &[SeriesImpact]) -> Block {
     };
     let row = |(index, impact): (usize, &SeriesImpact)| {
         let held = match impact.held {
-            Some(true) => "held",
-            Some(false) => "condition false",
+            Some(true) => "true",
+            Some(false) => "false",
             None if impact.rest.is_some() => "inconclusive",
             None => "incomplete",
         };

@@ -49,10 +49,17 @@ pub(crate) fn part_of(part: f64, whole: f64, digits: u8, dimension: Dimension) -
         3
     };
     let text = format!("{:.decimals$}", part / factor);
-    // A rounded zero has no sign.
+    join(&minus(without_sign_of_zero(&text)), &unit)
+}
+
+/// A number in digits; a rounded zero has no sign.
+fn without_sign_of_zero(text: &str) -> &str {
     let size = text.trim_start_matches('-');
-    let zero = size.bytes().all(|byte| matches!(byte, b'0' | b'.'));
-    join(&minus(if zero { size } else { &text }), &unit)
+    if size.bytes().all(|byte| matches!(byte, b'0' | b'.')) {
+        size
+    } else {
+        text
+    }
 }
 
 /// Joins a number and its unit, the last word, by a non-breaking space.

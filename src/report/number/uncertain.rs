@@ -1,7 +1,7 @@
 //! Values with their uncertainties, both to the same decimal (JCGM 100:2008, 7.2). In: SI values with their dimension. Out:
 //! strings.
 
-use super::{join_typeset, text};
+use super::{join_typeset, text, without_sign_of_zero};
 use crate::uncertainty::MeasurementUncertainty;
 use crate::units::Dimension;
 use crate::units::display::{digits, minus, significant, typeset, unit};
@@ -116,7 +116,7 @@ pub(crate) fn with_uncertainty(
     uncertainty: Option<f64>,
     dimension: Dimension,
 ) -> String {
-    let Some(uncertainty) = uncertainty.filter(|uncertainty| uncertainty.is_finite()) else {
+    let Some(uncertainty) = uncertainty.filter(|u| u.is_finite() && *u > 0.0) else {
         return text(value, dimension);
     };
     let (unit, factor) = unit(value, dimension);
@@ -154,7 +154,7 @@ pub(super) fn tens(power: i32) -> String {
 /// A number to so many decimals; below zero, to tens, hundreds, …
 fn fixed(number: f64, decimals: i32) -> String {
     if let Ok(decimals) = usize::try_from(decimals) {
-        return format!("{number:.decimals$}");
+        return without_sign_of_zero(&format!("{number:.decimals$}")).to_owned();
     }
     let step = 10.0_f64.powi(-decimals);
     // Zero is added for a rounded zero without a minus sign.
@@ -190,7 +190,7 @@ mod tests {
         assert_eq!(with_uncertainty(5.0, None, Dimension::NUMBER), "5");
         assert_eq!(
             with_uncertainty(5.0, Some(0.0), Dimension::FORCE),
-            "5.000(0)\u{a0}N"
+            "5.000\u{a0}N"
         );
         assert_eq!(
             with_uncertainty(-1.7e-7, Some(2.345e-8), Dimension::NUMBER),

@@ -1,4 +1,4 @@
-//! Provenance: identifiers, program, rig and clocks, and the digests of plan and tables. In: a run. Out: blocks.
+//! Provenance: identifiers, program and clocks, and the digests of plan and tables. In: a run. Out: blocks.
 
 use super::{Source, pairs};
 use crate::report::document::{Block, Column, Table, Text};
@@ -24,53 +24,39 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     }));
 }
 
+/// Identifiers, program, settings, seed; of a real run operator, machine and times. The rig is in the annex of the equipment.
 fn origin(run: &Run<'_>) -> Block {
-    let settings: Vec<String> = run
-        .plan
-        .settings
-        .iter()
-        .map(|(name, value)| format!("{name} = {value}"))
-        .collect();
-    let settings = if settings.is_empty() {
-        wording::NO_SETTINGS.to_owned()
-    } else {
-        settings.join("; ")
-    };
-    let simulated = if run.record.rig.simulated {
-        wording::SIMULATED
-    } else {
-        ""
-    };
     let provenance = run.provenance;
-    let mut rows = vec![(wording::REPORT, Text::new().id(provenance.report_id()))];
+    let run_id = Text::new().id(&provenance.run_id);
+    let mut rows = if provenance.report_id() == provenance.run_id {
+        vec![(wording::REPORT_AND_RUN, run_id)]
+    } else {
+        vec![
+            (wording::REPORT, Text::new().id(provenance.report_id())),
+            (wording::RUN, run_id),
+        ]
+    };
     rows.extend(
         issue::first(provenance.issues.as_ref()).map(|issued| (wording::ISSUED, issued.into())),
     );
     rows.extend([
-        (wording::RUN, Text::new().id(&provenance.run_id)),
         (
             wording::PROGRAM,
             format!("psd {}", provenance.psd_version).into(),
         ),
         (wording::SOURCES, id_or_unknown(&provenance.build.sources)),
         (wording::BUILT_FOR, recorded(&provenance.build.toolchain)),
-        (
-            wording::PLAN_DIGEST,
-            Text::new().id(&provenance.plan_sha256),
-        ),
-        (wording::SETTINGS, settings.into()),
-        (
-            wording::RIG,
-            format!("{}{simulated}", run.record.rig.name).into(),
-        ),
-        (wording::FIRMWARE, recorded(&run.record.rig.firmware)),
     ]);
+    let settings = run.plan.settings.iter();
+    let settings: Vec<String> = settings
+        .map(|(name, value)| format!("{name} = {value}"))
+        .collect();
+    if !settings.is_empty() {
+        rows.push((wording::SETTINGS, settings.join("; ").into()));
+    }
     match (&provenance.real, run.plan.rig.link.as_virtual()) {
         (Some(real), _) => rows.extend(record(real)),
-        (None, Some(link)) => {
-            rows.push((wording::SEED, link.seed.to_string().into()));
-            rows.push((wording::CLOCKS, wording::SIMULATED_CLOCKS.into()));
-        }
+        (None, Some(link)) => rows.push((wording::SEED, link.seed.to_string().into())),
         (None, None) => {}
     }
     pairs(rows)

@@ -7,7 +7,7 @@ use crate::record::{Drift, EventKind, Outcome, Record};
 use crate::report::number;
 use crate::report::run::{ClockJump, Run};
 use crate::report::wording::deviations as wording;
-use crate::run::check_run;
+use crate::run::{UNLOADING, check_run};
 use crate::schema::plan_block::DEVIATIONS;
 use crate::units::Dimension;
 use crate::units::display::trimmed;
@@ -50,6 +50,10 @@ pub(in crate::report) fn of_run(run: &Run<'_>) -> Vec<String> {
         .iter()
         .filter(|event| event.text != ending)
     {
+        if event.text == UNLOADING {
+            found.push(wording::UNLOADED.to_owned());
+            continue;
+        }
         let kind = match event.kind {
             EventKind::LimitBreach => wording::LIMIT_BREACH,
             EventKind::Hold => wording::HOLD,

@@ -158,6 +158,7 @@ wording! {
         NO_DEVIATION = "None recorded.";
         LIMIT_BREACH = "Limit reached";
         HOLD = "Hold";
+        UNLOADED = "After the stop the rig moved back towards its start position.";
         AFTER_THE_STOP = "After the stop";
         NOT_HELD = "The rig";
         RIG_FAULT = "Rig fault";
@@ -266,7 +267,7 @@ wording! {
         fn energy(direction, percent) = ", tracking-error energy {percent}\u{a0}% of the input energy, {direction}";
         THE_ACTUATORS = "The actuators";
         COLUMNS = ["Actuator of floor", "Largest error", "NRMS error",
-            "Largest tracking-error energy, of the input (− added)", "Tracking indicator at the end"];
+            "Tracking-error energy / input (− added)", "Tracking indicator at the end"];
     }
 
     mod photos {
@@ -435,24 +436,18 @@ wording! {
         MANIFEST_REAL = "The file manifest.sha256 beside this report holds the SHA-256 of every file of the run. The \
             run log journal.psdj holds every target, reading and reply; ";
         VERIFIES = " replays the run from it and requires the same targets, bit for bit.";
-        MANIFEST_SIMULATED = "The file manifest.sha256 beside this report holds the SHA-256 of every file of the run. \
-            The same plan, seed, settings and program give identical files.";
-        NO_SETTINGS = "none";
-        SIMULATED = " (simulated)";
+        MANIFEST_SIMULATED = "manifest.sha256 has the SHA-256 of every file. The same plan, seed, settings and program give identical files.";
         NOT_RECORDED = "not recorded";
         REPORT = "Report";
+        REPORT_AND_RUN = "Report and run";
         ISSUED = "Issued";
         RUN = "Run";
         PROGRAM = "Program";
         SOURCES = "SHA-256 of its sources";
         BUILT_FOR = "Built for";
-        PLAN_DIGEST = "SHA-256 of the plan";
         SETTINGS = "Settings on the command line";
-        RIG = "Rig";
-        FIRMWARE = "Firmware of the rig";
         SEED = "Seed";
         CLOCKS = "Clocks";
-        SIMULATED_CLOCKS = "none; simulated time";
         REAL_CLOCKS = "dates: UTC of the machine's clock; rig time: a monotonic clock from the start of the run";
         FILE_COLUMNS = ["File in the folder of the run", "SHA-256"];
         OPERATOR = "Operator";
@@ -468,9 +463,8 @@ wording! {
         COLUMNS = ["Failed self-test case", "Computed", "Reference", "Verdict"];
         FAIL = "fail";
         TOGETHER_WITH = " with ";
-        BY_THE_PROGRAM = "The self-test ran in the same program build. References: Melo et al. 2006, closed forms, and \
-            independent solutions. ";
-        WHOLE_PLANS = " compares whole plans with accepted results.";
+        BY_THE_PROGRAM = "References of the self-test: Melo et al. 2006, closed forms, independent solutions. ";
+        WHOLE_PLANS = " compares whole plans.";
         COVERS_NOTHING = "The self-test covers no part of this run: nothing was integrated or fitted.";
         fn by_the_laboratory(text) = "Validation by the laboratory: {text}";
         fn covers(parts) = "Covered in this run: {parts}.";

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use super::options;
-use super::values::{default, is_truth, value};
+use super::values::{default, is_truth, row, value};
 use crate::schema::types::{BlockKind, Field, FieldType, Naming, ResultKind};
 use crate::units::Dimension;
 use crate::units::display::si_unit;
@@ -110,17 +110,19 @@ fn write_fields(text: &mut String, block: &BlockKind, fields: &[&Field], earlier
     if fields.is_empty() {
         return;
     }
-    let _ = writeln!(text, "| field | value | default | |\n|---|---|---|---|");
+    let has_defaults = fields.iter().any(|field| !default(field).is_empty());
+    let row = |name: &str, value: &str, default: &str, doc: &str| {
+        if has_defaults {
+            row(&[name, value, default, doc])
+        } else {
+            row(&[name, value, doc])
+        }
+    };
+    *text += &row("field", "value", "default", "");
+    *text += &row("---", "---", "---", "---");
     for field in fields {
-        let _ = writeln!(
-            text,
-            "| {}{} | {} | {} | {} |",
-            anchor(block, field.name, true),
-            marks(field),
-            value(field, earlier),
-            default(field),
-            field.doc
-        );
+        let name = format!("{}{}", anchor(block, field.name, true), marks(field));
+        *text += &row(&name, &value(field, earlier), &default(field), field.doc);
     }
 }
 
@@ -176,7 +178,17 @@ fn write_values(text: &mut String, block: &BlockKind, head: &str, values: &[Resu
     if values.is_empty() {
         return;
     }
-    let _ = writeln!(text, "\n| {head} | unit | *u* | |\n|---|---|---|---|");
+    let are_measured = values.iter().any(|value| value.measured);
+    let row = |name: &str, unit: &str, u: &str, doc: &str| {
+        if are_measured {
+            row(&[name, unit, u, doc])
+        } else {
+            row(&[name, unit, doc])
+        }
+    };
+    *text += "\n";
+    *text += &row(head, "unit", "*u*", "");
+    *text += &row("---", "---", "---", "---");
     for value in values {
         let unit = if value.dimension == Dimension::NUMBER {
             String::new()
@@ -188,13 +200,9 @@ fn write_values(text: &mut String, block: &BlockKind, head: &str, values: &[Resu
             (true, false) => format!("list, {unit}"),
             (false, _) => unit,
         };
-        let _ = writeln!(
-            text,
-            "| {}{} | {unit} | {} | {} |",
-            anchor(block, value.name, false),
-            of_frames(value.of_storey),
-            if value.measured { "u" } else { "" },
-            value.doc
-        );
+        let mark = of_frames(value.of_storey);
+        let name = format!("{}{mark}", anchor(block, value.name, false));
+        let u = if value.measured { "u" } else { "" };
+        *text += &row(&name, &unit, u, value.doc);
     }
 }

@@ -11,16 +11,20 @@ use crate::units::unit::{PREFIXES, UNITS};
 
 mod blocks;
 mod options;
+mod pages;
 mod values;
+
+pub use pages::PAGES;
 
 const INTRODUCTION: &str = "## Vocabulary
 
-- Every field and result has an anchor where it is described: `#impact.duration`. All codes are in `docs/reference/diagnostics.md`.
+- Every field and result has an anchor where it is described: `#impact.duration`. All codes are in [Diagnostics][codes].
 - **Value** shows the usual unit and the limits: `mm` ≥ 0 is a length in any unit, at least 0. A number can be written in `%`.
 - A list is `[a, b, …]`, or a range with a step. A range is `a .. b`; a single number b is −b .. b (marked ±) or 0 .. b.
 - ᴿ: for real rigs only. ᶠ: for frames only.
 - *u*: the result has a standard uncertainty, read as `.u`.
 - Arguments of an option are in the order of the lines below it: `limit(force: 1500 N)`.
+- Models, links and distributions have their arguments on a page of their own.
 ";
 
 /// The generated part of `grammar/LANGUAGE.md`: every block, field, option and result, then functions and units.

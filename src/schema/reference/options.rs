@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::pages::Page;
 use super::values::{default, is_truth, value};
 use crate::schema::types::{BlockKind, Field, FieldType, Presence, Variant};
 
@@ -37,7 +38,7 @@ impl<'b> Written<'b> {
         }
     }
 
-    /// Writes the options of the field `field`.
+    /// Writes the options of the field `field`, or a pointer to their page.
     pub(super) fn write(
         &mut self,
         text: &mut String,
@@ -45,10 +46,19 @@ impl<'b> Written<'b> {
         field: &'static str,
         variants: &'static [Variant],
     ) {
-        self.write_at(text, block, field, variants, 1);
+        if let Some(page) = Page::of(block.kind, field) {
+            let _ = writeln!(text, "  - {}", page.pointer());
+            self.options.extend(variants.iter().map(|variant| {
+                let form = format!("{variant:?}");
+                Listed { form, field, block }
+            }));
+            return;
+        }
+        self.list(text, block, field, variants, 1);
     }
 
-    fn write_at(
+    /// Writes a list of options at this depth.
+    pub(super) fn list(
         &mut self,
         text: &mut String,
         block: &'static BlockKind,
@@ -95,7 +105,7 @@ impl<'b> Written<'b> {
                 self.arguments.push((format!("{argument:?}"), variant.name));
                 self.write_argument(text, &indent, argument);
                 if let (FieldType::Choice(inner), false) = (argument.ty, is_truth(argument)) {
-                    self.write_at(text, block, argument.name, inner, depth + 2);
+                    self.list(text, block, argument.name, inner, depth + 2);
                 }
                 rest = after;
                 continue;

@@ -59,6 +59,20 @@ pub(super) fn value(field: &Field, blocks: &[&BlockKind]) -> String {
     }
 }
 
+/// A row of a table; `---` in every cell makes the line below the head.
+pub(super) fn row(cells: &[&str]) -> String {
+    let rule = cells.iter().all(|cell| *cell == "---");
+    let mut row = "|".to_owned();
+    for cell in cells {
+        match (rule, cell.is_empty()) {
+            (true, _) => row += "---|",
+            (false, true) => row += " |",
+            (false, false) => row.extend([" ", cell, " |"]),
+        }
+    }
+    row + "\n"
+}
+
 /// Whether a field is `true` or `false`, which needs no list of options.
 pub(super) fn is_truth(field: &Field) -> bool {
     let FieldType::Choice(variants) = field.ty else {

@@ -81,12 +81,15 @@ fn prose(text: &str) -> String {
     prose
 }
 
-/// The targets of the links and pictures of a text.
+/// The targets of the links and pictures of a text, and of its labels: `[models]: specimens.md`.
 fn links(text: &str) -> Vec<String> {
-    prose(text)
-        .split("](")
-        .skip(1)
-        .filter_map(|rest| rest.split(')').next())
+    let text = prose(text);
+    let written = text.split("](").skip(1);
+    let written = written.filter_map(|rest| rest.split(')').next());
+    let labels = text.lines().filter(|line| line.starts_with('['));
+    let labels = labels.filter_map(|line| line.split_once("]: "));
+    written
+        .chain(labels.map(|(_, target)| target))
         .map(str::to_owned)
         .collect()
 }

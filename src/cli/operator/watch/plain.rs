@@ -7,6 +7,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::cli::output::print_message;
 use crate::record::{Event, EventKind};
+use crate::rig::IS_OUTSIDE;
 use crate::run::{Inspection, Observer, StepReport};
 use crate::text::diagnostic::excerpt::escape;
 use crate::units::Dimension;
@@ -99,8 +100,10 @@ pub struct Lines {
     keyword: String,
     /// Number of the last step.
     last: Option<u64>,
-    /// Largest |X| \[m\] and |R| \[N\].
+    /// Largest |X| \[m\] and |R| \[N\] of the steps.
     largest: (f64, f64),
+    /// The reading that broke a limit: `force 1.003 kN`.
+    stopped_by: Option<String>,
 }
 
 impl Lines {
@@ -117,6 +120,9 @@ impl Lines {
                 text,
                 ", {step} {steps}, largest X {displacement}, largest R {force}"
             );
+        }
+        if let Some(reading) = &self.stopped_by {
+            let _ = write!(text, "; stopped by {reading}");
         }
         text.push('\n');
         text
@@ -150,6 +156,10 @@ impl Observer for Lines {
     }
 
     fn event(&mut self, event: &Event) {
+        if event.kind == EventKind::LimitBreach {
+            let reading = event.text.split(IS_OUTSIDE).next();
+            self.stopped_by = reading.map(escape);
+        }
         // Observations appear in the report only.
         if event.kind != EventKind::Remark {
             print_message(&format!("  {}\n", escape(&event.text).replace('\n', " ")));
@@ -171,6 +181,18 @@ mod tests {
         assert_eq!(
             lines.line("k0"),
             "  k0: stiffness ramp, 2 steps, largest X 2.000 mm, largest R 600.0 N\n"
+        );
+        lines.procedure_started("look", "inspect", Some(0));
+        lines.event(&Event {
+            time: 0.3,
+            procedure: None,
+            step: None,
+            kind: EventKind::LimitBreach,
+            text: "force 1.003 kN is outside its limit -1 kN .. 1 kN".to_owned(),
+        });
+        assert_eq!(
+            lines.line("hit"),
+            "  hit: inspect; stopped by force 1.003 kN\n"
         );
         lines.procedure_started("look", "inspect", Some(0));
         assert_eq!(lines.line("lo\u{1b}ok"), "  lo\\u{1b}ok: inspect\n");

@@ -272,7 +272,7 @@ pub(crate) fn style(curve: usize, width: f64) -> Style {
 
 /// A path that is travelled again fills its own dashes: the width distinguishes storeys, the thinner on top.
 fn retraced(curve: usize) -> Style {
-    const WIDTHS: [f64; MOST_CURVES] = [3.2, 2.4, 1.8, 1.3, 0.9, 0.6];
+    const WIDTHS: [f64; MOST_CURVES] = [3.6, 2.0, 1.4, 1.0, 0.8, 0.6];
     Style::line(
         COLOURS[curve % MOST_CURVES],
         WIDTHS[curve % MOST_CURVES],

@@ -106,7 +106,7 @@ pub(crate) fn chart(
         FigureKind::Energy => (
             charts::energy(history, charts::energy_of_contact(run, figure.procedure)),
             format!(
-                "{name}: parts of the striker's energy, all storeys together; their total stays level if the energy balance closes."
+                "{name}: parts of the striker's energy, all storeys together; their total is the energy put in, if the balance closes."
             ),
         ),
         FigureKind::Tracking => (

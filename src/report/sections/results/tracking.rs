@@ -6,7 +6,7 @@ use crate::physics::tracking::monitor::Tracking;
 use crate::plan::formula::ResultValue;
 use crate::record::ProcedureRecord;
 use crate::report::document::{Block, Column, Table, Text};
-use crate::report::number::{self, percent};
+use crate::report::number;
 use crate::report::wording::actuators as wording;
 use crate::schema::procedures::tracking;
 use crate::units::Dimension;
@@ -60,7 +60,10 @@ pub(crate) fn table(procedure: &ProcedureRecord) -> Option<Block> {
     let fraction = |values: &[f64], floor: usize| -> Text {
         values
             .get(floor)
-            .map_or_else(|| "—".to_owned(), |value| percent(*value))
+            .map_or_else(
+                || "—".to_owned(),
+                |value| number::text(100.0 * value, Dimension::NUMBER) + "\u{a0}%",
+            )
             .into()
     };
     let [

@@ -39,7 +39,10 @@ pub(crate) const FORMATS: Field = Field::choices(
     "formats",
     &[
         Variant::word("html", "the test report as a self-contained page"),
-        Variant::word("pdf", "the same report as PDF/A, with the plan attached"),
+        Variant::word(
+            "pdf",
+            "the same report, with the plan attached; with a date PDF/A-3a",
+        ),
         Variant::word("csv", "tables as text"),
         Variant::word("parquet", "tables in binary columns"),
     ],

@@ -31,23 +31,23 @@ pub(crate) const PEAK_ERROR: ResultKind = ResultKind::new(
 pub(crate) const FLOOR_TRACKING_ENERGY_ERROR: ResultKind = ResultKind::list(
     "floor_tracking_energy_error",
     Dimension::NUMBER,
-    "of each floor's actuator: peak tracking-error energy relative to the input energy; negative = energy added",
+    "`tracking_energy_error` of each floor's actuator",
 );
 
 pub(crate) const FLOOR_TRACKING_INDICATOR: ResultKind = ResultKind::list(
     "floor_tracking_indicator",
     Dimension::AREA,
-    "of each floor's actuator: the tracking indicator",
+    "`tracking_indicator` of each floor's actuator",
 );
 
 pub(crate) const FLOOR_NRMS_ERROR: ResultKind = ResultKind::list(
     "floor_nrms_error",
     Dimension::NUMBER,
-    "of each floor's actuator: rms tracking error relative to rms command",
+    "`nrms_error` of each floor's actuator",
 );
 
 pub(crate) const FLOOR_PEAK_ERROR: ResultKind = ResultKind::list(
     "floor_peak_error",
     Dimension::LENGTH,
-    "of each floor's actuator: peak absolute tracking error",
+    "`peak_error` of each floor's actuator",
 );

@@ -125,7 +125,7 @@ impl JogSession<'_> {
             travel: Some(Interval { low, high }),
             force: None,
             speed: Some(speed),
-            duration: Some(distance / speed),
+            duration: Some(Motion::duration(self.plan, distance, speed)),
         };
         let does = format!(
             "it MOVES from {} to {}",
