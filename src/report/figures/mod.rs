@@ -1,5 +1,5 @@
 //! Figures, as PNG at 192 dpi and as vectors. In: a run. Out: bytes and a caption, one figure at a
-//! time, because the canvas of one takes 60 MB while it is drawn. It knows no HTML.
+//! time. It knows no HTML.
 
 mod axis;
 mod canvas;

@@ -15,22 +15,26 @@ pub(super) fn png(
     psd_raster::png(width, height, &|sheet| paint(sheet))
 }
 
-impl Canvas for Sheet<'_> {
+impl Canvas for Sheet {
     fn rectangle(&self, from: Point, to: Point, colour: Colour) -> Result<(), String> {
-        self.rectangle(from, to, colour)
+        self.rectangle(from, to, colour);
+        Ok(())
     }
 
     fn disc(&self, centre: Point, radius: f64, colour: Colour) -> Result<(), String> {
-        self.disc(centre, radius, colour)
+        self.disc(centre, radius, colour);
+        Ok(())
     }
 
     fn polygon(&self, corners: &[Point], colour: Colour) -> Result<(), String> {
-        self.polygon(corners, colour)
+        self.polygon(corners, colour);
+        Ok(())
     }
 
     fn polyline(&self, points: &[Point], line: Line, colour: Colour) -> Result<(), String> {
         let Line { width, dash } = line;
-        self.polyline(points, psd_raster::Line { width, dash }, colour)
+        self.polyline(points, psd_raster::Line { width, dash }, colour);
+        Ok(())
     }
 
     fn text(&self, text: &str, anchor: Point, style: &Lettering) -> Result<(), String> {
@@ -42,6 +46,7 @@ impl Canvas for Sheet<'_> {
             anchor
         };
         let style = style.scaled(f64::from(FINE));
-        self.text(&crate::text::glyphs::shown(text), anchor, style)
+        self.text(&crate::text::glyphs::shown(text), anchor, style);
+        Ok(())
     }
 }

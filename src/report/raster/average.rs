@@ -1,5 +1,7 @@
 //! The mean colour of each square of subpixels. In: subpixels, three bytes each. Out: pixels. It draws nothing.
 
+use std::ops::Range;
+
 /// Subpixels per pixel of the image, in each direction.
 pub(crate) const BOX: u32 = 4;
 const SIDE: usize = BOX as usize;
@@ -7,24 +9,31 @@ const SIDE: usize = BOX as usize;
 const PIECE: usize = 3 * SIDE;
 /// Bytes of a row that are compared with white together.
 const CHUNK: usize = 16 * PIECE;
+const WHITE: [u8; CHUNK] = [255; CHUNK];
 
-/// The mean of each BOX × BOX square of subpixels. Most of a figure is white, which is found by comparing chunks of rows.
-pub(crate) fn average(fine: &[u8], fine_width: usize) -> Vec<u8> {
+/// The mean of each BOX × BOX square of subpixels, which are white afterwards. Most of a figure is white, which is found by comparing chunks
+/// of rows.
+pub(crate) fn take_average(fine: &mut [u8], fine_width: usize) -> Vec<u8> {
     let row = 3 * fine_width;
-    let white = vec![255_u8; row];
     let mut picture = vec![255; fine.len() / (SIDE * SIDE)];
     for (band, line) in fine
-        .chunks_exact(row * SIDE)
+        .chunks_exact_mut(row * SIDE)
         .zip(picture.chunks_exact_mut(row / SIDE))
     {
-        let rows = [0, 1, 2, 3].map(|y| &band[y * row..(y + 1) * row]);
         for start in (0..row).step_by(CHUNK) {
             let end = row.min(start + CHUNK);
-            if rows.iter().all(|row| row[start..end] == white[start..end]) {
+            let ranges = [0, 1, 2, 3].map(|y| y * row + start..y * row + end);
+            let is_white = |range: &Range<usize>| band[range.clone()] == WHITE[..end - start];
+            if ranges.iter().all(is_white) {
                 continue;
             }
-            for x in (start..end).step_by(PIECE) {
-                line[x / SIDE..x / SIDE + 3].copy_from_slice(&mean(&rows, x));
+            let rows = ranges.clone().map(|range| &band[range]);
+            for x in (0..end - start).step_by(PIECE) {
+                let pixel = (start + x) / SIDE;
+                line[pixel..pixel + 3].copy_from_slice(&mean(&rows, x));
+            }
+            for range in ranges {
+                band[range].fill(255);
             }
         }
     }
@@ -59,18 +68,19 @@ mod tests {
             .iter()
             .flat_map(|grey| [*grey; 3])
             .collect();
-        assert_eq!(average(&row.repeat(4), 4), [128, 128, 128]);
-        assert_eq!(average(&[7; 4 * 4 * 3], 4), [7, 7, 7]);
+        assert_eq!(take_average(&mut row.repeat(4), 4), [128, 128, 128]);
+        assert_eq!(take_average(&mut [7; 4 * 4 * 3], 4), [7, 7, 7]);
     }
 
-    /// A white image with one dark subpixel, at every position: the mean of its square, and white around it.
+    /// A white image with one dark subpixel, at every position: the mean of its square, and white around it. The subpixels are white again.
     #[test]
     fn no_dark_subpixel_is_lost() {
         let (width, height) = (4 * 37, 8);
+        let mut fine = vec![255_u8; 3 * width * height];
         for subpixel in 0..width * height {
-            let mut fine = vec![255_u8; 3 * width * height];
             fine[3 * subpixel..3 * subpixel + 3].copy_from_slice(&[0, 95, 255]);
-            let picture = average(&fine, width);
+            let picture = take_average(&mut fine, width);
+            assert!(fine.iter().all(|colour| *colour == 255));
             let square = (subpixel / width / 4) * (width / 4) + subpixel % width / 4;
             for (index, colour) in picture.chunks_exact(3).enumerate() {
                 assert_eq!(

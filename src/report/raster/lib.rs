@@ -4,26 +4,49 @@
 //! It is a crate of its own for its build: all its work is loops over pixels, and a development build optimises this crate alone.
 
 mod average;
+mod band;
 mod dashes;
 mod shapes;
 
+use std::cell::RefCell;
+use std::ops::Range;
+
+use plotters::coord::Shift;
 use plotters::prelude::{
     BitMapBackend, Circle, DrawingArea, IntoDrawingArea as _, Polygon, RGBColor, Rectangle, Text,
 };
-use plotters::style::{Color as _, TextStyle};
+use plotters::style::{Color as _, FontTransform, TextStyle};
 
-use average::{BOX, average};
+use average::{BOX, take_average};
+use band::Band;
 use dashes::dashes;
 pub use shapes::{Colour, Line, Point};
 
 /// Subpixels per reference pixel, in each direction.
 pub const FINE: u32 = 8;
+/// Subpixels drawn together, from top to bottom: those of a whole sheet are 60 MB.
+const BAND: u32 = 16 * FINE;
 /// 192 dpi in pixels per metre.
 const PIXELS_PER_METRE: u32 = 7559;
 
-/// A sheet to draw on.
-pub struct Sheet<'a> {
-    area: DrawingArea<BitMapBackend<'a>, plotters::coord::Shift>,
+/// A sheet to draw on: it keeps its shapes.
+#[derive(Default)]
+pub struct Sheet {
+    shapes: RefCell<Vec<Drawn>>,
+}
+
+struct Drawn {
+    shape: Shape,
+    /// Its rows of subpixels, or more.
+    rows: Range<i32>,
+}
+
+/// In subpixels.
+enum Shape {
+    Rectangle([(i32, i32); 2], RGBColor),
+    Disc((i32, i32), i32, RGBColor),
+    Polygon(Vec<(i32, i32)>, RGBColor),
+    Text(String, (i32, i32), Box<TextStyle<'static>>),
 }
 
 /// Draws on a white sheet of `width × height` reference pixels and encodes it.
@@ -33,23 +56,62 @@ pub struct Sheet<'a> {
 pub fn png(
     width: u32,
     height: u32,
-    paint: &dyn Fn(&Sheet<'_>) -> Result<(), String>,
+    paint: &dyn Fn(&Sheet) -> Result<(), String>,
 ) -> Result<Vec<u8>, String> {
-    let (fine_width, fine_height) = (width * FINE, height * FINE);
-    let mut fine = vec![255_u8; fine_width as usize * fine_height as usize * 3];
-    {
-        let area =
-            BitMapBackend::with_buffer(&mut fine, (fine_width, fine_height)).into_drawing_area();
-        let sheet = Sheet { area };
-        paint(&sheet)?;
-        sheet.area.present().map_err(|error| error.to_string())?;
+    let sheet = Sheet::default();
+    paint(&sheet)?;
+    let picture = picture(&sheet, (width, height), BAND)?;
+    let (width, height) = (width * FINE / BOX, height * FINE / BOX);
+    encode(&picture, width, height).map_err(|error| error.to_string())
+}
+
+/// The pixels of a sheet, drawn in bands of so many subpixels.
+fn picture(sheet: &Sheet, (width, height): (u32, u32), band: u32) -> Result<Vec<u8>, String> {
+    let (width, height) = (width * FINE, height * FINE);
+    let row = width as usize * 3;
+    let mut fine = vec![255_u8; row * band as usize];
+    let mut picture = Vec::with_capacity(row * height as usize / (BOX * BOX) as usize);
+    for top in (0..height).step_by(band as usize) {
+        let rows = band.min(height - top);
+        let part = &mut fine[..row * rows as usize];
+        let bottom = (top + rows).cast_signed();
+        let top = top.cast_signed();
+        let area = Band {
+            rows: BitMapBackend::with_buffer(part, (width, rows)),
+            top,
+            sheet: (width, height),
+        }
+        .into_drawing_area();
+        for Drawn { shape, rows } in sheet.shapes.borrow().iter() {
+            if rows.start < bottom && rows.end > top {
+                shape.draw(&area)?;
+            }
+        }
+        area.present().map_err(|error| error.to_string())?;
+        drop(area);
+        picture.extend(take_average(part, width as usize));
     }
-    encode(
-        &average(&fine, fine_width as usize),
-        fine_width / BOX,
-        fine_height / BOX,
-    )
-    .map_err(|error| error.to_string())
+    Ok(picture)
+}
+
+impl Shape {
+    fn draw(&self, area: &DrawingArea<Band<'_>, Shift>) -> Result<(), String> {
+        let drawn = match self {
+            Self::Rectangle(corners, colour) => {
+                area.draw(&Rectangle::new(*corners, colour.filled()))
+            }
+            Self::Disc(centre, radius, colour) => {
+                area.draw(&Circle::new(*centre, *radius, colour.filled()))
+            }
+            Self::Polygon(corners, colour) => {
+                area.draw(&Polygon::new(corners.clone(), colour.filled()))
+            }
+            Self::Text(text, anchor, style) => {
+                area.draw(&Text::new(text.as_str(), *anchor, style.as_ref().clone()))
+            }
+        };
+        drawn.map_err(|error| error.to_string())
+    }
 }
 
 fn encode(picture: &[u8], width: u32, height: u32) -> Result<Vec<u8>, png::EncodingError> {
@@ -57,6 +119,8 @@ fn encode(picture: &[u8], width: u32, height: u32) -> Result<Vec<u8>, png::Encod
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
+    // Large areas of few colours: filters would take longer than the compression, and make the file larger.
+    encoder.set_filter(png::Filter::NoFilter);
     encoder.set_pixel_dims(Some(png::PixelDimensions {
         xppu: PIXELS_PER_METRE,
         yppu: PIXELS_PER_METRE,
@@ -81,46 +145,37 @@ const fn rgb(colour: Colour) -> RGBColor {
     RGBColor(colour.0, colour.1, colour.2)
 }
 
-impl Sheet<'_> {
+impl Sheet {
+    fn add(&self, shape: Shape, rows: Range<i32>) {
+        self.shapes.borrow_mut().push(Drawn { shape, rows });
+    }
+
     /// A filled rectangle.
-    ///
-    /// # Errors
-    /// As all shapes: the library cannot draw it.
-    pub fn rectangle(&self, from: Point, to: Point, colour: Colour) -> Result<(), String> {
-        let shape = Rectangle::new([fine(from), fine(to)], rgb(colour).filled());
-        self.area.draw(&shape).map_err(|error| error.to_string())
+    pub fn rectangle(&self, from: Point, to: Point, colour: Colour) {
+        let corners = [fine(from), fine(to)];
+        let rows = rows_of(&corners);
+        self.add(Shape::Rectangle(corners, rgb(colour)), rows);
     }
 
     /// A filled circle.
-    ///
-    /// # Errors
-    /// As [`Self::rectangle`].
-    pub fn disc(&self, centre: Point, radius: f64, colour: Colour) -> Result<(), String> {
-        let (radius, _) = fine((radius, 0.0));
-        self.area
-            .draw(&Circle::new(fine(centre), radius, rgb(colour).filled()))
-            .map_err(|error| error.to_string())
+    pub fn disc(&self, centre: Point, radius: f64, colour: Colour) {
+        let (centre, (radius, _)) = (fine(centre), fine((radius, 0.0)));
+        let rows = centre.1 - radius - 1..centre.1 + radius + 2;
+        self.add(Shape::Disc(centre, radius, rgb(colour)), rows);
     }
 
     /// A filled polygon.
-    ///
-    /// # Errors
-    /// As [`Self::rectangle`].
-    pub fn polygon(&self, corners: &[Point], colour: Colour) -> Result<(), String> {
+    pub fn polygon(&self, corners: &[Point], colour: Colour) {
         let corners: Vec<(i32, i32)> = corners.iter().copied().map(fine).collect();
-        self.area
-            .draw(&Polygon::new(corners, rgb(colour).filled()))
-            .map_err(|error| error.to_string())
+        let rows = rows_of(&corners);
+        self.add(Shape::Polygon(corners, rgb(colour)), rows);
     }
 
     /// A line of several segments. Each segment is a separate quadrangle: one filled outline would show slits where the line folds back.
-    ///
-    /// # Errors
-    /// As [`Self::rectangle`].
-    pub fn polyline(&self, points: &[Point], line: Line, colour: Colour) -> Result<(), String> {
+    pub fn polyline(&self, points: &[Point], line: Line, colour: Colour) {
         for piece in dashes(points, line.dash) {
             for ends in piece.windows(2) {
-                self.segment(ends[0], ends[1], line.width, colour)?;
+                self.segment(ends[0], ends[1], line.width, colour);
             }
             // A dash has square ends; a solid line's joins are round.
             let joins = if line.dash.is_empty() {
@@ -129,27 +184,34 @@ impl Sheet<'_> {
                 piece.get(1..piece.len() - 1).unwrap_or_default()
             };
             for join in joins {
-                self.disc(*join, 0.5 * line.width, colour)?;
+                self.disc(*join, 0.5 * line.width, colour);
             }
         }
-        Ok(())
     }
 
     /// A text, `FINE` times as large as its style says in reference pixels.
-    ///
-    /// # Errors
-    /// As [`Self::rectangle`].
-    pub fn text(&self, text: &str, anchor: Point, style: TextStyle<'static>) -> Result<(), String> {
-        self.area
-            .draw(&Text::new(text.to_owned(), fine(anchor), style))
-            .map_err(|error| error.to_string())
+    pub fn text(&self, text: &str, anchor: Point, style: TextStyle<'static>) {
+        let anchor = fine(anchor);
+        // No letter is wider or higher than twice the size of the font.
+        let letters = match style.font.get_transform() {
+            FontTransform::None => 1,
+            _ => text.chars().count(),
+        };
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_precision_loss,
+            reason = "a text of a figure"
+        )]
+        let reach = (2.0 * style.font.get_size() * letters as f64).ceil() as i32;
+        let rows = anchor.1.saturating_sub(reach)..anchor.1.saturating_add(reach);
+        self.add(Shape::Text(text.to_owned(), anchor, Box::new(style)), rows);
     }
 
-    fn segment(&self, from: Point, to: Point, width: f64, colour: Colour) -> Result<(), String> {
+    fn segment(&self, from: Point, to: Point, width: f64, colour: Colour) {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let length = dx.hypot(dy);
         if length == 0.0 {
-            return Ok(());
+            return;
         }
         let (nx, ny) = (-dy / length * 0.5 * width, dx / length * 0.5 * width);
         let corners = [
@@ -158,6 +220,41 @@ impl Sheet<'_> {
             (to.0 - nx, to.1 - ny),
             (from.0 - nx, from.1 - ny),
         ];
-        self.polygon(&corners, colour)
+        self.polygon(&corners, colour);
+    }
+}
+
+/// The rows of some corners, and one more at each end.
+fn rows_of(corners: &[(i32, i32)]) -> Range<i32> {
+    let rows = corners.iter().map(|corner| corner.1);
+    let (least, largest) = (rows.clone().min(), rows.max());
+    least.unwrap_or_default() - 1..largest.unwrap_or_default() + 2
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lines of all slopes, dashes, discs and areas, at the edges too.
+    #[test]
+    fn bands_together_are_the_sheet() {
+        let sheet = Sheet::default();
+        sheet.rectangle((-3.0, 5.0), (60.0, 21.3), (232, 232, 232));
+        sheet.polygon(
+            &[(1.0, 70.0), (33.3, 2.2), (58.0, 44.0), (20.0, 30.0)],
+            (0, 95, 255),
+        );
+        for step in 0..12 {
+            let (x, y) = (f64::from(step) * 5.7, f64::from(step % 5) * 16.3);
+            let line = |dash| Line { width: 1.8, dash };
+            sheet.polyline(&[(30.0, 36.0), (x, y), (y, x)], line(&[]), (213, 94, 0));
+            sheet.polyline(&[(x, y), (64.0 - x, 72.0)], line(&[4.0, 2.0]), (40, 40, 40));
+            sheet.disc((x, y), 3.2, (0, 158, 115));
+        }
+        let whole = picture(&sheet, (64, 72), 72 * FINE).unwrap();
+        assert!(whole.iter().any(|colour| *colour != 255));
+        for band in [8, 16, 128, 200] {
+            assert!(picture(&sheet, (64, 72), band).unwrap() == whole, "{band}");
+        }
     }
 }

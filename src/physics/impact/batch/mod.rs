@@ -2,7 +2,7 @@
 //! [`super::simulate`]. It keeps no steps.
 //!
 //! The tangent form under the rigid and the limit law, with elastic and bilinear specimens and exact readings, runs in lanes: one loop steps
-//! sixteen impacts, so that the compiler uses vector instructions. Branches are selections, and no product and sum are fused, so every lane
+//! thirty-two impacts with the vectors of the processor. Branches are selections, and no product and sum are fused, so every lane
 //! does the arithmetic of a single impact. An impact that ends gives its lane to the next one. All other impacts run one by one.
 
 mod lanes;
@@ -12,7 +12,7 @@ mod step;
 #[cfg(test)]
 mod tests;
 
-use fearless_simd::{Level, dispatch};
+use fearless_simd::{Level, Simd, dispatch};
 
 use super::summary::{ImpactSummary, SummaryBuilder};
 use super::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink, Until};
@@ -23,7 +23,7 @@ use crate::specimen::{Bilinear, Elastic, RestoringForce, SpecimenModel};
 use lanes::Lanes;
 pub use reach::Reach;
 use reach::ReachBuilder;
-use rows::{End, LANES};
+use rows::LANES;
 
 /// An impact on an ideal rig from rest at X = 0.
 #[derive(Clone, Debug, PartialEq)]
@@ -148,11 +148,11 @@ fn run_on(
     let [plain, yielding, limited, both] = queues;
     let ends = until.is_some_and(|until| until == Until::StrikerStop);
     let mut take = |index: usize, result| results[index] = Some(Ok(result));
-    dispatch!(level, _ => {
-        in_lanes::<false, false>(impacts, &plain, ends, steps, &mut take);
-        in_lanes::<true, false>(impacts, &yielding, ends, steps, &mut take);
-        in_lanes::<false, true>(impacts, &limited, ends, steps, &mut take);
-        in_lanes::<true, true>(impacts, &both, ends, steps, &mut take);
+    dispatch!(level, simd => {
+        in_lanes::<_, false, false>(simd, impacts, &plain, ends, steps, &mut take);
+        in_lanes::<_, true, false>(simd, impacts, &yielding, ends, steps, &mut take);
+        in_lanes::<_, false, true>(simd, impacts, &limited, ends, steps, &mut take);
+        in_lanes::<_, true, true>(simd, impacts, &both, ends, steps, &mut take);
     });
     let finished = impacts
         .iter()
@@ -170,26 +170,30 @@ fn is_finite(summary: &ImpactSummary) -> bool {
     summary.energy_error.is_finite() && summary.final_displacement.is_finite()
 }
 
-/// Steps the impacts at these places, sixteen at a time. A part of its caller, which is compiled for several vector units.
+/// Steps the impacts at these places, thirty-two at a time. A part of its caller, which is compiled for several vector units.
 #[allow(
     clippy::inline_always,
     reason = "a function of its own has the vectors of the portable build"
 )]
 #[inline(always)]
-fn in_lanes<const YIELDS: bool, const LIMITED: bool>(
+fn in_lanes<S: Simd, const YIELDS: bool, const LIMITED: bool>(
+    simd: S,
     impacts: &[Impact],
     indices: &[usize],
     ends_at_stop: bool,
     steps: u64,
     take: &mut impl FnMut(usize, Batched),
 ) {
+    if indices.is_empty() {
+        return;
+    }
     let mut lanes = Lanes::new();
     let mut waiting = indices.iter().copied();
     let mut running: [Option<usize>; LANES] = [None; LANES];
     let mut begin = |lanes: &mut Lanes, lane: usize| {
         let index = waiting.next();
         if let Some(index) = index {
-            lanes.begin(lane, &impacts[index]);
+            lanes.begin(lane, &impacts[index], steps);
         } else {
             lanes.rest(lane);
         }
@@ -198,15 +202,12 @@ fn in_lanes<const YIELDS: bool, const LIMITED: bool>(
     for (lane, running) in running.iter_mut().enumerate() {
         *running = begin(&mut lanes, lane);
     }
-    #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]
-    let end = End {
-        ends_at_stop,
-        last: steps as f64,
-    };
+    lanes.look_ahead(ends_at_stop);
     let mut refill = |lanes: &mut Lanes| {
+        lanes.follow();
         for (lane, running) in running.iter_mut().enumerate() {
             if let Some(index) = *running
-                && lanes.is_over(lane, end)
+                && lanes.is_over(lane)
             {
                 let result = Batched {
                     summary: lanes.summary(lane, &impacts[index].input),
@@ -216,16 +217,14 @@ fn in_lanes<const YIELDS: bool, const LIMITED: bool>(
                 *running = begin(lanes, lane);
             }
         }
+        lanes.look_ahead(ends_at_stop);
         running.iter().any(Option::is_some)
     };
-    if indices.is_empty() {
-        return;
-    }
     loop {
-        if lanes.step::<YIELDS, LIMITED, 0>(end) && !refill(&mut lanes) {
+        if lanes.step::<S, YIELDS, LIMITED, 0>(simd) && !refill(&mut lanes) {
             break;
         }
-        if lanes.step::<YIELDS, LIMITED, 1>(end) && !refill(&mut lanes) {
+        if lanes.step::<S, YIELDS, LIMITED, 1>(simd) && !refill(&mut lanes) {
             break;
         }
     }

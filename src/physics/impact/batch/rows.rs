@@ -1,19 +1,16 @@
-//! The numbers of sixteen impacts, one row for each kind of number. In: nothing. Out: rows of zeros. It steps nothing.
+//! The numbers of the impacts of all lanes, one row for each kind of number. In: nothing. Out: rows of zeros. It steps nothing.
 
 /// Impacts side by side: with fewer, vector units wait for the divisions before them.
-pub const LANES: usize = 16;
+pub const LANES: usize = 32;
 
 pub(super) type Row = [f64; LANES];
-
-/// 1 for true: a number is selected without a branch.
-pub(super) const YES: f64 = 1.0;
-pub(super) const NO: f64 = 0.0;
 
 /// Declares rows of all lanes.
 macro_rules! rows {
     ($(#[$about:meta])* $rows:ident { $($(#[$doc:meta])* $name:ident),* $(,)? }) => {
         $(#[$about])*
         #[derive(Clone, Debug)]
+        #[repr(align(64))] // No vector lies in two lines of the cache.
         pub(super) struct $rows {
             $($(#[$doc])* pub(super) $name: Row,)*
         }
@@ -41,42 +38,33 @@ rows! {
         largest_tangent,
         /// K0, and the lines of a bilinear specimen.
         stiffness, hardened, half_band,
-        /// Ms, g, Δt/Ms, the limit force.
-        striker_mass, gravity, striker_compliance, force_limit,
+        /// Ms, its weight Ms·g, the velocity gΔt of a step of free fall, Δt/Ms, the limit force.
+        striker_mass, weight, fall, striker_compliance, force_limit,
         /// ½MsV0²
         striker_energy,
     }
 }
 
 rows! {
-    /// The end of a step, and the results so far.
+    /// The end of a step, where the next one begins.
     States {
-        step,
-        /// `K_t` and M̂ of the next step.
-        tangent, effective,
+        /// `K_t` of the next step; without its contact, Ẍ; 1/M̂; the force that stops the closing.
+        tangent, free_acceleration, response, needed,
         displacement, velocity, acceleration, force,
-        striker_displacement, striker_velocity, contact_force, touching, indentation,
-        restoring_energy, damping_energy, contact_loss, indentation_energy, weight, input,
-        max_displacement, time_of_max_displacement, absorbed_energy, max_velocity, max_contact_force, impulse,
-        /// Infinite before the striker stops.
-        stop_time,
-        /// The reach, beside the largest displacement.
-        least_displacement, least_force, largest_force, largest_increment,
+        striker_displacement, striker_velocity, contact_force, indentation,
+        /// Of the largest displacement so far: the step, and ∫R dX.
+        step_of_max_displacement, absorbed_energy,
     }
 }
 
 rows! {
-    /// The number of contacts, and of the first one: begun, ended, closing speed before it, closing speed after it.
-    Contacts { count, begun, ended, closing, separating }
-}
-
-/// When an impact ends.
-#[derive(Clone, Copy)]
-pub struct End {
-    /// As soon as structure and striker move back.
-    pub ends_at_stop: bool,
-    /// Its last step.
-    pub last: f64,
+    /// Sums and ranges of all steps so far.
+    Sums {
+        restoring_energy, damping_energy, contact_loss, indentation_energy, weight, input, impulse,
+        max_displacement, max_velocity, max_contact_force,
+        /// The reach, beside the largest displacement.
+        least_displacement, least_force, largest_force, largest_increment,
+    }
 }
 
 /// What the effective mass of a step consists of.

@@ -1,243 +1,284 @@
 //! One step of all lanes. In: the state before it. Out: the state after it. It knows nothing of impacts that begin and end.
 
 #![allow(
-    clippy::needless_range_loop,
-    clippy::needless_bitwise_bool,
-    reason = "loops without branches over many rows become vector instructions"
+    clippy::inline_always,
+    reason = "a part of its caller, which is compiled for several vector units"
 )]
 
-use super::rows::{Contacts, End, Inputs, LANES, NO, Row, States, Structure, YES};
+use fearless_simd::prelude::*;
 
-/// A part of its callers, which are compiled for several vector units: a function of its own would have those of the portable build.
-#[allow(clippy::inline_always, reason = "see above")]
-#[inline(always)]
-fn select(condition: bool, yes: f64, no: f64) -> f64 {
-    std::hint::select_unpredictable(condition, yes, no)
+use super::rows::{Inputs, LANES, Row, States, Sums};
+
+// `a.max(b)` is `if a > b { a } else { b }` and `a.min(b)` is `if a < b { a } else { b }` here: a lane that is not a number runs again alone.
+
+/// The lanes, as bits, in which something is so at the end of a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Bits {
+    /// The striker touches the structure.
+    pub touching: u64,
+    /// The striker does not move forward.
+    pub stopped: u64,
+    /// Nor does the structure, if that is an end.
+    pub over: u64,
 }
 
-/// One step from one state to another. It is several short loops: the divisions of a lane take long, and those of several lanes overlap only
-/// if little is between them.
-#[allow(clippy::inline_always, reason = "as `select`")]
+/// What the impact of some lane has.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Also {
+    /// A damper.
+    pub damped: bool,
+    /// A falling striker.
+    pub falls: bool,
+    /// An end as soon as structure and striker move back.
+    pub ends_at_stop: bool,
+}
+
+/// One step from one state to another, the `clock`-th of all. It is several short loops: a division takes long, and those of several lanes
+/// overlap only if little is between them. So a step ends with the divisions of the next one.
 #[inline(always)]
-pub(super) fn step<const YIELDS: bool, const LIMITED: bool>(
+pub(super) fn step<S: Simd, const YIELDS: bool, const LIMITED: bool>(
+    simd: S,
     inputs: &Inputs,
     from: &States,
     to: &mut States,
-    contacts: &mut Contacts,
-    end: End,
-) -> bool {
-    let mut response = [0.0; LANES];
-    without_contact(inputs, from, to, &mut response);
-    with_contact::<YIELDS, LIMITED>(inputs, from, to, &response);
-    follow_tangent(inputs, from, to);
-    add_energies(inputs, from, to);
-    if contact_changes(from, to, contacts) {
-        follow_first_contact(from, to, contacts);
+    sums: &mut Sums,
+    also: Also,
+    clock: f64,
+) -> Bits {
+    let mut bits = Bits::default();
+    let clock = S::f64s::splat(simd, clock);
+    for part in Part::all(simd) {
+        let Bits {
+            touching,
+            stopped,
+            over,
+        } = end_step::<S, YIELDS, LIMITED>(part, inputs, from, to, sums, also, clock);
+        bits.touching |= touching;
+        bits.stopped |= stopped;
+        bits.over |= over;
     }
-    take_results(inputs, from, to, end)
+    for part in Part::all(simd) {
+        follow_tangent(part, inputs, from, to);
+    }
+    for part in Part::all(simd) {
+        without_contact(part, inputs, to);
+    }
+    for part in Part::all(simd) {
+        force_of_contact(part, inputs, to);
+    }
+    bits
 }
 
-/// Eqs. (4) and (5), without contact; 1/M̂.
-#[allow(clippy::inline_always, reason = "as `select`")]
-#[inline(always)]
-fn without_contact(inputs: &Inputs, from: &States, to: &mut States, response: &mut Row) {
-    for lane in 0..LANES {
-        let time_step = inputs.time_step[lane];
-        let half = 0.5 * time_step;
-        let [v0, a0] = [from.velocity[lane], from.acceleration[lane]];
-        // Without damping, a zero is subtracted.
-        let push = (0.0 - from.force[lane]) - inputs.damping[lane] * (v0 + half * a0);
-        let drift = time_step * (v0 + 0.5 * half * a0);
-        let push = push - from.tangent[lane] * drift;
-        to.acceleration[lane] = push / from.effective[lane];
-        response[lane] = 1.0 / from.effective[lane];
+/// Some lanes, as many as a vector of the processor has.
+#[derive(Clone, Copy)]
+struct Part<S> {
+    simd: S,
+    first: usize,
+}
+
+impl<S: Simd> Part<S> {
+    #[inline(always)]
+    fn all(simd: S) -> impl Iterator<Item = Self> {
+        (0..LANES)
+            .step_by(S::f64s::LEN)
+            .map(move |first| Self { simd, first })
+    }
+
+    #[inline(always)]
+    fn get(self, row: &Row) -> S::f64s {
+        S::f64s::from_slice(self.simd, &row[self.first..self.first + S::f64s::LEN])
+    }
+
+    #[inline(always)]
+    fn set(self, row: &mut Row, numbers: S::f64s) {
+        numbers.store_slice(&mut row[self.first..self.first + S::f64s::LEN]);
+    }
+
+    #[inline(always)]
+    fn number(self, number: f64) -> S::f64s {
+        S::f64s::splat(self.simd, number)
+    }
+
+    /// Lanes of this part as lanes of all.
+    #[inline(always)]
+    fn bits(self, lanes: S::mask64s) -> u64 {
+        lanes.to_bitmask() << self.first
     }
 }
 
-/// The contact; eqs. (2c) and (2d), and the force there; the striker.
-#[allow(clippy::inline_always, reason = "as `select`")]
+/// The contact; eqs. (2c) and (2d), and the force there; the striker; the work of all forces, and the results so far.
 #[inline(always)]
-fn with_contact<const YIELDS: bool, const LIMITED: bool>(
+fn end_step<S: Simd, const YIELDS: bool, const LIMITED: bool>(
+    part: Part<S>,
     inputs: &Inputs,
     from: &States,
     to: &mut States,
-    response: &Row,
-) {
-    for lane in 0..LANES {
-        let time_step = inputs.time_step[lane];
-        let half = 0.5 * time_step;
-        let [x0, v0, a0] = [
-            from.displacement[lane],
-            from.velocity[lane],
-            from.acceleration[lane],
-        ];
-        let free_acceleration = to.acceleration[lane];
-        let free = v0 + half * (a0 + free_acceleration);
-        let response = response[lane];
-        let (xs0, vs0) = (from.striker_displacement[lane], from.striker_velocity[lane]);
-        let indentation = from.indentation[lane];
-        let falling = vs0 + inputs.gravity[lane] * time_step;
-        let needed = (falling - free) / (inputs.striker_compliance[lane] + half * response);
-        let apart = xs0 - x0 < indentation;
-        let limit = inputs.force_limit[lane];
-        let at_limit = LIMITED & !apart & (needed > limit);
-        let in_contact = !apart & !at_limit & (needed >= 0.0);
-        let contact_force = select(at_limit, limit, select(in_contact, needed, 0.0));
+    sums: &mut Sums,
+    also: Also,
+    clock: S::f64s,
+) -> Bits {
+    let at = |row: &Row| part.get(row);
+    let zero = part.number(0.0);
+    let time_step = at(&inputs.time_step);
+    let half = time_step * 0.5;
+    let [x0, v0, a0] = [
+        at(&from.displacement),
+        at(&from.velocity),
+        at(&from.acceleration),
+    ];
+    let (xs0, vs0) = (at(&from.striker_displacement), at(&from.striker_velocity));
+    let indentation = if LIMITED { at(&from.indentation) } else { zero };
+    let falling = vs0 + at(&inputs.fall);
+    let needed = at(&from.needed);
+    let near = (xs0 - x0).simd_ge(indentation);
+    let (at_limit, in_contact, contact_force);
+    if LIMITED {
+        let limit = at(&inputs.force_limit);
+        at_limit = near & needed.simd_gt(limit);
+        in_contact = near & needed.simd_ge(zero) & !at_limit;
+        contact_force = at_limit.select(limit, in_contact.select(needed, zero));
+    } else {
+        at_limit = S::mask64s::splat(part.simd, false);
+        in_contact = near & needed.simd_ge(zero);
+        contact_force = in_contact.select(needed, zero);
+    }
 
-        let a1 = free_acceleration + contact_force * response;
-        let v1 = v0 + half * (a0 + a1);
-        let x1 = x0 + half * (v0 + v1);
-        let stiffness = inputs.stiffness[lane];
-        to.force[lane] = if YIELDS {
-            let trial = from.force[lane] + stiffness * (x1 - x0);
-            let middle = inputs.hardened[lane] * x1;
-            let half_band = inputs.half_band[lane];
-            let [low, high] = [middle - half_band, middle + half_band];
-            let above = select(trial < low, low, trial);
-            select(above > high, high, above)
+    let a1 = at(&from.free_acceleration) + contact_force * at(&from.response);
+    let v1 = v0 + half * (a0 + a1);
+    let moved = half * (v0 + v1);
+    let x1 = x0 + moved;
+    let stiffness = at(&inputs.stiffness);
+    let r0 = at(&from.force);
+    let r1 = if YIELDS {
+        let trial = r0 + stiffness * (x1 - x0);
+        let middle = at(&inputs.hardened) * x1;
+        let half_band = at(&inputs.half_band);
+        let [low, high] = [middle - half_band, middle + half_band];
+        high.min(low.max(trial))
+    } else {
+        stiffness * x1
+    };
+
+    let vs1 = if LIMITED {
+        let limited = falling - contact_force * time_step / at(&inputs.striker_mass);
+        at_limit.select(limited, in_contact.select(v1, falling))
+    } else {
+        in_contact.select(v1, falling)
+    };
+    let striker_moved = half * (vs0 + vs1);
+    let xs1 = xs0 + striker_moved;
+    if LIMITED {
+        let deeper = (xs1 - x1).max(indentation);
+        let indented = at_limit.select(deeper, indentation);
+        let work = at_limit.select(contact_force * (indented - indentation), zero);
+        let energy = at(&sums.indentation_energy) + work;
+        part.set(&mut sums.indentation_energy, energy);
+        part.set(&mut to.indentation, indented);
+    }
+    let loss =
+        contact_force * striker_moved - (at(&from.contact_force) + contact_force) * 0.5 * moved;
+    let loss = at(&sums.contact_loss) + loss;
+    part.set(&mut sums.contact_loss, loss);
+    let impulse = at(&sums.impulse) + contact_force * time_step;
+    part.set(&mut sums.impulse, impulse);
+    part.set(&mut to.force, r1);
+    part.set(&mut to.acceleration, a1);
+    part.set(&mut to.velocity, v1);
+    part.set(&mut to.displacement, x1);
+    part.set(&mut to.striker_velocity, vs1);
+    part.set(&mut to.striker_displacement, xs1);
+    part.set(&mut to.contact_force, contact_force);
+
+    let change = x1 - x0;
+    let restoring = (r0 + r1) * change * 0.5;
+    let restoring = at(&sums.restoring_energy) + restoring;
+    part.set(&mut sums.restoring_energy, restoring);
+    if also.damped {
+        let mean_velocity = (v0 + v1) * 0.5;
+        let damped = time_step * (mean_velocity * (at(&inputs.damping) * mean_velocity));
+        let damped = at(&sums.damping_energy) + damped;
+        part.set(&mut sums.damping_energy, damped);
+    }
+    if also.falls {
+        let weight = at(&sums.weight) + at(&inputs.weight) * (xs1 - xs0);
+        let input = (at(&inputs.striker_energy) + weight).max(at(&sums.input));
+        part.set(&mut sums.weight, weight);
+        part.set(&mut sums.input, input);
+    }
+
+    let most = at(&sums.max_displacement);
+    let farther = x1.simd_gt(most);
+    let step = farther.select(clock, at(&from.step_of_max_displacement));
+    let absorbed = farther.select(restoring, at(&from.absorbed_energy));
+    part.set(&mut to.step_of_max_displacement, step);
+    part.set(&mut to.absorbed_energy, absorbed);
+    part.set(&mut sums.max_displacement, x1.max(most));
+    let fastest = v1.abs().max(at(&sums.max_velocity));
+    part.set(&mut sums.max_velocity, fastest);
+    let strongest = contact_force.max(at(&sums.max_contact_force));
+    part.set(&mut sums.max_contact_force, strongest);
+    let least = x1.min(at(&sums.least_displacement));
+    part.set(&mut sums.least_displacement, least);
+    let least = r1.min(at(&sums.least_force));
+    part.set(&mut sums.least_force, least);
+    let largest = r1.max(at(&sums.largest_force));
+    part.set(&mut sums.largest_force, largest);
+    let increment = change.abs().max(at(&sums.largest_increment));
+    part.set(&mut sums.largest_increment, increment);
+    let stopped = vs1.simd_le(zero);
+    let over = stopped & v1.simd_le(zero);
+    Bits {
+        touching: part.bits(at_limit | in_contact),
+        stopped: part.bits(stopped),
+        over: if also.ends_at_stop {
+            part.bits(over)
         } else {
-            stiffness * x1
-        };
-
-        let limited_velocity = if LIMITED {
-            falling - contact_force * time_step / inputs.striker_mass[lane]
-        } else {
-            falling
-        };
-        let vs1 = select(at_limit, limited_velocity, select(in_contact, v1, falling));
-        let xs1 = xs0 + 0.5 * time_step * (vs0 + vs1);
-        if LIMITED {
-            let dent = xs1 - x1;
-            let deeper = select(dent > indentation, dent, indentation);
-            let indented = select(at_limit, deeper, indentation);
-            let work = select(at_limit, contact_force * (indented - indentation), 0.0);
-            to.indentation_energy[lane] = from.indentation_energy[lane] + work;
-            to.indentation[lane] = indented;
-        }
-        to.acceleration[lane] = a1;
-        to.velocity[lane] = v1;
-        to.displacement[lane] = x1;
-        to.striker_velocity[lane] = vs1;
-        to.striker_displacement[lane] = xs1;
-        to.contact_force[lane] = contact_force;
-        to.touching[lane] = select(at_limit | in_contact, YES, NO);
+            0
+        },
     }
 }
 
-/// Eq. (6), and the next step's M̂.
-#[allow(clippy::inline_always, reason = "as `select`")]
+/// Eq. (6).
 #[inline(always)]
-fn follow_tangent(inputs: &Inputs, from: &States, to: &mut States) {
-    for lane in 0..LANES {
-        let change = to.displacement[lane] - from.displacement[lane];
-        let secant = (to.force[lane] - from.force[lane]) / change;
-        let largest = inputs.largest_tangent[lane];
-        let secant = select(secant < 0.0, 0.0, secant);
-        let secant = select(secant > largest, largest, secant);
-        let tangent = select(change.abs() > 0.0, secant, from.tangent[lane]);
-        let structure = Structure {
-            mass: inputs.mass[lane],
-            damping: inputs.damping[lane],
-            tangent,
-        };
-        to.tangent[lane] = tangent;
-        to.effective[lane] = structure.effective_mass(inputs.time_step[lane]);
-    }
+fn follow_tangent<S: Simd>(part: Part<S>, inputs: &Inputs, from: &States, to: &mut States) {
+    let at = |row: &Row| part.get(row);
+    let zero = part.number(0.0);
+    let change = at(&to.displacement) - at(&from.displacement);
+    let force = at(&to.force);
+    let secant = (force - at(&from.force)) / change;
+    let secant = at(&inputs.largest_tangent).min(zero.max(secant));
+    let tangent = change.simd_eq(zero).select(at(&from.tangent), secant);
+    part.set(&mut to.tangent, tangent);
 }
 
-/// The work of all forces.
-#[allow(clippy::inline_always, reason = "as `select`")]
+/// Eqs. (4) and (5) of the next step, without contact; 1/M̂.
 #[inline(always)]
-fn add_energies(inputs: &Inputs, from: &States, to: &mut States) {
-    for lane in 0..LANES {
-        let time_step = inputs.time_step[lane];
-        let half = 0.5 * time_step;
-        let [v0, v1] = [from.velocity[lane], to.velocity[lane]];
-        let [vs0, vs1] = [from.striker_velocity[lane], to.striker_velocity[lane]];
-        let contact_force = to.contact_force[lane];
-        let loss = contact_force * (half * (vs0 + vs1))
-            - 0.5 * (from.contact_force[lane] + contact_force) * (half * (v0 + v1));
-        to.contact_loss[lane] = from.contact_loss[lane] + loss;
-        let change = to.displacement[lane] - from.displacement[lane];
-        let restoring = 0.5 * ((from.force[lane] + to.force[lane]) * change);
-        to.restoring_energy[lane] = from.restoring_energy[lane] + restoring;
-        to.impulse[lane] = from.impulse[lane] + contact_force * time_step;
-        let mean_velocity = 0.5 * (v0 + v1);
-        let damped = time_step * (mean_velocity * (inputs.damping[lane] * mean_velocity));
-        to.damping_energy[lane] = from.damping_energy[lane] + damped;
-        let fallen = to.striker_displacement[lane] - from.striker_displacement[lane];
-        let weight = from.weight[lane] + inputs.striker_mass[lane] * inputs.gravity[lane] * fallen;
-        to.weight[lane] = weight;
-        let input = inputs.striker_energy[lane] + weight;
-        to.input[lane] = select(input > from.input[lane], input, from.input[lane]);
-    }
+fn without_contact<S: Simd>(part: Part<S>, inputs: &Inputs, to: &mut States) {
+    let at = |row: &Row| part.get(row);
+    let zero = part.number(0.0);
+    let time_step = at(&inputs.time_step);
+    let (half, damping) = (time_step * 0.5, at(&inputs.damping));
+    let (tangent, force) = (at(&to.tangent), at(&to.force));
+    let effective = (tangent * half + damping) * half + at(&inputs.mass);
+    let [v0, a0] = [at(&to.velocity), at(&to.acceleration)];
+    // Without damping, a zero is subtracted.
+    let push = (zero - force) - damping * (v0 + half * a0);
+    let drift = time_step * (v0 + half * 0.5 * a0);
+    let push = push - tangent * drift;
+    let acceleration = push / effective;
+    let response = part.number(1.0) / effective;
+    part.set(&mut to.free_acceleration, acceleration);
+    part.set(&mut to.response, response);
 }
 
-/// Whether a contact begins or ends in some lane, or a first one is still to come.
-#[allow(clippy::inline_always, reason = "as `select`")]
+/// The contact force that ends the approach in the next step.
 #[inline(always)]
-fn contact_changes(from: &States, to: &States, contacts: &Contacts) -> bool {
-    let mut changes = 0_u64;
-    for lane in 0..LANES {
-        let differs = to.touching[lane] != from.touching[lane];
-        changes |= u64::from(differs | (contacts.begun[lane] == NO));
-    }
-    changes != 0
-}
-
-/// The number of contacts, and the velocities before and after the first one.
-#[allow(clippy::inline_always, reason = "as `select`")]
-#[inline(always)]
-fn follow_first_contact(from: &States, to: &States, contacts: &mut Contacts) {
-    for lane in 0..LANES {
-        let touching = to.touching[lane] == YES;
-        let (begun, over) = (contacts.begun[lane], contacts.ended[lane]);
-        let closing_now = to.striker_velocity[lane] - to.velocity[lane];
-        let still_to_come = (begun == NO) & !touching;
-        let ends_now = (begun == YES) & (over == NO) & !touching;
-        contacts.closing[lane] = select(still_to_come, closing_now, contacts.closing[lane]);
-        contacts.separating[lane] = select(ends_now, closing_now, contacts.separating[lane]);
-        contacts.ended[lane] = select(ends_now, YES, over);
-        contacts.begun[lane] = select(touching, YES, begun);
-        let begins = touching & (from.touching[lane] == NO);
-        contacts.count[lane] += select(begins, 1.0, 0.0);
-    }
-}
-
-/// The results so far. Whether some lane has ended.
-#[allow(clippy::inline_always, reason = "as `select`")]
-#[inline(always)]
-fn take_results(inputs: &Inputs, from: &States, to: &mut States, end: End) -> bool {
-    let smaller = |one: f64, other: f64| select(one < other, one, other);
-    let larger = |one: f64, other: f64| select(one > other, one, other);
-    let mut ended = 0_u64;
-    for lane in 0..LANES {
-        let step = from.step[lane] + 1.0;
-        let time = step * inputs.time_step[lane];
-        to.step[lane] = step;
-        let x1 = to.displacement[lane];
-        let most = from.max_displacement[lane];
-        let farther = x1 > most;
-        to.max_displacement[lane] = larger(x1, most);
-        to.time_of_max_displacement[lane] =
-            select(farther, time, from.time_of_max_displacement[lane]);
-        to.absorbed_energy[lane] = select(
-            farther,
-            to.restoring_energy[lane],
-            from.absorbed_energy[lane],
-        );
-        let (v1, vs1) = (to.velocity[lane], to.striker_velocity[lane]);
-        to.max_velocity[lane] = larger(v1.abs(), from.max_velocity[lane]);
-        to.max_contact_force[lane] = larger(to.contact_force[lane], from.max_contact_force[lane]);
-        to.least_displacement[lane] = smaller(x1, from.least_displacement[lane]);
-        to.least_force[lane] = smaller(to.force[lane], from.least_force[lane]);
-        to.largest_force[lane] = larger(to.force[lane], from.largest_force[lane]);
-        let increment = (x1 - from.displacement[lane]).abs();
-        to.largest_increment[lane] = larger(increment, from.largest_increment[lane]);
-        let stop = select(vs1 <= 0.0, time, f64::INFINITY);
-        to.stop_time[lane] = smaller(stop, from.stop_time[lane]);
-        let over = (step >= end.last) | (end.ends_at_stop & (vs1 <= 0.0) & (v1 <= 0.0));
-        ended |= u64::from(over);
-    }
-    ended != 0
+fn force_of_contact<S: Simd>(part: Part<S>, inputs: &Inputs, to: &mut States) {
+    let at = |row: &Row| part.get(row);
+    let half = at(&inputs.time_step) * 0.5;
+    let free = at(&to.velocity) + half * (at(&to.acceleration) + at(&to.free_acceleration));
+    let response = at(&to.response);
+    let falling = at(&to.striker_velocity) + at(&inputs.fall);
+    let needed = (falling - free) / (at(&inputs.striker_compliance) + half * response);
+    part.set(&mut to.needed, needed);
 }
