@@ -61,13 +61,13 @@ pub fn png(
 ) -> Result<Vec<u8>, String> {
     let sheet = Sheet::default();
     paint(&sheet)?;
-    let picture = picture(&sheet, (width, height), BAND)?;
+    let picture = picture(&sheet, width, height, BAND)?;
     let (width, height) = (width * FINE / BOX, height * FINE / BOX);
     encode(&picture, width, height).map_err(|error| error.to_string())
 }
 
 /// The pixels of a sheet, drawn in bands of so many subpixels.
-fn picture(sheet: &Sheet, (width, height): (u32, u32), band: u32) -> Result<Vec<u8>, String> {
+fn picture(sheet: &Sheet, width: u32, height: u32, band: u32) -> Result<Vec<u8>, String> {
     let (width, height) = (width * FINE, height * FINE);
     let row = width as usize * 3;
     let mut fine = vec![255_u8; row * band as usize];
@@ -255,10 +255,10 @@ mod tests {
             sheet.polyline(&[(x, y), (64.0 - x, 72.0)], line(&[4.0, 2.0]), (40, 40, 40));
             sheet.disc((x, y), 3.2, (0, 158, 115));
         }
-        let whole = picture(&sheet, (64, 72), 72 * FINE).unwrap();
+        let whole = picture(&sheet, 64, 72, 72 * FINE).unwrap();
         assert!(whole.iter().any(|colour| *colour != 255));
         for band in [8, 16, 256, 400] {
-            assert!(picture(&sheet, (64, 72), band).unwrap() == whole, "{band}");
+            assert!(picture(&sheet, 64, 72, band).unwrap() == whole, "{band}");
         }
     }
 }
