@@ -15,6 +15,7 @@ use plotters::coord::Shift;
 use plotters::prelude::{
     BitMapBackend, Circle, DrawingArea, IntoDrawingArea as _, Polygon, RGBColor, Rectangle, Text,
 };
+use plotters::style::text_anchor::VPos;
 use plotters::style::{Color as _, FontTransform, TextStyle};
 
 use average::{BOX, take_average};
@@ -25,7 +26,7 @@ pub use shapes::{Colour, Line, Point};
 /// Subpixels per reference pixel, in each direction.
 pub const FINE: u32 = 8;
 /// Subpixels drawn together, from top to bottom: those of a whole sheet are 60 MB.
-const BAND: u32 = 16 * FINE;
+const BAND: u32 = 32 * FINE;
 /// 192 dpi in pixels per metre.
 const PIXELS_PER_METRE: u32 = 7559;
 
@@ -60,13 +61,13 @@ pub fn png(
 ) -> Result<Vec<u8>, String> {
     let sheet = Sheet::default();
     paint(&sheet)?;
-    let picture = picture(&sheet, (width, height), BAND)?;
+    let picture = picture(&sheet, width, height, BAND)?;
     let (width, height) = (width * FINE / BOX, height * FINE / BOX);
     encode(&picture, width, height).map_err(|error| error.to_string())
 }
 
 /// The pixels of a sheet, drawn in bands of so many subpixels.
-fn picture(sheet: &Sheet, (width, height): (u32, u32), band: u32) -> Result<Vec<u8>, String> {
+fn picture(sheet: &Sheet, width: u32, height: u32, band: u32) -> Result<Vec<u8>, String> {
     let (width, height) = (width * FINE, height * FINE);
     let row = width as usize * 3;
     let mut fine = vec![255_u8; row * band as usize];
@@ -192,18 +193,21 @@ impl Sheet {
     /// A text, `FINE` times as large as its style says in reference pixels.
     pub fn text(&self, text: &str, anchor: Point, style: TextStyle<'static>) {
         let anchor = fine(anchor);
-        // No letter is wider or higher than twice the size of the font.
-        let letters = match style.font.get_transform() {
-            FontTransform::None => 1,
-            _ => text.chars().count(),
+        let size = style.font.get_size();
+        // A line is at most 1.3 times as high as the size of its font, a letter at most as wide; a little more at each end.
+        let (above, below) = match (style.font.get_transform(), style.pos.v_pos) {
+            (FontTransform::None, VPos::Top) => (0.3, 1.6),
+            (FontTransform::None, VPos::Center) => (1.0, 1.0),
+            (FontTransform::None, VPos::Bottom) => (1.6, 0.3),
+            _ => {
+                #[expect(clippy::cast_precision_loss, reason = "a text of a figure")]
+                let letters = text.chars().count() as f64 + 1.0;
+                (letters, letters)
+            }
         };
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_precision_loss,
-            reason = "a text of a figure"
-        )]
-        let reach = (2.0 * style.font.get_size() * letters as f64).ceil() as i32;
-        let rows = anchor.1.saturating_sub(reach)..anchor.1.saturating_add(reach);
+        #[expect(clippy::cast_possible_truncation, reason = "a text of a figure")]
+        let rows_in = |sizes: f64| (sizes * size).ceil() as i32;
+        let rows = anchor.1 - rows_in(above)..anchor.1 + rows_in(below);
         self.add(Shape::Text(text.to_owned(), anchor, Box::new(style)), rows);
     }
 
@@ -251,10 +255,10 @@ mod tests {
             sheet.polyline(&[(x, y), (64.0 - x, 72.0)], line(&[4.0, 2.0]), (40, 40, 40));
             sheet.disc((x, y), 3.2, (0, 158, 115));
         }
-        let whole = picture(&sheet, (64, 72), 72 * FINE).unwrap();
+        let whole = picture(&sheet, 64, 72, 72 * FINE).unwrap();
         assert!(whole.iter().any(|colour| *colour != 255));
-        for band in [8, 16, 128, 200] {
-            assert!(picture(&sheet, (64, 72), band).unwrap() == whole, "{band}");
+        for band in [8, 16, 256, 400] {
+            assert!(picture(&sheet, 64, 72, band).unwrap() == whole, "{band}");
         }
     }
 }

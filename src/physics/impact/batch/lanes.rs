@@ -4,7 +4,7 @@
 use fearless_simd::Simd;
 
 use super::rows::{Inputs, LANES, Row, States, Structure, Sums};
-use super::step::{Also, Bits, step};
+use super::step::{Also, Bits, Setting, step};
 use super::{Impact, LaneSpecimen, Reach};
 use crate::contact::ContactLaw;
 use crate::impact::ImpactInput;
@@ -166,16 +166,12 @@ impl Lanes {
         self.now = 1 - NOW;
         self.clock += 1;
         #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]
-        let clock = self.clock as f64;
-        self.bits = step::<S, YIELDS, LIMITED>(
-            simd,
-            &self.inputs,
-            from,
-            to,
-            &mut self.sums,
-            self.also,
-            clock,
-        );
+        let setting = Setting {
+            inputs: &self.inputs,
+            also: self.also,
+            clock: self.clock as f64,
+        };
+        self.bits = step::<S, YIELDS, LIMITED>(simd, setting, from, to, &mut self.sums);
         let stops = self.bits.stopped & !self.stopped;
         let ended = self.bits.over != 0 || self.clock >= self.next_end;
         self.bits.touching != self.touching || stops != 0 || ended

@@ -33,26 +33,33 @@ pub(super) struct Also {
     pub ends_at_stop: bool,
 }
 
-/// One step from one state to another, the `clock`-th of all. It is several short loops: a division takes long, and those of several lanes
+/// What a step is made with.
+#[derive(Clone, Copy)]
+pub(super) struct Setting<'a> {
+    pub inputs: &'a Inputs,
+    pub also: Also,
+    /// The number of the step, counted for all lanes together.
+    pub clock: f64,
+}
+
+/// One step from one state to another. It is several short loops: a division takes long, and those of several lanes
 /// overlap only if little is between them. So a step ends with the divisions of the next one.
 #[inline(always)]
 pub(super) fn step<S: Simd, const YIELDS: bool, const LIMITED: bool>(
     simd: S,
-    inputs: &Inputs,
+    setting: Setting<'_>,
     from: &States,
     to: &mut States,
     sums: &mut Sums,
-    also: Also,
-    clock: f64,
 ) -> Bits {
     let mut bits = Bits::default();
-    let clock = S::f64s::splat(simd, clock);
+    let inputs = setting.inputs;
     for part in Part::all(simd) {
         let Bits {
             touching,
             stopped,
             over,
-        } = end_step::<S, YIELDS, LIMITED>(part, inputs, from, to, sums, also, clock);
+        } = end_step::<S, YIELDS, LIMITED>(part, setting, from, to, sums);
         bits.touching |= touching;
         bits.stopped |= stopped;
         bits.over |= over;
@@ -110,13 +117,16 @@ impl<S: Simd> Part<S> {
 #[inline(always)]
 fn end_step<S: Simd, const YIELDS: bool, const LIMITED: bool>(
     part: Part<S>,
-    inputs: &Inputs,
+    setting: Setting<'_>,
     from: &States,
     to: &mut States,
     sums: &mut Sums,
-    also: Also,
-    clock: S::f64s,
 ) -> Bits {
+    let Setting {
+        inputs,
+        also,
+        clock,
+    } = setting;
     let at = |row: &Row| part.get(row);
     let zero = part.number(0.0);
     let time_step = at(&inputs.time_step);
@@ -208,7 +218,7 @@ fn end_step<S: Simd, const YIELDS: bool, const LIMITED: bool>(
 
     let most = at(&sums.max_displacement);
     let farther = x1.simd_gt(most);
-    let step = farther.select(clock, at(&from.step_of_max_displacement));
+    let step = farther.select(part.number(clock), at(&from.step_of_max_displacement));
     let absorbed = farther.select(restoring, at(&from.absorbed_energy));
     part.set(&mut to.step_of_max_displacement, step);
     part.set(&mut to.absorbed_energy, absorbed);
