@@ -4,6 +4,7 @@
 use std::fmt::Write as _;
 
 use super::options;
+use super::pages::Page;
 use super::values::{default, is_truth, row, value};
 use crate::schema::types::{BlockKind, Field, FieldType, Naming, ResultKind};
 use crate::units::Dimension;
@@ -168,7 +169,12 @@ fn write_options(
         | FieldType::Inputs(variants) = field.ty
         {
             let _ = writeln!(text, "{head}- `{}`:", field.name);
-            written.write(text, block, field.name, variants);
+            if let Some(page) = Page::of(block.kind, field.name) {
+                let _ = writeln!(text, "  - {}", page.pointer());
+                written.note(block, field.name, variants);
+            } else {
+                written.list(text, block, field.name, variants, 1);
+            }
             head = "";
         }
     }

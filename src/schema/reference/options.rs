@@ -2,7 +2,6 @@
 
 use std::fmt::Write as _;
 
-use super::pages::Page;
 use super::values::{default, is_truth, value};
 use crate::schema::types::{BlockKind, Field, FieldType, Presence, Variant};
 
@@ -38,23 +37,17 @@ impl<'b> Written<'b> {
         }
     }
 
-    /// Writes the options of the field `field`, or a pointer to their page.
-    pub(super) fn write(
+    /// Notes options that another page describes: the same options of another field refer to this one.
+    pub(super) fn note(
         &mut self,
-        text: &mut String,
         block: &'static BlockKind,
         field: &'static str,
         variants: &'static [Variant],
     ) {
-        if let Some(page) = Page::of(block.kind, field) {
-            let _ = writeln!(text, "  - {}", page.pointer());
-            self.options.extend(variants.iter().map(|variant| {
-                let form = format!("{variant:?}");
-                Listed { form, field, block }
-            }));
-            return;
-        }
-        self.list(text, block, field, variants, 1);
+        self.options.extend(variants.iter().map(|variant| {
+            let form = format!("{variant:?}");
+            Listed { form, field, block }
+        }));
     }
 
     /// Writes a list of options at this depth.
