@@ -219,11 +219,11 @@ fn during_an_impact() {
 
 #[test]
 fn while_it_does_not_stop() {
-    // Targets and answers must arrive within a fifth of a step: a machine with many busy programs has 1.2 s for each.
+    // Targets and answers must arrive within a fifth of a step: a machine with many busy programs has 2 s for each.
     let moving = |plan: &str| {
         plan.replace(
             "  duration  = 24 ms\n  pause     = 0 s",
-            "  duration  = 5 ms\n  mode      = continuous(time_scale: 6000)",
+            "  duration  = 3 ms\n  mode      = continuous(time_scale: 10000)",
         )
     };
     each(moving, true, |stage| stage.after_moves(22), |_| {});
