@@ -141,16 +141,7 @@ impl Stepped for Shaken<'_> {
             step: state.step,
             wall_time: session.guard.time(),
             ground_acceleration: self.ground_acceleration,
-            floors: FloorMotion {
-                time: state.time,
-                command: state.target.clone(),
-                displacement: state.measured_displacement.clone(),
-                computed: state.displacement.clone(),
-                velocity: state.velocity.clone(),
-                acceleration: state.acceleration.clone(),
-                restoring_force: state.restoring_force.clone(),
-                tracking: axes.to_vec(),
-            },
+            floors: FloorMotion::of_state(state, axes),
             energies: state.energies,
         });
         self.summary.push(state);

@@ -1,6 +1,8 @@
 //! The floors of a frame: the storeys of a step, whatever moved them, and the impact on one of them. In: numbers of a run,
 //! SI. It computes no motion.
 
+use crate::physics::integrator::state::State;
+use crate::physics::integrator::tangents::HasTangents;
 use crate::physics::structure::{drifts, shears};
 use crate::physics::tracking::monitor::Tracking;
 use crate::record::Modes;
@@ -113,6 +115,23 @@ pub struct FloorMotion {
     pub restoring_force: Vec<f64>,
     /// For each axis.
     pub tracking: Vec<Tracking>,
+}
+
+impl FloorMotion {
+    /// The floors at the end of a step, with the tracking of each axis.
+    pub(crate) fn of_state<V: HasTangents>(state: &State<V>, tracking: &[Tracking]) -> Self {
+        let of = |vector: &V| vector.as_slice().to_vec();
+        Self {
+            time: state.time,
+            command: of(&state.target),
+            displacement: of(&state.measured_displacement),
+            computed: of(&state.displacement),
+            velocity: of(&state.velocity),
+            acceleration: of(&state.acceleration),
+            restoring_force: of(&state.restoring_force),
+            tracking: tracking.to_vec(),
+        }
+    }
 }
 
 impl Floors for FloorMotion {

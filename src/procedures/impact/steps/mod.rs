@@ -159,19 +159,8 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
             tracking: Tracking::together(axes),
         });
         if let Some(floors) = self.summary.floors() {
-            let structure = self.solver.structure();
-            let of = |vector: &V| vector.as_slice().to_vec();
             self.floors.push(FloorStep {
-                floors: FloorMotion {
-                    time: structure.time,
-                    command: of(&structure.target),
-                    displacement: of(&structure.measured_displacement),
-                    computed: of(&structure.displacement),
-                    velocity: of(&structure.velocity),
-                    acceleration: of(&structure.acceleration),
-                    restoring_force: of(&structure.restoring_force),
-                    tracking: axes.to_vec(),
-                },
+                floors: FloorMotion::of_state(self.solver.structure(), axes),
                 storey_energy: floors.storey_energy().to_vec(),
             });
         }
