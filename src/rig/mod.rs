@@ -17,7 +17,7 @@ mod virtual_rig;
 use serde::{Deserialize, Serialize};
 
 use crate::physics::tracking::trajectory::Path;
-use crate::plan::Plan;
+use crate::plan::{Limits, Plan};
 use crate::units::{Dimension, display};
 
 pub use crate::plan::DeclaredNoise;
@@ -349,6 +349,14 @@ pub trait Rig {
         None
     }
 
+    /// Replaces the limits of displacement and force that the rig itself keeps, one entry per axis.
+    ///
+    /// # Errors
+    /// The rig cannot be reached, or does not accept them.
+    fn set_limits(&mut self, _limits: &[Limits]) -> Result<(), RigFault> {
+        Ok(())
+    }
+
     /// Declared standard deviation of one force reading \[N\] and resolution of the displacement reading \[m\]. They protect the tangent
     /// stiffness from noise.
     fn declared_noise(&self) -> DeclaredNoise;
@@ -361,6 +369,12 @@ pub trait Rig {
 
     /// Speed of a move without a requested speed \[m/s\]; None: the highest speed that the plan's limits allow.
     fn own_speed(&self) -> Option<f64> {
+        None
+    }
+
+    /// The reading that exceeded a limit during a motion and ended it, given only once. None: the motion was not read, or no limit
+    /// ended it.
+    fn take_broken(&mut self) -> Option<Reading> {
         None
     }
 

@@ -397,15 +397,22 @@ impl<'run> Session<'run> {
         Ok(first(&self.guard.read()?))
     }
 
-    /// One reading of every axis, and the fault if it exceeds a limit: the reading is kept in both cases.
-    pub(crate) fn read_kept(&mut self) -> Result<(Reading, Option<Stop>), Stop> {
-        let read = self.guard.read();
+    /// One reading of every axis after a motion or a wait, and the fault if it exceeds a limit. The reading is kept in both cases, also
+    /// one that exceeded a limit during the motion and ended it.
+    pub(crate) fn read_after(
+        &mut self,
+        motion: Result<(), RigFault>,
+    ) -> Result<(Reading, Option<Stop>), Stop> {
+        let read = motion.and_then(|()| self.guard.read());
         self.kept(read)
     }
 
     /// The same, with the time of the last move: start and end of the equivalent uniform motion \[s\].
-    pub(crate) fn read_moved_kept(&mut self) -> Result<MovedReading, Stop> {
-        let read = self.guard.read_moved();
+    pub(crate) fn read_moved_after(
+        &mut self,
+        motion: Result<(), RigFault>,
+    ) -> Result<MovedReading, Stop> {
+        let read = motion.and_then(|()| self.guard.read_moved());
         let (read, moved) = read.map_or_else(
             |fault| (Err(fault), None),
             |(reading, moved)| (Ok(reading), moved),
@@ -425,12 +432,16 @@ impl<'run> Session<'run> {
     }
 
     /// Moves to `position` \[m\], in one move or, if increments are limited, in equal increments.
-    pub(crate) fn go_to(&mut self, position: f64, speed: Option<f64>) -> Result<(), Stop> {
+    pub(crate) fn go_to(&mut self, position: f64, speed: Option<f64>) -> Result<(), RigFault> {
         self.go_to_all(&[position], speed)
     }
 
     /// The same for every axis.
-    pub(crate) fn go_to_all(&mut self, positions: &[f64], speed: Option<f64>) -> Result<(), Stop> {
+    pub(crate) fn go_to_all(
+        &mut self,
+        positions: &[f64],
+        speed: Option<f64>,
+    ) -> Result<(), RigFault> {
         for target in self.guard.increments_to(positions) {
             self.guard.move_to(&target, speed)?;
         }

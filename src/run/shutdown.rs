@@ -5,7 +5,7 @@
 use super::session::{Session, signed};
 use super::stop::Stop;
 use super::{Extent, Inspection, Motion, UNLOADING};
-use crate::plan::{Interval, Plan, SafeState};
+use crate::plan::{Interval, Limits, Plan, SafeState};
 use crate::record::{EventKind, Outcome};
 use crate::rig::FinalHold;
 use crate::units::Dimension;
@@ -25,7 +25,7 @@ impl Session<'_> {
         // A rig that the operator held during a move has since been read at rest: it may move again with the operator's consent.
         let sound = stop.leaves_the_rig_sound() || stop.is_a_persons();
         if held && sound && (alone || self.may_unload(plan, halted.as_ref())) {
-            self.unload();
+            self.unload(halted.as_ref());
         }
         stop.outcome()
     }
@@ -115,15 +115,10 @@ impl Session<'_> {
             |(positions, _)| positions.as_slice(),
         );
         let over = |values: &mut dyn Iterator<Item = f64>| {
-            values
-                .map(|value| Interval {
-                    low: value,
-                    high: value,
-                })
-                .reduce(|a, b| Interval {
-                    low: a.low.min(b.low),
-                    high: a.high.max(b.high),
-                })
+            over_all(values.map(|value| Interval {
+                low: value,
+                high: value,
+            }))
         };
         let longest = from
             .iter()
@@ -138,23 +133,44 @@ impl Session<'_> {
             duration: speed.map(|speed| Motion::duration(plan, longest, speed)),
         };
         let does = "it MOVES back to its start position".to_owned();
+        let motion = Motion::of(plan, self.identity(), does);
+        let limits = found.map_or_else(Vec::new, |found| self.guard.limits_of_unloading(found));
+        let limits = Limits {
+            displacement: over_all(limits.iter().map(|limits| limits.displacement))
+                .unwrap_or(plan.limits.displacement),
+            force: over_all(limits.iter().map(|limits| limits.force)).unwrap_or(plan.limits.force),
+            ..motion.limits
+        };
         Motion {
             expected,
-            ..Motion::of(plan, self.identity(), does)
+            limits,
+            ..motion
         }
     }
 
-    /// Unloads after a stop, inside the same limits; a fault is an additional event.
-    fn unload(&mut self) {
+    /// Unloads after a stop, inside the limits of the run, extended to where the rig holds; a fault is an additional event.
+    fn unload(&mut self, halted: Option<&FinalHold>) {
         self.event(EventKind::Hold, UNLOADING.to_owned());
         let home = self.home.clone();
-        let unloaded = self
-            .go_to_all(&home, None)
-            .and_then(|()| Ok(self.guard.read()?));
-        if let Err(stop) = unloaded {
+        let found = halted.and_then(|halted| halted.found.as_ref());
+        let limits = found.map(|found| self.guard.limits_of_unloading(found));
+        let unloaded = limits
+            .map_or(Ok(()), |limits| self.guard.set_limits(limits))
+            .and_then(|()| self.go_to_all(&home, None))
+            .and_then(|()| self.guard.read());
+        if let Err(fault) = unloaded {
+            let stop = Stop::from(fault);
             self.event(stop.event_kind(), format!("not unloaded: {stop}"));
         }
         let halted = self.guard.halt();
         self.report_final_hold(halted.as_ref());
     }
+}
+
+/// The smallest interval that contains all of these.
+fn over_all(intervals: impl Iterator<Item = Interval>) -> Option<Interval> {
+    intervals.reduce(|a, b| Interval {
+        low: a.low.min(b.low),
+        high: a.high.max(b.high),
+    })
 }

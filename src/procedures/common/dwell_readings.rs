@@ -23,21 +23,25 @@ pub(crate) struct DwellReadings {
 }
 
 impl DwellReadings {
-    /// Reads so many samples after the `settled` reading. If that is `broken`, it is the only one.
+    /// Waits for `pause` \[s\] and reads so many samples after the `settled` reading. If that is `broken`, it is the only one.
     pub(crate) fn take(
         settled: &Reading,
         mut broken: Option<Stop>,
+        pause: f64,
         samples: u32,
         session: &mut Session<'_>,
     ) -> Result<Self, Stop> {
         let (_, settled_force) = first(settled);
         let mut readings = Vec::new();
+        let mut waited = Ok(());
         if broken.is_some() {
             readings.push(first(settled));
+        } else {
+            waited = session.guard.pause(pause);
         }
         for _ in 0..samples.max(1) {
             if broken.is_none() {
-                let (reading, stop) = session.read_kept()?;
+                let (reading, stop) = session.read_after(std::mem::replace(&mut waited, Ok(())))?;
                 readings.push(first(&reading));
                 broken = stop;
             }

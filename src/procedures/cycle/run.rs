@@ -10,6 +10,7 @@ use crate::plan::{Cycle, CycleInspection, MOST_TARGETS, Plan};
 use crate::procedures::common::dwell_readings::DwellReadings;
 use crate::procedures::stiffness_ramp::curve;
 use crate::record::{CycleHistory, CycleStep, EventKind, History, WholeCycle};
+use crate::rig::RigFault;
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::{Session, StepReading, first};
@@ -200,8 +201,8 @@ impl Cycling {
             points,
             evenly,
         };
-        session.go_to(about, speed)?;
-        self.target(about, manner, session)?;
+        let moved = session.go_to(about, speed);
+        self.target(about, moved, manner, session)?;
         let mut looks = Looks::default();
         for (level, amplitude) in plan.levels.iter().zip(amplitudes) {
             self.amplitude = amplitude;
@@ -269,24 +270,22 @@ impl Cycling {
             } else {
                 from + (to - from) * share
             };
-            session.go_to(commanded, manner.speed)?;
-            self.target(commanded, manner, session)?;
+            let moved = session.go_to(commanded, manner.speed);
+            self.target(commanded, moved, manner, session)?;
         }
         Ok(())
     }
 
-    /// Reads at the present position: once for the relaxation, then the samples after the pause.
+    /// Reads at the position to which it `moved`: once for the relaxation, then the samples after the pause.
     fn target(
         &mut self,
         command: f64,
+        moved: Result<(), RigFault>,
         manner: Manner,
         session: &mut Session<'_>,
     ) -> Result<(), Stop> {
-        let (settled, broken) = session.read_kept()?;
-        if broken.is_none() {
-            session.guard.pause(manner.pause)?;
-        }
-        let dwell = DwellReadings::take(&settled, broken, manner.samples, session)?;
+        let (settled, broken) = session.read_after(moved)?;
+        let dwell = DwellReadings::take(&settled, broken, manner.pause, manner.samples, session)?;
         let reading = TargetReading {
             command,
             displacement: dwell.displacement,

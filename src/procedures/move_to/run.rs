@@ -32,8 +32,8 @@ fn go(
     let to = inputs.number("to", &plan.to, Dimension::LENGTH)?;
     let speed = inputs.speed(plan.speed.as_ref())?;
     for (step, target) in (1..).zip(session.guard.increments_to(&[to])) {
-        session.guard.move_to(&target, speed)?;
-        let (reading, broken) = session.read_kept()?;
+        let moved = session.guard.move_to(&target, speed);
+        let (reading, broken) = session.read_after(moved)?;
         let (displacement, restoring_force) = first(&reading);
         let wall_time = session.guard.time();
         steps.push(RampStep {

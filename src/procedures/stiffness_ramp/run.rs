@@ -206,23 +206,19 @@ impl Ramp {
             returning,
             before,
         } = *target;
-        session.guard.move_to(&[command], manner.speed)?;
+        let reached = session.guard.move_to(&[command], manner.speed);
         let (settled, moved, broken) = match asked {
-            Some(_) => session.read_moved_kept()?,
+            Some(_) => session.read_moved_after(reached)?,
             None => session
-                .read_kept()
+                .read_after(reached)
                 .map(|(reading, broken)| (reading, None, broken))?,
         };
-        let watched = match asked {
-            _ if broken.is_some() => None,
-            Some(asked) => Some(hold::watched(
-                &settled,
-                manner.pause,
-                asked.readings,
-                session,
-            )?),
-            None => session.guard.pause(manner.pause).map(|()| None)?,
-        };
+        let watched = asked
+            .filter(|_| broken.is_none())
+            .map(|asked| hold::watched(&settled, manner.pause, asked.readings, session))
+            .transpose()?;
+        // A hold that is read includes the pause.
+        let pause = if watched.is_some() { 0.0 } else { manner.pause };
         let DwellReadings {
             displacement,
             restoring_force,
@@ -230,7 +226,7 @@ impl Ramp {
             relaxation,
             wall_time,
             broken,
-        } = DwellReadings::take(&settled, broken, manner.samples, session)?;
+        } = DwellReadings::take(&settled, broken, pause, manner.samples, session)?;
         let step = self.steps.len() as u64 + 1;
         if let Some((readings, last)) = watched {
             let [waited_for, moved_for, settled_for] =

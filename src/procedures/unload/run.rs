@@ -241,8 +241,8 @@ pub(crate) fn to_rest(
             .zip(increments)
             .map(|(position, increment)| position + increment)
             .collect();
-        session.go_to_all(&target, speed)?;
-        let (reached, broken) = session.read_kept()?;
+        let moved = session.go_to_all(&target, speed);
+        let (reached, broken) = session.read_after(moved)?;
         let secants = path.learn(loaded(&at), loaded(&reached));
         let kept = step_of(step, target, &reached, secants, session);
         let wall_time = kept.wall_time;

@@ -226,9 +226,9 @@ impl<'rig> Guard<'rig> {
             Ok(())
         });
         self.last_contact = last_contact;
-        readings.extend(broken.clone());
         self.broken = broken;
         let fault = self.or_hold(moved).err();
+        readings.extend(self.broken.clone());
         Traversed { readings, fault }
     }
 
@@ -346,9 +346,12 @@ impl<'rig> Guard<'rig> {
 
     pub(super) fn or_hold<T>(&mut self, outcome: Result<T, RigFault>) -> Result<T, RigFault> {
         if let Err(fault) = &outcome {
-            // A fault of a limit comes from the guard itself.
+            // The guard itself finds a limit exceeded by a reading that it has; the rig finds it during a motion.
             if !matches!(fault, RigFault::LimitBreached { .. }) {
                 self.last_contact = self.rig.time();
+            } else if let Some(reading) = self.rig.take_broken() {
+                self.last_contact = reading.time;
+                self.broken = Some(reading);
             }
             self.hold();
         }

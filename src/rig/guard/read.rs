@@ -63,7 +63,7 @@ impl Guard<'_> {
         Ok(())
     }
 
-    /// The reading that exceeded a limit, given only once.
+    /// The reading that exceeded a limit, at rest or during a motion, given only once.
     pub fn take_broken(&mut self) -> Option<Reading> {
         self.broken.take()
     }

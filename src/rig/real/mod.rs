@@ -54,6 +54,8 @@ pub struct RealRig {
     rested: Vec<Option<(f64, f64)>>,
     /// Mean observed speed of the last move \[m/s\].
     seen_speed: Option<f64>,
+    /// The reading that exceeded a limit during the last motion.
+    broken: Option<Reading>,
     /// Observed times (\[s\], by the clock) and positions \[m\] of the first axis during the last move.
     seen_positions: Vec<(f64, f64)>,
     reread: u64,
@@ -353,12 +355,24 @@ impl Rig for RealRig {
         Some(self.hold_finally())
     }
 
+    fn set_limits(&mut self, limits: &[Limits]) -> Result<(), RigFault> {
+        for (axis, limits) in self.axes.iter_mut().zip(limits) {
+            axis.limits = *limits;
+        }
+        let sent = self.send_limits();
+        self.or_hold(sent)
+    }
+
     fn datum(&self) -> Option<Vec<f64>> {
         Some(self.axes.iter().map(|axis| axis.coordinate.datum).collect())
     }
 
     fn own_speed(&self) -> Option<f64> {
         Some(self.link.own_speed)
+    }
+
+    fn take_broken(&mut self) -> Option<Reading> {
+        self.broken.take()
     }
 
     fn seen_speed(&self) -> Option<f64> {

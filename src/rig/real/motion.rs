@@ -129,7 +129,11 @@ impl RealRig {
                 },
             ));
         }
-        found.map_or_else(|| self.check_path_deviation(point), Err)
+        let Some(fault) = found else {
+            return self.check_path_deviation(point);
+        };
+        self.broken = Some(point.clone().into_reading());
+        Err(fault)
     }
 
     /// An axis that deviates from its path is held before it arrives at another position. The device may have received a wrong target, or
@@ -185,7 +189,7 @@ impl RealRig {
         self.actuator
             .start(&going)
             .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
-        (self.deaf, self.settled) = (false, None);
+        (self.deaf, self.settled, self.broken) = (false, None, None);
         self.seen_positions = vec![(self.clock.now(), from[0])];
         for axis in &mut self.axes {
             (axis.outside, axis.span) = (false, 0.0);

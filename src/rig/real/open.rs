@@ -44,6 +44,7 @@ impl RealRig {
             settled: None,
             rested: Vec::new(),
             seen_speed: None,
+            broken: None,
             seen_positions: Vec::new(),
             reread: 0,
             moved: false,
@@ -71,7 +72,7 @@ impl RealRig {
             }
             Datum::At(positions) => rig.begin_at(&positions)?,
         }
-        rig.narrow()?;
+        rig.send_limits()?;
         rig.note_contact();
         rig.verify_at_rest()?;
         Ok(rig)
@@ -163,7 +164,7 @@ impl RealRig {
     }
 
     /// Sends the limits to the devices, in their own polarity.
-    fn narrow(&mut self) -> Result<(), RigFault> {
+    pub(super) fn send_limits(&mut self) -> Result<(), RigFault> {
         let own: Vec<Limits> = self
             .axes
             .iter()

@@ -114,7 +114,7 @@ impl RealRig {
             .actuator
             .start_path(&going)
             .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
-        (self.deaf, self.settled) = (false, None);
+        (self.deaf, self.settled, self.broken) = (false, None, None);
         self.look_up()?;
         Ok(self.clock.now() + left)
     }

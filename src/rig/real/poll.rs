@@ -31,6 +31,24 @@ pub(super) struct Point {
     pub(super) raw: Vec<Vec<u8>>,
 }
 
+impl Point {
+    pub(super) fn into_reading(self) -> Reading {
+        let Self {
+            time,
+            displacement,
+            force,
+            raw,
+            ..
+        } = self;
+        Reading {
+            time,
+            displacement,
+            force,
+            raw,
+        }
+    }
+}
+
 impl RealRig {
     /// Reads once, at rest or in motion.
     pub(super) fn poll(&mut self) -> Result<Point, RigFault> {
@@ -119,20 +137,9 @@ impl RealRig {
     /// The median of each axis, at the time of the last reading, with the bytes of all readings.
     fn reading_of(&self, mut points: Vec<Point>, began: f64) -> Reading {
         if points.len() == 1
-            && let Some(Point {
-                time,
-                displacement,
-                force,
-                raw,
-                ..
-            }) = points.pop()
+            && let Some(point) = points.pop()
         {
-            return Reading {
-                time,
-                displacement,
-                force,
-                raw,
-            };
+            return point.into_reading();
         }
         let time = points.last().map_or(began - self.began, |point| point.time);
         let median = |of: fn(&Point) -> &[f64]| {
@@ -155,19 +162,7 @@ impl RealRig {
 
     /// A reading during the motion: a single one, not a median.
     pub(super) fn reading_now(&mut self) -> Result<Reading, RigFault> {
-        let Point {
-            time,
-            displacement,
-            force,
-            raw,
-            ..
-        } = self.poll()?;
-        Ok(Reading {
-            time,
-            displacement,
-            force,
-            raw,
-        })
+        Ok(self.poll()?.into_reading())
     }
 
     /// Time between two polls \[s\].

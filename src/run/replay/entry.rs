@@ -260,6 +260,9 @@ pub struct FaultBody {
     pub t: f64,
     pub call: Call,
     pub fault: RigFault,
+    /// The reading that exceeded a limit during a motion and ended it. Run logs of older versions have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reading: Option<SampleBody>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wall: Option<String>,
 }

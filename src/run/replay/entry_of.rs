@@ -71,6 +71,29 @@ pub(super) fn intent(
     }
 }
 
+impl SampleBody {
+    pub(super) fn of(reading: &Reading) -> Self {
+        Self {
+            t: reading.time,
+            x: reading.displacement.clone(),
+            r: reading.force.clone(),
+            raw: reading.raw.iter().map(|raw| escaped(raw)).collect(),
+            moved: None,
+            wall: None,
+        }
+    }
+
+    /// The reading without its bytes, which a replay does not need.
+    pub(super) fn into_reading(self) -> Reading {
+        Reading {
+            time: self.t,
+            displacement: self.x,
+            force: self.r,
+            raw: Vec::new(),
+        }
+    }
+}
+
 pub(super) fn append_sample(
     state: &mut State,
     reading: &Reading,
@@ -78,12 +101,9 @@ pub(super) fn append_sample(
 ) -> Result<(), RigFault> {
     state.time = reading.time;
     let sample = SampleBody {
-        t: reading.time,
-        x: reading.displacement.clone(),
-        r: reading.force.clone(),
-        raw: reading.raw.iter().map(|raw| escaped(raw)).collect(),
         moved,
         wall: state.wall(),
+        ..SampleBody::of(reading)
     };
     state.append(EntryKind::Sample, &sample)
 }

@@ -11,6 +11,7 @@ use super::entry::{
 use super::entry_of::{append_sample, finite, intent, same_bits, unknown_rig};
 use super::state::{State, ended};
 use crate::physics::tracking::trajectory::Path;
+use crate::plan::Limits;
 use crate::record::journal::EntryKind;
 use crate::rig::safety::failpoint;
 use crate::rig::safety::failpoint::Guarding;
@@ -100,9 +101,20 @@ impl<'rig> RecordedRig<'rig> {
     /// Logs that a call failed, and passes its fault on.
     pub(super) fn failed<T>(&mut self, call: Call, fault: RigFault) -> Result<T, RigFault> {
         let t = self.now();
+        let offset = self.offset.unwrap_or(0.0);
+        let broken = self.live.as_deref_mut().and_then(Rig::take_broken);
+        let broken = broken.and_then(|reading| {
+            finite(Reading {
+                time: reading.time + offset,
+                ..reading
+            })
+            .ok()
+        });
         let mut state = self.state.borrow_mut();
         state.time = t;
         let wall = state.wall();
+        let reading = broken.as_ref().map(SampleBody::of);
+        state.broken = broken;
         // If the run log fails too, the fault of the rig is still the one that ended the run.
         let _ = state
             .append(
@@ -111,6 +123,7 @@ impl<'rig> RecordedRig<'rig> {
                     t,
                     call,
                     fault: fault.clone(),
+                    reading,
                     wall,
                 },
             )
@@ -167,15 +180,8 @@ impl<'rig> RecordedRig<'rig> {
         }
         let sample: SampleBody = state.peek(EntryKind::Sample, "a reading")?;
         state.consume();
-        Ok((
-            Reading {
-                time: sample.t,
-                displacement: sample.x,
-                force: sample.r,
-                raw: Vec::new(),
-            },
-            sample.moved,
-        ))
+        let moved = sample.moved;
+        Ok((sample.into_reading(), moved))
     }
 
     /// A reading, with the time of the last motion of the rig if this was requested.
@@ -452,6 +458,11 @@ impl Rig for RecordedRig<'_> {
         Some(halted)
     }
 
+    /// Not part of the run log: the guard computes the limits from the final hold.
+    fn set_limits(&mut self, limits: &[Limits]) -> Result<(), RigFault> {
+        self.live().map_or(Ok(()), |rig| rig.set_limits(limits))
+    }
+
     fn declared_noise(&self) -> DeclaredNoise {
         self.about.noise
     }
@@ -462,6 +473,10 @@ impl Rig for RecordedRig<'_> {
 
     fn own_speed(&self) -> Option<f64> {
         self.about.own_speed
+    }
+
+    fn take_broken(&mut self) -> Option<Reading> {
+        self.state.borrow_mut().broken.take()
     }
 
     /// Not part of the run log: it is only displayed.

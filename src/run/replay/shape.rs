@@ -162,10 +162,15 @@ impl Shape<'_> {
         if fault.call == Call::Record {
             return Ok(());
         }
-        if self.rig()?.is_virtual && fault.call == Call::Pause {
+        let is_virtual = self.rig()?.is_virtual;
+        if is_virtual && fault.call == Call::Pause {
             return Err("no pause of a virtual rig fails".to_owned());
         }
-        Ok(())
+        match &fault.reading {
+            Some(_) if is_virtual => Err("no limit ends a motion of a virtual rig".to_owned()),
+            Some(SampleBody { x, r, .. }) => self.moves(&[("x", x), ("r", r)]),
+            None => Ok(()),
+        }
     }
 
     fn resumed(&self, resume: &ResumeBody, seq: u64) -> Result<(), String> {

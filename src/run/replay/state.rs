@@ -10,12 +10,13 @@ use serde::de::DeserializeOwned;
 use super::Wall;
 use super::compatibility::has_present_wording;
 use super::entry::{
-    Call, EndBody, EndOutcome, FaultBody, HeldBody, IntentBody, OperatorBody, RigBody, TargetStatus,
+    Call, EndBody, EndOutcome, FaultBody, HeldBody, IntentBody, OperatorBody, RigBody, SampleBody,
+    TargetStatus,
 };
 use super::logged_run::{LoggedRun, Mismatch, body};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Journal, JournalFault, Line};
-use crate::rig::{LineStatistics, Rig, RigFault};
+use crate::rig::{LineStatistics, Reading, Rig, RigFault};
 use crate::run::Request;
 use crate::run::remote_control::Specimen;
 
@@ -59,6 +60,8 @@ pub(super) struct State<'rig> {
     recovered: LineStatistics,
     mismatch: Option<Mismatch>,
     fault: Option<JournalFault>,
+    /// The reading of the last fault, which exceeded a limit during a motion.
+    pub(super) broken: Option<Reading>,
     wall: Wall,
 }
 
@@ -120,6 +123,7 @@ impl<'rig> State<'rig> {
             recovered: LineStatistics::default(),
             mismatch: None,
             fault: None,
+            broken: None,
             wall: Box::new(|| None),
         }
     }
@@ -200,17 +204,7 @@ impl<'rig> State<'rig> {
         let found = match (&self.mismatch, self.lines.front()) {
             (None, Some(line)) if line.kind == kind => body(line),
             (Some(mismatch), _) => return Err(RigFault::Device(mismatch.to_string())),
-            (None, front) => {
-                let found = front.map_or("its end".to_owned(), |line| {
-                    format!("{:?} {}", line.kind, line.body())
-                });
-                let seq = front.map_or(0, |line| line.seq);
-                return Err(self.differs(Mismatch {
-                    seq,
-                    called: called.to_owned(),
-                    found,
-                }));
-            }
+            (None, _) => return Err(self.report_mismatch(called.to_owned())),
         };
         let seq = self.lines.front().map_or(0, |line| line.seq);
         found.map_err(|error| {
@@ -249,6 +243,7 @@ impl<'rig> State<'rig> {
         match self.peek::<FaultBody>(EntryKind::Fault, "a fault") {
             Ok(fault) if fault.call == call => {
                 self.consume();
+                self.broken = fault.reading.map(SampleBody::into_reading);
                 Some(fault.fault)
             }
             Ok(_) => None,
@@ -403,6 +398,7 @@ impl<'rig> State<'rig> {
                 t: self.time,
                 call: Call::Record,
                 fault: message.clone(),
+                reading: None,
                 wall: (self.wall)(),
             };
             // The disk has failed already: the entry is attempted once.

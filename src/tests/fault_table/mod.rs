@@ -21,6 +21,7 @@
 //! | 23 | zero drift, of force and displacement | `drift::*`, `pretest_check::the_drift_at_rest_is_reported` |
 //! | 24 | spike | `device::a_spike_does_not_move_the_median` |
 //! | 25 | force beyond its limit, fracture | `motion::a_force_beyond_its_limit_holds_the_rig`, `motion::a_break_is_an_event_and_no_error` |
+//! | 25 | the same during a move: its reading in the table, the unloading after it | `limits::*` |
 //! | 26 | targets beyond limits or not finite | `targets::nothing_beyond_a_limit_is_ever_on_the_wire` |
 //! | 27 | energy error, tracking-error energy | `motion::an_energy_error_beyond_its_limit_holds_the_rig`, `motion::tracking_that_changes_the_energy_holds_the_rig` |
 //! | 18–22 | the same on one axis of two | `axes::*` |
@@ -38,6 +39,7 @@ mod device;
 mod drift;
 mod forged;
 mod interrupted;
+mod limits;
 mod line;
 mod manual;
 mod motion;

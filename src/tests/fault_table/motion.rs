@@ -45,7 +45,7 @@ fn a_force_beyond_its_limit_holds_the_rig() {
 }
 
 /// An impact of 1 kg at some mm/s on 2 kg: outwards at first.
-fn impact_plan(inspect: Vec<InspectTrigger>) -> Plan {
+pub(super) fn impact_plan(inspect: Vec<InspectTrigger>) -> Plan {
     let strike = Impact {
         stepping: Stepping {
             inspect,

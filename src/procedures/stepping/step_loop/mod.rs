@@ -103,9 +103,9 @@ pub(crate) fn run<S: Stepped>(
         let (reading, broken) = if let Some(motion) = &mut motion {
             motion.step(|| waypoints(&mut stepped), session)?
         } else {
-            session.guard.move_to(&stepped.predict(), None)?;
-            session.guard.pause(pace.pause)?;
-            session.read_kept()?
+            let moved = session.guard.move_to(&stepped.predict(), None);
+            let paused = moved.and_then(|()| session.guard.pause(pace.pause));
+            session.read_after(paused)?
         };
         stepped.complete(&reading);
         let axes = monitors.take(stepped.axes().target, &reading, &stepped.effective_force());

@@ -188,6 +188,7 @@ fn a_logged_restart_requires_a_reference_whatever_else_is_stated() {
                     t: 0.0,
                     call: Call::Execute,
                     fault,
+                    reading: None,
                     wall: None,
                 },
             )

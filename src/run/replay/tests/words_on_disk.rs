@@ -95,7 +95,15 @@ fn fault_bodies() -> Vec<Value> {
     let calls = ["propose", "execute", "pause", "read", "traverse", "record"];
     let of_calls = calls.map(|call| with(call, json!("interrupted")));
     let of_faults = faults().into_iter().map(|fault| with("execute", fault));
-    of_calls.into_iter().chain(of_faults).collect()
+    let during_a_motion = json!({
+        "t": 1.5, "call": "execute", "fault": "interrupted",
+        "reading": {"t": 1.4, "x": [1e-3], "r": [10.0], "raw": ["X 1"]}, "wall": "08:00"
+    });
+    of_calls
+        .into_iter()
+        .chain(of_faults)
+        .chain([during_a_motion])
+        .collect()
 }
 
 fn operator_bodies() -> Vec<Value> {
