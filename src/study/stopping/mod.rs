@@ -8,7 +8,7 @@ pub mod rare;
 
 use crate::physics::study::Interval;
 use crate::physics::study::probability::Decision;
-use crate::physics::study::probability::stopping::{Goal, Look, StoppingRule};
+use crate::physics::study::probability::stopping::{self, Look};
 use crate::plan::Comparison;
 use crate::plan::study::Runs;
 use crate::study::counts::Counts;
@@ -50,13 +50,9 @@ impl Looks {
     #[must_use]
     pub fn of(runs: Runs, metadata: &Metadata) -> Self {
         let at_most = runs.at_most();
-        let looks = |goal, confidence| {
-            let rule = StoppingRule {
-                goal,
-                confidence,
-                at_most,
-            };
-            let mut looks: Vec<Look> = rule.looks().collect();
+        // The looks are the same for every limit.
+        let looks = |confidence| {
+            let mut looks: Vec<Look> = stopping::looks(confidence, at_most).collect();
             looks.reverse();
             looks
         };
@@ -70,11 +66,7 @@ impl Looks {
                     event: studied.event,
                     concluded: false,
                 });
-                // The looks are the same for every limit.
-                (
-                    watched.collect(),
-                    looks(Goal::Decide { limit: 0.5 }, confidence),
-                )
+                (watched.collect(), looks(confidence))
             }
             Runs::HalfWidth {
                 half_width,
@@ -87,10 +79,7 @@ impl Looks {
                     event,
                     concluded: false,
                 });
-                (
-                    watched.collect(),
-                    looks(Goal::HalfWidth(half_width), confidence),
-                )
+                (watched.collect(), looks(confidence))
             }
         };
         Self {
@@ -185,3 +174,6 @@ pub fn decide(studied: &StudiedRequirement, interval: Interval) -> Decision {
         _ => Decision::Undecided,
     }
 }
+
+#[cfg(test)]
+mod tests;

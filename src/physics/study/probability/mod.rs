@@ -67,20 +67,6 @@ impl Outcomes {
     }
 }
 
-impl Decision {
-    /// Of the requirement that a probability is below `limit`, by an interval of it.
-    #[must_use]
-    pub fn of(interval: Interval, limit: f64) -> Self {
-        if interval.high < limit {
-            Self::Met
-        } else if interval.low >= limit {
-            Self::NotMet
-        } else {
-            Self::Undecided
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::sampling::philox::{Philox, Purpose};
@@ -139,17 +125,5 @@ mod tests {
         assert_eq!(Outcomes::default().estimates(), None);
         let whole = Outcomes::default().interval(confidence);
         assert_eq!([whole.low, whole.high], [0.0, 1.0]);
-    }
-
-    #[test]
-    fn a_limit_inside_the_interval_is_undecided() {
-        let interval = Interval {
-            low: 0.01,
-            high: 0.03,
-        };
-        assert_eq!(Decision::of(interval, 0.04), Decision::Met);
-        assert_eq!(Decision::of(interval, 0.03), Decision::Undecided);
-        assert_eq!(Decision::of(interval, 0.02), Decision::Undecided);
-        assert_eq!(Decision::of(interval, 0.01), Decision::NotMet);
     }
 }
