@@ -167,7 +167,7 @@ fn the_columns_of_the_tables_are_those_of_the_schema() {
             {
                 assert!(
                     known.iter().any(|column| column.name == *name),
-                    "{}: `{name}` ({cell}) is in no `COLUMNS` of src/procedures",
+                    "{}: `{name}` ({cell}) is in no list of columns of src/procedures",
                     table.display()
                 );
                 seen += 1;

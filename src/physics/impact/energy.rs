@@ -1,4 +1,4 @@
-//! The energy balance of an impact (physics: every dynamic run, every step).
+//! The energy balance of an impact, at every step.
 
 /// Fraction of the input energy that an integrator may create or lose before it is reported: an unstable run exceeds it by far.
 pub const UNBALANCED: f64 = 0.1;
@@ -7,7 +7,8 @@ pub const UNBALANCED: f64 = 0.1;
 pub const WORTHLESS: f64 = 0.5;
 
 /// Energies at the end of a step, all in J. They add up:
-/// `striker + structure + restoring + damping + contact_loss + error = ½ Ms V0² + weight`.
+/// `striker + structure + restoring + damping + contact_loss + error = input`, with the input
+/// ½ Ms V0² + energy of the structure at the start + weight.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Energies {
     /// ½ Ms Ẋs²

@@ -17,7 +17,7 @@ pub struct Beam {
     pub own_mass: Option<f64>,
 }
 
-/// The supports of a beam (physics: 3EI/L³, 48EI/L³, 192EI/L³, (192EI/L³)(r+2)/(r+8)).
+/// The supports of a beam (3EI/L³, 48EI/L³, 192EI/L³, (192EI/L³)(r+2)/(r+8)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ends {
     Cantilever,

@@ -194,7 +194,7 @@ impl Setting {
 }
 
 /// `K_I`: the upper end of the interval of the stiffness (two standard uncertainties). α-OS is stable only as long as the specimen is
-/// not stiffer (physics, section 11; never a noisy secant).
+/// not stiffer (never a noisy secant).
 fn upper_end(stiffness: Estimate) -> f64 {
     stiffness.value + 2.0 * stiffness.uncertainty.unwrap_or(0.0)
 }

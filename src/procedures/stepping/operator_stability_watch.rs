@@ -1,4 +1,4 @@
-//! Observes a specimen that is stiffer than its integrator assumes (physics, section 11): α-OS is stable for every step only while the
+//! Observes a specimen that is stiffer than its integrator assumes (`docs/method/equations.md`): α-OS is stable for every step only while the
 //! specimen is not stiffer than `K_I`, and explicit Newmark up to 2/ω of its largest stiffness. In: the readings, step by step. Out: one
 //! observation. It stops nothing.
 

@@ -113,7 +113,7 @@ fn an_energy_error_beyond_its_limit_holds_the_rig() {
 }
 
 /// An actuator that reaches 80 % of each move, inside a tolerance band that accepts it. The work of the force along the targets then
-/// differs from the work along the measured positions (physics, section 11).
+/// differs from the work along the measured positions.
 #[test]
 fn tracking_that_changes_the_energy_holds_the_rig() {
     let mut plan = impact_plan(Vec::new());

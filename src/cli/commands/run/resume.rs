@@ -262,10 +262,11 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     Ok(exit)
 }
 
-/// The plan and the program that apply from here on. If they differ from those of the run log, an amendment is required.
-type Held = (Plan, Provenance, Option<(AmendBody, Vec<String>)>);
+/// A plan with its provenance, and the amendment that is required if plan or program differ from those of the run log.
+type Continued = (Plan, Provenance, Option<(AmendBody, Vec<String>)>);
 
-fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Held, Failure> {
+/// The plan and the program that apply from here on.
+fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Continued, Failure> {
     let recorded = &read.logged.header;
     let mut differences = Vec::new();
     if recorded.build != BUILD {

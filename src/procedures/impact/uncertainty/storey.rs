@@ -193,7 +193,7 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
         for (source, by) in shifts {
             match source {
                 Source::StrikerMass(_) => striker.mass += by * striker.mass_uncertainty,
-                // Blows of one striker at several speeds are as uncertain as the one that is stated, each in proportion.
+                // Impacts of one striker at several speeds are as uncertain as the one that is stated, each in proportion.
                 Source::StrikerVelocity(_) => {
                     striker.velocity *=
                         1.0 + by * declared.velocity_uncertainty / declared.velocity;
@@ -201,7 +201,7 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
                 _ => {}
             }
         }
-        // Blows of a row have the critical time step of the fastest.
+        // Impacts of a series have the critical time step of the fastest.
         let fastest = Striker {
             velocity: striker.velocity * (setting.fastest / recorded_velocity),
             ..striker.clone()
