@@ -192,12 +192,7 @@ fn only_the_word_moves_and_the_end_of_the_input_is_none() {
     for keys in ["n\n", "\u{4}", "y\nyes\nmove\nRELEASE\n\nn\n"] {
         let mut terminal = Terminal::start(&mut stage.recorded_tool("jog", &["--to", "1 mm"]));
         terminal.answer(MOVE, keys);
-        assert_eq!(
-            code(&mut terminal.child),
-            Some(4),
-            "{keys:?}: {}",
-            terminal.shown()
-        );
+        assert_eq!(terminal.code(), Some(4), "{keys:?}: {}", terminal.shown());
         assert!(
             terminal.shown().contains("nothing moved"),
             "{}",
@@ -236,7 +231,7 @@ fn a_jog_session_goes_from_position_to_position() {
     terminal.answer(MOVE, "MOVE\n");
     terminal.answer("at 0 mm; target?", "q\n");
     assert_eq!(
-        code(&mut terminal.child),
+        terminal.code(),
         Some(4),
         "one place was refused: {}",
         terminal.shown()

@@ -3,7 +3,7 @@
 
 use rustix::process::{Signal, WaitOptions, waitpid};
 
-use crate::stage::{Stage, code, finish, let_it_trip, signal, start, wait, watched};
+use crate::stage::{Stage, finish, let_it_trip, signal, start, wait, watched};
 use crate::terminal::{RELEASE, Terminal};
 
 #[test]
@@ -53,7 +53,7 @@ fn a_rig_that_was_referenced_again_resumes_at_its_position() {
     let mut stage = Stage::new();
     let mut terminal = Terminal::start(&mut stage.run_with(&[]));
     terminal.answer(RELEASE, "n\n");
-    assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
+    assert_eq!(terminal.code(), Some(4), "{}", terminal.shown());
     stage.power_up("");
     let refused = wait(&mut stage.resume_with(&[]));
     assert!(

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use crate::stage::{Stage, code, wait};
+use crate::stage::{Stage, wait};
 use crate::terminal::{RELEASE, Terminal};
 
 /// The commands that can move a real rig, started without a name.
@@ -94,14 +94,14 @@ fn at_a_terminal_the_name_is_asked_for_before_anything_is_opened() {
         let mut terminal = Terminal::start(&mut command);
         terminal.answer("your name", "  \n");
         terminal.answer("at most 200 characters", "\u{4}");
-        assert_eq!(code(&mut terminal.child), Some(2), "{}", terminal.shown());
+        assert_eq!(terminal.code(), Some(2), "{}", terminal.shown());
     }
     assert!(stage.requests().is_empty() && !stage.path("run").exists());
     let [mut run, ..] = <[Command; 4]>::try_from(unnamed(&stage, &[])).unwrap();
     let mut terminal = Terminal::start(&mut run);
     terminal.answer("your name", "D. Tester\n");
     terminal.answer(RELEASE, "n\n");
-    assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
+    assert_eq!(terminal.code(), Some(4), "{}", terminal.shown());
     let record = std::fs::read_to_string(stage.journal()).unwrap();
     let named = record
         .lines()

@@ -5,7 +5,7 @@ use std::fs;
 
 use rustix::process::Signal;
 
-use crate::stage::{Ended, Stage, code, finish, signal, start, until, wait};
+use crate::stage::{Ended, Stage, finish, signal, start, until, wait};
 use crate::terminal::{GO_ON, RELEASE, Terminal};
 
 /// Held, logged, and resumed.
@@ -55,7 +55,7 @@ fn the_end_of_the_input_is_no_yes() {
     // The rig is released; the question about the specimen is not answered.
     terminal.answer(RELEASE, "RELEASE\n");
     terminal.answer(GO_ON, "\u{4}");
-    let code = code(&mut terminal.child);
+    let code = terminal.code();
     held_and_sound(
         &stage,
         &Ended {
@@ -72,7 +72,7 @@ fn a_terminal_that_goes_away_is_no_yes() {
     terminal.answer(RELEASE, "RELEASE\n");
     terminal.answer(GO_ON, "");
     signal(&terminal.child, Signal::HUP);
-    let code = code(&mut terminal.child);
+    let code = terminal.code();
     held_and_sound(
         &stage,
         &Ended {
@@ -141,7 +141,7 @@ fn the_first_key_after_the_window_got_another_size_holds_the_rig() {
         terminal.press(keys);
         terminal.drawn("x leave");
         terminal.press("x");
-        let code = code(&mut terminal.child);
+        let code = terminal.code();
         assert_eq!(code, Some(4), "{}", terminal.shown());
         assert_eq!(stage.moves().len(), 3, "{}", stage.log());
         let journal = fs::read_to_string(stage.journal()).unwrap();
@@ -162,7 +162,7 @@ fn a_key_ends_a_monitor_whose_window_got_another_size() {
         terminal.resize(110);
         terminal.redrawn("MONITOR");
         terminal.press(key);
-        assert_eq!(code(&mut terminal.child), Some(0), "{}", terminal.shown());
+        assert_eq!(terminal.code(), Some(0), "{}", terminal.shown());
     }
 }
 
@@ -179,7 +179,7 @@ fn a_run_is_paused_stepped_noted_and_resumed_by_keys() {
     assert_eq!(standing(&stage), paused + 1, "one step, and no more");
     terminal.press("ino crack\r");
     terminal.press("p");
-    assert_eq!(code(&mut terminal.child), Some(0), "{}", terminal.shown());
+    assert_eq!(terminal.code(), Some(0), "{}", terminal.shown());
     let summary: serde_json::Value =
         serde_json::from_slice(&fs::read(stage.path("run").join("summary.json")).unwrap()).unwrap();
     let events: Vec<&str> = summary["events"]

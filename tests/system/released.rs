@@ -5,7 +5,7 @@ use std::fs;
 
 use rustix::process::Signal;
 
-use crate::stage::{Stage, code, signal, start, until, wait};
+use crate::stage::{Stage, signal, start, until, wait};
 use crate::terminal::{LEAVE, RELEASE, TO_RESUME, TO_UNLOAD, Terminal};
 
 /// All strings that could be read as a yes, and the release word.
@@ -39,7 +39,7 @@ fn what_was_typed_ahead_releases_nothing_and_a_refusal_leaves_no_report() {
         } else {
             terminal.answer(RELEASE, "n\n");
         }
-        assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
+        assert_eq!(terminal.code(), Some(4), "{}", terminal.shown());
         assert!(
             stage.moves().is_empty() && stage.is_held(),
             "{}",
@@ -115,7 +115,7 @@ fn a_held_rig_is_stayed_with_in_lines_and_goes_on_from_there() {
     stage.after_moves(4);
     signal(&terminal.child, Signal::QUIT);
     terminal.answer(LEAVE, "x\n");
-    assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
+    assert_eq!(terminal.code(), Some(4), "{}", terminal.shown());
     let record = fs::read_to_string(stage.journal()).unwrap();
     assert!(
         record.contains("somebody stood too near") && record.contains(r#""released":"A. Tester""#),
@@ -149,7 +149,7 @@ fn a_held_rig_stays_on_the_screen_and_goes_on_from_there() {
     terminal.press("h");
     terminal.drawn("r resume   u unload   x leave");
     terminal.press("x");
-    assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
+    assert_eq!(terminal.code(), Some(4), "{}", terminal.shown());
     let record = fs::read_to_string(stage.journal()).unwrap();
     assert!(
         record.contains("somebody stood too near") && record.contains(r#""released":"A. Tester""#),
@@ -170,7 +170,7 @@ fn nothing_is_shown_before_or_beside_an_unconfirmed_hold() {
     terminal.press("xrq\r");
     terminal.drawn("I have seen this");
     terminal.press("a");
-    assert_eq!(code(&mut terminal.child), Some(3), "{}", terminal.shown());
+    assert_eq!(terminal.code(), Some(3), "{}", terminal.shown());
     let shown = terminal.shown();
     let after = shown.rsplit("\u{1b}[?1049l").next().unwrap();
     assert!(

@@ -7,7 +7,7 @@ use std::process::Command;
 
 use rustix::process::Signal;
 
-use crate::stage::{Ended, PSD, Stage, code, finish, signal, start, until, wait};
+use crate::stage::{Ended, PSD, Stage, finish, signal, start, until, wait};
 use crate::terminal::{LEAVE, RELEASE, TO_UNLOAD, Terminal, UNLOAD};
 
 /// A stepper frame with an indicator beside it.
@@ -150,7 +150,7 @@ fn stopped_at_zero() -> Stage {
     let stage = Stage::of(console, "");
     let mut terminal = Terminal::start(&mut stage.run_with(&[]));
     terminal.answer(RELEASE, "n\n");
-    let code = code(&mut terminal.child);
+    let code = terminal.code();
     assert_eq!(code, Some(4), "{}", terminal.shown());
     stage
 }
@@ -212,7 +212,7 @@ fn a_rig_whose_safe_state_is_unload_goes_back_and_its_run_is_over() {
         "{}",
         terminal.shown()
     );
-    assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
+    assert_eq!(terminal.code(), Some(4), "{}", terminal.shown());
     let summary = fs::read_to_string(stage.path("run").join("summary.json")).unwrap();
     assert!(
         summary.contains("unloading to where the run began"),

@@ -32,7 +32,7 @@ fn each_of(
 ) {
     let one = |sent| {
         // Of use where it does not stop: the rig waits a fifth of a step for a late target.
-        let stage = Stage::of(&plan, "at 0 s: coast 1.2 s");
+        let stage = Stage::of(&plan, "at 0 s: coast 2 s");
         let run = start(&mut stage.run_with(&["--yes"]));
         moment(&stage);
         signal(&run, sent);
@@ -253,7 +253,7 @@ fn while_somebody_is_asked() {
                     terminal.answer(LEAVE, "");
                     signal(&terminal.child, sent);
                 }
-                let code = code(&mut terminal.child);
+                let code = terminal.code();
                 stage.held_and_sound(&Ended {
                     code,
                     output: terminal.shown(),
@@ -278,7 +278,7 @@ fn while_it_is_paused_by_a_key() {
                 until("it pauses", || terminal.shown().contains("PAUS"));
                 quiet(&stage);
                 signal(&terminal.child, sent);
-                let code = code(&mut terminal.child);
+                let code = terminal.code();
                 stage.held_and_sound(&Ended {
                     code,
                     output: terminal.shown(),
@@ -372,7 +372,7 @@ fn during_a_jog_and_while_it_asks() {
                     let mut terminal = Terminal::start(&mut stage.recorded_tool("jog", arguments));
                     terminal.answer(question, "");
                     signal(&terminal.child, sent);
-                    assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
+                    assert_eq!(terminal.code(), Some(4), "{}", terminal.shown());
                     assert!(stage.moves().is_empty() && stage.is_held());
                     stage.proven();
                 }

@@ -4,7 +4,7 @@
 use std::fs::File;
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::os::unix::ffi::OsStrExt as _;
-use std::process::{Child, Command};
+use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
@@ -14,7 +14,7 @@ use rustix::process::Signal;
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{Winsize, tcsetwinsize};
 
-use crate::stage::{signal, until};
+use crate::stage::{code, signal, until};
 
 /// The text after each question once it can be answered, in line mode.
 pub const RELEASE: &str = "type RELEASE, or n: nothing moves";
@@ -67,6 +67,11 @@ impl Terminal {
             .stderr(error)
             .spawn()
             .unwrap();
+        // Only the program has the terminal: its output ends when the program does.
+        command
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
         let shown = Arc::new(Mutex::new(Vec::new()));
         // Read without waiting, so that it can be closed at any time.
         rustix::io::ioctl_fionbio(&keys, true).unwrap();
@@ -110,6 +115,13 @@ impl Terminal {
         reader.join().unwrap();
         drop(keys);
         (child, shown)
+    }
+
+    /// Waits until the program has ended and its last output is read.
+    pub fn code(&mut self) -> Option<i32> {
+        let code = code(&mut self.child);
+        until("the end of the output", || self.reader.is_finished());
+        code
     }
 
     pub fn shown(&self) -> String {

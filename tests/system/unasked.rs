@@ -117,7 +117,7 @@ fn a_rig_that_may_unload_is_held_without_a_yes() {
                 terminal.answer(question, keys);
             }
         }
-        let code = code(&mut terminal.child);
+        let code = terminal.code();
         held_and_goes_on(
             &stage,
             &moves,
@@ -161,7 +161,7 @@ fn a_yes_unloads_and_the_screen_states_that_the_rig_moves() {
     terminal.drawn("UNLOADING: THE RIG MOVES");
     terminal.drawn(" x leave");
     terminal.press("x");
-    assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
+    assert_eq!(terminal.code(), Some(4), "{}", terminal.shown());
     assert!(
         stage.moves().last().unwrap().ends_with(" to 0"),
         "{:?}",
@@ -274,7 +274,7 @@ fn a_resumed_rig_moves_for_somebody_who_lets_it() {
             "{shown}"
         );
         terminal.press(no);
-        assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
+        assert_eq!(terminal.code(), Some(4), "{}", terminal.shown());
         until("its last words", || {
             terminal.shown().contains("nothing moved")
         });
@@ -290,7 +290,7 @@ fn a_resumed_rig_moves_for_somebody_who_lets_it() {
     stage.after_moves(moves.len() + 1);
     signal(&terminal.child, Signal::TERM);
     signal(&terminal.child, Signal::TERM);
-    let _ = code(&mut terminal.child);
+    let _ = terminal.code();
     let record = fs::read_to_string(stage.journal()).unwrap();
     assert!(
         record.contains(r#""released":"B. Tester: it looks well""#),
@@ -335,7 +335,7 @@ fn the_help_does_not_swallow_a_hold_and_a_pause_is_one_when_the_rig_rests() {
     terminal.press("h");
     terminal.drawn("x leave");
     terminal.press("x");
-    assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
+    assert_eq!(terminal.code(), Some(4), "{}", terminal.shown());
     assert_eq!(stage.moves().len(), 3, "{}", stage.log());
 }
 
@@ -352,5 +352,5 @@ fn ctrl_c_is_answered_at_once_where_there_is_no_screen() {
     });
     signal(&terminal.child, Signal::INT);
     until("a word", || terminal.shown().contains("holding now"));
-    assert_eq!(code(&mut terminal.child), Some(4), "{}", terminal.shown());
+    assert_eq!(terminal.code(), Some(4), "{}", terminal.shown());
 }

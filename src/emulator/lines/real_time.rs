@@ -146,13 +146,14 @@ impl Served<'_> {
         let sent = *written.as_ref().unwrap_or(&0);
         self.outbox.drain(..sent);
         let left = read.is_err() || written.is_err() || (came == 0 && !self.carrier.host()?);
-        if left {
-            emulator.host_left(at);
-        }
         if left || (emulator.hung_up(at) && self.outbox.is_empty()) {
             self.present = false;
             self.outbox.clear();
             self.carrier.renew()?;
+        }
+        // Once the log states it, the line is ready for the next host.
+        if left {
+            emulator.host_left(at);
         }
         Ok(came > 0 || sent > 0)
     }
