@@ -5,9 +5,9 @@
 use super::session::{Session, signed};
 use super::stop::Stop;
 use super::{Extent, Inspection, Motion, UNLOADING};
-use crate::plan::{Interval, Limits, Plan, SafeState};
+use crate::plan::{Interval, Limits, Plan, RealLink, SafeState};
 use crate::record::{EventKind, Outcome};
-use crate::rig::FinalHold;
+use crate::rig::{FinalHold, RigFault};
 use crate::units::Dimension;
 use crate::units::display::{plain, readable};
 
@@ -24,8 +24,12 @@ impl Session<'_> {
         let alone = declared && !self.attended && !stop.is_a_persons();
         // A rig that the operator held during a move has since been read at rest: it may move again with the operator's consent.
         let sound = stop.leaves_the_rig_sound() || stop.is_a_persons();
-        if held && sound && (alone || self.may_unload(plan, halted.as_ref())) {
-            self.unload(halted.as_ref());
+        if held
+            && sound
+            && self.extend_limits(link, halted.as_ref())
+            && (alone || self.may_unload(plan, halted.as_ref()))
+        {
+            self.unload();
         }
         stop.outcome()
     }
@@ -134,11 +138,11 @@ impl Session<'_> {
         };
         let does = "it MOVES back to its start position".to_owned();
         let motion = Motion::of(plan, self.identity(), does);
-        let limits = found.map_or_else(Vec::new, |found| self.guard.limits_of_unloading(found));
+        let of_axes = self.guard.limits_of_axes();
         let limits = Limits {
-            displacement: over_all(limits.iter().map(|limits| limits.displacement))
+            displacement: over_all(of_axes.iter().map(|limits| limits.displacement))
                 .unwrap_or(plan.limits.displacement),
-            force: over_all(limits.iter().map(|limits| limits.force)).unwrap_or(plan.limits.force),
+            force: over_all(of_axes.iter().map(|limits| limits.force)).unwrap_or(plan.limits.force),
             ..motion.limits
         };
         Motion {
@@ -148,20 +152,41 @@ impl Session<'_> {
         }
     }
 
-    /// Unloads after a stop, inside the limits of the run, extended to where the rig holds; a fault is an additional event.
-    fn unload(&mut self, halted: Option<&FinalHold>) {
+    /// Extends the limits to where the rig holds, so that none is exceeded while the operator decides and while the rig unloads. False:
+    /// the rig cannot be reached.
+    fn extend_limits(&mut self, link: &RealLink, halted: Option<&FinalHold>) -> bool {
+        let Some(found) = halted.and_then(|halted| halted.found.as_ref()) else {
+            return true;
+        };
+        let extended = self
+            .guard
+            .extend_limits(found, |axis| link.readings_of(axis));
+        match extended {
+            Ok(()) => true,
+            Err(fault) => {
+                self.not_unloaded(fault);
+                false
+            }
+        }
+    }
+
+    /// Unloads after a stop; a fault is an additional event.
+    fn unload(&mut self) {
         self.event(EventKind::Hold, UNLOADING.to_owned());
         let home = self.home.clone();
-        let found = halted.and_then(|halted| halted.found.as_ref());
-        let limits = found.map(|found| self.guard.limits_of_unloading(found));
-        let unloaded = limits
-            .map_or(Ok(()), |limits| self.guard.set_limits(limits))
-            .and_then(|()| self.go_to_all(&home, None))
-            .and_then(|()| self.guard.read());
-        if let Err(fault) = unloaded {
-            let stop = Stop::from(fault);
-            self.event(stop.event_kind(), format!("not unloaded: {stop}"));
+        let unloaded = self.go_to_all(&home, None).and_then(|()| self.guard.read());
+        match unloaded {
+            Ok(_) => {
+                let halted = self.guard.halt();
+                self.report_final_hold(halted.as_ref());
+            }
+            Err(fault) => self.not_unloaded(fault),
         }
+    }
+
+    fn not_unloaded(&mut self, fault: RigFault) {
+        let stop = Stop::from(fault);
+        self.event(stop.event_kind(), format!("not unloaded: {stop}"));
         let halted = self.guard.halt();
         self.report_final_hold(halted.as_ref());
     }

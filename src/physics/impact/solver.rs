@@ -378,6 +378,12 @@ impl<V: HasTangents> ImpactSolver<V> {
         &self.state
     }
 
+    /// Index of the struck degree of freedom.
+    #[must_use]
+    pub const fn struck(&self) -> usize {
+        self.striker.struck
+    }
+
     /// The whole structure there.
     #[must_use]
     pub const fn structure(&self) -> &State<V> {

@@ -127,6 +127,14 @@ impl SummaryBuilder {
         self.last_contact_force = state.contact_force;
     }
 
+    /// The structure was moved to this displacement \[m\] by this time \[s\], in a step that did not end.
+    pub fn moved_to(&mut self, displacement: f64, time: f64) {
+        if displacement > self.summary.max_displacement {
+            self.summary.max_displacement = displacement;
+            self.summary.time_of_max_displacement = time;
+        }
+    }
+
     /// A contact has ended at the end of the free step that follows it: the tensile step, repeated as a free one.
     fn follow_first_contact(&mut self, state: &ImpactState, touching: bool) {
         let closing_now = state.striker_velocity - state.velocity;

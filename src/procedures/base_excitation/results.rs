@@ -38,16 +38,7 @@ impl ShakeSummary {
 
     /// Adds the end of a step.
     pub(crate) fn push(&mut self, state: &FrameState) {
-        drifts(&state.displacement, &mut self.drift);
-        let widen = |largest: &mut [f64], values: &[f64]| {
-            for (largest, value) in largest.iter_mut().zip(values) {
-                *largest = largest.max(value.abs());
-            }
-        };
-        widen(&mut self.max_displacement, &state.displacement);
-        widen(&mut self.max_drift, &self.drift);
-        self.base_shear
-            .push(state.restoring_force.iter().sum::<f64>().abs());
+        self.widen(&state.displacement, &state.restoring_force);
         let e = &state.energies;
         self.largest_energy = self.largest_energy.max(e.input.abs()).max(e.kinetic);
         self.energy_error = if e.error == 0.0 {
@@ -56,6 +47,19 @@ impl ShakeSummary {
             e.error / self.largest_energy
         };
         self.steps = state.step;
+    }
+
+    /// Adds displacements \[m\] and forces \[N\] of the floors, at the end of a step or on the way to a target that was not reached.
+    pub(crate) fn widen(&mut self, displacement: &[f64], force: &[f64]) {
+        drifts(displacement, &mut self.drift);
+        let widen = |largest: &mut [f64], values: &[f64]| {
+            for (largest, value) in largest.iter_mut().zip(values) {
+                *largest = largest.max(value.abs());
+            }
+        };
+        widen(&mut self.max_displacement, displacement);
+        widen(&mut self.max_drift, &self.drift);
+        self.base_shear.push(force.iter().sum::<f64>().abs());
     }
 
     /// Error of the energy balance, over the largest energy.

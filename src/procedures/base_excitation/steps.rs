@@ -156,6 +156,25 @@ impl Stepped for Shaken<'_> {
         }
     }
 
+    fn cut_off(&mut self, reading: &Reading, time_step: f64, session: &Session<'_>) {
+        let target = self.predict();
+        let Some(last) = self.history.steps.last() else {
+            return;
+        };
+        let time = last.floors.time + time_step;
+        let step = ShakeStep {
+            step: last.step + 1,
+            wall_time: session.guard.time(),
+            ground_acceleration: self.ground_acceleration,
+            floors: last
+                .floors
+                .cut_off(time, &target, &reading.displacement, &reading.force),
+            energies: last.energies,
+        };
+        self.history.steps.push(step);
+        self.summary.widen(&reading.displacement, &reading.force);
+    }
+
     fn is_struck(&self) -> bool {
         false
     }

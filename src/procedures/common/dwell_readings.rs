@@ -42,6 +42,10 @@ impl DwellReadings {
         for _ in 0..samples.max(1) {
             if broken.is_none() {
                 let (reading, stop) = session.read_after(std::mem::replace(&mut waited, Ok(())))?;
+                if stop.is_some() {
+                    // It ends the run where it was made: a mean with the readings before it would lie inside the limit.
+                    readings.clear();
+                }
                 readings.push(first(&reading));
                 broken = stop;
             }

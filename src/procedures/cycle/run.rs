@@ -332,7 +332,8 @@ impl Cycling {
         let whole = traversed.readings.len() - usize::from(broken.is_some());
         for (sample, reading) in (1_u32..).zip(&traversed.readings) {
             #[expect(clippy::cast_precision_loss, reason = "at most MOST_TARGETS")]
-            let command = from + (to - from) * (f64::from(sample) / samples as f64);
+            let share = (f64::from(sample) / samples as f64).min(1.0);
+            let command = from + (to - from) * share;
             let (displacement, restoring_force) = first(reading);
             let reading = TargetReading {
                 command,

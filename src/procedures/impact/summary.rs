@@ -8,6 +8,8 @@ use crate::physics::integrator::state::State;
 use crate::physics::statistics::noisy_largest::NoisyLargest;
 use crate::physics::structure::matrix::Vector;
 use crate::physics::structure::{drifts, shears};
+use crate::record::history::floors::drift_of;
+use crate::rig::Reading;
 
 /// An impact on one degree of freedom, or on one floor of a frame.
 pub(crate) struct StruckSummary {
@@ -37,6 +39,14 @@ impl StruckSummary {
         self.impact.push(state);
         if let Some(floors) = &mut self.floors {
             floors.push(structure, state);
+        }
+    }
+
+    /// Adds a reading on the way to a target that was not reached: the floors with the struck one, by this time \[s\].
+    pub(crate) fn moved_to(&mut self, struck: usize, reading: &Reading, time: f64) {
+        self.impact.moved_to(reading.displacement[struck], time);
+        if let Some(floors) = &mut self.floors {
+            floors.moved_to(reading);
         }
     }
 
@@ -95,11 +105,6 @@ impl FloorSummary {
             }
         }
         (self.drift, self.shear) = (drift, shear);
-        let widen = |largest: &mut [f64], values: &[f64]| {
-            for (largest, value) in largest.iter_mut().zip(values) {
-                *largest = largest.max(value.abs());
-            }
-        };
         widen(
             &mut self.floor_displacement,
             structure.displacement.as_slice(),
@@ -121,6 +126,13 @@ impl FloorSummary {
         self.striker_velocity = state.striker_velocity;
     }
 
+    fn moved_to(&mut self, reading: &Reading) {
+        widen(&mut self.floor_displacement, &reading.displacement);
+        widen(&mut self.max_drift, &drift_of(&reading.displacement));
+        self.base_shear
+            .push(reading.force.iter().sum::<f64>().abs());
+    }
+
     /// ∫ shear d(drift) of each storey so far \[J\].
     pub(crate) fn storey_energy(&self) -> &[f64] {
         &self.storey_energy
@@ -140,5 +152,12 @@ impl FloorSummary {
     /// Largest base shear \[N\].
     pub(crate) fn max_base_shear(&self) -> Option<f64> {
         self.base_shear.value()
+    }
+}
+
+/// The largest magnitude of each value so far.
+fn widen(largest: &mut [f64], values: &[f64]) {
+    for (largest, value) in largest.iter_mut().zip(values) {
+        *largest = largest.max(value.abs());
     }
 }

@@ -134,6 +134,27 @@ impl FloorMotion {
     }
 }
 
+impl FloorMotion {
+    /// The floors where a limit ended the motion to these targets \[m\], after this step, by this time \[s\]: displacement \[m\] and
+    /// force \[N\] as measured.
+    pub(crate) fn cut_off(
+        &self,
+        time: f64,
+        command: &[f64],
+        displacement: &[f64],
+        restoring_force: &[f64],
+    ) -> Self {
+        Self {
+            time,
+            command: command.to_vec(),
+            displacement: displacement.to_vec(),
+            computed: displacement.to_vec(),
+            restoring_force: restoring_force.to_vec(),
+            ..self.clone()
+        }
+    }
+}
+
 impl Floors for FloorMotion {
     fn at(&self) -> FloorsAt<'_> {
         FloorsAt {

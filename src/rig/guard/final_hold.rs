@@ -1,7 +1,7 @@
 //! The guard at the early end of a run. In: a rig that is to hold finally. Out: the result of that hold, and the limits of the motion
 //! that unloads the rig afterwards. It assesses no reading, because the run is over.
 
-use crate::plan::{Interval, Limits};
+use crate::plan::{Interval, Limits, ReadingRules};
 use crate::rig::{FinalHold, Guard, RigFault};
 
 /// Number of standard deviations of the noise by which a reading may exceed the value at the hold.
@@ -19,31 +19,47 @@ impl Guard<'_> {
         halted
     }
 
-    /// Limits of each axis for the motion back to the start: those of the plan, extended to the displacement \[m\] and the force \[N\] at
-    /// which the rig holds. Otherwise the limit that ended the run would also end the motion that removes the load.
+    /// The limits of each axis.
     #[must_use]
-    pub fn limits_of_unloading(&self, (displacement, force): &(Vec<f64>, Vec<f64>)) -> Vec<Limits> {
-        let noise = self.declared_noise();
-        let of_axis = |(axis, (x, r)): (usize, (&f64, &f64))| {
-            let limits = *self.own.get(axis).unwrap_or(&self.limits);
-            Limits {
-                displacement: extended(limits.displacement, *x, NOISE * noise.resolution),
-                force: extended(limits.force, *r, NOISE * noise.force),
-                ..limits
-            }
-        };
-        let found = displacement.iter().zip(force);
-        found.enumerate().map(of_axis).collect()
+    pub fn limits_of_axes(&self) -> Vec<Limits> {
+        let of_axis = |axis| *self.own.get(axis).unwrap_or(&self.limits);
+        (0..self.commanded.len()).map(of_axis).collect()
     }
 
-    /// The limits from here on, one entry per axis, also those that the rig itself keeps.
+    /// Extends the limits of each axis to the displacement \[m\] and the force \[N\] at which the rig holds, also those that the rig
+    /// itself keeps. Otherwise the limit that ended the run would also end the motion that removes the load, and the wait before it.
+    /// `rules` are those of the readings of each axis.
     ///
     /// # Errors
     /// The rig cannot be reached, or does not accept them.
-    pub fn set_limits(&mut self, limits: Vec<Limits>) -> Result<(), RigFault> {
-        let set = self.rig.set_limits(&limits);
+    pub fn extend_limits(
+        &mut self,
+        (displacement, force): &(Vec<f64>, Vec<f64>),
+        rules: impl Fn(usize) -> ReadingRules,
+    ) -> Result<(), RigFault> {
+        let before = self.limits_of_axes();
+        let found = displacement.iter().zip(force);
+        let extended: Vec<Limits> = before
+            .iter()
+            .zip(found)
+            .enumerate()
+            .map(|(axis, (limits, (x, r)))| {
+                let ReadingRules {
+                    resolution, noise, ..
+                } = rules(axis);
+                Limits {
+                    displacement: extended(limits.displacement, *x, NOISE * resolution),
+                    force: extended(limits.force, *r, NOISE * noise),
+                    ..*limits
+                }
+            })
+            .collect();
+        if extended == before {
+            return Ok(());
+        }
+        let set = self.rig.set_limits(&extended);
         self.or_hold(set)?;
-        self.own = limits;
+        self.own = extended;
         Ok(())
     }
 }

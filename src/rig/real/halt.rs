@@ -4,10 +4,13 @@
 use super::{Part, RealRig};
 use crate::rig::controllers::{DeviceFault, SLICE};
 use crate::rig::safety;
-use crate::rig::{FinalHold, RigFault};
+use crate::rig::{FinalHold, Reading, RigFault};
 
 /// Longest wait for a rig that still moves after the command to hold \[s\].
 const COMES_TO_REST: f64 = 5.0;
+
+/// Readings at rest of which the median is taken: a single one may be a spike.
+const READINGS: usize = 3;
 
 /// Displacement \[m\] and force \[N\] of every axis, if they could be read, with their bytes.
 type Found = (Option<(Vec<f64>, Vec<f64>)>, Vec<Vec<u8>>);
@@ -36,7 +39,7 @@ impl RealRig {
         Err(self.hold_failure.clone())
     }
 
-    /// Commands a hold, waits until the rig is seen at rest, and reads it once.
+    /// Commands a hold, waits until the rig is seen at rest, and reads it there.
     pub(super) fn hold_finally(&mut self) -> FinalHold {
         let held = self.command_hold().and_then(|()| self.until_at_rest());
         let (found, raw) = if held.is_ok() {
@@ -100,17 +103,34 @@ impl RealRig {
         // Earlier silence does not matter: the device answers now.
         self.last_contact = self.clock.now();
         let _ = self.stop_request.take_line_gap();
-        let mut read = self.poll();
-        if matches!(read, Err(RigFault::Interrupted)) {
-            self.stop_request.acknowledge();
-            read = self.poll();
-        }
-        let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
-        match read {
-            Ok(point) if finite(&point.displacement) && finite(&point.force) => {
-                (Some((point.displacement, point.force)), point.raw)
+        let began = self.last_contact;
+        let mut points = Vec::new();
+        for reading in 0..READINGS {
+            if reading > 0 {
+                self.sleep(self.period());
             }
-            _ => (None, Vec::new()),
+            let mut read = self.poll();
+            if matches!(read, Err(RigFault::Interrupted)) {
+                self.stop_request.acknowledge();
+                read = self.poll();
+            }
+            let Ok(point) = read else { break };
+            points.push(point);
+        }
+        if points.is_empty() {
+            return (None, Vec::new());
+        }
+        let Reading {
+            displacement,
+            force,
+            raw,
+            ..
+        } = self.reading_of(points, began);
+        let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
+        if finite(&displacement) && finite(&force) {
+            (Some((displacement, force)), raw)
+        } else {
+            (None, Vec::new())
         }
     }
 

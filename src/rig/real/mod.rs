@@ -359,7 +359,9 @@ impl Rig for RealRig {
         for (axis, limits) in self.axes.iter_mut().zip(limits) {
             axis.limits = *limits;
         }
+        self.note_contact();
         let sent = self.send_limits();
+        self.note_contact();
         self.or_hold(sent)
     }
 

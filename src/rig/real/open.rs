@@ -79,7 +79,7 @@ impl RealRig {
     }
 
     /// One device was not polled while another was identified.
-    fn note_contact(&mut self) {
+    pub(super) fn note_contact(&mut self) {
         self.last_contact = self.clock.now();
         let _ = self.stop_request.take_line_gap();
     }

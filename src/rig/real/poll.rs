@@ -135,7 +135,7 @@ impl RealRig {
     }
 
     /// The median of each axis, at the time of the last reading, with the bytes of all readings.
-    fn reading_of(&self, mut points: Vec<Point>, began: f64) -> Reading {
+    pub(super) fn reading_of(&self, mut points: Vec<Point>, began: f64) -> Reading {
         if points.len() == 1
             && let Some(point) = points.pop()
         {

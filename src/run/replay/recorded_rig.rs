@@ -458,9 +458,14 @@ impl Rig for RecordedRig<'_> {
         Some(halted)
     }
 
-    /// Not part of the run log: the guard computes the limits from the final hold.
+    /// The limits are not part of the run log: the guard computes them from the final hold. A fault is, as that of a proposal.
     fn set_limits(&mut self, limits: &[Limits]) -> Result<(), RigFault> {
-        self.live().map_or(Ok(()), |rig| rig.set_limits(limits))
+        if self.answers_from_the_log() {
+            let fault = self.state.borrow_mut().logged_fault(Call::Propose);
+            return fault.map_or(Ok(()), Err);
+        }
+        let set = self.live().map_or(Ok(()), |rig| rig.set_limits(limits));
+        set.or_else(|fault| self.failed(Call::Propose, fault))
     }
 
     fn declared_noise(&self) -> DeclaredNoise {

@@ -3,12 +3,17 @@
 //! back to the start, although it exceeds its limit where it holds.
 
 use super::motion::impact_plan;
-use super::stage::{Ended, STIFFNESS, link, plan_of, run, to};
-use crate::plan::{Plan, ProcedureKind, SafeState};
-use crate::record::journal::EntryKind;
-use crate::record::{EventKind, History, Outcome};
-use crate::run::UNLOADING;
-use crate::tests::testing::ramp;
+use super::stage::{Ended, STIFFNESS, emulator, header, link, open, plan_of, run, run_watched, to};
+use crate::emulator::Log;
+use crate::plan::{DeclaredNoise, Limits, Plan, ProcedureKind, SafeState};
+use crate::record::journal::testing::PowerLoss;
+use crate::record::journal::{Durability, EntryKind, Journal, recover};
+use crate::record::{EventKind, History, Outcome, Record};
+use crate::rig::real::RealRig;
+use crate::rig::{EachReading, EncodedMove, FinalHold, Identity, Reading, Rig, RigFault};
+use crate::run::replay::LoggedRun;
+use crate::run::{Inspection, Motion, Observer, UNLOADING, Unwatched, replay};
+use crate::tests::testing::{number, ramp};
 
 /// Force limit \[N\]: exceeded between the positions of two readings, and far from every target.
 const LIMIT: f64 = 125.0;
@@ -77,7 +82,134 @@ fn the_reading_that_exceeded_a_limit_during_a_move_is_the_last_row() {
             (last_row(&ended).0 - last_row(&ended).1 / STIFFNESS).abs() < 1e-6,
             "{kind}"
         );
+        if kind == "impact" {
+            // The specimen was moved to this reading, not to the target of the step.
+            let largest = number(&ended.record, 0, "max_displacement").0;
+            assert_eq!(largest, Some(last_row(&ended).0));
+            let tracking = number(&ended.record, 0, "nrms_error").0.unwrap();
+            assert!(tracking < 0.01, "{tracking}");
+        }
     }
+}
+
+/// An operator who thinks for a while, then unloads.
+struct Slow {
+    waits: u32,
+}
+
+impl Observer for Slow {
+    fn inspect(&mut self, _: &str) -> Inspection {
+        Inspection::GoOn {
+            note: None,
+            by: Some("A. Tester".to_owned()),
+        }
+    }
+
+    fn may_unload(&mut self, _: &str, motion: &Motion) -> Option<Inspection> {
+        assert!(motion.limits.force.high > LIMIT, "{:?}", motion.limits);
+        if self.waits > 0 {
+            self.waits -= 1;
+            return Some(Inspection::Wait);
+        }
+        Some(Inspection::GoOn {
+            note: None,
+            by: Some("A. Tester".to_owned()),
+        })
+    }
+}
+
+#[test]
+fn an_operator_who_takes_time_to_decide_unloads_a_rig_beyond_its_limit() {
+    let plan = limited(plan_of(vec![to(2e-3)]));
+    // Two watchdogs.
+    let ended = run_watched(&plan, "", &mut Slow { waits: 600 }).unwrap();
+    assert_eq!(ended.events(EventKind::LimitBreach).len(), 1);
+    assert_eq!(ended.emulator.lock().rig().commanded(), 0.0);
+}
+
+/// A rig that does not answer when it receives the extended limits.
+struct Refusing(RealRig);
+
+impl Rig for Refusing {
+    fn set_limits(&mut self, _: &[Limits]) -> Result<(), RigFault> {
+        Err(RigFault::Device("no reply".to_owned()))
+    }
+
+    fn identity(&self) -> Identity {
+        self.0.identity()
+    }
+
+    fn degrees_of_freedom(&self) -> usize {
+        self.0.degrees_of_freedom()
+    }
+
+    fn time(&self) -> f64 {
+        self.0.time()
+    }
+
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
+        self.0.propose(targets, speed)
+    }
+
+    fn execute(&mut self) -> Result<(), RigFault> {
+        self.0.execute()
+    }
+
+    fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
+        self.0.pause(seconds)
+    }
+
+    fn read(&mut self) -> Result<Reading, RigFault> {
+        self.0.read()
+    }
+
+    fn traverse(
+        &mut self,
+        targets: &[f64],
+        velocity: f64,
+        samples: usize,
+        each: EachReading<'_>,
+    ) -> Result<(), RigFault> {
+        self.0.traverse(targets, velocity, samples, each)
+    }
+
+    fn hold(&mut self) {
+        self.0.hold();
+    }
+
+    fn halt(&mut self) -> Option<FinalHold> {
+        self.0.halt()
+    }
+
+    fn take_broken(&mut self) -> Option<Reading> {
+        self.0.take_broken()
+    }
+
+    fn declared_noise(&self) -> DeclaredNoise {
+        self.0.declared_noise()
+    }
+}
+
+#[test]
+fn limits_that_do_not_reach_the_rig_leave_it_on_hold_and_the_run_replays() {
+    let mut plan = limited(plan_of(vec![to(2e-3)]));
+    link(&mut plan).safe_state = SafeState::Unload;
+    let emulator = emulator(&plan, "", Log::none(), 1);
+    let mut rig = Refusing(open(&plan, &emulator).unwrap());
+    let disk = PowerLoss::new();
+    let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
+    replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    let recorded = replay::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None));
+    let reported = |record: &Record| {
+        let mut texts = record.events.iter().map(|event| event.text.as_str());
+        texts.any(|text| text == "not unloaded: no reply")
+    };
+    assert!(reported(&recorded.record), "{:#?}", recorded.record.events);
+    assert!(emulator.lock().rig().commanded() > 1e-3, "it did not move");
+    let logged = LoggedRun::of(&recover(&disk.written()).unwrap()).unwrap();
+    let replayed = replay::replay(&plan, logged);
+    assert_eq!(replayed.mismatch, None);
+    assert!(reported(&replayed.record));
 }
 
 #[test]

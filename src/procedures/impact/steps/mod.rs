@@ -170,6 +170,36 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
         }
     }
 
+    fn cut_off(&mut self, reading: &Reading, time_step: f64, session: &Session<'_>) {
+        let (target, struck) = (self.predict(), self.solver.struck());
+        let Some(last) = self.steps.last() else {
+            return;
+        };
+        let time = last.time + time_step;
+        let step = ImpactStep {
+            step: last.step + 1,
+            time,
+            wall_time: session.guard.time(),
+            command: target[struck],
+            computed: reading.displacement[struck],
+            displacement: reading.displacement[struck],
+            restoring_force: reading.force[struck],
+            ..last.clone()
+        };
+        self.steps.push(step);
+        self.summary.moved_to(struck, reading, time);
+        if let Some(last) = self.floors.last() {
+            let floors = last
+                .floors
+                .cut_off(time, &target, &reading.displacement, &reading.force);
+            let storey_energy = last.storey_energy.clone();
+            self.floors.push(FloorStep {
+                floors,
+                storey_energy,
+            });
+        }
+    }
+
     fn is_struck(&self) -> bool {
         self.solver.state().contact_force > 0.0
     }

@@ -53,6 +53,9 @@ pub(crate) trait Stepped {
     /// Ends the step with a reading.
     fn complete(&mut self, reading: &Reading);
 
+    /// Keeps the reading that exceeded a limit on the way to the target: the step, of this length \[s\], has not ended.
+    fn cut_off(&mut self, reading: &Reading, time_step: f64, session: &Session<'_>);
+
     /// Whether a contact force acted in the last step.
     fn is_struck(&self) -> bool;
 
@@ -100,13 +103,21 @@ pub(crate) fn run<S: Stepped>(
     stepped.keep(&monitors.tracking(), session);
     let mut struck = false;
     for _ in 0..pace.steps {
-        let (reading, broken) = if let Some(motion) = &mut motion {
-            motion.step(|| waypoints(&mut stepped), session)?
+        let (reading, broken, is_reached) = if let Some(motion) = &mut motion {
+            let (reading, broken) = motion.step(|| waypoints(&mut stepped), session)?;
+            let is_reached = broken.is_none();
+            (reading, broken, is_reached)
         } else {
             let moved = session.guard.move_to(&stepped.predict(), None);
+            let is_reached = moved.is_ok();
             let paused = moved.and_then(|()| session.guard.pause(pace.pause));
-            session.read_after(paused)?
+            let (reading, broken) = session.read_after(paused)?;
+            (reading, broken, is_reached)
         };
+        if let Some(stop) = broken.clone().filter(|_| !is_reached) {
+            stepped.cut_off(&reading, pace.time_step, session);
+            return Err(stop);
+        }
         stepped.complete(&reading);
         let axes = monitors.take(stepped.axes().target, &reading, &stepped.effective_force());
         if let Some(stop) = broken {

@@ -2,7 +2,7 @@
 //! without such a reading is not reported as held.
 
 use super::{Stand, stand};
-use crate::rig::controllers::DeviceFault;
+use crate::rig::controllers::{DeviceFault, Force};
 use crate::rig::{FinalHold, Rig as _};
 
 /// A rig that has moved towards 2 mm at 1 mm/s for one second, and the result of its final hold.
@@ -22,7 +22,7 @@ fn halted_in_motion(mut stand: Stand) -> (Stand, FinalHold) {
 }
 
 #[test]
-fn it_is_held_where_it_was_seen_at_rest_and_read_there_once() {
+fn it_is_held_where_it_was_seen_at_rest_and_read_there() {
     for reports_motion in [true, false] {
         let stand = stand();
         stand.device.inside().reports_motion = reports_motion;
@@ -31,7 +31,7 @@ fn it_is_held_where_it_was_seen_at_rest_and_read_there_once() {
         assert!((0.5e-3..1.5e-3).contains(&position), "{position}");
         assert!(halted.is_held(), "{halted}");
         assert_eq!(halted.found, Some((vec![position], vec![1e5 * position])));
-        assert!(halted.raw.len() == 1 && halted.time > 0.9, "{halted:?}");
+        assert!(halted.raw.len() == 3 && halted.time > 0.9, "{halted:?}");
         let newest = stand.rig.live().newest().unwrap();
         assert_eq!(newest.displacement, [position], "who watches sees it too");
     }
@@ -104,4 +104,21 @@ fn readings_during_a_move_are_shown_beside_the_run() {
         live.newest().unwrap().number > after.number,
         "and while nothing moves"
     );
+}
+
+/// The limits of the motion back are extended to this reading.
+#[test]
+fn a_spike_does_not_change_where_it_is_held() {
+    let mut stand = stand();
+    let mut reading = 0;
+    stand.device.alter(move |_, sample| {
+        reading += 1;
+        // The first one shows that it is at rest.
+        if reading == 2 {
+            sample.force = Some(Force::Newtons(1800.0));
+        }
+        Ok(())
+    });
+    let halted = stand.rig.halt().unwrap();
+    assert_eq!(halted.found, Some((vec![0.0], vec![0.0])), "{halted}");
 }

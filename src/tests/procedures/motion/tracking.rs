@@ -86,6 +86,8 @@ impl Stepped for &mut Sine {
         }
     }
 
+    fn cut_off(&mut self, _: &Reading, _: f64, _: &Session<'_>) {}
+
     fn is_struck(&self) -> bool {
         false
     }
