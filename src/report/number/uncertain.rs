@@ -2,6 +2,8 @@
 //! strings.
 
 use super::{join_typeset, text, without_sign_of_zero};
+use crate::schema::printed_unit;
+use crate::schema::procedures::stiffness_ramp::R_SQUARED;
 use crate::uncertainty::MeasurementUncertainty;
 use crate::units::Dimension;
 use crate::units::display::{digits, minus, significant, typeset, unit};
@@ -23,18 +25,43 @@ pub(in crate::report) fn parts(
     known: Option<MeasurementUncertainty>,
     dimension: Dimension,
 ) -> Parts {
-    let (unit, factor) = unit(value, dimension);
+    parts_in(unit(value, dimension), value, known, dimension)
+}
+
+/// The same for a result: R² to its nines, a fraction in percent.
+pub(in crate::report) fn parts_of_result(
+    name: &str,
+    value: f64,
+    known: Option<MeasurementUncertainty>,
+    dimension: Dimension,
+) -> Parts {
+    // The number of digits of R² depends on the number of nines.
+    if name == R_SQUARED.name {
+        return Parts {
+            value: format!("{value:.6}"),
+            standard: None,
+            expanded: None,
+            unit: String::new(),
+        };
+    }
+    parts_in(
+        printed_unit(name, value, dimension),
+        value,
+        known,
+        dimension,
+    )
+}
+
+pub(super) fn parts_in(
+    (unit, factor): (String, f64),
+    value: f64,
+    known: Option<MeasurementUncertainty>,
+    dimension: Dimension,
+) -> Parts {
     let set = typeset(&unit);
     let Some(known) = known.filter(|known| known.standard.is_finite()) else {
-        // A power of ten instead of a row of zeros.
-        let small = value != 0.0 && (value / factor).abs() < 1e-3;
-        let value = if small {
-            minus(&format!("{:.3e}", value / factor))
-        } else {
-            digits(value, factor, dimension)
-        };
         return Parts {
-            value,
+            value: digits(value, factor, dimension),
             standard: None,
             expanded: None,
             unit: set,
@@ -102,10 +129,23 @@ pub(in crate::report) fn with_expanded(
     known: MeasurementUncertainty,
     dimension: Dimension,
 ) -> String {
-    let parts = parts(value, Some(known), dimension);
+    joined(parts(value, Some(known), dimension))
+}
+
+/// A result with its expanded uncertainty if it has one: `7.88 ± 0.32 mm`, `−0.01693 %`.
+pub(in crate::report) fn of_result(
+    name: &str,
+    value: f64,
+    known: Option<MeasurementUncertainty>,
+    dimension: Dimension,
+) -> String {
+    joined(parts_of_result(name, value, known, dimension))
+}
+
+pub(super) fn joined(parts: Parts) -> String {
     match parts.expanded {
         Some(expanded) => join_typeset(&plus_minus(&parts.value, &expanded), &parts.unit),
-        None => text(value, dimension),
+        None => join_typeset(&parts.value, &parts.unit),
     }
 }
 
@@ -119,7 +159,15 @@ pub(crate) fn with_uncertainty(
     let Some(uncertainty) = uncertainty.filter(|u| u.is_finite() && *u > 0.0) else {
         return text(value, dimension);
     };
-    let (unit, factor) = unit(value, dimension);
+    with_standard(unit(value, dimension), value, uncertainty, dimension)
+}
+
+pub(super) fn with_standard(
+    (unit, factor): (String, f64),
+    value: f64,
+    uncertainty: f64,
+    dimension: Dimension,
+) -> String {
     let (scaled, uncertainty) = (value / factor, uncertainty / factor);
     let power = power_of(scaled.abs().max(uncertainty));
     let by = 10.0_f64.powi(power);

@@ -10,7 +10,6 @@ use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::report::run::Run;
 use crate::report::wording::{common, headline as wording};
-use crate::schema::procedures::stiffness_ramp::R_SQUARED;
 use crate::uncertainty::{
     MeasurementUncertainty, measurement_uncertainties, measurement_uncertainty,
 };
@@ -199,12 +198,12 @@ fn row(run: &Run<'_>, chosen: &ReadResult) -> Option<Row> {
     let partial = Scope::of(run) == Scope::PartialReal;
     let text: Text = match (value, known) {
         (None, _) => return None,
-        (Some(value), _) if result.name == R_SQUARED.name => format!("{value:.6}").into(),
         (Some(value), Some(known)) if partial => {
             number::with_uncertainty(value, Some(known.standard), result.dimension).into()
         }
-        (Some(value), Some(known)) => number::with_expanded(value, known, result.dimension).into(),
-        (Some(value), None) => number::text(value, result.dimension).into(),
+        (Some(value), known) => {
+            number::of_result(result.name, value, known, result.dimension).into()
+        }
     };
     let marked = known.is_some() && !budget_table::is_reliable(result, entry);
     let mark = if marked { budget_table::MARK } else { "" };

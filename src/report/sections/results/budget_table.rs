@@ -120,7 +120,10 @@ fn requested(run: &Run<'_>, index: usize, history: &History) -> Vec<ReadResult> 
 }
 
 /// Whether the budget of a result is printed. If no entry of a list is named, that of its largest number is printed.
-fn is_printed(budget: &Budget<'_>, requested: &[ReadResult]) -> bool {
+pub(in crate::report::sections) fn is_printed(
+    budget: &Budget<'_>,
+    requested: &[ReadResult],
+) -> bool {
     let mut requested = requested
         .iter()
         .filter(|read| read.reference.name == budget.result.name);
@@ -233,7 +236,7 @@ fn rows(budget: &Budget<'_>, procedure: &ProcedureRecord, scope: Scope) -> Vec<V
             result.dimension,
         ))
     } else {
-        let parts = number::parts(*value, Some(*known), result.dimension);
+        let parts = number::parts_of_result(result.name, *value, Some(*known), result.dimension);
         let expanded = parts.expanded.unwrap_or_default();
         let degrees = if coverage_factor::differs_from_two(*known) {
             format!(", ν = {}", coverage_factor::degrees_text(*known))

@@ -16,7 +16,6 @@ use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::report::run::Run;
 use crate::report::wording::{common, results as wording};
-use crate::schema::procedures::stiffness_ramp::R_SQUARED;
 use crate::uncertainty::{MeasurementUncertainty, measurement_uncertainty};
 use crate::units::Dimension;
 
@@ -152,16 +151,10 @@ fn factor(known: MeasurementUncertainty) -> Text {
 fn row(result: &NamedResult, known: Option<MeasurementUncertainty>) -> [Text; 5] {
     let none = || Text::from("");
     let [value, standard, expanded, unit] = match &result.value {
-        // The number of digits of R² depends on the number of nines.
-        ResultValue::Number {
-            value: Some(value), ..
-        } if result.name == R_SQUARED.name => {
-            [format!("{value:.6}").into(), none(), none(), none()]
-        }
         ResultValue::Number {
             value: Some(value), ..
         } => {
-            let parts = number::parts(*value, known, result.dimension);
+            let parts = number::parts_of_result(result.name, *value, known, result.dimension);
             [
                 parts.value.into(),
                 parts.standard.map_or_else(none, Text::from),
@@ -175,7 +168,7 @@ fn row(result: &NamedResult, known: Option<MeasurementUncertainty>) -> [Text; 5]
         ResultValue::List(values) => {
             let text = |value: &f64| {
                 if value.is_finite() {
-                    number::text(*value, result.dimension)
+                    number::of_result(result.name, *value, None, result.dimension)
                 } else {
                     wording::NONE.to_owned()
                 }
