@@ -43,7 +43,7 @@ pub(in super::super) fn verdict(run: &Run<'_>) -> Stated {
         heading,
         text: match unmet(run) {
             names if names.is_empty() => (sentence + &reason).into(),
-            names => Text::from(names).line().and(sentence + &reason),
+            names => Text::from(sentence + &reason).line().and(names),
         },
     }
 }
