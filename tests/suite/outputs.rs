@@ -379,7 +379,14 @@ fn a_run_stopped_early_still_leaves_a_whole_folder() {
     let html = text(&files, "report.html");
     assert!(
         html.contains("SIMULATION: stopped before its end")
-            && html.contains("The run was stopped: force 12.1 kN is outside its limit.")
+            && html.contains("Reason: force 12.1 kN is outside its limit.")
+            && html.contains("The run was stopped.")
+    );
+    let reason = "force 12.1 kN is outside its limit";
+    assert_eq!(
+        html.matches(reason).count(),
+        1,
+        "the reason is printed once"
     );
     assert!(html.contains("Procedure hit did not run to its end."));
     assert!(html.contains("the result max displacement does not exist in this run"));

@@ -27,27 +27,27 @@ pub fn heads(runs: usize) -> &'static [&'static str] {
 pub fn cells(row: &Row) -> Vec<String> {
     let values = || row.cells.iter().flatten().filter_map(|cell| cell.value);
     let largest = values().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-    let unit = printed_unit(&row.name, largest, row.dimension);
+    let (unit, factor) = printed_unit(&row.name, largest, row.dimension);
     let mut cells: Vec<String> = row
         .cells
         .iter()
-        .map(|cell| value(*cell, &unit, row.dimension))
+        .map(|cell| value(*cell, &unit, factor, row.dimension))
         .collect();
     if row.cells.len() == 2 {
         cells.extend(Difference::of(row).map_or_else(
             || vec![String::new(); 3],
-            |difference| differs(difference, &unit, row),
+            |difference| differs(difference, &unit, factor, row),
         ));
     } else {
         cells.extend(Spread::of(row).map_or_else(
             || vec![String::new(); 4],
-            |spread| spreads(spread, &unit, row),
+            |spread| spreads(spread, &unit, factor, row),
         ));
     }
     cells
 }
 
-fn value(cell: Option<Cell>, (unit, factor): &(String, f64), dimension: Dimension) -> String {
+fn value(cell: Option<Cell>, unit: &str, factor: f64, dimension: Dimension) -> String {
     match cell {
         None => String::new(),
         Some(Cell { value: None, .. }) => "no value".to_owned(),
@@ -56,7 +56,7 @@ fn value(cell: Option<Cell>, (unit, factor): &(String, f64), dimension: Dimensio
             u,
         }) => {
             let Some(u) = u.filter(|u| *u > 0.0) else {
-                return join(&digits(value, *factor, dimension), unit);
+                return join(&digits(value, factor, dimension), unit);
             };
             // Both have the decimals of the second digit of the uncertainty; ± is used for U only.
             let decimals = (1.0 - (u / factor).log10().floor()).clamp(0.0, 9.0);
@@ -79,12 +79,12 @@ fn value(cell: Option<Cell>, (unit, factor): &(String, f64), dimension: Dimensio
 }
 
 /// In the unit of the values; if that gives only zeros, in a separate unit.
-fn differs(difference: Difference, unit: &(String, f64), row: &Row) -> Vec<String> {
+fn differs(difference: Difference, unit: &str, factor: f64, row: &Row) -> Vec<String> {
     let absolute = if difference.absolute == 0.0 {
         "0".to_owned()
     } else {
-        let (unit, factor) = if (difference.absolute / unit.1).abs() >= 1e-3 {
-            unit.clone()
+        let (unit, factor) = if (difference.absolute / factor).abs() >= 1e-3 {
+            (unit.to_owned(), factor)
         } else {
             printed_unit(&row.name, difference.absolute, row.dimension)
         };
@@ -100,7 +100,7 @@ fn differs(difference: Difference, unit: &(String, f64), row: &Row) -> Vec<Strin
     ]
 }
 
-fn spreads(spread: Spread, (unit, factor): &(String, f64), row: &Row) -> Vec<String> {
+fn spreads(spread: Spread, unit: &str, factor: f64, row: &Row) -> Vec<String> {
     let deviation = spread.deviation.map_or_else(String::new, |deviation| {
         if deviation == 0.0 {
             "0".to_owned()
@@ -117,7 +117,7 @@ fn spreads(spread: Spread, (unit, factor): &(String, f64), row: &Row) -> Vec<Str
     });
     vec![
         spread.count.to_string(),
-        join(&digits(spread.mean, *factor, row.dimension), unit),
+        join(&digits(spread.mean, factor, row.dimension), unit),
         deviation,
         share,
     ]

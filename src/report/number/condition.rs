@@ -15,14 +15,16 @@ pub(in crate::report) fn value(condition: &ConditionOutcome) -> Option<String> {
     let known = condition
         .measurement_uncertainty()
         .filter(|known| known.standard > 0.0);
-    let printed = if condition.percent {
+    let (unit, factor) = if condition.percent {
         ("%".to_owned(), 0.01)
     } else {
         unit(value, condition.dimension)
     };
     Some(match (known, condition.conforms) {
-        (Some(known), None) => with_standard(printed, value, known.standard, condition.dimension),
-        _ => joined(parts_in(printed, value, known, condition.dimension)),
+        (Some(known), None) => {
+            with_standard(&unit, factor, value, known.standard, condition.dimension)
+        }
+        _ => joined(parts_in(&unit, factor, value, known, condition.dimension)),
     })
 }
 

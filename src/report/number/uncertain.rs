@@ -25,7 +25,8 @@ pub(in crate::report) fn parts(
     known: Option<MeasurementUncertainty>,
     dimension: Dimension,
 ) -> Parts {
-    parts_in(unit(value, dimension), value, known, dimension)
+    let (unit, factor) = unit(value, dimension);
+    parts_in(&unit, factor, value, known, dimension)
 }
 
 /// The same for a result: R² to its nines, a fraction in percent.
@@ -44,21 +45,19 @@ pub(in crate::report) fn parts_of_result(
             unit: String::new(),
         };
     }
-    parts_in(
-        printed_unit(name, value, dimension),
-        value,
-        known,
-        dimension,
-    )
+    let (unit, factor) = printed_unit(name, value, dimension);
+    parts_in(&unit, factor, value, known, dimension)
 }
 
+/// The same in this unit.
 pub(super) fn parts_in(
-    (unit, factor): (String, f64),
+    unit: &str,
+    factor: f64,
     value: f64,
     known: Option<MeasurementUncertainty>,
     dimension: Dimension,
 ) -> Parts {
-    let set = typeset(&unit);
+    let set = typeset(unit);
     let Some(known) = known.filter(|known| known.standard.is_finite()) else {
         return Parts {
             value: digits(value, factor, dimension),
@@ -159,11 +158,14 @@ pub(crate) fn with_uncertainty(
     let Some(uncertainty) = uncertainty.filter(|u| u.is_finite() && *u > 0.0) else {
         return text(value, dimension);
     };
-    with_standard(unit(value, dimension), value, uncertainty, dimension)
+    let (unit, factor) = unit(value, dimension);
+    with_standard(&unit, factor, value, uncertainty, dimension)
 }
 
+/// The same in this unit.
 pub(super) fn with_standard(
-    (unit, factor): (String, f64),
+    unit: &str,
+    factor: f64,
     value: f64,
     uncertainty: f64,
     dimension: Dimension,
@@ -182,7 +184,7 @@ pub(super) fn with_standard(
             minus(&significant(uncertainty, 2))
         ),
     };
-    join_typeset(&number, &typeset(&unit))
+    join_typeset(&number, &typeset(unit))
 }
 
 /// `1.70(0.23) × 10⁻⁷`
