@@ -159,7 +159,7 @@ pub fn digits(value: f64, factor: f64, dimension: Dimension) -> String {
     // Rounded first: 0.009999999 is 0.01000, not 0.010000.
     let text = format!("{scaled:.3e}");
     let rounded: f64 = text.parse().unwrap_or(scaled);
-    minus(&if rounded.abs() < 1e-3 {
+    minus(&if rounded.abs() < 1e-4 {
         text
     } else {
         significant(rounded, 4)
@@ -275,7 +275,7 @@ mod tests {
         assert_eq!(readable(0.0, Dimension::LENGTH), "0 mm");
         assert_eq!(readable(1.084e-19, Dimension::LENGTH), "0 mm");
         assert_eq!(readable(-1.6e-15, Dimension::NUMBER), "0");
-        assert_eq!(readable(-0.000_169_3, Dimension::NUMBER), "−1.693 × 10⁻⁴");
+        assert_eq!(readable(-0.000_016_93, Dimension::NUMBER), "−1.693 × 10⁻⁵");
         assert_eq!(readable(564e-6, Dimension::AREA), "564.0 mm²");
     }
 

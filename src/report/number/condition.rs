@@ -22,7 +22,7 @@ pub(in crate::report) fn value(condition: &ConditionOutcome) -> Option<String> {
     };
     Some(match (known, condition.conforms) {
         (Some(known), None) => {
-            with_standard(&unit, factor, value, known.standard, condition.dimension)
+            with_standard(value, known.standard, &unit, factor, condition.dimension)
         }
         _ => joined(parts_in(&unit, factor, value, known, condition.dimension)),
     })

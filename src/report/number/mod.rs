@@ -114,8 +114,8 @@ mod tests {
         );
         assert_eq!(part_of(0.0, 0.0, 5, Dimension::ENERGY), "0.000\u{a0}J");
         assert_eq!(
-            uncertain::parts(-0.000_174, None, Dimension::NUMBER).value,
-            "−1.740 × 10⁻⁴"
+            uncertain::parts(-0.000_017_4, None, Dimension::NUMBER).value,
+            "−1.740 × 10⁻⁵"
         );
     }
 }

@@ -159,15 +159,15 @@ pub(crate) fn with_uncertainty(
         return text(value, dimension);
     };
     let (unit, factor) = unit(value, dimension);
-    with_standard(&unit, factor, value, uncertainty, dimension)
+    with_standard(value, uncertainty, &unit, factor, dimension)
 }
 
 /// The same in this unit.
 pub(super) fn with_standard(
-    unit: &str,
-    factor: f64,
     value: f64,
     uncertainty: f64,
+    unit: &str,
+    factor: f64,
     dimension: Dimension,
 ) -> String {
     let (scaled, uncertainty) = (value / factor, uncertainty / factor);
