@@ -10,11 +10,11 @@ use std::sync::LazyLock;
 
 use fixture::{Finished, finished};
 use polars::prelude::{ParquetReader, SerReader as _};
-use psd::plan::Format;
+use psd::plan::{Comparison, Format};
 use psd::record::{History, ImpactStep, Outcome, RampHistory};
 use psd::report::summary::Summary;
 use psd::report::{OutputFile, console, everything};
-use psd::verdict::Verdict;
+use psd::verdict::{Bound, Verdict};
 
 const IMPACT_COLUMNS: &str = "step,time_s,wall_time_s,state,command_m,computed_m,displacement_m,velocity_m_per_s,acceleration_m_per_s2,\
 restoring_force_n,contact_force_n,striker_displacement_m,striker_velocity_m_per_s,tangent_stiffness_n_per_m,indentation_m,\
@@ -343,6 +343,30 @@ fn figures_are_pictures_at_192_dpi_with_something_on_them() {
             "{}: {inked} pixels are inked",
             figure.path
         );
+    }
+}
+
+#[test]
+fn a_failed_requirement_is_named_with_its_distance_to_the_limit() {
+    let mut finished = finished();
+    let requirement = &mut finished.assessment.requirements[0];
+    requirement.verdict = Verdict::Fail;
+    let condition = &mut requirement.conditions[0];
+    condition.verdict = Verdict::Fail;
+    condition.bound = Some(Bound::Compare {
+        comparison: Comparison::LessEqual,
+        limit: 0.15,
+    });
+    condition.margin = condition.value.map(|value| 0.15 - value);
+    finished.assessment.verdict = Verdict::Fail;
+    let files = files(&finished);
+    let html = text(&files, "report.html").replace('\u{a0}', " ");
+    for words in [
+        "SIMULATION: 1 of 2 requirements not met",
+        "Not met: stays in travel.",
+        "outside the limit by 0.0073",
+    ] {
+        assert!(html.contains(words), "{words}");
     }
 }
 
