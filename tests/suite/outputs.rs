@@ -364,6 +364,7 @@ fn a_failed_requirement_is_named_with_its_distance_to_the_limit() {
     for words in [
         "SIMULATION: 1 of 2 requirements not met",
         "Not met: stays in travel.",
+        // 0.15735 m − 0.15 m.
         "outside the limit by 0.0073",
     ] {
         assert!(html.contains(words), "{words}");
