@@ -4,7 +4,7 @@ use super::{Cell, Comparison, Difference, Row, Spread};
 use crate::schema::{printed_unit, readable_result};
 use crate::text::sanitize::cell;
 use crate::units::Dimension;
-use crate::units::display::{digits, join, minus, si_unit, significant};
+use crate::units::display::{digits, is_rounding, join, minus, si_unit, significant};
 
 /// The titles of the results that all runs have, and of those that only some have.
 pub const TITLES: [&str; 2] = [
@@ -55,7 +55,7 @@ fn value(cell: Option<Cell>, unit: &str, factor: f64, dimension: Dimension) -> S
             value: Some(value),
             u,
         }) => {
-            let Some(u) = u.filter(|u| *u > 0.0) else {
+            let Some(u) = u.filter(|u| !is_rounding(*u, dimension)) else {
                 return join(&digits(value, factor, dimension), unit);
             };
             // Both have the decimals of the second digit of the uncertainty; ± is used for U only.

@@ -5,7 +5,7 @@ use super::uncertain::{decimals_of, joined, parts_in, power_of, tens, with_stand
 use crate::plan::Comparison;
 #[cfg(test)]
 use crate::units::Dimension;
-use crate::units::display::{minus, significant, trimmed, unit};
+use crate::units::display::{is_rounding, minus, significant, trimmed, unit};
 use crate::verdict::{Bound, ConditionOutcome};
 
 /// The value of a condition with its expanded uncertainty U, in percent if the plan specifies percent; with u in parentheses if its
@@ -14,7 +14,7 @@ pub(in crate::report) fn value(condition: &ConditionOutcome) -> Option<String> {
     let value = condition.value?;
     let known = condition
         .measurement_uncertainty()
-        .filter(|known| known.standard > 0.0);
+        .filter(|known| !is_rounding(known.standard, condition.dimension));
     let (unit, factor) = if condition.percent {
         ("%".to_owned(), 0.01)
     } else {

@@ -6,7 +6,7 @@ use crate::schema::printed_unit;
 use crate::schema::procedures::stiffness_ramp::R_SQUARED;
 use crate::uncertainty::MeasurementUncertainty;
 use crate::units::Dimension;
-use crate::units::display::{digits, minus, significant, typeset, unit};
+use crate::units::display::{digits, is_rounding, minus, significant, typeset, unit};
 
 /// A number and its uncertainties in one unit: value and U to the second digit of U, u to its own (JCGM 100:2008, 7.2.6).
 pub(in crate::report) struct Parts {
@@ -155,7 +155,8 @@ pub(crate) fn with_uncertainty(
     uncertainty: Option<f64>,
     dimension: Dimension,
 ) -> String {
-    let Some(uncertainty) = uncertainty.filter(|u| u.is_finite() && *u > 0.0) else {
+    let Some(uncertainty) = uncertainty.filter(|u| u.is_finite() && !is_rounding(*u, dimension))
+    else {
         return text(value, dimension);
     };
     let (unit, factor) = unit(value, dimension);

@@ -13,6 +13,7 @@ use crate::report::wording::{common, headline as wording};
 use crate::uncertainty::{
     MeasurementUncertainty, measurement_uncertainties, measurement_uncertainty,
 };
+use crate::units::display::is_rounding;
 
 /// Headline results of a plan that names none.
 const MOST: usize = 6;
@@ -194,7 +195,8 @@ fn row(run: &Run<'_>, chosen: &ReadResult) -> Option<Row> {
             (values.get(entry).copied(), known, entry)
         }
     };
-    let known = known.filter(|known: &MeasurementUncertainty| known.standard > 0.0);
+    let known = known
+        .filter(|known: &MeasurementUncertainty| !is_rounding(known.standard, result.dimension));
     let partial = Scope::of(run) == Scope::PartialReal;
     let text: Text = match (value, known) {
         (None, _) => return None,

@@ -15,7 +15,7 @@ use crate::report::wording::budget as wording;
 use crate::schema::procedures::{impact, unload};
 use crate::uncertainty::MOST_DRAWS;
 use crate::units::Dimension;
-use crate::units::display::{minus, significant, typeset, unit};
+use crate::units::display::{is_rounding, minus, significant, typeset, unit};
 
 /// Lines with a smaller fraction of u² are printed together.
 const SMALL: f64 = 1e-3;
@@ -29,7 +29,10 @@ pub(super) fn section(run: &Run<'_>, body: &mut Vec<Block>) {
     for (index, procedure) in run.record.procedures.iter().enumerate() {
         let mut budgets = budgets(run, index, procedure);
         let requested = requested(run, index, &procedure.history);
-        budgets.retain(|budget| is_printed(budget, &requested));
+        budgets.retain(|budget| {
+            is_printed(budget, &requested)
+                && !is_rounding(budget.uncertainty, budget.result.dimension)
+        });
         if budgets.is_empty() {
             continue;
         }

@@ -18,6 +18,7 @@ use crate::report::run::Run;
 use crate::report::wording::{common, results as wording};
 use crate::uncertainty::{MeasurementUncertainty, measurement_uncertainty};
 use crate::units::Dimension;
+use crate::units::display::is_rounding;
 
 /// Every procedure that was run, in order, with the text of its method.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
@@ -96,7 +97,7 @@ fn table(run: &Run<'_>, index: usize, results: &[&NamedResult]) -> Block {
             part: Part::Value,
         };
         measurement_uncertainty(&result.contributions_of(reference), run.record)
-            .filter(|known| known.standard > 0.0)
+            .filter(|known| !is_rounding(known.standard, result.dimension))
             .filter(|_| matches!(result.value, ResultValue::Number { .. }))
     };
     let all: Vec<Option<MeasurementUncertainty>> =
