@@ -260,8 +260,10 @@ wording! {
     }
 
     mod line_fit {
-        fn fitted(line, slope, intercept, r_squared) = "Least-squares line {line}: {slope}, {intercept} (standard error in \
-            parentheses), R² = {r_squared:.6}.";
+        /// `errors` is empty, or begins with a space.
+        fn fitted(line, slope, intercept, errors, r_squared) = "Least-squares line {line}: {slope}, {intercept}{errors}, R² = \
+            {r_squared:.6}.";
+        STANDARD_ERRORS = " (standard error in parentheses)";
     }
 
     mod actuators {
