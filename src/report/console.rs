@@ -84,7 +84,7 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
         let _ = writeln!(text, "  by a study: {}", one_line(&names));
     }
     text.push_str(&decision_rule(run));
-    for deviation in deviations::of_run(run) {
+    for deviation in deviations::of_run(run, true) {
         let _ = writeln!(text, "  note: {}", one_line(&deviation));
     }
     let report = run.provenance.report_id();

@@ -161,7 +161,7 @@ pub enum RigFault {
 /// Between a value and its limit, in the text of a limit that was broken.
 pub(crate) const IS_OUTSIDE: &str = " is outside its limit ";
 
-/// Six digits, because a value just beyond its limit must not appear equal to the limit.
+/// Six digits, because a value just beyond its limit must not appear equal to the limit. Fractions are in percent.
 fn breach(
     quantity: LimitedQuantity,
     value: f64,
@@ -169,7 +169,10 @@ fn breach(
     low: f64,
     high: f64,
 ) -> String {
-    let shown = |value| display::plain(value, quantity.dimension(), 6);
+    let shown = |value: f64| match quantity.dimension() {
+        Dimension::NUMBER => display::plain(100.0 * value, Dimension::NUMBER, 6) + " %",
+        dimension => display::plain(value, dimension, 6),
+    };
     format!(
         "{quantity}{} {}{IS_OUTSIDE}{} .. {}",
         of_axis(axis),

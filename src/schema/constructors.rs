@@ -243,8 +243,17 @@ impl ResultKind {
             measured: false,
             count: false,
             list: false,
+            fraction: false,
             of_storey: false,
             doc,
+        }
+    }
+
+    /// A fraction is printed in percent.
+    pub(crate) const fn in_percent(self) -> Self {
+        Self {
+            fraction: true,
+            ..self
         }
     }
 

@@ -23,6 +23,8 @@ pub use types::{
     BlockKind, Field, FieldType, Kind, Naming, Presence, Range, ResultKind, RigKind, Variant,
 };
 
+use crate::units::{Dimension, display};
+
 /// Every kind of block, in the order of the reference: the declarations, the procedures, and the blocks about the run.
 pub const BLOCKS: &[&BlockKind] = &joined::<
     { DECLARATIONS.len() + procedures::BLOCKS.len() + ABOUT_THE_RUN.len() },
@@ -82,6 +84,34 @@ pub fn block(kind: Kind) -> &'static BlockKind {
         .copied()
         .find(|block| block.kind == kind)
         .unwrap_or(&blocks::plan_block::PLAN)
+}
+
+/// Whether a result is a fraction that is printed in percent. The name of its procedure and an index may be part of the name.
+#[must_use]
+pub fn is_in_percent(result: &str) -> bool {
+    let name = result.rsplit('.').next().unwrap_or(result);
+    let name = name.split('[').next().unwrap_or(name);
+    BLOCKS
+        .iter()
+        .flat_map(|block| block.results)
+        .any(|kind| kind.fraction && kind.name == name)
+}
+
+/// The unit that a result is printed in, and its factor to SI units.
+#[must_use]
+pub fn printed_unit(result: &str, value: f64, dimension: Dimension) -> (String, f64) {
+    if is_in_percent(result) {
+        ("%".to_owned(), 0.01)
+    } else {
+        display::unit(value, dimension)
+    }
+}
+
+/// A result with four significant digits in its unit.
+#[must_use]
+pub fn readable_result(result: &str, value: f64, dimension: Dimension) -> String {
+    let (unit, factor) = printed_unit(result, value, dimension);
+    display::join(&display::digits(value, factor, dimension), &unit)
 }
 
 #[cfg(test)]

@@ -212,6 +212,8 @@ pub struct ResultKind {
     pub count: bool,
     /// Whether it is a list of numbers of one dimension: `max(fatigue.energies)`.
     pub list: bool,
+    /// Whether it is a fraction that is printed in percent.
+    pub fraction: bool,
     /// Whether an impact has it only on a storey of a frame.
     pub of_storey: bool,
     pub doc: &'static str,

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use super::answers::{Answers, Probability, RequirementAnswer, ResultAnswer, StudiedAnswer};
 use super::data_set::{Kind, Metadata};
 use crate::physics::study::probability::Decision;
+use crate::schema::readable_result;
 use crate::text::sanitize::one_line;
 use crate::units::display;
 
@@ -115,7 +116,7 @@ fn of_result(metadata: &Metadata, result: &ResultAnswer) -> String {
     let (Some(column), Some(mean)) = (column, result.mean) else {
         return format!("  {}: no run has it\n", one_line(&result.name));
     };
-    let shown = |value: f64| display::readable(value, column.dimension);
+    let shown = |value: f64| readable_result(&column.name, value, column.dimension);
     let mut text = format!("  {}: mean {}", one_line(&result.name), shown(mean));
     if let Some(deviation) = result.standard_deviation {
         let _ = write!(text, ", standard deviation {}", shown(deviation));

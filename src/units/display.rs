@@ -3,7 +3,21 @@
 use super::dimension::Dimension;
 
 /// A pure number that is smaller in absolute value is a rounding error.
-const ROUNDING: f64 = 1e-12;
+const ROUNDING_OF_NUMBERS: f64 = 1e-12;
+
+/// A value below this fraction of the smallest unit of its dimension is a rounding error: 1e-6 um, 1e-6 N.
+const ROUNDING: f64 = 1e-6;
+
+/// Whether a value is only the rounding error of a calculation. It is printed as zero.
+#[must_use]
+pub fn is_rounding(value: f64, dimension: Dimension) -> bool {
+    let least = if dimension == Dimension::NUMBER {
+        ROUNDING_OF_NUMBERS
+    } else {
+        ROUNDING * readable_unit(f64::MIN_POSITIVE, dimension).1
+    };
+    value.abs() < least
+}
 
 /// The usual unit for a value of this size, and its factor to SI units: 0.0079 m → (`mm`, 1e-3).
 #[must_use]
@@ -83,6 +97,7 @@ pub fn unit(value: f64, dimension: Dimension) -> (String, f64) {
         Dimension::FORCE | Dimension::STIFFNESS | Dimension::ENERGY
     );
     match dimension {
+        _ if is_rounding(value, dimension) => readable_unit(0.0, dimension),
         // A time-out of 10 s is not 0.1667 min.
         Dimension::TIME if value.abs() < 60.0 && value.abs() >= 1.0 => ("s".to_owned(), 1.0),
         Dimension::TIME if value.abs() < 3600.0 && value.abs() >= 60.0 => ("min".to_owned(), 60.0),
@@ -130,21 +145,25 @@ pub fn trimmed(digits: &str) -> String {
     format!("{lead}{power}")
 }
 
-/// Four significant digits of a value in a unit; a count has no decimals.
+/// Four significant digits of a value in a unit; a count has no decimals. A power of ten replaces a row of zeros.
 #[must_use]
 pub fn digits(value: f64, factor: f64, dimension: Dimension) -> String {
-    let is_count = dimension == Dimension::NUMBER && value.fract() == 0.0 && value.abs() < 1e9;
-    if is_count {
-        return minus(&format!("{value:.0}"));
+    if is_rounding(value, dimension) {
+        return "0".to_owned();
     }
-    // Sums of floating-point numbers differ by this much from the sum of the numbers.
-    if dimension == Dimension::NUMBER && value != 0.0 && value.abs() < ROUNDING {
-        return format!("< {}", minus(&significant(ROUNDING, 1)));
+    let scaled = value / factor;
+    let is_count = dimension == Dimension::NUMBER && scaled.fract() == 0.0 && scaled.abs() < 1e9;
+    if is_count {
+        return minus(&format!("{scaled:.0}"));
     }
     // Rounded first: 0.009999999 is 0.01000, not 0.010000.
-    let scaled = value / factor;
-    let rounded = format!("{scaled:.3e}").parse().unwrap_or(scaled);
-    minus(&significant(rounded, 4))
+    let text = format!("{scaled:.3e}");
+    let rounded: f64 = text.parse().unwrap_or(scaled);
+    minus(&if rounded.abs() < 1e-4 {
+        text
+    } else {
+        significant(rounded, 4)
+    })
 }
 
 /// A number and its typeset unit.
@@ -254,6 +273,9 @@ mod tests {
         assert_eq!(readable(11.0, Dimension::TIME), "11.00 s");
         assert_eq!(readable(90.0, Dimension::TIME), "1.500 min");
         assert_eq!(readable(0.0, Dimension::LENGTH), "0 mm");
+        assert_eq!(readable(1.084e-19, Dimension::LENGTH), "0 mm");
+        assert_eq!(readable(-1.6e-15, Dimension::NUMBER), "0");
+        assert_eq!(readable(-0.000_016_93, Dimension::NUMBER), "−1.693 × 10⁻⁵");
         assert_eq!(readable(564e-6, Dimension::AREA), "564.0 mm²");
     }
 

@@ -4,7 +4,9 @@ use super::{Bound, ConditionOutcome, Verdict};
 use crate::physics::statistics::student_t;
 use crate::plan::formula::{Formula, FormulaError, Operator, Part, Results};
 use crate::plan::{Comparison, Condition, DecisionRule, Test};
+use crate::schema::is_in_percent;
 use crate::uncertainty::{FEW, MeasurementUncertainty, measurement_uncertainty};
+use crate::units::Dimension;
 
 /// Value and bound are evaluated separately, so that a report shows the one that exists.
 pub(crate) fn assess_condition(
@@ -53,6 +55,7 @@ pub(crate) fn assess_condition(
         text: condition.text.clone(),
         verdict,
         dimension: condition.dimension,
+        percent: in_percent(condition),
         value: value.as_ref().ok().map(|value| value.value),
         uncertainty: value.as_ref().ok().and_then(|value| value.uncertainty),
         degrees: how_well(&condition.value, record).map_or(f64::INFINITY, |known| known.degrees),
@@ -66,6 +69,16 @@ pub(crate) fn assess_condition(
     }
 }
 
+/// Whether the plan compares a plain number with a percentage, or reads results that are printed in percent.
+fn in_percent(condition: &Condition) -> bool {
+    let mut references = Vec::new();
+    condition.value.collect_references(&mut references);
+    let fractions =
+        !references.is_empty() && references.iter().all(|read| is_in_percent(read.name));
+    let stated = matches!(condition.test, Test::Compare { .. }) && condition.text.contains('%');
+    condition.dimension == Dimension::NUMBER && (fractions || stated)
+}
+
 /// Why a guard band cannot be applied: a measured result that the condition reads has no expanded uncertainty.
 fn no_uncertainty(condition: &Condition, record: &dyn Results) -> Option<String> {
     let mut references = Vec::new();
@@ -76,7 +89,7 @@ fn no_uncertainty(condition: &Condition, record: &dyn Results) -> Option<String>
         .find_map(|read| record.no_uncertainty(read))
 }
 
-/// Why a limit within the guard band is not conclusive, and why the band is wide if it comes from few readings.
+/// Why a value near its limit is not conclusive, and why the band is wide if it comes from few readings.
 fn near(margin: Option<MeasurementUncertainty>) -> String {
     let few = margin.filter(|known| known.degrees < f64::from(FEW));
     let why = few.map(|known| {
@@ -86,7 +99,8 @@ fn near(margin: Option<MeasurementUncertainty>) -> String {
             known.degrees
         )
     });
-    "the limit is within the guard band w = U".to_owned() + &why.unwrap_or_default()
+    "the distance to the limit is less than the guard band w = U".to_owned()
+        + &why.unwrap_or_default()
 }
 
 /// The uncertainty of a formula, with its degrees of freedom.

@@ -70,6 +70,8 @@ pub struct ConditionOutcome {
     pub text: String,
     pub verdict: Verdict,
     pub dimension: Dimension,
+    /// Whether its numbers are printed in percent.
+    pub percent: bool,
     /// SI; None if a result does not exist.
     pub value: Option<f64>,
     pub uncertainty: Option<f64>,

@@ -251,10 +251,6 @@ const MOST_ENTRIES: usize = 15;
 const LARGE_FOLDERS: &[(&str, &str)] = &[
     ("", "the stages, in the order of the arrows"),
     (
-        "report/sections",
-        "one file a section of the report, listed in order",
-    ),
-    (
         "text/diagnostic/explain",
         "one page a diagnostic, found by its code and never by its neighbours",
     ),

@@ -10,11 +10,11 @@ use std::sync::LazyLock;
 
 use fixture::{Finished, finished};
 use polars::prelude::{ParquetReader, SerReader as _};
-use psd::plan::Format;
+use psd::plan::{Comparison, Format};
 use psd::record::{History, ImpactStep, Outcome, RampHistory};
 use psd::report::summary::Summary;
 use psd::report::{OutputFile, console, everything};
-use psd::verdict::Verdict;
+use psd::verdict::{Bound, Verdict};
 
 const IMPACT_COLUMNS: &str = "step,time_s,wall_time_s,state,command_m,computed_m,displacement_m,velocity_m_per_s,acceleration_m_per_s2,\
 restoring_force_n,contact_force_n,striker_displacement_m,striker_velocity_m_per_s,tangent_stiffness_n_per_m,indentation_m,\
@@ -306,7 +306,7 @@ fn the_console_aligns_requirements_and_colours_only_when_asked() {
     insta::assert_snapshot!(plain, @r"
     PASS  Simply supported beam, midspan impact  (rig `simulated`: a simulation)
       pass  stays in travel  0.15735 ± 0.00040 m  ≤ 0.17 m  margin 0.0126 m
-      pass  energy closes    < 1 × 10⁻¹²          ≤ 0.01    margin 0.0100
+      pass  energy closes    0 %                  ≤ 1 %     margin 1.00 %
       decision rule: simple acceptance; ± is U = 2u
       note: Parameter impact_speed was set to 1 m/s for this run.
       run 0123456789abcdef
@@ -347,6 +347,31 @@ fn figures_are_pictures_at_192_dpi_with_something_on_them() {
 }
 
 #[test]
+fn a_failed_requirement_is_named_with_its_distance_to_the_limit() {
+    let mut finished = finished();
+    let requirement = &mut finished.assessment.requirements[0];
+    requirement.verdict = Verdict::Fail;
+    let condition = &mut requirement.conditions[0];
+    condition.verdict = Verdict::Fail;
+    condition.bound = Some(Bound::Compare {
+        comparison: Comparison::LessEqual,
+        limit: 0.15,
+    });
+    condition.margin = condition.value.map(|value| 0.15 - value);
+    finished.assessment.verdict = Verdict::Fail;
+    let files = files(&finished);
+    let html = text(&files, "report.html").replace('\u{a0}', " ");
+    for words in [
+        "SIMULATION: 1 of 2 requirements not met",
+        "Not met: stays in travel.",
+        // 0.15735 m − 0.15 m.
+        "outside the limit by 0.0073",
+    ] {
+        assert!(html.contains(words), "{words}");
+    }
+}
+
+#[test]
 fn a_run_stopped_early_still_leaves_a_whole_folder() {
     let mut finished = finished();
     finished.record.procedures.truncate(3);
@@ -379,7 +404,14 @@ fn a_run_stopped_early_still_leaves_a_whole_folder() {
     let html = text(&files, "report.html");
     assert!(
         html.contains("SIMULATION: stopped before its end")
-            && html.contains("The run was stopped: force 12.1 kN is outside its limit.")
+            && html.contains("Reason: force 12.1 kN is outside its limit.")
+            && html.contains("The run was stopped.")
+    );
+    let reason = "force 12.1 kN is outside its limit";
+    assert_eq!(
+        html.matches(reason).count(),
+        1,
+        "the reason is printed once"
     );
     assert!(html.contains("Procedure hit did not run to its end."));
     assert!(html.contains("the result max displacement does not exist in this run"));

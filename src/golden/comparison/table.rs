@@ -1,9 +1,10 @@
 //! Results as rows of text, for the terminal and as CSV. In: a comparison. Out: cells; readable units on the terminal, SI in the CSV.
 
 use super::{Cell, Comparison, Difference, Row, Spread};
+use crate::schema::{printed_unit, readable_result};
 use crate::text::sanitize::cell;
 use crate::units::Dimension;
-use crate::units::display::{join, minus, readable, readable_beside, si_unit, significant, unit};
+use crate::units::display::{digits, is_rounding, join, minus, si_unit, significant};
 
 /// The titles of the results that all runs have, and of those that only some have.
 pub const TITLES: [&str; 2] = [
@@ -26,26 +27,27 @@ pub fn heads(runs: usize) -> &'static [&'static str] {
 pub fn cells(row: &Row) -> Vec<String> {
     let values = || row.cells.iter().flatten().filter_map(|cell| cell.value);
     let largest = values().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let (unit, factor) = printed_unit(&row.name, largest, row.dimension);
     let mut cells: Vec<String> = row
         .cells
         .iter()
-        .map(|cell| value(*cell, largest, row.dimension))
+        .map(|cell| value(*cell, &unit, factor, row.dimension))
         .collect();
     if row.cells.len() == 2 {
         cells.extend(Difference::of(row).map_or_else(
             || vec![String::new(); 3],
-            |difference| differs(difference, largest, row.dimension),
+            |difference| differs(difference, &unit, factor, row),
         ));
     } else {
         cells.extend(Spread::of(row).map_or_else(
             || vec![String::new(); 4],
-            |spread| spreads(spread, largest, row.dimension),
+            |spread| spreads(spread, &unit, factor, row),
         ));
     }
     cells
 }
 
-fn value(cell: Option<Cell>, largest: f64, dimension: Dimension) -> String {
+fn value(cell: Option<Cell>, unit: &str, factor: f64, dimension: Dimension) -> String {
     match cell {
         None => String::new(),
         Some(Cell { value: None, .. }) => "no value".to_owned(),
@@ -53,10 +55,9 @@ fn value(cell: Option<Cell>, largest: f64, dimension: Dimension) -> String {
             value: Some(value),
             u,
         }) => {
-            let Some(u) = u.filter(|u| *u > 0.0) else {
-                return readable_beside(value, largest, dimension);
+            let Some(u) = u.filter(|u| !is_rounding(*u, dimension)) else {
+                return join(&digits(value, factor, dimension), unit);
             };
-            let (unit, factor) = unit(largest, dimension);
             // Both have the decimals of the second digit of the uncertainty; ± is used for U only.
             let decimals = (1.0 - (u / factor).log10().floor()).clamp(0.0, 9.0);
             #[expect(
@@ -71,23 +72,22 @@ fn value(cell: Option<Cell>, largest: f64, dimension: Dimension) -> String {
                     value / factor,
                     u / factor
                 )),
-                &unit,
+                unit,
             )
         }
     }
 }
 
 /// In the unit of the values; if that gives only zeros, in a separate unit.
-fn differs(difference: Difference, largest: f64, dimension: Dimension) -> Vec<String> {
+fn differs(difference: Difference, unit: &str, factor: f64, row: &Row) -> Vec<String> {
     let absolute = if difference.absolute == 0.0 {
         "0".to_owned()
     } else {
-        let beside = if (difference.absolute / unit(largest, dimension).1).abs() >= 1e-3 {
-            largest
+        let (unit, factor) = if (difference.absolute / factor).abs() >= 1e-3 {
+            (unit.to_owned(), factor)
         } else {
-            difference.absolute
+            printed_unit(&row.name, difference.absolute, row.dimension)
         };
-        let (unit, factor) = unit(beside, dimension);
         join(&signed(difference.absolute / factor), &unit)
     };
     let relative = difference.relative.map_or_else(String::new, percent);
@@ -100,12 +100,12 @@ fn differs(difference: Difference, largest: f64, dimension: Dimension) -> Vec<St
     ]
 }
 
-fn spreads(spread: Spread, largest: f64, dimension: Dimension) -> Vec<String> {
+fn spreads(spread: Spread, unit: &str, factor: f64, row: &Row) -> Vec<String> {
     let deviation = spread.deviation.map_or_else(String::new, |deviation| {
         if deviation == 0.0 {
             "0".to_owned()
         } else {
-            readable(deviation, dimension)
+            readable_result(&row.name, deviation, row.dimension)
         }
     });
     let share = spread
@@ -117,7 +117,7 @@ fn spreads(spread: Spread, largest: f64, dimension: Dimension) -> Vec<String> {
     });
     vec![
         spread.count.to_string(),
-        readable_beside(spread.mean, largest, dimension),
+        join(&digits(spread.mean, factor, row.dimension), unit),
         deviation,
         share,
     ]

@@ -49,11 +49,9 @@ pub enum FrameError {
     Mass(NotPositiveDefinite),
     #[error("mass, damping and stiffness over a step are {0}")]
     Step(NotPositiveDefinite),
-    #[error(
-        "storeys are followed by their own tangents only where the stiffness is that of a shear building"
-    )]
+    #[error("the tangents of storeys require the stiffness matrix of a shear building")]
     NoStoreys,
-    #[error("a step of {0} s is none")]
+    #[error("invalid time step of {0} s")]
     TimeStep(f64),
 }
 

@@ -37,7 +37,7 @@ pub enum DampingError {
     #[error("the two modes of Rayleigh damping have the same period")]
     OneFrequency,
     /// It would feed a mode between or beyond the two: a or b is negative.
-    #[error("these ratios would take a negative damping of some mode")]
+    #[error("these ratios give a mode negative damping")]
     Negative,
 }
 

@@ -28,7 +28,9 @@ pub enum InputError {
     NoInputs,
     #[error("a table of measurements has at least one row and one column")]
     EmptyTable(usize),
-    #[error("row {row} has not as many values as the first one, or one that is not finite")]
+    #[error(
+        "row {row} differs from the first row in its number of values, or has a value that is not finite"
+    )]
     DefectiveRow { source_at: usize, row: usize },
     #[error("the rows of a table are drawn together and cannot be correlated with another input")]
     CorrelatedTable(usize),

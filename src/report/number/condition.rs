@@ -1,49 +1,38 @@
 //! Value, bound, margin and guard band of a condition, as a report prints them. In: the outcome of a condition. Out: strings.
 
-use super::uncertain::{decimals_of, parts, plus_minus, power_of, tens, with_uncertainty};
-use super::{join, join_typeset, text};
+use super::join;
+use super::uncertain::{decimals_of, joined, parts_in, power_of, tens, with_standard};
 use crate::plan::Comparison;
-use crate::uncertainty::MeasurementUncertainty;
+#[cfg(test)]
 use crate::units::Dimension;
-use crate::units::display::{minus, significant, trimmed, unit};
+use crate::units::display::{is_rounding, minus, significant, trimmed, unit};
 use crate::verdict::{Bound, ConditionOutcome};
 
 /// The value of a condition with its expanded uncertainty U, in percent if the plan specifies percent; with u in parentheses if its
 /// budget gives no U.
 pub(in crate::report) fn value(condition: &ConditionOutcome) -> Option<String> {
     let value = condition.value?;
-    let (scale, percent) = if in_percent(condition) {
-        (100.0, "\u{a0}%")
-    } else {
-        (1.0, "")
-    };
     let known = condition
         .measurement_uncertainty()
-        .filter(|known| known.standard > 0.0);
-    let known = known.map(|known| MeasurementUncertainty {
-        standard: scale * known.standard,
-        ..known
-    });
-    if let (Some(known), None) = (known, condition.conforms) {
-        return Some(
-            with_uncertainty(scale * value, Some(known.standard), condition.dimension) + percent,
-        );
-    }
-    let parts = parts(scale * value, known, condition.dimension);
-    Some(
-        match parts.expanded {
-            Some(expanded) => join_typeset(&plus_minus(&parts.value, &expanded), &parts.unit),
-            None => text(scale * value, condition.dimension),
-        } + percent,
-    )
+        .filter(|known| !is_rounding(known.standard, condition.dimension));
+    let (unit, factor) = if condition.percent {
+        ("%".to_owned(), 0.01)
+    } else {
+        unit(value, condition.dimension)
+    };
+    Some(match (known, condition.conforms) {
+        (Some(known), None) => {
+            with_standard(value, known.standard, &unit, factor, condition.dimension)
+        }
+        _ => joined(parts_in(&unit, factor, value, known, condition.dimension)),
+    })
 }
 
 /// The bound of a condition as mathematics: `≤ 8.5 mm`, `8.5 … 11.5 J`, `< 1 %`.
 pub(crate) fn bound(condition: &ConditionOutcome) -> String {
     /// Digits of a computed bound.
     const DIGITS: usize = 5;
-    let percent = in_percent(condition);
-    let (scale, percent) = if percent {
+    let (scale, percent) = if condition.percent {
         (100.0, "\u{a0}%")
     } else {
         (1.0, "")
@@ -129,7 +118,7 @@ pub(in crate::report) fn guard_band(condition: &ConditionOutcome) -> Option<Stri
 }
 
 fn distance(distance: f64, digits: usize, condition: &ConditionOutcome) -> String {
-    let (scale, percent) = if in_percent(condition) {
+    let (scale, percent) = if condition.percent {
         (100.0, "\u{a0}%")
     } else {
         (1.0, "")
@@ -158,12 +147,6 @@ fn rounded(value: f64, digits: usize) -> String {
     }
 }
 
-/// Whether the plan wrote a plain number as a percentage.
-fn in_percent(condition: &ConditionOutcome) -> bool {
-    let tolerance_only = matches!(condition.bound, Some(Bound::Within { .. }));
-    condition.dimension == Dimension::NUMBER && condition.text.contains('%') && !tolerance_only
-}
-
 /// The probability of conformity, as printed: `39 %`, `> 99.9 %`.
 pub(in crate::report) fn probability(fraction: f64) -> String {
     match 100.0 * fraction {
@@ -175,7 +158,7 @@ pub(in crate::report) fn probability(fraction: f64) -> String {
 }
 
 /// The printed sign of a comparison.
-const fn comparison_sign(comparison: Comparison) -> &'static str {
+pub(crate) const fn comparison_sign(comparison: Comparison) -> &'static str {
     match comparison {
         Comparison::Less => "<",
         Comparison::LessEqual => "≤",
@@ -198,6 +181,7 @@ mod tests {
             dimension,
             value: Some(value),
             uncertainty: None,
+            percent: text.ends_with('%'),
             degrees: f64::INFINITY,
             bound: Some(bound),
             margin: Some(bound.margin(value)),

@@ -4,14 +4,14 @@
 mod condition;
 mod uncertain;
 
-pub(crate) use condition::bound;
+pub(crate) use condition::{bound, comparison_sign};
 pub(super) use condition::{guard_band, margin, probability, value};
 pub(crate) use uncertain::with_uncertainty;
-pub(super) use uncertain::{parts, plus_minus, with_expanded};
+pub(super) use uncertain::{of_result, parts_of_result, plus_minus, with_expanded};
 
 use crate::units::Dimension;
 use crate::units::display;
-use crate::units::display::{minus, unit};
+use crate::units::display::{digits, minus, unit};
 
 /// A value in its readable unit: `7.922 mm`, `−2.000 kN`, `20` for a count.
 pub(crate) fn text(value: f64, dimension: Dimension) -> String {
@@ -83,6 +83,11 @@ fn join_typeset(number: &str, unit: &str) -> String {
     }
 }
 
+/// A fraction as a percentage to four significant digits: `0.005079 %`.
+pub(crate) fn small_percent(fraction: f64) -> String {
+    join(&digits(fraction, 0.01, Dimension::NUMBER), "%")
+}
+
 /// A fraction as a percentage to five digits.
 pub(crate) fn percent(fraction: f64) -> String {
     part_of(100.0 * fraction, 100.0, 5, Dimension::NUMBER) + "\u{a0}%"
@@ -109,8 +114,8 @@ mod tests {
         );
         assert_eq!(part_of(0.0, 0.0, 5, Dimension::ENERGY), "0.000\u{a0}J");
         assert_eq!(
-            parts(-0.000_174, None, Dimension::NUMBER).value,
-            "−1.740 × 10⁻⁴"
+            uncertain::parts(-0.000_017_4, None, Dimension::NUMBER).value,
+            "−1.740 × 10⁻⁵"
         );
     }
 }

@@ -2,9 +2,11 @@
 //! strings.
 
 use super::{join_typeset, text, without_sign_of_zero};
+use crate::schema::printed_unit;
+use crate::schema::procedures::stiffness_ramp::R_SQUARED;
 use crate::uncertainty::MeasurementUncertainty;
 use crate::units::Dimension;
-use crate::units::display::{digits, minus, significant, typeset, unit};
+use crate::units::display::{digits, is_rounding, minus, significant, typeset, unit};
 
 /// A number and its uncertainties in one unit: value and U to the second digit of U, u to its own (JCGM 100:2008, 7.2.6).
 pub(in crate::report) struct Parts {
@@ -24,17 +26,41 @@ pub(in crate::report) fn parts(
     dimension: Dimension,
 ) -> Parts {
     let (unit, factor) = unit(value, dimension);
-    let set = typeset(&unit);
-    let Some(known) = known.filter(|known| known.standard.is_finite()) else {
-        // A power of ten instead of a row of zeros.
-        let small = value != 0.0 && (value / factor).abs() < 1e-3;
-        let value = if small {
-            minus(&format!("{:.3e}", value / factor))
-        } else {
-            digits(value, factor, dimension)
-        };
+    parts_in(&unit, factor, value, known, dimension)
+}
+
+/// The same for a result: R² to its nines, a fraction in percent.
+pub(in crate::report) fn parts_of_result(
+    name: &str,
+    value: f64,
+    known: Option<MeasurementUncertainty>,
+    dimension: Dimension,
+) -> Parts {
+    // The number of digits of R² depends on the number of nines.
+    if name == R_SQUARED.name {
         return Parts {
-            value,
+            value: format!("{value:.6}"),
+            standard: None,
+            expanded: None,
+            unit: String::new(),
+        };
+    }
+    let (unit, factor) = printed_unit(name, value, dimension);
+    parts_in(&unit, factor, value, known, dimension)
+}
+
+/// The same in this unit.
+pub(super) fn parts_in(
+    unit: &str,
+    factor: f64,
+    value: f64,
+    known: Option<MeasurementUncertainty>,
+    dimension: Dimension,
+) -> Parts {
+    let set = typeset(unit);
+    let Some(known) = known.filter(|known| known.standard.is_finite()) else {
+        return Parts {
+            value: digits(value, factor, dimension),
             standard: None,
             expanded: None,
             unit: set,
@@ -102,10 +128,23 @@ pub(in crate::report) fn with_expanded(
     known: MeasurementUncertainty,
     dimension: Dimension,
 ) -> String {
-    let parts = parts(value, Some(known), dimension);
+    joined(parts(value, Some(known), dimension))
+}
+
+/// A result with its expanded uncertainty if it has one: `7.88 ± 0.32 mm`, `−0.01693 %`.
+pub(in crate::report) fn of_result(
+    name: &str,
+    value: f64,
+    known: Option<MeasurementUncertainty>,
+    dimension: Dimension,
+) -> String {
+    joined(parts_of_result(name, value, known, dimension))
+}
+
+pub(super) fn joined(parts: Parts) -> String {
     match parts.expanded {
         Some(expanded) => join_typeset(&plus_minus(&parts.value, &expanded), &parts.unit),
-        None => text(value, dimension),
+        None => join_typeset(&parts.value, &parts.unit),
     }
 }
 
@@ -116,10 +155,22 @@ pub(crate) fn with_uncertainty(
     uncertainty: Option<f64>,
     dimension: Dimension,
 ) -> String {
-    let Some(uncertainty) = uncertainty.filter(|u| u.is_finite() && *u > 0.0) else {
+    let Some(uncertainty) = uncertainty.filter(|u| u.is_finite() && !is_rounding(*u, dimension))
+    else {
         return text(value, dimension);
     };
     let (unit, factor) = unit(value, dimension);
+    with_standard(value, uncertainty, &unit, factor, dimension)
+}
+
+/// The same in this unit.
+pub(super) fn with_standard(
+    value: f64,
+    uncertainty: f64,
+    unit: &str,
+    factor: f64,
+    dimension: Dimension,
+) -> String {
     let (scaled, uncertainty) = (value / factor, uncertainty / factor);
     let power = power_of(scaled.abs().max(uncertainty));
     let by = 10.0_f64.powi(power);
@@ -134,7 +185,7 @@ pub(crate) fn with_uncertainty(
             minus(&significant(uncertainty, 2))
         ),
     };
-    join_typeset(&number, &typeset(&unit))
+    join_typeset(&number, &typeset(unit))
 }
 
 /// `1.70(0.23) × 10⁻⁷`

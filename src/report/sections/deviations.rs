@@ -1,6 +1,7 @@
 //! Deviations from the plan on the first page, observations on the numbers on the second, the notes of the run in an annex. In: a
 //! run. Out: blocks.
 
+use super::results::budget_table::Scope;
 use super::{Source, capitalised, with_spaces};
 use crate::plan::formula::{Part, ProcedureId, ResultReference};
 use crate::procedures;
@@ -14,7 +15,7 @@ use crate::uncertainty::measurement_uncertainty;
 
 /// Every deviation. A simulation without any has no such section.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
-    let mut found = deviations::of_run(source.run);
+    let mut found = deviations::of_run(source.run, false);
     // A stated “none” must not precede a deviation, and without any it states what is printed anyway.
     found.retain(|text| {
         !text
@@ -65,7 +66,11 @@ fn not_distinct(run: &Run<'_>) -> Vec<String> {
         let value = procedure.number(name)?;
         let u = measurement_uncertainty(&result.contributions_of(reference), run.record)?;
         (value.abs() < u.expanded()).then(|| {
-            let value = number::with_expanded(value, u, result.dimension);
+            let value = if Scope::of(run) == Scope::PartialReal {
+                number::with_uncertainty(value, Some(u.standard), result.dimension)
+            } else {
+                number::with_expanded(value, u, result.dimension)
+            };
             wording::not_distinct(&procedure.name, with_spaces(name), value)
         })
     };

@@ -10,10 +10,10 @@ use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::report::run::Run;
 use crate::report::wording::{common, headline as wording};
-use crate::schema::procedures::stiffness_ramp::R_SQUARED;
 use crate::uncertainty::{
     MeasurementUncertainty, measurement_uncertainties, measurement_uncertainty,
 };
+use crate::units::display::is_rounding;
 
 /// Headline results of a plan that names none.
 const MOST: usize = 6;
@@ -195,16 +195,17 @@ fn row(run: &Run<'_>, chosen: &ReadResult) -> Option<Row> {
             (values.get(entry).copied(), known, entry)
         }
     };
-    let known = known.filter(|known: &MeasurementUncertainty| known.standard > 0.0);
+    let known = known
+        .filter(|known: &MeasurementUncertainty| !is_rounding(known.standard, result.dimension));
     let partial = Scope::of(run) == Scope::PartialReal;
     let text: Text = match (value, known) {
         (None, _) => return None,
-        (Some(value), _) if result.name == R_SQUARED.name => format!("{value:.6}").into(),
         (Some(value), Some(known)) if partial => {
             number::with_uncertainty(value, Some(known.standard), result.dimension).into()
         }
-        (Some(value), Some(known)) => number::with_expanded(value, known, result.dimension).into(),
-        (Some(value), None) => number::text(value, result.dimension).into(),
+        (Some(value), known) => {
+            number::of_result(result.name, value, known, result.dimension).into()
+        }
     };
     let marked = known.is_some() && !budget_table::is_reliable(result, entry);
     let mark = if marked { budget_table::MARK } else { "" };

@@ -1,15 +1,11 @@
 //! The content of a test report, structured after ISO/IEC 17025, 7.8. In: a run, its drawn figures, the digests of its tables.
 //! Out: a [`Document`], built once for every output format. It knows no HTML and no PDF.
 
-mod amendment;
 mod conditions;
 mod deviations;
 mod equipment;
 mod figures;
-mod frame;
 mod headline;
-mod opinions;
-mod photos;
 mod plan;
 mod prediction;
 mod provenance;
@@ -17,7 +13,6 @@ mod requirements;
 pub(crate) mod results;
 mod statements;
 mod title_page;
-mod validation;
 
 use super::document::{Block, Document, Text};
 use super::figures::Drawn;
@@ -32,7 +27,7 @@ const SECTIONS: &[(Division, &[Section])] = &[
     (
         Division::FirstPage,
         &[
-            amendment::section,
+            title_page::amendments,
             requirements::section,
             deviations::section,
             statements::signatures,
@@ -46,7 +41,7 @@ const SECTIONS: &[(Division, &[Section])] = &[
             figures::headline,
             deviations::observations,
             conditions::summary,
-            opinions::section,
+            statements::opinions,
             statements::section,
         ],
     ),
@@ -57,7 +52,7 @@ const SECTIONS: &[(Division, &[Section])] = &[
     (Division::Annex(Annex::Budgets), &[results::budgets]),
     (
         Division::Annex(Annex::Figures),
-        &[figures::section, photos::section],
+        &[figures::section, figures::photographs],
     ),
     (
         Division::Annex(Annex::Equipment),
@@ -65,7 +60,7 @@ const SECTIONS: &[(Division, &[Section])] = &[
     ),
     (
         Division::Annex(Annex::Provenance),
-        &[provenance::section, validation::section],
+        &[provenance::section, provenance::validation],
     ),
     (Division::Annex(Annex::Plan), &[plan::section]),
 ];
@@ -103,7 +98,7 @@ pub(super) fn document(run: &Run<'_>, figures: &[Drawn], tables: &[FileDigest]) 
         kind: title_page::kind(run),
         title: title_page::title(run).into(),
         logo: title_page::logo(run),
-        replaces: amendment::replaced_report(run),
+        replaces: title_page::replaced_report(run),
         id: run.provenance.report_id().to_owned(),
         date: title_page::date(run),
         dated: title_page::dated(run),

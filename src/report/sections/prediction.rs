@@ -52,7 +52,7 @@ fn limit(limit: &PredictedLimit) -> Vec<Text> {
         .into_iter()
         .find(|(name, ..)| *name == limit.quantity);
     let dimension = known.map_or(Dimension::NUMBER, |(.., dimension)| dimension);
-    let value = |value: f64| number::text(value, dimension);
+    let value = |value: f64| number::of_result(&limit.quantity, value, None, dimension);
     let allowed = match (limit.low, limit.high) {
         (Some(low), Some(high)) => wording::range(value(low), value(high)),
         (Some(low), None) => format!("≥ {}", value(low)),

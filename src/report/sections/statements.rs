@@ -1,10 +1,19 @@
-//! Statements on the use of the report, and the lines for signatures. In: a run. Out: blocks.
+//! Opinions of the issuer, statements on the use of the report, and the lines for signatures. In: a run. Out: blocks.
 
 use super::Source;
 use crate::report::document::{Block, Text};
 use crate::report::status::particulars::stated;
-use crate::report::wording::statements as wording;
-use crate::schema::plan_block::SAMPLING;
+use crate::report::wording::{opinions as opinions_wording, statements as wording};
+use crate::schema::plan_block::{OPINIONS, SAMPLING};
+
+/// Opinions and interpretations of the issuer, marked as such (ISO/IEC 17025, 7.8.7). Returns nothing if none is stated.
+pub(super) fn opinions(source: &Source<'_>, body: &mut Vec<Block>) {
+    if let Some(text) = stated(source.run, OPINIONS.name) {
+        body.push(Block::section(opinions_wording::TITLE));
+        body.push(Block::note(opinions_wording::NOT_RESULTS));
+        body.push(Block::paragraph(text));
+    }
+}
 
 /// The statements; those on the items tested only if items were tested.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {

@@ -12,8 +12,8 @@ use crate::schema::plan_block::DEVIATIONS;
 use crate::units::Dimension;
 use crate::units::display::trimmed;
 
-/// Every deviation and interruption of the run.
-pub(in crate::report) fn of_run(run: &Run<'_>) -> Vec<String> {
+/// Every deviation and interruption of the run. The first page of a report has the reason why the run ended above its deviations.
+pub(in crate::report) fn of_run(run: &Run<'_>, with_reason: bool) -> Vec<String> {
     let stated = run
         .plan
         .particulars
@@ -27,14 +27,21 @@ pub(in crate::report) fn of_run(run: &Run<'_>) -> Vec<String> {
     if let Some(text) = check_run::performed_part(run.plan) {
         found.insert(0, wording::check_run(text));
     }
+    let colon = |reason: &str| {
+        if with_reason {
+            format!(": {reason}")
+        } else {
+            String::new()
+        }
+    };
     match &run.record.outcome {
         Outcome::Completed => {}
-        Outcome::Aborted { reason } => found.push(wording::stopped(reason)),
+        Outcome::Aborted { reason } => found.push(wording::stopped(colon(reason))),
         Outcome::NotReleased { reason } => {
-            found.push(wording::not_released(reason));
+            found.push(wording::not_released(colon(reason)));
         }
-        Outcome::Blocked { reason } => found.push(wording::blocked(reason)),
-        Outcome::Faulted { reason } => found.push(wording::rig_failed(reason)),
+        Outcome::Blocked { reason } => found.push(wording::blocked(colon(reason))),
+        Outcome::Faulted { reason } => found.push(wording::rig_failed(colon(reason))),
     }
     // The event that ended the run repeats the reason of the outcome.
     let ending = match &run.record.outcome {

@@ -106,7 +106,7 @@ impl Summary {
                     })
                     .collect(),
             ),
-            deviations: deviations::of_run(run),
+            deviations: deviations::of_run(run, true),
             issues: provenance.issues.as_ref().map(issues),
         }
     }

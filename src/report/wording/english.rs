@@ -58,6 +58,8 @@ wording! {
             the plan, and no requirement is assessed.";
         COMPLETED = "completed";
         REQUIREMENT_MET = "requirement met";
+        REQUIREMENT_NOT_MET = "requirement not met";
+        THE_REQUIREMENT_IS_NOT_MET = "The requirement is not met.";
         INCONCLUSIVE = "inconclusive";
         STOPPED = "stopped before its end";
         FAULT = "stopped by a fault of the rig";
@@ -70,6 +72,9 @@ wording! {
         fn undecided(count, total) = "{count} of {total} requirements are inconclusive.";
         fn not_met(count, total) = "{count} of {total} requirements are not met.";
         fn reason(reason) = " Reason: {reason}.";
+        fn failed(names) = "Not met: {names}.";
+        fn inconclusive(names) = "Inconclusive: {names}.";
+        fn more(count) = "; and {count} more";
     }
 
     mod status {
@@ -115,6 +120,9 @@ wording! {
         PROBABILITY = "P is the probability that the item conforms (JCGM 106): a pass is wrong with probability 1 − P, \
             a fail with probability P. U and P cover the declared uncertainty contributions only.";
         WIDER_THAN_TOLERANCE = "U exceeds the tolerance";
+        fn outside(distance) = "outside the limit by {distance}";
+        fn inside(distance) = "inside the limit by {distance}";
+        fn largest_part(input, percent) = "largest part of U: {input} ({percent:.0}\u{a0}% of u²)";
         fn of_studies(names) = "Not decided by one run, but by a study of the plan: {names}.";
         fn guarded_rule(equation) = "Decision rule: guarded acceptance (ILAC-G8:09/2019), guard band w = {equation} of \
             the distance between value and limit. Pass: inside the limit by at least w. Fail: outside by more than \
@@ -171,10 +179,11 @@ wording! {
         fn parameter_set(name, value) = "Parameter {name} was set to {value} for this run.";
         fn check_run(text) = "Check run: {text}.";
         fn not_distinct(procedure, result, value) = "In {procedure}: {result} {value} is not distinguishable from zero.";
-        fn stopped(reason) = "The run was stopped: {reason}.";
-        fn not_released(reason) = "The rig was not released: {reason}.";
-        fn blocked(reason) = "The run could not continue: {reason}.";
-        fn rig_failed(reason) = "The rig failed: {reason}.";
+        /// `reason` is empty, or begins with a colon.
+        fn stopped(reason) = "The run was stopped{reason}.";
+        fn not_released(reason) = "The rig was not released{reason}.";
+        fn blocked(reason) = "The run could not continue{reason}.";
+        fn rig_failed(reason) = "The rig failed{reason}.";
         fn zero_drift(reason) = "Zero drift: {reason}; no statement is made on results that depend on it.";
         fn not_run(procedure) = "Procedure {procedure} was not run.";
         fn not_to_its_end(procedure) = "Procedure {procedure} did not run to its end.";
@@ -251,8 +260,10 @@ wording! {
     }
 
     mod line_fit {
-        fn fitted(line, slope, intercept, r_squared) = "Least-squares line {line}: {slope}, {intercept} (standard error in \
-            parentheses), R² = {r_squared:.6}.";
+        /// `errors` is empty, or begins with a space.
+        fn fitted(line, slope, intercept, errors, r_squared) = "Least-squares line {line}: {slope}, {intercept}{errors}, R² = \
+            {r_squared:.6}.";
+        STANDARD_ERRORS = " (standard error in parentheses)";
     }
 
     mod actuators {
@@ -261,10 +272,10 @@ wording! {
         fn continuous(time_scale) = "Continuous motion at {time_scale} times the simulated time: the measured force \
             contains the damping of the specimen at that speed.";
         fn at_every_target(subject) = "{subject} reached every target.";
-        fn tracking(peak, nrms, energy) = "Tracking: largest error {peak}, NRMS error {nrms}\u{a0}%{energy}.";
+        fn tracking(peak, nrms, energy) = "Tracking: largest error {peak}, NRMS error {nrms}{energy}.";
         PUT_IN = "added to the test";
         REMOVED = "removed from the test";
-        fn energy(direction, percent) = ", tracking-error energy {percent}\u{a0}% of the input energy, {direction}";
+        fn energy(direction, percent) = ", tracking-error energy {percent} of the input energy, {direction}";
         THE_ACTUATORS = "The actuators";
         COLUMNS = ["Actuator of floor", "Largest error", "NRMS error",
             "Tracking-error energy / input (− added)", "Tracking indicator at the end"];

@@ -6,7 +6,10 @@ phrases! {
     WATERMARK = "SIMULATION";
     END = "— End of report ";
     SIMULATED = "Every run of this study is simulated. It describes the model with scattered inputs, not a specimen.";
-    fn decided(met, not_met, undecided) = "Requirements on the study: {met} met, {not_met} not met, {undecided} undecided.";
+    fn outcome(heading, outcome) = "{heading}: {outcome}";
+    fn undecided(count, total) = "{count} of {total} requirements undecided";
+    fn names_not_met(names) = "Not met: {names}. ";
+    fn names_undecided(names) = "Undecided: {names}. ";
     fn incomplete(runs, at_most) = "INCOMPLETE: {runs} of up to {at_most} runs. An incomplete study decides nothing.";
     fn curve(median, dispersion) = "Median θ = {median}, dispersion β = {dispersion}.";
     NO_CURVE = "No fragility curve fits.";
@@ -33,7 +36,7 @@ phrases! {
     fn level_intervals(confidence) = "The interval has a confidence of {confidence} (Student's t, of the replicates of the subset \
         simulation). The requirement is met or not met if the whole interval is on one side of the limit, otherwise undecided.";
     STATEMENTS = "Requirements on the study";
-    STATEMENT_COLUMNS = ["Requirement", "Statement", "Probability", "Interval"];
+    STATEMENT_COLUMNS = ["Requirement", "Probability", "Interval", "Limit", "Statement"];
     MET = "MET";
     NOT_MET = "NOT MET";
     UNDECIDED = "UNDECIDED";

@@ -2,9 +2,11 @@
 //! states what was decided; the rest shows from what.
 
 use crate::physics::study::probability::Decision;
+use crate::plan::Comparison;
 use crate::plan::study::Sampling;
 use crate::report::document::{Block, Column, Document, Style, Table, Text, Tone, Verdict};
-use crate::report::wording::{LABELS, study as wording};
+use crate::report::number::comparison_sign;
+use crate::report::wording::{LABELS, study as wording, verdict};
 use crate::study::answers::{Answers, StudiedAnswer};
 use crate::study::data_set::{Kind, Metadata, Stopping};
 
@@ -44,7 +46,7 @@ pub fn document(source: &Source<'_>) -> Document {
         missing_fields: Vec::new(),
         verdict: Verdict {
             tone: tone(answers),
-            heading: wording::HEADING.to_owned(),
+            heading: heading(answers),
             text: statement(metadata, answers),
         },
         notices: Vec::new(),
@@ -97,28 +99,48 @@ fn tone(answers: &Answers) -> Tone {
     }
 }
 
-fn statement(metadata: &Metadata, answers: &Answers) -> Text {
-    let count = |decision| {
-        let decided = answers.studied.iter().filter(|it| it.decision == decision);
-        decided.count()
+/// The worst decision is part of the heading.
+fn heading(answers: &Answers) -> String {
+    let total = answers.studied.len();
+    let count = |decision| named(answers, decision).len();
+    let outcome = match (count(Decision::NotMet), count(Decision::Undecided)) {
+        (0, 0) => return wording::HEADING.to_owned(),
+        (0, undecided) => wording::undecided(undecided, total),
+        (1, _) if total == 1 => verdict::REQUIREMENT_NOT_MET.to_owned(),
+        (not_met, _) => verdict::requirements_not_met(not_met, total),
     };
+    wording::outcome(wording::HEADING, outcome)
+}
+
+/// The labels of the requirements with this decision.
+fn named(answers: &Answers, decision: Decision) -> Vec<&str> {
+    let decided = answers.studied.iter().filter(|it| it.decision == decision);
+    decided.map(|it| it.label.as_str()).collect()
+}
+
+fn statement(metadata: &Metadata, answers: &Answers) -> Text {
     let mut text = Text::new();
     if !answers.complete {
         let words = wording::incomplete(answers.runs, answers.at_most);
         text = text.with(Style::Strong, words).and(" ");
     }
     let decided = if let Some(curve) = fragility::statement(metadata, answers) {
-        curve
+        curve + " "
     } else if answers.studied.is_empty() {
-        wording::NO_STUDIED.to_owned()
+        wording::NO_STUDIED.to_owned() + " "
     } else {
-        wording::decided(
-            count(Decision::Met),
-            count(Decision::NotMet),
-            count(Decision::Undecided),
-        )
+        let sentence = |decision, words: fn(String) -> String| {
+            let names = named(answers, decision).join("; ");
+            if names.is_empty() {
+                names
+            } else {
+                words(names)
+            }
+        };
+        sentence(Decision::NotMet, wording::names_not_met)
+            + &sentence(Decision::Undecided, wording::names_undecided)
     };
-    text.and(decided).and(" ").and(wording::SIMULATED)
+    text.and(decided).and(wording::SIMULATED)
 }
 
 /// The statements of the first page.
@@ -126,15 +148,21 @@ fn statements(source: &Source<'_>, body: &mut Vec<Block>) {
     let answers = source.answers;
     if !answers.studied.is_empty() {
         body.push(Block::section(wording::STATEMENTS));
-        let [requirement, statement, chance, interval] = wording::STATEMENT_COLUMNS;
+        let [requirement, chance, interval, limit, statement] = wording::STATEMENT_COLUMNS;
         body.push(Block::Table(Table {
             columns: vec![
                 Column::words(requirement, 1),
-                Column::short(statement),
                 Column::numbers(chance),
                 Column::numbers(interval),
+                Column::numbers(limit),
+                Column::short(statement),
             ],
-            rows: answers.studied.iter().map(statement_row).collect(),
+            rows: answers
+                .studied
+                .iter()
+                .zip(&source.metadata.studied)
+                .map(|(answer, studied)| statement_row(answer, studied.comparison))
+                .collect(),
         }));
         let confidence = percent(answers.confidence);
         if source.metadata.sampling == Sampling::Subset {
@@ -168,7 +196,7 @@ fn first_figure(source: &Source<'_>, body: &mut Vec<Block>) {
     body.extend(source.figures_of(|figure| figure.kind == shown).take(1));
 }
 
-fn statement_row(answer: &StudiedAnswer) -> Vec<Text> {
+fn statement_row(answer: &StudiedAnswer, comparison: Comparison) -> Vec<Text> {
     let (style, word) = match answer.decision {
         Decision::Met => (Style::Strong, wording::MET),
         Decision::NotMet => (Style::Fail, wording::NOT_MET),
@@ -177,8 +205,9 @@ fn statement_row(answer: &StudiedAnswer) -> Vec<Text> {
     let look = answer.look.map(wording::at_look).unwrap_or_default();
     vec![
         Text::from(answer.label.as_str()).line().code(&answer.text),
-        Text::new().with(style, word).soft(look),
         probability(answer.probability.as_ref()),
         range(answer.probability.as_ref()),
+        format!("{} {}", comparison_sign(comparison), percent(answer.limit)).into(),
+        Text::new().with(style, word).soft(look),
     ]
 }

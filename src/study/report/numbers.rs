@@ -3,6 +3,7 @@
 use super::figures::percent;
 use crate::report::document::Text;
 use crate::report::wording::study as wording;
+use crate::schema::{printed_unit, readable_result};
 use crate::study::answers::{Ends, Probability};
 use crate::units::{Dimension, display};
 
@@ -50,15 +51,20 @@ pub fn short_percent(fraction: f64) -> String {
 }
 
 /// A value and, below it, its interval in the same unit.
-pub fn with_interval(value: Option<f64>, interval: Ends, dimension: Dimension) -> Text {
+pub fn with_interval(
+    result: &str,
+    value: Option<f64>,
+    interval: Ends,
+    dimension: Dimension,
+) -> Text {
     let Some(value) = value else {
         return "–".into();
     };
-    let text = Text::from(display::readable(value, dimension));
+    let text = Text::from(readable_result(result, value, dimension));
     if interval == [None; 2] {
         return text;
     }
-    let (_, factor) = display::unit(value, dimension);
+    let (_, factor) = printed_unit(result, value, dimension);
     let end = |end: Option<f64>, unbounded: &str| {
         end.map_or_else(
             || unbounded.to_owned(),

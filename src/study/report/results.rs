@@ -6,9 +6,9 @@ use super::source::{DrawnFigure, Source};
 use crate::plan::study::Sampling;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::wording::study as wording;
+use crate::schema::readable_result;
 use crate::study::answers::{IndexAnswer, KEPT, RANKED, ResultAnswer, Sensitivity};
 use crate::study::data_set::Column as DataColumn;
-use crate::units::display;
 
 /// Mean, scatter and quantiles, with their figures.
 pub fn section(source: &Source<'_>, body: &mut Vec<Block>) {
@@ -53,14 +53,20 @@ fn row(answer: &ResultAnswer, column: &DataColumn) -> Vec<Text> {
         .mean_interval
         .map_or([None; 2], |ends| ends.map(Some));
     let sd = answer.standard_deviation;
-    let sd = sd.map_or_else(|| "–".to_owned(), |sd| display::readable(sd, dimension));
-    let mut cells = vec![name, with_interval(answer.mean, mean, dimension), sd.into()];
-    cells.extend(
-        answer
-            .quantiles
-            .iter()
-            .map(|quantile| with_interval(quantile.estimates[0], quantile.interval, dimension)),
+    let sd = sd.map_or_else(
+        || "–".to_owned(),
+        |sd| readable_result(&column.name, sd, dimension),
     );
+    let mean = with_interval(&column.name, answer.mean, mean, dimension);
+    let mut cells = vec![name, mean, sd.into()];
+    cells.extend(answer.quantiles.iter().map(|quantile| {
+        with_interval(
+            &column.name,
+            quantile.estimates[0],
+            quantile.interval,
+            dimension,
+        )
+    }));
     cells
 }
 

@@ -5,8 +5,8 @@ use super::numbers::{probability, range};
 use super::source::Source;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::wording::study as wording;
+use crate::schema::readable_result;
 use crate::study::answers::{RequirementAnswer, WorstRun};
-use crate::units::display;
 
 /// Requirements of the plan with their counts.
 pub fn requirements(source: &Source<'_>, body: &mut Vec<Block>) {
@@ -70,15 +70,16 @@ pub fn worst(source: &Source<'_>, body: &mut Vec<Block>) {
             continue;
         }
         let limited = source.metadata.requirements[index].limit;
-        let dimension = limited.map(|limit| source.metadata.results[limit.result].dimension);
+        let compared = limited.map(|limit| &source.metadata.results[limit.result]);
         let row = |run: &WorstRun| {
             let outcome = if run.outcome == "met" {
                 wording::MET
             } else {
                 wording::NOT_MET
             };
-            let value = run.value.zip(dimension);
-            let value = value.map(|(value, dimension)| display::readable(value, dimension));
+            let value = run.value.zip(compared);
+            let value =
+                value.map(|(value, column)| readable_result(&column.name, value, column.dimension));
             let settings = run
                 .settings
                 .iter()

@@ -120,7 +120,7 @@ fn tracking_that_changes_the_energy_holds_the_rig() {
     plan.rig.settle.band = 5e-3;
     let short = "after 2 moves: reach 80 %";
     let ended = run(&plan, short);
-    let stopped = matches!(&ended.record.outcome, Outcome::Aborted { reason } if reason.starts_with("tracking energy error 0.05"));
+    let stopped = matches!(&ended.record.outcome, Outcome::Aborted { reason } if reason.starts_with("tracking energy error 5."));
     assert!(stopped, "{}", ended.reason());
     let held = ended
         .log

@@ -584,6 +584,7 @@ fn assessment(largest: f64, error: f64) -> Assessment {
                 text: text.into(),
                 verdict: Verdict::Pass,
                 dimension,
+                percent: text.contains("energy_error"),
                 value: Some(value),
                 uncertainty,
                 degrees: f64::INFINITY,

@@ -3,15 +3,13 @@
 use super::without_code;
 use crate::source_text::SourceText;
 
-/// Folders whose strings reach no reader: numerics, and bytes of a protocol.
-const SILENT: &[&str] = &["physics", "emulator/firmware", "tests"];
+/// Folders whose strings reach no reader: the bytes of a protocol, and tests.
+const SILENT: &[&str] = &["emulator/firmware", "tests"];
 
 /// Whether no string of this file reaches a reader.
 pub(super) fn is_silent(file: &SourceText) -> bool {
     let is_test = file.path.ends_with("_tests.rs") || file.path.ends_with("testing.rs");
-    // The report prints the cases of the self-test.
-    let is_shown = file.is_in(&["physics/self_test"]);
-    is_test || file.is_test() || file.is_in(SILENT) && !is_shown
+    is_test || file.is_test() || file.is_in(SILENT)
 }
 
 /// The string literals of a source text, each with its line, without comments, tests, assertions and the reasons of lints.

@@ -9,7 +9,7 @@ use thiserror::Error;
 
 /// The matrix has a direction without stiffness; it shows at `row`, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("not positive definite: it shows at row {}", row + 1)]
+#[error("not positive definite, as row {} shows", row + 1)]
 pub struct NotPositiveDefinite {
     pub row: usize,
 }

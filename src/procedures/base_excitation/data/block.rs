@@ -37,7 +37,8 @@ pub(crate) const ENERGY_ERROR: ResultKind = ResultKind::new(
     "energy_error",
     Dimension::NUMBER,
     "residual of the energy balance relative to the input energy",
-);
+)
+.in_percent();
 
 pub(crate) const STEPS: ResultKind = ResultKind::count("steps", "number of steps");
 

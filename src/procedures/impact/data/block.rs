@@ -171,7 +171,8 @@ pub(crate) const ENERGY_ERROR: ResultKind = ResultKind::new(
     "energy_error",
     Dimension::NUMBER,
     "residual of the energy balance relative to the input energy",
-);
+)
+.in_percent();
 
 pub(crate) const TIME_STEP: ResultKind =
     ResultKind::new("time_step", Dimension::TIME, "time step of the run");

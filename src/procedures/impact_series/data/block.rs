@@ -164,7 +164,8 @@ pub(crate) const ENERGY_ERRORS: ResultKind = ResultKind::list(
     "energy_errors",
     Dimension::NUMBER,
     "residual of the energy balance of each impact relative to its input energy",
-);
+)
+.in_percent();
 
 pub(crate) const MAX_DRIFT: ResultKind = ResultKind::measured_list(
     "max_drift",

@@ -3,7 +3,7 @@
 
 use crate::physics::tracking::monitor::Tracking;
 use crate::plan::Mode;
-use crate::report::number;
+use crate::report::number::{self, small_percent};
 use crate::report::wording::actuators as wording;
 use crate::units::Dimension;
 
@@ -30,18 +30,17 @@ pub(crate) fn tracking_error(tracking: Tracking, energy: Option<f64>, subject: &
     if tracking.peak_error < ROUNDING {
         return wording::at_every_target(subject);
     }
-    let percent = |fraction: f64| number::text(100.0 * fraction, Dimension::NUMBER);
     let energy = energy.map_or_else(String::new, |energy| {
         let direction = if energy < 0.0 {
             wording::PUT_IN
         } else {
             wording::REMOVED
         };
-        wording::energy(direction, percent(energy.abs()))
+        wording::energy(direction, small_percent(energy.abs()))
     });
     wording::tracking(
         number::text(tracking.peak_error, Dimension::LENGTH),
-        percent(tracking.nrms_error),
+        small_percent(tracking.nrms_error),
         energy,
     )
 }

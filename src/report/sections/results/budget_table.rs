@@ -15,7 +15,7 @@ use crate::report::wording::budget as wording;
 use crate::schema::procedures::{impact, unload};
 use crate::uncertainty::MOST_DRAWS;
 use crate::units::Dimension;
-use crate::units::display::{minus, significant, typeset, unit};
+use crate::units::display::{is_rounding, minus, significant, typeset, unit};
 
 /// Lines with a smaller fraction of u² are printed together.
 const SMALL: f64 = 1e-3;
@@ -29,7 +29,10 @@ pub(super) fn section(run: &Run<'_>, body: &mut Vec<Block>) {
     for (index, procedure) in run.record.procedures.iter().enumerate() {
         let mut budgets = budgets(run, index, procedure);
         let requested = requested(run, index, &procedure.history);
-        budgets.retain(|budget| is_printed(budget, &requested));
+        budgets.retain(|budget| {
+            is_printed(budget, &requested)
+                && !is_rounding(budget.uncertainty, budget.result.dimension)
+        });
         if budgets.is_empty() {
             continue;
         }
@@ -120,7 +123,10 @@ fn requested(run: &Run<'_>, index: usize, history: &History) -> Vec<ReadResult> 
 }
 
 /// Whether the budget of a result is printed. If no entry of a list is named, that of its largest number is printed.
-fn is_printed(budget: &Budget<'_>, requested: &[ReadResult]) -> bool {
+pub(in crate::report::sections) fn is_printed(
+    budget: &Budget<'_>,
+    requested: &[ReadResult],
+) -> bool {
     let mut requested = requested
         .iter()
         .filter(|read| read.reference.name == budget.result.name);
@@ -233,7 +239,7 @@ fn rows(budget: &Budget<'_>, procedure: &ProcedureRecord, scope: Scope) -> Vec<V
             result.dimension,
         ))
     } else {
-        let parts = number::parts(*value, Some(*known), result.dimension);
+        let parts = number::parts_of_result(result.name, *value, Some(*known), result.dimension);
         let expanded = parts.expanded.unwrap_or_default();
         let degrees = if coverage_factor::differs_from_two(*known) {
             format!(", ν = {}", coverage_factor::degrees_text(*known))

@@ -23,10 +23,19 @@ pub(crate) fn fitted(
     intercept: &Coefficient,
     fit: LineFit,
 ) -> Block {
+    let slope = slope.with_error(fit.slope, fit.slope_error);
+    let intercept = intercept.with_error(fit.intercept, fit.intercept_error);
+    let has_errors = [&slope, &intercept].iter().any(|text| text.contains('('));
+    let errors = if has_errors {
+        wording::STANDARD_ERRORS
+    } else {
+        ""
+    };
     Block::note(wording::fitted(
         line,
-        slope.with_error(fit.slope, fit.slope_error),
-        intercept.with_error(fit.intercept, fit.intercept_error),
+        slope,
+        intercept,
+        errors,
         fit.r_squared,
     ))
 }

@@ -16,9 +16,9 @@ use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::report::run::Run;
 use crate::report::wording::{common, results as wording};
-use crate::schema::procedures::stiffness_ramp::R_SQUARED;
 use crate::uncertainty::{MeasurementUncertainty, measurement_uncertainty};
 use crate::units::Dimension;
+use crate::units::display::is_rounding;
 
 /// Every procedure that was run, in order, with the text of its method.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
@@ -97,7 +97,7 @@ fn table(run: &Run<'_>, index: usize, results: &[&NamedResult]) -> Block {
             part: Part::Value,
         };
         measurement_uncertainty(&result.contributions_of(reference), run.record)
-            .filter(|known| known.standard > 0.0)
+            .filter(|known| !is_rounding(known.standard, result.dimension))
             .filter(|_| matches!(result.value, ResultValue::Number { .. }))
     };
     let all: Vec<Option<MeasurementUncertainty>> =
@@ -152,16 +152,10 @@ fn factor(known: MeasurementUncertainty) -> Text {
 fn row(result: &NamedResult, known: Option<MeasurementUncertainty>) -> [Text; 5] {
     let none = || Text::from("");
     let [value, standard, expanded, unit] = match &result.value {
-        // The number of digits of R² depends on the number of nines.
-        ResultValue::Number {
-            value: Some(value), ..
-        } if result.name == R_SQUARED.name => {
-            [format!("{value:.6}").into(), none(), none(), none()]
-        }
         ResultValue::Number {
             value: Some(value), ..
         } => {
-            let parts = number::parts(*value, known, result.dimension);
+            let parts = number::parts_of_result(result.name, *value, known, result.dimension);
             [
                 parts.value.into(),
                 parts.standard.map_or_else(none, Text::from),
@@ -175,7 +169,7 @@ fn row(result: &NamedResult, known: Option<MeasurementUncertainty>) -> [Text; 5]
         ResultValue::List(values) => {
             let text = |value: &f64| {
                 if value.is_finite() {
-                    number::text(*value, result.dimension)
+                    number::of_result(result.name, *value, None, result.dimension)
                 } else {
                     wording::NONE.to_owned()
                 }

@@ -40,11 +40,18 @@ impl ReadResult {
 
 /// Every result that a requirement reads, in order.
 pub(crate) fn read_by_requirements(plan: &Plan) -> Vec<ReadResult> {
-    let mut read = Vec::new();
     plan.requirements
         .iter()
         .flat_map(|requirement| &requirement.conditions)
-        .flat_map(Condition::formulas)
+        .flat_map(read_by)
+        .collect()
+}
+
+/// Every result that a condition reads, in order.
+pub(crate) fn read_by(condition: &Condition) -> Vec<ReadResult> {
+    let mut read = Vec::new();
+    condition
+        .formulas()
         .for_each(|formula| collect(formula, None, &mut read));
     read
 }

@@ -60,10 +60,7 @@ pub(crate) fn table(procedure: &ProcedureRecord) -> Option<Block> {
     let fraction = |values: &[f64], floor: usize| -> Text {
         values
             .get(floor)
-            .map_or_else(
-                || "—".to_owned(),
-                |value| number::text(100.0 * value, Dimension::NUMBER) + "\u{a0}%",
-            )
+            .map_or_else(|| "—".to_owned(), |value| number::small_percent(*value))
             .into()
     };
     let [

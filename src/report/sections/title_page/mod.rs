@@ -1,9 +1,11 @@
 //! The top of the first page: title, particulars, verdict, notices and watermarks. In: a run. Out: parts of the document.
 
+mod amendment;
 mod particulars;
 mod verdict;
 mod watermarks;
 
+pub(super) use amendment::{amendments, replaced_report};
 pub(super) use particulars::{missing as missing_particulars, rows as particulars};
 pub(super) use verdict::verdict;
 pub(super) use watermarks::{notices, watermarks};

@@ -1,7 +1,7 @@
 //! The statement on the whole run. In: a run. Out: heading and sentence of the document.
 
 use crate::record::Outcome;
-use crate::report::document::{Tone, Verdict as Stated};
+use crate::report::document::{Text, Tone, Verdict as Stated};
 use crate::report::run::Run;
 use crate::report::wording::verdict as wording;
 use crate::run::check_run;
@@ -41,8 +41,40 @@ pub(in super::super) fn verdict(run: &Run<'_>) -> Stated {
     Stated {
         tone: tone(run, simulated || checked),
         heading,
-        text: (sentence + &reason).into(),
+        text: match unmet(run) {
+            names if names.is_empty() => (sentence + &reason).into(),
+            names => Text::from(sentence + &reason).line().and(names),
+        },
     }
+}
+
+/// The requirements that are not met, and those that are inconclusive, by their names. A run that was stopped has its reason instead.
+fn unmet(run: &Run<'_>) -> String {
+    /// Names of each kind.
+    const MOST: usize = 3;
+    if run.record.outcome != Outcome::Completed {
+        return String::new();
+    }
+    let named = |verdict: Verdict, sentence: fn(String) -> String| {
+        let requirements = run.assessment.requirements.iter();
+        let names: Vec<&str> = requirements
+            .filter(|requirement| requirement.verdict == verdict)
+            .map(|requirement| requirement.label.as_str())
+            .collect();
+        let more = match names.len().saturating_sub(MOST) {
+            0 => String::new(),
+            more => wording::more(more),
+        };
+        if names.is_empty() {
+            return String::new();
+        }
+        sentence(names[..names.len().min(MOST)].join("; ") + &more)
+    };
+    let failed = named(Verdict::Fail, wording::failed);
+    let inconclusive = named(Verdict::Inconclusive, wording::inconclusive);
+    let both = [failed, inconclusive];
+    let found: Vec<String> = both.into_iter().filter(|text| !text.is_empty()).collect();
+    found.join(" ")
 }
 
 /// Only the test of a specimen is green.
@@ -74,10 +106,10 @@ fn outcome(run: &Run<'_>) -> String {
             (_, 1) => wording::REQUIREMENT_MET.to_owned(),
             (_, total) => wording::requirements_met(total),
         },
-        Verdict::Fail => {
-            let (found, total) = count(run, Verdict::Fail);
-            wording::requirements_not_met(found, total)
-        }
+        Verdict::Fail => match count(run, Verdict::Fail) {
+            (_, 1) => wording::REQUIREMENT_NOT_MET.to_owned(),
+            (found, total) => wording::requirements_not_met(found, total),
+        },
         Verdict::Inconclusive => match count(run, Verdict::Inconclusive) {
             (0, _) => wording::INCONCLUSIVE.to_owned(),
             (found, total) => wording::requirements_inconclusive(found, total),
@@ -100,10 +132,10 @@ fn sentence(run: &Run<'_>) -> String {
             (0, _) => wording::ZERO_DRIFT.to_owned(),
             (found, total) => wording::undecided(found, total),
         },
-        Verdict::Fail => {
-            let (found, total) = count(run, Verdict::Fail);
-            wording::not_met(found, total)
-        }
+        Verdict::Fail => match count(run, Verdict::Fail) {
+            (_, 1) => wording::THE_REQUIREMENT_IS_NOT_MET.to_owned(),
+            (found, total) => wording::not_met(found, total),
+        },
         Verdict::Aborted => wording::ABORTED.to_owned(),
         Verdict::Error => wording::RIG_FAILED.to_owned(),
     }

@@ -8,7 +8,8 @@ pub(crate) const TRACKING_ENERGY_ERROR: ResultKind = ResultKind::new(
     "tracking_energy_error",
     Dimension::NUMBER,
     "peak energy error due to actuator tracking, relative to the input energy; negative = energy added (destabilising)",
-);
+)
+.in_percent();
 
 pub(crate) const TRACKING_INDICATOR: ResultKind = ResultKind::new(
     "tracking_indicator",
@@ -20,7 +21,8 @@ pub(crate) const NRMS_ERROR: ResultKind = ResultKind::new(
     "nrms_error",
     Dimension::NUMBER,
     "rms tracking error relative to rms command",
-);
+)
+.in_percent();
 
 pub(crate) const PEAK_ERROR: ResultKind = ResultKind::new(
     "peak_error",
@@ -32,7 +34,8 @@ pub(crate) const FLOOR_TRACKING_ENERGY_ERROR: ResultKind = ResultKind::list(
     "floor_tracking_energy_error",
     Dimension::NUMBER,
     "`tracking_energy_error` of each floor's actuator",
-);
+)
+.in_percent();
 
 pub(crate) const FLOOR_TRACKING_INDICATOR: ResultKind = ResultKind::list(
     "floor_tracking_indicator",
@@ -44,7 +47,8 @@ pub(crate) const FLOOR_NRMS_ERROR: ResultKind = ResultKind::list(
     "floor_nrms_error",
     Dimension::NUMBER,
     "`nrms_error` of each floor's actuator",
-);
+)
+.in_percent();
 
 pub(crate) const FLOOR_PEAK_ERROR: ResultKind = ResultKind::list(
     "floor_peak_error",

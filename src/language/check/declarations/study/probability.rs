@@ -70,6 +70,11 @@ fn requirement(
     let (probability, comparison, limit) = compared(checker, condition)?;
     let event = event(checker, probability);
     let written = limit.span;
+    // The dimension of another member's limit is not known.
+    let named = matches!(&probability.kind, ExprKind::Member { name, .. } if name.node == schema::PROBABILITY.name);
+    if !named {
+        return None;
+    }
     let limit = checker.single(limit, LIMIT).and_then(|typed| {
         checker.expect(typed, Dimension::NUMBER, schema::PROBABILITY.name, limit)
     });

@@ -1,5 +1,9 @@
 //! Provenance: identifiers, program and clocks, and the digests of plan and tables. In: a run. Out: blocks.
 
+mod validation;
+
+pub(super) use validation::{self_test, validation};
+
 use super::{Source, pairs};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::output::paths::plan_files;

@@ -1,8 +1,10 @@
 //! Conditions of the test: environment and time scale on the second page; specimens, ground motions, strikers, limits and parameters
 //! in an annex. In: a run. Out: blocks. A value that the plan states without a measurement is marked.
 
-use super::frame;
-use super::{Source, described, pairs, validation, with_spaces};
+mod frame;
+
+use super::provenance;
+use super::{Source, described, pairs, with_spaces};
 use crate::plan::{Interval, Parameter, Settle, Specimen, Striker};
 use crate::procedures;
 use crate::record::equipment::HeldLimit;
@@ -54,7 +56,7 @@ pub(super) fn summary(source: &Source<'_>, body: &mut Vec<Block>) {
 
 /// The version, and the outcome of its self-test.
 fn program(run: &Run<'_>) -> String {
-    wording::program(&run.provenance.psd_version, validation::outcome())
+    wording::program(&run.provenance.psd_version, provenance::self_test())
 }
 
 /// The annex: specimens, ground motions, strikers, limits, parameters.

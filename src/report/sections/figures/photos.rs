@@ -6,7 +6,7 @@ use crate::report::document::{Block, Photo};
 use crate::report::wording::photos as wording;
 
 /// Returns nothing if the plan names no photograph.
-pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
+pub(in super::super) fn photographs(source: &Source<'_>, body: &mut Vec<Block>) {
     let photos = &source.run.plan.report.photos;
     if photos.is_empty() {
         return;

@@ -1,5 +1,7 @@
 //! The statement of conformity: every requirement with value, limit and verdict, and the decision rule. In: a run. Out: blocks.
 
+mod explanation;
+
 use super::results::budget_table::{self, Scope};
 use super::{Source, entry_name, with_spaces};
 use crate::plan::formula::{Formula, Part, ResultValue};
@@ -172,8 +174,14 @@ fn row(
         Some(quantity) => label.soft(quantity),
         None => label.code(&condition.text),
     };
+    if let Some(line) = explanation::distance(run, condition) {
+        name = name.line().soft(line);
+    }
     if let Some(reason) = &condition.reason {
         name = name.line().soft(in_words(reason));
+    }
+    if let Some(line) = explanation::largest_part(run, condition, planned) {
+        name = name.line().soft(line);
     }
     if condition.wider_than_tolerance && rule == DecisionRule::Simple {
         name = name.line().soft(wording::WIDER_THAN_TOLERANCE);

@@ -1,13 +1,13 @@
 //! The section of an amended report: every amendment with its reason and its changes. In: a run. Out: blocks.
 
-use super::Source;
+use super::super::Source;
 use crate::report::document::{Block, Text};
 use crate::report::run::Run;
 use crate::report::status::{IssueKind, issue};
 use crate::report::wording::amendment as wording;
 
 /// Returns nothing if the report was not amended.
-pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
+pub(in super::super) fn amendments(source: &Source<'_>, body: &mut Vec<Block>) {
     let amendments = issue::amendments(source.run.provenance.issues.as_ref());
     if amendments.is_empty() {
         return;
@@ -20,7 +20,7 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
 }
 
 /// The id of the report that this one amends.
-pub(super) fn replaced_report(run: &Run<'_>) -> Option<String> {
+pub(in super::super) fn replaced_report(run: &Run<'_>) -> Option<String> {
     let last = run.provenance.issues.as_ref()?.all.last()?;
     (last.kind == IssueKind::Amendment).then(|| last.replaces.clone())
 }

@@ -1,6 +1,10 @@
 //! The figures of a report, numbered from 1: the one that shows the main results on the second page, the others in an annex. In: drawn
 //! figures with their captions. Out: blocks.
 
+mod photos;
+
+pub(super) use photos::photographs;
+
 use super::{Source, headline};
 use crate::plan::FigureKind;
 use crate::report::document::{Block, Figure};

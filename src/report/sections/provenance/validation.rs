@@ -17,7 +17,7 @@ use crate::units::Dimension;
 type Combination = Vec<Part>;
 
 /// The parts of this run that the self-test does and does not cover, its failed cases, and the laboratory's own validation.
-pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
+pub(in super::super) fn validation(source: &Source<'_>, body: &mut Vec<Block>) {
     body.push(Block::part(wording::TITLE));
     let (covered, others): (Vec<Combination>, Vec<Combination>) = used_parts(source.run)
         .into_iter()
@@ -79,12 +79,12 @@ fn coverage(covered: &[Combination], others: &[Combination]) -> String {
     if covered.is_empty() && others.is_empty() {
         sentences.push(wording::COVERS_NOTHING.to_owned());
     }
-    sentences.push(outcome());
+    sentences.push(self_test());
     sentences.join(" ")
 }
 
 /// The number of self-test cases, and of those that fail.
-pub(super) fn outcome() -> String {
+pub(in super::super) fn self_test() -> String {
     let cases = self_test::all();
     match cases.iter().filter(|case| !case.passed()).count() {
         0 => wording::all_pass(cases.len()),
