@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 use common::{SPECIMEN, STEPS, example_1};
 use psd::physics::contact::ContactLaw;
 use psd::physics::impact::batch::{self, Impact};
-use psd::physics::impact::{Columns, ImpactInput, Until, simulate};
+use psd::physics::impact::{ImpactInput, Row, Until, simulate};
 use psd::physics::specimen::{Bilinear, BilinearCurve, SpecimenModel};
 use rustix::time::{ClockId, clock_gettime};
 
@@ -20,6 +20,14 @@ const TABLE_AND_FIGURE: &str = "specimen cantilever { mass = 1 kg\nbehaviour = e
     striker hammer { mass = 10 kg\nvelocity = 1 m/s }\n\
     impact hit { striker = hammer\ncontact = rigid\nduration = 0.3 s\ntime_step = 0.1 ms\nuntil = duration }\n\
     report { formats = [csv]\nfigures = [displacement(hit)] }\n";
+
+/// Impacts of 149 steps with scattered inputs.
+const STUDY: &str = "param speed = 1 m/s\n\
+    specimen beam { mass = 1 kg\nbehaviour = elastic(stiffness: 300 N/m) }\n\
+    striker hammer { mass = 10 kg\nvelocity = speed }\n\
+    impact hit { striker = hammer\nduration = 1 s\ntime_step = 2 ms }\n\
+    study scatter { vary = [speed ~ normal(sd: 0.05 m/s), beam.mass ~ lognormal(cv: 2 %)]\nruns = 100000 }\n\
+    require \"stays in travel\" hit.max_displacement < 0.2 m\n";
 
 /// Time of this thread on a processor \[s\].
 fn own_time() -> f64 {
@@ -99,15 +107,14 @@ fn main() {
         bare * per_step,
         "ns",
     );
-    let rows = usize::try_from(STEPS).expect("fits");
-    let mut columns = Columns::default();
+    let mut rows: Vec<Row> = Vec::new();
     let recorded = fastest(100, || {
-        columns.prepare(rows);
-        simulate(&input, &mut { SPECIMEN }, None, STEPS, &mut columns).expect("an impact");
+        rows.clear();
+        simulate(&input, &mut { SPECIMEN }, None, STEPS, &mut rows).expect("an impact");
     });
     let peer = "OpenSees 2.6–3.3 µs";
     line(
-        "impact step, 8 columns recorded",
+        "impact step, 8 numbers recorded",
         peer,
         "≤ 13 ns",
         recorded * per_step,
@@ -149,29 +156,52 @@ fn main() {
         "ms",
     );
     let folder = tempfile::tempdir().expect("a folder");
-    let few = folder.path().join("table_and_figure.psd");
-    std::fs::write(&few, TABLE_AND_FIGURE).expect("a plan");
-    let few = few.display().to_string();
-    for (name, plan, goal) in [
+    let plan = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).expect("a plan");
+        path.display().to_string()
+    };
+    let few = plan("few.psd", TABLE_AND_FIGURE);
+    let long = plan("long.psd", &TABLE_AND_FIGURE.replace("0.1 ms", "3 us"));
+    let study = plan("study.psd", STUDY);
+    let (run, of_a_study) = (&["run"][..], &["study", "run"][..]);
+    let figure = "`psd run`, table as CSV and one figure";
+    for (name, command, plan, goal, times) in [
         (
-            "table as CSV and one figure, 3000 steps",
+            &format!("{figure}, 3000 steps")[..],
+            run,
             &few[..],
             "≤ 30 ms",
+            10,
         ),
-        ("full report", "plans/example_1.psd", "≤ 250 ms"),
+        (
+            &format!("{figure}, 10⁵ steps"),
+            run,
+            &long,
+            "≤ 2 s to write",
+            2,
+        ),
+        (
+            "`psd run`, full report",
+            run,
+            "plans/example_1.psd",
+            "≤ 250 ms",
+            10,
+        ),
+        (
+            "`psd study run`, 10⁵ runs of 149 steps",
+            of_a_study,
+            &study,
+            "",
+            2,
+        ),
     ] {
-        let runs = (0..10).map(|number| {
+        let runs = (0..times).map(|number| {
             let out = folder.path().join(format!("{name} {number}"));
             let out = out.display().to_string();
-            process(1, &["run", plan, "--out", &out])
+            process(1, &[command, &[plan, "--out", &out]].concat())
         });
-        let time = runs.sum::<f64>() / 10.0;
-        line(
-            &format!("`psd run`, {name}, process"),
-            "",
-            goal,
-            time * 1e3,
-            "ms",
-        );
+        let time = runs.sum::<f64>() / f64::from(times);
+        line(&format!("{name}, process"), "", goal, time * 1e3, "ms");
     }
 }

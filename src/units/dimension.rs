@@ -27,8 +27,11 @@ impl Exponent {
     /// `numerator / denominator`, reduced. None if the denominator is zero or a part exceeds 16 bits.
     #[must_use]
     pub fn ratio(numerator: i64, denominator: i64) -> Option<Self> {
-        if denominator == 0 {
-            return None;
+        match denominator {
+            0 => return None,
+            // Nearly every exponent is whole.
+            1 => return i16::try_from(numerator).ok().map(Self::whole),
+            _ => {}
         }
         let divisor = greatest_common_divisor(numerator.unsigned_abs(), denominator.unsigned_abs());
         let divisor = i64::try_from(divisor).ok()? * denominator.signum();

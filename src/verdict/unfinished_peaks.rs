@@ -160,14 +160,14 @@ impl<'a> Steps<'a> {
 
 /// Growth of a result of an impact. A run that continues past a largest value has reached a peak, independent of later values.
 fn of_impact(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> Option<Growth> {
-    let number = |growing: bool, why: String| {
-        growing.then_some(Growth {
-            entries: vec![0],
-            why,
-        })
-    };
     let still = |what: &str, largest: &str| {
         format!("{what} when {name} ended: its largest {largest} is not a peak")
+    };
+    let number = |growing: bool, what: &str, largest: &str| {
+        growing.then(|| Growth {
+            entries: vec![0],
+            why: still(what, largest),
+        })
     };
     let last_largest = |values: &mut dyn Iterator<Item = f64>| {
         let values: Vec<f64> = values.collect();
@@ -217,33 +217,26 @@ fn of_impact(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> O
     ) {
         number(
             impact.still_rising(),
-            still("the structure was still moving", "displacement"),
+            "the structure was still moving",
+            "displacement",
         )
     } else if is(result, &[schema::MAX_VELOCITY]) {
         let growing = last_largest(&mut impact.steps.iter().map(|step| step.velocity.abs()));
         number(
             growing,
-            still(
-                "the velocity of the structure was still increasing",
-                "velocity",
-            ),
+            "the velocity of the structure was still increasing",
+            "velocity",
         )
     } else if is(result, &[schema::MAX_CONTACT_FORCE]) {
         let growing = last_largest(&mut impact.steps.iter().map(|step| step.contact_force));
-        number(
-            growing,
-            still("the contact force was still increasing", "size"),
-        )
+        number(growing, "the contact force was still increasing", "size")
     } else if is(result, &[schema::MAX_BASE_SHEAR]) {
         let growing = last_largest(
             &mut floors
                 .iter()
                 .map(|floor| floor.floors.restoring_force.iter().sum::<f64>().abs()),
         );
-        number(
-            growing,
-            still("the base shear was still increasing", "size"),
-        )
+        number(growing, "the base shear was still increasing", "size")
     } else if is(result, &[schema::FLOOR_DISPLACEMENT]) {
         list(
             |floor| floor.floors.computed.clone(),

@@ -196,53 +196,33 @@ impl<V> Sink<V> for () {
     fn push(&mut self, _: &State<V>, _: &ImpactState, _: bool) {}
 }
 
-/// Columns that are reused: memory that was touched before costs a quarter.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Columns {
-    pub time: Vec<f64>,
-    pub displacement: Vec<f64>,
-    pub velocity: Vec<f64>,
-    pub restoring_force: Vec<f64>,
-    pub contact_force: Vec<f64>,
-    pub striker_displacement: Vec<f64>,
-    pub striker_velocity: Vec<f64>,
-    pub tangent_stiffness: Vec<f64>,
+/// The end of a step in a table \[SI\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row {
+    pub time: f64,
+    pub displacement: f64,
+    pub velocity: f64,
+    pub restoring_force: f64,
+    pub contact_force: f64,
+    pub striker_displacement: f64,
+    pub striker_velocity: f64,
+    pub tangent_stiffness: f64,
 }
 
-impl Columns {
-    fn all(&mut self) -> [&mut Vec<f64>; 8] {
-        [
-            &mut self.time,
-            &mut self.displacement,
-            &mut self.velocity,
-            &mut self.restoring_force,
-            &mut self.contact_force,
-            &mut self.striker_displacement,
-            &mut self.striker_velocity,
-            &mut self.tangent_stiffness,
-        ]
-    }
-
-    /// Empty, with capacity for `steps`, so that pushing allocates no memory.
-    pub fn prepare(&mut self, steps: usize) {
-        for column in self.all() {
-            column.clear();
-            column.reserve(steps);
-        }
-    }
-}
-
-impl Sink for Columns {
+/// Memory that was touched before costs a quarter: a vector is to be reused.
+impl Sink for Vec<Row> {
     #[inline]
     fn push(&mut self, _: &State<f64>, state: &ImpactState, _: bool) {
-        self.time.push(state.time);
-        self.displacement.push(state.displacement);
-        self.velocity.push(state.velocity);
-        self.restoring_force.push(state.restoring_force);
-        self.contact_force.push(state.contact_force);
-        self.striker_displacement.push(state.striker_displacement);
-        self.striker_velocity.push(state.striker_velocity);
-        self.tangent_stiffness.push(state.tangent_stiffness);
+        self.push(Row {
+            time: state.time,
+            displacement: state.displacement,
+            velocity: state.velocity,
+            restoring_force: state.restoring_force,
+            contact_force: state.contact_force,
+            striker_displacement: state.striker_displacement,
+            striker_velocity: state.striker_velocity,
+            tangent_stiffness: state.tangent_stiffness,
+        });
     }
 }
 

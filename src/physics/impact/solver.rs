@@ -191,20 +191,6 @@ impl<V: HasTangents> ImpactSolver<V> {
         })
     }
 
-    #[inline]
-    fn start(&self) -> Start {
-        let state = &self.state;
-        Start {
-            displacement: state.displacement,
-            velocity: state.velocity,
-            striker_displacement: state.striker_displacement,
-            striker_velocity: state.striker_velocity,
-            contact_force: state.contact_force,
-            touching: state.state != StepState::Free,
-            indentation: state.indentation,
-        }
-    }
-
     /// Before the first step: where the structure was measured \[m\].
     pub fn measured_at_start(&mut self, measured_displacement: V::View<'_>) {
         self.structure.measured_at_start(measured_displacement);
@@ -215,7 +201,6 @@ impl<V: HasTangents> ImpactSolver<V> {
     /// Displacements to command in this step \[m\]. A second call before `complete` gives the same values.
     #[inline]
     pub fn predict(&mut self) -> V::View<'_> {
-        let start = self.start();
         let Self {
             structure,
             law,
@@ -224,16 +209,19 @@ impl<V: HasTangents> ImpactSolver<V> {
             passed,
             workspace,
             unloaded,
+            state,
             ..
         } = self;
         match law {
             AnyContact::Impulse(law) => {
+                let start = start(state);
                 structure.predict_with(unloaded.view(), |free, compliance| {
                     *decided = law.decide(striker, &start, free, compliance);
                     decided.force
                 })
             }
             AnyContact::Divided(law) => {
+                let start = start(state);
                 structure.predict_by(unloaded.view(), |form, from, load_end, to| {
                     let Some((mut substep, mut scratch)) =
                         Substep::new(form, &from, load_end, workspace)
@@ -288,7 +276,7 @@ impl<V: HasTangents> ImpactSolver<V> {
         if !self.structure.is_predicted() {
             self.predict();
         }
-        let start = self.start();
+        let start = start(&self.state);
         let Self {
             structure,
             law,
@@ -431,8 +419,8 @@ impl<V: HasTangents> ImpactSolver<V> {
         state.step > 0 && state.striker_velocity <= 0.0 && state.velocity <= 0.0
     }
 
-    /// The impact to its end, `steps` steps at most, on whatever `read` finds: it is given the solver whose step is predicted, and
-    /// gives displacement \[m\] and force \[N\] there. The steps are those of `predict` and `complete`.
+    /// The impact to its end, `steps` steps at most, on whatever `read` finds: it is given the solver to predict the step with, and
+    /// gives displacement \[m\] and force \[N\] at its target. The steps are those of `predict` and `complete`.
     #[inline]
     pub fn run<K: Sink<V>>(
         &mut self,
@@ -442,7 +430,6 @@ impl<V: HasTangents> ImpactSolver<V> {
         sink: &mut K,
     ) {
         for _ in 0..steps {
-            self.predict();
             let [displacement, force] = read(self);
             self.complete(displacement.view(), force.view());
             let over = until.is_some_and(|until| self.over(until));
@@ -451,6 +438,20 @@ impl<V: HasTangents> ImpactSolver<V> {
                 break;
             }
         }
+    }
+}
+
+/// The start of the next step.
+#[inline]
+const fn start(state: &ImpactState) -> Start {
+    Start {
+        displacement: state.displacement,
+        velocity: state.velocity,
+        striker_displacement: state.striker_displacement,
+        striker_velocity: state.striker_velocity,
+        contact_force: state.contact_force,
+        touching: !matches!(state.state, StepState::Free),
+        indentation: state.indentation,
     }
 }
 

@@ -37,6 +37,7 @@ pub(crate) struct StepForm<V: Vector> {
     pub integrator: Integrator,
     pub time_step: f64,
     coefficients: Coefficients,
+    shares: Shares,
     /// `K_t` of the tangent form, `K_I` of α-OS; not used by explicit Newmark.
     operator: V::Matrix,
     effective: V::Matrix,
@@ -115,11 +116,13 @@ impl<V: Vector> StepForm<V> {
         let order = matrices.mass.rows();
         let mut effective = V::Matrix::zero_of(order);
         let coefficients = Coefficients::of(integrator);
-        compose(&coefficients, time_step, matrices, operator, &mut effective);
+        let shares = Shares::new(&coefficients, time_step);
+        shares.compose(matrices, operator, &mut effective);
         Ok(Self {
             integrator,
             time_step,
             coefficients,
+            shares,
             operator: operator.clone(),
             factor: Factor::of(&effective)?,
             mass_factor: Factor::of(&matrices.mass)?,
@@ -139,13 +142,8 @@ impl<V: Vector> StepForm<V> {
         stiffness: impl FnOnce(&mut V::Matrix),
     ) -> Result<(), NotPositiveDefinite> {
         stiffness(&mut self.operator);
-        compose(
-            &self.coefficients,
-            self.time_step,
-            &self.matrices,
-            &self.operator,
-            &mut self.effective,
-        );
+        self.shares
+            .compose(&self.matrices, &self.operator, &mut self.effective);
         self.factor.replace(&self.effective)?;
         self.respond();
         Ok(())
@@ -212,25 +210,42 @@ impl<V: Vector> StepForm<V> {
     }
 }
 
-/// M̂ = M + (1+α)Δt(γC + βΔtK).
-#[inline]
-fn compose<V: Vector>(
-    coefficients: &Coefficients,
-    time_step: f64,
-    matrices: &Matrices<V>,
-    operator: &V::Matrix,
-    effective: &mut V::Matrix,
-) {
-    let Coefficients { alpha, beta, gamma } = *coefficients;
-    if beta == 0.0 {
-        effective.become_copy(&matrices.damping);
-    } else {
-        effective.become_copy(operator);
-        effective.multiply(beta / gamma * time_step);
-        effective.add_scaled(&matrices.damping, 1.0);
+/// The factors of K and of C in M̂ = M + (1+α)Δt(γC + βΔtK), computed once.
+#[derive(Clone, Copy, Debug)]
+struct Shares {
+    /// βΔt/γ \[s\], of K in its sum with C; none without β.
+    stiffness: Option<f64>,
+    /// (1+α)γΔt \[s\]
+    damping: f64,
+}
+
+impl Shares {
+    fn new(coefficients: &Coefficients, time_step: f64) -> Self {
+        let Coefficients { alpha, beta, gamma } = *coefficients;
+        Self {
+            stiffness: (beta != 0.0).then(|| beta / gamma * time_step),
+            damping: (1.0 + alpha) * gamma * time_step,
+        }
     }
-    effective.multiply((1.0 + alpha) * gamma * time_step);
-    effective.add_scaled(&matrices.mass, 1.0);
+
+    /// M̂ into `effective`.
+    #[inline]
+    fn compose<V: Vector>(
+        self,
+        matrices: &Matrices<V>,
+        operator: &V::Matrix,
+        effective: &mut V::Matrix,
+    ) {
+        if let Some(stiffness) = self.stiffness {
+            effective.become_copy(operator);
+            effective.multiply(stiffness);
+            effective.add_scaled(&matrices.damping, 1.0);
+        } else {
+            effective.become_copy(&matrices.damping);
+        }
+        effective.multiply(self.damping);
+        effective.add_scaled(&matrices.mass, 1.0);
+    }
 }
 
 impl<V: Vector> StepForm<V> {

@@ -69,17 +69,21 @@ impl TangentStiffness {
         self.value
     }
 
-    /// Adds the reading at the end of a step \[m\], \[N\].
+    /// Adds the reading at the end of a step \[m\], \[N\]; returns the stiffness from there on \[N/m\].
     #[inline]
-    pub fn take(&mut self, displacement: f64, force: f64) {
+    pub fn take(&mut self, displacement: f64, force: f64) -> f64 {
         let change = displacement - self.last.0;
+        let mut value = self.value;
         if change.abs() > self.least_change {
-            self.value = ((force - self.last.1) / change).clamp(0.0, self.largest);
+            value = ((force - self.last.1) / change).clamp(0.0, self.largest);
+            self.value = value;
         }
         if self.least_change > 0.0 {
             self.widen(displacement, force, change.abs() > self.least_change);
+            value = self.value;
         }
         self.last = (displacement, force);
+        value
     }
 
     /// Keeps the fewest of the last readings that span enough; if the step alone does not, they determine the stiffness together.

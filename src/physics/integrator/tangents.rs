@@ -99,10 +99,8 @@ impl Storey {
     /// Adds the next reading of a single storey: every secant is used, because its factor costs one division.
     #[inline]
     fn take_alone(&mut self, displacement: f64, force: f64, stiffness: &mut f64) -> bool {
-        self.followed.take(displacement, force);
-        let changed = self.followed.value() != *stiffness;
-        *stiffness = self.followed.value();
-        changed
+        let before = std::mem::replace(stiffness, self.followed.take(displacement, force));
+        *stiffness != before
     }
 
     /// Adds the next reading of one storey of several; returns whether `stiffness` \[N/m\] changed by more than rounding.

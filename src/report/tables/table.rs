@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use std::ops::Range;
 
 use polars::prelude::{
-    Column, CsvWriter, DataFrame, ParquetCompression, ParquetWriter, SerWriter as _,
+    Column, CsvWriter, DataFrame, ParquetCompression, ParquetWriter, PlSmallStr, SerWriter as _,
 };
 
 /// Rows of a chunk; in Parquet, a row group.
@@ -73,9 +73,16 @@ impl<'a> Table<'a> {
 
     fn csv(&self, out: &mut dyn Write) -> io::Result<()> {
         for (index, frame) in self.chunks().enumerate() {
+            let mut frame = frame?;
+            // Polars would write the same header and touch 4 MiB of zeros for it.
+            if index == 0 {
+                let names = frame.get_column_names().into_iter();
+                let names: Vec<&str> = names.map(PlSmallStr::as_str).collect();
+                writeln!(out, "{}", names.join(","))?;
+            }
             CsvWriter::new(&mut *out)
-                .include_header(index == 0)
-                .finish(&mut frame?)
+                .include_header(false)
+                .finish(&mut frame)
                 .map_err(io::Error::other)?;
         }
         Ok(())
