@@ -5,12 +5,12 @@ use std::rc::Rc;
 
 use super::continuous_move::ContinuousMove;
 use super::entry::{Call, IntentBody, StrokeBody, TargetStatus};
-use super::entry_of::{append_sample, bits, finite, intent};
+use super::entry_of::{append_sample, bits, in_log_time, intent};
 use super::recorded_rig::RecordedRig;
 use super::state::ended;
 use crate::physics::tracking::trajectory::Path;
 use crate::record::journal::EntryKind;
-use crate::rig::{CutOff, EachReading, EncodedMove, Reading, Rig, RigFault};
+use crate::rig::{CutOff, EachReading, EncodedMove, Rig, RigFault};
 
 impl ContinuousMove<'_> {
     fn intent(&self, samples: usize) -> IntentBody {
@@ -162,11 +162,7 @@ impl RecordedRig<'_> {
         // A refusal by the guard or by the run log is not a fault of the rig, and occurs again in the replay.
         let (mut refused, mut readings_done) = (false, done);
         let followed = goes(rig, &mut |reading| {
-            let recorded = finite(Reading {
-                time: reading.time + offset,
-                ..reading
-            })
-            .and_then(|reading| {
+            let recorded = in_log_time(reading, offset).and_then(|reading| {
                 append_sample(&mut state.borrow_mut(), &reading, None)?;
                 Ok(reading)
             });

@@ -109,7 +109,7 @@ pub(super) fn append_sample(
 }
 
 /// A reading that is not a number is a fault of the rig, with the values as received.
-pub(super) fn finite(reading: Reading) -> Result<Reading, RigFault> {
+fn finite(reading: Reading) -> Result<Reading, RigFault> {
     let numbers = || reading.displacement.iter().chain(&reading.force);
     if numbers().all(|value| value.is_finite()) {
         return Ok(reading);
@@ -118,6 +118,14 @@ pub(super) fn finite(reading: Reading) -> Result<Reading, RigFault> {
         "a reading is not a number: {:?}",
         numbers().collect::<Vec<_>>()
     )))
+}
+
+/// The same reading, by the clock of the run log.
+pub(super) fn in_log_time(reading: Reading, offset: f64) -> Result<Reading, RigFault> {
+    finite(Reading {
+        time: reading.time + offset,
+        ..reading
+    })
 }
 
 pub(super) fn same_bits(one: &[f64], other: &[f64]) -> bool {

@@ -8,7 +8,7 @@ use super::continuous_move::ContinuousMove;
 use super::entry::{
     Call, FaultBody, HeldBody, IntentBody, RigBody, SampleBody, StrokeBody, TargetStatus, escaped,
 };
-use super::entry_of::{append_sample, finite, intent, same_bits, unknown_rig};
+use super::entry_of::{append_sample, in_log_time, intent, same_bits, unknown_rig};
 use super::state::{State, ended};
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::Limits;
@@ -103,13 +103,7 @@ impl<'rig> RecordedRig<'rig> {
         let t = self.now();
         let offset = self.offset.unwrap_or(0.0);
         let broken = self.live.as_deref_mut().and_then(Rig::take_broken);
-        let broken = broken.and_then(|reading| {
-            finite(Reading {
-                time: reading.time + offset,
-                ..reading
-            })
-            .ok()
-        });
+        let broken = broken.and_then(|reading| in_log_time(reading, offset).ok());
         let mut state = self.state.borrow_mut();
         state.time = t;
         let wall = state.wall();
@@ -195,10 +189,7 @@ impl<'rig> RecordedRig<'rig> {
         let read = read(self.rig()?);
         let offset = self.offset.unwrap_or(0.0);
         let checked = read.and_then(|(reading, moved)| {
-            let reading = finite(Reading {
-                time: reading.time + offset,
-                ..reading
-            })?;
+            let reading = in_log_time(reading, offset)?;
             Ok((
                 reading,
                 moved
