@@ -12,7 +12,7 @@ use tempfile::TempDir;
 pub const PSD: &str = env!("CARGO_BIN_EXE_psd");
 
 /// Longest wait for any event, far longer than needed: only a program that hangs reaches it.
-const PATIENCE: Duration = Duration::from_mins(3);
+pub const PATIENCE: Duration = Duration::from_mins(3);
 
 /// About forty steps without noise, so that two runs measure the same.
 const PLAN: &str = r#"plan "A short run on a real rig" {

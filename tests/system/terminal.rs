@@ -8,13 +8,13 @@ use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use rustix::process::Signal;
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{Winsize, tcsetwinsize};
 
-use crate::stage::{code, signal, until};
+use crate::stage::{PATIENCE, signal, until};
 
 /// The text after each question once it can be answered, in line mode.
 pub const RELEASE: &str = "type RELEASE, or n: nothing moves";
@@ -119,9 +119,20 @@ impl Terminal {
 
     /// Waits until the program has ended and its last output is read.
     pub fn code(&mut self) -> Option<i32> {
-        let code = code(&mut self.child);
+        let since = Instant::now();
+        let status = loop {
+            if let Some(status) = self.child.try_wait().unwrap() {
+                break status;
+            }
+            assert!(
+                since.elapsed() < PATIENCE,
+                "a program did not come to its end: {}",
+                self.shown()
+            );
+            std::thread::sleep(Duration::from_millis(5));
+        };
         until("the end of the output", || self.reader.is_finished());
-        code
+        status.code()
     }
 
     pub fn shown(&self) -> String {

@@ -12,11 +12,11 @@ use crate::run::zero_drift::READINGS;
 
 /// The rules of this version, as stated in the header of a run log. 1: an `unload` may pass the unloaded position, and a `cycle` without
 /// a number has ten targets in each quarter. 2: neither applies, but the targets of a `cycle` are equally spaced. 3: they are not equally
-/// spaced. 4 and 5: the wording of some events and questions differs.
-pub const RULES: u32 = 5;
+/// spaced. 4, 5 and 6: the wording of some events and questions differs.
+pub const RULES: u32 = 6;
 
 /// The first rules with the present wording of events and questions.
-const PRESENT_WORDING: u32 = 5;
+const PRESENT_WORDING: u32 = 6;
 
 /// Targets between the middle and an amplitude if the plan gives no number, now and by rules 1.
 const POINTS: u32 = 25;

@@ -169,7 +169,7 @@ fn the_page_on_the_emulator_leads_to_a_signed_report() {
     let shown = operator.shown().replace('\r', "");
     std::thread::sleep(DEAF);
     operator.press("RELEASE\n");
-    let ended = code(&mut operator.child);
+    let ended = operator.code();
     assert!(matches!(ended, Some(0 | 1)), "{}", operator.shown());
     let (_, asked) = shown.split_once("  RELEASE: ").unwrap();
     outputs.push(format!("  RELEASE: {}", asked.trim_end()));
