@@ -14,6 +14,11 @@ use rustix::process::Signal;
 /// The port of the emulator in `plans/lib/real_frame.psd`.
 const PORT: &str = "/tmp/psd-bench";
 
+/// The rig of the page, and the same rig with more time for an answer: a busy machine may stop its emulator for a second.
+const STAND_IN: &str = "serial_number: \"STAND-IN-1\")\n";
+const PATIENT: &str =
+    "serial_number: \"STAND-IN-1\", reply_timeout: 2 s)\n  watchdog        = 30 s\n";
+
 /// Typed text in the first second after the question does not count; a busy machine asks late.
 const DEAF: Duration = Duration::from_secs(5);
 
@@ -25,7 +30,7 @@ fn page() -> PathBuf {
     root().join("docs/tutorial/emulator.md")
 }
 
-/// A copy of the plans whose rig is at another port.
+/// A copy of the plans whose rig is at another port, and has more time for an answer.
 fn plans(folder: &Path) -> String {
     let port = folder.join("bench").to_string_lossy().into_owned();
     for part in ["plans", "plans/lib"] {
@@ -34,6 +39,7 @@ fn plans(folder: &Path) -> String {
             let path = entry.unwrap().path();
             if path.extension().is_some_and(|ending| ending == "psd") {
                 let text = fs::read_to_string(&path).unwrap().replace(PORT, &port);
+                let text = text.replace(STAND_IN, PATIENT);
                 fs::write(folder.join(part).join(path.file_name().unwrap()), text).unwrap();
             }
         }
