@@ -184,7 +184,7 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
             computed: reading.displacement[struck],
             displacement: reading.displacement[struck],
             restoring_force: reading.force[struck],
-            ..last.clone()
+            ..*last
         };
         self.steps.push(step);
         self.summary.moved_to(struck, reading, time);
