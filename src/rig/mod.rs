@@ -54,6 +54,14 @@ pub struct Reading {
     pub raw: Vec<Vec<u8>>,
 }
 
+impl Reading {
+    /// Whether all its values are finite. A reading that is not finite is not kept.
+    pub(crate) fn is_finite(&self) -> bool {
+        let mut values = self.displacement.iter().chain(&self.force);
+        values.all(|value| value.is_finite())
+    }
+}
+
 /// A move as it would be sent. Nothing has been sent yet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EncodedMove {

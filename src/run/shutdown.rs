@@ -161,13 +161,11 @@ impl Session<'_> {
         let extended = self
             .guard
             .extend_limits(found, |axis| link.readings_of(axis));
-        match extended {
-            Ok(()) => true,
-            Err(fault) => {
-                self.not_unloaded(fault);
-                false
-            }
+        let is_extended = extended.is_ok();
+        if !is_extended {
+            self.end_unloading(extended);
         }
+        is_extended
     }
 
     /// Unloads after a stop; a fault is an additional event.
@@ -175,18 +173,15 @@ impl Session<'_> {
         self.event(EventKind::Hold, UNLOADING.to_owned());
         let home = self.home.clone();
         let unloaded = self.go_to_all(&home, None).and_then(|()| self.guard.read());
-        match unloaded {
-            Ok(_) => {
-                let halted = self.guard.halt();
-                self.report_final_hold(halted.as_ref());
-            }
-            Err(fault) => self.not_unloaded(fault),
-        }
+        self.end_unloading(unloaded.map(drop));
     }
 
-    fn not_unloaded(&mut self, fault: RigFault) {
-        let stop = Stop::from(fault);
-        self.event(stop.event_kind(), format!("not unloaded: {stop}"));
+    /// Holds again, and reports the position. A fault is an event before it.
+    fn end_unloading(&mut self, unloaded: Result<(), RigFault>) {
+        if let Err(fault) = unloaded {
+            let stop = Stop::from(fault);
+            self.event(stop.event_kind(), format!("not unloaded: {stop}"));
+        }
         let halted = self.guard.halt();
         self.report_final_hold(halted.as_ref());
     }

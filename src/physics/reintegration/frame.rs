@@ -17,7 +17,7 @@ use crate::integrator::solver::FrameSolver;
 use crate::integrator::state::FrameState;
 use crate::integrator::tangents::Tangents;
 use crate::reintegration::perturbation::Perturbation;
-use crate::structure::{FrameMatrices, drifts, shears};
+use crate::structure::{FrameMatrices, drifts, shears, widen};
 
 /// The settings with which a frame is integrated.
 #[derive(Clone, Debug)]
@@ -339,11 +339,6 @@ impl Peaks {
     fn take(&mut self, state: &FrameState, share: f64) {
         drifts(&state.displacement, &mut self.ends.final_drift);
         drifts(&state.velocity, &mut self.velocity);
-        let widen = |largest: &mut [f64], values: &[f64]| {
-            for (largest, value) in largest.iter_mut().zip(values) {
-                *largest = largest.max(value.abs());
-            }
-        };
         widen(&mut self.ends.max_displacement, &state.displacement);
         widen(&mut self.ends.max_drift, &self.ends.final_drift);
         let shear = state.restoring_force.iter().sum::<f64>();

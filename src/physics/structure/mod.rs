@@ -24,5 +24,5 @@ pub use matrices::{FrameMatrices, Matrices};
 pub use matrix::{BandFactor, NotPositiveDefinite, RowsError, SymmetricBand};
 pub use modes::{Modes, ModesError, modes};
 pub(crate) use shear_building::set_storeys;
-pub use shear_building::{drifts, floor_forces, shears, storey_stiffness, storeys_of};
+pub use shear_building::{drifts, floor_forces, shears, storey_stiffness, storeys_of, widen};
 pub use unloading::{Loaded, Unloading, UnloadingPath};

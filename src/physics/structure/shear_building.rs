@@ -51,6 +51,13 @@ pub fn storeys_of(stiffness: &SymmetricBand) -> Option<Vec<f64>> {
     (same && stiffnesses.iter().all(|stiffness| *stiffness >= 0.0)).then_some(stiffnesses)
 }
 
+/// Raises each entry to the magnitude of its value, for the largest over several steps.
+pub fn widen(largest: &mut [f64], values: &[f64]) {
+    for (largest, value) in largest.iter_mut().zip(values) {
+        *largest = largest.max(value.abs());
+    }
+}
+
 /// Drift of each storey \[m\]: displacement of its floor relative to that of the floor below.
 pub fn drifts(displacement: &[f64], drift: &mut [f64]) {
     let mut below = 0.0;

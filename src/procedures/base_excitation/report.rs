@@ -1,7 +1,7 @@
 //! A frame on moving ground, as a report states it: its storeys, the ground-motion record, the modes, the response of each storey, the
 //! energy. In: a plan and a record. Out: blocks.
 
-use crate::physics::structure::{SymmetricBand, storeys_of};
+use crate::physics::structure::{SymmetricBand, storeys_of, widen};
 use crate::plan::formula::ResultValue;
 use crate::plan::{Frame, Ground, Integrator, ProcedureKind, Shake, ShakeDamping};
 use crate::procedures::stepping::energy;
@@ -354,9 +354,7 @@ fn largest<S>(steps: &[S], read: fn(&S) -> Vec<f64>) -> Vec<f64> {
     for step in steps {
         let values = read(step);
         largest.resize(values.len(), 0.0);
-        for (largest, value) in largest.iter_mut().zip(values) {
-            *largest = largest.max(value.abs());
-        }
+        widen(&mut largest, &values);
     }
     largest
 }

@@ -3,7 +3,7 @@
 
 use crate::physics::integrator::state::FrameState;
 use crate::physics::statistics::noisy_largest::NoisyLargest;
-use crate::physics::structure::{Modes, drifts};
+use crate::physics::structure::{Modes, drifts, widen};
 use crate::procedures::stepping::tracking::tracking_summary::Followed;
 use crate::record::NamedResult;
 use crate::schema::ResultKind;
@@ -52,11 +52,6 @@ impl ShakeSummary {
     /// Adds displacements \[m\] and forces \[N\] of the floors, at the end of a step or on the way to a target that was not reached.
     pub(crate) fn widen(&mut self, displacement: &[f64], force: &[f64]) {
         drifts(displacement, &mut self.drift);
-        let widen = |largest: &mut [f64], values: &[f64]| {
-            for (largest, value) in largest.iter_mut().zip(values) {
-                *largest = largest.max(value.abs());
-            }
-        };
         widen(&mut self.max_displacement, displacement);
         widen(&mut self.max_drift, &self.drift);
         self.base_shear.push(force.iter().sum::<f64>().abs());

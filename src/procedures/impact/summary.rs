@@ -7,7 +7,7 @@ use crate::physics::impact::{ImpactInput, ImpactState};
 use crate::physics::integrator::state::State;
 use crate::physics::statistics::noisy_largest::NoisyLargest;
 use crate::physics::structure::matrix::Vector;
-use crate::physics::structure::{drifts, shears};
+use crate::physics::structure::{drifts, shears, widen};
 use crate::record::history::floors::drift_of;
 use crate::rig::Reading;
 
@@ -152,12 +152,5 @@ impl FloorSummary {
     /// Largest base shear \[N\].
     pub(crate) fn max_base_shear(&self) -> Option<f64> {
         self.base_shear.value()
-    }
-}
-
-/// The largest magnitude of each value so far.
-fn widen(largest: &mut [f64], values: &[f64]) {
-    for (largest, value) in largest.iter_mut().zip(values) {
-        *largest = largest.max(value.abs());
     }
 }

@@ -132,9 +132,7 @@ impl FloorMotion {
             tracking: tracking.to_vec(),
         }
     }
-}
 
-impl FloorMotion {
     /// The floors where a limit ended the motion to these targets \[m\], after this step, by this time \[s\]: displacement \[m\] and
     /// force \[N\] as measured.
     pub(crate) fn cut_off(

@@ -14,7 +14,6 @@ use super::safety::failpoint::{Guarding, on};
 use super::{EachReading, LimitedQuantity, Reading, Rig, RigFault, named_axis};
 use crate::plan::{Interval, Limits};
 use holds::Holds;
-use read::is_finite;
 
 /// A rig and the limits of its motion.
 pub struct Guard<'rig> {
@@ -219,7 +218,7 @@ impl<'rig> Guard<'rig> {
         let moved = motion(self.rig, &mut |reading| {
             last_contact = reading.time;
             if let Some(fault) = outside(&limits, &own, &reading) {
-                broken = Some(reading).filter(is_finite);
+                broken = Some(reading).filter(Reading::is_finite);
                 return Err(fault);
             }
             readings.push(reading);

@@ -32,7 +32,7 @@ impl Guard<'_> {
         let reading = self.or_hold(reading)?;
         self.last_contact = reading.time;
         if let Err(fault) = self.check_limits_and_tracking(&reading) {
-            self.broken = Some(reading).filter(is_finite);
+            self.broken = Some(reading).filter(Reading::is_finite);
             return Err(fault);
         }
         Ok(reading)
@@ -74,13 +74,4 @@ impl Guard<'_> {
         let checked = found.map_or(Ok(()), Err);
         self.or_hold(checked)
     }
-}
-
-/// Whether all values of a reading are finite. A reading that is not finite is not kept.
-pub(crate) fn is_finite(reading: &Reading) -> bool {
-    reading
-        .displacement
-        .iter()
-        .chain(&reading.force)
-        .all(|value| value.is_finite())
 }

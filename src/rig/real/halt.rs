@@ -4,7 +4,7 @@
 use super::{Part, RealRig};
 use crate::rig::controllers::{DeviceFault, SLICE};
 use crate::rig::safety;
-use crate::rig::{FinalHold, Reading, RigFault};
+use crate::rig::{FinalHold, RigFault};
 
 /// Longest wait for a rig that still moves after the command to hold \[s\].
 const COMES_TO_REST: f64 = 5.0;
@@ -120,17 +120,11 @@ impl RealRig {
         if points.is_empty() {
             return (None, Vec::new());
         }
-        let Reading {
-            displacement,
-            force,
-            raw,
-            ..
-        } = self.reading_of(points, began);
-        let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
-        if finite(&displacement) && finite(&force) {
-            (Some((displacement, force)), raw)
-        } else {
-            (None, Vec::new())
+        match self.reading_of(points, began) {
+            reading if reading.is_finite() => {
+                (Some((reading.displacement, reading.force)), reading.raw)
+            }
+            _ => (None, Vec::new()),
         }
     }
 

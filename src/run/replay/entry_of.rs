@@ -110,13 +110,13 @@ pub(super) fn append_sample(
 
 /// A reading that is not a number is a fault of the rig, with the values as received.
 fn finite(reading: Reading) -> Result<Reading, RigFault> {
-    let numbers = || reading.displacement.iter().chain(&reading.force);
-    if numbers().all(|value| value.is_finite()) {
+    if reading.is_finite() {
         return Ok(reading);
     }
+    let numbers = reading.displacement.iter().chain(&reading.force);
     Err(RigFault::Device(format!(
         "a reading is not a number: {:?}",
-        numbers().collect::<Vec<_>>()
+        numbers.collect::<Vec<_>>()
     )))
 }
 

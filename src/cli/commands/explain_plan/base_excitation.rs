@@ -1,6 +1,7 @@
 //! Rows of `psd check --explain` for a frame: its modes, its time step, and the peaks of the dry run. In: the steps of a ground-motion
 //! test, or of an impact on a storey. Out: rows of text.
 
+use crate::physics::structure::widen;
 use crate::record::{Floors, Modes, ShakeHistory};
 use crate::units::Dimension;
 use crate::units::display::{digits, join, readable, significant, unit};
@@ -155,9 +156,7 @@ fn peaks<S>(steps: &[S], read: fn(&S) -> Vec<f64>, dimension: Dimension) -> Stri
     for step in steps {
         let values = read(step);
         largest.resize(values.len(), 0.0);
-        for (largest, value) in largest.iter_mut().zip(values) {
-            *largest = largest.max(value.abs());
-        }
+        widen(&mut largest, &values);
     }
     let (unit, factor) = unit(largest.iter().copied().fold(0.0, f64::max), dimension);
     let numbers: Vec<String> = largest

@@ -114,9 +114,9 @@ pub(crate) fn run<S: Stepped>(
             let (reading, broken) = session.read_after(paused)?;
             (reading, broken, is_reached)
         };
-        if let Some(stop) = broken.clone().filter(|_| !is_reached) {
+        if !is_reached {
             stepped.cut_off(&reading, pace.time_step, session);
-            return Err(stop);
+            return broken.map_or(Ok(()), Err);
         }
         stepped.complete(&reading);
         let axes = monitors.take(stepped.axes().target, &reading, &stepped.effective_force());
