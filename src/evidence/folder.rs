@@ -13,7 +13,7 @@ use sha2::{Digest as _, Sha256};
 use crate::files::failure::Failure;
 use crate::files::failure::plain;
 use crate::files::recorded_run::JOURNAL;
-use crate::record::journal::{MOST_BYTES, is_part_of_a_reserve};
+use crate::record::journal::{LogText, MOST_BYTES, is_part_of_a_reserve};
 use crate::text::digest::{hex, sha256};
 
 use super::names::{ISSUE, MANIFEST, OLDER_ISSUE, is_paper, is_sidecar, is_signature};
@@ -39,8 +39,17 @@ pub struct Folder {
 pub struct Held {
     /// SHA-256, hex.
     pub digest: String,
-    /// Only for files that are read: the run log, the manifest, the issue, signatures, the PDF report, sidecars.
-    pub bytes: Option<Vec<u8>>,
+    pub content: Content,
+}
+
+/// What is kept of a file.
+#[derive(Clone, Debug)]
+pub enum Content {
+    /// Only its digest.
+    None,
+    /// Files that are read: the manifest, the issue, signatures, the PDF report, sidecars.
+    Bytes(Vec<u8>),
+    RunLog(LogText),
 }
 
 impl Held {
@@ -48,7 +57,21 @@ impl Held {
     pub fn of(name: &str, bytes: Vec<u8>) -> Self {
         Self {
             digest: sha256(&bytes),
-            bytes: is_read(name).then_some(bytes),
+            content: match name {
+                JOURNAL => Content::RunLog(bytes.into()),
+                _ if is_read(name) => Content::Bytes(bytes),
+                _ => Content::None,
+            },
+        }
+    }
+}
+
+impl Held {
+    /// Its bytes, if it is read.
+    pub fn bytes(&self) -> Option<&[u8]> {
+        match &self.content {
+            Content::Bytes(bytes) => Some(bytes),
+            Content::None | Content::RunLog(_) => None,
         }
     }
 }
@@ -68,14 +91,17 @@ impl Folder {
         Ok(folder)
     }
 
-    /// The bytes of a file that is read.
+    /// The bytes of a file that is read; the run log is not.
     pub fn bytes(&self, name: &str) -> Option<&[u8]> {
-        self.files.get(name)?.bytes.as_deref()
+        self.files.get(name)?.bytes()
     }
 
-    /// The same; the folder no longer keeps the bytes.
-    pub fn take(&mut self, name: &str) -> Option<Vec<u8>> {
-        self.files.get_mut(name)?.bytes.take()
+    /// The run log.
+    pub fn run_log(&self) -> Option<&LogText> {
+        match &self.files.get(JOURNAL)?.content {
+            Content::RunLog(text) => Some(text),
+            Content::None | Content::Bytes(_) => None,
+        }
     }
 
     /// The files that psd keeps in a run folder independently of the results: the run log, its incomplete ends, and the results before a
@@ -96,13 +122,13 @@ impl Folder {
     /// Whether the reserve file of a run that was killed contains only the bytes that psd writes there; None if there is no such file.
     pub fn reserve_is_ours(&self) -> Option<bool> {
         let (_, reserve) = self.files.iter().find(|(name, _)| is_reserve(name))?;
-        Some(reserve.bytes.as_deref().is_some_and(is_part_of_a_reserve))
+        Some(reserve.bytes().is_some_and(is_part_of_a_reserve))
     }
 
     /// The signatures, by name.
     pub fn signatures(&self) -> impl Iterator<Item = (&str, &[u8])> {
         let named = self.files.iter().filter(|(name, _)| is_signature(name));
-        named.map(|(name, held)| (name.as_str(), held.bytes.as_deref().unwrap_or_default()))
+        named.map(|(name, held)| (name.as_str(), held.bytes().unwrap_or_default()))
     }
 
     fn walk(
@@ -162,32 +188,33 @@ fn held(path: &PathBuf, name: &str, is_read: bool) -> Result<Held, String> {
         .custom_flags(flags.cast_signed())
         .open(path)
         .map_err(plain_error)?;
-    let mut file = file.take(LISTED_BYTES);
+    let mut limited = (&file).take(LISTED_BYTES);
     if is_read && (metadata.len() <= SIDECAR_BYTES || !is_sidecar(name)) {
-        // The capacity is the file size: the buffer of a gigabyte run log must not grow by doubling.
-        let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0));
-        file.read_to_end(&mut bytes).map_err(plain_error)?;
+        let mut bytes = Vec::new();
+        limited.read_to_end(&mut bytes).map_err(plain_error)?;
         return Ok(Held::of(name, bytes));
     }
     let mut digest = Sha256::new();
     let mut buffer = vec![0; 1 << 16];
     loop {
-        match file.read(&mut buffer).map_err(plain_error)? {
-            0 => {
-                return Ok(Held {
-                    digest: hex(&digest.finalize()),
-                    bytes: None,
-                });
-            }
+        match limited.read(&mut buffer).map_err(plain_error)? {
+            0 => break,
             count => digest.update(&buffer[..count]),
         }
     }
+    let content = match name {
+        JOURNAL => Content::RunLog(LogText::of_file(file).map_err(plain_error)?),
+        _ => Content::None,
+    };
+    Ok(Held {
+        digest: hex(&digest.finalize()),
+        content,
+    })
 }
 
 fn is_read(name: &str) -> bool {
-    let own = matches!(name, JOURNAL | MANIFEST | ISSUE | OLDER_ISSUE)
-        || is_signature(name)
-        || is_reserve(name);
+    let own =
+        matches!(name, MANIFEST | ISSUE | OLDER_ISSUE) || is_signature(name) || is_reserve(name);
     own || is_paper(name) || is_sidecar(name)
 }
 
@@ -277,10 +304,11 @@ mod tests {
         );
         assert_eq!(folder.reserve_is_ours(), Some(false));
         assert_eq!(
-            (folder.bytes(JOURNAL), folder.bytes("own")),
+            (folder.bytes(MANIFEST), folder.bytes("own")),
             (Some(b"abc".as_slice()), None)
         );
+        assert_eq!(folder.run_log().unwrap().length(), 3);
         let alone = Folder::digests(&run).unwrap();
-        assert_eq!((alone.kept(), alone.bytes(JOURNAL)), (folder.kept(), None));
+        assert_eq!((alone.kept(), alone.bytes(MANIFEST)), (folder.kept(), None));
     }
 }

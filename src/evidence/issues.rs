@@ -95,7 +95,7 @@ impl IssueFile {
         let Some((name, held)) = held(folder) else {
             return Ok(None);
         };
-        let bytes = held.bytes.as_deref().unwrap_or_default();
+        let bytes = held.bytes().unwrap_or_default();
         let read = if name == ISSUE {
             Self::read(bytes)
         } else {

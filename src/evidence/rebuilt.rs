@@ -1,8 +1,6 @@
 //! The replay of a run log: record, verdict, every file of the results. In: the run log of a run folder, and the data stated after the
 //! test. Out: the results, and the findings of the replay itself.
 
-use std::borrow::Cow;
-
 use super::consistency;
 use super::finding::Finding;
 use super::folder::Folder;
@@ -130,28 +128,17 @@ pub struct Report {
 impl Rebuilt {
     /// Replays the run log of a folder.
     pub fn of(folder: &Folder, predict: Predict<'_>) -> Self {
-        Self::read(folder.bytes(JOURNAL).map(Cow::Borrowed), folder, predict)
-    }
-
-    /// The same; the folder then frees the bytes of its run log, so that they are not in memory together with their content.
-    pub fn taking(folder: &mut Folder, predict: Predict<'_>) -> Self {
-        let bytes = folder.take(JOURNAL);
-        Self::read(bytes.map(Cow::Owned), folder, predict)
-    }
-
-    fn read(journal: Option<Cow<'_, [u8]>>, folder: &Folder, predict: Predict<'_>) -> Self {
         let nothing = |part, fault: String| Self {
             findings: vec![Finding::wrong(part, fault)],
             report: None,
         };
-        let Some(bytes) = journal else {
+        let Some(text) = folder.run_log() else {
             return nothing("record", format!("`{JOURNAL}` is missing"));
         };
-        let read = match recorded_run::from_bytes(JOURNAL.as_ref(), &bytes) {
+        let read = match recorded_run::of_text(JOURNAL.as_ref(), text) {
             Ok(read) => read,
             Err(failure) => return nothing("record", failure.to_string()),
         };
-        drop(bytes);
         match IssueFile::of(folder) {
             Ok(issues) => Self::replayed(read, issues.as_ref(), predict).named_as_in(folder),
             Err(fault) => nothing("issue", fault),

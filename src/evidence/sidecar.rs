@@ -5,7 +5,7 @@
 use sha2::{Digest as _, Sha384, Sha512};
 
 use super::finding::Finding;
-use super::folder::Folder;
+use super::folder::{Content, Folder};
 use super::names::{SidecarKind, sidecar};
 use crate::text::digest::unhex;
 
@@ -58,8 +58,19 @@ fn names(folder: &Folder, bytes: &[u8], of: &str) -> bool {
     let contains = |digest: &[u8]| {
         !digest.is_empty() && bytes.windows(digest.len()).any(|window| window == digest)
     };
-    let longer = |own: &Vec<u8>| contains(&Sha384::digest(own)) || contains(&Sha512::digest(own));
-    contains(&unhex(&held.digest).unwrap_or_default()) || held.bytes.as_ref().is_some_and(longer)
+    let is_longer = match &held.content {
+        Content::None => false,
+        Content::Bytes(own) => contains(&Sha384::digest(own)) || contains(&Sha512::digest(own)),
+        Content::RunLog(text) => {
+            let (mut short, mut long) = (Sha384::new(), Sha512::new());
+            let read = text.read_blocks(|block| {
+                short.update(block);
+                long.update(block);
+            });
+            read.is_ok() && (contains(&short.finalize()) || contains(&long.finalize()))
+        }
+    };
+    is_longer || contains(&unhex(&held.digest).unwrap_or_default())
 }
 
 /// Whether the bytes are one DER sequence and nothing else.

@@ -1,13 +1,14 @@
-//! A recorded run, read from the run log of its folder. In: a folder, or bytes. Out: the run log, and the plan checked again from it.
+//! A recorded run, read from the run log of its folder. In: a folder, or the text of a run log. Out: the run log, and the plan checked again from it.
 //! The run log is enough: no other file is read.
 
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use super::failure::{Failure, plain};
 use crate::language::check::{LoadError, Loader, Options, check};
 use crate::plan::Plan;
 use crate::record::equipment::{Device, Equipment};
-use crate::record::journal::{Line, OLDEST_FORMAT, Recovered, recover};
+use crate::record::journal::{Line, LogText, OLDEST_FORMAT, Recovered, Unreadable, recover};
 use crate::report::{Build, Provenance, RealRun};
 use crate::run::check_run;
 use crate::run::replay;
@@ -28,15 +29,18 @@ pub struct ReadRecord {
 /// Reads the run log of a run folder without changing it.
 pub fn read(run: &Path) -> Result<ReadRecord, Failure> {
     let path = journal_of(run);
-    let bytes = std::fs::read(&path).map_err(|error| Failure::file(&path, plain(&error)))?;
-    from_bytes(&path, &bytes)
+    let failed = |error: std::io::Error| Failure::file(&path, plain(&error));
+    let file = File::open(&path).map_err(failed)?;
+    of_text(&path, &LogText::of_file(file).map_err(failed)?)
 }
 
-/// A run log from the bytes of its file.
-pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<ReadRecord, Failure> {
+/// A run log from its text; `path` is its name in messages.
+pub fn of_text(path: &Path, text: &LogText) -> Result<ReadRecord, Failure> {
     let damaged = |reason: String| Failure::file(path, reason);
-    let recovered =
-        recover(bytes).map_err(|damage| damaged(format!("the run log is damaged: {damage}")))?;
+    let recovered = recover(text).map_err(|fault| match fault {
+        Unreadable::Damaged(damage) => damaged(format!("the run log is damaged: {damage}")),
+        Unreadable::File(error) => damaged(plain(&error)),
+    })?;
     let logged = LoggedRun::of(&recovered).map_err(|fault| damaged(fault.to_string()))?;
     for (file, text) in logged.header.files.iter().zip(&logged.texts) {
         if sha256(text.as_bytes()) != file.sha256 {

@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     fn line(kind: EntryKind, time: f64, wall: &str) -> Line {
-        Line::new(1, kind, &json!({"t": time, "wall": wall}), 0)
+        Line::new(1, kind, &json!({"t": time, "wall": wall}))
     }
 
     #[test]

@@ -16,7 +16,7 @@ use crate::run::replay::{Header, HeaderFile, RULES};
 use crate::text::digest::sha256;
 
 pub use crate::files::circumstances::Circumstances;
-pub use crate::files::recorded_run::{JOURNAL, ReadRecord, from_bytes, journal_of, read};
+pub use crate::files::recorded_run::{JOURNAL, ReadRecord, journal_of, of_text, read};
 
 /// The header of a run on the connected device.
 pub fn header(

@@ -84,6 +84,16 @@ impl RunFolder {
     }
 }
 
+/// Copies one file of a run, by its name in the folder.
+pub fn copy(run: &Path, folder: &Path, name: &str) -> Result<(), Failure> {
+    let to = folder.join(name);
+    let failed = |error: std::io::Error| Failure::file(&to, plain(&error));
+    if let Some(above) = to.parent() {
+        std::fs::create_dir_all(above).map_err(failed)?;
+    }
+    std::fs::copy(run.join(name), &to).map(drop).map_err(failed)
+}
+
 /// Creates one file under `folder`, in which it must not exist.
 pub fn write_new(folder: &Path, file: &OutputFile) -> Result<(), Failure> {
     let path = inside(folder, &file.path)?;

@@ -11,7 +11,8 @@ use crate::evidence::rebuilt::{Rebuilt, ReplayedRun};
 use crate::files::provenance::{BUILD, TOOLCHAIN};
 use crate::files::recorded_run;
 use crate::files::recorded_run::JOURNAL;
-use crate::record::journal::{Durability, EntryKind, FileStorage, Journal, recover};
+use crate::record::journal::testing::recover;
+use crate::record::journal::{Durability, EntryKind, FileStorage, Journal};
 use crate::report::OutputFile;
 
 /// The run log as a different program would have begun it.
@@ -45,7 +46,7 @@ fn of_another_build(journal: &[u8]) -> Vec<u8> {
 fn a_report_names_the_build_that_made_the_run_and_not_the_one_that_made_the_report() {
     let own = folder(run());
     let journal = of_another_build(&run()[JOURNAL]);
-    let read = recorded_run::from_bytes(JOURNAL.as_ref(), &journal).unwrap();
+    let read = recorded_run::of_text(JOURNAL.as_ref(), &journal.clone().into()).unwrap();
     let mut files: Vec<OutputFile> = Vec::new();
     ReplayedRun::of(read, None, &prediction)
         .unwrap()

@@ -24,7 +24,7 @@ type Damage<'a> = &'a dyn Fn(&mut Vec<(EntryKind, Value)>);
 
 /// Everything that `verify`, `report` and `resume` do with a run log before they write or move anything; the error found.
 fn replayed(journal: &[u8]) -> Result<(), String> {
-    let read = record_file::from_bytes(Path::new(JOURNAL), journal)
+    let read = record_file::of_text(Path::new(JOURNAL), &journal.to_vec().into())
         .map_err(|failure| failure.to_string())?;
     let consistent = consistency::check_consistency(&read);
     // A refusal has the same effect as a missing rig.

@@ -1,13 +1,13 @@
 //! One line: `SEQ TYPE JSON CHAIN CRC`. In: the parts. Out: the bytes; and back, the parts of a line whose own checksum
 //! holds. It knows no other line.
 
-use std::sync::Arc;
+use std::ops::Range;
 
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use super::EntryKind;
 use super::chain::{CHAIN_DIGITS, Chain};
+use super::{EntryKind, LogText};
 
 /// Maximum length of a line, including its LF \[bytes\].
 pub const LINE_BYTES: usize = 64 * 1024;
@@ -18,49 +18,57 @@ const CRC_DIGITS: usize = 8;
 /// Both check values, with a space before each.
 pub const CHECK_BYTES: usize = 1 + CHAIN_DIGITS + 1 + CRC_DIGITS;
 
-/// One entry, as read back. Its body stays in the written text, shared by all copies: a parsed object is twenty times as large, and a
-/// long run has millions.
-#[derive(Clone, Debug, PartialEq)]
+/// One entry, as read back. Its body stays in the text of the run log: a parsed object is large, and a long run has millions.
+#[derive(Clone, Debug)]
 pub struct Line {
     /// From 1.
     pub seq: u64,
     pub kind: EntryKind,
-    /// An object.
-    json: Arc<str>,
-    /// Its field `t`: rig time \[s\].
-    time: Option<f64>,
-    /// Offset of its first byte in the file.
-    pub offset: u64,
+    /// Length of its body, an object \[bytes\].
+    length: u32,
+    /// Offset of its body in `text`.
+    start: u64,
+    /// Its field `t`: rig time \[s\]; not a number without it.
+    time: f64,
+    text: LogText,
+}
+
+impl PartialEq for Line {
+    fn eq(&self, other: &Self) -> bool {
+        (self.seq, self.kind) == (other.seq, other.kind) && self.body() == other.body()
+    }
 }
 
 impl Line {
-    /// An entry with `body`, an object; written as `json`.
-    pub(super) fn as_written(
+    /// The entry whose body is at this place in `text`.
+    pub(super) fn written(
         seq: u64,
         kind: EntryKind,
         body: &Value,
-        json: &str,
-        offset: u64,
+        place: Range<u64>,
+        text: LogText,
     ) -> Self {
         Self {
             seq,
             kind,
-            json: json.into(),
-            time: time_of(body),
-            offset,
+            length: u32::try_from(place.end - place.start).expect("an entry is short"),
+            start: place.start,
+            time: body.get("t").and_then(Value::as_f64).unwrap_or(f64::NAN),
+            text,
         }
     }
 
-    /// An entry with `body`.
+    /// An entry with `body`, an object, outside a run log.
     #[must_use]
-    pub fn new(seq: u64, kind: EntryKind, body: &Value, offset: u64) -> Self {
-        Self::as_written(seq, kind, body, &body.to_string(), offset)
+    pub fn new(seq: u64, kind: EntryKind, body: &Value) -> Self {
+        let json = LogText::from(body.to_string().into_bytes());
+        Self::written(seq, kind, body, 0..json.length(), json)
     }
 
     /// Rig time \[s\], if it is stated.
     #[must_use]
-    pub const fn time(&self) -> Option<f64> {
-        self.time
+    pub fn time(&self) -> Option<f64> {
+        Some(self.time).filter(|time| !time.is_nan())
     }
 
     /// Its body.
@@ -72,21 +80,19 @@ impl Line {
     /// Its body, typed.
     ///
     /// # Errors
-    /// The body has a different type.
+    /// The body has a different type, or the file can no longer be read.
     pub fn read<T: DeserializeOwned>(&self) -> serde_json::Result<T> {
-        serde_json::from_str(&self.json)
+        let range = self.start..self.start + u64::from(self.length);
+        let read = self.text.read(range, |json| serde_json::from_slice(json));
+        read.unwrap_or_else(|error| Err(serde_json::Error::io(error)))
     }
 
     /// The same entry with a different body.
     pub fn alter(&mut self, alter: impl FnOnce(&mut Value)) {
         let mut body = self.body();
         alter(&mut body);
-        *self = Self::new(self.seq, self.kind, &body, self.offset);
+        *self = Self::new(self.seq, self.kind, &body);
     }
-}
-
-fn time_of(body: &Value) -> Option<f64> {
-    body.get("t")?.as_f64()
 }
 
 /// The start of a line, up to its JSON.

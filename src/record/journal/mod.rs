@@ -17,6 +17,7 @@ mod storage;
 pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
+mod text;
 mod writer;
 
 pub use damage::{Damage, Wrong};
@@ -24,8 +25,9 @@ pub use fault::{Doing, JournalFault, Refusal};
 pub use file::{FileFault, FileStorage, MOST_BYTES, is_part_of_a_reserve};
 pub use kind::EntryKind;
 pub use line::{LINE_BYTES, Line};
-pub use recovery::{Recovered, recover};
+pub use recovery::{Recovered, Unreadable, recover};
 pub use storage::Storage;
+pub use text::LogText;
 pub use writer::{Durability, Journal};
 
 /// The version of the format that is written. Version 1, which is read too, does not state the equipment in its first line.

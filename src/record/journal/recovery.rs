@@ -1,13 +1,14 @@
 //! Reading back: the bytes of a run log, perhaps of a run that was killed. In: bytes. Out: the whole entries and the torn
-//! part at the end, or the damage. It knows no file and no meaning of an entry.
+//! part at the end, or the damage. It does not know the meaning of an entry.
 
+use std::io;
 use std::ops::Range;
 
 use serde_json::Value;
 
 use super::chain::Chain;
 use super::line::{self, LINE_BYTES, Unsound};
-use super::{Damage, EntryKind, FORMAT, Line, OLDEST_FORMAT, Wrong};
+use super::{Damage, EntryKind, FORMAT, Line, LogText, OLDEST_FORMAT, Wrong};
 
 /// The part of a run log that can be trusted.
 #[derive(Clone, Debug)]
@@ -55,13 +56,23 @@ impl Recovered {
     }
 }
 
+/// The reason why a run log gives no entries.
+#[derive(Debug, thiserror::Error)]
+pub enum Unreadable {
+    #[error(transparent)]
+    Damaged(#[from] Damage),
+    /// Its file.
+    #[error("the run log cannot be read: {0}")]
+    File(#[from] io::Error),
+}
+
 /// Reads a run log. Without END the run was not completed; without any entry it did not begin. The end of the file is torn under two
 /// conditions. The first bad line is followed by no line with a valid checksum. From there on there is no LF, or there is a NUL (a block
-/// that was never written). The required memory is little more than the bytes.
+/// that was never written). Only positions and times of the entries are kept in memory.
 ///
 /// # Errors
-/// Any other bad line: the run log was altered.
-pub fn recover(bytes: &[u8]) -> Result<Recovered, Damage> {
+/// Any other bad line: the run log was altered. Or its file cannot be read.
+pub fn recover(text: &LogText) -> Result<Recovered, Unreadable> {
     let mut found = Recovered {
         lines: Vec::new(),
         whole: 0,
@@ -69,59 +80,83 @@ pub fn recover(bytes: &[u8]) -> Result<Recovered, Damage> {
         ended: false,
         chain: Chain::START,
     };
-    let mut rest = bytes;
-    while !rest.is_empty() {
-        let wrong = match whole_line(rest) {
-            Ok((line, after)) => match read_line(line, &found) {
-                Ok((record, chain)) => {
-                    found.take(record, chain, (bytes.len() - after.len()) as u64);
-                    rest = after;
-                    continue;
-                }
-                Err(wrong) => wrong,
-            },
+    while found.whole < text.length() {
+        let read = text.read(reach(found.whole), |bytes| {
+            let line = whole_line(bytes)?;
+            let (entry, chain) = read_line(line, &found, text)?;
+            Ok((entry, chain, line.len() as u64 + 1))
+        })?;
+        let wrong = match read {
+            Ok((entry, chain, length)) => {
+                let next = found.whole + length;
+                found.take(entry, chain, next);
+                continue;
+            }
             Err(wrong) => wrong,
         };
-        if matches!(wrong, Wrong::Shape | Wrong::Checksum | Wrong::TooLong) && is_torn(rest, &wrong)
+        if matches!(wrong, Wrong::Shape | Wrong::Checksum | Wrong::TooLong)
+            && is_torn(text, found.whole, &wrong)?
         {
-            found.torn = Some(found.whole..bytes.len() as u64);
+            found.torn = Some(found.whole..text.length());
             break;
         }
         let (line, step) = (found.lines.len() as u64 + 1, found.last_step());
-        return Err(Damage {
+        return Err(Unreadable::Damaged(Damage {
             offset: found.whole,
             line,
             step,
             reason: wrong,
-        });
+        }));
     }
     Ok(found)
 }
 
-/// The first line without its LF, and the bytes after it.
-fn whole_line(rest: &[u8]) -> Result<(&[u8], &[u8]), Wrong> {
-    let reach = &rest[..rest.len().min(LINE_BYTES)];
-    match reach.iter().position(|byte| *byte == b'\n') {
-        Some(end) => Ok((&rest[..end], &rest[end + 1..])),
-        None if rest.len() > LINE_BYTES => Err(Wrong::TooLong),
+/// The longest line from `start` on, and the byte after it.
+const fn reach(start: u64) -> Range<u64> {
+    start..start + LINE_BYTES as u64 + 1
+}
+
+/// The first line without its LF. `bytes` are one more than the longest line, or all that remain.
+fn whole_line(bytes: &[u8]) -> Result<&[u8], Wrong> {
+    let line = &bytes[..bytes.len().min(LINE_BYTES)];
+    match line.iter().position(|byte| *byte == b'\n') {
+        Some(end) => Ok(&line[..end]),
+        None if bytes.len() > LINE_BYTES => Err(Wrong::TooLong),
         None => Err(Wrong::Shape),
     }
 }
 
-/// Whether the bytes from the first bad line on can be the result of a loss of power. A line that is too long is read no
+/// Whether the bytes from the first bad line on, at `start`, can be the result of a loss of power. A line that is too long is read no
 /// further, unless it has a NUL.
-fn is_torn(rest: &[u8], wrong: &Wrong) -> bool {
-    if *wrong == Wrong::TooLong && !rest[..LINE_BYTES].contains(&0) {
-        return false;
+fn is_torn(text: &LogText, start: u64, wrong: &Wrong) -> io::Result<bool> {
+    let has_nul = |bytes: &[u8]| bytes.contains(&0);
+    if *wrong == Wrong::TooLong && !text.read(start..start + LINE_BYTES as u64, has_nul)? {
+        return Ok(false);
     }
-    let mut later = rest.split(|byte| *byte == b'\n').skip(1).peekable();
-    let one_line = later.peek().is_none();
-    (one_line || rest.contains(&0))
-        && !later.any(|line| line.len() < LINE_BYTES && line::parse(line).is_ok())
+    let (mut one_line, mut nul, mut first, mut at) = (true, false, true, start);
+    while at < text.length() {
+        // A part is a line with its LF, the end of the file, or a part of a line that is too long.
+        let (length, ended, zero, valid) = text.read(reach(at), |bytes| {
+            let end = bytes.iter().position(|byte| *byte == b'\n');
+            let line = &bytes[..end.unwrap_or(bytes.len())];
+            let valid = !first && line.len() < LINE_BYTES && line::parse(line).is_ok();
+            let length = end.map_or(bytes.len(), |end| end + 1);
+            (length as u64, end.is_some(), has_nul(line), valid)
+        })?;
+        if valid {
+            return Ok(false);
+        }
+        // The rest of a line that is too long is no line of its own.
+        first = !ended;
+        one_line &= !ended;
+        nul |= zero;
+        at += length;
+    }
+    Ok(one_line || nul)
 }
 
 /// Reads a line as the entry after those found.
-fn read_line(bytes: &[u8], found: &Recovered) -> Result<(Line, Chain), Wrong> {
+fn read_line(bytes: &[u8], found: &Recovered, text: &LogText) -> Result<(Line, Chain), Wrong> {
     let parts = line::parse(bytes).map_err(|unsound| match unsound {
         Unsound::Shape => Wrong::Shape,
         Unsound::Checksum => Wrong::Checksum,
@@ -144,10 +179,10 @@ fn read_line(bytes: &[u8], found: &Recovered) -> Result<(Line, Chain), Wrong> {
         return Err(Wrong::NotAnObject);
     }
     check_position(kind, &body, found)?;
-    Ok((
-        Line::as_written(parts.seq, kind, &body, parts.json, found.whole),
-        chain,
-    ))
+    let end = found.whole + parts.chained.len() as u64;
+    let place = end - parts.json.len() as u64..end;
+    let entry = Line::written(parts.seq, kind, &body, place, text.clone());
+    Ok((entry, chain))
 }
 
 /// Whether an entry may be at this position.

@@ -7,7 +7,8 @@ use super::stage::{Ended, STIFFNESS, emulator, header, link, open, plan_of, run,
 use crate::emulator::Log;
 use crate::plan::{DeclaredNoise, Limits, Plan, ProcedureKind, SafeState};
 use crate::record::journal::testing::PowerLoss;
-use crate::record::journal::{Durability, EntryKind, Journal, recover};
+use crate::record::journal::testing::recover;
+use crate::record::journal::{Durability, EntryKind, Journal};
 use crate::record::{EventKind, History, Outcome, Record};
 use crate::rig::real::RealRig;
 use crate::rig::{EachReading, EncodedMove, FinalHold, Identity, Reading, Rig, RigFault};

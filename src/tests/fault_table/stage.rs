@@ -9,7 +9,8 @@ use crate::plan::{
     ProcedureKind, ReadingRules, RealLink, SafeState, Settle,
 };
 use crate::record::journal::testing::PowerLoss;
-use crate::record::journal::{Durability, EntryKind, Journal, Line, Recovered, recover};
+use crate::record::journal::testing::recover;
+use crate::record::journal::{Durability, EntryKind, Journal, Line, Recovered};
 use crate::record::{EventKind, History, Outcome, Record};
 use crate::rig::real::RealRig;
 use crate::rig::safety::failpoint::{Guarding, without};

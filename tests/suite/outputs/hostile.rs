@@ -524,7 +524,7 @@ fn no_label_is_another_record() {
             .iter()
             .all(|byte| (b' '..=b'~').contains(byte) || *byte == b'\n')
     );
-    let found = recover(&bytes).unwrap();
+    let found = recover(&bytes.into()).unwrap();
     let texts: Vec<String> = found.lines[1..]
         .iter()
         .map(|line| line.body()["text"].as_str().unwrap().to_owned())

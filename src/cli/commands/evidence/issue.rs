@@ -12,7 +12,7 @@ use crate::cli::args::{date, name, particular, reason};
 use crate::cli::commands::prediction::prediction;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::record_file;
-use crate::cli::files::run_folder::{RunFolder, write_new};
+use crate::cli::files::run_folder::{RunFolder, copy, write_new};
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::evidence::{
@@ -162,11 +162,7 @@ fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
     let folder = Folder::read(run)?;
     let rebuilt = Rebuilt::of(&folder, &prediction);
     refuse_unproven(run, &examine(&folder, &rebuilt, &[]))?;
-    let (Some(report), Some(manifest), Some(journal)) = (
-        &rebuilt.report,
-        folder.files.get(MANIFEST),
-        folder.bytes(JOURNAL),
-    ) else {
+    let (Some(report), Some(manifest)) = (&rebuilt.report, folder.files.get(MANIFEST)) else {
         return Err(Failure::file(run, "has no results yet").help("create them with `psd report`"));
     };
     refuse_rival(run, &report.id, &manifest.digest)?;
@@ -187,23 +183,18 @@ fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
         particulars,
     };
     let file = IssueFile::after(before.as_ref(), one);
-    let read = record_file::from_bytes(&run.join(JOURNAL), journal)?;
+    let read = record_file::read(run)?;
     let replayed =
         ReplayedRun::of(read, Some(&file), &prediction).map_err(Failure::command_line)?;
 
     let beside = beside(run, wanted.kind);
     let created = RunFolder::create(Some(wanted.out.unwrap_or(&beside)), run)?;
-    let kept = OutputFile {
-        path: JOURNAL.to_owned(),
-        bytes: journal.to_vec(),
-    };
+    copy(run, created.path(), JOURNAL)?;
     let own = OutputFile {
         path: ISSUE.to_owned(),
         bytes: file.json().into_bytes(),
     };
-    [&kept, &own]
-        .into_iter()
-        .try_for_each(|file| write_new(created.path(), file))?;
+    write_new(created.path(), &own)?;
     let made = Folder::read(created.path())?;
     let beside: Vec<(String, String)> = made
         .listed()

@@ -13,11 +13,10 @@ use crate::cli::commands::prediction::prediction;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::record_file;
 use crate::cli::files::record_file::journal_of;
-use crate::cli::files::run_folder::RunFolder;
+use crate::cli::files::run_folder::{RunFolder, copy};
 use crate::cli::output::print_result;
 use crate::cli::settings::Settings;
 use crate::evidence::{Folder, IssueFile, MANIFEST, ReplayedRun, check_consistency, held_issue};
-use crate::files::failure::plain;
 use crate::record::journal::FileStorage;
 
 #[derive(Debug, Args)]
@@ -76,16 +75,6 @@ pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, F
     let exit = finish_replayed(&folder, &replayed, &beside, settings)?;
     print_result(&format!("{}\n", folder.display()))?;
     Ok(exit)
-}
-
-/// Copies one file of a run, by its name in the folder.
-fn copy(run: &Path, folder: &Path, name: &str) -> Result<(), Failure> {
-    let to = folder.join(name);
-    let failed = |error: std::io::Error| Failure::file(&to, plain(&error));
-    if let Some(above) = to.parent() {
-        std::fs::create_dir_all(above).map_err(failed)?;
-    }
-    std::fs::copy(run.join(name), &to).map(drop).map_err(failed)
 }
 
 /// The run folder itself, if its results are incomplete: the manifest is written last.

@@ -49,8 +49,8 @@ pub struct SignArguments {
 pub fn sign(arguments: &SignArguments, settings: Settings) -> Result<Exit, Failure> {
     let run = &arguments.run;
     keys::refuse_inside(&arguments.key, run)?;
-    let mut folder = Folder::read(run)?;
-    let rebuilt = Rebuilt::taking(&mut folder, &prediction);
+    let folder = Folder::read(run)?;
+    let rebuilt = Rebuilt::of(&folder, &prediction);
     refuse_unproven(run, &examine(&folder, &rebuilt, &[]))?;
     let (Some(report), Some(manifest)) = (&rebuilt.report, folder.bytes(MANIFEST)) else {
         return Err(Failure::file(run, "has no results yet").help("create them with `psd report`"));

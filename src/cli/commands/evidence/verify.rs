@@ -40,7 +40,7 @@ pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, F
         // Other errors are reported below; some file systems have no locks.
         still => still.ok(),
     };
-    let mut folder = Folder::read(&arguments.run)?;
+    let folder = Folder::read(&arguments.run)?;
     if !folder.files.contains_key(JOURNAL) {
         return Err(Failure::file(journal_of(&arguments.run), "no such file")
             .help("a run folder has a run log"));
@@ -50,7 +50,7 @@ pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, F
         .iter()
         .map(|path| keys::public(path))
         .collect::<Result<Vec<_>, _>>()?;
-    let rebuilt = Rebuilt::taking(&mut folder, &prediction);
+    let rebuilt = Rebuilt::of(&folder, &prediction);
     let findings = examine(&folder, &rebuilt, &keys);
     let mut text = String::new();
     for finding in &findings {

@@ -86,7 +86,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     }
     let path = journal_of(&arguments.run);
     let mut storage = FileStorage::open_existing(&path)?;
-    let read = record_file::from_bytes(&path, &storage.contents()?)?;
+    let read = record_file::of_text(&path, &storage.text()?)?;
     if read.logged.ended {
         let run = arguments.run.display();
         let failure = Failure::file(&arguments.run, replay::ResumeRefusal::Ended.to_string());

@@ -6,18 +6,18 @@ mod fault;
 mod torn;
 
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{self, Read as _, Seek as _, SeekFrom, Write};
+use std::io::{self, Write};
 use std::os::unix::fs::{MetadataExt as _, OpenOptionsExt as _};
 use std::path::{Path, PathBuf};
 
 use rustix::fs::OFlags;
 
-use super::Storage;
+use super::{LogText, Storage};
 use crate::record::failpoint::{Guarding, on};
 pub use ballast::is_part_of_one as is_part_of_a_reserve;
 pub use fault::FileFault;
 
-/// Largest run log that is read back \[bytes\]. The commands that verify it keep all of it in memory.
+/// Largest run log that is read back \[bytes\].
 pub const MOST_BYTES: u64 = 4 << 30;
 
 /// Only the operator may read and write the file.
@@ -100,29 +100,21 @@ impl FileStorage {
         Ok(Still { _file: file })
     }
 
-    /// All the bytes.
+    /// The bytes that it has now.
     ///
     /// # Errors
     /// They cannot be read, or are more than any run writes.
-    pub fn contents(&self) -> Result<Vec<u8>, FileFault> {
-        self.contents_up_to(MOST_BYTES)
-    }
-
-    fn contents_up_to(&self, most: u64) -> Result<Vec<u8>, FileFault> {
-        let mut bytes = Vec::new();
+    pub fn text(&self) -> Result<LogText, FileFault> {
         // Through the descriptor with the lock: the path may meanwhile lead to a different file.
-        let mut file = &self.file;
-        let read = file
-            .seek(SeekFrom::Start(0))
-            .and_then(|_| file.take(most + 1).read_to_end(&mut bytes));
-        read.map_err(FileFault::of("read", &self.path))?;
-        if bytes.len() as u64 > most {
+        let text = self.file.try_clone().and_then(LogText::of_file);
+        let text = text.map_err(FileFault::of("read", &self.path))?;
+        if text.length() > MOST_BYTES {
             return Err(FileFault::TooLarge {
                 path: self.path.clone(),
-                most,
+                most: MOST_BYTES,
             });
         }
-        Ok(bytes)
+        Ok(text)
     }
 
     /// Moves the bytes after the first `whole` bytes, if there are any, into a new file `….torn-1`, `….torn-2`, … beside

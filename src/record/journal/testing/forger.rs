@@ -4,7 +4,8 @@
 use serde_json::{Value, json};
 
 use super::super::chain::Chain;
-use super::super::{EntryKind, body, line, recover};
+use super::super::{EntryKind, body, line};
+use crate::record::journal::testing::recover;
 
 /// The entries of a run log, in the form that [`written`] accepts.
 pub(crate) fn records(journal: &[u8]) -> Vec<(EntryKind, Value)> {

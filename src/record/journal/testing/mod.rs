@@ -13,3 +13,13 @@ pub(crate) use killed::Killed;
 pub(crate) use power_loss::PowerLoss;
 pub(crate) use sick_disk::{SickDisk, Sickness};
 pub(crate) use vandal::Vandal;
+
+use super::{Damage, Recovered, Unreadable};
+
+/// Reads a run log in memory.
+pub(crate) fn recover(bytes: &[u8]) -> Result<Recovered, Damage> {
+    super::recover(&bytes.to_vec().into()).map_err(|fault| match fault {
+        Unreadable::Damaged(damage) => damage,
+        Unreadable::File(error) => panic!("memory is always read: {error}"),
+    })
+}

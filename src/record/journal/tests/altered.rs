@@ -1,8 +1,9 @@
 //! Altered run logs: none passes as valid, and each is refused with its position, except for a change of the last entry.
 
 use super::super::chain::Chain;
-use super::super::{Damage, EntryKind, Wrong, line, recover};
+use super::super::{Damage, EntryKind, Wrong, line};
 use super::{is_clean, lines, small};
+use crate::record::journal::testing::recover;
 
 /// A run log of these entries, each with the correct check values.
 fn written(records: &[(u64, EntryKind, &str)]) -> Vec<u8> {

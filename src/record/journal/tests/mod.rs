@@ -9,7 +9,8 @@ mod writing;
 use serde_json::{Value, json};
 
 use super::testing::PowerLoss;
-use super::{Durability, EntryKind, Journal, Recovered, recover};
+use super::{Durability, EntryKind, Journal, Recovered};
+use crate::record::journal::testing::recover;
 
 /// A run log that was begun on a disk in memory.
 fn begun(durability: Durability) -> (PowerLoss, Journal) {

@@ -3,8 +3,9 @@
 use proptest::prelude::*;
 use serde_json::json;
 
-use super::super::{Durability, EntryKind, recover};
+use super::super::{Durability, EntryKind};
 use super::{begun, records};
+use crate::record::journal::testing::recover;
 
 proptest! {
     #[test]

@@ -3,8 +3,9 @@
 use serde_json::json;
 
 use super::super::testing::PowerLoss;
-use super::super::{Durability, EntryKind, Journal, LINE_BYTES, Wrong, recover};
+use super::super::{Durability, EntryKind, Journal, LINE_BYTES, Wrong};
 use super::{lines, records, small};
+use crate::record::journal::testing::recover;
 
 #[test]
 fn every_length_keeps_exactly_the_whole_records() {

@@ -4,10 +4,11 @@ use serde_json::json;
 
 use super::super::testing::{PowerLoss, SickDisk, Sickness};
 use super::super::{
-    Doing, Durability, EntryKind, Journal, JournalFault, LINE_BYTES, Refusal, Storage, recover,
+    Doing, Durability, EntryKind, Journal, JournalFault, LINE_BYTES, Refusal, Storage,
 };
 use super::{begun, records};
 use crate::record::failpoint::{Guarding, without};
+use crate::record::journal::testing::recover;
 
 fn on(disk: &(impl Storage + Clone + 'static)) -> Journal {
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);

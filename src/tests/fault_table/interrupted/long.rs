@@ -207,7 +207,7 @@ fn a_wall_clock_that_jumps_changes_no_duration() {
         replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
         let record = replay::record(&plan, &mut rig, &mut Unwatched, journal, wall).record;
         assert_eq!(record.outcome, Outcome::Completed);
-        let lines = crate::record::journal::recover(&disk.written())
+        let lines = crate::record::journal::testing::recover(&disk.written())
             .unwrap()
             .lines;
         let stamps = lines

@@ -183,7 +183,8 @@ fn after_an_impact_the_damper_acts_at_the_velocity_of_the_structure() {
 #[test]
 fn an_impact_is_not_extrapolated_as_a_trend() {
     use crate::record::journal::testing::PowerLoss;
-    use crate::record::journal::{Durability, EntryKind, Journal, recover};
+    use crate::record::journal::testing::recover;
+    use crate::record::journal::{Durability, EntryKind, Journal};
     use crate::rig::VirtualRig;
     use crate::run::Unwatched;
     use crate::run::replay::{begin, record};
@@ -300,7 +301,8 @@ fn a_continuous_run_is_stopped_by_a_reading_during_the_motion() {
 #[test]
 fn a_continuous_run_is_played_back_from_its_record() {
     use crate::record::journal::testing::PowerLoss;
-    use crate::record::journal::{Durability, EntryKind, Journal, recover};
+    use crate::record::journal::testing::recover;
+    use crate::record::journal::{Durability, EntryKind, Journal};
     use crate::rig::VirtualRig;
     use crate::run::Unwatched;
     use crate::run::replay::{LoggedRun, begin, record, replay};

@@ -5,7 +5,8 @@ use std::cell::Cell;
 
 use crate::plan::{DriftCheck, Plan, VirtualLink, ZeroAfter};
 use crate::record::journal::testing::PowerLoss;
-use crate::record::journal::{Durability, Journal, recover};
+use crate::record::journal::testing::recover;
+use crate::record::journal::{Durability, Journal};
 use crate::record::remote::DrivenStep;
 use crate::record::{Outcome, Record};
 use crate::rig::{RigFault, virtual_rig};
