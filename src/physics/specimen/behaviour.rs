@@ -316,7 +316,21 @@ impl Behaviour {
                 capping: Some(_), ..
             }) => false,
             Self::Table(table) => table.points.windows(2).all(|pair| pair[1][1] >= pair[0][1]),
-            _ => self.parts().iter().all(Self::never_falls),
+            Self::Elastic { .. }
+            | Self::Bilinear { .. }
+            | Self::DeterioratingBilinear { .. }
+            | Self::BoucWen { .. }
+            | Self::Degrading { .. }
+            | Self::Beam(_)
+            | Self::Multilinear { .. }
+            | Self::Pinching(_)
+            | Self::Bolted(_)
+            | Self::Portal(_) => true,
+            Self::Rate { .. }
+            | Self::Logarithmic { .. }
+            | Self::Maxwell { .. }
+            | Self::Series(_)
+            | Self::Parallel(_) => self.parts().iter().all(Self::never_falls),
         }
     }
 }

@@ -70,7 +70,14 @@ impl Dialect {
     pub const fn most_axes(&self) -> usize {
         match self {
             Self::Native | Self::Nees { .. } => 6,
-            _ => 1,
+            Self::Grbl
+            | Self::Hx711
+            | Self::Indicator
+            | Self::Scpi { .. }
+            | Self::Instron
+            | Self::Mark10
+            | Self::Mark10Gauge
+            | Self::Modbus(_) => 1,
         }
     }
 
@@ -99,13 +106,37 @@ impl Dialect {
         }
     }
 
+    /// Whether a device that moves measures its position. Otherwise the position is the command.
+    #[must_use]
+    pub const fn measures_position(&self) -> bool {
+        match self {
+            Self::Grbl => false,
+            Self::Native
+            | Self::Hx711
+            | Self::Indicator
+            | Self::Scpi { .. }
+            | Self::Instron
+            | Self::Mark10
+            | Self::Mark10Gauge
+            | Self::Modbus(_)
+            | Self::Nees { .. } => true,
+        }
+    }
+
     /// Whether the device measures the force.
     #[must_use]
     pub const fn measures_force(&self) -> bool {
         match self {
             Self::Grbl => false,
             Self::Modbus(map) => map.force.is_some(),
-            _ => true,
+            Self::Native
+            | Self::Hx711
+            | Self::Indicator
+            | Self::Scpi { .. }
+            | Self::Instron
+            | Self::Mark10
+            | Self::Mark10Gauge
+            | Self::Nees { .. } => true,
         }
     }
 

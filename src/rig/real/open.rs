@@ -4,7 +4,7 @@
 use super::coordinate::Coordinate;
 use super::validity::ReadingValidator;
 use super::{Axis, Part, RealRig, degrees_of_freedom};
-use crate::plan::{Behind, Datum, DeviceLink, Dialect, Limits, RealLink, RigPlan};
+use crate::plan::{Behind, Datum, DeviceLink, Limits, RealLink, RigPlan};
 use crate::rig::controllers::{Device, DeviceFault, DeviceIdentity};
 use crate::rig::transport::Clock;
 use crate::rig::{Identity, Live, Rig as _, RigFault, StopRequest, named_axis};
@@ -235,7 +235,7 @@ fn axes(plan: &RigPlan, link: &RealLink, limits: &Limits) -> Vec<Axis> {
 /// Whether the position of the actuator is not measured.
 #[must_use]
 pub const fn commands_only(link: &RealLink) -> bool {
-    matches!(link.actuator.dialect, Dialect::Grbl)
+    !link.actuator.dialect.measures_position()
 }
 
 fn unidentified(name: &str) -> Identity {

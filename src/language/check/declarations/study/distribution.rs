@@ -87,7 +87,8 @@ pub(super) fn law<'a>(
             "lognormal" => Distribution::lognormal(stated.mean, spread),
             "weibull" => Distribution::weibull(stated.mean, spread),
             "gumbel" => Distribution::gumbel(stated.mean, spread),
-            _ => Distribution::normal(stated.mean, spread),
+            "normal" => Distribution::normal(stated.mean, spread),
+            _ => unreachable!("the schema has no distribution `{name}`"),
         }),
     };
     let made = match (made, stated.between) {
