@@ -5,7 +5,7 @@ use psd::golden::comparison::page;
 use psd::golden::comparison::{Comparison, Side, csv};
 use psd::golden::print::json as golden_json;
 use psd::golden::{Change, Finding, Outcome as TestOutcome, Part, Report, Tested, junit, tap};
-use psd::language::check::{Checked, LoadError, Loader, Options, check};
+use psd::language::check::{Checked, Options, check, no_files};
 use psd::plan::Format;
 use psd::record::journal::{Durability, EntryKind, FileStorage, Journal, recover};
 use psd::record::{EventKind, Outcome};
@@ -456,14 +456,6 @@ fn no_label_is_markup_or_a_formula_in_a_comparison() {
     });
 }
 
-struct Nothing;
-
-impl Loader for Nothing {
-    fn load(&self, _: &str) -> Result<String, LoadError> {
-        Err(LoadError::NotFound)
-    }
-}
-
 #[test]
 fn no_label_steers_a_terminal_from_a_diagnostic() {
     for label in labels() {
@@ -478,7 +470,7 @@ fn no_label_steers_a_terminal_from_a_diagnostic() {
                 diagnostics,
                 sources,
                 ..
-            } = check("plan.psd", &plan, &Nothing, &Options::default());
+            } = check("plan.psd", &plan, &no_files, &Options::default());
             let shown = render::render_all(&diagnostics, &sources, &render::Appearance::plain());
             assert_eq!(steering(&shown), "", "{label:?}: {shown}");
             let found: Vec<_> = diagnostics
