@@ -163,7 +163,7 @@ fn the_wrong_plan_of_a_page_gives_its_code_and_no_other() {
                 .filter(|it| it.is_error())
                 .map(|it| it.code)
                 .collect(),
-            Severity::Warning | Severity::Advice => checked.diagnostics.iter().map(|it| it.code).collect(),
+            Severity::Warning => checked.diagnostics.iter().map(|it| it.code).collect(),
         };
         relevant == [code] && checked.plan.is_none() == (code.severity() == Severity::Error)
     });

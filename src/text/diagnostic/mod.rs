@@ -15,7 +15,6 @@ use crate::text::source::Span;
 pub enum Severity {
     Error,
     Warning,
-    Advice,
 }
 
 /// A span and the note on it.
