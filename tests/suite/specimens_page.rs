@@ -73,8 +73,7 @@ fn drawn(name: &str, text: &str) -> Vec<u8> {
         record: &record,
         assessment: &assessment,
         provenance: &provenance,
-    })
-    .expect("the outputs can be made");
+    });
     let is_loop =
         |path: &str| path.starts_with("figures/") && path.ends_with("_force_displacement.svg");
     files
