@@ -6,10 +6,14 @@ use std::path::PathBuf;
 
 use psd::language::check::{Options, check, no_files};
 use psd::language::syntax::{format, parse};
-use psd::schema::{BLOCKS, PAGES, codes, reference};
+use psd::schema::BLOCKS;
 use psd::text::diagnostic::Code;
 use psd::text::diagnostic::render::{Appearance, render_all};
 use psd::text::source::Sources;
+
+mod text;
+
+use text::{PAGES, codes, reference};
 
 const END: &str = "<!-- end of generated -->\n";
 
