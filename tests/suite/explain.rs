@@ -6,9 +6,12 @@
 
 use psd::language::check::{Checked, LoadError, Options, check};
 use psd::language::syntax::{format, format_document, parse};
-use psd::text::diagnostic::{Code, OF_THE_MACHINE, Severity};
+use psd::text::diagnostic::{Code, Severity};
 use psd::text::markdown::is_document;
 use psd::text::source::Sources;
+
+/// Codes that do not depend on the plan alone: they are about the machine that is to run it.
+const OF_THE_MACHINE: &[Code] = &[Code::DiskSpace];
 
 /// One fenced block of a page.
 struct Fence {

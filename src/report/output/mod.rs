@@ -17,17 +17,6 @@ use figures::{Drawn, Undrawn};
 use file::wants;
 use paths::{UsedPaths, plan_files};
 
-/// Every file of the run folder, the manifest last.
-///
-/// # Errors
-/// A table or figure that cannot be encoded.
-pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
-    let mut files = Vec::new();
-    put_everything(run, &mut files)?;
-    files.push(manifest::of_files(&files));
-    Ok(files)
-}
-
 /// Writes every file of the run folder except the manifest, each immediately after it is made. The order is: summary and tables, the
 /// figures one by one, the report, which states the digests of the tables, and the files of the plan.
 ///

@@ -125,8 +125,12 @@ fn limits(range: Range, dimension: Dimension) -> String {
 
 /// The default of a field, or that it is required; empty if it has neither.
 pub(super) fn default(field: &Field) -> String {
-    match (field.presence, field.default_text()) {
-        (Presence::Required, _) => "required".to_owned(),
-        (_, default) => default.unwrap_or_default(),
+    match field.presence {
+        Presence::Required => "required".to_owned(),
+        Presence::Optional => String::new(),
+        Presence::Default { number, unit } => format!("{number} {unit}").trim_end().to_owned(),
+        Presence::DefaultInWords(words) => words.to_owned(),
+        Presence::RequiredOn(rig, "") => format!("required on a {} rig", rig.name()),
+        Presence::RequiredOn(rig, words) => format!("{words}; required on a {} rig", rig.name()),
     }
 }
