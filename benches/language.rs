@@ -3,19 +3,11 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use psd::language::check::{LoadError, Loader, Options, ParsedPlan, check};
+use psd::language::check::{Options, ParsedPlan, check, no_files};
 use psd::units::{Dimension, Quantity};
 
 fn main() {
     divan::main();
-}
-
-struct NoFiles;
-
-impl Loader for NoFiles {
-    fn load(&self, _: &str) -> Result<String, LoadError> {
-        Err(LoadError::NotFound)
-    }
 }
 
 /// A plan with parameters.
@@ -41,7 +33,7 @@ fn small_plan() -> bool {
     check(
         "plan.psd",
         divan::black_box(SMALL),
-        &NoFiles,
+        &no_files,
         &Options::default(),
     )
     .plan
@@ -58,7 +50,7 @@ fn many_lines(bencher: divan::Bencher, lines: usize) {
             check(
                 "plan.psd",
                 divan::black_box(&text),
-                &NoFiles,
+                &no_files,
                 &Options::default(),
             )
             .plan
@@ -78,8 +70,8 @@ fn format_two_thousand_lines(bencher: divan::Bencher) {
 /// The work of a study for each of its runs: other values of the parameters, without parsing.
 #[divan::bench]
 fn bind_parameters_of_a_small_plan(bencher: divan::Bencher) {
-    let mut parsed = ParsedPlan::parse("plan.psd", CANTILEVER, &NoFiles, &Options::default());
-    assert!(parsed.check(&NoFiles).plan.is_some());
+    let mut parsed = ParsedPlan::parse("plan.psd", CANTILEVER, &no_files, &Options::default());
+    assert!(parsed.check(&no_files).plan.is_some());
     let drop = Quantity::new(0.08, Dimension::LENGTH);
     let values = BTreeMap::from([("drop".to_owned(), drop)]);
     bencher.bench(|| parsed.bind(divan::black_box(&values)).is_ok());
@@ -93,8 +85,13 @@ fn check_the_same_plan_from_its_text(bencher: divan::Bencher) {
         ..Options::default()
     };
     bencher.bench(|| {
-        check("plan.psd", divan::black_box(CANTILEVER), &NoFiles, &options)
-            .plan
-            .is_some()
+        check(
+            "plan.psd",
+            divan::black_box(CANTILEVER),
+            &no_files,
+            &options,
+        )
+        .plan
+        .is_some()
     });
 }

@@ -12,7 +12,7 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 use psd::emulator::lines::real_time::Carrier as _;
 use psd::emulator::{Log, PseudoTerminal, RigEmulator, Script, of_plan};
-use psd::language::check::{LoadError, Loader, Options, check};
+use psd::language::check::{Options, check, no_files};
 use psd::plan::{Plan, RealLink};
 use psd::record::journal::{Durability, EntryKind, Journal, Storage};
 use psd::record::{History, Outcome, Record};
@@ -64,14 +64,6 @@ fn main() {
     divan::main();
 }
 
-struct NoFiles;
-
-impl Loader for NoFiles {
-    fn load(&self, _: &str) -> Result<String, LoadError> {
-        unreachable!("the plan uses no file")
-    }
-}
-
 /// All its inputs are exact, so that no study follows its steps.
 fn plan() -> Plan {
     checked_plan(PLAN)
@@ -87,7 +79,7 @@ fn checked_plan(text: &str) -> Plan {
         rig: Some("real".to_owned()),
         ..Options::default()
     };
-    let checked = check("plan.psd", text, &NoFiles, &options);
+    let checked = check("plan.psd", text, &no_files, &options);
     checked
         .plan
         .unwrap_or_else(|| panic!("{:?}", checked.diagnostics))

@@ -1,6 +1,6 @@
 //! Runs of a study: bound and simulated, in batches and one by one, and the share of the binding. The goal is runs per second on one core.
 
-use psd::language::check::{LoadError, Loader, Options, ParsedPlan};
+use psd::language::check::{Options, ParsedPlan, no_files};
 use psd::plan::Plan;
 use psd::study::definition::Definition;
 use psd::study::simulation::Simulation;
@@ -16,17 +16,9 @@ const PLAN: &str = "param speed = 1 m/s\n\
     study scatter { vary = [speed ~ normal(sd: 0.05 m/s), beam.mass ~ lognormal(cv: 2 %)] }\n\
     require \"stays in travel\" hit.max_displacement < 0.2 m\n";
 
-struct Nothing;
-
-impl Loader for Nothing {
-    fn load(&self, _: &str) -> Result<String, LoadError> {
-        Err(LoadError::NotFound)
-    }
-}
-
 fn checked() -> (ParsedPlan, Plan, Definition) {
-    let mut parsed = ParsedPlan::parse("study.psd", PLAN, &Nothing, &Options::default());
-    let plan = parsed.check(&Nothing).plan.expect("a sound plan");
+    let mut parsed = ParsedPlan::parse("study.psd", PLAN, &no_files, &Options::default());
+    let plan = parsed.check(&no_files).plan.expect("a sound plan");
     let study = Definition::of(&plan.studies, None, None).expect("one study");
     (parsed, plan, study)
 }

@@ -293,7 +293,7 @@ mod tests {
     use super::super::InProcess;
     use super::super::firmware::sealed;
     use super::*;
-    use crate::language::check::{LoadError, Loader, Options, check};
+    use crate::language::check::{Options, check, no_files};
     use crate::plan::{
         Calibration, Datum, DeviceLink, Link, PortPlan, PretestCheck, ReadingRules, SafeState,
     };
@@ -318,14 +318,6 @@ move to_half {
 }
 ";
 
-    struct NoFiles;
-
-    impl Loader for NoFiles {
-        fn load(&self, _: &str) -> Result<String, LoadError> {
-            unreachable!("the plan uses no file")
-        }
-    }
-
     fn device(dialect: Dialect) -> DeviceLink {
         let port = PortPlan::Serial {
             path: "/dev/none".to_owned(),
@@ -341,7 +333,7 @@ move to_half {
 
     /// The plan above on a real rig of these devices.
     fn plan(actuator: Dialect, load_cell: Option<Dialect>) -> Plan {
-        let checked = check("plan.psd", PLAN, &NoFiles, &Options::default());
+        let checked = check("plan.psd", PLAN, &no_files, &Options::default());
         let mut plan = checked
             .plan
             .unwrap_or_else(|| panic!("{:?}", checked.diagnostics));

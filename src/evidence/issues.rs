@@ -147,7 +147,7 @@ impl IssueFile {
 
     /// Its bytes.
     pub fn json(&self) -> String {
-        sanitize::json(&serde_json::to_string_pretty(self).unwrap_or_default()) + "\n"
+        sanitize::json_file(self)
     }
 
     /// Whether one of its issues is made from the report with this manifest.
@@ -192,7 +192,7 @@ fn older_json(issues: &[One]) -> String {
     };
     let file =
         json!({ "schema": OLDER_SCHEMA, "amendments": issues.iter().map(one).collect::<Vec<_>>() });
-    sanitize::json(&serde_json::to_string_pretty(&file).unwrap_or_default()) + "\n"
+    sanitize::json_file(&file)
 }
 
 /// The plan's name of a particular that can be stated after the test.

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use super::failure::{Failure, plain};
-use crate::language::check::{LoadError, Loader, Options, check};
+use crate::language::check::{LoadError, Options, check};
 use crate::plan::Plan;
 use crate::record::equipment::{Device, Equipment};
 use crate::record::journal::{Line, LogText, OLDEST_FORMAT, Recovered, Unreadable, recover};
@@ -75,9 +75,12 @@ pub fn journal_of(run: &Path) -> PathBuf {
 /// The plan of a run log, checked again from the run log alone.
 pub fn plan_of(logged: &LoggedRun) -> Result<Plan, String> {
     let header = &logged.header;
-    let files = Files {
-        header,
-        texts: &logged.texts,
+    // The recorded files by the names under which they were used.
+    let files = |path: &str| {
+        let found = header.files.iter().position(|file| file.name == path);
+        found
+            .and_then(|index| logged.texts.get(index).cloned())
+            .ok_or(LoadError::NotFound)
     };
     let (Some(first), Some(text)) = (header.files.first(), logged.texts.first()) else {
         return Err("the run log has no plan".to_owned());
@@ -168,21 +171,5 @@ fn real_run(header: &Header, recovered: &Recovered) -> RealRun {
         ended: recovered.lines.iter().rev().find_map(wall),
         jumps: super::wall_clock::jumps(&recovered.lines),
         sealed: Some((recovered.lines.len() as u64, recovered.head().to_owned())),
-    }
-}
-
-/// Gives the recorded files by the names under which they were used.
-struct Files<'a> {
-    header: &'a Header,
-    texts: &'a [String],
-}
-
-impl Loader for Files<'_> {
-    fn load(&self, path: &str) -> Result<String, LoadError> {
-        let found = self.header.files.iter().position(|file| file.name == path);
-        found
-            .and_then(|index| self.texts.get(index))
-            .cloned()
-            .ok_or(LoadError::NotFound)
     }
 }

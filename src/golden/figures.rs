@@ -85,16 +85,10 @@ fn figure(was: &FigureData, is: &FigureData, tolerances: &Tolerances, found: &mu
         axis(&was.x.unit, |point| point.0),
         axis(&was.y.unit, |point| point.1),
     );
-    if was.curves.len() != is.curves.len() {
-        note(
-            "",
-            Some(Change::Length {
-                of: "curves",
-                was: was.curves.len(),
-                is: is.curves.len(),
-            }),
-        );
-    }
+    note(
+        "",
+        Change::length("curves", was.curves.len(), is.curves.len()),
+    );
     for (old, new) in was.curves.iter().zip(&is.curves) {
         let name = if old.label.is_empty() {
             String::new()
@@ -110,38 +104,22 @@ fn figure(was: &FigureData, is: &FigureData, tolerances: &Tolerances, found: &mu
                 note(&format!("{name}: {along}"), change);
             }
         } else {
-            note(
-                &name,
-                Some(Change::Length {
-                    of: "points",
-                    was: old.count,
-                    is: new.count,
-                }),
-            );
+            note(&name, Change::length("points", old.count, new.count));
         }
     }
     lines(&was.references, &is.references, y, &mut note);
     for (old, new) in was.bands.iter().zip(&is.bands) {
         let name = format!(", {}", old.label);
         note(&format!("{name}: words"), words(&old.label, &new.label));
-        if old.intervals.len() == new.intervals.len() {
-            let ends = |intervals: &[(f64, f64)]| {
-                intervals
-                    .iter()
-                    .flat_map(|(from, to)| [*from, *to])
-                    .collect::<Vec<_>>()
-            };
-            note(&name, row(&ends(&old.intervals), &ends(&new.intervals), x));
-        } else {
-            note(
-                &name,
-                Some(Change::Length {
-                    of: "intervals",
-                    was: old.intervals.len(),
-                    is: new.intervals.len(),
-                }),
-            );
-        }
+        let ends = |intervals: &[(f64, f64)]| {
+            intervals
+                .iter()
+                .flat_map(|(from, to)| [*from, *to])
+                .collect::<Vec<_>>()
+        };
+        let change = Change::length("intervals", old.intervals.len(), new.intervals.len())
+            .or_else(|| row(&ends(&old.intervals), &ends(&new.intervals), x));
+        note(&name, change);
     }
 }
 
@@ -151,16 +129,8 @@ fn lines(
     y: Axis,
     note: &mut impl FnMut(&str, Option<Change>),
 ) {
-    if was.len() != is.len() {
-        note(
-            "",
-            Some(Change::Length {
-                of: "limits",
-                was: was.len(),
-                is: is.len(),
-            }),
-        );
-        return;
+    if let Some(change) = Change::length("limits", was.len(), is.len()) {
+        return note("", Some(change));
     }
     for ((old_label, old), (new_label, new)) in was.iter().zip(is) {
         note(", limit: words", words(old_label, new_label));
@@ -189,25 +159,18 @@ fn curve(
 }
 
 fn row(was: &[f64], is: &[f64], axis: Axis) -> Option<Change> {
-    if was.len() != is.len() {
-        return Some(Change::Length {
-            of: "points",
-            was: was.len(),
-            is: is.len(),
-        });
-    }
     let pairs: Vec<_> = was
         .iter()
         .zip(is)
         .map(|(was, is)| (Some(*was), Some(*is)))
         .collect();
-    number::many(&pairs, axis.dimension, axis.rule, axis.scale, |row| {
-        RowRef {
-            row,
-            step: None,
-            time: None,
-        }
-    })
+    let at = |row| RowRef {
+        row,
+        step: None,
+        time: None,
+    };
+    Change::length("points", was.len(), is.len())
+        .or_else(|| number::many(&pairs, axis.dimension, axis.rule, axis.scale, at))
 }
 
 /// The text without its numbers.

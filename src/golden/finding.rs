@@ -95,6 +95,14 @@ pub struct Count {
     pub of: usize,
 }
 
+impl Change {
+    /// Another number of entries.
+    #[must_use]
+    pub fn length(of: &'static str, was: usize, is: usize) -> Option<Self> {
+        (was != is).then_some(Self::Length { of, was, is })
+    }
+}
+
 impl Moved {
     /// The difference, SI.
     #[must_use]

@@ -105,16 +105,7 @@ impl Walk<'_> {
     fn quantity(&mut self, path: &[String], both: [&Value; 2], dimension: Dimension, scale: f64) {
         let rule = self.rule(path, dimension);
         let [old, new] = both.map(numbers);
-        if old.len() != new.len() {
-            self.note(
-                path,
-                Some(Change::Length {
-                    of: "entries",
-                    was: old.len(),
-                    is: new.len(),
-                }),
-            );
-        }
+        self.note(path, Change::length("entries", old.len(), new.len()));
         let listed = old.len() > 1;
         for (index, (old, new)) in old.into_iter().zip(new).enumerate() {
             let change = number::single(old, new, dimension, rule, scale);
@@ -169,16 +160,7 @@ impl Walk<'_> {
             }
             return;
         }
-        if was.len() != is.len() {
-            self.note(
-                path,
-                Some(Change::Length {
-                    of: "entries",
-                    was: was.len(),
-                    is: is.len(),
-                }),
-            );
-        }
+        self.note(path, Change::length("entries", was.len(), is.len()));
         for (index, (old, new)) in was.iter().zip(is).enumerate() {
             path.push((index + 1).to_string());
             self.value(path, old, new);

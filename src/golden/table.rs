@@ -154,18 +154,10 @@ fn compare(
     found: &mut Vec<Finding>,
 ) {
     let named = |column: &str| format!("{procedure}.{column}");
-    if was.rows() != is.rows() {
-        let change = Change::Length {
-            of: "rows",
-            was: was.rows(),
-            is: is.rows(),
-        };
-        found.push(Finding::new(
-            Part::Table,
-            format!("table of {procedure}"),
-            change,
-        ));
-    }
+    let rows = Change::length("rows", was.rows(), is.rows());
+    found.extend(
+        rows.map(|change| Finding::new(Part::Table, format!("table of {procedure}"), change)),
+    );
     for (column, _) in &was.columns {
         let (Some(old), new) = (was.column(column), is.column(column)) else {
             continue;

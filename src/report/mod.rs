@@ -33,7 +33,7 @@ pub use figures::{
 };
 pub use output::{
     FileDigest, NullSink, OutputError, OutputFile, OutputPart, OutputPiece, OutputSink, SUMMARY,
-    everything, figure_data, manifest_with, numbers, put_everything, vectors,
+    figure_data, manifest_with, numbers, put_everything, vectors,
 };
 pub use run::{Build, ClockJump, Provenance, RealRun, Run};
 pub use status::{Change, Issue, IssueKind, Issues, ReportStatus, report_status};

@@ -6,7 +6,6 @@ pub mod blocks;
 pub(crate) mod columns;
 mod constructors;
 mod functions;
-mod reference;
 mod renamed;
 mod types;
 
@@ -17,7 +16,6 @@ pub(crate) use blocks::{
 };
 pub use columns::Column;
 pub use functions::{FUNCTIONS, FunctionKind};
-pub use reference::{PAGES, codes, reference};
 pub use renamed::{NameRole, RENAMED, Renamed, renamed_at, renamed_result};
 pub use types::{
     BlockKind, Field, FieldType, Kind, Naming, Presence, Range, ResultKind, RigKind, Variant,

@@ -270,21 +270,6 @@ impl Field {
         }
     }
 
-    /// The default as the reference shows it.
-    #[must_use]
-    pub fn default_text(&self) -> Option<String> {
-        match self.presence {
-            Presence::Default { number, unit: "" } => Some(number.to_string()),
-            Presence::Default { number, unit } => Some(format!("{number} {unit}")),
-            Presence::DefaultInWords(words) => Some(words.to_owned()),
-            Presence::RequiredOn(rig, "") => Some(format!("required on a {} rig", rig.name())),
-            Presence::RequiredOn(rig, words) => {
-                Some(format!("{words}; required on a {} rig", rig.name()))
-            }
-            Presence::Required | Presence::Optional => None,
-        }
-    }
-
     /// The default number in SI.
     #[must_use]
     pub fn default_number(&self) -> Option<f64> {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::language::check::{LoadError, Loader, Options, ParsedPlan};
+use crate::language::check::{Options, ParsedPlan, no_files};
 use crate::physics::study::Confidence;
 use crate::physics::study::correlation::Pair;
 use crate::physics::study::distribution::{Distribution, Spread};
@@ -47,15 +47,6 @@ pub struct Studied {
     pub plan: Plan,
 }
 
-/// Reads no file.
-struct Nothing;
-
-impl Loader for Nothing {
-    fn load(&self, _: &str) -> Result<String, LoadError> {
-        Err(LoadError::NotFound)
-    }
-}
-
 /// An impact of 25 steps at most, which meets `impact`, a block without its braces; and requirements.
 pub fn plan(impact: &str, rest: &str) -> String {
     format!(
@@ -80,8 +71,8 @@ pub fn checked(text: &str, settings: &[(String, String)]) -> (ParsedPlan, Plan) 
         settings: settings.to_vec(),
         ..Options::default()
     };
-    let mut parsed = ParsedPlan::parse("study.psd", text, &Nothing, &options);
-    let checked = parsed.check(&Nothing);
+    let mut parsed = ParsedPlan::parse("study.psd", text, &no_files, &options);
+    let checked = parsed.check(&no_files);
     let plan = checked.plan;
     let plan = plan.unwrap_or_else(|| panic!("{text}: {:?}", checked.diagnostics));
     (parsed, plan)

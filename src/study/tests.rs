@@ -8,26 +8,22 @@ use super::metadata;
 use super::simulation::Simulation;
 use super::stopping::rare::RareRuns;
 use super::testing::bytes;
-use crate::language::check::{LoadError, Loader, Options, ParsedPlan};
+use crate::language::check::{LoadError, Options, ParsedPlan};
 use crate::physics::study::Confidence;
 use crate::physics::study::distribution::normal;
 use crate::plan::Plan;
 use crate::study::answers::Answers;
 
 /// A pulse of 1 m/s² and one of half of it: the response of an elastic frame to the second is half that to the first.
-struct Pulses;
-
-impl Loader for Pulses {
-    fn load(&self, path: &str) -> Result<String, LoadError> {
-        let peak = match path {
-            "strong.csv" => 1.0,
-            "weak.csv" => 0.5,
-            _ => return Err(LoadError::NotFound),
-        };
-        Ok(format!(
-            "time_s,acceleration_m_per_s2\n0,0\n0.1,{peak}\n0.2,0\n"
-        ))
-    }
+fn pulses(path: &str) -> Result<String, LoadError> {
+    let peak = match path {
+        "strong.csv" => 1.0,
+        "weak.csv" => 0.5,
+        _ => return Err(LoadError::NotFound),
+    };
+    Ok(format!(
+        "time_s,acceleration_m_per_s2\n0,0\n0.1,{peak}\n0.2,0\n"
+    ))
 }
 
 struct Parsed {
@@ -36,8 +32,8 @@ struct Parsed {
 }
 
 fn parsed(text: &str) -> Parsed {
-    let mut parsed = ParsedPlan::parse("study.psd", text, &Pulses, &Options::default());
-    let checked = parsed.check(&Pulses);
+    let mut parsed = ParsedPlan::parse("study.psd", text, &pulses, &Options::default());
+    let checked = parsed.check(&pulses);
     let plan = checked.plan;
     let plan = plan.unwrap_or_else(|| panic!("{text}: {:?}", checked.diagnostics));
     Parsed { parsed, plan }

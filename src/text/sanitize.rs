@@ -115,6 +115,13 @@ pub fn json(document: &str) -> String {
     safe
 }
 
+/// A file of psd in JSON: indented, made safe as by [`json`], with a newline at its end. Floats are the shortest that read back the same.
+#[must_use]
+pub fn json_file(value: &impl serde::Serialize) -> String {
+    let text = serde_json::to_string_pretty(value).expect("plain numbers and texts");
+    json(&text) + "\n"
+}
+
 /// Most characters of a part of a path: with an extension and a number every file system accepts it.
 const PART_CHARS: usize = 120;
 /// Most bytes of a part of a path.

@@ -1,10 +1,11 @@
 //! The program as started from a shell: exit codes, output streams, files on disk.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use serde_json::Value;
+
+use super::workspace::{Ended, Workspace, every_file};
 
 /// A small plan that passes.
 const SOUND: &str = r#"plan "A small impact" {
@@ -46,105 +47,9 @@ fn with_every_output() -> String {
     SOUND.split("\nreport {").next().unwrap().to_owned()
 }
 
-/// A folder with plans, and the program run in it.
-struct Workspace {
-    folder: tempfile::TempDir,
-}
-
-impl Workspace {
-    fn new(plans: &[(&str, &str)]) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        for (name, text) in plans {
-            let path = folder.path().join(name);
-            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-            std::fs::write(path, text).unwrap();
-        }
-        Self { folder }
-    }
-
-    fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
-        command
-            .args(arguments)
-            .current_dir(self.folder.path())
-            .stdin(Stdio::null())
-            .env_remove("NO_COLOR");
-        command
-    }
-
-    fn psd(&self, arguments: &[&str]) -> Ended {
-        Ended::from(self.command(arguments).output().unwrap())
-    }
-
-    fn path(&self, path: &str) -> PathBuf {
-        self.folder.path().join(path)
-    }
-
-    fn read(&self, path: &str) -> String {
-        std::fs::read_to_string(self.path(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
-    }
-}
-
-struct Ended {
-    code: Option<i32>,
-    stdout: String,
-    stderr: String,
-}
-
-impl From<Output> for Ended {
-    fn from(output: Output) -> Self {
-        let text = |bytes| String::from_utf8(bytes).unwrap();
-        Self {
-            code: output.status.code(),
-            stdout: text(output.stdout),
-            stderr: text(output.stderr),
-        }
-    }
-}
-
-impl Ended {
-    #[track_caller]
-    fn with(self, code: i32) -> Self {
-        assert_eq!(
-            self.code,
-            Some(code),
-            "stdout:\n{}\nstderr:\n{}",
-            self.stdout,
-            self.stderr
-        );
-        self
-    }
-
-    fn json(&self) -> Value {
-        serde_json::from_str(&self.stdout)
-            .unwrap_or_else(|error| panic!("{error}:\n{}", self.stdout))
-    }
-}
-
 fn changed(from: &str, to: &str) -> String {
     assert!(SOUND.contains(from));
     SOUND.replace(from, to)
-}
-
-/// The files below a folder with their bytes, by their paths in it, in order.
-pub fn every_file(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
-    let mut found = Vec::new();
-    let mut open = vec![folder.to_owned()];
-    while let Some(next) = open.pop() {
-        for entry in std::fs::read_dir(next).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                open.push(path);
-            } else {
-                found.push((
-                    path.strip_prefix(folder).unwrap().to_owned(),
-                    std::fs::read(&path).unwrap(),
-                ));
-            }
-        }
-    }
-    found.sort();
-    found
 }
 
 #[test]
@@ -517,7 +422,7 @@ fn a_run_of_too_many_steps_does_not_begin() {
         "{output}"
     );
     assert!(
-        !workspace.folder.path().join("long").exists(),
+        !workspace.folder().join("long").exists(),
         "nothing is left of it"
     );
 }
@@ -733,7 +638,7 @@ fn results_of_unread_strokes_and_of_coarse_cells_are_recomputed_too() {
     let mut diff = Command::new("diff");
     let compared = diff
         .args(["-r", "run", "again"])
-        .current_dir(workspace.folder.path())
+        .current_dir(workspace.folder())
         .output()
         .unwrap();
     assert!(
@@ -760,7 +665,7 @@ fn results_recomputed_from_the_record_are_byte_identical() {
     let mut diff = Command::new("diff");
     let compared = diff
         .args(["-r", "run", "again"])
-        .current_dir(workspace.folder.path())
+        .current_dir(workspace.folder())
         .output()
         .unwrap();
     assert!(

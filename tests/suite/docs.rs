@@ -4,15 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use psd::language::check::{LoadError, Loader, Options, check};
-
-struct NoFiles;
-
-impl Loader for NoFiles {
-    fn load(&self, _: &str) -> Result<String, LoadError> {
-        Err(LoadError::NotFound)
-    }
-}
+use psd::language::check::{Options, check, no_files};
 
 fn page(name: &str) -> String {
     fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).expect("the page is there")
@@ -28,7 +20,7 @@ fn the_plan_in_the_readme_checks() {
         .collect();
     assert!(!plans.is_empty(), "the README shows a plan");
     for plan in plans {
-        let checked = check("README.psd", plan, &NoFiles, &Options::default());
+        let checked = check("README.psd", plan, &no_files, &Options::default());
         assert!(checked.plan.is_some(), "{:?}", checked.diagnostics);
     }
 }

@@ -4,10 +4,9 @@
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
 use std::sync::LazyLock;
 
-use crate::cli::every_file;
+use super::workspace::{Workspace, every_file};
 
 const PLAN: &str = r#"plan "Evidence" {
   customer = "Somebody Ltd"
@@ -42,103 +41,41 @@ report {
 /// Files by their paths, with their bytes.
 type Files = Vec<(PathBuf, Vec<u8>)>;
 
-struct Workspace {
-    folder: tempfile::TempDir,
+/// A folder with a run in `run`, as a page and as tables.
+fn with_run() -> Workspace {
+    static RUN: LazyLock<Files> = LazyLock::new(|| {
+        made(&PLAN.replace(
+            "formats = [html, csv, parquet, pdf]",
+            "formats = [html, csv, parquet]",
+        ))
+    });
+    with(&RUN)
 }
 
-impl Workspace {
-    /// A folder with a run in `run`, as a page and as tables.
-    fn new() -> Self {
-        static RUN: LazyLock<Files> = LazyLock::new(|| {
-            Workspace::made(&PLAN.replace(
-                "formats = [html, csv, parquet, pdf]",
-                "formats = [html, csv, parquet]",
-            ))
-        });
-        Self::of(&RUN)
-    }
+/// The same with a PDF, which takes longer.
+fn with_paper() -> Workspace {
+    static RUN: LazyLock<Files> = LazyLock::new(|| made(PLAN));
+    with(&RUN)
+}
 
-    /// The same with a PDF, which takes longer.
-    fn with_paper() -> Self {
-        static RUN: LazyLock<Files> = LazyLock::new(|| Workspace::made(PLAN));
-        Self::of(&RUN)
+fn with(files: &Files) -> Workspace {
+    let workspace = Workspace::new(&[]);
+    for (name, bytes) in files {
+        workspace.write(name, bytes);
     }
+    workspace
+}
 
-    /// Output of a run of the plan, with the plan.
-    fn made(plan: &str) -> Files {
-        let workspace = Self {
-            folder: tempfile::tempdir().unwrap(),
-        };
-        fs::write(workspace.path("plan.psd"), plan).unwrap();
-        workspace.ends(0, &["run", "plan.psd", "--out", "run"]);
-        every_file(workspace.folder.path())
-    }
-
-    fn of(files: &Files) -> Self {
-        let workspace = Self {
-            folder: tempfile::tempdir().unwrap(),
-        };
-        for (name, bytes) in files {
-            let path = workspace.folder.path().join(name);
-            fs::create_dir_all(path.parent().unwrap()).unwrap();
-            fs::write(path, bytes).unwrap();
-        }
-        workspace
-    }
-
-    fn path(&self, path: &str) -> PathBuf {
-        self.folder.path().join(path)
-    }
-
-    fn command(&self, arguments: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
-        command
-            .args(arguments)
-            .current_dir(self.folder.path())
-            .stdin(Stdio::null());
-        command
-    }
-
-    /// All output of the program.
-    #[track_caller]
-    fn ends(&self, code: i32, arguments: &[&str]) -> String {
-        let Output {
-            status,
-            stdout,
-            stderr,
-        } = self.command(arguments).output().unwrap();
-        let output = String::from_utf8(stdout).unwrap() + &String::from_utf8(stderr).unwrap();
-        assert_eq!(status.code(), Some(code), "{arguments:?}\n{output}");
-        output
-    }
-
-    /// Every file of a folder but its manifest, and their names.
-    fn files(&self, folder: &str) -> Vec<(String, Vec<u8>)> {
-        let mut found = Vec::new();
-        let mut open = vec![self.path(folder)];
-        while let Some(next) = open.pop() {
-            for entry in fs::read_dir(next).unwrap().map(Result::unwrap) {
-                if entry.path().is_dir() {
-                    open.push(entry.path());
-                } else {
-                    let name = entry
-                        .path()
-                        .strip_prefix(self.path(folder))
-                        .unwrap()
-                        .display()
-                        .to_string();
-                    found.push((name, fs::read(entry.path()).unwrap()));
-                }
-            }
-        }
-        found.sort();
-        found
-    }
+/// Output of a run of the plan, with the plan.
+fn made(plan: &str) -> Files {
+    let workspace = Workspace::new(&[("plan.psd", plan)]);
+    workspace.ends(0, &["run", "plan.psd", "--out", "run"]);
+    every_file(workspace.folder())
 }
 
 #[test]
 fn a_folder_is_signed_in_each_role_once_and_proven_with_the_keys() {
-    let workspace = Workspace::with_paper();
+    let workspace = with_paper();
     workspace.ends(0, &["keygen", "mine", "--no-password"]);
     assert!(
         workspace
@@ -233,7 +170,7 @@ fn a_folder_is_signed_in_each_role_once_and_proven_with_the_keys() {
 
 #[test]
 fn a_key_has_its_password_and_never_lies_in_the_folder() {
-    let workspace = Workspace::new();
+    let workspace = with_run();
     fs::write(workspace.path("password"), "correct horse\n").unwrap();
     fs::write(workspace.path("wrong"), "battery staple\n").unwrap();
     workspace.ends(0, &["keygen", "key", "--password-file", "password"]);
@@ -269,7 +206,7 @@ fn a_key_has_its_password_and_never_lies_in_the_folder() {
 
 #[test]
 fn what_does_not_verify_is_neither_signed_nor_amended_and_the_part_is_named() {
-    let workspace = Workspace::new();
+    let workspace = with_run();
     workspace.ends(0, &["keygen", "key", "--no-password"]);
     for (file, part) in [
         ("summary.json", "results"),
@@ -331,8 +268,8 @@ fn what_does_not_verify_is_neither_signed_nor_amended_and_the_part_is_named() {
 
 #[test]
 fn a_report_is_the_same_in_any_folder_and_at_any_time() {
-    let workspace = Workspace::with_paper();
-    let own = workspace.files("run");
+    let workspace = with_paper();
+    let own = every_file(&workspace.path("run"));
     fs::create_dir(workspace.path("elsewhere")).unwrap();
     let run = workspace.path("run").canonicalize().unwrap();
     for (at, (zone, language)) in [
@@ -366,15 +303,15 @@ fn a_report_is_the_same_in_any_folder_and_at_any_time() {
             "{}",
             String::from_utf8_lossy(&ended.stderr)
         );
-        let again = workspace.files(&out);
+        let again = every_file(&workspace.path(&out));
         assert!(again == own, "{zone} {language}");
     }
 }
 
 #[test]
 fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
-    let workspace = Workspace::new();
-    let before = workspace.files("run");
+    let workspace = with_run();
+    let before = every_file(&workspace.path("run"));
     let amend = |run: &str, particular: &str, code| {
         let by = [
             "report",
@@ -395,7 +332,7 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
         "{output}"
     );
     assert!(
-        workspace.files("run") == before,
+        every_file(&workspace.path("run")) == before,
         "the report that is replaced stays as it is"
     );
     let page = fs::read_to_string(workspace.path("run-amended-1/report.html")).unwrap();
@@ -501,8 +438,8 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
 
 #[test]
 fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
-    let workspace = Workspace::new();
-    let before = workspace.files("run");
+    let workspace = with_run();
+    let before = every_file(&workspace.path("run"));
     let issue = |run: &str, date: &str, more: &[&str], code| {
         workspace.ends(
             code,
@@ -539,7 +476,10 @@ fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
         output.contains("run-issued") && output.contains("issues report"),
         "{output}"
     );
-    assert!(workspace.files("run") == before, "the run stays as it is");
+    assert!(
+        every_file(&workspace.path("run")) == before,
+        "the run stays as it is"
+    );
 
     let page = fs::read_to_string(workspace.path("run-issued/report.html")).unwrap();
     for stated in [

@@ -4,11 +4,14 @@
 //! can be used by both plans (`*` matches any digits). `name="a.md"` is the name of a plan that is not `plan.psd`. `set="speed=2 m/s"` and `rig="name"` are options of the command line. With
 //! `unattended="yes"` a run begins without an operator.
 
-use psd::language::check::{Checked, LoadError, Loader, Options, check};
+use psd::language::check::{Checked, LoadError, Options, check};
 use psd::language::syntax::{format, format_document, parse};
-use psd::text::diagnostic::{Code, OF_THE_MACHINE, Severity};
+use psd::text::diagnostic::{Code, Severity};
 use psd::text::markdown::is_document;
 use psd::text::source::Sources;
+
+/// Codes that do not depend on the plan alone: they are about the machine that is to run it.
+const OF_THE_MACHINE: &[Code] = &[Code::DiskSpace];
 
 /// One fenced block of a page.
 struct Fence {
@@ -49,28 +52,21 @@ fn fences(page: &str) -> Vec<Fence> {
     found
 }
 
-/// The files of one page.
-struct PageFiles<'a>(&'a [Fence]);
-
-impl Loader for PageFiles<'_> {
-    fn load(&self, path: &str) -> Result<String, LoadError> {
-        let holds = |pattern: &str| match pattern.split_once('*') {
-            Some((head, tail)) => path
-                .strip_prefix(head)
-                .and_then(|rest| rest.strip_suffix(tail))
-                .is_some_and(|middle| {
-                    !middle.is_empty() && middle.bytes().all(|byte| byte.is_ascii_digit())
-                }),
-            None => path == pattern,
-        };
-        let found = self
-            .0
-            .iter()
-            .find(|fence| fence.option("file").is_some_and(holds));
-        found
-            .map(|fence| fence.text.clone())
-            .ok_or(LoadError::NotFound)
-    }
+/// The text of a file of one page.
+fn file_of(page: &[Fence], path: &str) -> Result<String, LoadError> {
+    let holds = |pattern: &str| match pattern.split_once('*') {
+        Some((head, tail)) => path
+            .strip_prefix(head)
+            .and_then(|rest| rest.strip_suffix(tail))
+            .is_some_and(|middle| {
+                !middle.is_empty() && middle.bytes().all(|byte| byte.is_ascii_digit())
+            }),
+        None => path == pattern,
+    };
+    page.iter()
+        .find(|fence| fence.option("file").is_some_and(holds))
+        .map(|fence| fence.text.clone())
+        .ok_or(LoadError::NotFound)
 }
 
 fn checked(code: Code, kind: &str) -> Checked {
@@ -93,7 +89,12 @@ fn checked(code: Code, kind: &str) -> Checked {
         recorded: false,
         for_studies: false,
     };
-    check(plan.name(), &plan.text, &PageFiles(&fences), &options)
+    check(
+        plan.name(),
+        &plan.text,
+        &|path: &str| file_of(&fences, path),
+        &options,
+    )
 }
 
 /// `E202 unknown field …` of each diagnostic, for the message of a failing test.
@@ -165,9 +166,7 @@ fn the_wrong_plan_of_a_page_gives_its_code_and_no_other() {
                 .filter(|it| it.is_error())
                 .map(|it| it.code)
                 .collect(),
-            Severity::Warning | Severity::Advice => {
-                checked.diagnostics.iter().map(|it| it.code).collect()
-            }
+            Severity::Warning => checked.diagnostics.iter().map(|it| it.code).collect(),
         };
         relevant == [code] && checked.plan.is_none() == (code.severity() == Severity::Error)
     });

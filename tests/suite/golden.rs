@@ -1,11 +1,8 @@
 //! `psd test` as started from a shell: accepted results, reported differences, exit codes, files on disk.
 
-use std::path::PathBuf;
-use std::process::{Command, Stdio};
-
 use serde_json::Value;
 
-use crate::cli::every_file;
+use super::workspace::{Ended, Workspace, every_file};
 
 /// A small plan with a result, a table and a figure.
 const PLAN: &str = r#"plan "A small impact" {
@@ -36,75 +33,25 @@ report {
 }
 "#;
 
-/// A folder with plans, and the program run in it.
-struct Workspace(tempfile::TempDir);
-
-struct Ended {
-    code: Option<i32>,
-    stdout: String,
-    stderr: String,
+/// A workspace with these plans in `plans`.
+fn with_plans(plans: &[(&str, &str)]) -> Workspace {
+    let workspace = Workspace::new(&[]);
+    for (name, text) in plans {
+        workspace.write(format!("plans/{name}.psd"), text);
+    }
+    workspace
 }
 
 impl Workspace {
-    fn new(plans: &[(&str, &str)]) -> Self {
-        let workspace = Self(tempfile::tempdir().unwrap());
-        for (name, text) in plans {
-            workspace.write(&format!("plans/{name}.psd"), text);
-        }
-        workspace
-    }
-
-    fn psd(&self, arguments: &[&str]) -> Ended {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_psd"));
-        let output = command
-            .args(arguments)
-            .current_dir(self.0.path())
-            .stdin(Stdio::null())
-            .output()
-            .unwrap();
-        let text = |bytes| String::from_utf8(bytes).unwrap();
-        Ended {
-            code: output.status.code(),
-            stdout: text(output.stdout),
-            stderr: text(output.stderr),
-        }
-    }
-
-    fn path(&self, path: &str) -> PathBuf {
-        self.0.path().join(path)
-    }
-
-    fn read(&self, path: &str) -> String {
-        std::fs::read_to_string(self.path(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
-    }
-
-    fn write(&self, path: &str, text: &str) {
-        let path = self.path(path);
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(path, text).unwrap();
-    }
-
     /// Replaces text in a file, which must contain that text.
     fn edit(&self, path: &str, from: &str, to: &str) {
         let text = self.read(path);
         assert!(text.contains(from), "{path} holds no `{from}`:\n{text}");
-        self.write(path, &text.replacen(from, to, 1));
+        self.write(path, text.replacen(from, to, 1));
     }
 }
 
 impl Ended {
-    #[track_caller]
-    fn with(self, code: i32) -> Self {
-        assert_eq!(
-            self.code,
-            Some(code),
-            "stdout:\n{}\nstderr:\n{}",
-            self.stdout,
-            self.stderr
-        );
-        self
-    }
-
     #[track_caller]
     fn prints(self, words: &[&str]) -> Self {
         for word in words {
@@ -116,16 +63,11 @@ impl Ended {
         }
         self
     }
-
-    fn json(&self) -> Value {
-        serde_json::from_str(&self.stdout)
-            .unwrap_or_else(|error| panic!("{error}:\n{}", self.stdout))
-    }
 }
 
 #[test]
 fn a_plan_is_accepted_then_passes_and_is_not_accepted_again() {
-    let workspace = Workspace::new(&[("small", PLAN)]);
+    let workspace = with_plans(&[("small", PLAN)]);
     workspace.psd(&["test"]).with(5).prints(&[
         "FAILED    plans/small  no accepted results in reports/small",
         "--accept",
@@ -198,10 +140,10 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
     let names = [
         "column", "figure", "gone", "more", "near", "number", "rows", "same", "state", "verdict",
     ];
-    let workspace = Workspace::new(&names.map(|name| (name, PLAN)));
+    let workspace = with_plans(&names.map(|name| (name, PLAN)));
     workspace.write(
         "plans/near.psd",
-        &format!("{PLAN}\ngolden {{\n  results = [tolerance(hit.max_displacement, 0.1 mm)]\n  columns = [tolerance(hit.restoring_force_n, 0.2 %)]\n}}\n"),
+        format!("{PLAN}\ngolden {{\n  results = [tolerance(hit.max_displacement, 0.1 mm)]\n  columns = [tolerance(hit.restoring_force_n, 0.2 %)]\n}}\n"),
     );
     workspace
         .psd(&["test", "--accept"])
@@ -380,7 +322,7 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
 
 #[test]
 fn a_requirement_that_changes_its_verdict_comes_first() {
-    let workspace = Workspace::new(&[("small", PLAN)]);
+    let workspace = with_plans(&[("small", PLAN)]);
     workspace.psd(&["test", "--accept"]).with(0);
     workspace.edit("plans/small.psd", "velocity = 1 m/s", "velocity = 1.1 m/s");
     let output = workspace.psd(&["test"]).with(5).prints(&[
@@ -404,7 +346,7 @@ fn a_requirement_that_changes_its_verdict_comes_first() {
 #[test]
 fn a_plan_that_must_fail_to_check_has_its_words_accepted() {
     let wrong = PLAN.replace("velocity = 1 m/s", "velocity = 1 m");
-    let workspace = Workspace::new(&[("wrong", &wrong)]);
+    let workspace = with_plans(&[("wrong", &wrong)]);
     workspace
         .psd(&["test", "--accept"])
         .with(0)
@@ -445,7 +387,7 @@ fn a_plan_that_must_fail_to_check_has_its_words_accepted() {
 
 #[test]
 fn names_are_found_listed_and_missed() {
-    let workspace = Workspace::new(&[("one", PLAN), ("two", PLAN)]);
+    let workspace = with_plans(&[("one", PLAN), ("two", PLAN)]);
     workspace.write("plans/lib/parts.psd", "let mass = 1 kg\n");
     workspace.write("reports/old/summary.json", "{}");
     workspace.write("reports/notes/readme.txt", "no results");
@@ -483,7 +425,7 @@ fn names_are_found_listed_and_missed() {
 
 #[test]
 fn runs_are_laid_side_by_side_with_differences_or_with_their_spread() {
-    let workspace = Workspace::new(&[(
+    let workspace = with_plans(&[(
         "small",
         &PLAN
             .replace("mass      = 1 kg", "mass      = weight")

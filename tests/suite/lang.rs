@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use psd::language::check::{Checked, LoadError, Loader, Options, check};
+use super::source_text::files_in;
+use psd::language::check::{Checked, Options, check};
 use psd::record::{Outcome, Record};
 use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
@@ -44,15 +45,6 @@ struct Case {
     file: String,
     text: String,
     folder: PathBuf,
-}
-
-/// Reads used files from the case's own folder.
-struct Folder<'a>(&'a Path);
-
-impl Loader for Folder<'_> {
-    fn load(&self, path: &str) -> Result<String, LoadError> {
-        fs::read_to_string(self.0.join(path)).map_err(|_| LoadError::NotFound)
-    }
 }
 
 impl Case {
@@ -113,7 +105,7 @@ impl Case {
         check(
             &self.file,
             &self.text,
-            &Folder(&self.folder),
+            &files_in(&self.folder),
             &self.options(),
         )
     }
@@ -358,7 +350,7 @@ fn the_rigs_of_the_library_are_sound() {
             rig: rig.map(str::to_owned),
             ..Options::default()
         };
-        let checked = check("plan.psd", text, &Folder(&plans), &options);
+        let checked = check("plan.psd", text, &files_in(&plans), &options);
         assert!(
             !checked.diagnostics.iter().any(Diagnostic::is_error),
             "{rig:?}: {:?}",

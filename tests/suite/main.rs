@@ -33,3 +33,4 @@ mod storey;
 mod sweep;
 mod uncertainty;
 mod words;
+mod workspace;

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use psd::language::check::{LoadError, Loader, Options, check};
+use psd::language::check::{LoadError, Options, check};
 use psd::language::syntax::{format, parse};
 use psd::plan::Interval;
 use psd::record::journal::EntryKind;
@@ -14,16 +14,12 @@ use psd::text::diagnostic::render::{Appearance, render_all};
 use psd::text::source::Sources;
 
 /// The plans of the manual use no file but a ground motion.
-struct Ground;
-
-impl Loader for Ground {
-    fn load(&self, path: &str) -> Result<String, LoadError> {
-        let ground = "time_s,acceleration_m_per_s2\n0,0\n0.1,1\n0.2,0\n";
-        if path == "ground.csv" {
-            Ok(ground.to_owned())
-        } else {
-            Err(LoadError::NotFound)
-        }
+fn ground(path: &str) -> Result<String, LoadError> {
+    let ground = "time_s,acceleration_m_per_s2\n0,0\n0.1,1\n0.2,0\n";
+    if path == "ground.csv" {
+        Ok(ground.to_owned())
+    } else {
+        Err(LoadError::NotFound)
     }
 }
 
@@ -78,7 +74,7 @@ fn every_rig_block_checks_in_the_plan_around_it() {
         let checked = check(
             "rigs.psd",
             &plan,
-            &Ground,
+            &ground,
             &Options {
                 rig: Some(name),
                 ..Options::default()

@@ -4,17 +4,9 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use psd::language::check::{LoadError, Loader, Options, check};
+use psd::language::check::{Options, check, no_files};
 use psd::procedures::columns;
 use psd::schema;
-
-struct NoFiles;
-
-impl Loader for NoFiles {
-    fn load(&self, _: &str) -> Result<String, LoadError> {
-        Err(LoadError::NotFound)
-    }
-}
 
 fn page() -> String {
     fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/golden.md"))
@@ -102,7 +94,7 @@ fn the_plan_of_the_page_checks_and_its_tolerances_are_read() {
     let [plan] = &blocks("psd")[..] else {
         panic!("one plan")
     };
-    let checked = check("golden.psd", plan, &NoFiles, &Options::default());
+    let checked = check("golden.psd", plan, &no_files, &Options::default());
     assert!(checked.diagnostics.is_empty(), "{:?}", checked.diagnostics);
     let golden = checked.plan.expect("it checks").golden;
     assert_eq!(

@@ -4,12 +4,16 @@
 use std::fs;
 use std::path::PathBuf;
 
-use psd::language::check::{LoadError, Loader, Options, check};
+use psd::language::check::{Options, check, no_files};
 use psd::language::syntax::{format, parse};
-use psd::schema::{BLOCKS, PAGES, codes, reference};
+use psd::schema::BLOCKS;
 use psd::text::diagnostic::Code;
 use psd::text::diagnostic::render::{Appearance, render_all};
 use psd::text::source::Sources;
+
+mod text;
+
+use text::{PAGES, codes, reference};
 
 const END: &str = "<!-- end of generated -->\n";
 
@@ -19,15 +23,6 @@ fn path() -> PathBuf {
 
 fn page() -> String {
     fs::read_to_string(path()).expect("the reference is there")
-}
-
-/// The plans of the reference use no files.
-struct NoFiles;
-
-impl Loader for NoFiles {
-    fn load(&self, _: &str) -> Result<String, LoadError> {
-        Err(LoadError::NotFound)
-    }
 }
 
 /// Compares a generated part of a page with `text`, or writes it. The part begins with `<!-- generated: PART -->`.
@@ -148,7 +143,7 @@ fn the_plans_of_the_reference_are_right() {
         let checked = check(
             "LANGUAGE.psd",
             plan,
-            &NoFiles,
+            &no_files,
             &Options {
                 rig,
                 ..Options::default()

@@ -2,7 +2,7 @@
 //! second in its band after every move; the positions polled during the move show when it moved.
 
 use psd::emulator::{InProcess, Log, Script, of_plan};
-use psd::language::check::{LoadError, Loader, Options, check};
+use psd::language::check::{Options, check, no_files};
 use psd::plan::Plan;
 use psd::plan::formula::ResultValue;
 use psd::record::{History, Outcome};
@@ -41,14 +41,6 @@ stiffness ramp k {
 }
 "#;
 
-struct NoFiles;
-
-impl Loader for NoFiles {
-    fn load(&self, _: &str) -> Result<String, LoadError> {
-        Err(LoadError::NotFound)
-    }
-}
-
 /// 0.2 s of move, 0.5 s of dwell: treated as one uniform move they gave 103 of 120 kN/m.
 #[test]
 fn a_real_rig_reports_when_it_moved() {
@@ -56,7 +48,7 @@ fn a_real_rig_reports_when_it_moved() {
         rig: Some("bench".to_owned()),
         ..Options::default()
     };
-    let checked = check("joint.psd", PLAN, &NoFiles, &options);
+    let checked = check("joint.psd", PLAN, &no_files, &options);
     let plan: Plan = checked
         .plan
         .unwrap_or_else(|| panic!("{:?}", checked.diagnostics));

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use psd::language::check::{LoadError, Loader, Options, check};
+use psd::language::check::{LoadError, Options, check};
 use psd::plan::formula::ResultValue;
 use psd::record::{Outcome, Record};
 use psd::rig::virtual_rig;
@@ -17,27 +17,23 @@ const FREQUENCY: f64 = 4.0 * std::f64::consts::PI;
 const RATIO: f64 = 0.1;
 
 /// A sine sampled every millisecond for sixteen periods, and matrices of a plan.
-struct Files;
-
-impl Loader for Files {
-    fn load(&self, path: &str) -> Result<String, LoadError> {
-        // Two floors of 1 t on storeys of k: ω² = (3 − √5)/2 · k/m equals that of the ground.
-        let k = 1000.0 * FREQUENCY * FREQUENCY * (3.0 + 5.0_f64.sqrt()) / 2.0;
-        match path {
-            "sine.csv" => {
-                let row = |step: u32| {
-                    let time = f64::from(step) * 1e-3;
-                    format!("{time},{}\n", GROUND * (FREQUENCY * time).sin())
-                };
-                Ok(format!(
-                    "time_s,acceleration_m_per_s2\n{}",
-                    (0..=8000).map(row).collect::<String>()
-                ))
-            }
-            "m.csv" => Ok("1000, 0\n0, 1000\n".to_owned()),
-            "k.csv" => Ok(format!("{}, {}\n{}, {k}\n", 2.0 * k, -k, -k)),
-            _ => Err(LoadError::NotFound),
+fn files(path: &str) -> Result<String, LoadError> {
+    // Two floors of 1 t on storeys of k: ω² = (3 − √5)/2 · k/m equals that of the ground.
+    let k = 1000.0 * FREQUENCY * FREQUENCY * (3.0 + 5.0_f64.sqrt()) / 2.0;
+    match path {
+        "sine.csv" => {
+            let row = |step: u32| {
+                let time = f64::from(step) * 1e-3;
+                format!("{time},{}\n", GROUND * (FREQUENCY * time).sin())
+            };
+            Ok(format!(
+                "time_s,acceleration_m_per_s2\n{}",
+                (0..=8000).map(row).collect::<String>()
+            ))
         }
+        "m.csv" => Ok("1000, 0\n0, 1000\n".to_owned()),
+        "k.csv" => Ok(format!("{}, {}\n{}, {k}\n", 2.0 * k, -k, -k)),
+        _ => Err(LoadError::NotFound),
     }
 }
 
@@ -45,7 +41,7 @@ fn record(specimen: &str, shake: &str) -> Record {
     let text = format!(
         "{specimen}\nground sine {{ file = \"sine.csv\" }}\nshake steady {{\n  ground = sine\n  damping_ratio = 10 %\n{shake}\n}}\n"
     );
-    let checked = check("plan.psd", &text, &Files, &Options::default());
+    let checked = check("plan.psd", &text, &files, &Options::default());
     let plan = checked
         .plan
         .unwrap_or_else(|| panic!("{:?}", checked.diagnostics));

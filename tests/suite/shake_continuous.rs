@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use psd::language::check::{LoadError, Loader, Options, check};
+use psd::language::check::{LoadError, Options, check};
 use psd::plan::Plan;
 use psd::plan::formula::ResultValue;
 use psd::record::{Floors as _, History, Outcome, Record, ShakeStep};
@@ -21,27 +21,23 @@ const RATIO: f64 = 0.1;
 const DAMPER: f64 = 2.0 * RATIO / FREQUENCY * STIFFNESS;
 const SCALE: f64 = 50.0;
 
-struct Files;
-
-impl Loader for Files {
-    fn load(&self, path: &str) -> Result<String, LoadError> {
-        let rows = |acceleration: &dyn Fn(f64) -> f64| -> String {
-            let row = |step: u32| {
-                format!(
-                    "{},{}\n",
-                    f64::from(step) * 1e-3,
-                    acceleration(f64::from(step) * 1e-3)
-                )
-            };
-            (0..=8000).map(row).collect()
+fn files(path: &str) -> Result<String, LoadError> {
+    let rows = |acceleration: &dyn Fn(f64) -> f64| -> String {
+        let row = |step: u32| {
+            format!(
+                "{},{}\n",
+                f64::from(step) * 1e-3,
+                acceleration(f64::from(step) * 1e-3)
+            )
         };
-        let rows = match path {
-            "sine.csv" => rows(&|time| GROUND * (FREQUENCY * time).sin()),
-            "push.csv" => rows(&|time| if time <= 0.25 { GROUND } else { 0.0 }),
-            _ => return Err(LoadError::NotFound),
-        };
-        Ok(format!("time_s,acceleration_m_per_s2\n{rows}"))
-    }
+        (0..=8000).map(row).collect()
+    };
+    let rows = match path {
+        "sine.csv" => rows(&|time| GROUND * (FREQUENCY * time).sin()),
+        "push.csv" => rows(&|time| if time <= 0.25 { GROUND } else { 0.0 }),
+        _ => return Err(LoadError::NotFound),
+    };
+    Ok(format!("time_s,acceleration_m_per_s2\n{rows}"))
 }
 
 /// Two storeys with `damped` in each, on `ground`, moved with the options `shake` by a rig with the errors `errs`.
@@ -51,7 +47,7 @@ fn plan(ground: &str, damped: &str, shake: &str, errs: &str) -> Plan {
         "specimen frame {{ storeys = [{storey}, {storey}] }}\nground motion {{ file = \"{ground}.csv\" }}\n\
          rig bench {{ link = virtual({errs}) }}\nshake test {{\n  ground = motion\n{shake}\n}}\n"
     );
-    let checked = check("plan.psd", &text, &Files, &Options::default());
+    let checked = check("plan.psd", &text, &files, &Options::default());
     checked
         .plan
         .unwrap_or_else(|| panic!("{text}\n{:?}", checked.diagnostics))

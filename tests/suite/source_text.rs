@@ -4,6 +4,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use psd::language::check::LoadError;
+
 /// One Rust file.
 pub struct SourceText {
     /// Relative to `src` or `tests`, with `/`.
@@ -79,4 +81,9 @@ pub fn rust_files(folder: &str) -> Vec<SourceText> {
 /// Fails with the lines that violate a rule.
 pub fn none(found: &[String], rule: &str) {
     assert!(found.is_empty(), "{rule}:\n{}", found.join("\n"));
+}
+
+/// Gives the files of a folder to the check of a plan.
+pub fn files_in(folder: &Path) -> impl Fn(&str) -> Result<String, LoadError> {
+    |path| fs::read_to_string(folder.join(path)).map_err(|_| LoadError::NotFound)
 }

@@ -4,7 +4,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use psd::language::check::{LoadError, Loader, Options, check};
+use super::source_text::files_in;
+use psd::language::check::{Options, check};
 use psd::language::syntax::{format, parse};
 use psd::plan::FigureKind;
 use psd::report::{Provenance, Run, vectors};
@@ -17,15 +18,6 @@ use psd::verdict::{Verdict, assess};
 
 fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("docs")
-}
-
-/// Reads data files beside the page.
-struct Docs;
-
-impl Loader for Docs {
-    fn load(&self, path: &str) -> Result<String, LoadError> {
-        fs::read_to_string(docs().join(path)).map_err(|_| LoadError::NotFound)
-    }
 }
 
 /// Name and text of each plan of the page.
@@ -47,7 +39,12 @@ fn plans() -> Vec<(String, String)> {
 
 /// The loop of a plan: its run must pass.
 fn drawn(name: &str, text: &str) -> Vec<u8> {
-    let checked = check(&format!("{name}.psd"), text, &Docs, &Options::default());
+    let checked = check(
+        &format!("{name}.psd"),
+        text,
+        &files_in(&docs()),
+        &Options::default(),
+    );
     let output = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
     let mut plan = checked
         .plan
@@ -76,8 +73,7 @@ fn drawn(name: &str, text: &str) -> Vec<u8> {
         record: &record,
         assessment: &assessment,
         provenance: &provenance,
-    })
-    .expect("the outputs can be made");
+    });
     let is_loop =
         |path: &str| path.starts_with("figures/") && path.ends_with("_force_displacement.svg");
     files

@@ -6,22 +6,14 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use psd::language::check::{LoadError, Loader, Options, check};
+use psd::language::check::{Options, check, no_files};
 use psd::plan::formula::ResultValue;
 use psd::record::{History, ImpactStep, Outcome, Record, StruckFrame};
 use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
 
-struct NoFiles;
-
-impl Loader for NoFiles {
-    fn load(&self, _: &str) -> Result<String, LoadError> {
-        Err(LoadError::NotFound)
-    }
-}
-
 fn record(text: &str) -> Record {
-    let checked = check("plan.psd", text, &NoFiles, &Options::default());
+    let checked = check("plan.psd", text, &no_files, &Options::default());
     let plan = checked
         .plan
         .unwrap_or_else(|| panic!("{:?}", checked.diagnostics));

@@ -2,7 +2,7 @@
 //! within its uncertainty although far fewer readings arrive than requested.
 
 use psd::emulator::{InProcess, Log, Script, of_plan};
-use psd::language::check::{LoadError, Loader, Options, check};
+use psd::language::check::{Options, check, no_files};
 use psd::plan::Plan;
 use psd::plan::formula::ResultValue;
 use psd::record::{EventKind, History, Outcome, Record};
@@ -50,20 +50,12 @@ damping sweep c {
 }
 "#;
 
-struct NoFiles;
-
-impl Loader for NoFiles {
-    fn load(&self, _: &str) -> Result<String, LoadError> {
-        Err(LoadError::NotFound)
-    }
-}
-
 fn plan() -> Plan {
     let options = Options {
         rig: Some("bench".to_owned()),
         ..Options::default()
     };
-    let checked = check("sweep.psd", PLAN, &NoFiles, &options);
+    let checked = check("sweep.psd", PLAN, &no_files, &options);
     checked
         .plan
         .unwrap_or_else(|| panic!("{:?}", checked.diagnostics))

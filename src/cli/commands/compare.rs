@@ -18,7 +18,7 @@ use crate::golden::comparison::page::page;
 use crate::golden::comparison::{Comparison, Side};
 use crate::golden::{FIGURES, SUMMARY, older};
 use crate::report::summary::Summary;
-use crate::report::{Figures, OutputError, OutputFile, figure_data};
+use crate::report::{Figures, OutputError, OutputFile, figures};
 
 #[derive(Debug, Args)]
 pub struct CompareArguments {
@@ -102,13 +102,10 @@ fn from_record(name: String, run: &Path) -> Result<Side, Failure> {
         ));
     }
     let run = replayed.run();
-    let summary = serde_json::to_value(Summary::of(&run)).map_err(OutputError::from)?;
-    let figures =
-        serde_json::from_slice::<Figures>(&figure_data(&run).bytes).map_err(OutputError::from)?;
     Ok(Side {
         name,
-        summary,
-        figures,
+        summary: serde_json::to_value(Summary::of(&run)).expect("plain numbers and texts"),
+        figures: figures::data(&run),
         plan: replayed.plan.files.first().map(|file| file.text.clone()),
     })
 }

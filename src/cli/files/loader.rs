@@ -9,7 +9,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
 use crate::files::failure::{Failure, plain};
-use crate::language::check::{LoadError, Loader};
+use crate::language::check::LoadError;
 use crate::language::syntax::limits::FILE_BYTES;
 use crate::plan::{PICTURE_BYTES, PictureKind};
 use crate::text::markdown::{Document, is_document};
@@ -32,10 +32,9 @@ impl FolderLoader {
             folder: plan.parent().unwrap_or(&plan).to_owned(),
         })
     }
-}
 
-impl Loader for FolderLoader {
-    fn load(&self, path: &str) -> Result<String, LoadError> {
+    /// The text of a file.
+    pub fn load(&self, path: &str) -> Result<String, LoadError> {
         let relative = Path::new(path);
         let inside = relative
             .components()

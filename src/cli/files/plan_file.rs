@@ -57,7 +57,8 @@ fn parsed(
         }
     }
     let text = read_plan(path)?;
-    let loader = FolderLoader::beside(path)?;
+    let folder = FolderLoader::beside(path)?;
+    let loader = |file: &str| folder.load(file);
     let (rig, set, date) = (
         settings.rig.clone(),
         settings.set.clone(),

@@ -2,7 +2,8 @@
 //! whether the run is to resume. It moves nothing, and the run log is closed: the rig is only polled.
 
 use super::hold_status::{can_go_on, is_held};
-use super::watch::{Stay, Watcher};
+use super::question::Stay;
+use super::watch::Watcher;
 use crate::record::{Event, EventKind, Outcome, Record};
 use crate::rig::Rig;
 use crate::run::Observer as _;

@@ -2,11 +2,11 @@
 //! run reports, and keys. Out: answers and stop requests. It commands no rig.
 
 pub(crate) mod confirm_release;
+pub(crate) mod dialogue;
 pub(crate) mod expected;
 pub(crate) mod held;
 pub(crate) mod hold_status;
 pub(crate) mod question;
 pub(crate) mod real_rig;
 pub(crate) mod screen;
-pub(crate) mod stay;
 pub(crate) mod watch;

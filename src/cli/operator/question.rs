@@ -51,6 +51,17 @@ pub enum Choice {
     Leave,
 }
 
+/// The operator's choice for a run that has ended early.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Stay {
+    /// No choice yet: the observation continues.
+    Wait,
+    /// The operator leaves.
+    Leave,
+    /// The run resumes, for this reason.
+    Resume(String),
+}
+
 /// The question to the operator who resumes a held run.
 pub const WHY_RESUME: &str = "Why was the run held, and why may it continue? With the reason you confirm that the rig was not \
                               power-cycled. Both are logged.";
@@ -115,6 +126,12 @@ impl Question {
             kind: Kind::GoOn,
             lines: [vec![note, String::new()], onward.lines()].concat(),
         }
+    }
+
+    /// Title and lines, for a line terminal.
+    pub fn text(&self) -> String {
+        let title = self.kind.title();
+        format!("\n  {title}\n  {}\n", self.lines.join("\n  "))
     }
 
     /// A motion that requires the operator's confirmation.

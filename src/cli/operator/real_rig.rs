@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use super::watch::{Attendance, Signals, Watcher, throw_away};
+use super::dialogue::typed::throw_away;
+use super::watch::{Attendance, Signals, Watcher};
 use crate::cli::args::{PlanSettings, name};
 use crate::cli::exit::Failure;
 use crate::cli::files::plan_file;
@@ -13,7 +14,6 @@ use crate::language::check::Checked;
 use crate::plan::Plan;
 use crate::rig::{Connected, Rig as _, StopRequest, connect};
 use crate::run::replay::Wall;
-use crate::schema::plan_block::OPERATOR;
 
 /// Reads and checks the plan of a command that may move a rig, and prints its diagnostics. The plan is checked as unattended if the
 /// command line names no operator, and none can be asked.
@@ -32,7 +32,7 @@ pub fn open_plan(
 /// The name of the operator of a test on a real rig. It is asked for at the terminal if neither command line nor plan gives it. Nothing
 /// is open yet, and Ctrl-C ends the program.
 pub fn named(attendance: Attendance, plan: &Plan) -> Result<Attendance, Failure> {
-    if plan.rig.link.as_real().is_none() || operator(plan, &attendance).is_some() {
+    if plan.rig.link.as_real().is_none() || attendance.operator_of(plan).is_some() {
         return Ok(attendance);
     }
     let unnamed = || {
@@ -63,20 +63,6 @@ pub fn named(attendance: Attendance, plan: &Plan) -> Result<Attendance, Failure>
     }
 }
 
-/// The operator that the command line or the plan names.
-pub fn operator(plan: &Plan, attendance: &Attendance) -> Option<String> {
-    let of_plan = plan
-        .particulars
-        .iter()
-        .find(|(field, _)| *field == OPERATOR.name)
-        .map(|(_, name)| name.clone());
-    attendance
-        .operator
-        .clone()
-        .or(of_plan)
-        .filter(|name| !name.trim().is_empty())
-}
-
 /// An open rig, and its observer.
 pub struct Opened {
     pub connected: Connected,
@@ -84,32 +70,19 @@ pub struct Opened {
 }
 
 /// Opens the plan's real rig: reads its identity, moves nothing. Signals are caught from here on, and become `stop_request`. A program
-/// that is killed in the middle of a command would leave the rig in an unknown state.
+/// that is killed in the middle of a command would leave the rig in an unknown state. `drawn`: as for [`Watcher::new`].
 pub fn open(
     plan: &Plan,
     attendance: &Attendance,
     stop_request: &StopRequest,
     settings: Settings,
+    drawn: bool,
 ) -> Result<Opened, Failure> {
     let signals = Signals::caught(stop_request).map_err(Failure::Signals)?;
     let connected = connect(&plan.rig, &plan.limits, stop_request)?;
     let simulated = connected.rig.identity().simulated;
-    let mut watcher = Watcher::new(settings, attendance, plan, simulated, signals);
+    let mut watcher = Watcher::new(settings, attendance, plan, simulated, signals, drawn);
     watcher.watch(connected.rig.live());
-    Ok(Opened { connected, watcher })
-}
-
-/// [`open`] for a client that drives: observed in lines; signals set `stop_request`.
-pub fn open_for_client(
-    plan: &Plan,
-    attendance: &Attendance,
-    settings: Settings,
-    stop_request: &StopRequest,
-) -> Result<Opened, Failure> {
-    let signals = Signals::caught(stop_request).map_err(Failure::Signals)?;
-    let connected = connect(&plan.rig, &plan.limits, stop_request)?;
-    let simulated = connected.rig.identity().simulated;
-    let watcher = Watcher::in_lines(settings, attendance, plan, simulated, signals);
     Ok(Opened { connected, watcher })
 }
 
@@ -120,7 +93,7 @@ pub fn circumstances(plan: &Plan, attendance: &Attendance) -> Circumstances {
         .to_string_lossy()
         .into_owned();
     Circumstances {
-        operator: operator(plan, attendance),
+        operator: attendance.operator_of(plan),
         host: Some(host),
         began: wall_clock()(),
         served: None,

@@ -80,7 +80,7 @@ pub struct Context {
 pub struct Checker<'a> {
     pub sources: &'a Sources,
     pub scope: &'a Scope<'a>,
-    pub loader: &'a dyn Loader,
+    pub loader: &'a Loader<'a>,
     /// Data files that the plan names, each once.
     pub data: Vec<DataFile>,
     /// Frames of the specimens that have storeys, by their blocks; None of one with an error.
@@ -132,7 +132,7 @@ impl<'a> Checker<'a> {
     pub fn new(
         sources: &'a Sources,
         scope: &'a Scope<'a>,
-        loader: &'a dyn Loader,
+        loader: &'a Loader<'a>,
         diagnostics: Vec<Diagnostic>,
         unread: Vec<Span>,
         names_lost: bool,

@@ -21,7 +21,7 @@ pub struct Imports {
 }
 
 struct Loading<'l> {
-    loader: &'l dyn Loader,
+    loader: &'l Loader<'l>,
     /// Path of each file loaded, with its tree.
     loaded: Vec<(String, Ast)>,
     /// The files that use one another, down to the one being read.
@@ -32,7 +32,7 @@ struct Loading<'l> {
 pub fn load(
     name: &str,
     text: &str,
-    loader: &dyn Loader,
+    loader: &Loader<'_>,
     sources: &mut Sources,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Imports {
@@ -118,7 +118,7 @@ impl Loading<'_> {
         if self.loaded.len() >= MOST_FILES {
             return Err(message::too_many_files(MOST_FILES, used.span));
         }
-        match self.loader.load(&path) {
+        match (self.loader)(&path) {
             Ok(text) => {
                 self.read(&path, &path, &text, sources, diagnostics);
                 Ok(())

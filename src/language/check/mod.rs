@@ -29,10 +29,14 @@ use crate::text::diagnostic::Diagnostic;
 use crate::text::source::{Sources, Span};
 
 /// Loads the text of used files. Paths are relative to the plan's folder, with `/`, already free of `..`.
-pub trait Loader {
-    /// # Errors
-    /// Why the file cannot be used.
-    fn load(&self, path: &str) -> Result<String, LoadError>;
+pub type Loader<'l> = dyn Fn(&str) -> Result<String, LoadError> + 'l;
+
+/// The [`Loader`] of a plan that uses no file.
+///
+/// # Errors
+/// Every path: there is no file.
+pub fn no_files(_: &str) -> Result<String, LoadError> {
+    Err(LoadError::NotFound)
 }
 
 /// Why a used file cannot be read.

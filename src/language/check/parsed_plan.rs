@@ -9,7 +9,7 @@ use super::expressions::data_file::DataFile;
 use super::expressions::parameters::{names_of_parameters, read_settings};
 use super::messages::{self, names};
 use super::scope::{Scope, Setting};
-use super::{Checked, LoadError, Loader, Options, imports, rig};
+use super::{Checked, Loader, Options, imports, no_files, rig};
 use crate::language::renamed;
 use crate::language::syntax::ast::Ast;
 use crate::plan::{Plan, PlanFile};
@@ -19,7 +19,7 @@ use crate::units::Quantity;
 
 /// Checks a plan and all it uses.
 #[must_use]
-pub fn check(name: &str, text: &str, loader: &dyn Loader, options: &Options) -> Checked {
+pub fn check(name: &str, text: &str, loader: &Loader<'_>, options: &Options) -> Checked {
     ParsedPlan::parse(name, text, loader, options).check(loader)
 }
 
@@ -54,21 +54,10 @@ struct Outcome {
     ends: Vec<End>,
 }
 
-/// A binding reads no file.
-struct NoLoader;
-
-impl Loader for NoLoader {
-    fn load(&self, _: &str) -> Result<String, LoadError> {
-        Err(LoadError::Refused(
-            "no file is read while parameters are bound".to_owned(),
-        ))
-    }
-}
-
 impl ParsedPlan {
     /// Parses a plan, the files that it uses, and the values of `--set`.
     #[must_use]
-    pub fn parse(name: &str, text: &str, loader: &dyn Loader, options: &Options) -> Self {
+    pub fn parse(name: &str, text: &str, loader: &Loader<'_>, options: &Options) -> Self {
         let mut sources = Sources::default();
         let mut errors = Vec::new();
         let mut imports = imports::load(name, text, loader, &mut sources, &mut errors);
@@ -97,7 +86,7 @@ impl ParsedPlan {
     }
 
     /// Checks the plan as it is written, with the values of `--set`. Keeps the data files that the plan names for [`Self::bind`].
-    pub fn check(&mut self, loader: &dyn Loader) -> Checked {
+    pub fn check(&mut self, loader: &Loader<'_>) -> Checked {
         let settings = self.written_settings();
         let mut outcome =
             self.evaluate(&self.settings, settings, loader, Findings::WarningsToo, &[]);
@@ -182,7 +171,7 @@ impl ParsedPlan {
             settings.insert(name.clone(), Setting::Bound(*value));
             written.insert(name.clone(), value.in_plan_syntax());
         }
-        let outcome = self.evaluate(&settings, written, &NoLoader, findings, &self.data);
+        let outcome = self.evaluate(&settings, written, &no_files, findings, &self.data);
         outcome.plan.ok_or(outcome.diagnostics)
     }
 
@@ -196,7 +185,7 @@ impl ParsedPlan {
         &self,
         settings: &BTreeMap<String, Setting>,
         written: BTreeMap<String, String>,
-        loader: &dyn Loader,
+        loader: &Loader<'_>,
         findings: Findings,
         data: &[DataFile],
     ) -> Outcome {

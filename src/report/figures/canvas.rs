@@ -15,17 +15,17 @@ pub(super) type Point = (f64, f64);
 
 /// A surface to draw on.
 pub(super) trait Canvas {
-    fn rectangle(&self, from: Point, to: Point, colour: Colour) -> Result<(), String>;
+    fn rectangle(&self, from: Point, to: Point, colour: Colour);
 
-    fn disc(&self, centre: Point, radius: f64, colour: Colour) -> Result<(), String>;
+    fn disc(&self, centre: Point, radius: f64, colour: Colour);
 
     /// A filled area; its corners in order.
-    fn polygon(&self, corners: &[Point], colour: Colour) -> Result<(), String>;
+    fn polygon(&self, corners: &[Point], colour: Colour);
 
     /// A line of several segments with round joins.
-    fn polyline(&self, points: &[Point], line: Line, colour: Colour) -> Result<(), String>;
+    fn polyline(&self, points: &[Point], line: Line, colour: Colour);
 
-    fn text(&self, text: &str, anchor: Point, style: &Lettering) -> Result<(), String>;
+    fn text(&self, text: &str, anchor: Point, style: &Lettering);
 }
 
 /// Position of a text relative to its anchor point.
@@ -52,13 +52,13 @@ const MEASURED_AT: f64 = 8.0;
 
 impl Lettering {
     /// Width of a text as it is drawn, in reference pixels.
-    pub fn width(&self, text: &str) -> Result<f64, String> {
+    pub fn width(&self, text: &str) -> f64 {
         let (width, _) = self
             .scaled(MEASURED_AT)
             .font
             .box_size(&crate::text::glyphs::shown(text))
-            .map_err(|error| error.to_string())?;
-        Ok(f64::from(width) / MEASURED_AT)
+            .expect("the embedded font reads");
+        f64::from(width) / MEASURED_AT
     }
 
     /// The style for the font library, `scale` times as large.

@@ -21,6 +21,7 @@ use crate::record::ProcedureRecord;
 use chart::Chart;
 
 pub use data::{FIGURE_DATA, FigureAxis, FigureBand, FigureCurve, FigureData, Figures};
+pub(crate) use draw::{png, svg};
 pub use plain::{Curve, Curves, PlainAxis};
 
 /// A figure, drawn in vectors.
@@ -62,38 +63,23 @@ impl Undrawn {
 
     /// The figure as PNG.
     pub fn png(&self) -> Result<Vec<u8>, OutputError> {
-        draw::png(&self.chart).map_err(|reason| self.failed(reason))
+        draw::png(&self.chart).map_err(|reason| OutputError::Figure {
+            figure: self.kind.name(),
+            procedure: self.procedure.clone(),
+            reason,
+        })
     }
 
     /// The figure as SVG, with its caption.
-    pub fn in_vectors(self) -> Result<Drawn, OutputError> {
-        let svg = draw::svg(&self.chart).map_err(|reason| self.failed(reason))?;
-        Ok(Drawn {
-            svg,
+    pub fn in_vectors(self) -> Drawn {
+        Drawn {
+            svg: draw::svg(&self.chart),
             description: self.chart.description(),
             caption: self.caption,
             kind: self.kind,
             procedure: self.procedure,
-        })
-    }
-
-    fn failed(&self, reason: String) -> OutputError {
-        OutputError::Figure {
-            figure: self.kind.name(),
-            procedure: self.procedure.clone(),
-            reason,
         }
     }
-}
-
-/// A chart as PNG.
-pub(crate) fn png(chart: &Chart) -> Result<Vec<u8>, String> {
-    draw::png(chart)
-}
-
-/// A chart in vectors.
-pub(crate) fn svg(chart: &Chart) -> Result<String, String> {
-    draw::svg(chart)
 }
 
 /// The curves of the figures of a report, in its order.

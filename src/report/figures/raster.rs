@@ -10,34 +10,30 @@ use super::chart::{Colour, Line};
 pub(super) fn png(
     width: u32,
     height: u32,
-    paint: impl Fn(&dyn Canvas) -> Result<(), String>,
+    paint: impl FnOnce(&dyn Canvas),
 ) -> Result<Vec<u8>, String> {
-    psd_raster::png(width, height, &|sheet| paint(sheet))
+    psd_raster::png(width, height, |sheet| paint(sheet))
 }
 
 impl Canvas for Sheet {
-    fn rectangle(&self, from: Point, to: Point, colour: Colour) -> Result<(), String> {
+    fn rectangle(&self, from: Point, to: Point, colour: Colour) {
         self.rectangle(from, to, colour);
-        Ok(())
     }
 
-    fn disc(&self, centre: Point, radius: f64, colour: Colour) -> Result<(), String> {
+    fn disc(&self, centre: Point, radius: f64, colour: Colour) {
         self.disc(centre, radius, colour);
-        Ok(())
     }
 
-    fn polygon(&self, corners: &[Point], colour: Colour) -> Result<(), String> {
+    fn polygon(&self, corners: &[Point], colour: Colour) {
         self.polygon(corners, colour);
-        Ok(())
     }
 
-    fn polyline(&self, points: &[Point], line: Line, colour: Colour) -> Result<(), String> {
+    fn polyline(&self, points: &[Point], line: Line, colour: Colour) {
         let Line { width, dash } = line;
         self.polyline(points, psd_raster::Line { width, dash }, colour);
-        Ok(())
     }
 
-    fn text(&self, text: &str, anchor: Point, style: &Lettering) -> Result<(), String> {
+    fn text(&self, text: &str, anchor: Point, style: &Lettering) {
         // The box of the font is taller below its letters than above: a centred text is lowered to look centred.
         let is_lowered = matches!(style.anchor.vertical, VPos::Center) && !style.upright;
         let anchor = if is_lowered {
@@ -47,6 +43,5 @@ impl Canvas for Sheet {
         };
         let style = style.scaled(f64::from(FINE));
         self.text(&crate::text::glyphs::shown(text), anchor, style);
-        Ok(())
     }
 }

@@ -17,21 +17,17 @@ struct Drawing {
 }
 
 /// Draws on `width × height` reference pixels. The background is white in a browser and transparent in the PDF.
-pub(super) fn svg(
-    width: u32,
-    height: u32,
-    paint: impl FnOnce(&dyn Canvas) -> Result<(), String>,
-) -> Result<String, String> {
+pub(super) fn svg(width: u32, height: u32, paint: impl FnOnce(&dyn Canvas)) -> String {
     let drawing = Drawing {
         shapes: RefCell::new(String::new()),
     };
-    paint(&drawing)?;
-    Ok(format!(
+    paint(&drawing);
+    format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
          font-family=\"DejaVu Sans, Verdana, sans-serif\" fill=\"none\" stroke-linejoin=\"round\" style=\"background:#ffffff\">\n\
          {}</svg>\n",
         drawing.shapes.into_inner()
-    ))
+    )
 }
 
 impl Drawing {
@@ -43,7 +39,7 @@ impl Drawing {
 }
 
 impl Canvas for Drawing {
-    fn rectangle(&self, from: Point, to: Point, colour: Colour) -> Result<(), String> {
+    fn rectangle(&self, from: Point, to: Point, colour: Colour) {
         let (left, top) = (from.0.min(to.0), from.1.min(to.1));
         let (width, height) = ((to.0 - from.0).abs(), (to.1 - from.1).abs());
         self.add(&format!(
@@ -54,10 +50,9 @@ impl Canvas for Drawing {
             number(height),
             hex(colour)
         ));
-        Ok(())
     }
 
-    fn disc(&self, centre: Point, radius: f64, colour: Colour) -> Result<(), String> {
+    fn disc(&self, centre: Point, radius: f64, colour: Colour) {
         self.add(&format!(
             "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{}\"/>",
             number(centre.0),
@@ -65,10 +60,9 @@ impl Canvas for Drawing {
             number(radius),
             hex(colour)
         ));
-        Ok(())
     }
 
-    fn polygon(&self, corners: &[Point], colour: Colour) -> Result<(), String> {
+    fn polygon(&self, corners: &[Point], colour: Colour) {
         let corners: Vec<String> = corners
             .iter()
             .map(|(x, y)| format!("{},{}", number(*x), number(*y)))
@@ -78,10 +72,9 @@ impl Canvas for Drawing {
             corners.join(" "),
             hex(colour)
         ));
-        Ok(())
     }
 
-    fn polyline(&self, points: &[Point], line: Line, colour: Colour) -> Result<(), String> {
+    fn polyline(&self, points: &[Point], line: Line, colour: Colour) {
         let mut path = String::new();
         for (index, (x, y)) in points.iter().enumerate() {
             let _ = write!(
@@ -102,10 +95,9 @@ impl Canvas for Drawing {
         self.add(&format!(
             "<path d=\"{path}\" stroke=\"{stroke}\" stroke-width=\"{width}\"{dash}/>"
         ));
-        Ok(())
     }
 
-    fn text(&self, text: &str, anchor: Point, style: &Lettering) -> Result<(), String> {
+    fn text(&self, text: &str, anchor: Point, style: &Lettering) {
         // From the anchor down to the baseline, as on the raster.
         let down = style.size
             * match style.anchor.vertical {
@@ -142,7 +134,6 @@ impl Canvas for Drawing {
             hex(style.colour),
             escaped(text)
         ));
-        Ok(())
     }
 }
 
@@ -195,9 +186,8 @@ mod tests {
             upright: false,
         };
         let drawn = svg(10, 10, |canvas| {
-            canvas.text("</text><script>&\u{1b}", (1.0, 2.0), &style)
-        })
-        .unwrap();
+            canvas.text("</text><script>&\u{1b}", (1.0, 2.0), &style);
+        });
         assert!(
             drawn.contains(">&lt;/text&gt;&lt;script&gt;&amp;\u{fffd}</text>"),
             "{drawn}"

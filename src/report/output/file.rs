@@ -27,8 +27,6 @@ pub enum OutputError {
     },
     #[error("the report could not be set on paper: {0}")]
     Pdf(String),
-    #[error("the summary could not be written: {0}")]
-    Summary(#[from] serde_json::Error),
 }
 
 /// Whether the plan's report requests a format; a report that names none requests all.

@@ -8,11 +8,6 @@ use crate::text::digest::sha256;
 /// Name of the manifest, which does not list itself.
 pub(super) const NAME: &str = "manifest.sha256";
 
-/// The manifest of `files`, in order of path.
-pub(super) fn of_files(files: &[OutputFile]) -> OutputFile {
-    with_digests(files.iter(), &[])
-}
-
 /// The manifest of `files` and of others whose digests are known, in order of path.
 pub(super) fn with_digests<'a>(
     files: impl Iterator<Item = &'a OutputFile>,
@@ -43,7 +38,8 @@ mod tests {
             path: path.to_owned(),
             bytes: b"abc".to_vec(),
         };
-        let text = String::from_utf8(of_files(&[file("b"), file("a")]).bytes).unwrap();
+        let files = [file("b"), file("a")];
+        let text = String::from_utf8(with_digests(files.iter(), &[]).bytes).unwrap();
         let digest = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
         assert_eq!(text, format!("{digest}  a\n{digest}  b\n"));
     }

@@ -17,22 +17,11 @@ use figures::{Drawn, Undrawn};
 use file::wants;
 use paths::{UsedPaths, plan_files};
 
-/// Every file of the run folder, the manifest last.
-///
-/// # Errors
-/// A table, figure or summary that cannot be encoded.
-pub fn everything(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
-    let mut files = Vec::new();
-    put_everything(run, &mut files)?;
-    files.push(manifest::of_files(&files));
-    Ok(files)
-}
-
 /// Writes every file of the run folder except the manifest, each immediately after it is made. The order is: summary and tables, the
 /// figures one by one, the report, which states the digests of the tables, and the files of the plan.
 ///
 /// # Errors
-/// A table, figure or summary that cannot be encoded or kept.
+/// A table or figure that cannot be encoded, or a file that cannot be kept.
 pub fn put_everything(
     run: &Run<'_>,
     sink: &mut dyn OutputSink,
@@ -45,9 +34,9 @@ pub fn put_everything(
         total: 1 + tables.len() + figures + usize::from(html) + usize::from(pdf),
     };
     progress.begin(OutputPart::Tables, sink);
-    let mut digests = vec![put_file(sink, &summary_file(run)?)?];
+    let mut digests = vec![put_file(sink, &summary_file(run))?];
     if let Some(prediction) = &run.provenance.prediction {
-        digests.push(put_file(sink, &summary::prediction_file(prediction)?)?);
+        digests.push(put_file(sink, &summary::prediction_file(prediction))?);
     }
     let mut table_digests = Vec::with_capacity(tables.len());
     for table in tables {
@@ -103,7 +92,7 @@ fn put_figures(
             bytes: figure.png()?,
         };
         digests.push(put_file(sink, &png)?);
-        let figure = figure.in_vectors()?;
+        let figure = figure.in_vectors();
         let svg = OutputFile {
             path: format!("{path}.svg"),
             bytes: figure.svg.clone().into_bytes(),
@@ -142,20 +131,20 @@ fn put_file(sink: &mut dyn OutputSink, file: &OutputFile) -> Result<FileDigest, 
 /// Summary and tables: the files without figures and report.
 ///
 /// # Errors
-/// A table or a summary that cannot be encoded.
+/// A table that cannot be encoded.
 pub fn numbers(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
-    let mut files = vec![summary_file(run)?];
+    let mut files = vec![summary_file(run)];
     for table in tables::of_run(run) {
         table.put(&mut files)?;
     }
     Ok(files)
 }
 
-fn summary_file(run: &Run<'_>) -> Result<OutputFile, OutputError> {
-    Ok(OutputFile {
+fn summary_file(run: &Run<'_>) -> OutputFile {
+    OutputFile {
         path: SUMMARY.to_owned(),
-        bytes: summary::Summary::of(run).to_json()?.into_bytes(),
-    })
+        bytes: sanitize::json_file(&summary::Summary::of(run)).into_bytes(),
+    }
 }
 
 /// The curves of the figures as data, for a comparison with another run.
@@ -168,10 +157,8 @@ pub fn figure_data(run: &Run<'_>) -> OutputFile {
 }
 
 /// The figures of a run as vector drawings, for a page: `figures/NAME_FIGURE.svg`.
-///
-/// # Errors
-/// A figure that cannot be drawn.
-pub fn vectors(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
+#[must_use]
+pub fn vectors(run: &Run<'_>) -> Vec<OutputFile> {
     let undrawn = run
         .plan
         .report
@@ -179,12 +166,9 @@ pub fn vectors(run: &Run<'_>) -> Result<Vec<OutputFile>, OutputError> {
         .iter()
         .filter_map(|figure| Undrawn::of(run, figure));
     undrawn
-        .map(|figure| {
-            let path = format!("{}.svg", figure.path);
-            Ok(OutputFile {
-                path,
-                bytes: figure.in_vectors()?.svg.into_bytes(),
-            })
+        .map(|figure| OutputFile {
+            path: format!("{}.svg", figure.path),
+            bytes: figure.in_vectors().svg.into_bytes(),
         })
         .collect()
 }

@@ -54,13 +54,9 @@ enum Shape {
 ///
 /// # Errors
 /// A shape cannot be drawn, or the picture cannot be encoded.
-pub fn png(
-    width: u32,
-    height: u32,
-    paint: &dyn Fn(&Sheet) -> Result<(), String>,
-) -> Result<Vec<u8>, String> {
+pub fn png(width: u32, height: u32, paint: impl FnOnce(&Sheet)) -> Result<Vec<u8>, String> {
     let sheet = Sheet::default();
-    paint(&sheet)?;
+    paint(&sheet);
     let picture = picture(&sheet, width, height, BAND)?;
     let (width, height) = (width * FINE / BOX, height * FINE / BOX);
     encode(&picture, width, height).map_err(|error| error.to_string())

@@ -318,25 +318,14 @@ impl<T: JsonSchema> JsonSchema for Ordered<T> {
 }
 
 impl Summary {
-    /// Indented JSON with a newline at its end; floats are the shortest that read back the same.
-    ///
-    /// # Errors
-    /// Never in practice: every value is a plain number or text.
-    pub fn to_json(&self) -> Result<String, serde_json::Error> {
-        serde_json::to_string_pretty(self).map(|json| sanitize::json(&json) + "\n")
-    }
-
     /// The JSON Schema of `psd.summary/1`, as committed in `grammar/summary.schema.json`.
-    ///
-    /// # Errors
-    /// Never in practice.
-    pub fn json_schema() -> Result<String, serde_json::Error> {
+    #[must_use]
+    pub fn json_schema() -> String {
         // As written, not as read: every field is always there, null where it has no value.
         let generator = SchemaSettings::draft2020_12()
             .for_serialize()
             .into_generator();
-        serde_json::to_string_pretty(&generator.into_root_schema_for::<Self>())
-            .map(|json| json + "\n")
+        sanitize::json_file(&generator.into_root_schema_for::<Self>())
     }
 }
 

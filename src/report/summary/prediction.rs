@@ -79,19 +79,19 @@ pub struct PredictedRequirement {
 }
 
 /// The file.
-pub(in crate::report) fn file(prediction: &Prediction) -> Result<OutputFile, serde_json::Error> {
+pub(in crate::report) fn file(prediction: &Prediction) -> OutputFile {
     #[derive(Serialize)]
     struct File<'a> {
         schema: &'static str,
         #[serde(flatten)]
         prediction: &'a Prediction,
     }
-    let text = serde_json::to_string_pretty(&File {
+    let text = sanitize::json_file(&File {
         schema: SCHEMA,
         prediction,
-    })? + "\n";
-    Ok(OutputFile {
+    });
+    OutputFile {
         path: CHECK_RUN_FILE.to_owned(),
-        bytes: sanitize::json(&text).into_bytes(),
-    })
+        bytes: text.into_bytes(),
+    }
 }

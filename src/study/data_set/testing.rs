@@ -109,6 +109,8 @@ pub fn row(run: u64) -> Row {
 /// Writes the rows.
 pub fn written(path: &Path, metadata: &Metadata, rows: &[Row]) {
     let mut writer = Writer::create(path, metadata).unwrap();
-    writer.push_block(rows).unwrap();
+    for row in rows {
+        writer.push(row).unwrap();
+    }
     writer.finish().unwrap();
 }

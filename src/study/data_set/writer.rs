@@ -96,12 +96,6 @@ impl Writer {
         })
     }
 
-    /// Number of the run that is written next.
-    #[must_use]
-    pub fn next_run(&self) -> u64 {
-        self.block.end()
-    }
-
     /// Adds the next run.
     ///
     /// # Errors
@@ -115,14 +109,6 @@ impl Writer {
             self.write_group()?;
         }
         Ok(())
-    }
-
-    /// Adds the next runs.
-    ///
-    /// # Errors
-    /// As [`Writer::push`].
-    pub fn push_block(&mut self, rows: &[Row]) -> Result<(), DataSetFault> {
-        rows.iter().try_for_each(|row| self.push(row))
     }
 
     /// Writes what is left and the footer, and gives the file its name. Returns the metadata with the runs that it contains.

@@ -2,9 +2,9 @@
 
 use serde::Serialize;
 
-use crate::report::OutputError;
 use crate::study::answers::Answers;
 use crate::study::data_set::Metadata;
+use crate::text::sanitize;
 
 /// Name and version of the format; a change that breaks a reader raises the number.
 pub const SCHEMA: &str = "psd.study/1";
@@ -19,16 +19,11 @@ struct Summary<'a> {
 }
 
 /// The summary as JSON.
-///
-/// # Errors
-/// It cannot be encoded.
-pub fn summary(metadata: &Metadata, answers: &Answers) -> Result<Vec<u8>, OutputError> {
-    let summary = Summary {
+#[must_use]
+pub fn summary(metadata: &Metadata, answers: &Answers) -> String {
+    sanitize::json_file(&Summary {
         schema: SCHEMA,
         study: metadata,
         answers,
-    };
-    let mut text = serde_json::to_string_pretty(&summary)?;
-    text.push('\n');
-    Ok(text.into_bytes())
+    })
 }

@@ -138,8 +138,8 @@ fn every_key_of_the_summary_is_on_its_page() {
     ];
     let mut found = std::collections::BTreeSet::new();
     for (metadata, answers) in &studies {
-        let summary = summary(metadata, answers).unwrap();
-        keys(&serde_json::from_slice(&summary).unwrap(), &mut found);
+        let summary = summary(metadata, answers);
+        keys(&serde_json::from_str(&summary).unwrap(), &mut found);
     }
     assert!(found.len() > 60, "{found:?}");
     let missing: Vec<&String> = found

@@ -1,7 +1,7 @@
 //! Runs of studies made by hand: alone and in batches, invalid, stopped, and taken again by `--set`.
 
 use super::*;
-use crate::language::check::{LoadError, Loader, Options, check};
+use crate::language::check::{LoadError, Options, check};
 use crate::physics::study::distribution::{Distribution, Spread};
 use crate::physics::study::inputs::Source;
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
@@ -12,12 +12,8 @@ use crate::study::testing::{Studied, checked, plan, usual, variation};
 use crate::units::Dimension;
 
 /// Files beside the examples.
-struct Folder;
-
-impl Loader for Folder {
-    fn load(&self, path: &str) -> Result<String, LoadError> {
-        std::fs::read_to_string(format!("plans/{path}")).map_err(|_| LoadError::NotFound)
-    }
+fn folder(path: &str) -> Result<String, LoadError> {
+    std::fs::read_to_string(format!("plans/{path}")).map_err(|_| LoadError::NotFound)
 }
 
 /// Inputs and results as bits.
@@ -95,7 +91,7 @@ fn every_example_that_a_batch_takes_has_the_same_results_in_it() {
             continue;
         }
         let text = std::fs::read_to_string(&path).unwrap();
-        let found = check("plan.psd", &text, &Folder, &Options::default());
+        let found = check("plan.psd", &text, &folder, &Options::default());
         let Some(plan) = found.plan else { continue };
         let Some(impact) = batches::impact(&plan) else {
             continue;

@@ -5,7 +5,7 @@
 
 use super::stage::{emulator, header, open};
 use crate::emulator::Log;
-use crate::language::check::{Checked, LoadError, Loader, Options, check};
+use crate::language::check::{Checked, LoadError, Options, check};
 use crate::plan::Plan;
 use crate::plan::formula::ResultValue;
 use crate::record::journal::testing::PowerLoss;
@@ -79,23 +79,19 @@ const CASES: &[Case] = &[
     ),
 ];
 
-/// The libraries of the plan, with the devices of a case.
-struct Libraries<'a>(&'a Case);
-
-impl Loader for Libraries<'_> {
-    fn load(&self, path: &str) -> Result<String, LoadError> {
+impl Case {
+    /// The libraries of the plan, with the devices of the case.
+    fn library(&self, path: &str) -> Result<String, LoadError> {
         match path {
             "lib/instron_frame.psd" => {
                 Ok(include_str!("../../../plans/lib/instron_frame.psd").to_owned())
             }
             "lib/gfrp_beam.psd" => Ok(include_str!("../../../plans/lib/gfrp_beam.psd").to_owned()),
-            "lib/real_frame.psd" => Ok(self.0.frame()),
+            "lib/real_frame.psd" => Ok(self.frame()),
             _ => Err(LoadError::NotFound),
         }
     }
-}
 
-impl Case {
     /// `lib/real_frame.psd`, noiseless.
     fn frame(&self) -> String {
         let frame = include_str!("../../../plans/lib/real_frame.psd");
@@ -137,7 +133,7 @@ impl Case {
         check(
             "beam.psd",
             if sweep { text } else { &without },
-            &Libraries(self),
+            &|path: &str| self.library(path),
             &options,
         )
     }

@@ -2,7 +2,7 @@
 
 use super::stage::{emulator, header, open};
 use crate::emulator::Log;
-use crate::language::check::{LoadError, Loader, Options, check};
+use crate::language::check::{LoadError, Options, check};
 use crate::plan::Plan;
 use crate::record::Outcome;
 use crate::record::journal::testing::PowerLoss;
@@ -10,16 +10,12 @@ use crate::record::journal::{Durability, Journal};
 use crate::run::{Unwatched, replay};
 
 /// The plans of the manual use no file but a ground motion.
-struct Ground;
-
-impl Loader for Ground {
-    fn load(&self, path: &str) -> Result<String, LoadError> {
-        let ground = "time_s,acceleration_m_per_s2\n0,0\n0.1,1\n0.2,0\n";
-        if path == "ground.csv" {
-            Ok(ground.to_owned())
-        } else {
-            Err(LoadError::NotFound)
-        }
+fn ground(path: &str) -> Result<String, LoadError> {
+    let ground = "time_s,acceleration_m_per_s2\n0,0\n0.1,1\n0.2,0\n";
+    if path == "ground.csv" {
+        Ok(ground.to_owned())
+    } else {
+        Err(LoadError::NotFound)
     }
 }
 
@@ -45,7 +41,7 @@ fn rigs() -> Vec<Plan> {
             rig: Some(name),
             ..Options::default()
         };
-        let mut plan = check("rigs.psd", &format!("{around}\n{rig}"), &Ground, &options)
+        let mut plan = check("rigs.psd", &format!("{around}\n{rig}"), &ground, &options)
             .plan
             .unwrap();
         plan.procedures.clear();

@@ -32,9 +32,6 @@ macro_rules! codes {
     };
 }
 
-/// Codes that do not depend on the plan alone: they are about the machine that is to run it.
-pub const OF_THE_MACHINE: &[Code] = &[Code::DiskSpace];
-
 codes! {
     // 1: the text
     E101 Syntax Error;

@@ -6,7 +6,7 @@ pub mod excerpt;
 pub mod json;
 pub mod render;
 
-pub use code::{Code, OF_THE_MACHINE};
+pub use code::Code;
 
 use crate::text::source::Span;
 
@@ -15,7 +15,6 @@ use crate::text::source::Span;
 pub enum Severity {
     Error,
     Warning,
-    Advice,
 }
 
 /// A span and the note on it.

@@ -74,7 +74,6 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources, appearance: &Appearanc
         severity: match diagnostic.severity {
             Severity::Error => miette::Severity::Error,
             Severity::Warning => miette::Severity::Warning,
-            Severity::Advice => miette::Severity::Advice,
         },
         message: escape(&diagnostic.message),
         help: diagnostic.help.as_deref().map(escape),
@@ -138,7 +137,6 @@ pub const fn severity_name(severity: Severity) -> &'static str {
     match severity {
         Severity::Error => "error",
         Severity::Warning => "warning",
-        Severity::Advice => "advice",
     }
 }
 
@@ -151,8 +149,7 @@ fn theme(drawn: &Drawn, appearance: &Appearance) -> GraphicalTheme {
     };
     let first = match drawn.severity {
         miette::Severity::Error => styles.error,
-        miette::Severity::Warning => styles.warning,
-        miette::Severity::Advice => styles.advice,
+        _ => styles.warning,
     };
     // The drawing library assigns colours in the order of the text.
     let mut in_order: Vec<(usize, bool)> = drawn

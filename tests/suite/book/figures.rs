@@ -4,19 +4,12 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use psd::language::check::{LoadError, Loader, Options, check};
+use crate::source_text::files_in;
+use psd::language::check::{Options, check};
 use psd::report::{Provenance, Run, vectors};
 use psd::rig::VirtualRig;
 use psd::run::{Unwatched, run};
 use psd::verdict::assess;
-
-struct Plans(PathBuf);
-
-impl Loader for Plans {
-    fn load(&self, path: &str) -> Result<String, LoadError> {
-        fs::read_to_string(self.0.join(path)).map_err(|_| LoadError::NotFound)
-    }
-}
 
 /// The pictures of a plan by their file name.
 fn drawn(name: &str) -> BTreeMap<String, Vec<u8>> {
@@ -25,7 +18,7 @@ fn drawn(name: &str) -> BTreeMap<String, Vec<u8>> {
     let checked = check(
         &format!("{name}.psd"),
         &text,
-        &Plans(folder),
+        &files_in(&folder),
         &Options::default(),
     );
     let plan = checked.plan.expect("the plan checks");
@@ -41,8 +34,7 @@ fn drawn(name: &str) -> BTreeMap<String, Vec<u8>> {
             plan_sha256: String::new(),
             ..Provenance::default()
         },
-    })
-    .expect("the figures can be drawn");
+    });
     let picture = |path: &str| {
         path.strip_prefix("figures/")?
             .strip_suffix(".svg")

@@ -2,24 +2,11 @@
 //! that file. `psd E301` marks a plan with that error, `psd fragment` a part that is not checked. Any other word names a whole plan.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use psd::language::check::{LoadError, Loader, Options, check};
+use crate::source_text::files_in;
+use psd::language::check::{Options, check};
 use psd::text::diagnostic::render::{Appearance, render_all};
-
-/// Reads files beside the page; a ground motion is always there.
-struct Beside(PathBuf);
-
-impl Loader for Beside {
-    fn load(&self, path: &str) -> Result<String, LoadError> {
-        let ground = "time_s,acceleration_m_per_s2\n0,0\n0.1,1\n0.2,0\n";
-        match fs::read_to_string(self.0.join(path)) {
-            Ok(text) => Ok(text),
-            Err(_) if path == "ground.csv" => Ok(ground.to_owned()),
-            Err(_) => Err(LoadError::NotFound),
-        }
-    }
-}
 
 /// The rig to select for a plan that has only real rigs.
 fn real_rig(plan: &str) -> Option<String> {
@@ -34,11 +21,18 @@ fn codes(page: &Path, plan: &str) -> (Vec<String>, String) {
         .parent()
         .expect("a folder")
         .to_owned();
+    // The files beside the page; a ground motion is always there.
+    let files = files_in(&folder);
+    let ground = "time_s,acceleration_m_per_s2\n0,0\n0.1,1\n0.2,0\n";
+    let beside = |path: &str| match files(path) {
+        Err(_) if path == "ground.csv" => Ok(ground.to_owned()),
+        found => found,
+    };
     let options = Options {
         rig: real_rig(plan),
         ..Options::default()
     };
-    let checked = check("plan.psd", plan, &Beside(folder), &options);
+    let checked = check("plan.psd", plan, &beside, &options);
     let output = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
     let codes = checked
         .diagnostics

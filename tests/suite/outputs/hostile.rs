@@ -5,11 +5,11 @@ use psd::golden::comparison::page;
 use psd::golden::comparison::{Comparison, Side, csv};
 use psd::golden::print::json as golden_json;
 use psd::golden::{Change, Finding, Outcome as TestOutcome, Part, Report, Tested, junit, tap};
-use psd::language::check::{Checked, LoadError, Loader, Options, check};
+use psd::language::check::{Checked, Options, check, no_files};
 use psd::plan::Format;
 use psd::record::journal::{Durability, EntryKind, FileStorage, Journal, recover};
 use psd::record::{EventKind, Outcome};
-use psd::report::{Figures, OutputFile, console, everything};
+use psd::report::{Figures, OutputFile, console};
 use psd::text::diagnostic::{json, render};
 use psd::text::sanitize;
 use rayon::prelude::*;
@@ -79,10 +79,6 @@ fn run_with(label: &str) -> Finished {
     finished
 }
 
-fn files_of(finished: &Finished) -> Vec<OutputFile> {
-    everything(&finished.run()).unwrap()
-}
-
 fn text<'a>(files: &'a [OutputFile], path: &str) -> &'a str {
     str::from_utf8(&files.iter().find(|file| file.path == path).unwrap().bytes).unwrap()
 }
@@ -111,10 +107,13 @@ fn tags(page: &str) -> Vec<String> {
 
 #[test]
 fn no_label_is_markup_on_a_page() {
-    let plain = tags(text(&files_of(&run_with("a plain label")), "report.html"));
+    let plain = tags(text(
+        &super::files(&run_with("a plain label")),
+        "report.html",
+    ));
     assert!(plain.len() > 200);
     labels().par_iter().for_each(|label| {
-        let files = files_of(&run_with(label));
+        let files = super::files(&run_with(label));
         let page = text(&files, "report.html");
         assert_eq!(steering(page), "", "{label:?}");
         // A label without letters may be reported as missing. A label with several lines adds lines to the plan.
@@ -147,7 +146,7 @@ fn no_label_is_markup_on_paper() {
         let mut finished = run_with(label);
         finished.plan.report.formats = vec![Format::Pdf];
         finished.provenance.date = Some("2026-05-31".to_owned());
-        files_of(&finished)
+        super::files(&finished)
             .into_iter()
             .find(|file| file.path == "report.pdf")
             .unwrap()
@@ -235,7 +234,7 @@ fn no_label_steers_a_terminal_or_makes_another_line() {
 #[test]
 fn no_label_is_lost_or_loose_in_json() {
     for label in labels() {
-        let files = files_of(&run_with(&label));
+        let files = super::files(&run_with(&label));
         let summary = text(&files, "summary.json");
         assert_eq!(steering(summary), "", "{label:?}");
         let value: serde_json::Value = serde_json::from_str(summary).unwrap();
@@ -259,7 +258,7 @@ fn no_label_is_a_formula_in_a_table() {
         assert!(!cell.contains('\n'));
     }
     // Numbers remain numbers, including negative ones.
-    let files = files_of(&run_with("x"));
+    let files = super::files(&run_with("x"));
     let table = text(&files, "tables/hit.csv");
     assert!(
         table
@@ -278,7 +277,7 @@ fn no_label_is_another_path_or_another_line_of_the_manifest() {
         for (at, name) in ["con", "Hit", "hit"].into_iter().enumerate() {
             finished.record.procedures[at].name = name.to_owned();
         }
-        let files = files_of(&finished);
+        let files = super::files(&finished);
         let mut seen = std::collections::BTreeSet::new();
         for file in &files {
             assert!(
@@ -414,7 +413,7 @@ fn no_label_is_another_result_of_a_test() {
 /// A comparison of two runs, each with the label at every position of an external text.
 fn compared_with(label: &str) -> Comparison {
     let summary: serde_json::Value =
-        serde_json::from_str(text(&files_of(&run_with(label)), "summary.json")).unwrap();
+        serde_json::from_str(text(&super::files(&run_with(label)), "summary.json")).unwrap();
     let side = |name: String| Side {
         name,
         summary: summary.clone(),
@@ -456,14 +455,6 @@ fn no_label_is_markup_or_a_formula_in_a_comparison() {
     });
 }
 
-struct Nothing;
-
-impl Loader for Nothing {
-    fn load(&self, _: &str) -> Result<String, LoadError> {
-        Err(LoadError::NotFound)
-    }
-}
-
 #[test]
 fn no_label_steers_a_terminal_from_a_diagnostic() {
     for label in labels() {
@@ -478,7 +469,7 @@ fn no_label_steers_a_terminal_from_a_diagnostic() {
                 diagnostics,
                 sources,
                 ..
-            } = check("plan.psd", &plan, &Nothing, &Options::default());
+            } = check("plan.psd", &plan, &no_files, &Options::default());
             let shown = render::render_all(&diagnostics, &sources, &render::Appearance::plain());
             assert_eq!(steering(&shown), "", "{label:?}: {shown}");
             let found: Vec<_> = diagnostics

@@ -49,15 +49,7 @@ pub fn rows(plan: &Plan) -> Vec<Vec<String>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::language::check::{LoadError, Loader, Options, check};
-
-    struct NoFiles;
-
-    impl Loader for NoFiles {
-        fn load(&self, _: &str) -> Result<String, LoadError> {
-            Err(LoadError::NotFound)
-        }
-    }
+    use crate::language::check::{Options, check, no_files};
 
     /// The rows of a real rig with this line in its block.
     fn start_text(line: &str) -> String {
@@ -85,7 +77,7 @@ mod tests {
             rig: Some("frame".to_owned()),
             ..Options::default()
         };
-        let checked = check("plan.psd", &text, &NoFiles, &options);
+        let checked = check("plan.psd", &text, &no_files, &options);
         let plan = checked
             .plan
             .unwrap_or_else(|| panic!("{:?}", checked.diagnostics));

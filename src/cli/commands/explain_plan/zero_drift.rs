@@ -124,17 +124,9 @@ fn time_between(found: &Drift) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::language::check::{LoadError, Loader, Options, check};
+    use crate::language::check::{Options, check, no_files};
     use crate::rig::virtual_rig;
     use crate::run::{Unwatched, run};
-
-    struct NoFiles;
-
-    impl Loader for NoFiles {
-        fn load(&self, _: &str) -> Result<String, LoadError> {
-            unreachable!("the plan uses no file")
-        }
-    }
 
     /// Ten dwells of 5 s, and 8 s of zero readings.
     fn zero_drift_text(declared: &str, check_of: &str) -> String {
@@ -142,7 +134,7 @@ mod tests {
             "specimen beam {{\n  mass = 1 kg\n  behaviour = elastic(stiffness: 300 kN/m)\n}}\nrig r {{\n  link = virtual({declared})\n{check_of}}}\n\
              stiffness ramp k0 {{\n  displacements = 0.1 mm .. 1 mm step 0.1 mm\n  pause = 5 s\n}}\nrequire \"stiff\" k0.stiffness > 1 kN/m\n"
         );
-        let checked = check("plan.psd", &text, &NoFiles, &Options::default());
+        let checked = check("plan.psd", &text, &no_files, &Options::default());
         let plan = checked
             .plan
             .unwrap_or_else(|| panic!("{:?}", checked.diagnostics));

@@ -101,7 +101,7 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
     let served = match plan.rig.link {
         Link::Virtual(_) => {
             let signals = Signals::caught(&stop_request).map_err(Failure::Signals)?;
-            let mut watcher = Watcher::in_lines(settings, &attendance, plan, true, signals);
+            let mut watcher = Watcher::new(settings, &attendance, plan, true, signals, false);
             let circumstances = Circumstances {
                 served: Some(arguments.client.protocol.name().to_owned()),
                 ..Circumstances::default()
@@ -117,7 +117,7 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
             on_record(&service, stage, rig.as_mut(), &mut watcher)?
         }
         Link::Real(_) => {
-            let mut opened = real_rig::open_for_client(plan, &attendance, settings, &stop_request)
+            let mut opened = real_rig::open(plan, &attendance, &stop_request, settings, false)
                 .map_err(|failure| {
                     failure.in_the_plan(|fault| {
                         plan_file::location_of_link(&checked, &arguments.plan, fault)

@@ -78,7 +78,7 @@ impl Ran {
         let Some(reason) = self.resume.clone() else {
             return Ok(None);
         };
-        let operator = real_rig::operator(plan, attendance).unwrap_or_default();
+        let operator = attendance.operator_of(plan).unwrap_or_default();
         resume::go_on(
             self.folder.path(),
             &operator,
@@ -122,7 +122,7 @@ fn on_a_virtual_rig(
     settings: Settings,
 ) -> Result<Ran, Failure> {
     let signals = Signals::caught(&StopRequest::default()).map_err(Failure::Signals)?;
-    let mut watcher = Watcher::new(settings, attendance, plan, true, signals);
+    let mut watcher = Watcher::new(settings, attendance, plan, true, signals, true);
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let provenance = provenance::of(plan, arguments.plan_settings.date.as_deref());
     let mut rig = virtual_rig(plan);
@@ -157,7 +157,7 @@ fn on_a_real_rig(
     settings: Settings,
 ) -> Result<Ran, Failure> {
     let (expected, _) = expected::of(plan);
-    let mut opened = real_rig::open(plan, attendance, &StopRequest::default(), settings)?;
+    let mut opened = real_rig::open(plan, attendance, &StopRequest::default(), settings, true)?;
     opened.watcher.expect(expected);
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let circumstances = real_rig::circumstances(plan, attendance);

@@ -155,6 +155,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         &plan,
         simulated,
         signals,
+        true,
     ));
     let (mut connected, mut torn) = (None, None);
     let (opened, put_aside) = (&mut connected, &mut torn);

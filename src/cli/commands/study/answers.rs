@@ -20,7 +20,7 @@ use crate::study::report::summary;
 pub fn give(path: &Path, plan: Option<&str>, format: Format) -> Result<Exit, Failure> {
     let reader = Reader::open(path).map_err(|fault| failure::of_data_set(&fault))?;
     let answers = Answers::of(&reader).map_err(|fault| failure::of_data_set(&fault))?;
-    let summary = summary(reader.metadata(), &answers)?;
+    let summary = summary(reader.metadata(), &answers);
     let beside = path.with_file_name(SUMMARY);
     // Never half a summary: on a full disk there is none.
     let aside = beside.with_extension("json.part");
@@ -35,7 +35,7 @@ pub fn give(path: &Path, plan: Option<&str>, format: Format) -> Result<Exit, Fai
     let folder = path.parent().unwrap_or(path);
     match format {
         Format::Human => print_result(&format!("{}\n", folder.display()))?,
-        Format::Json => print_result(&String::from_utf8_lossy(&summary))?,
+        Format::Json => print_result(&summary)?,
     }
     Ok(exit(&answers))
 }

@@ -2,24 +2,20 @@
 //! separate thread draws them, at most twenty times per second.
 
 mod curve;
-mod dialogue;
 mod draw;
-mod keys;
 pub mod model;
 mod terminal;
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::question::{After, Kind, Question};
-use super::watch::Stay;
+use super::dialogue::Dialogue;
+use super::dialogue::keys::Key;
 use crate::plan::Plan;
 use crate::record::Event;
 use crate::rig::{Live, StopRequest};
 use crate::run::{Inspection, Next, Observer, StepReport};
-use dialogue::Dialogue;
 use draw::View;
-use keys::Key;
 use model::{Ended, Model};
 use terminal::{Page, TerminalLost};
 
@@ -37,7 +33,6 @@ const FAREWELL: Duration = Duration::from_secs(1);
 /// The part of the screen that the run uses.
 pub struct Screen {
     shared: Arc<Shared>,
-    stop_request: StopRequest,
     finished: bool,
 }
 
@@ -118,11 +113,10 @@ impl Screen {
             state: Mutex::new(state),
             changed: Condvar::new(),
         });
-        let (theirs, their_stop_request) = (Arc::clone(&shared), stop_request.clone());
-        std::thread::spawn(move || show(&theirs, &their_stop_request, color));
+        let theirs = Arc::clone(&shared);
+        std::thread::spawn(move || show(&theirs, &stop_request, color));
         Self {
             shared,
-            stop_request,
             finished: false,
         }
     }
@@ -132,43 +126,18 @@ impl Screen {
         self.shared.lock().live = Some(live);
     }
 
-    /// Asks, or returns the answer once it is known.
-    pub fn ask(&self, question: &Question) -> Inspection {
-        self.wait_for(
-            |dialogue| dialogue.ask(question),
-            |answer| *answer == Inspection::Wait,
-        )
-    }
-
-    /// The run has ended early, and the rig is on hold: asks whether it is to unload. None: it stays on hold.
-    pub fn ask_to_unload(&self, question: &Question) -> Option<Inspection> {
-        self.wait_for(
-            |dialogue| dialogue.ask_to_unload(question),
-            |answer| *answer == Some(Inspection::Wait),
-        )
-    }
-
-    /// The operator's choice after the early end of the run.
-    pub fn stay(&self, after: After) -> Stay {
-        self.wait_for(|dialogue| dialogue.stay(after), |stay| *stay == Stay::Wait)
-    }
-
     /// Whether the operator has stopped the run at its keys.
     pub fn is_attended(&self) -> bool {
         self.shared.lock().dialogue.attended
     }
 
     /// The result of the dialogue. While there is none, it waits a moment for an answer, or until the next poll of the rig.
-    fn wait_for<T>(
-        &self,
-        ask: impl FnOnce(&mut Dialogue) -> T,
-        waits: impl FnOnce(&T) -> bool,
-    ) -> T {
+    pub fn wait_for<T: PartialEq>(&self, none_yet: &T, ask: impl Fn(&mut Dialogue) -> T) -> T {
         let mut state = self.shared.lock();
         state.wanted = true;
         self.shared.changed.notify_all();
         let answer = ask(&mut state.dialogue);
-        if waits(&answer) {
+        if answer == *none_yet {
             drop(self.shared.changed.wait_timeout(state, FRAME));
         }
         answer
@@ -213,15 +182,8 @@ impl Observer for Screen {
         self.shared.lock().model.study = Some((done, of));
     }
 
-    fn stop_requested(&self) -> bool {
-        self.stop_request.end_requested()
-    }
-
-    fn inspect(&mut self, note: &str) -> Inspection {
-        self.ask(&Question {
-            kind: Kind::Look,
-            lines: vec![note.to_owned()],
-        })
+    fn inspect(&mut self, _: &str) -> Inspection {
+        Inspection::Wait
     }
 
     fn next(&mut self) -> Next {

@@ -2,34 +2,29 @@
 //! inspection, signals. In: reports of the run. Out: answers and stop requests. It does not know
 //! which procedure runs.
 
-mod asking;
 mod plain;
 mod signals;
-mod typed;
 
-pub use super::stay::Stay;
-use crate::schema::plan_block::OPERATOR;
 use std::cell::RefCell;
 
-use super::question::{self, After, Kind, Question};
+use super::dialogue::Dialogue;
+use super::dialogue::by_lines::Person;
+use super::question::{self, After, Kind, Question, Stay};
 use super::screen::{self, Screen};
 use crate::cli::settings::Settings;
 use crate::plan::Plan;
 use crate::record::{Event, EventKind, NO_OPERATOR_ASKED};
 use crate::rig::{Live, StopRequest};
 use crate::run::{Extent, Inspection, Motion, Next, Observer, StepReport};
+use crate::schema::plan_block::OPERATOR;
 use crate::text::diagnostic::excerpt::escape;
-use asking::Person;
-pub use asking::{agrees, next_line};
 use plain::{Bar, Lines};
 pub use signals::{Signals, catch_full_files, interrupt};
-pub use typed::{Typed, throw_away};
 
 /// The observer of `psd run`.
 pub struct Watcher {
     face: Face,
     asking: Asking,
-    operator: Option<String>,
     stop_request: StopRequest,
     /// The expected demand of the run.
     expected: Extent,
@@ -64,9 +59,10 @@ impl Face {
 }
 
 /// The source of answers at an inspection.
+#[expect(clippy::large_enum_variant, reason = "a run has one")]
 enum Asking {
-    /// `--yes`
-    Yes,
+    /// `--yes`, and the name of the operator.
+    Yes(Option<String>),
     /// An operator at the screen.
     Screen,
     /// An operator who types lines.
@@ -86,31 +82,22 @@ pub struct Attendance {
     pub operator: Option<String>,
 }
 
+impl Attendance {
+    /// The operator that the command line or the plan names.
+    pub fn operator_of(&self, plan: &Plan) -> Option<String> {
+        let mut particulars = plan.particulars.iter();
+        let of_plan = particulars.find(|(field, _)| *field == OPERATOR.name);
+        self.operator
+            .clone()
+            .or_else(|| of_plan.map(|(_, name)| name.clone()))
+            .filter(|name| !name.trim().is_empty())
+    }
+}
+
 impl Watcher {
     /// Observes a run on a simulated or a real rig. Keys and signals set the stop request of `signals`. A rig that can hold in the middle
-    /// of a step also receives it.
+    /// of a step also receives it. Not `drawn`: in lines, also on a terminal, because a client drives, and there is no procedure to draw.
     pub fn new(
-        settings: Settings,
-        attendance: &Attendance,
-        plan: &Plan,
-        simulated: bool,
-        signals: Signals,
-    ) -> Self {
-        Self::watching(settings, attendance, plan, simulated, signals, true)
-    }
-
-    /// Observes in lines, also on a terminal: a client drives, and there is no procedure to draw.
-    pub fn in_lines(
-        settings: Settings,
-        attendance: &Attendance,
-        plan: &Plan,
-        simulated: bool,
-        signals: Signals,
-    ) -> Self {
-        Self::watching(settings, attendance, plan, simulated, signals, false)
-    }
-
-    fn watching(
         settings: Settings,
         attendance: &Attendance,
         plan: &Plan,
@@ -119,16 +106,7 @@ impl Watcher {
         drawn: bool,
     ) -> Self {
         let stop_request = signals.stop_request().clone();
-        let named = plan
-            .particulars
-            .iter()
-            .find(|(field, _)| *field == OPERATOR.name)
-            .map(|(_, name)| name.clone());
-        let operator = attendance
-            .operator
-            .clone()
-            .or(named)
-            .filter(|name| !name.trim().is_empty());
+        let operator = attendance.operator_of(plan);
         let face = if drawn && settings.can_ask && settings.unicode && screen::is_large_enough() {
             Face::Screen(Screen::new(
                 plan,
@@ -143,9 +121,9 @@ impl Watcher {
             Face::Lines(Lines::default())
         };
         let asking = match (attendance.yes, settings.can_ask, simulated, &face) {
-            (true, ..) => Asking::Yes,
+            (true, ..) => Asking::Yes(operator),
             (false, true, _, Face::Screen(_)) => Asking::Screen,
-            (false, true, ..) => Asking::Person(Person::default()),
+            (false, true, ..) => Asking::Person(Person::new(operator)),
             (false, false, true, _) => Asking::NoOperatorNeeded,
             (false, false, false, _) => Asking::NoOperator,
         };
@@ -155,7 +133,6 @@ impl Watcher {
         Self {
             face,
             asking,
-            operator,
             stop_request,
             expected: Extent::default(),
             released: None,
@@ -182,11 +159,7 @@ impl Watcher {
 
     /// The operator's choice after the early end of a run, while the rig is observed. `resume`: whether the run can be resumed.
     pub fn stay(&mut self, resume: bool) -> Stay {
-        if !self.stop_request.prompts_allowed() {
-            return Stay::Leave;
-        }
-        let alarmed = self.alarm.is_some();
-        let after = if alarmed {
+        let after = if self.alarm.is_some() {
             After::NotHeld
         } else {
             After::Held {
@@ -194,18 +167,46 @@ impl Watcher {
                 unload: false,
             }
         };
-        let (stays, interrupted) = (self.stays() || alarmed, self.is_interrupted());
+        self.wait_after_the_end(&Stay::Wait, |dialogue| dialogue.stay(after))
+            .unwrap_or(Stay::Leave)
+    }
+
+    /// As [`Self::wait_for`] after the early end of a run: Ctrl-C at typed lines leaves a rig on hold.
+    fn wait_after_the_end<T: PartialEq>(
+        &mut self,
+        none_yet: &T,
+        ask: impl Fn(&mut Dialogue) -> T,
+    ) -> Option<T> {
+        let interrupted = self.is_interrupted();
+        if !self.stop_request.prompts_allowed() {
+            return None;
+        }
+        if let Asking::Person(person) = &mut self.asking
+            && interrupted
+            && self.alarm.is_none()
+        {
+            person.leave();
+        }
+        self.wait_for(none_yet, ask)
+    }
+
+    /// The result of the dialogue with the operator; None: no operator can answer.
+    fn wait_for<T: PartialEq>(
+        &mut self,
+        none_yet: &T,
+        ask: impl Fn(&mut Dialogue) -> T,
+    ) -> Option<T> {
         let state_lines = self.rig_state_lines();
+        let at_the_screen = matches!(self.asking, Asking::Screen) || self.alarm.is_some();
         match (&mut self.face, &mut self.asking) {
-            (Face::Screen(screen), _) if stays => screen.stay(after),
+            (Face::Screen(screen), _) if at_the_screen || screen.is_attended() => {
+                Some(screen.wait_for(none_yet, ask))
+            }
             (face, Asking::Person(person)) => {
                 face.clear();
-                if interrupted && !alarmed {
-                    person.leave();
-                }
-                person.stay(after, &state_lines)
+                Some(person.wait_for(&state_lines, none_yet, ask))
             }
-            _ => Stay::Leave,
+            _ => None,
         }
     }
 
@@ -231,14 +232,6 @@ impl Watcher {
             .chain(self.ended.clone())
             .chain(of_axes)
             .collect()
-    }
-
-    /// Whether an operator is at the screen.
-    fn stays(&self) -> bool {
-        let Face::Screen(screen) = &self.face else {
-            return false;
-        };
-        matches!(self.asking, Asking::Screen) || screen.is_attended()
     }
 
     /// Removes screen and bar from the terminal.
@@ -291,25 +284,10 @@ impl Observer for Watcher {
     }
 
     fn may_unload(&mut self, _: &str, motion: &Motion) -> Option<Inspection> {
-        let interrupted = self.is_interrupted();
-        if !self.stop_request.prompts_allowed() {
-            return None;
-        }
         let question = Question::of(Kind::Unload, motion);
-        if self.stays()
-            && let Face::Screen(screen) = &mut self.face
-        {
-            return screen.ask_to_unload(&question);
-        }
-        let state_lines = self.rig_state_lines();
-        let Asking::Person(person) = &mut self.asking else {
-            return None;
-        };
-        self.face.clear();
-        if interrupted {
-            person.leave();
-        }
-        let answer = person.ask_to_unload(&question, &state_lines, &mut self.operator);
+        let answer = self.wait_after_the_end(&Some(Inspection::Wait), |dialogue| {
+            dialogue.ask_to_unload(&question)
+        })?;
         if matches!(answer, Some(Inspection::GoOn { .. })) {
             // A Ctrl-C during a move stops that move.
             self.stops_before = None;
@@ -336,11 +314,10 @@ impl Observer for Watcher {
 
 impl Watcher {
     fn ask(&mut self, question: &Question) -> Inspection {
-        let by = self.operator.clone();
-        match &mut self.asking {
-            Asking::Yes => Inspection::GoOn {
+        match &self.asking {
+            Asking::Yes(operator) => Inspection::GoOn {
                 note: Some("answered by --yes".to_owned()),
-                by,
+                by: operator.clone(),
             },
             Asking::NoOperatorNeeded => Inspection::GoOn {
                 note: Some(NO_OPERATOR_ASKED.to_owned()),
@@ -351,14 +328,9 @@ impl Watcher {
                     .to_owned(),
                 by: None,
             },
-            Asking::Screen => match &mut self.face {
-                Face::Screen(screen) => screen.ask(question),
-                Face::Bar(_) | Face::Lines(_) => question.kind.unanswered(),
-            },
-            Asking::Person(person) => {
-                self.face.clear();
-                person.ask(question, &mut self.operator)
-            }
+            Asking::Screen | Asking::Person(_) => self
+                .wait_for(&Inspection::Wait, |dialogue| dialogue.ask(question))
+                .unwrap_or_else(|| question.kind.unanswered()),
         }
     }
 }
@@ -425,7 +397,7 @@ mod tests {
                 operator: None,
             };
             let signals = Signals::caught(&StopRequest::default()).unwrap();
-            Watcher::new(settings, &attendance, &plan, simulated, signals).inspect("look")
+            Watcher::new(settings, &attendance, &plan, simulated, signals, true).inspect("look")
         };
         assert!(matches!(ask(false, false), Inspection::Stop { .. }));
         let yes = Inspection::GoOn {

@@ -24,7 +24,7 @@ impl Checker<'_> {
         if self.sources.iter().count() + self.data.len() >= MOST_FILES {
             return self.fail(message::too_many_files(MOST_FILES, span));
         }
-        match self.loader.load(&name) {
+        match (self.loader)(&name) {
             Ok(text) => {
                 let file = DataFile {
                     name,

@@ -3,8 +3,8 @@
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
-use super::{Files, checked};
-use crate::language::check::{LoadError, Loader, Options, ParsedPlan};
+use super::{checked, files};
+use crate::language::check::{Options, ParsedPlan};
 use crate::plan::Plan;
 use crate::plan::study::Input;
 use crate::text::diagnostic::Code;
@@ -27,7 +27,7 @@ fn text(mass: &str, velocity: &str, scale: &str) -> String {
     )
 }
 
-const FILES: Files = Files(&[("quake.csv", GROUND)]);
+const FILES: &[(&str, &str)] = &[("quake.csv", GROUND)];
 
 /// All of a plan that a run reads, without the origin of its values.
 fn as_run(mut plan: Plan) -> String {
@@ -55,8 +55,8 @@ fn parsed(settings: &[(&str, &str)]) -> ParsedPlan {
         ..Options::default()
     };
     let text = text("4 kg", "1 m/s", "1");
-    let mut parsed = ParsedPlan::parse("plan.psd", &text, &FILES, &options);
-    let checked = parsed.check(&FILES);
+    let mut parsed = ParsedPlan::parse("plan.psd", &text, &files(FILES), &options);
+    let checked = parsed.check(&files(FILES));
     assert!(checked.plan.is_some(), "{:?}", checked.diagnostics);
     parsed
 }
@@ -70,14 +70,14 @@ fn a_bound_plan_is_the_plan_of_the_edited_text() {
     ]);
     let plan = parsed(&[]).bind(&values).unwrap();
     assert!(plan.parameters.iter().all(|parameter| parameter.set));
-    let edited = checked(&text("5.5 kg", "2.25 m/s", "0.75"), &FILES, &[]).0;
+    let edited = checked(&text("5.5 kg", "2.25 m/s", "0.75"), &files(FILES), &[]).0;
     assert_eq!(as_run(plan), as_run(edited.plan.unwrap()));
 }
 
 #[test]
 fn a_bound_plan_is_the_plan_of_the_same_settings() {
     let written = [("mass", "5.5 kg"), ("velocity", "2.25 m/s")];
-    let set = checked(&text("4 kg", "1 m/s", "1"), &FILES, &written).0;
+    let set = checked(&text("4 kg", "1 m/s", "1"), &files(FILES), &written).0;
     let values = bound(&[
         ("mass", 5.5, Dimension::MASS),
         ("velocity", 2.25, Dimension::VELOCITY),
@@ -121,19 +121,13 @@ fn a_value_that_does_not_fit_is_an_error() {
     }
 }
 
-/// Counts how often a file is read.
-struct Counting(Cell<usize>);
-
-impl Loader for Counting {
-    fn load(&self, path: &str) -> Result<String, LoadError> {
-        self.0.set(self.0.get() + 1);
-        FILES.load(path)
-    }
-}
-
 #[test]
 fn files_are_read_once_however_often_parameters_are_bound() {
-    let loader = Counting(Cell::new(0));
+    let count = Cell::new(0);
+    let loader = |path: &str| {
+        count.set(count.get() + 1);
+        files(FILES)(path)
+    };
     let text = text("4 kg", "1 m/s", "1");
     let mut parsed = ParsedPlan::parse("plan.psd", &text, &loader, &Options::default());
     parsed.check(&loader);
@@ -142,7 +136,7 @@ fn files_are_read_once_however_often_parameters_are_bound() {
         let plan = parsed.bind(&values).unwrap();
         assert_eq!(plan.files.len(), 2);
     }
-    assert_eq!(loader.0.get(), 1);
+    assert_eq!(count.get(), 1);
 }
 
 /// A plan whose numbers are in blocks and in options of them.
@@ -182,8 +176,8 @@ fn parsed_fields(settings: &[(String, String)]) -> (ParsedPlan, Plan) {
         settings: settings.to_vec(),
         ..Options::default()
     };
-    let mut parsed = ParsedPlan::parse("plan.psd", FIELDS, &FILES, &options);
-    let checked = parsed.check(&FILES);
+    let mut parsed = ParsedPlan::parse("plan.psd", FIELDS, &files(FILES), &options);
+    let checked = parsed.check(&files(FILES));
     let plan = checked
         .plan
         .unwrap_or_else(|| panic!("{:?}", checked.diagnostics));

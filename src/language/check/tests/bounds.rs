@@ -1,6 +1,6 @@
 //! Bounds on the depth and the size of values: the cost of a small file is limited.
 
-use super::{Files, checked};
+use super::{checked, no_files};
 use crate::language::check::{DEEPEST_VALUES, MOST_TERMS};
 
 const IMPACT: &str = "specimen beam {\n  mass = 1 kg\n  behaviour = elastic(stiffness: 300 N/m)\n}\n\
@@ -31,19 +31,19 @@ fn doubled(doublings: usize) -> String {
 
 #[test]
 fn a_chain_of_values_is_as_deep_as_the_bound_and_no_deeper() {
-    assert_eq!(checked(&from_below(DEEPEST_VALUES), &Files(&[]), &[]).1, "");
-    let (_, reported) = checked(&from_below(DEEPEST_VALUES + 1), &Files(&[]), &[]);
+    assert_eq!(checked(&from_below(DEEPEST_VALUES), &no_files, &[]).1, "");
+    let (_, reported) = checked(&from_below(DEEPEST_VALUES + 1), &no_files, &[]);
     assert_eq!(reported, "E405 a0");
-    let (_, reported) = checked(&from_below(30 * DEEPEST_VALUES), &Files(&[]), &[]);
+    let (_, reported) = checked(&from_below(30 * DEEPEST_VALUES), &no_files, &[]);
     assert_eq!(reported.lines().count(), 1, "it is said once: {reported}");
 }
 
 #[test]
 fn a_value_that_doubles_stays_small() {
     let most = MOST_TERMS.ilog2() as usize - 1;
-    assert_eq!(checked(&doubled(most), &Files(&[]), &[]).1, "");
+    assert_eq!(checked(&doubled(most), &no_files, &[]).1, "");
     for doublings in [most + 1, 60] {
-        let (_, reported) = checked(&doubled(doublings), &Files(&[]), &[]);
+        let (_, reported) = checked(&doubled(doublings), &no_files, &[]);
         assert_eq!(reported, format!("E405 a{most} + a{most}"));
     }
 }
@@ -74,7 +74,7 @@ fn errors_are_counted_and_their_spans_are_within_the_text() {
         (many(600, unknown), 1801),
         (many(900, unread), 1800),
     ] {
-        let (checked, _) = checked(&text, &Files(&[]), &[]);
+        let (checked, _) = checked(&text, &no_files, &[]);
         assert!(checked.plan.is_none());
         let list = &checked.diagnostics;
         let labels: usize = list.iter().map(|diagnostic| diagnostic.labels.len()).sum();
@@ -113,7 +113,7 @@ fn the_first_of_many_unknown_names_have_a_suggestion() {
         &many(200, |index| {
             format!("let a_name_{index} = a_nam_{index} * 2\n")
         }),
-        &Files(&[]),
+        &no_files,
         &[],
     );
     let helped = checked.diagnostics.iter().filter(|diagnostic| {

@@ -1,6 +1,6 @@
 //! Each diagnostic of the check on the smallest plan that causes it, and nothing that only follows from it.
 
-use super::{Files, checked};
+use super::{checked, files, no_files};
 
 const BODY: &str = "specimen beam { mass = 1 kg\n behaviour = elastic(300 kN/m) }\nstriker ball { mass = 10 kg\n velocity = 1 m/s }\n";
 
@@ -8,7 +8,7 @@ const BODY: &str = "specimen beam { mass = 1 kg\n behaviour = elastic(300 kN/m) 
 fn reported(more: &str) -> String {
     let (_, reported) = checked(
         &format!("{BODY}{more}"),
-        &Files(&[("a.psd", "use \"b.psd\""), ("b.psd", "use \"a.psd\"")]),
+        &files(&[("a.psd", "use \"b.psd\""), ("b.psd", "use \"a.psd\"")]),
         &[],
     );
     reported
@@ -114,7 +114,7 @@ fn each_error_is_reported_once_at_its_span() {
 
 #[test]
 fn the_plan_as_a_whole_and_the_command_line() {
-    let only = |text: &str, settings: &[(&str, &str)]| checked(text, &Files(&[]), settings).1;
+    let only = |text: &str, settings: &[(&str, &str)]| checked(text, &no_files, settings).1;
     assert_eq!(
         only("stiffness ramp k { displacements = [1, 2] mm }", &[]),
         "E210 stiffness ramp k"
@@ -134,7 +134,7 @@ fn the_plan_as_a_whole_and_the_command_line() {
         rig: Some("x".to_owned()),
         ..Default::default()
     };
-    let found = crate::language::check::check("p.psd", BODY, &Files(&[]), &rig).diagnostics;
+    let found = crate::language::check::check("p.psd", BODY, &no_files, &rig).diagnostics;
     assert_eq!(
         found
             .iter()

@@ -10,14 +10,12 @@ mod recorded;
 mod renamed;
 mod studies;
 
-use super::{Checked, LoadError, Loader, Options, check};
+use super::{Checked, LoadError, Loader, Options, check, no_files};
 
 /// Files by path.
-struct Files<'f>(&'f [(&'f str, &'f str)]);
-
-impl Loader for Files<'_> {
-    fn load(&self, path: &str) -> Result<String, LoadError> {
-        self.0
+fn files<'f>(files: &'f [(&str, &str)]) -> impl Fn(&str) -> Result<String, LoadError> + 'f {
+    |path| {
+        files
             .iter()
             .find(|(name, _)| *name == path)
             .map(|(_, text)| (*text).to_owned())
@@ -26,7 +24,7 @@ impl Loader for Files<'_> {
 }
 
 /// The outcome, and a line for each diagnostic: its code and the text under its first label.
-fn checked(text: &str, files: &Files, settings: &[(&str, &str)]) -> (Checked, String) {
+fn checked(text: &str, files: &Loader<'_>, settings: &[(&str, &str)]) -> (Checked, String) {
     let settings = settings
         .iter()
         .map(|(name, value)| ((*name).to_owned(), (*value).to_owned()))

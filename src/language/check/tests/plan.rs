@@ -1,6 +1,6 @@
 //! The whole plan of the language reference.
 
-use super::{Files, checked};
+use super::{checked, files};
 use crate::plan::formula::Formula;
 use crate::plan::{Contact, InspectTrigger, Interval, ProcedureKind};
 
@@ -63,7 +63,7 @@ report {
 
 #[test]
 fn the_whole_plan_of_the_reference_checks_to_si() {
-    let (checked, reported) = checked(WHOLE, &Files(&[("lib/instron_frame.psd", FRAME)]), &[]);
+    let (checked, reported) = checked(WHOLE, &files(&[("lib/instron_frame.psd", FRAME)]), &[]);
     assert_eq!(reported, "");
     let plan = checked.plan.expect("no error");
     assert_eq!(plan.title, "Pultruded GFRP beam, midspan impact");
@@ -132,7 +132,7 @@ fn the_whole_plan_of_the_reference_checks_to_si() {
 fn a_setting_replaces_the_parameter() {
     let (checked, reported) = checked(
         WHOLE,
-        &Files(&[("lib/instron_frame.psd", FRAME)]),
+        &files(&[("lib/instron_frame.psd", FRAME)]),
         &[("impact_speed", "1500 mm/s")],
     );
     assert_eq!(reported, "");

@@ -1,6 +1,6 @@
 //! The checked form of a real rig, and the choice of the rig of a run.
 
-use super::{Files, Options, check};
+use super::{Options, check, files, no_files};
 use crate::plan::{
     DeviceLink, Dialect, Interval, Link, ModbusMap, ModbusNumber, Plan, PortPlan, PretestCheck,
     RealLink, SafeState,
@@ -24,7 +24,7 @@ fn plan(text: &str, rig: Option<&str>) -> Plan {
         rig: rig.map(str::to_owned),
         ..Options::default()
     };
-    let checked = check("plan.psd", text, &Files(&[]), &options);
+    let checked = check("plan.psd", text, &no_files, &options);
     checked
         .plan
         .unwrap_or_else(|| panic!("{:?}", checked.diagnostics))
@@ -219,7 +219,7 @@ fn a_watchdog_as_long_as_a_request_is_long_enough() {
         ..Options::default()
     };
     assert!(
-        check("plan.psd", &rig("2.799 s"), &Files(&[]), &options)
+        check("plan.psd", &rig("2.799 s"), &no_files, &options)
             .plan
             .is_none()
     );
@@ -253,7 +253,7 @@ fn an_axis_states_its_own_certificates_and_uncertainties_and_leaves_the_rest_to_
         rig: Some("press".to_owned()),
         ..Options::default()
     };
-    let checked = check("plan.psd", &text, &Files(&ground), &options);
+    let checked = check("plan.psd", &text, &files(&ground), &options);
     let plan = checked
         .plan
         .unwrap_or_else(|| panic!("{:?}", checked.diagnostics));

@@ -1,7 +1,7 @@
 //! Names that are allowed in a plan from a run log but not in a new plan. The plan is read with the rules of the version that wrote the
 //! run log.
 
-use super::{Files, check};
+use super::{check, no_files};
 use crate::language::check::Options;
 
 const OLDER: &str = r#"specimen bar {
@@ -31,7 +31,7 @@ fn a_recorded_plan_is_read_as_it_was_run() {
         check(
             "plan.psd",
             OLDER,
-            &Files(&[]),
+            &no_files,
             &Options {
                 recorded,
                 ..Options::default()

@@ -1,6 +1,6 @@
 //! Names of version 0.1: each is an error that gives the present name, and the plan of a run log is read with them.
 
-use super::{Files, check};
+use super::{check, files};
 use crate::language::check::{Checked, Options};
 use crate::plan::{Condition, Plan};
 use crate::schema::RENAMED;
@@ -107,7 +107,7 @@ fn read(text: &str, recorded: bool) -> Checked {
         rig: Some("frame_rig".to_owned()),
         ..Options::default()
     };
-    check("plan.psd", text, &Files(&[("quake.csv", QUAKE)]), &options)
+    check("plan.psd", text, &files(&[("quake.csv", QUAKE)]), &options)
 }
 
 fn errors(checked: &Checked) -> Vec<&Diagnostic> {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Files, checked};
+use super::{checked, files};
 use crate::language::check::{Options, ParsedPlan};
 use crate::physics::study::distribution::{Distribution, Spread};
 use crate::physics::study::inputs::{Inputs, Source};
@@ -13,7 +13,7 @@ use crate::text::diagnostic::Code;
 use crate::units::{Dimension, Quantity};
 
 const MEASURED: &str = "# shop floor\nname,mass_kg,K_kn_per_m\nA,0.9,290\nB,1.1,310\n";
-const FILES: Files = Files(&[("measured.csv", MEASURED)]);
+const FILES: &[(&str, &str)] = &[("measured.csv", MEASURED)];
 
 /// A plan with these items behind its test.
 fn text(items: &str) -> String {
@@ -28,7 +28,7 @@ fn text(items: &str) -> String {
 }
 
 fn plan(items: &str) -> Plan {
-    let (checked, _) = checked(&text(items), &FILES, &[]);
+    let (checked, _) = checked(&text(items), &files(FILES), &[]);
     checked
         .plan
         .unwrap_or_else(|| panic!("{:?}", checked.diagnostics))
@@ -244,13 +244,13 @@ fn a_fragility_has_the_stripes_of_its_range() {
 #[test]
 fn a_run_does_not_depend_on_the_studies_of_its_plan() {
     let with = text("study scatter {\nvary = [speed ~ normal(cv: 5 %)]\n}");
-    let mut parsed = ParsedPlan::parse("plan.psd", &with, &FILES, &Options::default());
-    assert!(parsed.check(&FILES).plan.is_some());
+    let mut parsed = ParsedPlan::parse("plan.psd", &with, &files(FILES), &Options::default());
+    assert!(parsed.check(&files(FILES)).plan.is_some());
     let values = BTreeMap::from([("speed".to_owned(), Quantity::new(1.25, Dimension::VELOCITY))]);
     let mut bound = parsed.bind(&values).unwrap();
     assert!(bound.studies.studies.is_empty());
     let set = [("speed", "1.25 m/s")];
-    let mut alone = checked(&text(""), &FILES, &set).0.plan.unwrap();
+    let mut alone = checked(&text(""), &files(FILES), &set).0.plan.unwrap();
     bound.files.clear();
     alone.files.clear();
     assert_eq!(format!("{bound:?}"), format!("{alone:?}"));
@@ -260,11 +260,11 @@ fn a_run_does_not_depend_on_the_studies_of_its_plan() {
 #[test]
 fn the_plan_must_be_valid_at_the_ends_of_its_inputs() {
     let far = text("study scatter {\nvary = [speed ~ uniform(0.4 .. 2 m/s)]\n}");
-    let (found, _) = checked(&far, &FILES, &[]);
+    let (found, _) = checked(&far, &files(FILES), &[]);
     let codes: Vec<Code> = found.diagnostics.iter().map(|found| found.code).collect();
     assert_eq!(codes, [Code::InvalidEnd]);
     assert!(found.plan.is_none());
-    let (set, _) = checked(&far, &FILES, &[("speed", "1.5 m/s")]);
+    let (set, _) = checked(&far, &files(FILES), &[("speed", "1.5 m/s")]);
     assert!(set.plan.is_some(), "{:?}", set.diagnostics);
 }
 
@@ -281,8 +281,8 @@ fn studies_are_not_run_on_a_real_rig() {
             for_studies,
             ..Options::default()
         };
-        let mut parsed = ParsedPlan::parse("plan.psd", &text(rig), &FILES, &options);
-        let found = parsed.check(&FILES).diagnostics;
+        let mut parsed = ParsedPlan::parse("plan.psd", &text(rig), &files(FILES), &options);
+        let found = parsed.check(&files(FILES)).diagnostics;
         let errors = found.iter().filter(|found| found.is_error());
         errors.map(|found| found.code).collect::<Vec<_>>()
     };

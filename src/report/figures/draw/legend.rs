@@ -53,15 +53,12 @@ pub(super) fn entries(chart: &Chart) -> Vec<Entry<'_>> {
 }
 
 /// The entries in lines that fit the frame, each with its left end.
-pub(super) fn rows<'a, 'b>(
-    entries: &'b [Entry<'a>],
-) -> Result<Vec<Vec<(&'b Entry<'a>, f64)>>, String> {
+pub(super) fn rows<'a, 'b>(entries: &'b [Entry<'a>]) -> Vec<Vec<(&'b Entry<'a>, f64)>> {
     let mut rows: Vec<Vec<(&Entry<'_>, f64)>> = vec![Vec::new()];
     let mut left = LEFT;
     for entry in entries {
-        let width = entry.sample()
-            + NEAR
-            + lettering(13.0, HPos::Left, VPos::Center).width(entry.label())?;
+        let width =
+            entry.sample() + NEAR + lettering(13.0, HPos::Left, VPos::Center).width(entry.label());
         if left + width > RIGHT && left > LEFT {
             rows.push(Vec::new());
             left = LEFT;
@@ -71,19 +68,15 @@ pub(super) fn rows<'a, 'b>(
         }
         left += width + GAP;
     }
-    Ok(rows)
+    rows
 }
 
 /// Draws one entry from its left end, about the middle of its line.
-pub(super) fn draw(
-    canvas: &dyn Canvas,
-    entry: &Entry<'_>,
-    (left, middle): Point,
-) -> Result<(), String> {
+pub(super) fn draw(canvas: &dyn Canvas, entry: &Entry<'_>, (left, middle): Point) {
     let sample = entry.sample();
     match entry {
         Entry::Series(series) if series.style.fill => {
-            draw_area(canvas, (left, middle), sample, series.style.colour)?;
+            draw_area(canvas, (left, middle), sample, series.style.colour);
         }
         Entry::Series(series) => {
             if let Some(line) = series.style.line {
@@ -91,7 +84,7 @@ pub(super) fn draw(
                     &[(left, middle), (left + sample, middle)],
                     line,
                     series.style.colour,
-                )?;
+                );
             }
             if let Some(marker) = series.style.marker {
                 draw_marker(
@@ -99,33 +92,28 @@ pub(super) fn draw(
                     marker,
                     (left + 0.5 * sample, middle),
                     series.style.colour,
-                )?;
+                );
             }
         }
-        Entry::Band(_, colour) => draw_area(canvas, (left, middle), sample, *colour)?,
+        Entry::Band(_, colour) => draw_area(canvas, (left, middle), sample, *colour),
     }
     canvas.text(
         entry.label(),
         (left + sample + NEAR, middle),
         &lettering(13.0, HPos::Left, VPos::Center),
-    )
+    );
 }
 
 /// A sample of an area with a thin outline.
-fn draw_area(
-    canvas: &dyn Canvas,
-    (left, middle): Point,
-    width: f64,
-    colour: Colour,
-) -> Result<(), String> {
+fn draw_area(canvas: &dyn Canvas, (left, middle): Point, width: f64, colour: Colour) {
     canvas.rectangle(
         (left, middle - 6.0),
         (left + width, middle + 6.0),
         palette::CLOUD,
-    )?;
+    );
     canvas.rectangle(
         (left + 0.8, middle - 5.2),
         (left + width - 0.8, middle + 5.2),
         colour,
-    )
+    );
 }

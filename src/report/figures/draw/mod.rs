@@ -31,16 +31,16 @@ const LIMIT_INK: Colour = (150, 20, 20);
 const THINNEST: f64 = 0.5;
 
 /// The chart as a PNG.
-pub(super) fn png(chart: &Chart) -> Result<Vec<u8>, String> {
+pub(crate) fn png(chart: &Chart) -> Result<Vec<u8>, String> {
     raster::png(WIDTH, HEIGHT, |canvas| paint(chart, canvas))
 }
 
 /// The chart as an SVG.
-pub(super) fn svg(chart: &Chart) -> Result<String, String> {
+pub(crate) fn svg(chart: &Chart) -> String {
     vector::svg(WIDTH, HEIGHT, |canvas| paint(chart, canvas))
 }
 
-fn paint(chart: &Chart, canvas: &dyn Canvas) -> Result<(), String> {
+fn paint(chart: &Chart, canvas: &dyn Canvas) {
     let xs = chart
         .series
         .iter()
@@ -53,7 +53,7 @@ fn paint(chart: &Chart, canvas: &dyn Canvas) -> Result<(), String> {
     let x = Axis::over(&chart.x, xs, 8);
     let y = Axis::over(&chart.y, ys.chain(references), 6);
     let entries = legend::entries(chart);
-    let rows = legend::rows(&entries)?;
+    let rows = legend::rows(&entries);
     #[expect(clippy::cast_precision_loss, reason = "a legend has a few lines")]
     let top = LEGEND_TOP + LEGEND_LINE * rows.len().max(1) as f64 - 2.0;
     let sheet = Sheet {
@@ -61,34 +61,33 @@ fn paint(chart: &Chart, canvas: &dyn Canvas) -> Result<(), String> {
         x: &x,
         y: &y,
         top,
-        left: left_edge(chart)?,
+        left: left_edge(chart),
     };
-    sheet.bands(chart)?;
-    sheet.grid()?;
+    sheet.bands(chart);
+    sheet.grid();
     for series in &chart.series {
-        sheet.series(series)?;
+        sheet.series(series);
     }
-    references::draw(&sheet, chart)?;
-    sheet.axes()?;
+    references::draw(&sheet, chart);
+    sheet.axes();
     for (index, row) in rows.iter().enumerate() {
         #[expect(clippy::cast_precision_loss, reason = "a legend has a few lines")]
         let middle = LEGEND_TOP + LEGEND_LINE * index as f64 - 4.0;
         for (entry, left) in row {
-            legend::draw(canvas, entry, (*left, middle))?;
+            legend::draw(canvas, entry, (*left, middle));
         }
     }
-    Ok(())
 }
 
 /// The left edge of the frame: an axis of names needs the width of the longest one.
-fn left_edge(chart: &Chart) -> Result<f64, String> {
+fn left_edge(chart: &Chart) -> f64 {
     let style = lettering(13.0, HPos::Right, VPos::Center);
     let title = if chart.y.name.is_empty() { 0.0 } else { 24.0 };
     let mut left = LEFT;
     for name in &chart.y.names {
-        left = left.max(style.width(name)? + 20.0 + title);
+        left = left.max(style.width(name) + 20.0 + title);
     }
-    Ok(left.min(WIDEST_NAMES))
+    left.min(WIDEST_NAMES)
 }
 
 fn lettering(size: f64, horizontal: HPos, vertical: VPos) -> Lettering {
@@ -104,17 +103,12 @@ fn lettering(size: f64, horizontal: HPos, vertical: VPos) -> Lettering {
     }
 }
 
-fn draw_marker(
-    canvas: &dyn Canvas,
-    marker: Marker,
-    at: Point,
-    colour: Colour,
-) -> Result<(), String> {
+fn draw_marker(canvas: &dyn Canvas, marker: Marker, at: Point, colour: Colour) {
     match marker {
         Marker::Disc(radius) => canvas.disc(at, radius, colour),
         Marker::Ring(radius) => {
-            canvas.disc(at, radius, colour)?;
-            canvas.disc(at, radius - 1.3, (255, 255, 255))
+            canvas.disc(at, radius, colour);
+            canvas.disc(at, radius - 1.3, (255, 255, 255));
         }
     }
 }

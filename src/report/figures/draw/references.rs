@@ -98,7 +98,7 @@ impl Area {
 }
 
 /// Draws each reference line with its text at the position that covers the least data.
-pub(super) fn draw(sheet: &Sheet<'_>, chart: &Chart) -> Result<(), String> {
+pub(super) fn draw(sheet: &Sheet<'_>, chart: &Chart) {
     let mut written: Vec<Area> = Vec::new();
     for (index, reference) in chart.references.iter().enumerate() {
         let fraction = sheet.y.fraction(reference.y);
@@ -117,7 +117,7 @@ pub(super) fn draw(sheet: &Sheet<'_>, chart: &Chart) -> Result<(), String> {
             };
             sheet
                 .canvas
-                .polyline(&[(sheet.left, y), (RIGHT, y)], line, LIMIT_INK)?;
+                .polyline(&[(sheet.left, y), (RIGHT, y)], line, LIMIT_INK);
         }
         if reference.label.is_empty() {
             continue;
@@ -126,7 +126,7 @@ pub(super) fn draw(sheet: &Sheet<'_>, chart: &Chart) -> Result<(), String> {
             colour: LIMIT_INK,
             ..lettering(12.0, HPos::Left, VPos::Bottom)
         };
-        let width = style.width(&label)?;
+        let width = style.width(&label);
         // A reference without a label shares the text of the previous one: the text may be at either line.
         let other = chart
             .references
@@ -149,9 +149,8 @@ pub(super) fn draw(sheet: &Sheet<'_>, chart: &Chart) -> Result<(), String> {
             .min_by_key(covered)
             .unwrap_or((rightmost, y + 18.0));
         written.push(Area::of_text(position, width));
-        sheet.canvas.text(&label, position, &style)?;
+        sheet.canvas.text(&label, position, &style);
     }
-    Ok(())
 }
 
 /// The objects that a text would cover, the most important first: another text, lines of other limits, data.

@@ -29,7 +29,7 @@ impl Sheet<'_> {
         )
     }
 
-    pub fn bands(&self, chart: &Chart) -> Result<(), String> {
+    pub fn bands(&self, chart: &Chart) {
         for band in &chart.bands {
             for (from, to) in &band.intervals {
                 let left = self.point((*from, 0.0)).0.clamp(self.left, RIGHT);
@@ -40,14 +40,13 @@ impl Sheet<'_> {
                     .max(left + 0.75)
                     .clamp(self.left, RIGHT);
                 self.canvas
-                    .rectangle((left, self.top), (right, BOTTOM), band.colour)?;
+                    .rectangle((left, self.top), (right, BOTTOM), band.colour);
             }
         }
-        Ok(())
     }
 
     /// Horizontal lines at the ticks, and the lines of zero inside the frame.
-    pub fn grid(&self) -> Result<(), String> {
+    pub fn grid(&self) {
         const ZERO: (Colour, f64) = ((150, 150, 150), 0.9);
         if self.x.low < 0.0 && self.x.high > 0.0 {
             let (colour, width) = ZERO;
@@ -56,7 +55,7 @@ impl Sheet<'_> {
                 &[(x, self.top), (x, BOTTOM)],
                 Line { width, dash: &[] },
                 colour,
-            )?;
+            );
         }
         for (tick, _) in &self.y.ticks {
             let y = BOTTOM - (tick - self.y.low) / (self.y.high - self.y.low) * (BOTTOM - self.top);
@@ -66,12 +65,11 @@ impl Sheet<'_> {
                 &[(self.left, y), (RIGHT, y)],
                 Line { width, dash: &[] },
                 colour,
-            )?;
+            );
         }
-        Ok(())
     }
 
-    pub fn axes(&self) -> Result<(), String> {
+    pub fn axes(&self) {
         let line = |from, to| {
             self.canvas.polyline(
                 &[from, to],
@@ -80,43 +78,43 @@ impl Sheet<'_> {
                     dash: &[],
                 },
                 INK,
-            )
+            );
         };
-        line((self.left, self.top), (self.left, BOTTOM))?;
-        line((self.left, BOTTOM), (RIGHT, BOTTOM))?;
+        line((self.left, self.top), (self.left, BOTTOM));
+        line((self.left, BOTTOM), (RIGHT, BOTTOM));
         for (tick, label) in &self.y.ticks {
             let y = BOTTOM - (tick - self.y.low) / (self.y.high - self.y.low) * (BOTTOM - self.top);
-            line((self.left - 5.0, y), (self.left, y))?;
+            line((self.left - 5.0, y), (self.left, y));
             self.canvas.text(
                 label,
                 (self.left - 9.0, y),
                 &lettering(13.0, HPos::Right, VPos::Center),
-            )?;
+            );
         }
         for (tick, label) in &self.x.ticks {
             let x =
                 self.left + (tick - self.x.low) / (self.x.high - self.x.low) * (RIGHT - self.left);
-            line((x, BOTTOM), (x, BOTTOM + 5.0))?;
+            line((x, BOTTOM), (x, BOTTOM + 5.0));
             self.canvas.text(
                 label,
                 (x, BOTTOM + 9.0),
                 &lettering(13.0, HPos::Center, VPos::Top),
-            )?;
+            );
         }
         let middle = (0.5 * (self.left + RIGHT), 0.5 * (self.top + BOTTOM));
         self.canvas.text(
             &self.x.title,
             (middle.0, BOTTOM + 30.0),
             &lettering(14.0, HPos::Center, VPos::Top),
-        )?;
+        );
         let upright = Lettering {
             upright: true,
             ..lettering(14.0, HPos::Center, VPos::Top)
         };
-        self.canvas.text(&self.y.title, (10.0, middle.1), &upright)
+        self.canvas.text(&self.y.title, (10.0, middle.1), &upright);
     }
 
-    pub fn series(&self, series: &Series) -> Result<(), String> {
+    pub fn series(&self, series: &Series) {
         let points: Vec<Point> = series
             .points
             .iter()
@@ -134,13 +132,12 @@ impl Sheet<'_> {
         };
         let points = thinned(&points, THINNEST);
         if let Some(line) = series.style.line {
-            self.canvas.polyline(&points, line, series.style.colour)?;
+            self.canvas.polyline(&points, line, series.style.colour);
         }
         if let Some(marker) = series.style.marker {
             for point in &points {
-                draw_marker(self.canvas, marker, *point, series.style.colour)?;
+                draw_marker(self.canvas, marker, *point, series.style.colour);
             }
         }
-        Ok(())
     }
 }

@@ -1,7 +1,7 @@
 //! The plans of this folder's tests of several axes: a two-storey frame under ground motion on a rig of two axes. The upper axis has the
 //! opposite polarity. In: text. Out: checked plans, and the same plans on an ideal virtual rig.
 
-use crate::language::check::{LoadError, Loader, Options, check};
+use crate::language::check::{LoadError, Options, check};
 use crate::plan::formula::ResultValue;
 use crate::plan::{AxisPlan, Plan, RealLink};
 use crate::record::Record;
@@ -51,31 +51,27 @@ require "drift" max(quake.max_drift) < 60 mm
 /// 3 m/s² for a tenth of a second, then the opposite.
 const GROUND: &str = "time_s,acceleration_m_per_s2\n0,0\n0.05,3\n0.1,3\n0.2,-3\n0.3,0\n1,0\n";
 
-struct Folder;
-
-impl Loader for Folder {
-    fn load(&self, path: &str) -> Result<String, LoadError> {
-        let known = [
-            ("ground.csv", GROUND),
-            (
-                "lib/two_actuator_frame.psd",
-                include_str!("../../../../plans/lib/two_actuator_frame.psd"),
-            ),
-            (
-                "ground/sine.csv",
-                include_str!("../../../../plans/ground/sine.csv"),
-            ),
-            (
-                "ground/three_sines.csv",
-                include_str!("../../../../plans/ground/three_sines.csv"),
-            ),
-        ];
-        known
-            .iter()
-            .find(|(name, _)| *name == path)
-            .map(|(_, text)| (*text).to_owned())
-            .ok_or(LoadError::NotFound)
-    }
+fn folder(path: &str) -> Result<String, LoadError> {
+    let known = [
+        ("ground.csv", GROUND),
+        (
+            "lib/two_actuator_frame.psd",
+            include_str!("../../../../plans/lib/two_actuator_frame.psd"),
+        ),
+        (
+            "ground/sine.csv",
+            include_str!("../../../../plans/ground/sine.csv"),
+        ),
+        (
+            "ground/three_sines.csv",
+            include_str!("../../../../plans/ground/three_sines.csv"),
+        ),
+    ];
+    known
+        .iter()
+        .find(|(name, _)| *name == path)
+        .map(|(_, text)| (*text).to_owned())
+        .ok_or(LoadError::NotFound)
 }
 
 /// A plan by its text, on this rig.
@@ -84,7 +80,7 @@ pub(crate) fn checked(text: &str, rig: &str) -> Plan {
         rig: Some(rig.to_owned()),
         ..Options::default()
     };
-    let checked = check("plan.psd", text, &Folder, &options);
+    let checked = check("plan.psd", text, &folder, &options);
     checked
         .plan
         .unwrap_or_else(|| panic!("{:?}", checked.diagnostics))

@@ -15,6 +15,7 @@ use crate::cli::files::record_file;
 use crate::cli::files::record_file::Circumstances;
 use crate::cli::files::run_folder::{FolderSink, RunFolder};
 use crate::cli::files::{plan_file, provenance};
+use crate::cli::operator::dialogue::by_lines;
 use crate::cli::operator::real_rig;
 use crate::cli::operator::watch::{Attendance, Signals};
 use crate::cli::output::print_message;
@@ -108,10 +109,11 @@ pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure
     let attendance = real_rig::named(attendance, plan)?;
     let stop_request = StopRequest::default().with_release_allowed(arguments.let_go);
     let _signals = Signals::holding(&stop_request).map_err(Failure::Signals)?;
-    let by =
-        real_rig::operator(plan, &attendance).unwrap_or_else(|| "an unnamed operator".to_owned());
+    let by = attendance
+        .operator_of(plan)
+        .unwrap_or_else(|| "an unnamed operator".to_owned());
     let person = Person {
-        typed: None,
+        lines: by_lines::Person::new(Some(by.clone())),
         stop_request: &stop_request,
         yes: arguments.yes,
         by,

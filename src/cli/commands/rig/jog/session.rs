@@ -4,8 +4,8 @@
 use super::super::typed::positions;
 use super::Wanted;
 use crate::cli::exit::{Exit, Failure};
+use crate::cli::operator::dialogue::by_lines::{self, next_line};
 use crate::cli::operator::question::{Kind, Question};
-use crate::cli::operator::watch::{Typed, agrees, next_line};
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::plan::{Interval, Plan};
@@ -239,7 +239,7 @@ fn refused(fault: RigFault) -> Result<Exit, Failure> {
 
 /// The operator and the answers.
 pub(super) struct Person<'a> {
-    pub typed: Option<Typed>,
+    pub lines: by_lines::Person,
     pub stop_request: &'a StopRequest,
     /// Whether `--yes` consents to every move.
     pub yes: bool,
@@ -250,7 +250,7 @@ pub(super) struct Person<'a> {
 impl Person<'_> {
     /// A line of the operator; None at the end of the input and on Ctrl-C. The rig is polled meanwhile.
     fn line(&mut self, specimen: &mut Specimen<'_, '_>) -> Result<Option<String>, Failure> {
-        let typed = self.typed.get_or_insert_with(Typed::from_the_terminal);
+        let typed = self.lines.typed();
         next_line(typed, self.stop_request, || specimen.listen()).map_err(Failure::Rig)
     }
 
@@ -264,9 +264,10 @@ impl Person<'_> {
         let (agreed, how) = if self.yes {
             (true, "answered by --yes")
         } else {
-            let typed = self.typed.get_or_insert_with(Typed::from_the_terminal);
             let asked = Question::of(Kind::Jog, motion);
-            let yes = agrees(typed, &asked, self.stop_request, || specimen.listen())
+            let yes = self
+                .lines
+                .agrees(&asked, self.stop_request, || specimen.listen())
                 .map_err(Failure::Rig)?;
             (yes, if yes { "yes" } else { "no" })
         };

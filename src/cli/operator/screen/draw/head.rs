@@ -6,8 +6,8 @@ use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line, Span};
 
 use super::{View, fitted, shown};
+use crate::cli::operator::dialogue::{Typing, What};
 use crate::cli::operator::question::{After, Kind};
-use crate::cli::operator::screen::dialogue::{Typing, What};
 use crate::cli::operator::screen::model::{Ended, INSPECT};
 use crate::units::Dimension;
 use crate::units::display::{readable, significant};

@@ -18,8 +18,8 @@ use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::Line;
 use ratatui::widgets::{Block, Borders};
 
-use super::dialogue::Dialogue;
 use super::model::{Ended, Model};
+use crate::cli::operator::dialogue::Dialogue;
 use crate::rig::StopRequest;
 use crate::text::diagnostic::excerpt::escape;
 

@@ -7,8 +7,8 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, BorderType, Clear, Padding, Paragraph};
 
 use super::{View, shown};
+use crate::cli::operator::dialogue::{Typing, What};
 use crate::cli::operator::question::{After, Kind, WHY_RESUME, position_and_force};
-use crate::cli::operator::screen::dialogue::{Typing, What};
 use crate::record::EventKind;
 
 const WIDEST: u16 = 72;

@@ -6,11 +6,11 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
 use super::{View, draw};
-use crate::cli::operator::question::{After, Kind, Question};
-use crate::cli::operator::screen::dialogue::Dialogue;
-use crate::cli::operator::screen::keys::Key;
+use crate::cli::operator::dialogue::Dialogue;
+use crate::cli::operator::dialogue::keys::Key;
+use crate::cli::operator::question::{After, Kind, Question, Stay};
 use crate::cli::operator::screen::model::Model;
-use crate::cli::operator::watch::Stay;
+
 use crate::plan::Interval;
 use crate::record::{Event, EventKind};
 use crate::rig::{Feedback, Identity, StopRequest};

@@ -6,6 +6,7 @@ use std::sync::mpsc::{Sender, channel};
 use std::time::Duration;
 
 use super::*;
+use crate::cli::operator::question::{After, Stay};
 
 /// A clock that a test sets, and an operator whose lines the test types.
 struct Typist {
@@ -15,7 +16,7 @@ struct Typist {
 }
 
 impl Typist {
-    fn new() -> Self {
+    fn new(operator: Option<&str>) -> Self {
         let (now, (send, lines)) = (Rc::new(Cell::new(Duration::ZERO)), channel());
         let clock = Rc::clone(&now);
         let typed = Typed::of(lines, Box::new(move || clock.get()));
@@ -23,10 +24,28 @@ impl Typist {
             now,
             send: Some(send),
             person: Person {
+                dialogue: Dialogue::new(operator.map(str::to_owned)),
                 typed: Some(typed),
-                ..Person::default()
             },
         }
+    }
+
+    fn ask(&mut self, kind: Kind) -> Inspection {
+        self.person.wait_for(&[], &Inspection::Wait, |dialogue| {
+            dialogue.ask(&question(kind))
+        })
+    }
+
+    fn ask_to_unload(&mut self) -> Option<Inspection> {
+        self.person
+            .wait_for(&[], &Some(Inspection::Wait), |dialogue| {
+                dialogue.ask_to_unload(&question(Kind::Unload))
+            })
+    }
+
+    fn stay(&mut self, after: After) -> Stay {
+        self.person
+            .wait_for(&[], &Stay::Wait, |dialogue| dialogue.stay(after))
     }
 
     fn types(&self, line: &str) {
@@ -45,23 +64,16 @@ fn question(kind: Kind) -> Question {
 
 /// The result of these lines, typed after the question can be answered and followed by the end of the input.
 fn answer_to(kind: Kind, lines: &[&str], operator: Option<&str>) -> Inspection {
-    let mut typist = Typist::new();
-    let mut operator = operator.map(str::to_owned);
-    assert_eq!(
-        typist.person.ask(&question(kind), &mut operator),
-        Inspection::Wait
-    );
+    let mut typist = Typist::new(operator);
+    assert_eq!(typist.ask(kind), Inspection::Wait);
     typist.now.set(Duration::from_secs(1));
-    assert_eq!(
-        typist.person.ask(&question(kind), &mut operator),
-        Inspection::Wait
-    );
+    assert_eq!(typist.ask(kind), Inspection::Wait);
     for line in lines {
         typist.types(line);
     }
     typist.send = None;
     loop {
-        match typist.person.ask(&question(kind), &mut operator) {
+        match typist.ask(kind) {
             Inspection::Wait => {}
             answer => return answer,
         }
@@ -128,9 +140,8 @@ fn only_a_clear_yes_with_a_name_goes_on_and_a_remark_is_a_line_of_its_own() {
 
 #[test]
 fn a_release_typed_before_its_question_could_be_read_is_none() {
-    let mut typist = Typist::new();
-    let mut operator = Some("A".to_owned());
-    let mut ask = |typist: &mut Typist| typist.person.ask(&question(Kind::Release), &mut operator);
+    let mut typist = Typist::new(Some("A"));
+    let ask = |typist: &mut Typist| typist.ask(Kind::Release);
     typist.types("RELEASE");
     assert_eq!(ask(&mut typist), Inspection::Wait);
     typist.types("RELEASE");
@@ -148,9 +159,8 @@ fn a_release_typed_before_its_question_could_be_read_is_none() {
 
 #[test]
 fn the_next_question_takes_no_line_of_the_one_before() {
-    let mut typist = Typist::new();
-    let mut operator = Some("A".to_owned());
-    let mut ask = |typist: &mut Typist, kind| typist.person.ask(&question(kind), &mut operator);
+    let mut typist = Typist::new(Some("A"));
+    let ask = |typist: &mut Typist, kind| typist.ask(kind);
     ask(&mut typist, Kind::Release);
     typist.now.set(Duration::from_secs(1));
     ask(&mut typist, Kind::Release);
@@ -182,33 +192,25 @@ const HELD: After = After::Held {
 };
 
 /// A rig on hold, at the time when input counts.
-fn held(operator: Option<&str>) -> (Typist, Option<String>) {
-    let (mut typist, mut operator) = (Typist::new(), operator.map(str::to_owned));
+fn held(operator: Option<&str>) -> Typist {
+    let mut typist = Typist::new(operator);
     typist.types("x");
     for _ in 0..2 {
-        let answer = typist
-            .person
-            .ask_to_unload(&question(Kind::Unload), &[], &mut operator);
+        let answer = typist.ask_to_unload();
         assert_eq!(answer, Some(Inspection::Wait));
         typist.now.set(typist.now.get() + Duration::from_secs(1));
     }
-    (typist, operator)
+    typist
 }
 
 /// The result of these lines at a rig on hold; each question can be answered.
-fn typed_before_it(
-    typist: &mut Typist,
-    operator: &mut Option<String>,
-    lines: &[&str],
-) -> Option<Inspection> {
+fn typed_before_it(typist: &mut Typist, lines: &[&str]) -> Option<Inspection> {
     let mut answer = Some(Inspection::Wait);
     for line in lines {
         typist.types(line);
         // The line, the text it shows, the second without input.
         for _ in 0..3 {
-            answer = typist
-                .person
-                .ask_to_unload(&question(Kind::Unload), &[], operator);
+            answer = typist.ask_to_unload();
             typist.now.set(typist.now.get() + Duration::from_secs(1));
             if answer != Some(Inspection::Wait) {
                 return answer;
@@ -220,14 +222,14 @@ fn typed_before_it(
 
 #[test]
 fn a_held_rig_unloads_for_its_word_alone() {
-    let (mut typist, mut operator) = held(Some("A"));
-    let yes = typed_before_it(&mut typist, &mut operator, &["u", "UNLOAD"]);
+    let mut typist = held(Some("A"));
+    let yes = typed_before_it(&mut typist, &["u", "UNLOAD"]);
     assert!(
         matches!(yes, Some(Inspection::GoOn { by: Some(_), .. })),
         "{yes:?}"
     );
     assert_eq!(
-        typist.person.stay(HELD, &[]),
+        typist.stay(HELD),
         Stay::Wait,
         "the operator still looks at it"
     );
@@ -241,9 +243,9 @@ fn a_held_rig_unloads_for_its_word_alone() {
         &["u", "n", "r", "", "UNLOAD"],
     ];
     for lines in all {
-        let (mut typist, mut operator) = held(Some("A"));
+        let mut typist = held(Some("A"));
         assert_eq!(
-            typed_before_it(&mut typist, &mut operator, lines),
+            typed_before_it(&mut typist, lines),
             Some(Inspection::Wait),
             "{lines:?}"
         );
@@ -262,70 +264,45 @@ fn a_held_rig_is_left_or_gone_on_with_for_a_reason() {
         (&["r", "", "r", "now"], Stay::Resume("now".to_owned())),
     ];
     for (lines, chosen) in all {
-        let (mut typist, mut operator) = held(Some("A"));
-        assert_eq!(
-            typed_before_it(&mut typist, &mut operator, lines),
-            None,
-            "{lines:?}"
-        );
-        assert_eq!(typist.person.stay(HELD, &[]), chosen, "{lines:?}");
+        let mut typist = held(Some("A"));
+        assert_eq!(typed_before_it(&mut typist, lines), None, "{lines:?}");
+        assert_eq!(typist.stay(HELD), chosen, "{lines:?}");
     }
     for lines in [&[][..], &["u"], &["r"]] {
-        let (mut typist, mut operator) = held(Some("A"));
-        typed_before_it(&mut typist, &mut operator, lines);
+        let mut typist = held(Some("A"));
+        typed_before_it(&mut typist, lines);
         typist.send = None;
-        assert_eq!(
-            typed_before_it(&mut typist, &mut operator, &[]),
-            Some(Inspection::Wait)
-        );
-        assert_eq!(
-            typist
-                .person
-                .ask_to_unload(&question(Kind::Unload), &[], &mut operator),
-            None,
-            "{lines:?}"
-        );
-        assert_eq!(
-            typist.person.stay(HELD, &[]),
-            Stay::Leave,
-            "the end of the input"
-        );
+        assert_eq!(typed_before_it(&mut typist, &[]), Some(Inspection::Wait));
+        assert_eq!(typist.ask_to_unload(), None, "{lines:?}");
+        assert_eq!(typist.stay(HELD), Stay::Leave, "the end of the input");
     }
 }
 
 #[test]
 fn a_rig_that_may_still_move_waits_until_that_has_been_seen() {
-    let mut typist = Typist::new();
-    let stay = |typist: &mut Typist, after| {
-        typist
-            .person
-            .stay(after, &["NOT CONFIRMED HELD".to_owned()])
-    };
+    let mut typist = Typist::new(None);
     typist.types("a");
-    assert_eq!(stay(&mut typist, After::NotHeld), Stay::Wait);
+    assert_eq!(typist.stay(After::NotHeld), Stay::Wait);
     typist.now.set(Duration::from_secs(1));
     assert_eq!(
-        stay(&mut typist, After::NotHeld),
+        typist.stay(After::NotHeld),
         Stay::Wait,
         "what was typed before"
     );
     for line in ["r", "u", "x", ""] {
         typist.types(line);
-        assert_eq!(stay(&mut typist, After::NotHeld), Stay::Wait, "{line:?}");
+        assert_eq!(typist.stay(After::NotHeld), Stay::Wait, "{line:?}");
     }
     typist.types("a");
     assert_eq!(
-        [
-            stay(&mut typist, After::NotHeld),
-            stay(&mut typist, After::NotHeld)
-        ],
+        [typist.stay(After::NotHeld), typist.stay(After::NotHeld)],
         [Stay::Leave, Stay::Leave]
     );
     // The operator left while the rig was on hold.
-    let (mut typist, mut operator) = held(None);
-    assert_eq!(typed_before_it(&mut typist, &mut operator, &["x"]), None);
+    let mut typist = held(None);
+    assert_eq!(typed_before_it(&mut typist, &["x"]), None);
     assert_eq!(
-        [stay(&mut typist, HELD), stay(&mut typist, After::NotHeld)],
+        [typist.stay(HELD), typist.stay(After::NotHeld)],
         [Stay::Leave, Stay::Wait]
     );
 }
@@ -374,27 +351,25 @@ fn one_move_by_hand_wants_its_word() {
         let (send, lines) = channel();
         let now = Rc::new(Cell::new(Duration::ZERO));
         let clock = Rc::clone(&now);
-        let mut lines = Typed::of(lines, Box::new(move || clock.get()));
+        let mut person = Person {
+            dialogue: Dialogue::new(Some("A".to_owned())),
+            typed: Some(Typed::of(lines, Box::new(move || clock.get()))),
+        };
         send.send("MOVE".to_owned()).unwrap();
         let mut send = Some(send);
         let mut looks = 0;
-        let agreed = agrees(
-            &mut lines,
-            &question(Kind::Jog),
-            &StopRequest::default(),
-            || {
-                looks += 1;
-                if looks == 1 {
-                    now.set(Duration::from_secs(1));
-                } else if looks == 2 {
-                    let send = send.take().unwrap();
-                    for line in typed {
-                        send.send((*line).to_owned()).unwrap();
-                    }
+        let agreed = person.agrees(&question(Kind::Jog), &StopRequest::default(), || {
+            looks += 1;
+            if looks == 1 {
+                now.set(Duration::from_secs(1));
+            } else if looks == 2 {
+                let send = send.take().unwrap();
+                for line in typed {
+                    send.send((*line).to_owned()).unwrap();
                 }
-                Ok::<_, ()>(())
-            },
-        );
+            }
+            Ok::<_, ()>(())
+        });
         assert_eq!(agreed, Ok(moves), "{typed:?}");
     }
 }

@@ -3,11 +3,11 @@
 
 use std::fmt::Write as _;
 
-use super::{BLOCKS, FUNCTIONS};
-use crate::text::diagnostic::Code;
-use crate::units::Dimension;
-use crate::units::display::si_unit;
-use crate::units::unit::{PREFIXES, UNITS};
+use psd::schema::{BLOCKS, FUNCTIONS};
+use psd::text::diagnostic::Code;
+use psd::units::Dimension;
+use psd::units::display::si_unit;
+use psd::units::unit::{PREFIXES, UNITS};
 
 mod blocks;
 mod options;
@@ -28,7 +28,6 @@ const INTRODUCTION: &str = "## Vocabulary
 ";
 
 /// The generated part of `grammar/LANGUAGE.md`: every block, field, option and result, then functions and units.
-#[must_use]
 pub fn reference() -> String {
     let mut text = INTRODUCTION.to_owned();
     let mut options = Vec::new();
@@ -41,7 +40,6 @@ pub fn reference() -> String {
 }
 
 /// The generated part of `docs/reference/diagnostics.md`: every code with its title.
-#[must_use]
 pub fn codes() -> String {
     let mut text = "| code | |\n|---|---|\n".to_owned();
     for code in Code::ALL {

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use super::options::Written;
 use super::values::{default, is_truth, row, value};
-use crate::schema::types::{FieldType, Kind, Variant};
-use crate::schema::{BLOCKS, block};
+use psd::schema::{BLOCKS, block};
+use psd::schema::{FieldType, Kind, Variant};
 
 /// The options of a field that another page describes.
 pub struct Page {
@@ -79,7 +79,6 @@ impl Page {
     }
 
     /// The generated parts of the page, by name.
-    #[must_use]
     pub fn parts(&self) -> Vec<(&'static str, String)> {
         let mut listed = Vec::new();
         if !self.has_tables {

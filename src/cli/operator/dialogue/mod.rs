@@ -1,20 +1,21 @@
-//! The operator's input at the keys. In: keys with their time, questions of the run. Out: stop requests, answers, notes for the run log.
-//! Only the confirmation text, typed and entered after the question could be read, permits a motion.
+//! The dialogue with the operator. In: questions of the run; entered lines and choices. Out: answers, the choice for a rig on hold, notes
+//! for the run log. Only the confirmation text, entered after the question could be read, permits a motion. The operator types it at the
+//! keys of the screen ([`by_keys`]) or as a line ([`by_lines`]).
+
+mod by_keys;
+pub mod by_lines;
+pub mod keys;
+pub mod typed;
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use super::keys::Key;
-use crate::cli::operator::question::{After, Choice, DEAF, Kind, Question};
-use crate::cli::operator::watch::{Stay, interrupt};
+use super::question::{After, Choice, DEAF, Question, Stay};
 use crate::rig::StopRequest;
 use crate::run::{Inspection, Next};
 use crate::text::diagnostic::excerpt::escape;
 
-/// Largest number of characters of one typed line.
-const LONGEST_LINE: usize = 200;
-
-/// The keyboard part of the screen.
+/// Questions, answers, notes and pauses.
 #[derive(Clone, Debug, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of its own")]
 pub struct Dialogue {
@@ -96,118 +97,18 @@ impl Dialogue {
         }
     }
 
-    /// Processes a key that was pressed at the time `now`.
-    pub fn press(&mut self, key: Key, now: Duration, stop_request: &StopRequest) {
-        self.pressed(key, now, stop_request);
-        self.open_question();
-    }
-
-    fn pressed(&mut self, key: Key, now: Duration, stop_request: &StopRequest) {
-        if key == Key::Quit && self.after.is_none() {
-            self.attended = true;
-            return stop_request.hold_now();
-        }
-        let interrupts = key == Key::Interrupt;
-        if self.is_asking() && !self.hears(now) {
-            // The operator cannot have read the question yet: only a Ctrl-C that stops a run counts.
-            if interrupts && self.after.is_none() {
-                self.interrupt(stop_request);
-            }
-            return;
-        }
-        match self.after {
-            Some(after) if self.typing.is_none() && self.question.is_none() => {
-                return self.choose(after, key);
-            }
-            // The run has ended: the operator refuses the motion.
-            Some(_) if interrupts => return self.back_to_the_choice(),
-            None if interrupts => return self.interrupt(stop_request),
-            _ => {}
-        }
-        // Any key closes the help. A stop key that the help names also stops the run.
-        if std::mem::take(&mut self.help) && !matches!(key, Key::Character('h' | 'H' | 'q' | 'Q')) {
-            return;
-        }
-        match &self.typing {
-            Some(Typing {
-                what: What::Answer, ..
-            }) => self.answer(key, stop_request),
-            Some(_) => self.edit(key),
-            None => self.command(key, stop_request),
-        }
-    }
-
-    fn interrupt(&mut self, stop_request: &StopRequest) {
-        self.attended = true;
-        interrupt(stop_request);
-    }
-
-    fn command(&mut self, key: Key, stop_request: &StopRequest) {
-        let Key::Character(character) = key else {
-            return;
-        };
-        match character.to_ascii_lowercase() {
-            'q' | 'h' => self.stop(character, stop_request),
-            '?' => self.help = true,
-            _ if self.monitor => {}
-            'p' => {
-                self.paused = !self.paused;
-                self.single = 0;
-                let did = if self.paused { "paused" } else { "went on" };
-                self.notes.push_back(format!("{did}{}", self.signature()));
-            }
-            's' | ' ' if self.paused => self.single += 1,
-            'i' => self.line(What::Note),
-            _ => {}
-        }
-    }
-
-    fn stop(&mut self, key: char, stop_request: &StopRequest) {
-        self.attended = true;
-        if key.eq_ignore_ascii_case(&'h') {
-            stop_request.hold_now();
-        } else {
-            stop_request.stop_after_step();
-        }
-    }
-
-    /// Processes a key at a question. As long as no text is typed, single keys have their usual meaning.
-    fn answer(&mut self, key: Key, stop_request: &StopRequest) {
-        let nothing_typed = self
-            .typing
-            .as_ref()
-            .is_none_or(|typing| typing.text.is_empty());
-        let unload = self.is_unload();
-        self.unclear = false;
-        match key {
-            Key::Character('i' | 'I') if nothing_typed => self.line(What::Remark),
-            Key::Character('?') if nothing_typed => self.help = true,
-            Key::Character(key @ ('q' | 'Q' | 'h' | 'H')) if nothing_typed && !unload => {
-                self.stop(key, stop_request);
-            }
-            Key::Escape if unload => self.back_to_the_choice(),
-            Key::Escape => self.line(What::Answer),
-            key => self.edit(key),
-        }
-    }
-
-    /// Processes a choice for a rig on hold. No choice moves the rig yet.
-    fn choose(&mut self, after: After, key: Key) {
-        // Its question comes next.
-        if self.unload {
-            return;
-        }
-        let choice = match key {
-            Key::Character(character) => after.choice(character),
-            Key::Interrupt if after != After::NotHeld => Some(Choice::Leave),
-            _ => None,
-        };
+    /// Makes a choice for a rig on hold. No choice moves the rig yet.
+    fn choose(&mut self, choice: Choice) {
         match choice {
-            Some(Choice::Leave) => self.chosen = Some(Stay::Leave),
-            Some(Choice::Resume) => self.line(What::Reason),
-            Some(Choice::Unload) => self.unload = true,
-            None => {}
+            Choice::Leave => self.leave(),
+            Choice::Resume => self.line(What::Reason),
+            Choice::Unload => self.unload = true,
         }
+    }
+
+    /// Ends the dialogue about a rig on hold: it keeps its state.
+    pub fn leave(&mut self) {
+        (self.unload, self.chosen) = (false, Some(Stay::Leave));
     }
 
     fn back_to_the_choice(&mut self) {
@@ -221,58 +122,24 @@ impl Dialogue {
         self.appear();
     }
 
-    fn edit(&mut self, key: Key) {
-        let Some(typing) = &mut self.typing else {
-            return;
-        };
-        match key {
-            Key::Character(character) => {
-                if typing.text.chars().count() < LONGEST_LINE {
-                    typing.text.push(character);
-                }
-            }
-            Key::Erase => {
-                typing.text.pop();
-            }
-            Key::EraseLine => typing.text.clear(),
-            Key::Enter => self.enter(),
-            Key::Escape if matches!(typing.what, What::Remark | What::AnswerName { .. }) => {
-                self.line(What::Answer);
-            }
-            Key::Escape if typing.what == What::Reason => self.back_to_the_choice(),
-            Key::Escape => self.typing = None,
-            Key::End if self.question.is_some() && !typing.what.is_note() => self.no_answer(),
-            Key::End | Key::Interrupt | Key::Quit => {}
-        }
-    }
-
-    fn enter(&mut self) {
-        let Some(Typing { what, text }) = self.typing.take() else {
+    /// The open line is entered with this text.
+    fn enter(&mut self, text: &str) {
+        let Some(Typing { what, .. }) = self.typing.take() else {
             return;
         };
         let text = escape(text.trim());
         match what {
             What::Note if text.is_empty() => {}
-            What::Note => match &self.operator {
-                Some(_) => self.record_note(&text),
-                None => self.line(What::NoteName { note: text }),
-            },
-            What::Answer => match (
-                self.question
-                    .as_ref()
-                    .and_then(|question| question.kind.answer(&text)),
-                &self.operator,
-            ) {
-                (Some(yes), Some(name)) => {
-                    let name = name.clone();
-                    self.settle(yes, name);
-                }
-                (Some(yes), None) => self.line(What::AnswerName { yes }),
-                (None, _) => {
+            What::Note => self.note(text),
+            What::Answer => {
+                let question = self.question.as_ref();
+                if let Some(yes) = question.and_then(|question| question.kind.answer(&text)) {
+                    self.settle(yes);
+                } else {
                     self.unclear = !text.is_empty();
                     self.line(what);
                 }
-            },
+            }
             What::Remark => {
                 self.remark = Some(text).filter(|text| !text.is_empty());
                 self.line(What::Answer);
@@ -283,11 +150,11 @@ impl Dialogue {
             }
             What::NoteName { note } => {
                 self.operator = Some(text);
-                self.record_note(&note);
+                self.note(note);
             }
             What::AnswerName { yes } => {
-                self.operator = Some(text.clone());
-                self.settle(yes, text);
+                self.operator = Some(text);
+                self.settle(yes);
             }
             What::Reason => self.chosen = Some(Stay::Resume(text)),
         }
@@ -300,7 +167,11 @@ impl Dialogue {
         });
     }
 
-    fn record_note(&mut self, note: &str) {
+    /// Keeps a note, once its author is known.
+    fn note(&mut self, note: String) {
+        if self.operator.is_none() {
+            return self.line(What::NoteName { note });
+        }
         self.notes.push_back(format!("{note}{}", self.signature()));
     }
 
@@ -311,7 +182,11 @@ impl Dialogue {
         )
     }
 
-    fn settle(&mut self, yes: bool, name: String) {
+    /// Answers the question, once the name of the operator is known.
+    fn settle(&mut self, yes: bool) {
+        let Some(name) = self.operator.clone() else {
+            return self.line(What::AnswerName { yes });
+        };
         let Some(question) = self.question.take() else {
             return;
         };
@@ -366,12 +241,6 @@ impl Dialogue {
             Some(_) => false,
             None => self.after.is_some() && self.question.is_none(),
         }
-    }
-
-    fn is_unload(&self) -> bool {
-        self.question
-            .as_ref()
-            .is_some_and(|question| question.kind == Kind::Unload)
     }
 
     /// Asks a question of the run; a later call returns the answer once it is known.
@@ -459,12 +328,3 @@ impl Dialogue {
         stop_request.hold_now();
     }
 }
-
-impl What {
-    const fn is_note(&self) -> bool {
-        matches!(self, Self::Note | Self::NoteName { .. })
-    }
-}
-
-#[cfg(test)]
-mod tests;

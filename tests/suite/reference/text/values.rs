@@ -1,8 +1,8 @@
 //! Values of fields in words: the type with its limits, and the default.
 
-use crate::schema::types::{BlockKind, Field, FieldType, Presence, Range};
-use crate::units::Dimension;
-use crate::units::display::{si_unit, significant};
+use psd::schema::{BlockKind, Field, FieldType, Presence, Range};
+use psd::units::Dimension;
+use psd::units::display::{si_unit, significant};
 
 /// The value of a field: `` `kg` > 0 ``, `string`, `option`; `blocks`: those that it may name.
 pub(super) fn value(field: &Field, blocks: &[&BlockKind]) -> String {
@@ -125,8 +125,12 @@ fn limits(range: Range, dimension: Dimension) -> String {
 
 /// The default of a field, or that it is required; empty if it has neither.
 pub(super) fn default(field: &Field) -> String {
-    match (field.presence, field.default_text()) {
-        (Presence::Required, _) => "required".to_owned(),
-        (_, default) => default.unwrap_or_default(),
+    match field.presence {
+        Presence::Required => "required".to_owned(),
+        Presence::Optional => String::new(),
+        Presence::Default { number, unit } => format!("{number} {unit}").trim_end().to_owned(),
+        Presence::DefaultInWords(words) => words.to_owned(),
+        Presence::RequiredOn(rig, "") => format!("required on a {} rig", rig.name()),
+        Presence::RequiredOn(rig, words) => format!("{words}; required on a {} rig", rig.name()),
     }
 }
