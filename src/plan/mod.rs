@@ -45,7 +45,7 @@ pub use procedure::mode::Mode;
 pub use procedure::move_to::Move;
 pub use procedure::stepping::{MOST_RECORDED_STEPS, MOST_STEPS, Stepping, step_count, steps_in};
 pub use procedure::structure::Structure;
-pub use procedure::unload::{FrameUnload, Unload};
+pub use procedure::unload::Unload;
 pub use procedure::{ProcedureBlock, ProcedureKind};
 pub use report::annex::Annex;
 pub use report::figure::{Figure, FigureKind, MOST_TOGETHER};

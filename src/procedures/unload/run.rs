@@ -6,8 +6,9 @@ use super::uncertainty::{NOISE, RestUncertainty};
 use crate::physics::statistics::ReadingNoise;
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
-use crate::plan::formula::{Formula, ResultValue};
-use crate::plan::{Frame, FrameUnload, Plan, Unload};
+use crate::plan::formula::ResultValue;
+use crate::plan::{Frame, Plan, Unload};
+use crate::procedures::stepping::run::frame_of;
 use crate::record::{EventKind, History, NamedResult, RampStep, Rest, UnloadStep};
 use crate::rig::Reading;
 use crate::run::Performed;
@@ -36,26 +37,18 @@ pub(crate) fn perform(
     session: &mut Session<'_>,
 ) -> Performed {
     let mut steps = Vec::new();
-    let outcome = inputs
-        .positive(STIFFNESS.name, &plan.stiffness, Dimension::STIFFNESS)
-        .and_then(|stiffness| {
-            unload(
-                &Request {
-                    within: plan.within.as_ref(),
-                    speed: plan.speed.as_ref(),
-                },
-                &Unloading::of_one(stiffness),
-                whole,
-                inputs,
-                session,
-                &mut steps,
-            )
-        });
-    let results = of_farthest(outcome.as_ref().ok());
-    // The start is not a move.
-    let moved = steps.iter().skip(1).map(of_one).collect();
+    let outcome = unload(plan, whole, inputs, session, &mut steps);
+    let rest = outcome.as_ref().ok();
+    let (history, results) = match plan.stiffness {
+        // The start is not a move.
+        Some(_) => (
+            History::Move(steps.iter().skip(1).map(of_one).collect()),
+            of_farthest(rest),
+        ),
+        None => (History::FrameUnload(steps), frame_results(rest)),
+    };
     Performed {
-        history: History::Move(moved),
+        history,
         results,
         stop: outcome.err(),
     }
@@ -72,38 +65,6 @@ fn of_one(step: &UnloadStep) -> RampStep {
         relaxation: 0.0,
         tangent_stiffness: step.tangent_stiffness[0],
         returning: true,
-    }
-}
-
-/// The unloading of all floors of a frame.
-pub(crate) fn perform_frame(
-    plan: &FrameUnload,
-    whole: &Plan,
-    inputs: &mut Inputs<'_>,
-    session: &mut Session<'_>,
-) -> Performed {
-    let mut steps = Vec::new();
-    // `check` has seen that the specimen is a frame.
-    let frame = whole.specimens[plan.specimen].frame.as_ref();
-    let known = frame.map_or_else(|| Err(Stop::no_frame()), of_frame);
-    let outcome = known.and_then(|unloading| {
-        unload(
-            &Request {
-                within: plan.within.as_ref(),
-                speed: plan.speed.as_ref(),
-            },
-            &unloading,
-            whole,
-            inputs,
-            session,
-            &mut steps,
-        )
-    });
-    let results = frame_results(outcome.as_ref().ok());
-    Performed {
-        history: History::FrameUnload(steps),
-        results,
-        stop: outcome.err(),
     }
 }
 
@@ -173,30 +134,28 @@ fn frame_results(rest: Option<&Rest>) -> Vec<NamedResult> {
     results
 }
 
-/// The fields of a block of either kind.
-struct Request<'a> {
-    /// Largest |R| that counts as zero \[N\].
-    within: Option<&'a Formula>,
-    /// \[m/s\]
-    speed: Option<&'a Formula>,
-}
-
-/// Moves to zero restoring force as a block requests it.
+/// Moves to zero restoring force as the block requests it.
 fn unload(
-    request: &Request<'_>,
-    unloading: &Unloading,
+    plan: &Unload,
     whole: &Plan,
     inputs: &mut Inputs<'_>,
     session: &mut Session<'_>,
     steps: &mut Vec<UnloadStep>,
 ) -> Result<Rest, Stop> {
-    let within = request
+    let unloading = match &plan.stiffness {
+        Some(stiffness) => {
+            Unloading::of_one(inputs.positive(STIFFNESS.name, stiffness, Dimension::STIFFNESS)?)
+        }
+        None => of_frame(frame_of(whole, plan.specimen)?)?,
+    };
+    let within = plan
         .within
+        .as_ref()
         .map(|within| inputs.positive(schema::WITHIN.name, within, Dimension::FORCE))
         .transpose()?;
-    let speed = inputs.speed(request.speed)?;
+    let speed = inputs.speed(plan.speed.as_ref())?;
     let mut rest = to_rest(unloading.clone(), within, speed, 0, session, steps)?;
-    RestUncertainty::new(whole, inputs, session).unloaded(&mut rest, unloading, steps);
+    RestUncertainty::new(whole, inputs, session).unloaded(&mut rest, &unloading, steps);
     Ok(rest)
 }
 

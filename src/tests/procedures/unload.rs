@@ -50,7 +50,7 @@ fn unloaded(
     });
     let unload = ProcedureKind::Unload(Unload {
         specimen: 0,
-        stiffness: Constant(stiffness),
+        stiffness: Some(Constant(stiffness)),
         within: None,
         speed: None,
     });
