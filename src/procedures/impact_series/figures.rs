@@ -35,7 +35,7 @@ pub(crate) fn chart(
     history: &EscalateHistory,
     kind: FigureKind,
 ) -> Option<(Chart, String)> {
-    let struck = |impact: &SeriesImpact| !impact.impact().steps.is_empty();
+    let struck = |impact: &SeriesImpact| !impact.history.steps.is_empty();
     if !history.impacts.iter().any(struck) {
         return None;
     }
@@ -262,7 +262,7 @@ fn over_each_other(
             } else {
                 String::new()
             },
-            points: impact.impact().steps.iter().map(&of).collect(),
+            points: impact.history.steps.iter().map(&of).collect(),
             style: if index == last {
                 Style::line(palette::VERMILION, 2.0, DASHED)
             } else {

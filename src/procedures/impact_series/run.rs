@@ -2,7 +2,7 @@
 //! the last one after which the condition held. Each decision follows from results, and they follow from logged readings.
 
 use super::repeated_impact::{RepeatedImpact, velocities};
-use super::results::{Left, list, number, results};
+use super::results::{Left, results};
 use crate::physics::structure::Unloading;
 use crate::plan::formula::{ProcedureId, ResultReference, ResultValue, Results};
 use crate::plan::{Between, Escalate, Plan};
@@ -158,14 +158,13 @@ fn as_brought(struck: &SeriesImpact, between: Between) -> Vec<NamedResult> {
     };
     let left = Left::of(between);
     let [parts, _] = struck.rest_contributions().unwrap_or_default();
-    let position = number(
-        left.displacement,
+    let position = left.displacement.found_by(
         struck.rest_of_struck().map(|(position, _)| position),
         parts,
     );
     let drift = struck
         .storey()
-        .map(|_| list(left.drift, rest.drift(), rest.drift_contributions()));
+        .map(|_| left.drift.found_list_by(Some(rest.drift()), rest.drift_contributions()));
     for brought in [Some(position), drift].into_iter().flatten() {
         match results
             .iter_mut()
@@ -239,10 +238,7 @@ struct OfImpact<'a> {
 impl Results for OfImpact<'_> {
     fn result(&self, reference: ResultReference) -> Option<ResultValue> {
         if reference.procedure == self.own {
-            return self
-                .results
-                .iter()
-                .find(|result| result.name == reference.name)
+            return NamedResult::of(&self.results, reference.name)
                 .map(|result| result.value.clone());
         }
         self.before.result(reference)
@@ -250,10 +246,7 @@ impl Results for OfImpact<'_> {
 
     fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
         if reference.procedure == self.own {
-            let found = self
-                .results
-                .iter()
-                .find(|result| result.name == reference.name);
+            let found = NamedResult::of(&self.results, reference.name);
             return found.map_or_else(Vec::new, |result| result.contributions_of(reference));
         }
         self.before.contributions(reference)
@@ -265,11 +258,7 @@ impl Results for OfImpact<'_> {
 
     fn no_uncertainty(&self, reference: ResultReference) -> Option<String> {
         if reference.procedure == self.own {
-            return self
-                .results
-                .iter()
-                .find(|result| result.name == reference.name)?
-                .no_uncertainty(IMPACT);
+            return NamedResult::of(&self.results, reference.name)?.no_uncertainty(IMPACT);
         }
         self.before.no_uncertainty(reference)
     }

@@ -7,7 +7,7 @@ use crate::physics::reintegration::frame::{Floors, FrameRun};
 use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
 use crate::physics::reintegration::hysteresis_replay::ContinuousMotion;
 use crate::physics::statistics::ReadingNoise;
-use crate::plan::formula::{Formula, Operator, ProcedureId, ResultValue, Results};
+use crate::plan::formula::{Formula, Operator, ProcedureId, Results};
 use crate::plan::{Frame, Impact, Mode, Plan, Shake, ShakeDamping, Stepping, StoreyTarget};
 use crate::procedures::common::perturbed_inputs::{out_of_bounds, uncertain_inputs, with_shifts};
 use crate::record::{FloorMotion, NamedResult};
@@ -353,15 +353,10 @@ pub(crate) fn leads_there(
         (schema::FINAL_DRIFT.name, &floors.final_drift),
     ];
     lists.into_iter().all(|(name, found)| {
-        let recorded = match results
-            .iter()
-            .find(|result| result.name == name)
-            .map(|result| &result.value)
-        {
-            Some(ResultValue::List(values)) => values.as_slice(),
-            Some(ResultValue::Number { value, .. }) => value.as_slice(),
-            None => return false,
+        let Some(recorded) = NamedResult::of(results, name) else {
+            return false;
         };
+        let recorded = recorded.value.values();
         let near = |(a, b): (&f64, &f64)| (a - b).abs() <= CLOSE * a.abs().max(b.abs());
         recorded.len() == found.len() && recorded.iter().zip(found).all(near)
     })

@@ -6,7 +6,6 @@ use super::uncertainty::{NOISE, RestUncertainty};
 use crate::physics::statistics::ReadingNoise;
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
-use crate::plan::formula::ResultValue;
 use crate::plan::{Frame, Plan, Unload};
 use crate::procedures::stepping::run::frame_of;
 use crate::record::{EventKind, History, NamedResult, RampStep, Rest, UnloadStep};
@@ -19,7 +18,7 @@ use crate::schema::ResultKind;
 use crate::schema::procedures::SPECIMEN;
 use crate::schema::procedures::STIFFNESS;
 use crate::schema::procedures::unload as schema;
-use crate::uncertainty::{Contribution, combined};
+use crate::uncertainty::Contribution;
 use crate::units::Dimension;
 use crate::units::display::readable;
 
@@ -82,12 +81,7 @@ pub(crate) fn of_frame(frame: &Frame) -> Result<Unloading, Stop> {
 fn of_farthest(rest: Option<&Rest>) -> Vec<NamedResult> {
     let number = |kind: ResultKind, found: Option<(f64, Vec<Contribution>)>| {
         let (value, contributions) = found.unzip();
-        let contributions = contributions.unwrap_or_default();
-        let result = kind.found_with(value.map(|value| (value, combined(&contributions))));
-        NamedResult {
-            contributions,
-            ..result
-        }
+        kind.found_by(value, contributions.unwrap_or_default())
     };
     let position = rest.map(|rest| {
         let [floor, _] = rest.floors_of_largest();
@@ -107,14 +101,9 @@ fn of_farthest(rest: Option<&Rest>) -> Vec<NamedResult> {
 
 /// In the order of the reference.
 fn frame_results(rest: Option<&Rest>) -> Vec<NamedResult> {
-    let list = |kind: ResultKind, known: Option<(Vec<f64>, Vec<Contribution>)>| match known {
-        Some((values, contributions)) => NamedResult {
-            name: kind.name,
-            dimension: kind.dimension,
-            value: ResultValue::List(values),
-            contributions,
-        },
-        None => kind.found(None),
+    let list = |kind: ResultKind, known: Option<(Vec<f64>, Vec<Contribution>)>| {
+        let (values, contributions) = known.unzip();
+        kind.found_list_by(values, contributions.unwrap_or_default())
     };
     let mut results = of_farthest(rest);
     results.extend([

@@ -7,7 +7,6 @@ use crate::physics::identification::StatedVariance;
 use crate::physics::identification::multilinear_fit::{
     BreakCount, MultilinearFit, fit_multilinear, fit_multilinear_stated,
 };
-use crate::plan::formula::ResultValue;
 use crate::record::{LineFit, NamedResult};
 use crate::schema::procedures::stiffness_ramp as schema;
 use crate::schema::{ResultKind, curves};
@@ -87,14 +86,9 @@ fn remarks(
 
 /// The lists of a curve, in the order of the reference; empty without one.
 pub(crate) fn lists(fit: Option<&MultilinearFit>) -> Vec<NamedResult> {
-    let list = |kind: ResultKind, values: fn(&MultilinearFit) -> &[(f64, f64)]| NamedResult {
-        name: kind.name,
-        value: ResultValue::List(
-            fit.map(|fit| values(fit).iter().map(|(value, _)| *value).collect())
-                .unwrap_or_default(),
-        ),
-        dimension: kind.dimension,
-        contributions: Vec::new(),
+    let list = |kind: ResultKind, values: fn(&MultilinearFit) -> &[(f64, f64)]| {
+        let values = fit.map_or(&[][..], values).iter();
+        kind.found_list(Some(values.map(|(value, _)| *value).collect()))
     };
     vec![
         list(curves::BREAKS, |fit| &fit.breakpoints),
