@@ -44,7 +44,6 @@ pub use procedure::impact_series::{Between, Escalate, MOST_IMPACTS};
 pub use procedure::mode::Mode;
 pub use procedure::move_to::Move;
 pub use procedure::stepping::{MOST_RECORDED_STEPS, MOST_STEPS, Stepping, step_count, steps_in};
-pub use procedure::structure::Structure;
 pub use procedure::unload::Unload;
 pub use procedure::{ProcedureBlock, ProcedureKind};
 pub use report::annex::Annex;
@@ -54,7 +53,6 @@ pub use report::picture::{MOST_PHOTOS, PICTURE_BYTES, Picture, PictureKind};
 pub use report::undeclared::Dependence;
 pub use rig::axis::{AxisCalibration, AxisPlan};
 pub(crate) use rig::axis_names::{named_axis, of_axis, who};
-pub use rig::declared_noise::DeclaredNoise;
 pub use rig::devices::Behind;
 pub use rig::limits::{Interval, Limits};
 pub use rig::{

@@ -110,8 +110,7 @@ impl ImpactSolver {
             initial_displacement,
             initial_restoring_force,
             initial_load: 0.0,
-            force_noise: input.force_noise,
-            resolution: input.resolution,
+            noise: input.noise,
         };
         Self::on(&structure, &input.setup())
     }

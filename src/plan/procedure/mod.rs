@@ -4,11 +4,8 @@
 pub(crate) mod known_steps;
 pub(crate) mod mode;
 pub(crate) mod stepping;
-pub(crate) mod structure;
 
-use crate::plan::{
-    Cycle, DampingSweep, Escalate, Impact, Move, Shake, StiffnessRamp, Unload,
-};
+use crate::plan::{Cycle, DampingSweep, Escalate, Impact, Move, Shake, StiffnessRamp, Unload};
 pub(crate) use crate::procedures::base_excitation::data::parameters as base_excitation;
 pub(crate) use crate::procedures::cycle::data::parameters as cycle;
 pub(crate) use crate::procedures::damping_sweep::data::parameters as damping_sweep;

@@ -3,13 +3,13 @@
 
 pub(crate) mod axis;
 pub(crate) mod axis_names;
-pub(crate) mod declared_noise;
 pub(crate) mod devices;
 mod dialect;
 pub(crate) mod limits;
 
 use super::{AxisPlan, Interval};
 pub use crate::physics::reintegration::perturbation::ReadingErrors;
+pub use crate::physics::statistics::DeclaredNoise;
 pub use dialect::{Dialect, ModbusMap, ModbusNumber};
 
 /// The rig of a run, as the plan specifies it.

@@ -176,9 +176,7 @@ pub(crate) fn storey_table<S: Floors>(
             .iter()
             .fold(0.0, |largest: f64, value| largest.max(value.abs()))
     };
-    let drift = procedure
-        .list(schema::MAX_DRIFT.name)
-        .unwrap_or_default();
+    let drift = procedure.list(schema::MAX_DRIFT.name).unwrap_or_default();
     let cell = |kind: ResultKind, storey: usize| {
         procedure
             .result(kind.name)

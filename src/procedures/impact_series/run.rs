@@ -158,13 +158,13 @@ fn as_brought(struck: &SeriesImpact, between: Between) -> Vec<NamedResult> {
     };
     let left = Left::of(between);
     let [parts, _] = struck.rest_contributions().unwrap_or_default();
-    let position = left.displacement.found_by(
-        struck.rest_of_struck().map(|(position, _)| position),
-        parts,
-    );
-    let drift = struck
-        .storey()
-        .map(|_| left.drift.found_list_by(Some(rest.drift()), rest.drift_contributions()));
+    let position = left
+        .displacement
+        .found_by(struck.rest_of_struck().map(|(position, _)| position), parts);
+    let drift = struck.storey().map(|_| {
+        left.drift
+            .found_list_by(Some(rest.drift()), rest.drift_contributions())
+    });
     for brought in [Some(position), drift].into_iter().flatten() {
         match results
             .iter_mut()

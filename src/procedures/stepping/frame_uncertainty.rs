@@ -6,7 +6,6 @@ use super::run::FrameSteps;
 use crate::physics::reintegration::frame::{Floors, FrameRun};
 use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
 use crate::physics::reintegration::hysteresis_replay::ContinuousMotion;
-use crate::physics::statistics::ReadingNoise;
 use crate::plan::formula::{Formula, Operator, ProcedureId, Results};
 use crate::plan::{Frame, Impact, Mode, Plan, Shake, ShakeDamping, Stepping, StoreyTarget};
 use crate::procedures::common::perturbed_inputs::{out_of_bounds, uncertain_inputs, with_shifts};
@@ -283,8 +282,7 @@ impl<'run> FrameUncertainty<'run> {
             tangents: steps.tangents,
             time_step: steps.steps.time_step,
             steps: steps.steps.count,
-            force_noise: self.noise.force,
-            resolution: self.noise.resolution,
+            noise: self.noise,
             continuous: matches!(self.stepping.mode, Mode::Continuous { .. }),
         }
     }
@@ -331,10 +329,7 @@ impl<'run> FrameUncertainty<'run> {
                 time_step: steps.steps.time_step,
             },
             stiffness,
-            ReadingNoise {
-                force: self.noise.force,
-                resolution: self.noise.resolution,
-            },
+            self.noise,
         );
         path.ok_or_else(|| "nothing was recorded".to_owned())
     }

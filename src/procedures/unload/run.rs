@@ -3,7 +3,6 @@
 //! the slopes of the moves before it (`physics/frame/unloading_path.rs`); the guard compares every one with the limits.
 
 use super::uncertainty::{NOISE, RestUncertainty};
-use crate::physics::statistics::ReadingNoise;
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
 use crate::plan::{Frame, Plan, Unload};
@@ -166,14 +165,7 @@ pub(crate) fn to_rest(
     let detectable = (NOISE * noise.force).max(unloading.force_of(noise.resolution.max(rounding)));
     let mut left = largest(&at.force);
     let within = within.unwrap_or_else(|| detectable.max(SMALL * left).max(f64::MIN_POSITIVE));
-    let mut path = UnloadingPath::new(
-        unloading,
-        ReadingNoise {
-            force: noise.force,
-            resolution: noise.resolution,
-        },
-        loaded(&at),
-    );
+    let mut path = UnloadingPath::new(unloading, noise, loaded(&at));
     if session.unloads_at_once {
         path = path.at_once();
     }

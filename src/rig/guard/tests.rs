@@ -80,7 +80,7 @@ impl Rig for Scripted {
         self.held = true;
     }
     fn declared_noise(&self) -> DeclaredNoise {
-        DeclaredNoise::default()
+        DeclaredNoise::NONE
     }
 }
 

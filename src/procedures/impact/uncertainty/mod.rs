@@ -13,7 +13,6 @@ use crate::physics::impact::summary::ImpactSummary;
 use crate::physics::reintegration::hysteresis_replay::{ContinuousMotion, Reading, RecordedPath};
 use crate::physics::reintegration::impact::{ImpactValues, Outcome, predicted_velocities, rerun};
 use crate::physics::reintegration::perturbation::Perturbation;
-use crate::physics::statistics::ReadingNoise;
 use crate::plan::formula::{Formula, ProcedureId, Results};
 use crate::plan::{Impact, Mode, Plan, PointTarget, Striker};
 use crate::procedures::common::perturbed_inputs::{
@@ -146,11 +145,7 @@ impl<'run> ImpactUncertainty<'run> {
             velocities,
             time_step: input.time_step,
         });
-        let noise = ReadingNoise {
-            force: input.force_noise,
-            resolution: input.resolution,
-        };
-        RecordedPath::new(readings, motion, input.stiffness, noise)
+        RecordedPath::new(readings, motion, input.stiffness, input.noise)
     }
 
     /// The uncertain inputs, each once.

@@ -4,9 +4,9 @@ use crate::plan::formula::Formula::Constant;
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
 use crate::plan::{
     Behaviour, Between, Comparison, Condition, Cycle, DampingSweep, DriftCheck, Escalate, Frame,
-    Ground, Impact, InspectTrigger, Integrator, Level, Mode, Move, Plan, Procedure,
-    ProcedureKind, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload,
-    Until, WatchedHold, WatchedModel, ZeroAfter,
+    Ground, Impact, InspectTrigger, Integrator, Level, Mode, Move, Plan, Procedure, ProcedureKind,
+    Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload, Until, WatchedHold,
+    WatchedModel, ZeroAfter,
 };
 use crate::tests::testing::{elastic_plan, every, impact, ramp, struck_frame};
 use crate::units::Dimension;

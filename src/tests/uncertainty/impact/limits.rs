@@ -57,7 +57,7 @@ fn a_record_that_does_not_reproduce_its_results_reports_no_uncertainty() {
         panic!()
     };
     let mut inputs = Inputs::new(&record, ProcedureId(0));
-    let noise = DeclaredNoise::default();
+    let noise = DeclaredNoise::NONE;
     let point = impact.point().unwrap();
     let setting = Setting::of_point(impact, point, &plan.strikers[0], &mut inputs, noise)
         .ok()
