@@ -6,10 +6,10 @@ use super::results::{Left, results};
 use crate::physics::structure::Unloading;
 use crate::plan::formula::{ProcedureId, ResultReference, ResultValue, Results};
 use crate::plan::{Between, Escalate, Plan};
+use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::impact::run::ImpactRun;
 use crate::procedures::stepping::run::above_critical;
 use crate::procedures::unload::run::{MOST_TARGETS, to_rest};
-use crate::procedures::unload::uncertainty::RestUncertainty;
 use crate::record::{EscalateHistory, EventKind, History, NamedResult, Rest, SeriesImpact};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
@@ -56,7 +56,7 @@ fn run(
         .transpose()?;
     above_critical(impact.steps(), session);
     let home = session.guard.commanded().to_vec();
-    let uncertainty = RestUncertainty::new(whole, inputs, session);
+    let uncertainty = UncertainRun::new(whole, inputs, session);
     let mut done = 0;
     for (index, velocity) in velocities.iter().copied().enumerate() {
         let given = energies
@@ -182,7 +182,7 @@ fn bring(
     between: Between,
     home: &[f64],
     unloading: &Unloading,
-    uncertainty: &RestUncertainty<'_>,
+    uncertainty: &UncertainRun<'_>,
     done: &mut u64,
     session: &mut Session<'_>,
 ) -> Result<Rest, Stop> {

@@ -2,10 +2,11 @@
 //! forces are expected to fall. Out: the unloading path, and the unloaded position. Each target is before the position of zero force, by
 //! the slopes of the moves before it (`physics/frame/unloading_path.rs`); the guard compares every one with the limits.
 
-use super::uncertainty::{NOISE, RestUncertainty};
+use super::uncertainty::NOISE;
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
 use crate::plan::{Frame, Plan, Unload};
+use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::stepping::run::frame_of;
 use crate::record::{EventKind, History, NamedResult, RampStep, Rest, UnloadStep};
 use crate::rig::Reading;
@@ -143,7 +144,7 @@ fn unload(
         .transpose()?;
     let speed = inputs.speed(plan.speed.as_ref())?;
     let mut rest = to_rest(unloading.clone(), within, speed, 0, session, steps)?;
-    RestUncertainty::new(whole, inputs, session).unloaded(&mut rest, &unloading, steps);
+    UncertainRun::new(whole, inputs, session).unloaded(&mut rest, &unloading, steps);
     Ok(rest)
 }
 

@@ -4,8 +4,8 @@ use crate::physics::structure::Unloading;
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::formula::{NoResults, ProcedureId};
 use crate::plan::{Behaviour, Calibration, Link, Plan, VirtualLink};
+use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::unload::run::{of_frame, to_rest};
-use crate::procedures::unload::uncertainty::RestUncertainty;
 use crate::record::Rest;
 use crate::rig::{
     DeclaredNoise, EachReading, EncodedMove, Identity, Reading, Rig, RigFault, virtual_rig,
@@ -141,7 +141,7 @@ fn rests(plan: &Plan, positions: &[&[f64]], axes: Vec<Wrong>, within: Option<f64
     let mut steps = Vec::new();
     let mut rest = to_rest(unloading.clone(), within, None, 0, &mut session, &mut steps).unwrap();
     let inputs = Inputs::new(&NoResults, ProcedureId(0));
-    RestUncertainty::new(plan, &inputs, &session).unloaded(&mut rest, &unloading, &steps);
+    UncertainRun::new(plan, &inputs, &session).unloaded(&mut rest, &unloading, &steps);
     rest
 }
 
