@@ -116,7 +116,7 @@ pub(crate) fn strike(
     let mut kept = Kept::new(summary, setting.steps().count);
     let order = ImpactSteps {
         stepping: &plan.stepping,
-        pace: setting.steps().pace(),
+        steps: setting.steps(),
         until: plan.until,
         before,
     };

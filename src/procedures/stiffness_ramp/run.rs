@@ -5,7 +5,7 @@
 use super::points::{Point, point, secant};
 use super::uncertainty::{Direct, Readings};
 use super::{curve, hold};
-use crate::physics::identification::bilinear_fit::fit_bilinear_stated;
+use crate::physics::identification::bilinear_fit::fit_bilinear;
 use crate::physics::identification::{StatedVariance, fit_line};
 use crate::plan::{Plan, RampFit, StiffnessRamp, WatchedHold};
 use crate::procedures::common::dwell_readings::DwellReadings;
@@ -289,7 +289,7 @@ impl Ramp {
             }
             RampFit::Bilinear => {
                 let (x, r): (Vec<f64>, Vec<f64>) = first().unzip();
-                let bilinear = fit_bilinear_stated(&x, &r, stated);
+                let bilinear = fit_bilinear(&x, &r, stated);
                 let none =
                     "no bilinear fit: the outward steps are fewer than six, or show no yield point";
                 let remarks = if bilinear.is_none() {

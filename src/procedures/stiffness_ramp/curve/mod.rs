@@ -5,7 +5,7 @@ pub(crate) mod curve_report;
 
 use crate::physics::identification::StatedVariance;
 use crate::physics::identification::multilinear_fit::{
-    BreakCount, MultilinearFit, fit_multilinear, fit_multilinear_stated,
+    BreakCount, MultilinearFit, fit_multilinear,
 };
 use crate::record::{LineFit, NamedResult};
 use crate::schema::procedures::stiffness_ramp as schema;
@@ -21,7 +21,7 @@ pub(crate) fn fitted(
     stated: StatedVariance,
 ) -> (Option<MultilinearFit>, Vec<String>) {
     let (x, r): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
-    let fit = fit_multilinear_stated(&x, &r, count, stated);
+    let fit = fit_multilinear(&x, &r, count, stated);
     let remarks = remarks(fit.as_ref(), count, points.len(), what);
     (fit, remarks)
 }
@@ -35,8 +35,13 @@ const HIDDEN: f64 = 0.1;
 /// An observation that a straight line does not fit the points (m, N) because they bend: strong by BIC, and large in size.
 pub(crate) fn bends(points: &[(f64, f64)], line: &LineFit) -> Option<String> {
     let (x, r): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
-    let fit = fit_multilinear(&x, &r, BreakCount::ByCriterion { most: 1 })
-        .filter(|fit| fit.indistinct_breakpoints().is_empty())?;
+    let fit = fit_multilinear(
+        &x,
+        &r,
+        BreakCount::ByCriterion { most: 1 },
+        StatedVariance::default(),
+    )
+    .filter(|fit| fit.indistinct_breakpoints().is_empty())?;
     let (displacement, _) = fit.breakpoints.first()?;
     let ((first, _), (last, _)) = (fit.stiffnesses.first()?, fit.stiffnesses.last()?);
     let hidden = (last - first).abs() > HIDDEN * first.abs();
