@@ -32,9 +32,7 @@ pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
             tested.name.map_or("", |name| name.node.as_str()),
             tested.block.head,
         );
-        let at = checker
-            .field(block, SPECIMEN.name)
-            .map_or(head, |(_, entry)| entry.value.span);
+        let at = checker.value_or_head(block, SPECIMEN.name);
         return checker.fail(fault::no_storeys(name, at, declared));
     }
     Some(ProcedureKind::Shake(Shake {
@@ -127,9 +125,7 @@ pub(crate) fn check_declared(
     let spacing = ground.spacing().0;
     if step > spacing * (1.0 + 1e-9) {
         let head = checker.scope.blocks[block].block.head;
-        let at = checker
-            .field(block, methods::TIME_STEP.name)
-            .map_or(head, |(_, entry)| entry.value.span);
+        let at = checker.value_or_head(block, methods::TIME_STEP.name);
         checker.diagnostics.push(fault::record_finer_than_step(
             at,
             step,

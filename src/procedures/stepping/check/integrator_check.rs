@@ -49,11 +49,7 @@ pub fn meets_the_contact(
         return Some(());
     }
     let head = checker.scope.blocks[block].block.head;
-    let at = |field| {
-        checker
-            .field(block, field)
-            .map_or(head, |(_, entry)| entry.value.span)
-    };
+    let at = |field| checker.value_or_head(block, field);
     let (named, struck) = (at(methods::INTEGRATOR.name), at(impact::CONTACT.name));
     checker.fail(fault::law_needs_the_tangent(
         integrator.name(),
@@ -100,9 +96,7 @@ pub fn stable(
         && step <= limit
     {
         let head = checker.scope.blocks[block].block.head;
-        let at = checker
-            .field(block, STIFFNESS.name)
-            .map_or(head, |(_, entry)| entry.value.span);
+        let at = checker.value_or_head(block, STIFFNESS.name);
         checker
             .diagnostics
             .push(fault::stiffer_than_operator(behaves, assumed, at, limit));
@@ -114,9 +108,7 @@ pub fn stable(
     ) && behaves > assumed * ratio * (1.0 + 1e-9)
     {
         let head = checker.scope.blocks[block].block.head;
-        let at = checker
-            .field(block, STIFFNESS.name)
-            .map_or(head, |(_, entry)| entry.value.span);
+        let at = checker.value_or_head(block, STIFFNESS.name);
         checker
             .diagnostics
             .push(fault::stiffer_than_tangent(at, behaves, assumed * ratio));
@@ -125,9 +117,7 @@ pub fn stable(
         return;
     }
     let head = checker.scope.blocks[block].block.head;
-    let at = checker
-        .field(block, methods::TIME_STEP.name)
-        .map_or(head, |(_, entry)| entry.value.span);
+    let at = checker.value_or_head(block, methods::TIME_STEP.name);
     checker.diagnostics.push(if impact.stepping.allow_unstable {
         frames::unstable_though(at, step, limit)
     } else {
