@@ -33,6 +33,7 @@ pub use crate::physics::structure::portal::{
     ElasticStiffnesses, FrameMasses, Loads, Mechanism, Portal, Sections, elastic_stiffnesses,
 };
 
+pub use crate::physics::statistics::DeclaredNoise;
 pub use procedure::base_excitation::Shake;
 pub use procedure::cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use procedure::damping_sweep::DampingSweep;

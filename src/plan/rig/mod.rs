@@ -9,7 +9,6 @@ pub(crate) mod limits;
 
 use super::{AxisPlan, Interval};
 pub use crate::physics::reintegration::perturbation::ReadingErrors;
-pub use crate::physics::statistics::DeclaredNoise;
 pub use dialect::{Dialect, ModbusMap, ModbusNumber};
 
 /// The rig of a run, as the plan specifies it.

@@ -16,8 +16,6 @@ use crate::schema::procedures::SPECIMEN;
 use crate::schema::procedures::base_excitation as schema;
 
 pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
-    let declared = &checker.scope.blocks[block];
-    let head = declared.block.head;
     let ground = checker.reference(block, schema::GROUND.name, Kind::Ground);
     let specimen = checker.specimen_block(block);
     let damping = damping(checker, block);
@@ -124,7 +122,6 @@ pub(crate) fn check_declared(
     };
     let spacing = ground.spacing().0;
     if step > spacing * (1.0 + 1e-9) {
-        let head = checker.scope.blocks[block].block.head;
         let at = checker.value_or_head(block, methods::TIME_STEP.name);
         checker.diagnostics.push(fault::record_finer_than_step(
             at,

@@ -61,7 +61,7 @@ pub(crate) fn perform(
             observe_imbalance(shaking.summary.energy_error(), session);
         }
         let uncertainty = FrameUncertainty::new(
-            UncertainRun::new(whole, inputs, session),
+            UncertainRun::new(whole, inputs, session.guard.declared_noise()),
             plan.specimen,
             (&plan.damping, plan.damping_uncertainty),
             &plan.stepping,

@@ -4,7 +4,6 @@
 use crate::plan::formula::{Formula, ProcedureId, Results};
 use crate::plan::{DeclaredNoise, Plan};
 use crate::run::inputs::Inputs;
-use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::uncertainty::engine::{Contributions, Evaluate, Progress, Propagation, Shifts, Unknown};
 use crate::uncertainty::{InstrumentUncertainty, Moved, Source, sources_of};
@@ -27,12 +26,12 @@ pub(crate) struct UncertainRun<'run> {
 }
 
 impl<'run> UncertainRun<'run> {
-    pub(crate) fn new(whole: &'run Plan, inputs: &Inputs<'run>, session: &Session<'_>) -> Self {
+    pub(crate) fn new(whole: &'run Plan, inputs: &Inputs<'run>, noise: DeclaredNoise) -> Self {
         Self {
             whole,
             results: inputs.results(),
             procedure: inputs.procedure(),
-            noise: session.guard.declared_noise(),
+            noise,
             lift: inputs.lift(),
             impact: 0,
         }

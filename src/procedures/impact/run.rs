@@ -70,7 +70,7 @@ impl<'a> UncertaintyInputs<'a> {
         inputs: &Inputs<'a>,
         session: &Session<'_>,
     ) -> Self {
-        let run = UncertainRun::new(whole, inputs, session);
+        let run = UncertainRun::new(whole, inputs, session.guard.declared_noise());
         match &plan.target {
             ImpactTarget::Point(point) => Self::Point(ImpactUncertainty { run, plan, point }),
             ImpactTarget::Storey(storey) => Self::Storey(FrameUncertainty::new(

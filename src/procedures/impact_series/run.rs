@@ -56,7 +56,7 @@ fn run(
         .transpose()?;
     above_critical(impact.steps(), session);
     let home = session.guard.commanded().to_vec();
-    let uncertainty = UncertainRun::new(whole, inputs, session);
+    let uncertainty = UncertainRun::new(whole, inputs, session.guard.declared_noise());
     let mut done = 0;
     for (index, velocity) in velocities.iter().copied().enumerate() {
         let given = energies

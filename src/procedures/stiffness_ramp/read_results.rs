@@ -38,7 +38,6 @@ pub fn check(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
         let ProcedureKind::StiffnessRamp(ramp) = &procedure.kind else {
             continue;
         };
-        let head = checker.scope.blocks[*block].block.head;
         let displacements = checker.value_or_head(*block, schema::NAMES.displacements);
         if let Some((lacks, help)) = lacks(ramp, reference.name) {
             if never.insert(*block) {

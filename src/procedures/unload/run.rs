@@ -144,7 +144,8 @@ fn unload(
         .transpose()?;
     let speed = inputs.speed(plan.speed.as_ref())?;
     let mut rest = to_rest(unloading.clone(), within, speed, 0, session, steps)?;
-    UncertainRun::new(whole, inputs, session).unloaded(&mut rest, &unloading, steps);
+    UncertainRun::new(whole, inputs, session.guard.declared_noise())
+        .unloaded(&mut rest, &unloading, steps);
     Ok(rest)
 }
 

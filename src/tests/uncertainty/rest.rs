@@ -141,7 +141,8 @@ fn rests(plan: &Plan, positions: &[&[f64]], axes: Vec<Wrong>, within: Option<f64
     let mut steps = Vec::new();
     let mut rest = to_rest(unloading.clone(), within, None, 0, &mut session, &mut steps).unwrap();
     let inputs = Inputs::new(&NoResults, ProcedureId(0));
-    UncertainRun::new(plan, &inputs, &session).unloaded(&mut rest, &unloading, &steps);
+    UncertainRun::new(plan, &inputs, session.guard.declared_noise())
+        .unloaded(&mut rest, &unloading, &steps);
     rest
 }
 

@@ -175,7 +175,6 @@ fn peak_forces(
         let kind = procedure.as_ref().map(|procedure| &procedure.kind);
         if let Some(conditions) = kind.and_then(|kind| crate::procedures::facts_of(kind).conditions)
         {
-            let head = checker.scope.blocks[*block].block.head;
             let span = checker.value_or_head(*block, WHILE.name);
             read(checker, conditions, span);
         }

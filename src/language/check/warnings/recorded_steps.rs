@@ -16,7 +16,6 @@ pub fn check(checker: &mut Checker, plan: &Plan, blocks: &[usize]) {
         };
         let after = before.saturating_add(steps);
         if after > MOST_RECORDED_STEPS {
-            let head = checker.scope.blocks[block].block.head;
             let at = checker.value_or_head(block, DURATION.name);
             let remaining = MOST_RECORDED_STEPS - before;
             checker

@@ -48,7 +48,6 @@ pub fn meets_the_contact(
     if !contact.needs_tangent() || integrator == Integrator::Tangent {
         return Some(());
     }
-    let head = checker.scope.blocks[block].block.head;
     let at = |field| checker.value_or_head(block, field);
     let (named, struck) = (at(methods::INTEGRATOR.name), at(impact::CONTACT.name));
     checker.fail(fault::law_needs_the_tangent(
@@ -95,7 +94,6 @@ pub fn stable(
         && behaves > assumed * (1.0 + 1e-9)
         && step <= limit
     {
-        let head = checker.scope.blocks[block].block.head;
         let at = checker.value_or_head(block, STIFFNESS.name);
         checker
             .diagnostics
@@ -107,7 +105,6 @@ pub fn stable(
         impact.stepping.max_tangent_ratio.constant(),
     ) && behaves > assumed * ratio * (1.0 + 1e-9)
     {
-        let head = checker.scope.blocks[block].block.head;
         let at = checker.value_or_head(block, STIFFNESS.name);
         checker
             .diagnostics
@@ -116,7 +113,6 @@ pub fn stable(
     if step <= limit {
         return;
     }
-    let head = checker.scope.blocks[block].block.head;
     let at = checker.value_or_head(block, methods::TIME_STEP.name);
     checker.diagnostics.push(if impact.stepping.allow_unstable {
         frames::unstable_though(at, step, limit)
