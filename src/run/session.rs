@@ -66,7 +66,7 @@ impl<'run> Session<'run> {
         let datum = rig.datum().is_some();
         let wanted = plan.degrees_of_freedom();
         let guard = if axes == wanted {
-            Guard::of_axes(rig, plan.limits, plan.rig.limits_of_axes(&plan.limits))
+            Guard::new(rig, plan.limits, plan.rig.limits_of_axes(&plan.limits))
         } else {
             rig.hold();
             let degrees = |count| {

@@ -43,10 +43,10 @@ pub(crate) fn perform(
     }
     let noise = Some(instruments.errors(0).noise).filter(|noise| *noise > 0.0);
     let asked = plan.relaxation.map(|asked| asked.model);
-    let start = ramp.starts.first().copied();
+    let start = ramp.starts.first().copied().unwrap_or_default();
     let evaluation = hold::evaluate_dwells(
         &ramp.holds,
-        start.unwrap_or_default(),
+        start,
         asked,
         noise,
         instruments.stated_variance(0, 1),
@@ -85,7 +85,6 @@ pub(crate) fn perform(
         evaluation.reached.map(Box::new),
     );
     let history = RampHistory {
-        start,
         before,
         steps: readings.steps,
         fit,
