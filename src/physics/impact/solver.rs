@@ -377,12 +377,6 @@ impl<V: HasTangents> ImpactSolver<V> {
         self.structure.state()
     }
 
-    /// Whether some step has ended with Ẋs ≤ 0.
-    #[must_use]
-    pub const fn striker_stopped(&self) -> bool {
-        self.striker_stopped
-    }
-
     /// Whether striker and structure have separated finally, if the structure is elastic and unloaded from here on. The striker moves
     /// back, and one of two conditions applies. It is faster than the energy of the structure can ever move the struck degree of freedom,
     /// `|Ẋ_s| ≤ √(2E e_sᵀM⁻¹e_s)`, or it is out of its reach, `√(2E e_sᵀK⁻¹e_s)` from its unloaded position. A falling striker always
