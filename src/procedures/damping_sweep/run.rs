@@ -28,7 +28,7 @@ use crate::record::{
 };
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
-use crate::run::session::{Session, StepReading, first};
+use crate::run::session::{Session, first};
 use crate::run::stop::Stop;
 use crate::schema::procedures::damping_sweep as schema;
 use crate::uncertainty::InstrumentUncertainty;
@@ -333,12 +333,7 @@ impl Sweep {
                 steady: steady_from <= passed && passed <= 1.0 - END,
             });
             if sample as usize <= whole {
-                session.measured(&StepReading {
-                    step,
-                    time: reading.time,
-                    displacement,
-                    force: restoring_force,
-                })?;
+                session.measured(step, reading.time, (displacement, restoring_force))?;
             }
         }
         traversed

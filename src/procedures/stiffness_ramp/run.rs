@@ -15,7 +15,7 @@ use crate::record::{
 };
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
-use crate::run::session::{Session, StepReading};
+use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::schema::procedures::stiffness_ramp as schema;
 use crate::uncertainty::InstrumentUncertainty;
@@ -255,12 +255,7 @@ impl Ramp {
         if let Some(stop) = broken {
             return Err(stop);
         }
-        session.measured(&StepReading {
-            step,
-            time: wall_time,
-            displacement,
-            force: restoring_force,
-        })?;
+        session.measured(step, wall_time, (displacement, restoring_force))?;
         Ok((displacement, restoring_force))
     }
 
