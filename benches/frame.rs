@@ -10,6 +10,7 @@ use psd::physics::integrator::input::FrameInput;
 use psd::physics::integrator::solver::FrameSolver;
 use psd::physics::integrator::tangents::Tangents;
 use psd::physics::specimen::{Bilinear, BilinearCurve, Elastic, RestoringForce};
+use psd::physics::statistics::DeclaredNoise;
 use psd::physics::structure::{
     FrameMatrices, SymmetricBand, drifts, floor_forces, storey_stiffness,
 };
@@ -58,8 +59,7 @@ fn steps<S: RestoringForce + Copy>(
         initial_displacement: &zero,
         initial_restoring_force: &zero,
         initial_load: &zero,
-        force_noise: 0.0,
-        resolution: 0.0,
+        noise: DeclaredNoise::NONE,
     };
     let mut solver = FrameSolver::new(&input).expect("a building");
     let mut specimen = vec![storey; storeys];

@@ -43,7 +43,8 @@ fn connected() -> (TcpStream, JoinHandle<()>) {
             },
             ..Limits::NONE
         };
-        let mut guard = Guard::new(&mut rig, limits).expect("it stands inside its limits");
+        let mut guard =
+            Guard::new(&mut rig, limits, Vec::new()).expect("it stands inside its limits");
         let protocol = Protocol::GenericClient {
             stiffness: vec![STIFFNESS],
         };

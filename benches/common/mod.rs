@@ -5,6 +5,7 @@ use std::hint::black_box;
 use psd::physics::contact::ContactLaw;
 use psd::physics::impact::ImpactInput;
 use psd::physics::specimen::Elastic;
+use psd::physics::statistics::DeclaredNoise;
 use psd::plan::Integrator;
 
 pub const SPECIMEN: Elastic = Elastic { stiffness: 327.65 };
@@ -26,7 +27,6 @@ pub fn example_1() -> ImpactInput {
         integrator: Integrator::Tangent,
         operator_stiffness: SPECIMEN.stiffness,
         i_modification: false,
-        force_noise: 0.0,
-        resolution: 0.0,
+        noise: DeclaredNoise::NONE,
     })
 }

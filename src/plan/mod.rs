@@ -33,6 +33,7 @@ pub use crate::physics::structure::portal::{
     ElasticStiffnesses, FrameMasses, Loads, Mechanism, Portal, Sections, elastic_stiffnesses,
 };
 
+pub use crate::physics::statistics::DeclaredNoise;
 pub use procedure::base_excitation::Shake;
 pub use procedure::cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
 pub use procedure::damping_sweep::DampingSweep;
@@ -44,8 +45,7 @@ pub use procedure::impact_series::{Between, Escalate, MOST_IMPACTS};
 pub use procedure::mode::Mode;
 pub use procedure::move_to::Move;
 pub use procedure::stepping::{MOST_RECORDED_STEPS, MOST_STEPS, Stepping, step_count, steps_in};
-pub use procedure::structure::Structure;
-pub use procedure::unload::{FrameUnload, Unload};
+pub use procedure::unload::Unload;
 pub use procedure::{ProcedureBlock, ProcedureKind};
 pub use report::annex::Annex;
 pub use report::figure::{Figure, FigureKind, MOST_TOGETHER};
@@ -54,7 +54,6 @@ pub use report::picture::{MOST_PHOTOS, PICTURE_BYTES, Picture, PictureKind};
 pub use report::undeclared::Dependence;
 pub use rig::axis::{AxisCalibration, AxisPlan};
 pub(crate) use rig::axis_names::{named_axis, of_axis, who};
-pub use rig::declared_noise::DeclaredNoise;
 pub use rig::devices::Behind;
 pub use rig::limits::{Interval, Limits};
 pub use rig::{

@@ -31,6 +31,35 @@ pub enum ResultValue {
     List(Vec<f64>),
 }
 
+impl ResultValue {
+    /// The number; None for a list, and if it does not exist in this run.
+    #[must_use]
+    pub const fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number { value, .. } => *value,
+            Self::List(_) => None,
+        }
+    }
+
+    /// The entries of a list; None for a number.
+    #[must_use]
+    pub fn list(&self) -> Option<&[f64]> {
+        match self {
+            Self::Number { .. } => None,
+            Self::List(values) => Some(values),
+        }
+    }
+
+    /// The entries of a list, or the number if it exists in this run.
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        match self {
+            Self::Number { value, .. } => value.as_slice(),
+            Self::List(values) => values,
+        }
+    }
+}
+
 /// The results that formulas read.
 pub trait Results: Sync {
     /// The result, or None if its procedure has not run to it.

@@ -73,7 +73,6 @@ pub(crate) fn check_declared(
         | ProcedureKind::DampingSweep(_)
         | ProcedureKind::Cycle(_)
         | ProcedureKind::Unload(_)
-        | ProcedureKind::FrameUnload(_)
         | ProcedureKind::Move(_)
         | ProcedureKind::Inspect { .. } => {}
     }
@@ -105,7 +104,6 @@ pub(crate) fn leaves(kind: &ProcedureKind, grounds: &[Option<Ground>]) -> Leaves
         | ProcedureKind::DampingSweep(_)
         | ProcedureKind::Cycle(_)
         | ProcedureKind::Unload(_)
-        | ProcedureKind::FrameUnload(_)
         | ProcedureKind::Move(_) => Leaves::AtRest,
     }
 }
@@ -125,7 +123,6 @@ pub(crate) fn uses_mass(kind: &ProcedureKind, stated: &mut Vec<Source>) -> Optio
         | ProcedureKind::Shake(_)
         | ProcedureKind::Cycle(_)
         | ProcedureKind::Unload(_)
-        | ProcedureKind::FrameUnload(_)
         | ProcedureKind::Move(_)
         | ProcedureKind::Inspect { .. } => None,
     }
@@ -139,8 +136,7 @@ pub(crate) fn facts_of(kind: &ProcedureKind) -> Facts<'_> {
         ProcedureKind::Impact(impact) => impact::facts::facts(impact),
         ProcedureKind::Shake(shake) => base_excitation::facts::facts(shake),
         ProcedureKind::Cycle(_) => cycle::facts::facts(),
-        ProcedureKind::Unload(_) => unload::facts::of_specimen(),
-        ProcedureKind::FrameUnload(_) => unload::facts::of_frame(),
+        ProcedureKind::Unload(unload) => unload::facts::facts(unload),
         ProcedureKind::Escalate(series) => impact_series::facts::facts(series),
         ProcedureKind::Move(_) => Facts::default(),
         ProcedureKind::Inspect { .. } => Facts {
@@ -185,9 +181,6 @@ pub(crate) fn run(
             impact_series::run::perform(series, plan, inputs, session)
         }
         ProcedureKind::Unload(unload) => unload::run::perform(unload, plan, inputs, session),
-        ProcedureKind::FrameUnload(unload) => {
-            unload::run::perform_frame(unload, plan, inputs, session)
-        }
         ProcedureKind::Move(target) => move_to::run::perform(target, inputs, session),
         ProcedureKind::Inspect { note } => inspect::run::perform(note, session),
     }
@@ -236,9 +229,7 @@ pub(crate) fn most_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
         ProcedureKind::Escalate(series) => impact_series::run::most_steps(series, plan),
         ProcedureKind::Move(_) => Some(1),
         ProcedureKind::Inspect { .. } => Some(0),
-        ProcedureKind::DampingSweep(_)
-        | ProcedureKind::Unload(_)
-        | ProcedureKind::FrameUnload(_) => None,
+        ProcedureKind::DampingSweep(_) | ProcedureKind::Unload(_) => None,
     }
 }
 
@@ -257,7 +248,6 @@ pub(crate) fn known_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
         | ProcedureKind::DampingSweep(_)
         | ProcedureKind::Cycle(_)
         | ProcedureKind::Unload(_)
-        | ProcedureKind::FrameUnload(_)
         | ProcedureKind::Move(_)
         | ProcedureKind::Inspect { .. } => None,
     }
@@ -273,7 +263,6 @@ pub(crate) fn delay(kind: &ProcedureKind, plan: &Plan) -> Option<Delay> {
         | ProcedureKind::DampingSweep(_)
         | ProcedureKind::Cycle(_)
         | ProcedureKind::Unload(_)
-        | ProcedureKind::FrameUnload(_)
         | ProcedureKind::Move(_)
         | ProcedureKind::Inspect { .. } => None,
     }
@@ -387,7 +376,7 @@ pub(crate) fn self_tested(kind: &ProcedureKind) -> Vec<Vec<Part>> {
         ProcedureKind::Escalate(series) => impact::facts::self_tested(&series.impact),
         ProcedureKind::Shake(shake) => stepping::self_tested::stepped(&shake.stepping, true, None),
         ProcedureKind::Cycle(_) => vec![vec![Part::Loops]],
-        ProcedureKind::Unload(_) | ProcedureKind::FrameUnload(_) => vec![vec![Part::Unloading]],
+        ProcedureKind::Unload(_) => vec![vec![Part::Unloading]],
         ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => Vec::new(),
     }
 }

@@ -379,7 +379,7 @@ mod tests {
             boot: None,
             simulated: true,
         };
-        Equipment::of(plan, Device::of(&identity, DeclaredNoise::default()))
+        Equipment::of(plan, Device::of(&identity, DeclaredNoise::NONE))
     }
 
     #[test]

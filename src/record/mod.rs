@@ -171,20 +171,29 @@ impl ProcedureRecord {
     /// The value of the result with this name. None for a list, and if this run has no value.
     #[must_use]
     pub fn number(&self, name: &str) -> Option<f64> {
-        match self.result(name).map(|result| &result.value) {
-            Some(ResultValue::Number { value, .. }) => *value,
-            _ => None,
-        }
+        self.result(name)?.value.number()
+    }
+
+    /// The entries of the list with this name. None for a number.
+    #[must_use]
+    pub fn list(&self, name: &str) -> Option<&[f64]> {
+        self.result(name)?.value.list()
     }
 
     /// The result of this name.
     #[must_use]
     pub fn result(&self, name: &str) -> Option<&NamedResult> {
-        self.results.iter().find(|result| result.name == name)
+        NamedResult::of(&self.results, name)
     }
 }
 
 impl NamedResult {
+    /// The result of this name.
+    #[must_use]
+    pub fn of<'a>(results: &'a [Self], name: &str) -> Option<&'a Self> {
+        results.iter().find(|result| result.name == name)
+    }
+
     /// Standard uncertainty of each entry of a list; empty if none is known.
     #[must_use]
     pub fn entry_uncertainties(&self) -> Vec<Option<f64>> {

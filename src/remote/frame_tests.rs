@@ -7,6 +7,7 @@ use crate::physics::integrator::solver::FrameSolver;
 use crate::physics::integrator::tangents::Tangents;
 use crate::physics::structure::{FrameMatrices, SymmetricBand};
 use crate::plan::{Behaviour, Frame, Integrator, Limits, Settle, Storey, VirtualLink};
+use crate::rig::DeclaredNoise;
 use crate::rig::VirtualRig;
 
 const MASSES: [f64; 2] = [2000.0, 1500.0];
@@ -55,8 +56,7 @@ fn an_explicit_newmark_of_the_client_is_that_of_psd() {
         initial_displacement: &zero,
         initial_restoring_force: &zero,
         initial_load: &zero,
-        force_noise: 0.0,
-        resolution: 0.0,
+        noise: DeclaredNoise::NONE,
     })
     .unwrap();
     let (found, session) = served(LIMITS, |address| {

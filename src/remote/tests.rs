@@ -63,7 +63,7 @@ pub(super) fn served_on<T: Send>(
     let address = listener.local_addr().unwrap();
     std::thread::scope(|scope| {
         let client = scope.spawn(move || client(address));
-        let mut guard = Guard::new(rig, limits).unwrap();
+        let mut guard = Guard::new(rig, limits, Vec::new()).unwrap();
         let mut sessions = Vec::new();
         let mut on_event = |event: Event<'_>| {
             if let Event::Ended(session) = event {
@@ -455,7 +455,7 @@ fn ended_in_silence(protocol: &Protocol, sent: &[u8]) -> Ended {
     let mut client = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
     client.write_all(sent).unwrap();
     let (mut rig, mut nobody, stop_request) = (spring(), Unwatched, StopRequest::default());
-    let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
+    let mut guard = Guard::new(&mut rig, LIMITS, Vec::new()).unwrap();
     let mut specimen = Specimen::new(&mut guard, &mut nobody, None);
     let mut connection =
         Connection::new(listener.accept().unwrap().0, LOOK, &stop_request).unwrap();

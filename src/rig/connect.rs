@@ -1,18 +1,13 @@
 //! From a plan to a connected rig: ports opened, drivers chosen, the emergency hold armed. In: the plan's real rig. Out: a
 //! [`Connected`]. Nothing moves. Only this file opens ports to drive a rig.
 
-use std::time::Duration;
-
 use super::controllers;
 use super::controllers::{Device, Member, together};
 use super::real::RealRig;
 use super::safety::{self, Armed};
-use super::transport::{Clock, Emergency, MonotonicClock, Port, SerialPort, TcpPort};
+use super::transport::{self, Clock, Emergency, MonotonicClock};
 use super::{RigFault, StopRequest};
-use crate::plan::{Behind, DeviceLink, Limits, PortPlan, RigPlan};
-
-/// Longest wait for a network rig to accept the connection.
-const CONNECTING: Duration = Duration::from_secs(5);
+use crate::plan::{Behind, DeviceLink, Limits, RigPlan};
 
 /// An open rig. During its lifetime, a panic or a missing heartbeat of the program holds the rig.
 pub struct Connected {
@@ -82,12 +77,7 @@ fn attach(
     stop_request: &StopRequest,
 ) -> Result<Attached, RigFault> {
     let failed = |error: std::io::Error| RigFault::Device(format!("{}: {error}", link.port));
-    let port: Box<dyn Port> = match &link.port {
-        PortPlan::Serial { path, baud } => Box::new(SerialPort::open(path, *baud).map_err(failed)?),
-        PortPlan::Tcp { address } => {
-            Box::new(TcpPort::connect(address, CONNECTING).map_err(failed)?)
-        }
-    };
+    let port = transport::open(&link.port).map_err(failed)?;
     let emergency = port.emergency().map_err(failed)?;
     let clock: Box<dyn Clock> = Box::new(MonotonicClock::start());
     let device = controllers::open(link, port, clock, stop_request.clone(), plan.settle.timeout);

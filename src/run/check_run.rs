@@ -2,7 +2,6 @@
 //! record of its pre-test check and leading stiffness ramps. Out: the plan of those alone, and the whole plan on a virtual specimen with
 //! the measured stiffness. It moves nothing.
 
-use crate::plan::formula::ResultValue;
 use crate::plan::{Behaviour, Link, Plan, ProcedureKind, Specimen, VirtualLink};
 use crate::record::{History, RampHistory, Record};
 use crate::rig::VirtualRig;
@@ -126,11 +125,8 @@ pub fn prediction(plan: &Plan, measured: &Record) -> Result<Plan, NoCheckRun> {
         let ProcedureKind::StiffnessRamp(ramp) = &procedure.kind else {
             continue;
         };
-        let stiffness = match record.result(STIFFNESS.name).map(|result| &result.value) {
-            Some(ResultValue::Number {
-                value: Some(value), ..
-            }) if *value > 0.0 => *value,
-            _ => return Err(NoCheckRun::NoStiffness(procedure.name.clone())),
+        let Some(stiffness) = record.number(STIFFNESS.name).filter(|value| *value > 0.0) else {
+            return Err(NoCheckRun::NoStiffness(procedure.name.clone()));
         };
         if let Some(specimen) = model.specimens.get_mut(ramp.specimen) {
             specimen.behaviour =

@@ -72,12 +72,27 @@ pub enum Next {
 }
 
 /// The end of a step, for display and for the run log.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct StepReport {
     /// Number within its procedure, from 1.
     pub step: u64,
     /// Simulated time of an impact, else laboratory time \[s\].
     pub time: f64,
+    /// At least one.
+    pub axes: Vec<AxisReport>,
+    /// Speed of the last motion of the rig \[m/s\]; only for display.
+    pub speed: Option<f64>,
+    /// Energy error over the input energy; only for procedures that integrate.
+    pub energy_error: Option<f64>,
+    /// The tracking errors; only for procedures that integrate.
+    pub tracking: Option<Tracking>,
+    /// Its energy error over the present input energy of the test.
+    pub tracking_energy_error: Option<f64>,
+}
+
+/// One axis at the end of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AxisReport {
     /// Target of the step \[m\].
     pub command: f64,
     /// Measured \[m\].
@@ -88,43 +103,44 @@ pub struct StepReport {
     pub acceleration: Option<f64>,
     /// Measured restoring force \[N\].
     pub force: f64,
-    /// Speed of the last motion of the rig \[m/s\]; only for display.
-    #[serde(skip)]
-    pub speed: Option<f64>,
-    /// Energy error over the input energy; only for procedures that integrate.
-    pub energy_error: Option<f64>,
-    /// The tracking errors; only for procedures that integrate.
-    pub tracking: Option<Tracking>,
-    /// Its energy error over the present input energy of the test.
-    pub tracking_energy_error: Option<f64>,
-    /// The axes after the first, for a procedure that moves several axes. The first axis is above.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub others: Vec<AxisReport>,
-}
-
-/// One axis at the end of a step.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct AxisReport {
-    /// \[m\]
-    pub command: f64,
-    /// Measured \[m\].
-    pub displacement: f64,
-    /// Computed \[m/s\].
-    pub velocity: f64,
-    /// Computed \[m/s²\].
-    pub acceleration: f64,
-    /// Measured \[N\].
-    pub force: f64,
 }
 
 impl StepReport {
-    /// Target \[m\], measured displacement \[m\] and force \[N\] of every axis.
-    pub fn axes(&self) -> impl Iterator<Item = (f64, f64, f64)> {
-        let others = self
-            .others
-            .iter()
-            .map(|axis| (axis.command, axis.displacement, axis.force));
-        std::iter::once((self.command, self.displacement, self.force)).chain(others)
+    /// A step of a procedure that integrates nothing, for each axis with its command.
+    pub fn of_readings(
+        step: u64,
+        time: f64,
+        commands: &[f64],
+        displacement: &[f64],
+        force: &[f64],
+    ) -> Self {
+        let read = displacement.iter().zip(force);
+        let axis = |(command, (displacement, force)): (&f64, (&f64, &f64))| AxisReport {
+            command: *command,
+            displacement: *displacement,
+            velocity: None,
+            acceleration: None,
+            force: *force,
+        };
+        Self {
+            step,
+            time,
+            axes: commands.iter().zip(read).map(axis).collect(),
+            speed: None,
+            energy_error: None,
+            tracking: None,
+            tracking_energy_error: None,
+        }
+    }
+
+    /// Sum of the forces of all axes \[N\]: the base shear of a frame.
+    pub fn force(&self) -> f64 {
+        self.axes.iter().map(|axis| axis.force).sum()
+    }
+
+    /// Displacement of the last axis \[m\]: that of the highest floor.
+    pub fn highest(&self) -> f64 {
+        self.axes.last().map_or(0.0, |axis| axis.displacement)
     }
 }
 

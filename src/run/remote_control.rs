@@ -10,7 +10,7 @@ use crate::record::remote::{Disconnect, DrivenStep, Request};
 use crate::record::{Event, EventKind, Outcome};
 use crate::rig::{Guard, RigFault};
 use crate::run::stop::Stop;
-use crate::run::{AxisReport, Observer, StepReport};
+use crate::run::{Observer, StepReport};
 
 /// Summary of a session, SI.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -173,46 +173,21 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
     pub fn commit(&mut self) {
         self.asked(&Request::Commit);
         self.commits += 1;
-        let nothing = None;
-        let feedback = self.feedback.displacement.iter().zip(&self.feedback.force);
         // At rest, as always when a client sends a request.
-        let mut axes =
-            self.guard
-                .commanded()
-                .iter()
-                .zip(feedback)
-                .map(|(command, (displacement, force))| AxisReport {
-                    command: *command,
-                    displacement: *displacement,
-                    force: *force,
-                    velocity: 0.0,
-                    acceleration: 0.0,
-                });
-        // A client without any reading has done no step.
-        let Some(AxisReport {
-            command,
-            displacement,
-            force,
-            ..
-        }) = axes.next()
-        else {
-            return;
-        };
-        let others = axes.collect();
-        self.observer.step_done(&StepReport {
-            step: self.commits,
-            time: self.guard.time(),
-            command,
-            displacement,
-            velocity: nothing,
-            acceleration: nothing,
-            force,
+        let report = StepReport {
             speed: self.guard.speed(),
-            energy_error: nothing,
-            others,
-            tracking: None,
-            tracking_energy_error: None,
-        });
+            ..StepReport::of_readings(
+                self.commits,
+                self.guard.time(),
+                self.guard.commanded(),
+                &self.feedback.displacement,
+                &self.feedback.force,
+            )
+        };
+        // A client without any reading has done no step.
+        if !report.axes.is_empty() {
+            self.observer.step_done(&report);
+        }
     }
 
     /// Reads again.

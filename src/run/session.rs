@@ -2,7 +2,7 @@
 //! knows no physics of a procedure.
 
 use super::stop::Stop;
-use super::{AxisReport, Inspection, Motion, Next, Observer, Settings, StepReport};
+use super::{Inspection, Motion, Next, Observer, Settings, StepReport};
 use crate::plan::{Plan, Procedure};
 use crate::record::{Event, EventKind};
 use crate::rig::{Guard, Identity, LineStatistics, Reading, Rig, RigFault};
@@ -17,17 +17,6 @@ const BREATH: f64 = 0.01;
 
 /// The reason if the operator ends a run while nothing moves.
 pub(super) const STOPPED_ON_REQUEST: &str = "stopped on request";
-
-/// A step of a procedure with one axis that integrates nothing.
-pub(crate) struct StepReading {
-    pub step: u64,
-    /// Rig time \[s\].
-    pub time: f64,
-    /// \[m\]
-    pub displacement: f64,
-    /// \[N\]
-    pub force: f64,
-}
 
 pub(crate) struct Session<'run> {
     pub(crate) guard: Guard<'run>,
@@ -66,7 +55,7 @@ impl<'run> Session<'run> {
         let datum = rig.datum().is_some();
         let wanted = plan.degrees_of_freedom();
         let guard = if axes == wanted {
-            Guard::of_axes(rig, plan.limits, plan.rig.limits_of_axes(&plan.limits))
+            Guard::new(rig, plan.limits, plan.rig.limits_of_axes(&plan.limits))
         } else {
             rig.hold();
             let degrees = |count| {
@@ -331,14 +320,14 @@ impl<'run> Session<'run> {
         })
     }
 
-    /// [`Self::step_done`] of a procedure that integrates nothing: rig time is its time.
-    pub(crate) fn measured(&mut self, reading: &StepReading) -> Result<(), Stop> {
-        let StepReading {
-            step,
-            time,
-            displacement,
-            force,
-        } = *reading;
+    /// [`Self::step_done`] of a procedure with one axis that integrates nothing: rig time is its time. The reading is a displacement
+    /// \[m\] and a force \[N\].
+    pub(crate) fn measured(
+        &mut self,
+        step: u64,
+        time: f64,
+        (displacement, force): (f64, f64),
+    ) -> Result<(), Stop> {
         self.at_rest(step, time, &[displacement], &[force])
     }
 
@@ -359,32 +348,12 @@ impl<'run> Session<'run> {
         displacement: &[f64],
         force: &[f64],
     ) -> Result<(), Stop> {
-        let positions = self.guard.commanded().iter().zip(displacement).zip(force);
-        let mut axes = positions.map(|((command, displacement), force)| AxisReport {
-            command: *command,
-            displacement: *displacement,
-            velocity: 0.0,
-            acceleration: 0.0,
-            force: *force,
-        });
-        let Some(first) = axes.next() else {
+        let commands = self.guard.commanded();
+        let report = StepReport::of_readings(step, time, commands, displacement, force);
+        if report.axes.is_empty() {
             return Ok(());
-        };
-        let others = axes.collect();
-        self.step_done(StepReport {
-            step,
-            time,
-            command: first.command,
-            displacement: first.displacement,
-            velocity: None,
-            acceleration: None,
-            force: first.force,
-            speed: None,
-            energy_error: None,
-            others,
-            tracking: None,
-            tracking_energy_error: None,
-        })
+        }
+        self.step_done(report)
     }
 
     /// The last target \[m\].

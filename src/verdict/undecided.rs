@@ -111,13 +111,7 @@ pub(super) fn longer_than_critical(name: &str, step: f64, critical: f64) -> Stri
 
 /// Whether the energy balance error of a procedure, or of one of its impacts, exceeds its bound.
 fn off(procedure: &ProcedureRecord) -> bool {
-    let found = |kind: ResultKind| {
-        procedure
-            .results
-            .iter()
-            .find(|result| result.name == kind.name)
-            .map(|result| &result.value)
-    };
+    let found = |kind: ResultKind| procedure.result(kind.name).map(|result| &result.value);
     let beyond = |error: &f64| error.is_nan() || error.abs() > WORTHLESS;
     match found(impact::ENERGY_ERROR).or_else(|| found(impact_series::ENERGY_ERRORS)) {
         Some(ResultValue::Number { value, .. }) => value.as_ref().is_none_or(beyond),

@@ -386,7 +386,6 @@ fn a_run_stopped_early_still_leaves_a_whole_folder() {
     finished.record.procedures[2].complete = false;
     finished.record.procedures[2].results.clear();
     finished.record.procedures[0].history = History::Ramp(RampHistory {
-        start: None,
         before: Vec::new(),
         steps: Vec::new(),
         fit: None,

@@ -137,7 +137,7 @@ impl EmulatedRig {
 
     /// Adds friction to the load cell \[N\]. It acts against the last motion, also during a dwell, as in the simulated rig.
     #[must_use]
-    pub const fn with_friction(mut self, friction: f64) -> Self {
+    pub fn with_friction(mut self, friction: f64) -> Self {
         self.structure.set_friction(friction);
         self
     }

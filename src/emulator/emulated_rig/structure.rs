@@ -6,61 +6,69 @@ use crate::physics::relaxation::relaxation_state::{Deformed, RelaxationState};
 use crate::physics::specimen::SpecimenModel;
 use crate::physics::structure::cell_damping::CellDamping;
 use crate::physics::structure::{drifts, floor_forces};
-use crate::plan::{Behaviour, Frame, Storey};
+use crate::plan::{Behaviour, Frame};
 
 #[derive(Debug)]
 pub(crate) enum Structure {
-    One {
-        specimen: Box<SpecimenModel>,
-        damping: CellDamping,
-        relaxing: Box<RelaxationState>,
-        force: f64,
-    },
-    /// Each storey has a restoring-force model and damping.
-    Storeys {
-        models: Vec<SpecimenModel>,
-        dampers: Vec<CellDamping>,
-        relaxing: Vec<RelaxationState>,
-        shear: Vec<f64>,
-    },
+    /// One degree of freedom is one storey.
+    Storeys(Vec<Storey>),
     /// R = K X, row by row.
     Matrix(Vec<Vec<f64>>),
+}
+
+/// A restoring-force model and the damping beside it.
+#[derive(Debug)]
+pub(crate) struct Storey {
+    model: SpecimenModel,
+    damping: CellDamping,
+    relaxing: RelaxationState,
+    /// \[N\]
+    shear: f64,
+}
+
+impl Storey {
+    fn new(behaviour: &Behaviour, damping: CellDamping) -> Self {
+        Self {
+            model: SpecimenModel::new(behaviour),
+            damping: damping.with_rate_of(behaviour),
+            relaxing: RelaxationState::new(behaviour),
+            shear: 0.0,
+        }
+    }
+
+    /// It comes to this drift, the last `moved` of it in the time `going`, then stays for the other `seconds`.
+    fn bend(&mut self, drift: f64, moved: f64, going: f64, seconds: f64) {
+        let velocity = if moved == 0.0 { 0.0 } else { moved / going };
+        let motions = [
+            (drift - moved, Motion::even(velocity, going)),
+            (drift, Motion::rest(seconds - going)),
+        ];
+        for (displacement, motion) in motions {
+            let from = Deformed {
+                displacement,
+                force: self.shear,
+            };
+            self.shear = self.relaxing.advance(&mut self.model, &motion, from, drift);
+        }
+    }
 }
 
 impl Structure {
     /// `damping`: c of c·v \[N·s/m\].
     pub(crate) fn of_one(behaviour: &Behaviour, damping: f64) -> Self {
-        let specimen = Box::new(SpecimenModel::new(behaviour));
-        let damping = CellDamping::new(damping, 0.0).with_rate_of(behaviour);
-        Self::One {
-            specimen,
-            damping,
-            relaxing: Box::new(RelaxationState::new(behaviour)),
-            force: 0.0,
-        }
+        let damping = CellDamping::new(damping, 0.0);
+        Self::Storeys(vec![Storey::new(behaviour, damping)])
     }
 
     pub(crate) fn of_frame(frame: &Frame) -> Self {
         if frame.storeys.is_empty() {
             return Self::Matrix(frame.stiffness.clone());
         }
-        let damper = |storey: &Storey| {
-            CellDamping::new(storey.damping, storey.coulomb).with_rate_of(&storey.behaviour)
-        };
-        Self::Storeys {
-            models: frame
-                .storeys
-                .iter()
-                .map(|storey| SpecimenModel::new(&storey.behaviour))
-                .collect(),
-            dampers: frame.storeys.iter().map(damper).collect(),
-            relaxing: frame
-                .storeys
-                .iter()
-                .map(|storey| RelaxationState::new(&storey.behaviour))
-                .collect(),
-            shear: vec![0.0; frame.storeys.len()],
-        }
+        let storeys = frame.storeys.iter().map(|storey| {
+            let damping = CellDamping::new(storey.damping, storey.coulomb);
+            Storey::new(&storey.behaviour, damping)
+        });
+        Self::Storeys(storeys.collect())
     }
 
     /// Calculates the restoring forces \[N\] at these positions of the actuators \[m\]. The last increments \[m\] took the time
@@ -72,64 +80,13 @@ impl Structure {
         going: f64,
         seconds: f64,
     ) -> Vec<f64> {
-        let bent = |specimen: &mut SpecimenModel,
-                    relaxing: &mut RelaxationState,
-                    force: f64,
-                    position: f64,
-                    moved: f64| {
-            let velocity = if moved == 0.0 { 0.0 } else { moved / going };
-            let force = relaxing.advance(
-                specimen,
-                &Motion::even(velocity, going),
-                Deformed {
-                    displacement: position - moved,
-                    force,
-                },
-                position,
-            );
-            relaxing.advance(
-                specimen,
-                &Motion::rest(seconds - going),
-                Deformed {
-                    displacement: position,
-                    force,
-                },
-                position,
-            )
-        };
         match self {
-            Self::One {
-                specimen,
-                relaxing,
-                force,
-                ..
-            } => {
-                *force = bent(specimen, relaxing, *force, positions[0], moved[0]);
-                vec![*force]
-            }
-            Self::Storeys {
-                models,
-                relaxing,
-                shear,
-                ..
-            } => {
-                let (mut drift, mut apart, mut forces) = (
-                    vec![0.0; positions.len()],
-                    vec![0.0; positions.len()],
-                    vec![0.0; positions.len()],
-                );
-                drifts(positions, &mut drift);
-                drifts(moved, &mut apart);
-                let storeys = models
-                    .iter_mut()
-                    .zip(relaxing)
-                    .zip(&mut *shear)
-                    .zip(drift.into_iter().zip(apart));
-                for (((model, relaxing), shear), (drift, moved)) in storeys {
-                    *shear = bent(model, relaxing, *shear, drift, moved);
+            Self::Storeys(storeys) => {
+                let apart = of_drifts(positions).into_iter().zip(of_drifts(moved));
+                for (storey, (drift, moved)) in storeys.iter_mut().zip(apart) {
+                    storey.bend(drift, moved, going, seconds);
                 }
-                floor_forces(shear, &mut forces);
-                forces
+                of_floors(storeys.iter().map(|storey| storey.shear))
             }
             Self::Matrix(rows) => rows
                 .iter()
@@ -140,65 +97,58 @@ impl Structure {
 
     /// Calculates the forces on the load cells from `forces` \[N\] at these velocities of the actuators \[m/s\].
     pub(crate) fn actuator_forces(&mut self, forces: &[f64], velocities: &[f64]) -> Vec<f64> {
-        match self {
-            Self::One {
-                damping, relaxing, ..
-            } => {
-                let relaxing = relaxing.force();
-                forces
-                    .iter()
-                    .zip(velocities)
-                    .map(|(force, v)| damping.measured_force(*force, *v) + relaxing)
-                    .collect()
-            }
-            Self::Storeys {
-                dampers,
-                relaxing,
-                shear,
-                ..
-            } => {
-                let mut apart = vec![0.0; velocities.len()];
-                drifts(velocities, &mut apart);
-                // A fault can reduce the specimen's force. Only the forces in parallel with it are added here.
-                let relaxing = relaxing.iter().map(RelaxationState::force);
-                let storeys = dampers.iter_mut().zip(&*shear).zip(apart).zip(relaxing);
-                let beside = storeys.map(|(((damper, shear), v), relaxing)| {
-                    damper.measured_force(*shear, v) - shear + relaxing
-                });
-                let mut more = vec![0.0; velocities.len()];
-                floor_forces(&beside.collect::<Vec<f64>>(), &mut more);
-                forces
-                    .iter()
-                    .zip(more)
-                    .map(|(force, more)| force + more)
-                    .collect()
-            }
-            Self::Matrix(_) => forces.to_vec(),
+        let storeys = match self {
+            Self::Storeys(storeys) => storeys,
+            Self::Matrix(_) => return forces.to_vec(),
+        };
+        if let [storey] = storeys.as_mut_slice() {
+            let force = storey.damping.measured_force(forces[0], velocities[0]);
+            return vec![force + storey.relaxing.force()];
         }
+        // A fault can reduce the force of a floor. Only the forces in parallel with the storeys are added here.
+        let storeys = storeys.iter_mut().zip(of_drifts(velocities));
+        let beside = storeys.map(|(storey, velocity)| {
+            storey.damping.measured_force(storey.shear, velocity) - storey.shear
+                + storey.relaxing.force()
+        });
+        let floors = of_floors(beside);
+        forces
+            .iter()
+            .zip(floors)
+            .map(|(f, more)| f + more)
+            .collect()
     }
 
     /// Sets the friction on the load cell of a specimen of one degree of freedom \[N\].
-    pub(crate) const fn set_friction(&mut self, friction: f64) {
-        if let Self::One { damping, .. } = self {
-            damping.coulomb = friction;
+    pub(crate) fn set_friction(&mut self, friction: f64) {
+        if let Self::Storeys(storeys) = self
+            && let [storey] = storeys.as_mut_slice()
+        {
+            storey.damping.coulomb = friction;
         }
     }
 
     /// Sets the present velocities of the actuators \[m/s\]: friction acts against the last motion.
     pub(crate) fn goes(&mut self, velocities: &[f64]) {
-        let mut apart = vec![0.0; velocities.len()];
-        drifts(velocities, &mut apart);
-        let dampers = match self {
-            Self::One { damping, .. } => std::slice::from_mut(damping),
-            Self::Storeys { dampers, .. } => dampers,
-            Self::Matrix(_) => return,
-        };
-        for (damper, velocity) in dampers
-            .iter_mut()
-            .zip(apart)
-            .filter(|(_, velocity)| *velocity != 0.0)
-        {
-            damper.last_direction = velocity.signum();
+        if let Self::Storeys(storeys) = self {
+            for (storey, velocity) in storeys.iter_mut().zip(of_drifts(velocities)) {
+                storey.damping.force(velocity);
+            }
         }
     }
+}
+
+/// The drift of each storey, of displacements or of velocities of the floors.
+fn of_drifts(floors: &[f64]) -> Vec<f64> {
+    let mut drift = vec![0.0; floors.len()];
+    drifts(floors, &mut drift);
+    drift
+}
+
+/// The force at each floor \[N\] from the shears of the storeys \[N\].
+fn of_floors(shears: impl Iterator<Item = f64>) -> Vec<f64> {
+    let shears: Vec<f64> = shears.collect();
+    let mut forces = vec![0.0; shears.len()];
+    floor_forces(&shears, &mut forces);
+    forces
 }

@@ -39,10 +39,7 @@ pub fn check_specimen(checker: &mut Checker, procedures: &[(usize, Option<Proced
         let Some(specimen) = procedure.kind.specimen() else {
             continue;
         };
-        let head = checker.scope.blocks[*block].block.head;
-        let span = checker
-            .field(*block, SPECIMEN.name)
-            .map_or(head, |(_, entry)| entry.value.span);
+        let span = checker.value_or_head(*block, SPECIMEN.name);
         let (first, first_span) = *on_rig.get_or_insert((specimen, span));
         if specimen != first {
             let name = |index| {

@@ -101,13 +101,7 @@ impl BilinearFit {
 /// Least squares over both lines and the yield point together. Standard errors are those of the linearised model at the optimum.
 /// None of fewer than six points, or where no yield point softens. A pulling ramp is fitted as the pushing one it mirrors.
 #[must_use]
-pub fn fit_bilinear(x: &[f64], y: &[f64]) -> Option<BilinearFit> {
-    fit_bilinear_stated(x, y, StatedVariance::default())
-}
-
-/// The same for readings with stated errors.
-#[must_use]
-pub fn fit_bilinear_stated(x: &[f64], y: &[f64], stated: StatedVariance) -> Option<BilinearFit> {
+pub fn fit_bilinear(x: &[f64], y: &[f64], stated: StatedVariance) -> Option<BilinearFit> {
     let curve = ScaledCurve::new(x, y).filter(|_| x.len() >= FEWEST_POINTS)?;
     let fit = curve.fit(&best_of_two(&curve.points)?, Vec::new(), stated)?;
     let fit = BilinearFit::of_segments(&fit);
@@ -140,6 +134,11 @@ fn best_of_two(points: &[(f64, f64)]) -> Option<Polyline> {
 mod tests {
     use super::*;
     use crate::statistics::testing::normal;
+
+    /// Of readings without stated errors.
+    fn fit_bilinear(x: &[f64], y: &[f64]) -> Option<BilinearFit> {
+        super::fit_bilinear(x, y, StatedVariance::default())
+    }
 
     type Read = fn(&BilinearFit) -> f64;
 

@@ -137,13 +137,7 @@ impl MultilinearFit {
 /// the breakpoints among its parameters; they do not include the choice of their number. None if the points do not determine
 /// such a curve.
 #[must_use]
-pub fn fit_multilinear(x: &[f64], y: &[f64], count: BreakCount) -> Option<MultilinearFit> {
-    fit_multilinear_stated(x, y, count, StatedVariance::default())
-}
-
-/// The same for readings with stated errors.
-#[must_use]
-pub fn fit_multilinear_stated(
+pub fn fit_multilinear(
     x: &[f64],
     y: &[f64],
     count: BreakCount,

@@ -1,8 +1,14 @@
 //! The multilinear fit: exact without noise, its standard errors and correlations those of many fits, its criterion rarely wrong.
 
-use super::multilinear_fit::{BreakCount, MultilinearFit, fit_multilinear};
+use super::StatedVariance;
+use super::multilinear_fit::{self, BreakCount, MultilinearFit};
 use super::polyline::row;
 use crate::statistics::testing::normal;
+
+/// Of readings without stated errors.
+fn fit_multilinear(x: &[f64], y: &[f64], count: BreakCount) -> Option<MultilinearFit> {
+    multilinear_fit::fit_multilinear(x, y, count, StatedVariance::default())
+}
 
 const BY_CRITERION: BreakCount = BreakCount::ByCriterion { most: 4 };
 

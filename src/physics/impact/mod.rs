@@ -14,6 +14,7 @@ pub use until::Until;
 use thiserror::Error;
 
 use crate::contact::ContactLaw;
+use crate::statistics::DeclaredNoise;
 
 use crate::contact::state::StepState;
 use crate::contact::{Approaching, NeedsTangent};
@@ -52,10 +53,7 @@ pub struct ImpactInput {
     /// Whether the recursion uses r* = `r_m` − `K_I`(`d_m` − d̃) instead of the reading: the force at the commanded displacement, as long
     /// as the specimen is nearly elastic.
     pub i_modification: bool,
-    /// Standard deviation of the load cell \[N\].
-    pub force_noise: f64,
-    /// Resolution of the displacement reading \[m\].
-    pub resolution: f64,
+    pub noise: DeclaredNoise,
 }
 
 impl ImpactInput {
@@ -82,8 +80,7 @@ impl ImpactInput {
             integrator: Integrator::Tangent,
             operator_stiffness: stiffness,
             i_modification: false,
-            force_noise: 0.0,
-            resolution: 0.0,
+            noise: DeclaredNoise::NONE,
         }
     }
 
@@ -282,8 +279,7 @@ mod tests {
             integrator,
             operator_stiffness: STIFFNESS,
             i_modification: true,
-            force_noise: 0.0,
-            resolution: 0.0,
+            noise: DeclaredNoise::NONE,
         }
     }
 

@@ -110,8 +110,7 @@ impl ImpactSolver {
             initial_displacement,
             initial_restoring_force,
             initial_load: 0.0,
-            force_noise: input.force_noise,
-            resolution: input.resolution,
+            noise: input.noise,
         };
         Self::on(&structure, &input.setup())
     }
@@ -376,12 +375,6 @@ impl<V: HasTangents> ImpactSolver<V> {
     #[must_use]
     pub const fn structure(&self) -> &State<V> {
         self.structure.state()
-    }
-
-    /// Whether some step has ended with Ẋs ≤ 0.
-    #[must_use]
-    pub const fn striker_stopped(&self) -> bool {
-        self.striker_stopped
     }
 
     /// Whether striker and structure have separated finally, if the structure is elastic and unloaded from here on. The striker moves

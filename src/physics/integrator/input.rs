@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use super::Integrator;
 use super::tangents::Tangents;
+use crate::statistics::DeclaredNoise;
 use crate::structure::matrix::{Matrix as _, Vector};
 use crate::structure::{Matrices, NotPositiveDefinite};
 
@@ -25,10 +26,7 @@ pub struct SolverInput<'a, V: Vector> {
     pub initial_restoring_force: V::View<'a>,
     /// F(0) \[N\]
     pub initial_load: V::View<'a>,
-    /// Standard deviation of a load-cell reading \[N\].
-    pub force_noise: f64,
-    /// Resolution of a displacement reading \[m\].
-    pub resolution: f64,
+    pub noise: DeclaredNoise,
 }
 
 /// The input of a frame.

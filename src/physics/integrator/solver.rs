@@ -56,8 +56,7 @@ impl<V: HasTangents> Solver<V> {
             Tangents::Storeys { largest_ratio } => {
                 let following = Following {
                     largest_ratio,
-                    force_noise: input.force_noise,
-                    resolution: input.resolution,
+                    noise: input.noise,
                 };
                 let followed =
                     V::Tangents::new(&matrices.stiffness, following, &displacement, &force);
@@ -357,6 +356,7 @@ fn correct<V: Vector>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::statistics::DeclaredNoise;
     use crate::structure::Matrices;
 
     const MASS: f64 = 1.0;
@@ -379,8 +379,7 @@ mod tests {
             initial_displacement: 1.0,
             initial_restoring_force: STIFFNESS,
             initial_load: 0.0,
-            force_noise: 0.0,
-            resolution: 0.0,
+            noise: DeclaredNoise::NONE,
         };
         let mut solver = Solver::<f64>::new(&input).expect("a mass on a spring");
         for _ in 0..steps {

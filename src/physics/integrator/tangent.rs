@@ -9,6 +9,8 @@
 
 use std::collections::VecDeque;
 
+use crate::statistics::DeclaredNoise;
+
 /// A tangent stiffness needs a change of force this many times the load cell's noise. With less, noise appears as a stiffness (at 10 a
 /// secant errs by 14 %, one standard deviation); with more, it follows the specimen late. A ratio of forces.
 pub const NOISE_MULTIPLE: f64 = 10.0;
@@ -20,10 +22,7 @@ const MOST_READINGS: usize = 4096;
 pub struct Following {
     /// c of `K_t within [0, c·K0]`
     pub largest_ratio: f64,
-    /// Standard deviation of a load cell \[N\].
-    pub force_noise: f64,
-    /// Resolution of a displacement reading \[m\].
-    pub resolution: f64,
+    pub noise: DeclaredNoise,
 }
 
 /// The current tangent stiffness `K_t`.
@@ -44,11 +43,10 @@ impl TangentStiffness {
     pub fn new(initial: f64, following: Following, displacement: f64, force: f64) -> Self {
         let Following {
             largest_ratio,
-            force_noise,
-            resolution,
+            noise,
         } = following;
         let first = (displacement, force);
-        let least_change = resolution.max(NOISE_MULTIPLE * force_noise / initial);
+        let least_change = noise.resolution.max(NOISE_MULTIPLE * noise.force / initial);
         let window = if least_change > 0.0 {
             VecDeque::from([first])
         } else {
@@ -132,13 +130,15 @@ mod tests {
     const INITIAL: f64 = 1000.0;
 
     /// The readings have no noise; the window follows from the stated one.
-    fn followed(force_noise: f64, readings: impl IntoIterator<Item = (f64, f64)>) -> f64 {
+    fn followed(force: f64, readings: impl IntoIterator<Item = (f64, f64)>) -> f64 {
         let mut tangent = TangentStiffness::new(
             INITIAL,
             Following {
                 largest_ratio: 2.0,
-                force_noise,
-                resolution: 0.0,
+                noise: DeclaredNoise {
+                    force,
+                    resolution: 0.0,
+                },
             },
             0.0,
             0.0,

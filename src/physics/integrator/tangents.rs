@@ -4,6 +4,7 @@
 use std::fmt::Debug;
 
 use super::tangent::{Following, TangentStiffness};
+use crate::statistics::DeclaredNoise;
 use crate::structure::matrix::{Matrix, Vector};
 use crate::structure::{SymmetricBand, set_storeys, storeys_of};
 
@@ -199,19 +200,17 @@ impl FollowedTangents for StoreyTangents {
             // Independent cells add as squares; a storey drift above the first storey is the difference of two readings.
             #[expect(clippy::cast_precision_loss, reason = "no frame has 2^53 storeys")]
             let cells = (stiffnesses.len() - storey) as f64;
-            let Following {
-                force_noise,
-                resolution,
-                ..
-            } = following;
+            let DeclaredNoise { force, resolution } = following.noise;
             let resolution = if storey == 0 {
                 resolution
             } else {
                 2.0 * resolution
             };
             let following = Following {
-                force_noise: cells.sqrt() * force_noise,
-                resolution,
+                noise: DeclaredNoise {
+                    force: cells.sqrt() * force,
+                    resolution,
+                },
                 ..following
             };
             storeys.push(Storey::new(stiffnesses[storey], following, first));
@@ -273,8 +272,10 @@ mod tests {
     fn at_rest(noise: f64, resolution: f64) -> StoreyTangents {
         let following = Following {
             largest_ratio: 2.0,
-            force_noise: noise,
-            resolution,
+            noise: DeclaredNoise {
+                force: noise,
+                resolution,
+            },
         };
         StoreyTangents::new(
             &storey_stiffness(&INITIAL),

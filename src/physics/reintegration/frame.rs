@@ -17,6 +17,7 @@ use crate::integrator::solver::FrameSolver;
 use crate::integrator::state::FrameState;
 use crate::integrator::tangents::Tangents;
 use crate::reintegration::perturbation::Perturbation;
+use crate::statistics::DeclaredNoise;
 use crate::structure::{FrameMatrices, drifts, shears, widen};
 
 /// The settings with which a frame is integrated.
@@ -30,9 +31,8 @@ pub struct FrameRun {
     pub time_step: f64,
     /// Largest number of steps.
     pub steps: u64,
-    /// \[N\] and \[m\], as the run used them.
-    pub force_noise: f64,
-    pub resolution: f64,
+    /// As the run used it.
+    pub noise: DeclaredNoise,
     /// Whether the floors passed their targets without a stop.
     pub continuous: bool,
 }
@@ -117,8 +117,7 @@ impl FrameRun {
             initial_displacement: retrace.start(),
             initial_restoring_force: retrace.force(),
             initial_load: load,
-            force_noise: self.force_noise,
-            resolution: self.resolution,
+            noise: self.noise,
         }
     }
 

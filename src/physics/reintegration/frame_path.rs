@@ -9,7 +9,7 @@
 
 use super::hysteresis_replay::{ContinuousMotion, Reading, RecordedPath, Retrace, lag, nearest};
 use crate::reintegration::perturbation::Perturbation;
-use crate::statistics::ReadingNoise;
+use crate::statistics::DeclaredNoise;
 use crate::structure::{SymmetricBand, drifts, shears, storeys_of};
 
 /// One step of the record, one entry per floor.
@@ -48,7 +48,7 @@ impl FramePath {
         readings: Vec<FrameReading>,
         motion: ContinuousMotion<Vec<Vec<f64>>>,
         stiffness: &SymmetricBand,
-        noise: ReadingNoise,
+        noise: DeclaredNoise,
     ) -> Option<Self> {
         readings.first()?;
         let ContinuousMotion {
@@ -96,7 +96,7 @@ impl FramePath {
                     // A shear is the sum of the cells above, a storey drift the difference of two floors.
                     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
                     let cells = (floors - storey) as f64;
-                    let noise = ReadingNoise {
+                    let noise = DeclaredNoise {
                         force: noise.force * cells.sqrt(),
                         resolution: if storey == 0 {
                             noise.resolution
@@ -331,7 +331,7 @@ mod tests {
             targets().iter().map(|target| elastic(target)).collect(),
             ContinuousMotion::default(),
             stiffness,
-            ReadingNoise::default(),
+            DeclaredNoise::NONE,
         )
         .unwrap()
     }

@@ -358,7 +358,7 @@ mod tests {
     use super::*;
     use crate::contact::ContactLaw;
     use crate::integrator::Integrator;
-    use crate::statistics::ReadingNoise;
+    use crate::statistics::DeclaredNoise;
 
     const STIFFNESS: f64 = 327.65;
 
@@ -377,8 +377,7 @@ mod tests {
             integrator: Integrator::Tangent,
             operator_stiffness: STIFFNESS,
             i_modification: false,
-            force_noise: 0.0,
-            resolution: 0.0,
+            noise: DeclaredNoise::NONE,
         }
     }
 
@@ -392,7 +391,7 @@ mod tests {
             vec![reading(0.0), reading(0.05)],
             None,
             STIFFNESS,
-            ReadingNoise::default(),
+            DeclaredNoise::NONE,
         )
         .unwrap()
     }

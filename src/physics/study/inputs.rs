@@ -88,22 +88,6 @@ impl Inputs {
         })
     }
 
-    /// Number of values of a run: one for each distribution, one for each column of a table.
-    #[must_use]
-    pub fn width(&self) -> usize {
-        let of_source = |source: &Source| match source {
-            Source::Distribution(_) => 1,
-            Source::Rows(rows) => rows[0].len(),
-        };
-        self.sources.iter().map(of_source).sum()
-    }
-
-    /// Number of independent numbers behind the values of a run.
-    #[must_use]
-    pub const fn sources(&self) -> usize {
-        self.sources.len()
-    }
-
     /// The values at a point in standard normal space, in the order of the sources; they replace those in `values`.
     pub fn at(&self, point: &[f64], values: &mut Vec<f64>) {
         values.clear();
@@ -196,7 +180,6 @@ mod tests {
         for design in [Design::Random, Design::Sobol { replicates: 16 }] {
             for pairs in [&[][..], &[pair]] {
                 let inputs = || Inputs::new(sources(), pairs, design, 42).unwrap();
-                assert_eq!(inputs().width(), 4);
                 assert_eq!(rows(&inputs(), 1000)[..300], rows(&inputs(), 300));
             }
         }

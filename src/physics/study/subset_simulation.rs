@@ -174,12 +174,6 @@ impl Progress {
         self.replicates.len() == self.simulation.replicates as usize
     }
 
-    /// The replicates that ended.
-    #[must_use]
-    pub fn replicates(&self) -> &[Replicate] {
-        &self.replicates
-    }
-
     /// Adds the response of the first pending point.
     ///
     /// # Panics

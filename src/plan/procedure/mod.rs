@@ -4,11 +4,8 @@
 pub(crate) mod known_steps;
 pub(crate) mod mode;
 pub(crate) mod stepping;
-pub(crate) mod structure;
 
-use crate::plan::{
-    Cycle, DampingSweep, Escalate, FrameUnload, Impact, Move, Shake, StiffnessRamp, Unload,
-};
+use crate::plan::{Cycle, DampingSweep, Escalate, Impact, Move, Shake, StiffnessRamp, Unload};
 pub(crate) use crate::procedures::base_excitation::data::parameters as base_excitation;
 pub(crate) use crate::procedures::cycle::data::parameters as cycle;
 pub(crate) use crate::procedures::damping_sweep::data::parameters as damping_sweep;
@@ -41,7 +38,6 @@ pub enum ProcedureKind {
     Shake(Shake),
     Cycle(Cycle),
     Unload(Unload),
-    FrameUnload(FrameUnload),
     Escalate(Escalate),
     Move(Move),
     /// The operator inspects the specimen.
@@ -60,7 +56,7 @@ impl ProcedureKind {
             Self::Impact(_) => "impact",
             Self::Shake(_) => "shake",
             Self::Cycle(_) => "cycle",
-            Self::Unload(_) | Self::FrameUnload(_) => "unload",
+            Self::Unload(_) => "unload",
             Self::Escalate(_) => "escalate",
             Self::Move(_) => "move",
             Self::Inspect { .. } => "inspect",
@@ -77,7 +73,6 @@ impl ProcedureKind {
             Self::Shake(shake) => Some(shake.specimen),
             Self::Cycle(cycle) => Some(cycle.specimen),
             Self::Unload(unload) => Some(unload.specimen),
-            Self::FrameUnload(unload) => Some(unload.specimen),
             Self::Escalate(series) => Some(series.impact.specimen),
             Self::Move(_) | Self::Inspect { .. } => None,
         }

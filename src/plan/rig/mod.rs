@@ -3,7 +3,6 @@
 
 pub(crate) mod axis;
 pub(crate) mod axis_names;
-pub(crate) mod declared_noise;
 pub(crate) mod devices;
 mod dialect;
 pub(crate) mod limits;

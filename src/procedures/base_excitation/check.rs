@@ -16,8 +16,6 @@ use crate::schema::procedures::SPECIMEN;
 use crate::schema::procedures::base_excitation as schema;
 
 pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
-    let declared = &checker.scope.blocks[block];
-    let head = declared.block.head;
     let ground = checker.reference(block, schema::GROUND.name, Kind::Ground);
     let specimen = checker.specimen_block(block);
     let damping = damping(checker, block);
@@ -32,9 +30,7 @@ pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
             tested.name.map_or("", |name| name.node.as_str()),
             tested.block.head,
         );
-        let at = checker
-            .field(block, SPECIMEN.name)
-            .map_or(head, |(_, entry)| entry.value.span);
+        let at = checker.value_or_head(block, SPECIMEN.name);
         return checker.fail(fault::no_storeys(name, at, declared));
     }
     Some(ProcedureKind::Shake(Shake {
@@ -126,10 +122,7 @@ pub(crate) fn check_declared(
     };
     let spacing = ground.spacing().0;
     if step > spacing * (1.0 + 1e-9) {
-        let head = checker.scope.blocks[block].block.head;
-        let at = checker
-            .field(block, methods::TIME_STEP.name)
-            .map_or(head, |(_, entry)| entry.value.span);
+        let at = checker.value_or_head(block, methods::TIME_STEP.name);
         checker.diagnostics.push(fault::record_finer_than_step(
             at,
             step,

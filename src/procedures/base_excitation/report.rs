@@ -2,7 +2,6 @@
 //! energy. In: a plan and a record. Out: blocks.
 
 use crate::physics::structure::{SymmetricBand, storeys_of, widen};
-use crate::plan::formula::ResultValue;
 use crate::plan::{Frame, Ground, Integrator, ProcedureKind, Shake, ShakeDamping};
 use crate::procedures::stepping::energy;
 use crate::record::{Floors, Modes, NamedResult, ProcedureRecord, ShakeHistory, UnloadStep};
@@ -177,9 +176,7 @@ pub(crate) fn storey_table<S: Floors>(
             .iter()
             .fold(0.0, |largest: f64, value| largest.max(value.abs()))
     };
-    let drift = procedure
-        .result(schema::MAX_DRIFT.name)
-        .map_or(&[][..], entries);
+    let drift = procedure.list(schema::MAX_DRIFT.name).unwrap_or_default();
     let cell = |kind: ResultKind, storey: usize| {
         procedure
             .result(kind.name)
@@ -227,17 +224,9 @@ pub(crate) fn storey_table<S: Floors>(
     })
 }
 
-/// The numbers of a list.
-fn entries(result: &NamedResult) -> &[f64] {
-    match &result.value {
-        ResultValue::List(values) => values,
-        ResultValue::Number { .. } => &[],
-    }
-}
-
 /// An entry of a list with its standard uncertainty where it has one, marked where that is not sure; else in the unit of the largest.
 pub(crate) fn entry(result: &NamedResult, index: usize) -> Text {
-    let values = entries(result);
+    let values = result.value.list().unwrap_or_default();
     let Some(value) = values.get(index) else {
         return "—".into();
     };

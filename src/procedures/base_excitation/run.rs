@@ -7,6 +7,7 @@ use super::setting::Setting;
 use super::steps::Shaking;
 use super::uncertainty::{self, ShakeUncertainty};
 use crate::plan::{Plan, Shake};
+use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::stepping::energy::observe_imbalance;
 use crate::procedures::stepping::frame_uncertainty::FrameUncertainty;
 use crate::procedures::stepping::run::{FrameSteps, above_critical, frame_of};
@@ -59,7 +60,12 @@ pub(crate) fn perform(
         if summary.is_some() {
             observe_imbalance(shaking.summary.energy_error(), session);
         }
-        let uncertainty = FrameUncertainty::of_shake(plan, whole, inputs, session);
+        let uncertainty = FrameUncertainty::new(
+            UncertainRun::new(whole, inputs, session.guard.declared_noise()),
+            plan.specimen,
+            (&plan.damping, plan.damping_uncertainty),
+            &plan.stepping,
+        );
         stop = session.evaluate_uncertainty(|progress| {
             let shake = ShakeUncertainty {
                 uncertainty: &uncertainty,

@@ -40,7 +40,7 @@ impl Shaking<'_> {
         } = self;
         let matrices = &setting.frame.properties.matrices;
         step_loop::run(
-            setting.frame.steps.pace(),
+            &setting.frame.steps,
             &plan.stepping,
             followed,
             session,

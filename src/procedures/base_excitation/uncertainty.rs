@@ -96,7 +96,14 @@ pub(crate) fn propagate(
     );
     give(
         &layout,
-        uncertainty.contributions(&evaluate, sources, history.steps.len(), reported, progress)?,
+        uncertainty.run.contributions(
+            &evaluate,
+            floors,
+            sources,
+            history.steps.len(),
+            reported,
+            progress,
+        )?,
         results,
     );
     Ok(())
@@ -161,7 +168,7 @@ impl Evaluate for RecordedShake<'_, '_> {
             uncertainty.moved_frame(shifts)?,
             uncertainty.moved_damping(shifts),
         );
-        let (properties, scale) = uncertainty.with_inputs(shifts, &mut |inputs| {
+        let (properties, scale) = uncertainty.run.with_inputs(shifts, &mut |inputs| {
             let properties = stepping::run::properties(&frame, &damping, inputs)?;
             Ok((
                 properties,
@@ -177,7 +184,7 @@ impl Evaluate for RecordedShake<'_, '_> {
         let periods = properties.modes.periods.clone();
         let run = FrameRun {
             matrices: properties.matrices,
-            ..uncertainty.run(&setting.frame)
+            ..uncertainty.frame_run(&setting.frame)
         };
         Ok(Inputs {
             run,

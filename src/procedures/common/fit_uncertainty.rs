@@ -160,16 +160,9 @@ fn split(parts: &mut Vec<Contribution>, procedure: ProcedureId, shown: f64) {
 /// The error that all readings have in common from their resolution, q/√12. It affects the forces that a zero error shifts, but not
 /// slopes and differences. A displacement error e is equivalent to a force error −K·e.
 fn in_common(errors: ReadingErrors, procedure: ProcedureId, results: &mut [NamedResult]) {
-    let stiffness = match results
-        .iter()
-        .find(|result| result.name == ramp::STIFFNESS.name)
-        .map(|result| &result.value)
-    {
-        Some(ResultValue::Number {
-            value: Some(stiffness),
-            ..
-        }) => *stiffness,
-        _ => return,
+    let found = NamedResult::of(results, ramp::STIFFNESS.name);
+    let Some(stiffness) = found.and_then(|result| result.value.number()) else {
+        return;
     };
     let [force, displacement] = errors.quantization();
     let amount = force.hypot(stiffness * displacement);
@@ -178,11 +171,7 @@ fn in_common(errors: ReadingErrors, procedure: ProcedureId, results: &mut [Named
         .iter_mut()
         .filter(|result| amount > 0.0 && SHIFTED.contains(&result.name))
     {
-        let entries = match &result.value {
-            ResultValue::Number { value: Some(_), .. } => 1,
-            ResultValue::Number { value: None, .. } => 0,
-            ResultValue::List(values) => values.len(),
-        };
+        let entries = result.value.values().len();
         let part = |entry| Contribution {
             entry,
             ..Contribution::new(source, amount)

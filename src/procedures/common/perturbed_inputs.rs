@@ -1,17 +1,92 @@
-//! Inputs with some of their sources perturbed, for every procedure that is re-integrated. In: formulas, results, perturbed sources. Out:
-//! the uncertain sources of the formulas, and results with those sources perturbed.
+//! A run whose inputs are perturbed, for every procedure that is re-integrated. In: formulas, results, perturbed sources. Out: the
+//! uncertain sources of the formulas, inputs with those sources perturbed, contributions.
 
-use crate::plan::formula::{Formula, Results};
+use crate::plan::formula::{Formula, ProcedureId, Results};
+use crate::plan::{DeclaredNoise, Plan};
+use crate::run::inputs::Inputs;
 use crate::run::stop::Stop;
-use crate::uncertainty::engine::Shifts;
-use crate::uncertainty::{Moved, Source, sources_of};
+use crate::uncertainty::engine::{Contributions, Evaluate, Progress, Propagation, Shifts, Unknown};
+use crate::uncertainty::{InstrumentUncertainty, Moved, Source, sources_of};
 
 /// The reason why no uncertainty of a run is reported.
 pub(crate) const LEADS_ELSEWHERE: &str =
     "re-integration along the recorded path does not reproduce the recorded results";
 
+/// A run of a procedure whose results are uncertain.
+#[derive(Clone, Copy)]
+pub(crate) struct UncertainRun<'run> {
+    pub whole: &'run Plan,
+    pub results: &'run dyn Results,
+    pub procedure: ProcedureId,
+    pub noise: DeclaredNoise,
+    /// The amount by which its damping ratio was raised to zero.
+    lift: f64,
+    /// Index of the impact in the procedure, from 0: each impact has its own errors.
+    pub impact: u16,
+}
+
+impl<'run> UncertainRun<'run> {
+    pub(crate) fn new(whole: &'run Plan, inputs: &Inputs<'run>, noise: DeclaredNoise) -> Self {
+        Self {
+            whole,
+            results: inputs.results(),
+            procedure: inputs.procedure(),
+            noise,
+            lift: inputs.lift(),
+            impact: 0,
+        }
+    }
+
+    /// For a later impact of the same procedure, counted from 0.
+    pub(crate) fn of_impact(self, index: usize) -> Self {
+        Self {
+            impact: u16::try_from(index).unwrap_or(u16::MAX),
+            ..self
+        }
+    }
+
+    /// The instruments on so many axes.
+    pub(crate) fn instruments(&self, axes: usize) -> InstrumentUncertainty {
+        InstrumentUncertainty::of(self.whole, self.noise, axes)
+    }
+
+    /// Calls with inputs that evaluate results with the sources perturbed.
+    pub(crate) fn with_inputs<T>(
+        &self,
+        shifts: Shifts<'_>,
+        then: &mut dyn FnMut(&mut Inputs<'_>) -> Result<T, Stop>,
+    ) -> Result<T, String> {
+        with_shifts(self.results, shifts, &mut |results| {
+            then(&mut Inputs::moved(results, self.procedure, self.lift))
+        })
+        .map_err(|stop| out_of_bounds(&stop))
+    }
+
+    /// Contributions of the inputs and of the instruments on so many `axes` to the `reported` values, for a run of so many recorded steps.
+    pub(crate) fn contributions<P: Evaluate>(
+        &self,
+        evaluate: &P,
+        axes: usize,
+        inputs: Vec<Source>,
+        steps: usize,
+        reported: Vec<f64>,
+        progress: Progress<'_, Stop>,
+    ) -> Result<Contributions, Unknown<Stop>> {
+        let propagation = Propagation {
+            procedure: self.procedure,
+            impact: self.impact,
+            evaluate,
+            instruments: &self.instruments(axes),
+            inputs,
+            steps: (steps * axes) as u64,
+            reported: Some(reported),
+        };
+        propagation.contributions(progress)
+    }
+}
+
 /// Calls with results that have sources perturbed.
-pub(crate) fn with_shifts<T>(
+fn with_shifts<T>(
     results: &dyn Results,
     shifts: Shifts<'_>,
     then: &mut dyn FnMut(&dyn Results) -> T,

@@ -4,57 +4,65 @@ use crate::plan::formula::ResultValue;
 use crate::record::NamedResult;
 use crate::schema::ResultKind;
 use crate::uncertainty::{Contribution, Source, combined};
-use crate::units::Dimension;
 
 impl ResultKind {
     /// This result without uncertainty; None if it does not exist in this run.
     pub(crate) fn found(self, value: Option<f64>) -> NamedResult {
-        result(self.name, self.dimension, value)
+        self.found_with(value.map(|value| (value, None)))
+    }
+
+    /// This result with its standard uncertainty, if it has one.
+    pub(crate) fn found_with(self, value: Option<(f64, Option<f64>)>) -> NamedResult {
+        let value = value.filter(|(value, _)| value.is_finite());
+        let uncertainty = value
+            .and_then(|(_, uncertainty)| uncertainty)
+            .filter(|uncertainty| uncertainty.is_finite());
+        self.holding(ResultValue::Number {
+            value: value.map(|(value, _)| value),
+            uncertainty,
+        })
+    }
+
+    /// This result with the uncertainty that its contributions combine to.
+    pub(crate) fn found_by(
+        self,
+        value: Option<f64>,
+        contributions: Vec<Contribution>,
+    ) -> NamedResult {
+        let result = self.found_with(value.map(|value| (value, combined(&contributions))));
+        NamedResult {
+            contributions,
+            ..result
+        }
     }
 
     /// This result as a list; None if it does not exist in this run.
     pub(crate) fn found_list(self, values: Option<Vec<f64>>) -> NamedResult {
         match values {
-            Some(values) => NamedResult {
-                name: self.name,
-                value: ResultValue::List(values),
-                dimension: self.dimension,
-                contributions: Vec::new(),
-            },
+            Some(values) => self.holding(ResultValue::List(values)),
             None => self.found(None),
         }
     }
 
-    /// This result with its standard uncertainty, if it has one.
-    pub(crate) fn found_with(self, value: Option<(f64, Option<f64>)>) -> NamedResult {
-        measured(self.name, self.dimension, value)
+    /// This result as a list with the contributions to its entries.
+    pub(crate) fn found_list_by(
+        self,
+        values: Option<Vec<f64>>,
+        contributions: Vec<Contribution>,
+    ) -> NamedResult {
+        NamedResult {
+            contributions,
+            ..self.found_list(values)
+        }
     }
-}
 
-/// A result without uncertainty; None if it does not exist in this run.
-pub(crate) fn result(name: &'static str, dimension: Dimension, value: Option<f64>) -> NamedResult {
-    measured(name, dimension, value.map(|value| (value, None)))
-}
-
-/// A result and its standard uncertainty, if it has one.
-pub(crate) fn measured(
-    name: &'static str,
-    dimension: Dimension,
-    value: Option<(f64, Option<f64>)>,
-) -> NamedResult {
-    let value = value.filter(|(value, _)| value.is_finite());
-    let uncertainty = value
-        .and_then(|(_, uncertainty)| uncertainty)
-        .filter(|uncertainty| uncertainty.is_finite());
-    let value = ResultValue::Number {
-        value: value.map(|(value, _)| value),
-        uncertainty,
-    };
-    NamedResult {
-        name,
-        value,
-        dimension,
-        contributions: Vec::new(),
+    const fn holding(self, value: ResultValue) -> NamedResult {
+        NamedResult {
+            name: self.name,
+            value,
+            dimension: self.dimension,
+            contributions: Vec::new(),
+        }
     }
 }
 
@@ -111,17 +119,11 @@ pub(crate) type Layout = Vec<(&'static str, usize)>;
 /// The values of a layout, as results have them; NaN if one does not exist.
 pub(crate) fn values(layout: &[(&'static str, usize)], results: &[NamedResult]) -> Vec<f64> {
     let of_result = |(name, count): &(&'static str, usize)| {
-        let values = match results
-            .iter()
-            .find(|result| result.name == *name)
-            .map(|result| &result.value)
-        {
-            Some(ResultValue::List(values)) => values.clone(),
-            Some(ResultValue::Number { value, .. }) => value.iter().copied().collect(),
-            None => Vec::new(),
-        };
+        let found = NamedResult::of(results, name);
+        let values = found.map_or(&[][..], |result| result.value.values());
         values
-            .into_iter()
+            .iter()
+            .copied()
             .chain(std::iter::repeat(f64::NAN))
             .take(*count)
             .collect::<Vec<f64>>()

@@ -76,7 +76,7 @@ pub(crate) fn loops(history: &CycleHistory) -> Chart {
             style: Style::line(palette::VERMILION, 2.0, SOLID),
         });
     }
-    on_axes(
+    Chart::of(
         Quantity::along("Displacement X", Dimension::LENGTH),
         Quantity::of("Restoring force R", Dimension::FORCE),
         series,
@@ -108,26 +108,20 @@ pub(crate) fn backbone(history: &CycleHistory) -> Chart {
         // A fitted curve is drawn as the line through them.
         style: match history.backbone {
             Some(_) => Style::marker(palette::BLUE, Marker::Disc(3.6)),
-            None => Style {
-                marker: Some(Marker::Disc(3.6)),
-                ..Style::line(palette::BLUE, 1.8, SOLID)
-            },
+            None => Style::line(palette::BLUE, 1.8, SOLID).marked(Marker::Disc(3.6)),
         },
     }];
     if repeated {
         series.push(Series {
             label: "last cycle of each amplitude".to_owned(),
             points: envelope(&mut last),
-            style: Style {
-                marker: Some(Marker::Ring(4.2)),
-                ..Style::line(palette::VERMILION, 1.4, DASHED)
-            },
+            style: Style::line(palette::VERMILION, 1.4, DASHED).marked(Marker::Ring(4.2)),
         });
     }
     if let Some(fit) = &history.backbone {
         series.extend(sides(fit, history));
     }
-    on_axes(
+    Chart::of(
         Quantity::along("Displacement X", Dimension::LENGTH),
         Quantity::of("Restoring force R", Dimension::FORCE),
         series,
@@ -199,13 +193,10 @@ pub(crate) fn energy(history: &CycleHistory) -> Chart {
         Series {
             label: "each cycle".to_owned(),
             points: each,
-            style: Style {
-                marker: Some(Marker::Disc(3.6)),
-                ..Style::line(palette::BLUE, 1.4, SOLID)
-            },
+            style: Style::line(palette::BLUE, 1.4, SOLID).marked(Marker::Disc(3.6)),
         },
     ];
-    on_axes(
+    Chart::of(
         Quantity::along("Cycle", Dimension::NUMBER),
         Quantity::of("Energy", Dimension::ENERGY),
         series,
@@ -219,16 +210,13 @@ pub(crate) fn stiffness(history: &CycleHistory) -> Chart {
         .iter()
         .filter_map(|cycle| Some((number(cycle), cycle.found.stiffness?)))
         .collect();
-    let style = Style {
-        marker: Some(Marker::Disc(3.6)),
-        ..Style::line(palette::BLUE, 1.4, SOLID)
-    };
+    let style = Style::line(palette::BLUE, 1.4, SOLID).marked(Marker::Disc(3.6));
     let series = vec![Series {
         label: "secant stiffness".to_owned(),
         points,
         style,
     }];
-    on_axes(
+    Chart::of(
         Quantity::along("Cycle", Dimension::NUMBER),
         Quantity::of("Secant stiffness", Dimension::STIFFNESS),
         series,
@@ -238,14 +226,4 @@ pub(crate) fn stiffness(history: &CycleHistory) -> Chart {
 #[expect(clippy::cast_precision_loss, reason = "far fewer cycles than 2^53")]
 fn number(cycle: &WholeCycle) -> f64 {
     cycle.cycle as f64
-}
-
-fn on_axes(x: Quantity, y: Quantity, series: Vec<Series>) -> Chart {
-    Chart {
-        x,
-        y,
-        bands: Vec::new(),
-        series,
-        references: Vec::new(),
-    }
 }

@@ -1,7 +1,6 @@
 //! The results of displacement cycles. In: the recorded loops. Out: results in the order of the reference.
 
 use crate::physics::statistics::noisy_largest::NoisyLargest;
-use crate::plan::formula::ResultValue;
 use crate::procedures::stiffness_ramp::curve;
 use crate::record::{CycleHistory, NamedResult, WholeCycle};
 use crate::schema::ResultKind;
@@ -17,11 +16,8 @@ pub(crate) fn results(history: &CycleHistory, noise: f64) -> Vec<NamedResult> {
         )
         .value()
     };
-    let list = |kind: ResultKind, read: fn(&WholeCycle) -> f64| NamedResult {
-        name: kind.name,
-        value: ResultValue::List(cycles.iter().map(read).collect()),
-        dimension: kind.dimension,
-        contributions: Vec::new(),
+    let list = |kind: ResultKind, read: fn(&WholeCycle) -> f64| {
+        kind.found_list(Some(cycles.iter().map(read).collect()))
     };
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_TARGETS")]
     let count = cycles.len() as f64;

@@ -13,7 +13,7 @@ use crate::record::{CycleHistory, CycleStep, EventKind, History, WholeCycle};
 use crate::rig::RigFault;
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
-use crate::run::session::{Session, StepReading, first};
+use crate::run::session::{Session, first};
 use crate::run::stop::Stop;
 use crate::schema::procedures::cycle as schema;
 use crate::uncertainty::InstrumentUncertainty;
@@ -354,12 +354,11 @@ impl Cycling {
 
     fn take(&mut self, reading: &TargetReading, session: &mut Session<'_>) -> Result<(), Stop> {
         let step = self.keep(reading);
-        session.measured(&StepReading {
+        session.measured(
             step,
-            time: reading.wall_time,
-            displacement: reading.displacement,
-            force: reading.restoring_force,
-        })
+            reading.wall_time,
+            (reading.displacement, reading.restoring_force),
+        )
     }
 
     /// Records a step and returns its number.

@@ -28,7 +28,7 @@ use crate::record::{
 };
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
-use crate::run::session::{Session, StepReading, first};
+use crate::run::session::{Session, first};
 use crate::run::stop::Stop;
 use crate::schema::procedures::damping_sweep as schema;
 use crate::uncertainty::InstrumentUncertainty;
@@ -75,15 +75,10 @@ pub(crate) fn perform(
     let stiffness = findings
         .stiffness
         .map_or_else(|| sweep.planned(), |(stiffness, _)| stiffness);
-    let of_history = |pair: &OutAndBack| {
-        (
-            (pair.velocity, pair.damping_force(stiffness)),
-            [pair.displacement, pair.mean],
-        )
-    };
-    let (pairs, middles): (Vec<(f64, f64)>, Vec<[f64; 2]>) = kept()
+    let of_history = |pair: &OutAndBack| (pair.velocity, pair.damping_force(stiffness));
+    let pairs: Vec<(f64, f64)> = kept()
         .flat_map(|(_, pairs)| pairs.iter().map(of_history))
-        .unzip();
+        .collect();
     let together = BroughtTogether {
         stiffness,
         error: findings.stiffness.map(|(_, error)| error),
@@ -122,7 +117,6 @@ pub(crate) fn perform(
             .get(plan.specimen)
             .map(|specimen| specimen.mass),
     );
-    let stiffness = sweep.stiffness.map(|stiffness| stiffness.value);
     let own_stiffness = if let RatioOf::Strokes(own) = findings.ratio_of {
         Some(own)
     } else {
@@ -131,8 +125,6 @@ pub(crate) fn perform(
     let history = SweepHistory {
         steps: sweep.steps,
         pairs,
-        middles,
-        stiffness,
         together,
         own_stiffness,
         fit,
@@ -341,12 +333,7 @@ impl Sweep {
                 steady: steady_from <= passed && passed <= 1.0 - END,
             });
             if sample as usize <= whole {
-                session.measured(&StepReading {
-                    step,
-                    time: reading.time,
-                    displacement,
-                    force: restoring_force,
-                })?;
+                session.measured(step, reading.time, (displacement, restoring_force))?;
             }
         }
         traversed

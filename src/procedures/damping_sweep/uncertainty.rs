@@ -1,7 +1,7 @@
 //! The uncertainty of the results of a damping sweep. In: the fit of its strokes, the stiffness that corrected them. Out: the
 //! contributions to the damping, the friction and the damping ratio.
 
-use crate::plan::formula::{Formula, ResultValue};
+use crate::plan::formula::Formula;
 use crate::plan::{DampingSweep, DeclaredNoise, Plan};
 use crate::procedures::common::fit_uncertainty::{Fits, attribute};
 use crate::record::{BroughtTogether, NamedResult, SweepHistory};
@@ -67,7 +67,7 @@ fn of_stroke_stiffness(
         let Some(result) = results.iter_mut().find(|result| result.name == name) else {
             continue;
         };
-        if matches!(result.value, ResultValue::Number { value: Some(_), .. }) {
+        if result.value.number().is_some() {
             let parts = in_stiffness
                 .iter()
                 .map(|part| Contribution::new(part.source, effect * part.amount));
@@ -87,10 +87,7 @@ fn damping_ratio(
     mass: (Source, f64),
     inputs: &Inputs<'_>,
 ) {
-    let number = |name: &str| match results.iter().find(|result| result.name == name)?.value {
-        ResultValue::Number { value, .. } => value,
-        ResultValue::List(_) => None,
-    };
+    let number = |name: &str| NamedResult::of(results, name)?.value.number();
     let (Some(ratio), Some(damping)) = (
         number(schema::DAMPING_RATIO.name),
         number(schema::DAMPING.name),
@@ -117,11 +114,8 @@ fn damping_ratio(
         };
         (known.value, in_stiffness)
     };
-    let of_damping = results
-        .iter()
-        .find(|result| result.name == schema::DAMPING.name)
-        .map(|found| found.contributions.clone());
-    let mut parts: Vec<Contribution> = of_damping.unwrap_or_default();
+    let of_damping = NamedResult::of(results, schema::DAMPING.name);
+    let mut parts = of_damping.map_or_else(Vec::new, |found| found.contributions.clone());
     for part in &mut parts {
         part.amount *= ratio / damping;
     }

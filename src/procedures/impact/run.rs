@@ -12,6 +12,7 @@ use super::uncertainty::storey::{self, StoreyRecord};
 use crate::physics::impact::{FrameImpactSolver, ImpactSetup, ImpactSolver};
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::plan::{Impact, ImpactTarget, Plan, StoreyTarget};
+use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::stepping::frame_uncertainty::FrameUncertainty;
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::run::{FrameSteps, above_critical};
@@ -69,23 +70,26 @@ impl<'a> UncertaintyInputs<'a> {
         inputs: &Inputs<'a>,
         session: &Session<'_>,
     ) -> Self {
+        let run = UncertainRun::new(whole, inputs, session.guard.declared_noise());
         match &plan.target {
-            ImpactTarget::Point(point) => {
-                let noise = session.guard.declared_noise();
-                Self::Point(ImpactUncertainty::new(plan, point, whole, inputs, noise))
-            }
-            ImpactTarget::Storey(storey) => Self::Storey(FrameUncertainty::of_impact(
-                plan, storey, whole, inputs, session,
+            ImpactTarget::Point(point) => Self::Point(ImpactUncertainty { run, plan, point }),
+            ImpactTarget::Storey(storey) => Self::Storey(FrameUncertainty::new(
+                run,
+                plan.specimen,
+                (&storey.damping, storey.damping_uncertainty),
+                &plan.stepping,
             )),
         }
     }
 
     /// Those of impact number `index` of a series, from 0.
-    pub(crate) fn of_impact(self, index: usize) -> Self {
-        match self {
-            Self::Point(point) => Self::Point(point.of_impact(index)),
-            Self::Storey(storey) => Self::Storey(storey.of_impact_number(index)),
-        }
+    pub(crate) fn of_impact(mut self, index: usize) -> Self {
+        let run = match &mut self {
+            Self::Point(ImpactUncertainty { run, .. })
+            | Self::Storey(FrameUncertainty { run, .. }) => run,
+        };
+        *run = run.of_impact(index);
+        self
     }
 }
 
@@ -112,7 +116,7 @@ pub(crate) fn strike(
     let mut kept = Kept::new(summary, setting.steps().count);
     let order = ImpactSteps {
         stepping: &plan.stepping,
-        pace: setting.steps().pace(),
+        steps: setting.steps(),
         until: plan.until,
         before,
     };

@@ -2,13 +2,14 @@
 //! each inside its domain, and the steps that they lead to. It moves nothing.
 
 use super::contact;
+use crate::physics::contact::ContactLaw;
 use crate::physics::contact::contact_time_step::Approach;
 use crate::physics::impact::ImpactInput;
 use crate::physics::integrator::stability::{Met, longest_stable_step};
 use crate::physics::structure::Matrices;
 use crate::plan::formula::Estimate;
 use crate::plan::{
-    Frame, Impact, ImpactTarget, Plan, PointTarget, StoreyTarget, Striker, Structure,
+    Frame, Impact, ImpactTarget, Plan, PointTarget, Stepping, StoreyTarget, Striker,
 };
 use crate::procedures::stepping;
 use crate::procedures::stepping::run::{FrameSteps, Steps, Times, frame_of, stable};
@@ -37,6 +38,37 @@ pub(crate) enum StruckStructure {
     Point(Steps),
     /// A frame, one floor of which is struck.
     Storey(Box<FrameSteps>),
+}
+
+/// One struck degree of freedom.
+struct Struck {
+    matrices: Matrices<f64>,
+    /// `K_I` of α-OS and of the I-modification \[N/m\].
+    operator_stiffness: f64,
+    law: ContactLaw,
+    noise: DeclaredNoise,
+}
+
+impl Struck {
+    /// The impact of a striker of the plan on it, by the integrator of the plan.
+    const fn by(&self, striker: &Striker, stepping: &Stepping, steps: &Steps) -> ImpactInput {
+        ImpactInput {
+            mass: self.matrices.mass,
+            damping: self.matrices.damping,
+            stiffness: self.matrices.stiffness,
+            striker_mass: striker.mass,
+            striker_velocity: striker.velocity,
+            gap: striker.gap,
+            gravity: striker.gravity,
+            time_step: steps.time_step,
+            max_tangent_ratio: steps.max_tangent_ratio,
+            law: self.law,
+            integrator: stepping.integrator,
+            operator_stiffness: self.operator_stiffness,
+            i_modification: stepping.i_modification,
+            noise: self.noise,
+        }
+    }
 }
 
 impl Setting {
@@ -93,31 +125,21 @@ impl Setting {
             inputs,
         )?;
         // `check` cannot know the stability limit where the stiffness is a result of an earlier procedure.
-        let limit = longest_stable_step(
-            plan.stepping.integrator,
-            &Met::one(
-                &Matrices {
-                    mass,
-                    damping,
-                    stiffness,
-                },
-                stiffness,
-            ),
-        );
-        stable(&plan.stepping, time_step, limit)?;
-        let structure = Structure {
+        let matrices = Matrices {
             mass,
             damping,
             stiffness,
+        };
+        let limit = longest_stable_step(plan.stepping.integrator, &Met::one(&matrices, stiffness));
+        stable(&plan.stepping, time_step, limit)?;
+        let structure = Struck {
+            matrices,
             operator_stiffness,
             law,
-            time_step,
-            max_tangent_ratio: steps.max_tangent_ratio,
-            force_noise: noise.force,
-            resolution: noise.resolution,
+            noise,
         };
         Ok(Self {
-            input: structure.struck_by(striker, &plan.stepping),
+            input: structure.by(striker, &plan.stepping, &steps),
             approach,
             fastest: striker.velocity,
             structure: StruckStructure::Point(steps),
@@ -148,19 +170,18 @@ impl Setting {
         let frame_steps = FrameSteps::evaluate(properties, &plan.stepping, times, inputs)?;
         let noise = session.guard.declared_noise();
         let stiffness = frame.stiffness[target.storey][target.storey];
-        let floor = Structure {
-            mass: frame_steps.properties.struck_mass(target.storey),
-            damping: 0.0,
-            stiffness,
+        let floor = Struck {
+            matrices: Matrices {
+                mass: frame_steps.properties.struck_mass(target.storey),
+                damping: 0.0,
+                stiffness,
+            },
             operator_stiffness: stiffness,
             law,
-            time_step,
-            max_tangent_ratio: frame_steps.steps.max_tangent_ratio,
-            force_noise: noise.force,
-            resolution: noise.resolution,
+            noise,
         };
         Ok(Self {
-            input: floor.struck_by(striker, &plan.stepping),
+            input: floor.by(striker, &plan.stepping, &frame_steps.steps),
             approach,
             fastest: striker.velocity,
             structure: StruckStructure::Storey(Box::new(frame_steps)),

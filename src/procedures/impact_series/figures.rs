@@ -35,7 +35,7 @@ pub(crate) fn chart(
     history: &EscalateHistory,
     kind: FigureKind,
 ) -> Option<(Chart, String)> {
-    let struck = |impact: &SeriesImpact| !impact.impact().steps.is_empty();
+    let struck = |impact: &SeriesImpact| !impact.history.steps.is_empty();
     if !history.impacts.iter().any(struck) {
         return None;
     }
@@ -140,18 +140,12 @@ pub(crate) fn impact_series(history: &EscalateHistory) -> Chart {
         Series {
             label: "largest displacement".to_owned(),
             points: peaks,
-            style: Style {
-                marker: Some(Marker::Disc(3.6)),
-                ..Style::line(palette::BLUE, 1.6, SOLID)
-            },
+            style: Style::line(palette::BLUE, 1.6, SOLID).marked(Marker::Disc(3.6)),
         },
         Series {
             label: "position after it".to_owned(),
             points: rests,
-            style: Style {
-                marker: Some(Marker::Ring(4.0)),
-                ..Style::line(palette::GREEN, 1.4, DASHED)
-            },
+            style: Style::line(palette::GREEN, 1.4, DASHED).marked(Marker::Ring(4.0)),
         },
     ];
     if !failed.is_empty() {
@@ -161,16 +155,14 @@ pub(crate) fn impact_series(history: &EscalateHistory) -> Chart {
             style: Style::marker(palette::VERMILION, Marker::Ring(7.0)),
         });
     }
-    Chart {
-        x: Quantity::along("Energy of the impact", Dimension::ENERGY),
-        y: Quantity {
+    Chart::of(
+        Quantity::along("Energy of the impact", Dimension::ENERGY),
+        Quantity {
             name: displaced(history),
             ..Quantity::of("", Dimension::LENGTH)
         },
-        bands: Vec::new(),
         series,
-        references: Vec::new(),
-    }
+    )
 }
 
 /// Largest drift of each storey, and the drift after the impact, against its energy.
@@ -197,14 +189,8 @@ pub(crate) fn drift(history: &EscalateHistory) -> Chart {
         .enumerate()
         .flat_map(|(curve, storey)| {
             let colour = base_excitation::figures::charts::style(curve, 1.6).colour;
-            let peak = Style {
-                marker: Some(Marker::Disc(3.2)),
-                ..Style::line(colour, 1.6, SOLID)
-            };
-            let rest = Style {
-                marker: Some(Marker::Ring(3.6)),
-                ..Style::line(colour, 1.4, DASHED)
-            };
+            let peak = Style::line(colour, 1.6, SOLID).marked(Marker::Disc(3.2));
+            let rest = Style::line(colour, 1.4, DASHED).marked(Marker::Ring(3.6));
             [
                 Series {
                     label: format!("storey {}, largest", storey + 1),
@@ -218,13 +204,11 @@ pub(crate) fn drift(history: &EscalateHistory) -> Chart {
                 },
             ]
         });
-    Chart {
-        x: Quantity::along("Energy of the impact", Dimension::ENERGY),
-        y: Quantity::of("Drift", Dimension::LENGTH),
-        bands: Vec::new(),
-        series: series.collect(),
-        references: Vec::new(),
-    }
+    Chart::of(
+        Quantity::along("Energy of the impact", Dimension::ENERGY),
+        Quantity::of("Drift", Dimension::LENGTH),
+        series.collect(),
+    )
 }
 
 /// The name of the displacement: that of the specimen, or of the struck floor.
@@ -262,20 +246,14 @@ fn over_each_other(
             } else {
                 String::new()
             },
-            points: impact.impact().steps.iter().map(&of).collect(),
+            points: impact.history.steps.iter().map(&of).collect(),
             style: if index == last {
                 Style::line(palette::VERMILION, 2.0, DASHED)
             } else {
                 Style::line(shade(index, last), 1.5, SOLID)
             },
         });
-    Chart {
-        x,
-        y,
-        bands: Vec::new(),
-        series: series.collect(),
-        references: Vec::new(),
-    }
+    Chart::of(x, y, series.collect())
 }
 
 fn energy(impact: &SeriesImpact) -> String {

@@ -1,6 +1,5 @@
 //! The impacts of a series, one row each, and the storeys of a frame. In: plan and history. Out: blocks.
 
-use crate::plan::formula::ResultValue;
 use crate::plan::{Frame, Impact, ProcedureKind, StoreyTarget};
 use crate::procedures::base_excitation;
 use crate::record::{EscalateHistory, ImpactHistory, ProcedureRecord, SeriesImpact, StruckFrame};
@@ -105,10 +104,7 @@ fn struck(
 
 /// The largest drift of each storey over all impacts, the drift after the last, and the energy.
 fn storeys(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Block {
-    let list = |kind: ResultKind| match procedure.result(kind.name).map(|result| &result.value) {
-        Some(ResultValue::List(values)) => values.as_slice(),
-        _ => &[],
-    };
+    let list = |kind: ResultKind| procedure.list(kind.name).unwrap_or_default();
     let left = if procedure.result(schema::RESIDUAL_DRIFT.name).is_some() {
         schema::RESIDUAL_DRIFT
     } else {

@@ -5,7 +5,7 @@ use crate::plan::Between;
 use crate::record::{EscalateHistory, NamedResult, SeriesImpact};
 use crate::schema::ResultKind;
 use crate::schema::procedures::{impact, impact_series as schema};
-use crate::uncertainty::{Contribution, Source, combined, share};
+use crate::uncertainty::{Contribution, Source, share};
 
 /// In the order of the reference.
 pub(crate) fn results(history: &EscalateHistory, between: Between) -> Vec<NamedResult> {
@@ -52,11 +52,11 @@ fn of_series(impacts: &[SeriesImpact], left: &Left) -> Vec<NamedResult> {
             .filter(|impact| held.is_none() || impact.held == held)
             .count() as f64
     };
-    let energy = |kind, impact: Option<&SeriesImpact>, without: Option<f64>| {
+    let energy = |kind: ResultKind, impact: Option<&SeriesImpact>, without: Option<f64>| {
         let parts = impact.map_or_else(Vec::new, |impact| {
             contributions(impact, impact::STRIKER_ENERGY)
         });
-        number(kind, impact.map(|impact| impact.energy).or(without), parts)
+        kind.found_by(impact.map(|impact| impact.energy).or(without), parts)
     };
     let passed = impacts
         .iter()
@@ -79,13 +79,11 @@ fn of_series(impacts: &[SeriesImpact], left: &Left) -> Vec<NamedResult> {
         energy(schema::LAST_PASSED_ENERGY, passed, nothing),
         energy(schema::FIRST_FAILED_ENERGY, failed, None),
         largest(impacts, schema::MAX_DISPLACEMENT, impact::MAX_DISPLACEMENT),
-        number(
-            left.displacement,
+        left.displacement.found_by(
             last.and_then(position),
             last.map_or_else(Vec::new, contributions_to_position),
         ),
-        number(
-            schema::ABSORBED_ENERGY,
+        schema::ABSORBED_ENERGY.found_by(
             absorbed,
             contributions_to_sum(impacts, impact::ABSORBED_ENERGY),
         ),
@@ -96,38 +94,29 @@ fn of_series(impacts: &[SeriesImpact], left: &Left) -> Vec<NamedResult> {
 fn of_impacts(impacts: &[SeriesImpact], left: &Left) -> Vec<NamedResult> {
     let known = |kind: ResultKind, of_impact: ResultKind| {
         let parts = by_impact(impacts, |impact| contributions(impact, of_impact));
-        list(kind, of_each(impacts, of_impact), parts)
+        kind.found_list_by(Some(of_each(impacts, of_impact)), parts)
     };
     let rests = impacts
         .iter()
         .map(|impact| position(impact).unwrap_or(f64::NAN))
         .collect();
     vec![
-        list(
-            schema::VELOCITIES,
-            impacts.iter().map(|impact| impact.velocity).collect(),
+        schema::VELOCITIES.found_list_by(
+            Some(impacts.iter().map(|impact| impact.velocity).collect()),
             by_impact(impacts, contributions_to_velocity),
         ),
-        list(
-            schema::IMPACT_ENERGIES,
-            impacts.iter().map(|impact| impact.energy).collect(),
+        schema::IMPACT_ENERGIES.found_list_by(
+            Some(impacts.iter().map(|impact| impact.energy).collect()),
             by_impact(impacts, |impact| {
                 contributions(impact, impact::STRIKER_ENERGY)
             }),
         ),
         known(schema::MAX_DISPLACEMENTS, impact::MAX_DISPLACEMENT),
-        list(
-            left.displacements,
-            rests,
-            by_impact(impacts, contributions_to_position),
-        ),
+        left.displacements
+            .found_list_by(Some(rests), by_impact(impacts, contributions_to_position)),
         known(schema::ABSORBED_ENERGIES, impact::ABSORBED_ENERGY),
         known(schema::IMPULSES, impact::IMPULSE),
-        list(
-            schema::ENERGY_ERRORS,
-            of_each(impacts, impact::ENERGY_ERROR),
-            Vec::new(),
-        ),
+        schema::ENERGY_ERRORS.found_list(Some(of_each(impacts, impact::ENERGY_ERROR))),
     ]
 }
 
@@ -139,7 +128,7 @@ fn of_storeys(impacts: &[SeriesImpact], left: &Left) -> [NamedResult; 3] {
         .unwrap_or_default();
     [
         largest_of_storeys(impacts),
-        list(left.drift, drift, parts),
+        left.drift.found_list_by(Some(drift), parts),
         sum_of_storeys(impacts),
     ]
 }
@@ -216,7 +205,7 @@ fn largest_of_storeys(impacts: &[SeriesImpact]) -> NamedResult {
                 .filter(|part| part.entry == storey),
         );
     }
-    list(schema::MAX_DRIFT, values, parts)
+    schema::MAX_DRIFT.found_list_by(Some(values), parts)
 }
 
 /// The energy of each storey, summed over all impacts.
@@ -228,7 +217,7 @@ fn sum_of_storeys(impacts: &[SeriesImpact]) -> NamedResult {
         .map(<[f64]>::to_vec)
         .reduce(|sum, next| sum.iter().zip(next).map(|(sum, next)| sum + next).collect());
     let parts = contributions_to_sum(impacts, impact::STOREY_ENERGY);
-    list(schema::STOREY_ENERGY, sum.unwrap_or_default(), parts)
+    schema::STOREY_ENERGY.found_list_by(Some(sum.unwrap_or_default()), parts)
 }
 
 /// The largest value of a result over all impacts, with the uncertainty of its impact.
@@ -239,7 +228,7 @@ fn largest(impacts: &[SeriesImpact], kind: ResultKind, of_impact: ResultKind) ->
         .filter(|(value, _)| value.is_finite());
     let most = found.reduce(|most, next| if next.0 > most.0 { next } else { most });
     let parts = most.map_or_else(Vec::new, |(_, impact)| contributions(impact, of_impact));
-    number(kind, most.map(|(value, _)| value), parts)
+    kind.found_by(most.map(|(value, _)| value), parts)
 }
 
 /// The contributions to the sum of a result over all impacts: those from a shared source are added before they are squared.
@@ -255,33 +244,6 @@ fn contributions_to_sum(impacts: &[SeriesImpact], of_impact: ResultKind) -> Vec<
 }
 
 fn contributions(impact: &SeriesImpact, kind: ResultKind) -> Vec<Contribution> {
-    let found = impact
-        .results
-        .iter()
-        .find(|result| result.name == kind.name);
+    let found = impact.result(kind.name);
     found.map_or_else(Vec::new, |result| result.contributions.clone())
-}
-
-/// A number with the uncertainty that its contributions combine to.
-pub(crate) fn number(
-    kind: ResultKind,
-    value: Option<f64>,
-    contributions: Vec<Contribution>,
-) -> NamedResult {
-    let result = kind.found_with(value.map(|value| (value, combined(&contributions))));
-    NamedResult {
-        contributions,
-        ..result
-    }
-}
-
-pub(crate) fn list(
-    kind: ResultKind,
-    values: Vec<f64>,
-    contributions: Vec<Contribution>,
-) -> NamedResult {
-    NamedResult {
-        contributions,
-        ..kind.found_list(Some(values))
-    }
 }

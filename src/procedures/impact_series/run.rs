@@ -2,14 +2,14 @@
 //! the last one after which the condition held. Each decision follows from results, and they follow from logged readings.
 
 use super::repeated_impact::{RepeatedImpact, velocities};
-use super::results::{Left, list, number, results};
+use super::results::{Left, results};
 use crate::physics::structure::Unloading;
 use crate::plan::formula::{ProcedureId, ResultReference, ResultValue, Results};
 use crate::plan::{Between, Escalate, Plan};
+use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::impact::run::ImpactRun;
 use crate::procedures::stepping::run::above_critical;
 use crate::procedures::unload::run::{MOST_TARGETS, to_rest};
-use crate::procedures::unload::uncertainty::RestUncertainty;
 use crate::record::{EscalateHistory, EventKind, History, NamedResult, Rest, SeriesImpact};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
@@ -56,7 +56,7 @@ fn run(
         .transpose()?;
     above_critical(impact.steps(), session);
     let home = session.guard.commanded().to_vec();
-    let uncertainty = RestUncertainty::new(whole, inputs, session);
+    let uncertainty = UncertainRun::new(whole, inputs, session.guard.declared_noise());
     let mut done = 0;
     for (index, velocity) in velocities.iter().copied().enumerate() {
         let given = energies
@@ -158,14 +158,13 @@ fn as_brought(struck: &SeriesImpact, between: Between) -> Vec<NamedResult> {
     };
     let left = Left::of(between);
     let [parts, _] = struck.rest_contributions().unwrap_or_default();
-    let position = number(
-        left.displacement,
-        struck.rest_of_struck().map(|(position, _)| position),
-        parts,
-    );
-    let drift = struck
-        .storey()
-        .map(|_| list(left.drift, rest.drift(), rest.drift_contributions()));
+    let position = left
+        .displacement
+        .found_by(struck.rest_of_struck().map(|(position, _)| position), parts);
+    let drift = struck.storey().map(|_| {
+        left.drift
+            .found_list_by(Some(rest.drift()), rest.drift_contributions())
+    });
     for brought in [Some(position), drift].into_iter().flatten() {
         match results
             .iter_mut()
@@ -183,7 +182,7 @@ fn bring(
     between: Between,
     home: &[f64],
     unloading: &Unloading,
-    uncertainty: &RestUncertainty<'_>,
+    uncertainty: &UncertainRun<'_>,
     done: &mut u64,
     session: &mut Session<'_>,
 ) -> Result<Rest, Stop> {
@@ -239,10 +238,7 @@ struct OfImpact<'a> {
 impl Results for OfImpact<'_> {
     fn result(&self, reference: ResultReference) -> Option<ResultValue> {
         if reference.procedure == self.own {
-            return self
-                .results
-                .iter()
-                .find(|result| result.name == reference.name)
+            return NamedResult::of(&self.results, reference.name)
                 .map(|result| result.value.clone());
         }
         self.before.result(reference)
@@ -250,10 +246,7 @@ impl Results for OfImpact<'_> {
 
     fn contributions(&self, reference: ResultReference) -> Vec<Contribution> {
         if reference.procedure == self.own {
-            let found = self
-                .results
-                .iter()
-                .find(|result| result.name == reference.name);
+            let found = NamedResult::of(&self.results, reference.name);
             return found.map_or_else(Vec::new, |result| result.contributions_of(reference));
         }
         self.before.contributions(reference)
@@ -265,11 +258,7 @@ impl Results for OfImpact<'_> {
 
     fn no_uncertainty(&self, reference: ResultReference) -> Option<String> {
         if reference.procedure == self.own {
-            return self
-                .results
-                .iter()
-                .find(|result| result.name == reference.name)?
-                .no_uncertainty(IMPACT);
+            return NamedResult::of(&self.results, reference.name)?.no_uncertainty(IMPACT);
         }
         self.before.no_uncertainty(reference)
     }

@@ -5,7 +5,7 @@ use crate::procedures::stiffness_ramp::points::secant;
 use crate::record::{History, RampStep};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
-use crate::run::session::{Session, StepReading, first};
+use crate::run::session::{Session, first};
 use crate::run::stop::Stop;
 use crate::units::Dimension;
 
@@ -50,12 +50,7 @@ fn go(
         if let Some(stop) = broken {
             return Err(stop);
         }
-        session.measured(&StepReading {
-            step,
-            time: wall_time,
-            displacement,
-            force: restoring_force,
-        })?;
+        session.measured(step, wall_time, (displacement, restoring_force))?;
     }
     Ok(())
 }

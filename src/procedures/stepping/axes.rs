@@ -98,28 +98,22 @@ pub(crate) struct Errors {
     pub tracking_energy_error: Option<f64>,
 }
 
-/// The step of all axes; the first axis is reported first.
+/// The step of all axes.
 pub(crate) fn report(state: &AxesState<'_>, errors: &Errors) -> StepReport {
     let axis = |axis: usize| AxisReport {
         command: state.target[axis],
         displacement: state.displacement[axis],
-        velocity: state.velocity[axis],
-        acceleration: state.acceleration[axis],
+        velocity: Some(state.velocity[axis]),
+        acceleration: Some(state.acceleration[axis]),
         force: state.force[axis],
     };
-    let first = axis(0);
     StepReport {
         step: state.step,
         time: state.time,
-        command: first.command,
-        displacement: first.displacement,
-        velocity: Some(first.velocity),
-        acceleration: Some(first.acceleration),
-        force: first.force,
+        axes: (0..state.target.len()).map(axis).collect(),
         speed: None,
         energy_error: Some(errors.energy_error),
         tracking: Some(errors.tracking),
         tracking_energy_error: errors.tracking_energy_error,
-        others: (1..state.target.len()).map(axis).collect(),
     }
 }

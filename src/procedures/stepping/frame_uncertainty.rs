@@ -6,130 +6,44 @@ use super::run::FrameSteps;
 use crate::physics::reintegration::frame::{Floors, FrameRun};
 use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
 use crate::physics::reintegration::hysteresis_replay::ContinuousMotion;
-use crate::physics::statistics::ReadingNoise;
-use crate::plan::formula::{Formula, Operator, ProcedureId, ResultValue, Results};
-use crate::plan::{Frame, Impact, Mode, Plan, Shake, ShakeDamping, Stepping, StoreyTarget};
-use crate::procedures::common::perturbed_inputs::{out_of_bounds, uncertain_inputs, with_shifts};
+use crate::plan::formula::{Formula, Operator};
+use crate::plan::{Frame, Mode, ShakeDamping, Stepping};
+use crate::procedures::common::perturbed_inputs::{UncertainRun, out_of_bounds, uncertain_inputs};
 use crate::record::{FloorMotion, NamedResult};
-use crate::rig::DeclaredNoise;
-use crate::run::inputs::Inputs;
-use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::schema::ResultKind;
 use crate::schema::procedures::base_excitation as schema;
-use crate::uncertainty::engine::{
-    CLOSE, Contributions, Evaluate, Progress, Propagation, Shifts, Unknown,
-};
-use crate::uncertainty::{InstrumentUncertainty, Source};
+use crate::uncertainty::Source;
+use crate::uncertainty::engine::{CLOSE, Shifts};
 
 /// The uncertain inputs of a frame.
 #[derive(Clone, Copy)]
 pub(crate) struct FrameUncertainty<'run> {
-    pub whole: &'run Plan,
+    pub run: UncertainRun<'run>,
     /// Index among the plan's specimens.
-    pub specimen: usize,
-    /// None for a specimen that is not a frame; no result of it is evaluated.
-    pub frame: Option<&'run Frame>,
-    pub damping: &'run ShakeDamping,
-    pub damping_uncertainty: f64,
-    pub stepping: &'run Stepping,
-    pub results: &'run dyn Results,
-    pub procedure: ProcedureId,
-    pub noise: DeclaredNoise,
-    /// The amount by which its damping ratio was raised to zero.
-    pub lift: f64,
-    /// Index of the impact in the procedure, from 0: each impact has its own errors.
-    pub impact: u16,
-}
-
-/// What a procedure says of its frame and its steps.
-#[derive(Clone, Copy)]
-struct TestedFrame<'run> {
     specimen: usize,
+    /// None for a specimen that is not a frame; no result of it is evaluated.
+    frame: Option<&'run Frame>,
     damping: &'run ShakeDamping,
     damping_uncertainty: f64,
     stepping: &'run Stepping,
 }
 
 impl<'run> FrameUncertainty<'run> {
-    pub fn of_shake(
-        plan: &'run Shake,
-        whole: &'run Plan,
-        inputs: &Inputs<'run>,
-        session: &Session<'_>,
+    /// For the frame of a specimen, with its damping and the uncertainty of that.
+    pub fn new(
+        run: UncertainRun<'run>,
+        specimen: usize,
+        (damping, damping_uncertainty): (&'run ShakeDamping, f64),
+        stepping: &'run Stepping,
     ) -> Self {
-        let Shake {
-            specimen,
-            damping,
-            damping_uncertainty,
-            stepping,
-            ..
-        } = plan;
-        let tested = TestedFrame {
-            specimen: *specimen,
-            damping,
-            damping_uncertainty: *damping_uncertainty,
-            stepping,
-        };
-        Self::new(tested, whole, inputs, session)
-    }
-
-    pub fn of_impact(
-        plan: &'run Impact,
-        target: &'run StoreyTarget,
-        whole: &'run Plan,
-        inputs: &Inputs<'run>,
-        session: &Session<'_>,
-    ) -> Self {
-        let Impact {
-            specimen, stepping, ..
-        } = plan;
-        let StoreyTarget {
-            damping,
-            damping_uncertainty,
-            ..
-        } = target;
-        let tested = TestedFrame {
-            specimen: *specimen,
-            damping,
-            damping_uncertainty: *damping_uncertainty,
-            stepping,
-        };
-        Self::new(tested, whole, inputs, session)
-    }
-
-    fn new(
-        tested: TestedFrame<'run>,
-        whole: &'run Plan,
-        inputs: &Inputs<'run>,
-        session: &Session<'_>,
-    ) -> Self {
-        let TestedFrame {
-            specimen,
-            damping,
-            damping_uncertainty,
-            stepping,
-        } = tested;
         Self {
-            whole,
+            run,
             specimen,
-            frame: whole.specimens[specimen].frame.as_ref(),
+            frame: run.whole.specimens[specimen].frame.as_ref(),
             damping,
             damping_uncertainty,
             stepping,
-            results: inputs.results(),
-            procedure: inputs.procedure(),
-            noise: session.guard.declared_noise(),
-            lift: inputs.lift(),
-            impact: 0,
-        }
-    }
-
-    /// For a later impact of the same procedure, counted from 0.
-    pub fn of_impact_number(self, index: usize) -> Self {
-        Self {
-            impact: u16::try_from(index).unwrap_or(u16::MAX),
-            ..self
         }
     }
 
@@ -161,7 +75,7 @@ impl<'run> FrameUncertainty<'run> {
             (Source::MassMatrix(specimen), mass),
             (Source::StiffnessMatrix(specimen), stiffness),
         ];
-        let procedure = self.procedure;
+        let procedure = self.run.procedure;
         let modes = (0..ratios.len()).map(|mode| {
             (
                 Source::DampingRatio { procedure, mode },
@@ -172,7 +86,7 @@ impl<'run> FrameUncertainty<'run> {
             .chain(matrices)
             .chain(modes)
             .chain(stated.iter().copied());
-        uncertain_inputs(&formulas, all, self.results)
+        uncertain_inputs(&formulas, all, self.run.results)
     }
 
     fn ratios(&self) -> &[Formula] {
@@ -180,27 +94,6 @@ impl<'run> FrameUncertainty<'run> {
             ShakeDamping::Rayleigh(ratio) => std::slice::from_ref(ratio),
             ShakeDamping::Modal(ratios) => ratios,
         }
-    }
-
-    /// Contributions to the values of a layout, for a run of so many recorded steps.
-    pub fn contributions<P: Evaluate>(
-        &self,
-        evaluate: &P,
-        inputs: Vec<Source>,
-        steps: usize,
-        reported: Vec<f64>,
-        progress: Progress<'_, Stop>,
-    ) -> Result<Contributions, Unknown<Stop>> {
-        let propagation = Propagation {
-            procedure: self.procedure,
-            impact: self.impact,
-            evaluate,
-            instruments: &InstrumentUncertainty::of(self.whole, self.noise, self.floors()),
-            inputs,
-            steps: (steps * self.floors()) as u64,
-            reported: Some(reported),
-        };
-        propagation.contributions(progress)
     }
 
     /// The frame with its storeys perturbed.
@@ -240,7 +133,7 @@ impl<'run> FrameUncertainty<'run> {
     pub fn moved_damping(&self, shifts: Shifts<'_>) -> ShakeDamping {
         let moved = |(mode, ratio): (usize, &Formula)| {
             let source = Source::DampingRatio {
-                procedure: self.procedure,
+                procedure: self.run.procedure,
                 mode,
             };
             let by: f64 = shifts
@@ -262,20 +155,8 @@ impl<'run> FrameUncertainty<'run> {
         }
     }
 
-    /// Calls with inputs that evaluate results with the sources perturbed.
-    pub fn with_inputs<T>(
-        &self,
-        shifts: Shifts<'_>,
-        then: &mut dyn FnMut(&mut Inputs<'_>) -> Result<T, Stop>,
-    ) -> Result<T, String> {
-        with_shifts(self.results, shifts, &mut |results| {
-            then(&mut Inputs::moved(results, self.procedure, self.lift))
-        })
-        .map_err(|stop| out_of_bounds(&stop))
-    }
-
     /// The integration settings of the run.
-    pub fn run(&self, steps: &FrameSteps) -> FrameRun {
+    pub fn frame_run(&self, steps: &FrameSteps) -> FrameRun {
         FrameRun {
             matrices: steps.properties.matrices.clone(),
             integrator: self.stepping.integrator,
@@ -283,8 +164,7 @@ impl<'run> FrameUncertainty<'run> {
             tangents: steps.tangents,
             time_step: steps.steps.time_step,
             steps: steps.steps.count,
-            force_noise: self.noise.force,
-            resolution: self.noise.resolution,
+            noise: self.run.noise,
             continuous: matches!(self.stepping.mode, Mode::Continuous { .. }),
         }
     }
@@ -331,10 +211,7 @@ impl<'run> FrameUncertainty<'run> {
                 time_step: steps.steps.time_step,
             },
             stiffness,
-            ReadingNoise {
-                force: self.noise.force,
-                resolution: self.noise.resolution,
-            },
+            self.run.noise,
         );
         path.ok_or_else(|| "nothing was recorded".to_owned())
     }
@@ -353,15 +230,10 @@ pub(crate) fn leads_there(
         (schema::FINAL_DRIFT.name, &floors.final_drift),
     ];
     lists.into_iter().all(|(name, found)| {
-        let recorded = match results
-            .iter()
-            .find(|result| result.name == name)
-            .map(|result| &result.value)
-        {
-            Some(ResultValue::List(values)) => values.as_slice(),
-            Some(ResultValue::Number { value, .. }) => value.as_slice(),
-            None => return false,
+        let Some(recorded) = NamedResult::of(results, name) else {
+            return false;
         };
+        let recorded = recorded.value.values();
         let near = |(a, b): (&f64, &f64)| (a - b).abs() <= CLOSE * a.abs().max(b.abs());
         recorded.len() == found.len() && recorded.iter().zip(found).all(near)
     })

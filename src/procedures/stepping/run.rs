@@ -2,7 +2,6 @@
 //! properties and tangents. In: a procedure of the plan, and a frame where it tests one. Out: numbers, each inside its domain. It knows
 //! no ground and no striker.
 
-use super::step_loop::pace::Pace;
 use crate::physics::integrator::tangents::Tangents;
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::physics::structure::{Damping, storeys_of};
@@ -79,14 +78,6 @@ impl Steps {
             pause,
             max_tangent_ratio,
         })
-    }
-
-    pub(crate) const fn pace(&self) -> Pace {
-        Pace {
-            time_step: self.time_step,
-            steps: self.count,
-            pause: self.pause,
-        }
     }
 }
 

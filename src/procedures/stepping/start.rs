@@ -39,8 +39,7 @@ impl Start {
             initial_displacement: &self.commanded,
             initial_restoring_force: &self.reading.force,
             initial_load: load,
-            force_noise: self.noise.force,
-            resolution: self.noise.resolution,
+            noise: self.noise,
         }
     }
 }

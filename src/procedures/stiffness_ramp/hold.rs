@@ -4,8 +4,8 @@
 use crate::physics::identification::StatedVariance;
 use crate::physics::relaxation::hold::{Hold, Unrelaxed};
 use crate::physics::relaxation::law::RelaxationLaw;
-use crate::physics::relaxation::superposition::{SuperpositionFit, fit_superposition_stated};
-use crate::physics::relaxation::time_constant::{RelaxationFit, fit_relaxation_stated};
+use crate::physics::relaxation::superposition::{SuperpositionFit, fit_superposition};
+use crate::physics::relaxation::time_constant::{RelaxationFit, fit_relaxation};
 use crate::plan::WatchedModel;
 use crate::record::NamedResult;
 use crate::rig::Reading;
@@ -73,7 +73,7 @@ pub(crate) fn evaluate_dwells(
             accuracy: asked,
         }) => {
             accuracy = asked.or(noise);
-            match fit_relaxation_stated(holds, start.0, model, stated) {
+            match fit_relaxation(holds, start.0, model, stated) {
                 Ok(fit) => {
                     evaluation.remarks = remarks(&fit, holds, accuracy);
                     evaluation.relaxation = Some(fit);
@@ -82,7 +82,7 @@ pub(crate) fn evaluate_dwells(
             }
         }
         Some(WatchedModel::Reached { law, rate }) => {
-            match fit_superposition_stated(holds, start.1, law, rate, stated) {
+            match fit_superposition(holds, start.1, law, rate, stated) {
                 Ok(fit) => {
                     evaluation.remarks = reached_remarks(&fit, holds, rate, noise);
                     evaluation.reached = Some(fit);

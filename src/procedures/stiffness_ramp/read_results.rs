@@ -38,10 +38,7 @@ pub fn check(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
         let ProcedureKind::StiffnessRamp(ramp) = &procedure.kind else {
             continue;
         };
-        let head = checker.scope.blocks[*block].block.head;
-        let displacements = checker
-            .field(*block, schema::NAMES.displacements)
-            .map_or(head, |(_, entry)| entry.value.span);
+        let displacements = checker.value_or_head(*block, schema::NAMES.displacements);
         if let Some((lacks, help)) = lacks(ramp, reference.name) {
             if never.insert(*block) {
                 let ramp = (procedure.name.as_str(), displacements);

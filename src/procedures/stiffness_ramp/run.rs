@@ -5,7 +5,7 @@
 use super::points::{Point, point, secant};
 use super::uncertainty::{Direct, Readings};
 use super::{curve, hold};
-use crate::physics::identification::bilinear_fit::fit_bilinear_stated;
+use crate::physics::identification::bilinear_fit::fit_bilinear;
 use crate::physics::identification::{StatedVariance, fit_line};
 use crate::plan::{Plan, RampFit, StiffnessRamp, WatchedHold};
 use crate::procedures::common::dwell_readings::DwellReadings;
@@ -15,7 +15,7 @@ use crate::record::{
 };
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
-use crate::run::session::{Session, StepReading};
+use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::schema::procedures::stiffness_ramp as schema;
 use crate::uncertainty::InstrumentUncertainty;
@@ -43,10 +43,10 @@ pub(crate) fn perform(
     }
     let noise = Some(instruments.errors(0).noise).filter(|noise| *noise > 0.0);
     let asked = plan.relaxation.map(|asked| asked.model);
-    let start = ramp.starts.first().copied();
+    let start = ramp.starts.first().copied().unwrap_or_default();
     let evaluation = hold::evaluate_dwells(
         &ramp.holds,
-        start.unwrap_or_default(),
+        start,
         asked,
         noise,
         instruments.stated_variance(0, 1),
@@ -85,7 +85,6 @@ pub(crate) fn perform(
         evaluation.reached.map(Box::new),
     );
     let history = RampHistory {
-        start,
         before,
         steps: readings.steps,
         fit,
@@ -256,12 +255,7 @@ impl Ramp {
         if let Some(stop) = broken {
             return Err(stop);
         }
-        session.measured(&StepReading {
-            step,
-            time: wall_time,
-            displacement,
-            force: restoring_force,
-        })?;
+        session.measured(step, wall_time, (displacement, restoring_force))?;
         Ok((displacement, restoring_force))
     }
 
@@ -289,7 +283,7 @@ impl Ramp {
             }
             RampFit::Bilinear => {
                 let (x, r): (Vec<f64>, Vec<f64>) = first().unzip();
-                let bilinear = fit_bilinear_stated(&x, &r, stated);
+                let bilinear = fit_bilinear(&x, &r, stated);
                 let none =
                     "no bilinear fit: the outward steps are fewer than six, or show no yield point";
                 let remarks = if bilinear.is_none() {

@@ -4,38 +4,32 @@ use crate::language::check::checker::Checker;
 use crate::language::check::declarations::specimen::frame;
 use crate::language::check::messages::frames as fault;
 use crate::plan::formula::Formula;
-use crate::plan::{FrameUnload, ProcedureKind, Unload};
+use crate::plan::{ProcedureKind, Unload};
 use crate::schema::procedures::unload as schema;
 use crate::schema::procedures::{SPEED, STIFFNESS};
 
 pub fn unload(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let tested = checker.specimen_block(block);
     let specimen = tested.map(|tested| checker.scope.index_in_kind(tested));
-    if tested.is_some_and(|tested| frame::is_frame(checker, tested)) {
-        let (within, speed) = (
-            checker.optional(block, schema::WITHIN.name),
-            checker.optional(block, SPEED.name),
-        );
-        if let Some((_, entry)) = checker.field(block, STIFFNESS.name) {
-            let help = "remove it: the storeys of the frame have stiffnesses";
-            return checker.fail(fault::no_use_on_a_frame(
-                STIFFNESS.name,
-                "the unloading of a frame",
-                entry.key.span,
-                help,
-            ));
-        }
-        return Some(ProcedureKind::FrameUnload(FrameUnload {
-            specimen: specimen?,
-            within: within?,
-            speed: speed?,
-        }));
-    }
-    let stiffness = checker.stiffness_or_specimens(block, tested);
+    let of_frame = tested.is_some_and(|tested| frame::is_frame(checker, tested));
+    let stiffness = if of_frame {
+        Some(None)
+    } else {
+        checker.stiffness_or_specimens(block, tested).map(Some)
+    };
     let (within, speed) = (
         checker.optional(block, schema::WITHIN.name),
         checker.optional(block, SPEED.name),
     );
+    if let (true, Some((_, entry))) = (of_frame, checker.field(block, STIFFNESS.name)) {
+        let help = "remove it: the storeys of the frame have stiffnesses";
+        return checker.fail(fault::no_use_on_a_frame(
+            STIFFNESS.name,
+            "the unloading of a frame",
+            entry.key.span,
+            help,
+        ));
+    }
     Some(ProcedureKind::Unload(Unload {
         specimen: specimen?,
         stiffness: stiffness?,

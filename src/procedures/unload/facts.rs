@@ -1,24 +1,25 @@
-//! The facts about an unloading that the drivers of check and report need without carrying it out. In: nothing. Out: facts.
+//! The facts about an unloading that the drivers of check and report need without carrying it out. In: an unloading of the plan.
+//! Out: facts.
 
+use crate::plan::Unload;
 use crate::procedures::base_excitation::figures;
 use crate::procedures::facts::{Facts, Recorded, Tests};
 use crate::schema::procedures::unload as schema;
 
-pub(crate) fn of_specimen() -> Facts<'static> {
-    Facts {
+pub(crate) fn facts(unload: &Unload) -> Facts<'static> {
+    let shared = Facts {
         unloads: true,
         headline: vec![schema::RESIDUAL_DISPLACEMENT.name],
         ..Facts::default()
+    };
+    if unload.stiffness.is_some() {
+        return shared;
     }
-}
-
-pub(crate) fn of_frame() -> Facts<'static> {
     Facts {
         tests: Tests::Frame,
-        unloads: true,
         figures: figures::UNLOADING_FIGURES,
         headline: vec![schema::RESIDUAL_DRIFT.name],
-        ..Facts::default()
+        ..shared
     }
 }
 

@@ -2,12 +2,12 @@
 //! forces are expected to fall. Out: the unloading path, and the unloaded position. Each target is before the position of zero force, by
 //! the slopes of the moves before it (`physics/frame/unloading_path.rs`); the guard compares every one with the limits.
 
-use super::uncertainty::{NOISE, RestUncertainty};
-use crate::physics::statistics::ReadingNoise;
+use super::uncertainty::NOISE;
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
-use crate::plan::formula::{Formula, ResultValue};
-use crate::plan::{Frame, FrameUnload, Plan, Unload};
+use crate::plan::{Frame, Plan, Unload};
+use crate::procedures::common::perturbed_inputs::UncertainRun;
+use crate::procedures::stepping::run::frame_of;
 use crate::record::{EventKind, History, NamedResult, RampStep, Rest, UnloadStep};
 use crate::rig::Reading;
 use crate::run::Performed;
@@ -18,7 +18,7 @@ use crate::schema::ResultKind;
 use crate::schema::procedures::SPECIMEN;
 use crate::schema::procedures::STIFFNESS;
 use crate::schema::procedures::unload as schema;
-use crate::uncertainty::{Contribution, combined};
+use crate::uncertainty::Contribution;
 use crate::units::Dimension;
 use crate::units::display::readable;
 
@@ -36,26 +36,18 @@ pub(crate) fn perform(
     session: &mut Session<'_>,
 ) -> Performed {
     let mut steps = Vec::new();
-    let outcome = inputs
-        .positive(STIFFNESS.name, &plan.stiffness, Dimension::STIFFNESS)
-        .and_then(|stiffness| {
-            unload(
-                &Request {
-                    within: plan.within.as_ref(),
-                    speed: plan.speed.as_ref(),
-                },
-                &Unloading::of_one(stiffness),
-                whole,
-                inputs,
-                session,
-                &mut steps,
-            )
-        });
-    let results = of_farthest(outcome.as_ref().ok());
-    // The start is not a move.
-    let moved = steps.iter().skip(1).map(of_one).collect();
+    let outcome = unload(plan, whole, inputs, session, &mut steps);
+    let rest = outcome.as_ref().ok();
+    let (history, results) = match plan.stiffness {
+        // The start is not a move.
+        Some(_) => (
+            History::Move(steps.iter().skip(1).map(of_one).collect()),
+            of_farthest(rest),
+        ),
+        None => (History::FrameUnload(steps), frame_results(rest)),
+    };
     Performed {
-        history: History::Move(moved),
+        history,
         results,
         stop: outcome.err(),
     }
@@ -75,38 +67,6 @@ fn of_one(step: &UnloadStep) -> RampStep {
     }
 }
 
-/// The unloading of all floors of a frame.
-pub(crate) fn perform_frame(
-    plan: &FrameUnload,
-    whole: &Plan,
-    inputs: &mut Inputs<'_>,
-    session: &mut Session<'_>,
-) -> Performed {
-    let mut steps = Vec::new();
-    // `check` has seen that the specimen is a frame.
-    let frame = whole.specimens[plan.specimen].frame.as_ref();
-    let known = frame.map_or_else(|| Err(Stop::no_frame()), of_frame);
-    let outcome = known.and_then(|unloading| {
-        unload(
-            &Request {
-                within: plan.within.as_ref(),
-                speed: plan.speed.as_ref(),
-            },
-            &unloading,
-            whole,
-            inputs,
-            session,
-            &mut steps,
-        )
-    });
-    let results = frame_results(outcome.as_ref().ok());
-    Performed {
-        history: History::FrameUnload(steps),
-        results,
-        stop: outcome.err(),
-    }
-}
-
 /// The expected unloading of a frame.
 pub(crate) fn of_frame(frame: &Frame) -> Result<Unloading, Stop> {
     let unfit = |reason: String| Stop::bad_input(SPECIMEN.name, 0.0, Dimension::NUMBER, reason);
@@ -121,12 +81,7 @@ pub(crate) fn of_frame(frame: &Frame) -> Result<Unloading, Stop> {
 fn of_farthest(rest: Option<&Rest>) -> Vec<NamedResult> {
     let number = |kind: ResultKind, found: Option<(f64, Vec<Contribution>)>| {
         let (value, contributions) = found.unzip();
-        let contributions = contributions.unwrap_or_default();
-        let result = kind.found_with(value.map(|value| (value, combined(&contributions))));
-        NamedResult {
-            contributions,
-            ..result
-        }
+        kind.found_by(value, contributions.unwrap_or_default())
     };
     let position = rest.map(|rest| {
         let [floor, _] = rest.floors_of_largest();
@@ -146,14 +101,9 @@ fn of_farthest(rest: Option<&Rest>) -> Vec<NamedResult> {
 
 /// In the order of the reference.
 fn frame_results(rest: Option<&Rest>) -> Vec<NamedResult> {
-    let list = |kind: ResultKind, known: Option<(Vec<f64>, Vec<Contribution>)>| match known {
-        Some((values, contributions)) => NamedResult {
-            name: kind.name,
-            dimension: kind.dimension,
-            value: ResultValue::List(values),
-            contributions,
-        },
-        None => kind.found(None),
+    let list = |kind: ResultKind, known: Option<(Vec<f64>, Vec<Contribution>)>| {
+        let (values, contributions) = known.unzip();
+        kind.found_list_by(values, contributions.unwrap_or_default())
     };
     let mut results = of_farthest(rest);
     results.extend([
@@ -173,30 +123,29 @@ fn frame_results(rest: Option<&Rest>) -> Vec<NamedResult> {
     results
 }
 
-/// The fields of a block of either kind.
-struct Request<'a> {
-    /// Largest |R| that counts as zero \[N\].
-    within: Option<&'a Formula>,
-    /// \[m/s\]
-    speed: Option<&'a Formula>,
-}
-
-/// Moves to zero restoring force as a block requests it.
+/// Moves to zero restoring force as the block requests it.
 fn unload(
-    request: &Request<'_>,
-    unloading: &Unloading,
+    plan: &Unload,
     whole: &Plan,
     inputs: &mut Inputs<'_>,
     session: &mut Session<'_>,
     steps: &mut Vec<UnloadStep>,
 ) -> Result<Rest, Stop> {
-    let within = request
+    let unloading = match &plan.stiffness {
+        Some(stiffness) => {
+            Unloading::of_one(inputs.positive(STIFFNESS.name, stiffness, Dimension::STIFFNESS)?)
+        }
+        None => of_frame(frame_of(whole, plan.specimen)?)?,
+    };
+    let within = plan
         .within
+        .as_ref()
         .map(|within| inputs.positive(schema::WITHIN.name, within, Dimension::FORCE))
         .transpose()?;
-    let speed = inputs.speed(request.speed)?;
+    let speed = inputs.speed(plan.speed.as_ref())?;
     let mut rest = to_rest(unloading.clone(), within, speed, 0, session, steps)?;
-    RestUncertainty::new(whole, inputs, session).unloaded(&mut rest, unloading, steps);
+    UncertainRun::new(whole, inputs, session.guard.declared_noise())
+        .unloaded(&mut rest, &unloading, steps);
     Ok(rest)
 }
 
@@ -218,14 +167,7 @@ pub(crate) fn to_rest(
     let detectable = (NOISE * noise.force).max(unloading.force_of(noise.resolution.max(rounding)));
     let mut left = largest(&at.force);
     let within = within.unwrap_or_else(|| detectable.max(SMALL * left).max(f64::MIN_POSITIVE));
-    let mut path = UnloadingPath::new(
-        unloading,
-        ReadingNoise {
-            force: noise.force,
-            resolution: noise.resolution,
-        },
-        loaded(&at),
-    );
+    let mut path = UnloadingPath::new(unloading, noise, loaded(&at));
     if session.unloads_at_once {
         path = path.at_once();
     }

@@ -8,49 +8,19 @@
 
 use crate::physics::integrator::tangent::NOISE_MULTIPLE;
 use crate::physics::structure::{Loaded, Unloading};
-use crate::plan::Plan;
-use crate::plan::formula::ProcedureId;
+use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::record::{Rest, UnloadStep};
-use crate::rig::DeclaredNoise;
-use crate::run::inputs::Inputs;
-use crate::run::session::Session;
-use crate::uncertainty::{Contribution, InstrumentUncertainty, Source};
+use crate::uncertainty::{Contribution, Source};
 
 /// A reading up to this many standard deviations of the cell's noise is not a load.
 pub(crate) const NOISE: f64 = 3.0;
 /// A storey shows a stiffness if its storey drift changes by more than this fraction of the largest change on the path; less is rounding.
 const SIGNIFICANT_FRACTION: f64 = 1e-6;
 
-/// The uncertain inputs of a position of rest.
-#[derive(Clone, Copy)]
-pub(crate) struct RestUncertainty<'run> {
-    whole: &'run Plan,
-    noise: DeclaredNoise,
-    procedure: ProcedureId,
-    impact: u16,
-}
-
 /// Errors of one reading of an axis: standard deviations \[N\] and \[m\].
 type Errors = Vec<(f64, f64)>;
 
-impl<'run> RestUncertainty<'run> {
-    pub fn new(whole: &'run Plan, inputs: &Inputs<'_>, session: &Session<'_>) -> Self {
-        Self {
-            whole,
-            noise: session.guard.declared_noise(),
-            procedure: inputs.procedure(),
-            impact: 0,
-        }
-    }
-
-    /// For a later impact of the same procedure, counted from 0.
-    pub fn of_impact(self, index: usize) -> Self {
-        Self {
-            impact: u16::try_from(index).unwrap_or(u16::MAX),
-            ..self
-        }
-    }
-
+impl UncertainRun<'_> {
     /// For a specimen that was unloaded by `steps`, with the unloading stiffness expected from `unloading`.
     pub fn unloaded(&self, rest: &mut Rest, unloading: &Unloading, steps: &[UnloadStep]) {
         let errors = self.errors(rest);
@@ -84,7 +54,7 @@ impl<'run> RestUncertainty<'run> {
         let explained =
             explained.max(unloading.force_of(most(&mut errors.iter().map(|error| error.1))));
         if !exact && most(&mut rest.force.iter().copied()) > explained {
-            let RestUncertainty {
+            let UncertainRun {
                 procedure, impact, ..
             } = *self;
             let force = rest.force.clone();
@@ -104,7 +74,7 @@ impl<'run> RestUncertainty<'run> {
     }
 
     fn errors(&self, rest: &Rest) -> Errors {
-        let instruments = InstrumentUncertainty::of(self.whole, self.noise, rest.force.len());
+        let instruments = self.instruments(rest.force.len());
         let of_axis = |axis| {
             let errors = instruments.errors(axis);
             let [force, displacement] = errors.quantization();
@@ -114,7 +84,7 @@ impl<'run> RestUncertainty<'run> {
     }
 
     const fn reading(&self, reading: usize) -> Source {
-        let RestUncertainty {
+        let UncertainRun {
             procedure, impact, ..
         } = *self;
         // Three readings of each of at most MOST_STOREYS floors.

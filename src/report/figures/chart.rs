@@ -18,6 +18,17 @@ pub(crate) struct Chart {
 }
 
 impl Chart {
+    /// These curves alone.
+    pub const fn of(x: Quantity, y: Quantity, series: Vec<Series>) -> Self {
+        Self {
+            x,
+            y,
+            bands: Vec::new(),
+            series,
+            references: Vec::new(),
+        }
+    }
+
     /// The axes and the range of each curve in words, for a reader who cannot see the chart.
     pub fn description(&self) -> String {
         let range = |series: &Series| {
@@ -185,6 +196,14 @@ impl Style {
             line: None,
             marker: Some(marker),
             fill: false,
+        }
+    }
+
+    /// The same with a marker at each point.
+    pub const fn marked(self, marker: Marker) -> Self {
+        Self {
+            marker: Some(marker),
+            ..self
         }
     }
 

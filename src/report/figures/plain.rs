@@ -82,12 +82,10 @@ impl Curves {
                 style,
             }
         };
-        draw::png(&Chart {
-            x: axis(&self.x, x_end),
-            y: axis(&self.y, End::Tick),
-            bands: Vec::new(),
-            series: self.curves.iter().map(series).collect(),
-            references: Vec::new(),
-        })
+        draw::png(&Chart::of(
+            axis(&self.x, x_end),
+            axis(&self.y, End::Tick),
+            self.curves.iter().map(series).collect(),
+        ))
     }
 }

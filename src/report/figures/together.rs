@@ -56,14 +56,5 @@ pub(super) fn chart(
         _ => names.concat(),
     };
     let caption = format!("{names} on one chart: {caption}.");
-    Some((
-        Chart {
-            x,
-            y,
-            bands: Vec::new(),
-            series,
-            references: Vec::new(),
-        },
-        caption,
-    ))
+    Some((Chart::of(x, y, series), caption))
 }

@@ -49,23 +49,11 @@ pub struct Traversed {
 }
 
 impl<'rig> Guard<'rig> {
-    /// Reads the present position of the rig.
+    /// Reads the present position of the rig. Displacement and force of each axis stay inside its `own` limits, or inside `limits`.
     ///
     /// # Errors
     /// It cannot be read, or is outside a limit already.
-    pub fn new(rig: &'rig mut dyn Rig, limits: Limits) -> Result<Self, RigFault> {
-        Self::of_axes(rig, limits, Vec::new())
-    }
-
-    /// The same with displacement and force of each axis inside its `own` limits.
-    ///
-    /// # Errors
-    /// As [`Guard::new`].
-    pub fn of_axes(
-        rig: &'rig mut dyn Rig,
-        limits: Limits,
-        own: Vec<Limits>,
-    ) -> Result<Self, RigFault> {
+    pub fn new(rig: &'rig mut dyn Rig, limits: Limits, own: Vec<Limits>) -> Result<Self, RigFault> {
         let last_contact = rig.time();
         let (commanded, going, found) = (Vec::new(), Vec::new(), (Vec::new(), Vec::new()));
         let mut guard = Self {

@@ -79,7 +79,7 @@ mod tests {
                 increment: Interval { low: 0.0, high },
                 ..Limits::NONE
             };
-            let mut guard = Guard::new(rig.as_mut(), limits).unwrap();
+            let mut guard = Guard::new(rig.as_mut(), limits, Vec::new()).unwrap();
             for end in [0.01, 0.0, -0.01, 0.01] {
                 let increments = guard.increments_to(&[end]);
                 let straight = (end - guard.commanded()[0]).abs() / high;

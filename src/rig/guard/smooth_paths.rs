@@ -70,7 +70,7 @@ mod tests {
 
     fn fault_of(limits: Limits, paths: &[Path]) -> Option<RigFault> {
         let mut rig = VirtualRig::new(VirtualLink::default(), AT_ONCE, None, 1.0);
-        let mut guard = Guard::new(&mut rig, limits).unwrap();
+        let mut guard = Guard::new(&mut rig, limits, Vec::new()).unwrap();
         paths
             .iter()
             .find_map(|path| guard.follow_paths(&[*path], 5).fault)

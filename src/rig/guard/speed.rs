@@ -48,7 +48,7 @@ mod tests {
             ..Limits::NONE
         };
         let mut rig = VirtualRig::new(VirtualLink::default(), AT_ONCE, None, 1.0);
-        let mut guard = Guard::new(&mut rig, limits).unwrap();
+        let mut guard = Guard::new(&mut rig, limits, Vec::new()).unwrap();
         assert_eq!(guard.speed(), None, "nothing has moved");
         guard.move_to(&[0.001], None).unwrap();
         assert_eq!(

@@ -80,7 +80,7 @@ impl Rig for Scripted {
         self.held = true;
     }
     fn declared_noise(&self) -> DeclaredNoise {
-        DeclaredNoise::default()
+        DeclaredNoise::NONE
     }
 }
 
@@ -122,7 +122,7 @@ fn quantity(fault: RigFault) -> LimitedQuantity {
 /// The limit that one move exceeds; the move must not be proposed.
 fn refused(target: f64, speed: Option<f64>) -> LimitedQuantity {
     let mut rig = Scripted::default();
-    let fault = Guard::new(&mut rig, LIMITS)
+    let fault = Guard::new(&mut rig, LIMITS, Vec::new())
         .unwrap()
         .move_to(&[target], speed)
         .unwrap_err();
@@ -151,7 +151,7 @@ fn the_decoded_targets_are_checked_against_the_limits_too() {
         misspoken: 3e-4,
         ..Scripted::default()
     };
-    let fault = Guard::new(&mut rig, LIMITS)
+    let fault = Guard::new(&mut rig, LIMITS, Vec::new())
         .unwrap()
         .move_to(&[0.0249], None)
         .unwrap_err();
@@ -162,7 +162,7 @@ fn the_decoded_targets_are_checked_against_the_limits_too() {
 #[test]
 fn what_was_refused_or_carried_out_is_not_carried_out_again() {
     let mut rig = Scripted::default();
-    let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
+    let mut guard = Guard::new(&mut rig, LIMITS, Vec::new()).unwrap();
     assert!(guard.execute().is_err(), "nothing was proposed");
     guard.propose(&[0.0005], None).unwrap();
     assert_eq!(guard.commanded(), [0.0], "nothing moved yet");
@@ -186,7 +186,7 @@ fn without_limits_a_target_that_is_no_number_still_never_passes() {
     for target in [f64::NAN, f64::INFINITY] {
         let mut rig = Scripted::default();
         assert!(
-            Guard::new(&mut rig, Limits::NONE)
+            Guard::new(&mut rig, Limits::NONE, Vec::new())
                 .unwrap()
                 .move_to(&[target], None)
                 .is_err()
@@ -207,7 +207,7 @@ fn a_reading_that_is_no_number_or_beyond_a_limit_holds_the_rig() {
             error,
             ..Scripted::default()
         };
-        let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
+        let mut guard = Guard::new(&mut rig, LIMITS, Vec::new()).unwrap();
         guard.move_to(&[0.001], None).unwrap();
         rig.force = force;
         let (commanded, own, going, holds, speed) =
@@ -234,13 +234,13 @@ fn a_reading_that_is_no_number_or_beyond_a_limit_holds_the_rig() {
         force: f64::NAN,
         ..Scripted::default()
     };
-    assert!(Guard::new(&mut rig, Limits::NONE).is_err());
+    assert!(Guard::new(&mut rig, Limits::NONE, Vec::new()).is_err());
 }
 
 #[test]
 fn the_bound_itself_is_inside_and_rounding_of_an_increment_is_not_held_against_it() {
     let mut rig = Scripted::default();
-    let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
+    let mut guard = Guard::new(&mut rig, LIMITS, Vec::new()).unwrap();
     for step in 1..=25 {
         guard
             .move_to(&[f64::from(step) * 0.001], Some(0.01))
@@ -261,7 +261,7 @@ fn the_bound_itself_is_inside_and_rounding_of_an_increment_is_not_held_against_i
 #[test]
 fn a_traverse_keeps_what_was_read_before_a_bad_reading() {
     let mut rig = Scripted::default();
-    let mut guard = Guard::new(&mut rig, LIMITS).unwrap();
+    let mut guard = Guard::new(&mut rig, LIMITS, Vec::new()).unwrap();
     let traversed = guard.traverse(&[0.01], 0.01, 5);
     assert_eq!(traversed.readings.len(), 2);
     assert_eq!(quantity(traversed.fault.unwrap()), LimitedQuantity::Force);

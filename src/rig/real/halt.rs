@@ -70,7 +70,8 @@ impl RealRig {
             match self.actuator.sample() {
                 Ok(sample) => {
                     let positions: Vec<f64> = sample
-                        .axes()
+                        .channels
+                        .iter()
                         .map(|axis| axis.displacement.unwrap_or(f64::NAN))
                         .collect();
                     let stays = |before: &Vec<f64>| {

@@ -115,12 +115,6 @@ impl RealRig {
         self.live.clone()
     }
 
-    /// Whether its displacement is the command and is not measured.
-    #[must_use]
-    pub fn open_loop(&self) -> bool {
-        open::commands_only(&self.link)
-    }
-
     /// Positions of the devices \[m\], one per axis, in the plan's coordinate.
     fn in_plan(&self, positions: &[f64]) -> Vec<f64> {
         self.axes
@@ -128,12 +122,6 @@ impl RealRig {
             .zip(positions)
             .map(|(axis, position)| axis.coordinate.in_plan(*position))
             .collect()
-    }
-
-    /// The wall clock, for the run log.
-    #[must_use]
-    pub fn wall(&self) -> Option<String> {
-        self.clock.wall()
     }
 
     /// A fault of a device as a fault of the rig.
@@ -403,16 +391,13 @@ impl Rig for RealRig {
     }
 
     fn line_statistics(&self) -> LineStatistics {
-        let cell = self
-            .load_cell
-            .as_ref()
-            .map_or_else(LineStatistics::default, |cell| cell.line_statistics());
-        let actuator = self.actuator.line_statistics();
-        LineStatistics {
-            resent: actuator.resent + cell.resent,
-            ignored: actuator.ignored + cell.ignored,
-            reread: actuator.reread + cell.reread + self.reread,
-        }
+        let cell = self.load_cell.as_ref().map(|cell| cell.line_statistics());
+        let mut all = self
+            .actuator
+            .line_statistics()
+            .plus(cell.unwrap_or_default());
+        all.reread += self.reread;
+        all
     }
 }
 

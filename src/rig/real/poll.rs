@@ -215,10 +215,11 @@ impl RealRig {
         };
         let force_sample = force_sample.as_ref().unwrap_or(&moved);
         let count = self.axes.len();
-        if moved.axis_count() != count || force_sample.axis_count() != count {
-            let (found, wanted) = (moved.axis_count().min(force_sample.axis_count()), count);
+        let found = [&moved, force_sample].map(|sample| sample.channels.len());
+        if found != [count; 2] {
+            let found = found[0].min(found[1]);
             return Err(Unusable::Fault(RigFault::Device(format!(
-                "the answer has {found} axes, but the rig has {wanted}"
+                "the answer has {found} axes, but the rig has {count}"
             ))));
         }
         let time = self.clock.now() - self.began;
@@ -232,7 +233,7 @@ impl RealRig {
             raw: Vec::new(),
         };
         for index in 0..count {
-            let (moved_axis, force_axis) = (moved.axis(index), force_sample.axis(index));
+            let (moved_axis, force_axis) = (moved.channels[index], force_sample.channels[index]);
             let lacks =
                 |what: &str| Unusable::Fault(RigFault::Device(format!("the rig gives no {what}")));
             let displacement = moved_axis

@@ -8,7 +8,7 @@ pub(crate) mod stop_request;
 
 pub use crate::record::failpoint;
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::sync::{Mutex, MutexGuard, Once, TryLockError};
 use std::thread::JoinHandle;
@@ -32,7 +32,6 @@ struct Line {
 static LINES: Mutex<Vec<Line>> = Mutex::new(Vec::new());
 static NEXT: AtomicU64 = AtomicU64::new(0);
 static BEATS: AtomicU64 = AtomicU64::new(0);
-static TRIPPED: AtomicBool = AtomicBool::new(false);
 
 /// Time between two checks of the watchdog thread, and between two attempts of a panic to lock the lines.
 const LOOK: Duration = Duration::from_millis(50);
@@ -49,7 +48,6 @@ pub struct Armed {
 pub fn arm(lines: Lines) -> Armed {
     hook();
     let number = NEXT.fetch_add(1, Ordering::SeqCst);
-    TRIPPED.store(false, Ordering::SeqCst);
     if let Some(mut armed) = take_lines() {
         let able = lines.into_iter().filter(|(_, bytes)| !bytes.is_empty());
         armed.extend(able.map(|(sender, bytes)| Line {
@@ -75,7 +73,6 @@ impl Armed {
             while stopped.recv_timeout(LOOK) == Err(RecvTimeoutError::Timeout) {
                 if guarded && pulse.stopped(BEATS.load(Ordering::SeqCst), clock.now()) {
                     hold_everything();
-                    TRIPPED.store(true, Ordering::SeqCst);
                 }
             }
         });
@@ -108,12 +105,6 @@ pub fn hold_everything() {
 /// A heartbeat of the code that drives the rig.
 pub fn beat() {
     BEATS.fetch_add(1, Ordering::SeqCst);
-}
-
-/// Whether the heartbeat was absent since the lines were armed, so that the rig was commanded to hold.
-#[must_use]
-pub fn tripped() -> bool {
-    TRIPPED.load(Ordering::SeqCst)
 }
 
 /// The lines. None if another thread has the lock, such as a thread that panicked while sending.
@@ -269,7 +260,7 @@ mod tests {
     #[test]
     fn the_watch_sends_the_bytes_when_nobody_beats() {
         let (armed, recorder, watch) = nobody_beats();
-        while !(tripped() && recorder.sent_by(watch) == b"!") {
+        while recorder.sent_by(watch) != b"!" {
             std::thread::yield_now();
         }
         drop(armed);

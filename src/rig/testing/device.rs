@@ -5,7 +5,9 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use super::VirtualClock;
 use crate::plan::Limits;
-use crate::rig::controllers::{Device, DeviceFault, DeviceIdentity, DeviceMove, Force, Sample};
+use crate::rig::controllers::{
+    Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Force, Sample,
+};
 use crate::rig::transport::Clock as _;
 use crate::rig::{LastMove, LineStatistics};
 
@@ -151,15 +153,18 @@ impl Device for FakeDevice {
                     high: 8_388_607,
                 }
             });
-        let mut sample = Sample {
-            time: Some(inside.time),
+        let axis = Channel {
             displacement: Some(inside.position),
             force: Some(force),
+            ..Channel::default()
+        };
+        let mut sample = Sample {
+            time: Some(inside.time),
+            channels: vec![axis],
             moving: inside
                 .reports_motion
                 .then(|| inside.position != inside.target),
             raw: vec![format!("sample {}", inside.samples).into_bytes()],
-            ..Sample::default()
         };
         let number = inside.samples;
         inside.samples += 1;

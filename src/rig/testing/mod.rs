@@ -2,6 +2,7 @@
 //! test of a rig sleeps.
 
 mod device;
+mod forwarded;
 mod transcript;
 
 use std::collections::VecDeque;
@@ -12,6 +13,7 @@ use std::time::Duration;
 use super::transport::{Clock, Emergency, Port};
 
 pub use device::FakeDevice;
+pub(crate) use forwarded::forwarded;
 pub use transcript::Transcript;
 
 /// Time that all clones share \[s\].

@@ -16,8 +16,8 @@ pub use clock::MonotonicClock;
 pub use serial::SerialPort;
 pub use tcp::TcpPort;
 
-/// Longest wait for a connection \[s\].
-const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
+/// Longest wait for a network rig to accept the connection.
+const CONNECTING: Duration = Duration::from_secs(5);
 
 /// Opens the port of a plan. Nothing is sent.
 ///
@@ -26,7 +26,7 @@ const CONNECT_TIMEOUT: Duration = Duration::from_secs(3);
 pub fn open(port: &PortPlan) -> io::Result<Box<dyn Port>> {
     Ok(match port {
         PortPlan::Serial { path, baud } => Box::new(SerialPort::open(path, *baud)?),
-        PortPlan::Tcp { address } => Box::new(TcpPort::connect(address, CONNECT_TIMEOUT)?),
+        PortPlan::Tcp { address } => Box::new(TcpPort::connect(address, CONNECTING)?),
     })
 }
 

@@ -41,7 +41,7 @@ pub(super) fn unknown_rig() -> RigBody {
         t: 0.0,
         identity,
         axes: 1,
-        noise: DeclaredNoise::default(),
+        noise: DeclaredNoise::NONE,
         own_speed: None,
         last_move: None,
         datum: None,

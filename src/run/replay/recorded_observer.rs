@@ -287,17 +287,19 @@ fn stopped(reason: String) -> Inspection {
 }
 
 impl StepBody {
+    /// The run log has the first axis beside the step.
     fn of(report: &StepReport) -> Self {
+        let (first, others) = (report.axes[0], &report.axes[1..]);
         Self {
             step: report.step,
             time: report.time,
-            u: report.command,
-            x: report.displacement,
-            v: report.velocity,
-            a: report.acceleration,
-            r: report.force,
+            u: first.command,
+            x: first.displacement,
+            v: first.velocity,
+            a: first.acceleration,
+            r: first.force,
             e: report.energy_error.filter(|error| error.is_finite()),
-            axes: report.others.iter().map(AxisBody::of).collect(),
+            axes: others.iter().map(AxisBody::of).collect(),
         }
     }
 
@@ -326,12 +328,12 @@ impl StepBody {
 }
 
 impl AxisBody {
-    const fn of(axis: &AxisReport) -> Self {
+    fn of(axis: &AxisReport) -> Self {
         Self {
             u: axis.command,
             x: axis.displacement,
-            v: axis.velocity,
-            a: axis.acceleration,
+            v: axis.velocity.unwrap_or(0.0),
+            a: axis.acceleration.unwrap_or(0.0),
             r: axis.force,
         }
     }

@@ -5,13 +5,14 @@
 use super::motion::impact_plan;
 use super::stage::{Ended, STIFFNESS, emulator, header, link, open, plan_of, run, run_watched, to};
 use crate::emulator::Log;
-use crate::plan::{DeclaredNoise, Limits, Plan, ProcedureKind, SafeState};
+use crate::plan::{Limits, Plan, ProcedureKind, SafeState};
 use crate::record::journal::testing::PowerLoss;
 use crate::record::journal::testing::recover;
 use crate::record::journal::{Durability, EntryKind, Journal};
 use crate::record::{EventKind, History, Outcome, Record};
 use crate::rig::real::RealRig;
-use crate::rig::{EachReading, EncodedMove, FinalHold, Identity, Reading, Rig, RigFault};
+use crate::rig::testing::forwarded;
+use crate::rig::{Rig, RigFault};
 use crate::run::replay::LoggedRun;
 use crate::run::{Inspection, Motion, Observer, UNLOADING, Unwatched, replay};
 use crate::tests::testing::{number, ramp};
@@ -132,62 +133,10 @@ fn an_operator_who_takes_time_to_decide_unloads_a_rig_beyond_its_limit() {
 struct Refusing(RealRig);
 
 impl Rig for Refusing {
+    forwarded!(0: identity, degrees_of_freedom, time, propose, execute, pause, read, traverse, hold, halt, take_broken, declared_noise);
+
     fn set_limits(&mut self, _: &[Limits]) -> Result<(), RigFault> {
         Err(RigFault::Device("no reply".to_owned()))
-    }
-
-    fn identity(&self) -> Identity {
-        self.0.identity()
-    }
-
-    fn degrees_of_freedom(&self) -> usize {
-        self.0.degrees_of_freedom()
-    }
-
-    fn time(&self) -> f64 {
-        self.0.time()
-    }
-
-    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
-        self.0.propose(targets, speed)
-    }
-
-    fn execute(&mut self) -> Result<(), RigFault> {
-        self.0.execute()
-    }
-
-    fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
-        self.0.pause(seconds)
-    }
-
-    fn read(&mut self) -> Result<Reading, RigFault> {
-        self.0.read()
-    }
-
-    fn traverse(
-        &mut self,
-        targets: &[f64],
-        velocity: f64,
-        samples: usize,
-        each: EachReading<'_>,
-    ) -> Result<(), RigFault> {
-        self.0.traverse(targets, velocity, samples, each)
-    }
-
-    fn hold(&mut self) {
-        self.0.hold();
-    }
-
-    fn halt(&mut self) -> Option<FinalHold> {
-        self.0.halt()
-    }
-
-    fn take_broken(&mut self) -> Option<Reading> {
-        self.0.take_broken()
-    }
-
-    fn declared_noise(&self) -> DeclaredNoise {
-        self.0.declared_noise()
     }
 }
 

@@ -28,7 +28,7 @@ fn given_impact() -> Impact {
 fn unload() -> ProcedureKind {
     ProcedureKind::Unload(Unload {
         specimen: 0,
-        stiffness: Constant(2e4),
+        stiffness: Some(Constant(2e4)),
         within: None,
         speed: None,
     })

@@ -50,7 +50,7 @@ fn unloaded(
     });
     let unload = ProcedureKind::Unload(Unload {
         specimen: 0,
-        stiffness: Constant(stiffness),
+        stiffness: Some(Constant(stiffness)),
         within: None,
         speed: None,
     });
@@ -199,7 +199,7 @@ fn an_impact_series_ends_there_too() {
     };
     let mut displacements = Vec::new();
     for struck in &history.impacts {
-        displacements.extend(struck.impact().steps.iter().map(|step| step.command));
+        displacements.extend(struck.history.steps.iter().map(|step| step.command));
         let rests = truly_rests(&bolted(), &displacements, 0.0);
         let found = struck.rest_of_struck().unwrap().0;
         assert!((found - rests).abs() < 2e-5, "{found} m, not {rests} m");

@@ -201,7 +201,7 @@ fn cells(specimen: usize, contact: &Contact, case: ImpactCase) -> Vec<Cell> {
         struck.point().unwrap(),
         &plan.strikers[0],
         &mut inputs,
-        DeclaredNoise::default(),
+        DeclaredNoise::NONE,
     )
     .ok()
     .unwrap();

@@ -4,12 +4,11 @@ use crate::physics::structure::Unloading;
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::formula::{NoResults, ProcedureId};
 use crate::plan::{Behaviour, Calibration, Link, Plan, VirtualLink};
+use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::unload::run::{of_frame, to_rest};
-use crate::procedures::unload::uncertainty::RestUncertainty;
 use crate::record::Rest;
-use crate::rig::{
-    DeclaredNoise, EachReading, EncodedMove, Identity, Reading, Rig, RigFault, virtual_rig,
-};
+use crate::rig::testing::forwarded;
+use crate::rig::{EachReading, EncodedMove, Reading, Rig, RigFault, virtual_rig};
 use crate::run::Unwatched;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
@@ -49,15 +48,8 @@ fn misread(axes: &[Wrong], mut reading: Reading) -> Reading {
 }
 
 impl Rig for Misread {
-    fn identity(&self) -> Identity {
-        self.rig.identity()
-    }
-    fn degrees_of_freedom(&self) -> usize {
-        self.rig.degrees_of_freedom()
-    }
-    fn time(&self) -> f64 {
-        self.rig.time()
-    }
+    forwarded!(rig: identity, degrees_of_freedom, time, execute, pause, traverse, hold, declared_noise);
+
     fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
         let true_targets: Vec<f64> = targets
             .iter()
@@ -70,23 +62,8 @@ impl Rig for Misread {
             ..encoded
         })
     }
-    fn execute(&mut self) -> Result<(), RigFault> {
-        self.rig.execute()
-    }
-    fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
-        self.rig.pause(seconds)
-    }
     fn read(&mut self) -> Result<Reading, RigFault> {
         Ok(misread(&self.axes, self.rig.read()?))
-    }
-    fn traverse(
-        &mut self,
-        targets: &[f64],
-        velocity: f64,
-        samples: usize,
-        each: EachReading<'_>,
-    ) -> Result<(), RigFault> {
-        self.rig.traverse(targets, velocity, samples, each)
     }
     fn follow_paths(
         &mut self,
@@ -106,12 +83,6 @@ impl Rig for Misread {
         self.rig.follow_paths(&true_paths, samples, &mut |reading| {
             each(misread(axes, reading))
         })
-    }
-    fn hold(&mut self) {
-        self.rig.hold();
-    }
-    fn declared_noise(&self) -> DeclaredNoise {
-        self.rig.declared_noise()
     }
 }
 
@@ -141,7 +112,8 @@ fn rests(plan: &Plan, positions: &[&[f64]], axes: Vec<Wrong>, within: Option<f64
     let mut steps = Vec::new();
     let mut rest = to_rest(unloading.clone(), within, None, 0, &mut session, &mut steps).unwrap();
     let inputs = Inputs::new(&NoResults, ProcedureId(0));
-    RestUncertainty::new(plan, &inputs, &session).unloaded(&mut rest, &unloading, &steps);
+    UncertainRun::new(plan, &inputs, session.guard.declared_noise())
+        .unloaded(&mut rest, &unloading, &steps);
     rest
 }
 

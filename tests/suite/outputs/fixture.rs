@@ -92,7 +92,6 @@ pub fn finished() -> Finished {
             number("r_squared", Some(0.999_98), None, Dimension::NUMBER),
         ],
         history: History::Ramp(RampHistory {
-            start: None,
             before: Vec::new(),
             steps: ramp_steps(),
             fit: Some(line(327.72, 0.41, -0.012, 0.035)),
@@ -121,8 +120,6 @@ pub fn finished() -> Finished {
         ],
         history: History::Sweep(SweepHistory {
             pairs: sweep_pairs(&sweep_steps()),
-            middles: Vec::new(),
-            stiffness: Some(327.72),
             together: BroughtTogether::default(),
             own_stiffness: None,
             steps: sweep_steps(),

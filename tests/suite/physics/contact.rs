@@ -5,6 +5,7 @@ use psd::physics::contact::ContactLaw;
 use psd::physics::contact::state::StepState;
 use psd::physics::impact::ImpactInput;
 use psd::physics::specimen::{Bilinear, BilinearCurve, Elastic, RestoringForce};
+use psd::physics::statistics::DeclaredNoise;
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -12,6 +13,12 @@ use rand_pcg::Pcg64Mcg;
 use super::support::{Run, event_driven, impact, run, run_on, run_while};
 
 const K: f64 = 327.65;
+
+/// The noise of a load cell.
+const NOISE: DeclaredNoise = DeclaredNoise {
+    force: 5.0,
+    resolution: 0.0,
+};
 
 /// Relative tolerance.
 #[track_caller]
@@ -393,7 +400,7 @@ fn noise_does_not_become_a_stiffness() {
     }
     for (time_step, within) in [(1e-5, 0.12), (5e-4, 0.25)] {
         let input = ImpactInput {
-            force_noise: 5.0,
+            noise: NOISE,
             ..impact(1.0, 3e5, ContactLaw::Rigid, time_step)
         };
         let run = run_on(&input, &mut Noisy { sign: 1.0 });
@@ -433,7 +440,7 @@ fn the_tangent_follows_a_specimen_that_yields_under_noise() {
     }
     let followed = |seed| {
         let input = ImpactInput {
-            force_noise: 5.0,
+            noise: NOISE,
             ..impact(20.0, 3e5, ContactLaw::Rigid, 2e-5)
         };
         let specimen = Bilinear::new(BilinearCurve {

@@ -4,6 +4,7 @@ use psd::physics::contact::ContactLaw;
 use psd::physics::impact::summary::{ImpactSummary, SummaryBuilder};
 use psd::physics::impact::{ImpactInput, ImpactSolver, ImpactState};
 use psd::physics::specimen::{Elastic, RestoringForce};
+use psd::physics::statistics::DeclaredNoise;
 use psd::plan::Integrator;
 
 /// A striker of 10 kg at 1 m/s that touches an undamped structure at t = 0.
@@ -22,8 +23,7 @@ pub fn impact(mass: f64, stiffness: f64, law: ContactLaw, time_step: f64) -> Imp
         integrator: Integrator::Tangent,
         operator_stiffness: stiffness,
         i_modification: false,
-        force_noise: 0.0,
-        resolution: 0.0,
+        noise: DeclaredNoise::NONE,
     }
 }
 

@@ -5,7 +5,6 @@
 //! settling band or the resolution may oppose the motion at every step. The sum of these errors is δ. In the worst case an amplitude A
 //! grows by 4δ in each cycle.
 
-use crate::plan::formula::ResultValue;
 use crate::plan::{Impact, Link, Mode, Plan, Shake, Stepping, VirtualLink};
 use crate::procedures::stepping::tracking::delay::late;
 use crate::record::{
@@ -212,16 +211,10 @@ pub(crate) fn energy(lagging: Option<&Record>, procedure: usize) -> Vec<Vec<Stri
     else {
         return Vec::new();
     };
-    let share = found
-        .result(TRACKING_ENERGY_ERROR.name)
-        .map(|result| &result.value);
-    let Some(ResultValue::Number {
-        value: Some(share), ..
-    }) = share
-    else {
+    let Some(share) = found.number(TRACKING_ENERGY_ERROR.name) else {
         return Vec::new();
     };
-    let does = if *share < 0.0 { "put in" } else { "taken out" };
+    let does = if share < 0.0 { "put in" } else { "taken out" };
     let held = match &lagging.outcome {
         Outcome::Completed => String::new(),
         _ if found.complete => String::new(),

@@ -14,7 +14,7 @@ use crate::cli::output::print_while_read;
 use crate::cli::settings::Settings;
 use crate::plan::Plan;
 use crate::rig::{Reading, Rig, StopRequest};
-use crate::run::{AxisReport, Observer as _, StepReport};
+use crate::run::{Observer as _, StepReport};
 
 #[derive(Debug, Args)]
 #[command(after_help = "In a pipe: one line per reading, in SI units.\n\n\
@@ -103,38 +103,8 @@ pub fn monitor(
 
 /// A reading as a step without a target.
 fn step(number: u64, reading: &Reading) -> StepReport {
-    let first = |values: &[f64]| values.first().copied().unwrap_or(f64::NAN);
-    let displacement = first(&reading.displacement);
-    StepReport {
-        step: number,
-        time: reading.time,
-        command: displacement,
-        displacement,
-        velocity: None,
-        acceleration: None,
-        force: first(&reading.force),
-        speed: None,
-        energy_error: None,
-        others: reading
-            .displacement
-            .iter()
-            .zip(&reading.force)
-            .skip(1)
-            .map(|(x, force)| at_rest(*x, *force))
-            .collect(),
-        tracking: None,
-        tracking_energy_error: None,
-    }
-}
-
-fn at_rest(displacement: f64, force: f64) -> AxisReport {
-    AxisReport {
-        command: displacement,
-        displacement,
-        velocity: 0.0,
-        acceleration: 0.0,
-        force,
-    }
+    let positions = &reading.displacement;
+    StepReport::of_readings(number, reading.time, positions, positions, &reading.force)
 }
 
 /// The names of the columns of [`line`].
@@ -175,7 +145,7 @@ mod tests {
             raw: Vec::new(),
         };
         assert_eq!(line(&reading), "0.1,0.001,-0.3\n");
-        assert_eq!(step(3, &reading).force, -0.3);
+        assert_eq!(step(3, &reading).force(), -0.3);
         assert_eq!(header(1), "time_s,displacement_m,force_n\n");
         assert_eq!(
             header(2),

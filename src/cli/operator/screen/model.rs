@@ -141,21 +141,15 @@ impl Model {
         self.study = None;
         self.increment = self.last.as_ref().map(|last| {
             let changes = report
-                .axes()
-                .zip(last.axes())
-                .map(|((to, ..), (from, ..))| (to - from).abs());
+                .axes
+                .iter()
+                .zip(&last.axes)
+                .map(|(to, from)| (to.command - from.command).abs());
             changes.fold(0.0, f64::max)
         });
         // For several floors: the highest one, and the base shear over the storey drift of the lowest storey.
-        let highest = report
-            .axes()
-            .last()
-            .map_or(report.displacement, |(_, displacement, _)| displacement);
-        self.displacement.push(report.time, highest);
-        self.force.push(
-            report.displacement,
-            report.axes().map(|(.., force)| force).sum(),
-        );
+        self.displacement.push(report.time, report.highest());
+        self.force.push(report.axes[0].displacement, report.force());
         self.last = Some(report.clone());
     }
 
@@ -189,8 +183,8 @@ impl Model {
             None => self
                 .last
                 .iter()
-                .flat_map(StepReport::axes)
-                .map(|(_, displacement, force)| (displacement, force))
+                .flat_map(|last| &last.axes)
+                .map(|axis| (axis.displacement, axis.force))
                 .collect(),
         }
     }
@@ -207,8 +201,8 @@ impl Model {
         let errors = self
             .last
             .iter()
-            .flat_map(StepReport::axes)
-            .map(|(command, displacement, _)| (command - displacement).abs());
+            .flat_map(|last| &last.axes)
+            .map(|axis| (axis.command - axis.displacement).abs());
         errors.reduce(f64::max)
     }
 
@@ -334,18 +328,9 @@ pub mod tests {
 
     pub fn step(step: u64, time: f64, command: f64, force: f64) -> StepReport {
         StepReport {
-            step,
-            time,
-            command,
-            displacement: command - 2e-6,
-            velocity: None,
-            acceleration: None,
-            force,
             speed: Some(0.4),
             energy_error: Some(-1e-4),
-            others: Vec::new(),
-            tracking: None,
-            tracking_energy_error: None,
+            ..StepReport::of_readings(step, time, &[command], &[command - 2e-6], &[force])
         }
     }
 

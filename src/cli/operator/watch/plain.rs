@@ -63,14 +63,10 @@ impl Observer for Bar {
         // Most steps are never drawn: the text is made for some only.
         if step.is_multiple_of(16) {
             // For several axes the highest floor and the base shear are the most useful.
-            let displacement = report
-                .axes()
-                .last()
-                .map_or(0.0, |(_, displacement, _)| displacement);
-            let force = report.axes().map(|(.., force)| force).sum();
+            let force = report.force();
             let (time, displacement) = (
                 readable(report.time, Dimension::TIME),
-                readable(displacement, Dimension::LENGTH),
+                readable(report.highest(), Dimension::LENGTH),
             );
             bar.set_message(format!(
                 "{time}  {displacement}  {}",
@@ -139,10 +135,10 @@ impl Observer for Lines {
 
     fn step_done(&mut self, report: &StepReport) {
         self.last = Some(report.step);
-        for (_, displacement, force) in report.axes() {
+        for axis in &report.axes {
             self.largest = (
-                self.largest.0.max(displacement.abs()),
-                self.largest.1.max(force.abs()),
+                self.largest.0.max(axis.displacement.abs()),
+                self.largest.1.max(axis.force.abs()),
             );
         }
     }

@@ -134,6 +134,14 @@ impl<'a> Checker<'a> {
             .find(|(_, entry)| entry.key.node == field)
     }
 
+    /// The value of the field, or the head of the block if it is not given.
+    pub fn value_or_head(&self, block: usize, field: &str) -> Span {
+        self.field(block, field)
+            .map_or(self.scope.blocks[block].block.head, |(_, entry)| {
+                entry.value.span
+            })
+    }
+
     /// Whether an entry of the block is a misspelling of one of these fields, which is reported already.
     pub fn misspelt(&self, block: usize, fields: &[&str]) -> bool {
         let declared = &self.scope.blocks[block];

@@ -48,9 +48,7 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
         .clone()
         .any(|axis| link.readings_of(axis).resolution == 0.0)
     {
-        let at = checker
-            .field(block, schema::RESOLUTION.name)
-            .map_or(head, |(_, entry)| entry.value.span);
+        let at = checker.value_or_head(block, schema::RESOLUTION.name);
         checker
             .diagnostics
             .push(message::resolution_unknown(&rig.plan.name, at));

@@ -291,7 +291,7 @@ fn an_axis_states_its_own_certificates_and_uncertainties_and_leaves_the_rest_to_
         (Some("1"), Some("0.5"))
     );
     let identity = crate::rig::virtual_rig(&plan).identity();
-    let equipment = Equipment::of(&plan, Device::of(&identity, DeclaredNoise::default()));
+    let equipment = Equipment::of(&plan, Device::of(&identity, DeclaredNoise::NONE));
     let rows = equipment.channels.iter().map(|channel| {
         (
             channel.axis,

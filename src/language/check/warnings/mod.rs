@@ -175,10 +175,7 @@ fn peak_forces(
         let kind = procedure.as_ref().map(|procedure| &procedure.kind);
         if let Some(conditions) = kind.and_then(|kind| crate::procedures::facts_of(kind).conditions)
         {
-            let head = checker.scope.blocks[*block].block.head;
-            let span = checker
-                .field(*block, WHILE.name)
-                .map_or(head, |(_, entry)| entry.value.span);
+            let span = checker.value_or_head(*block, WHILE.name);
             read(checker, conditions, span);
         }
     }

@@ -16,10 +16,7 @@ pub fn check(checker: &mut Checker, plan: &Plan, blocks: &[usize]) {
         };
         let after = before.saturating_add(steps);
         if after > MOST_RECORDED_STEPS {
-            let head = checker.scope.blocks[block].block.head;
-            let at = checker
-                .field(block, DURATION.name)
-                .map_or(head, |(_, entry)| entry.value.span);
+            let at = checker.value_or_head(block, DURATION.name);
             let remaining = MOST_RECORDED_STEPS - before;
             checker
                 .diagnostics

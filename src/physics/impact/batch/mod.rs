@@ -20,6 +20,7 @@ use crate::contact::ContactLaw;
 use crate::integrator::Integrator;
 use crate::integrator::state::State;
 use crate::specimen::{Bilinear, Elastic, RestoringForce, SpecimenModel};
+use crate::statistics::DeclaredNoise;
 use lanes::Lanes;
 pub use reach::Reach;
 use reach::ReachBuilder;
@@ -68,7 +69,7 @@ impl Impact {
 
     fn lane_specimen(&self, until: Option<Until>) -> Option<LaneSpecimen> {
         let input = &self.input;
-        let exact = input.force_noise == 0.0 && input.resolution == 0.0;
+        let exact = input.noise == DeclaredNoise::NONE;
         let law = matches!(input.law, ContactLaw::Rigid | ContactLaw::Limit { .. });
         if until == Some(Until::Rebound)
             || input.integrator != Integrator::Tangent

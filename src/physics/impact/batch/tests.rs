@@ -186,7 +186,7 @@ fn impacts_of_all_kinds_keep_their_order() {
 fn what_has_a_state_or_noise_runs_alone() {
     let plain = impact(1, ContactLaw::Rigid, true);
     let mut noisy = plain.clone();
-    noisy.input.force_noise = 1.0;
+    noisy.input.noise.force = 1.0;
     let mut explicit = plain.clone();
     explicit.input.integrator = Integrator::Explicit;
     let mut damaged = plain.clone();

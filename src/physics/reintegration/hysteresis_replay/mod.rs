@@ -21,7 +21,7 @@ pub(crate) use reintegrated::nearest;
 use self::pieces::{Branch, Piece, Slopes};
 use crate::integrator::tangent::NOISE_MULTIPLE;
 use crate::reintegration::hysteresis_replay::rate_correction::ContinuousReadings;
-use crate::statistics::ReadingNoise;
+use crate::statistics::DeclaredNoise;
 
 /// One step of the record.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +74,7 @@ impl RecordedPath {
         readings: Vec<Reading>,
         motion: Option<ContinuousMotion<&[f64]>>,
         stiffness: f64,
-        noise: ReadingNoise,
+        noise: DeclaredNoise,
     ) -> Option<Self> {
         readings.first()?;
         let continuous =

@@ -17,7 +17,7 @@ fn path(force: impl Fn(f64) -> f64, targets: &[f64]) -> RecordedPath {
         targets.iter().map(reading).collect(),
         None,
         1000.0,
-        ReadingNoise::default(),
+        DeclaredNoise::NONE,
     )
     .unwrap()
 }
@@ -84,7 +84,7 @@ fn turned_elsewhere_a_yielding_specimen_comes_back_on_its_own_line() {
             force,
         })
         .to_vec();
-    let path = RecordedPath::new(readings, None, 1000.0, ReadingNoise::default()).unwrap();
+    let path = RecordedPath::new(readings, None, 1000.0, DeclaredNoise::NONE).unwrap();
     for turned in [0.49, 0.5, 0.51, 0.53] {
         let mut retrace = path.retrace(1);
         for target in [0.21, 0.41, turned] {
@@ -120,7 +120,7 @@ fn noise_makes_no_tangent() {
         (0..200).map(readings).collect(),
         None,
         1000.0,
-        ReadingNoise {
+        DeclaredNoise {
             force: 1.0,
             resolution: 0.0,
         },
@@ -158,7 +158,7 @@ fn recorded(mut model: impl RestoringForce, targets: &[f64]) -> RecordedPath {
         targets.iter().map(reading).collect(),
         None,
         1000.0,
-        ReadingNoise::default(),
+        DeclaredNoise::NONE,
     )
     .unwrap()
 }

@@ -115,19 +115,6 @@ pub fn fit_superposition(
     before: f64,
     asked: Option<RelaxationLaw>,
     rate: f64,
-) -> Result<SuperpositionFit, Unrelaxed> {
-    fit_superposition_stated(holds, before, asked, rate, StatedVariance::default())
-}
-
-/// The same for readings with stated errors.
-///
-/// # Errors
-/// There are too few readings, nothing relaxes, or the time of the better law is not resolved.
-pub fn fit_superposition_stated(
-    holds: &[Hold],
-    before: f64,
-    asked: Option<RelaxationLaw>,
-    rate: f64,
     stated: StatedVariance,
 ) -> Result<SuperpositionFit, Unrelaxed> {
     let most = holds

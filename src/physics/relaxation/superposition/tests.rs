@@ -1,12 +1,23 @@
 //! The choice between two laws of relaxation: the right one from noisy readings, its parameters within their standard errors, and
 //! none if nothing relaxes.
 
-use super::{LawFit, SuperpositionFit, fit_superposition};
+use super::{LawFit, SuperpositionFit};
+use crate::identification::StatedVariance;
 use crate::relaxation::hold::{Hold, Unrelaxed};
 use crate::relaxation::law::RelaxationLaw;
 use crate::relaxation::law::RelaxationLaw::{Exponential, Logarithmic};
 use crate::statistics::least_squares::FitSize;
 use crate::statistics::testing::normal;
+
+/// Of readings without stated errors.
+fn fit_superposition(
+    holds: &[Hold],
+    before: f64,
+    asked: Option<RelaxationLaw>,
+    rate: f64,
+) -> Result<SuperpositionFit, Unrelaxed> {
+    super::fit_superposition(holds, before, asked, rate, StatedVariance::default())
+}
 
 /// N/s, at the end of a pause.
 const SLOW: f64 = 2.0;

@@ -114,18 +114,6 @@ pub fn fit_relaxation(
     holds: &[Hold],
     start: f64,
     model: RelaxationModel,
-) -> Result<RelaxationFit, Unrelaxed> {
-    fit_relaxation_stated(holds, start, model, StatedVariance::default())
-}
-
-/// The same for readings with stated errors.
-///
-/// # Errors
-/// The readings do not determine a time constant.
-pub fn fit_relaxation_stated(
-    holds: &[Hold],
-    start: f64,
-    model: RelaxationModel,
     stated: StatedVariance,
 ) -> Result<RelaxationFit, Unrelaxed> {
     match model {

@@ -1,9 +1,19 @@
 //! The fit of one time constant: exact without noise, its standard errors those of many fits, none if nothing relaxes.
 
-use super::{RelaxationFit, RelaxationModel, fit_relaxation};
+use super::{RelaxationFit, RelaxationModel};
+use crate::identification::StatedVariance;
 use crate::relaxation::hold::{Hold, Unrelaxed};
 use crate::relaxation::maxwell::{MaxwellBranch, Motion};
 use crate::statistics::testing::normal;
+
+/// Of readings without stated errors.
+fn fit_relaxation(
+    holds: &[Hold],
+    start: f64,
+    model: RelaxationModel,
+) -> Result<RelaxationFit, Unrelaxed> {
+    super::fit_relaxation(holds, start, model, StatedVariance::default())
+}
 
 const BOTH: [RelaxationModel; 2] = [
     RelaxationModel::Exponential,

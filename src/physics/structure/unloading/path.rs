@@ -9,7 +9,7 @@
 use super::super::shear_building::{drifts, shears};
 use super::{BELIEVED, Loaded, Unloading};
 use crate::integrator::tangent::NOISE_MULTIPLE;
-use crate::statistics::ReadingNoise;
+use crate::statistics::DeclaredNoise;
 
 /// Part of the load that the first move removes, by the expected slope: the unloading branch may be this much stiffer.
 const FIRST: f64 = 1.0 / BELIEVED;
@@ -53,8 +53,8 @@ struct Part {
 impl UnloadingPath {
     /// `force` \[N\] and `displacement` \[m\]: standard deviations of a reading of one floor.
     #[must_use]
-    pub fn new(unloading: Unloading, noise: ReadingNoise, at: Loaded<'_>) -> Self {
-        let ReadingNoise {
+    pub fn new(unloading: Unloading, noise: DeclaredNoise, at: Loaded<'_>) -> Self {
+        let DeclaredNoise {
             force,
             resolution: displacement,
         } = noise;
@@ -254,7 +254,7 @@ mod tests {
         let (x, r) = read(&at);
         let mut path = UnloadingPath::new(
             Unloading::of_one(expected),
-            ReadingNoise::default(),
+            DeclaredNoise::NONE,
             Loaded {
                 displacement: &x,
                 force: &r,
@@ -349,11 +349,8 @@ mod tests {
                 displacement: &displacements,
                 force: &start,
             };
-            let mut path = UnloadingPath::new(
-                Unloading::of(&expected).unwrap(),
-                ReadingNoise::default(),
-                at,
-            );
+            let mut path =
+                UnloadingPath::new(Unloading::of(&expected).unwrap(), DeclaredNoise::NONE, at);
             for _ in 0..12 {
                 let force = force_at(&displacements);
                 if largest(&force) < 1e-9 {
@@ -390,7 +387,7 @@ mod tests {
         };
         let path = UnloadingPath::new(
             Unloading::of_one(1000.0),
-            ReadingNoise {
+            DeclaredNoise {
                 force: 1.0,
                 resolution: 0.0,
             },
@@ -399,7 +396,7 @@ mod tests {
         assert_eq!(path.moves(&[15.0]), [-0.015]);
         let mut loaded = UnloadingPath::new(
             Unloading::of_one(1000.0),
-            ReadingNoise {
+            DeclaredNoise {
                 force: 1.0,
                 resolution: 0.0,
             },

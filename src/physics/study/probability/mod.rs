@@ -35,16 +35,6 @@ impl Outcomes {
         self.passed + self.failed + self.no_result
     }
 
-    /// Both counted: studies of different runs add up.
-    #[must_use]
-    pub const fn and(self, other: Self) -> Self {
-        Self {
-            passed: self.passed + other.passed,
-            failed: self.failed + other.failed,
-            no_result: self.no_result + other.no_result,
-        }
-    }
-
     /// The probability of failure as estimated, if no run without a result would have failed, and if all of them would have. Equal
     /// if every run has a result; None without runs.
     #[must_use]

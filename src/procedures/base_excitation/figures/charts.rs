@@ -4,8 +4,8 @@
 use crate::procedures::stepping::energy::{EnergyCurve, nonzero_curves};
 use crate::record::{Floors, Modes, ShakeHistory, ShakeStep};
 use crate::report::figures::chart::{
-    Chart, Colour, DASH_DOT, DASHED, DOTTED, End, LONG, Quantity, Reference, SOLID, Series, Style,
-    palette,
+    Chart, Colour, DASH_DOT, DASHED, DOTTED, End, LONG, Marker, Quantity, Reference, SOLID, Series,
+    Style, palette,
 };
 use crate::report::figures::points::{PointCollector, Points};
 use crate::units::Dimension;
@@ -57,40 +57,32 @@ pub(crate) fn hysteresis<S: Floors>(steps: &[S]) -> Chart {
             points,
             style: retraced(curve),
         });
-    Chart {
-        x: Quantity::along("Drift", Dimension::LENGTH),
-        y: Quantity::of("Storey shear", Dimension::FORCE),
-        bands: Vec::new(),
-        series: curves.collect(),
-        references: Vec::new(),
-    }
+    Chart::of(
+        Quantity::along("Drift", Dimension::LENGTH),
+        Quantity::of("Storey shear", Dimension::FORCE),
+        curves.collect(),
+    )
 }
 
 pub(crate) fn base_shear<S: Floors>(steps: &[S], limits: &[Reference]) -> Chart {
     let read = |step: &S| step.restoring_force().iter().sum();
-    let mut chart = over_time(Quantity::of("Base shear", Dimension::FORCE));
-    chart.series = vec![one(
-        steps,
-        "base shear",
-        read,
-        Style::line(palette::BLUE, 1.6, SOLID),
-    )];
-    chart.references = limits.to_vec();
-    chart
+    let style = Style::line(palette::BLUE, 1.6, SOLID);
+    let curve = one(steps, "base shear", read, style);
+    Chart {
+        references: limits.to_vec(),
+        ..over_time(Quantity::of("Base shear", Dimension::FORCE), vec![curve])
+    }
 }
 
 pub(crate) fn ground(history: &ShakeHistory) -> Chart {
-    let mut chart = over_time(Quantity::of(
-        "Acceleration of the ground",
-        Dimension::ACCELERATION,
-    ));
-    chart.series = vec![one(
+    let curve = one(
         &history.steps,
         "as applied",
         |step| step.ground_acceleration,
         Style::line(palette::BLUE, 1.4, SOLID),
-    )];
-    chart
+    );
+    let acceleration = Quantity::of("Acceleration of the ground", Dimension::ACCELERATION);
+    over_time(acceleration, vec![curve])
 }
 
 /// The tracking error of each floor, and the tracking indicator of all as a length: divided by the largest command.
@@ -154,9 +146,8 @@ pub(crate) fn energy(history: &ShakeHistory) -> Chart {
             Style::line(palette::SKY, 1.4, SOLID),
         ),
     ];
-    let mut chart = over_time(Quantity::of("Energy", Dimension::ENERGY));
-    chart.series = nonzero_curves(&history.steps, |step| step.floors.time, curves);
-    chart
+    let curves = nonzero_curves(&history.steps, |step| step.floors.time, curves);
+    over_time(Quantity::of("Energy", Dimension::ENERGY), curves)
 }
 
 /// Shapes of the first modes, floor by floor from the ground up; the largest entry of each is 1.
@@ -176,21 +167,16 @@ pub(crate) fn modes(modes: &Modes) -> Chart {
         points: std::iter::once((0.0, 0.0))
             .chain(shape.iter().copied().zip((1..).map(f64::from)))
             .collect(),
-        style: Style {
-            marker: Some(crate::report::figures::chart::Marker::Disc(3.2)),
-            ..style(mode, 1.6)
-        },
+        style: style(mode, 1.6).marked(Marker::Disc(3.2)),
     });
-    Chart {
-        x: Quantity::along("Shape, largest entry 1", Dimension::NUMBER),
-        y: Quantity {
+    Chart::of(
+        Quantity::along("Shape, largest entry 1", Dimension::NUMBER),
+        Quantity {
             end: End::Whole,
             ..Quantity::of("Floor", Dimension::NUMBER)
         },
-        bands: Vec::new(),
-        series: series.collect(),
-        references: Vec::new(),
-    }
+        series.collect(),
+    )
 }
 
 /// Bounds on a peak absolute value are drawn on both sides; the label is at the first.
@@ -239,9 +225,7 @@ fn each_floor<S: Floors>(steps: &[S], y: Quantity, what: &str, read: fn(&S) -> V
             points,
             style: style(curve, 1.6),
         });
-    let mut chart = over_time(y);
-    chart.series = curves.collect();
-    chart
+    over_time(y, curves.collect())
 }
 
 /// The curves of the floors that are drawn, each with its floor; `read` gives a point of every floor.
@@ -280,14 +264,8 @@ fn retraced(curve: usize) -> Style {
     )
 }
 
-fn over_time(y: Quantity) -> Chart {
-    Chart {
-        x: Quantity::time(),
-        y,
-        bands: Vec::new(),
-        series: Vec::new(),
-        references: Vec::new(),
-    }
+fn over_time(y: Quantity, series: Vec<Series>) -> Chart {
+    Chart::of(Quantity::time(), y, series)
 }
 
 fn one<S: Floors>(steps: &[S], label: &str, read: fn(&S) -> f64, style: Style) -> Series {

@@ -27,10 +27,6 @@ pub struct SweepHistory {
     /// The data of the fit: velocity \[m/s\], and half the difference of `F_d` \[N\] between the two directions at one
     /// position.
     pub pairs: Vec<(f64, f64)>,
-    /// For each pair, the position \[m\] and the mean of its two forces \[N\].
-    pub middles: Vec<[f64; 2]>,
-    /// K used for the damping forces \[N/m\].
-    pub stiffness: Option<f64>,
     pub together: BroughtTogether,
     /// K of the passes and its standard error \[N/m\], if it contradicts the K above. The damping ratio is then reported with it.
     pub own_stiffness: Option<(f64, f64)>,

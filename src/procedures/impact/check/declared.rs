@@ -86,10 +86,7 @@ fn on_point(
     if let (Some(time_step), Some(duration)) = (time_step, impact.duration.constant())
         && steps_in(duration, time_step) > MOST_STEPS
     {
-        let head = checker.scope.blocks[block].block.head;
-        let at = checker
-            .field(block, methods::DURATION.name)
-            .map_or(head, |(_, entry)| entry.value.span);
+        let at = checker.value_or_head(block, methods::DURATION.name);
         let steps = steps_in(duration, time_step);
         let help = "reduce `duration` or increase `time_step`";
         checker
@@ -137,10 +134,7 @@ fn on_storey(
     if let Contact::Limit { force } = &impact.contact
         && let Some(force) = force.constant()
     {
-        let head = checker.scope.blocks[block].block.head;
-        let at = checker
-            .field(block, methods::TIME_STEP.name)
-            .map_or(head, |(_, entry)| entry.value.span);
+        let at = checker.value_or_head(block, methods::TIME_STEP.name);
         warnings::limit_force(
             checker,
             step,

@@ -20,10 +20,7 @@ pub(crate) fn time_step(
     specimen: Option<&Specimen>,
     allowed_beyond_stability: bool,
 ) {
-    let head = checker.scope.blocks[block].block.head;
-    let at = checker
-        .field(block, methods::TIME_STEP.name)
-        .map_or(head, |(_, entry)| entry.value.span);
+    let at = checker.value_or_head(block, methods::TIME_STEP.name);
     let critical = predicted_critical(checker, impact, striker, specimen);
     if let Some((critical, predicted)) = critical
         && let Ok(step) = impact

@@ -122,17 +122,15 @@ pub(crate) fn force_displacement(history: &ImpactHistory) -> Chart {
         .iter()
         .map(|step| (step.command, step.restoring_force))
         .collect();
-    Chart {
-        x: Quantity::along("Displacement X", Dimension::LENGTH),
-        y: Quantity::of("Restoring force R", Dimension::FORCE),
-        bands: Vec::new(),
-        series: vec![Series {
+    Chart::of(
+        Quantity::along("Displacement X", Dimension::LENGTH),
+        Quantity::of("Restoring force R", Dimension::FORCE),
+        vec![Series {
             label: "measured R".to_owned(),
             points,
             style: Style::line(palette::BLUE, 1.8, SOLID),
         }],
-        references: Vec::new(),
-    }
+    )
 }
 
 /// The name of the energy that the contact took.

@@ -2,7 +2,6 @@
 //! storey, the energy balance, the contact log. In: a plan and a record. Out: blocks.
 
 use super::{contact_log, contact_work, energy_balance};
-use crate::plan::formula::ResultValue;
 use crate::plan::{Contact, Impact, Mode, ProcedureKind, StoreyTarget};
 use crate::procedures::base_excitation;
 use crate::procedures::stepping::energy;
@@ -163,10 +162,7 @@ fn storey_energies(procedure: &ProcedureRecord) -> Block {
     let Some(result) = procedure.result(schema::STOREY_ENERGY.name) else {
         return Block::note(String::new());
     };
-    let energies = match &result.value {
-        ResultValue::List(energies) => energies.as_slice(),
-        ResultValue::Number { .. } => &[],
-    };
+    let energies = result.value.list().unwrap_or_default();
     let input = procedure.number(schema::STRIKER_ENERGY.name).unwrap_or(0.0);
     let row = |(storey, energy): (usize, &f64)| -> Vec<Text> {
         vec![

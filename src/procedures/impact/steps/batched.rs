@@ -51,13 +51,10 @@ impl BatchedImpact {
         if !(is_ideal(whole) && undamped && plan.stepping.mode == Mode::StepAndPause) {
             return None;
         }
-        let noise = DeclaredNoise {
-            force: 0.0,
-            resolution: 0.0,
-        };
         let striker = &whole.strikers[plan.striker];
         let mut inputs = Inputs::new(&NoResults, ProcedureId(0));
-        let setting = Setting::of_point(plan, point, striker, &mut inputs, noise).ok()?;
+        let setting =
+            Setting::of_point(plan, point, striker, &mut inputs, DeclaredNoise::NONE).ok()?;
         let steps = setting.steps();
         let impact = batch::Impact {
             input: setting.input,

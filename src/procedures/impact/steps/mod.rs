@@ -11,9 +11,9 @@ use crate::physics::tracking::monitor::Tracking;
 use crate::plan::{Stepping, Until};
 use crate::procedures::stepping::axes::AxesState;
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
+use crate::procedures::stepping::run::Steps;
 use crate::procedures::stepping::start::Start;
 use crate::procedures::stepping::step_loop;
-use crate::procedures::stepping::step_loop::pace::Pace;
 use crate::procedures::stepping::step_loop::{Balance, Stepped};
 use crate::procedures::stepping::tracking::tracking_summary::Followed;
 use crate::record::{FloorMotion, FloorStep, ImpactStep};
@@ -24,7 +24,7 @@ use crate::run::stop::Stop;
 /// The settings of the steps of an impact.
 pub(crate) struct ImpactSteps<'a> {
     pub stepping: &'a Stepping,
-    pub pace: Pace,
+    pub steps: &'a Steps,
     pub until: Until,
     /// Steps of the procedure done before these.
     pub before: u64,
@@ -70,7 +70,7 @@ impl ImpactSteps<'_> {
             followed,
         } = kept;
         let (until, before) = (self.until, self.before);
-        step_loop::run(self.pace, self.stepping, followed, session, |start| {
+        step_loop::run(self.steps, self.stepping, followed, session, |start| {
             let (mut solver, stiffer) = begin(start)?;
             solver.measured_at_start(V::view_of(&start.reading.displacement));
             Ok((

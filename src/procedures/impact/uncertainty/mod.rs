@@ -13,23 +13,20 @@ use crate::physics::impact::summary::ImpactSummary;
 use crate::physics::reintegration::hysteresis_replay::{ContinuousMotion, Reading, RecordedPath};
 use crate::physics::reintegration::impact::{ImpactValues, Outcome, predicted_velocities, rerun};
 use crate::physics::reintegration::perturbation::Perturbation;
-use crate::physics::statistics::ReadingNoise;
-use crate::plan::formula::{Formula, ProcedureId, Results};
+use crate::plan::formula::{Formula, ProcedureId};
 use crate::plan::{Impact, Mode, Plan, PointTarget, Striker};
 use crate::procedures::common::perturbed_inputs::{
-    LEADS_ELSEWHERE, out_of_bounds, uncertain_inputs, with_shifts,
+    LEADS_ELSEWHERE, UncertainRun, uncertain_inputs,
 };
 use crate::procedures::common::results::{Evaluated, flat, give, index_of, layout_of, values};
 use crate::record::{ImpactStep, NamedResult};
-use crate::rig::DeclaredNoise;
-use crate::run::inputs::Inputs;
 use crate::run::stop::Stop;
 use crate::schema::ResultKind;
 use crate::schema::procedures::impact as schema;
+use crate::uncertainty::Source;
 use crate::uncertainty::engine::{
-    CLOSE, Contributions, Evaluate, Evaluation, Progress, Propagation, Shifts, Unknown,
+    CLOSE, Contributions, Evaluate, Evaluation, Progress, Shifts, Unknown,
 };
-use crate::uncertainty::{InstrumentUncertainty, Source};
 
 /// The numbers of an impact on one degree of freedom.
 fn numbers(values: &ImpactValues, setting: &Setting) -> Evaluated {
@@ -42,46 +39,12 @@ fn numbers(values: &ImpactValues, setting: &Setting) -> Evaluated {
 /// The uncertain inputs of an impact.
 #[derive(Clone, Copy)]
 pub(crate) struct ImpactUncertainty<'run> {
-    plan: &'run Impact,
-    point: &'run PointTarget,
-    whole: &'run Plan,
-    results: &'run dyn Results,
-    procedure: ProcedureId,
-    noise: DeclaredNoise,
-    /// The amount by which its damping ratio was raised to zero.
-    lift: f64,
-    /// Index of the impact in the procedure, from 0: each impact has its own errors.
-    impact: u16,
+    pub run: UncertainRun<'run>,
+    pub plan: &'run Impact,
+    pub point: &'run PointTarget,
 }
 
-impl<'run> ImpactUncertainty<'run> {
-    pub(crate) fn new(
-        plan: &'run Impact,
-        point: &'run PointTarget,
-        whole: &'run Plan,
-        inputs: &Inputs<'run>,
-        noise: DeclaredNoise,
-    ) -> Self {
-        Self {
-            plan,
-            point,
-            whole,
-            results: inputs.results(),
-            procedure: inputs.procedure(),
-            noise,
-            lift: inputs.lift(),
-            impact: 0,
-        }
-    }
-
-    /// For a later impact of the same procedure, counted from 0.
-    pub(crate) fn of_impact(self, index: usize) -> Self {
-        Self {
-            impact: u16::try_from(index).unwrap_or(u16::MAX),
-            ..self
-        }
-    }
-
+impl ImpactUncertainty<'_> {
     /// Gives `results` their contributions.
     pub(crate) fn propagate(
         &self,
@@ -108,20 +71,19 @@ impl<'run> ImpactUncertainty<'run> {
         }
         let layout = layout_of(&numbers(&unperturbed.values, setting));
         evaluate.length = layout.len();
-        let propagation = Propagation {
-            procedure: self.procedure,
-            impact: self.impact,
-            evaluate: &evaluate,
-            instruments: &InstrumentUncertainty::of(self.whole, self.noise, 1),
-            inputs: self.sources(),
-            steps: steps.len() as u64,
-            reported: Some(values(&layout, results)),
-        };
-        let mut contributions = propagation.contributions(progress)?;
+        let reported = values(&layout, results);
+        let mut contributions = self.run.contributions(
+            &evaluate,
+            1,
+            self.sources(),
+            steps.len(),
+            reported,
+            progress,
+        )?;
         for (kind, quantum) in whole_steps(setting.input.time_step) {
             at_least(
                 quantum,
-                self.procedure,
+                self.run.procedure,
                 index_of(&layout, kind),
                 &mut contributions,
             );
@@ -146,11 +108,7 @@ impl<'run> ImpactUncertainty<'run> {
             velocities,
             time_step: input.time_step,
         });
-        let noise = ReadingNoise {
-            force: input.force_noise,
-            resolution: input.resolution,
-        };
-        RecordedPath::new(readings, motion, input.stiffness, noise)
+        RecordedPath::new(readings, motion, input.stiffness, input.noise)
     }
 
     /// The uncertain inputs, each once.
@@ -171,10 +129,10 @@ impl<'run> ImpactUncertainty<'run> {
             .into_iter()
             .chain(contact::formulas(contact))
             .collect();
-        let stated = striker_sources(self.whole, *striker)
+        let stated = striker_sources(self.run.whole, *striker)
             .into_iter()
             .chain([(Source::SpecimenMass(*specimen), self.point.mass_uncertainty)]);
-        uncertain_inputs(&formulas, stated, self.results)
+        uncertain_inputs(&formulas, stated, self.run.results)
     }
 }
 
@@ -217,17 +175,8 @@ impl Evaluate for RecordedImpact<'_, '_> {
 
     /// The time step does not change: it was chosen, not measured.
     fn inputs(&self, shifts: Shifts<'_>) -> Result<Setting, String> {
-        let ImpactUncertainty {
-            plan,
-            point,
-            whole,
-            results,
-            procedure,
-            noise,
-            lift,
-            ..
-        } = *self.uncertainty;
-        let declared = &whole.strikers[plan.striker];
+        let ImpactUncertainty { run, plan, point } = *self.uncertainty;
+        let declared = &run.whole.strikers[plan.striker];
         let mut striker = declared.clone();
         let mut heavier = 0.0;
         for (source, by) in shifts {
@@ -243,16 +192,9 @@ impl Evaluate for RecordedImpact<'_, '_> {
         // the fastest impact.
         let faster = striker.velocity / declared.velocity;
         striker.velocity = self.setting.fastest * faster;
-        let mut found = with_shifts(results, shifts, &mut |results| {
-            Setting::of_point(
-                plan,
-                point,
-                &striker,
-                &mut Inputs::moved(results, procedure, lift),
-                noise,
-            )
-        })
-        .map_err(|stop| out_of_bounds(&stop))?;
+        let mut found = run.with_inputs(shifts, &mut |inputs| {
+            Setting::of_point(plan, point, &striker, inputs, run.noise)
+        })?;
         found.add_mass(heavier);
         found.input.time_step = self.setting.input.time_step;
         if let StruckStructure::Point(steps) = &mut found.structure {

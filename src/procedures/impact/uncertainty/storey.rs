@@ -81,10 +81,16 @@ pub(crate) fn propagate(
         // The reported one is without the part of noise; the re-integrated one has it in finer steps as well.
         reported[shear] = found.floors.between.max_base_shear;
     }
-    let stated = striker_sources(uncertainty.whole, plan.striker);
+    let stated = striker_sources(uncertainty.run.whole, plan.striker);
     let sources = uncertainty.sources(&contact::formulas(&plan.contact), &stated);
-    let mut contributions =
-        uncertainty.contributions(&evaluate, sources, history.len(), reported, progress)?;
+    let mut contributions = uncertainty.run.contributions(
+        &evaluate,
+        floors,
+        sources,
+        history.len(),
+        reported,
+        progress,
+    )?;
     no_known_force(setting.input.law, summary, &layout, &mut contributions);
     let time_step = frame.steps.time_step;
     // From the beginning of a step to the end of one: two times.
@@ -92,7 +98,7 @@ pub(crate) fn propagate(
     for (kind, quantum) in whole_steps(time_step).into_iter().chain([duration]) {
         at_least(
             quantum,
-            uncertainty.procedure,
+            uncertainty.run.procedure,
             index_of(&layout, kind),
             &mut contributions,
         );
@@ -178,13 +184,13 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
             uncertainty.moved_frame(shifts)?,
             uncertainty.moved_damping(shifts),
         );
-        let (properties, law) = uncertainty.with_inputs(shifts, &mut |inputs| {
+        let (properties, law) = uncertainty.run.with_inputs(shifts, &mut |inputs| {
             Ok((
                 stepping::run::properties(&frame, &damping, inputs)?,
                 contact::with_numbers(&plan.contact, inputs)?,
             ))
         })?;
-        let declared = &uncertainty.whole.strikers[plan.striker];
+        let declared = &uncertainty.run.whole.strikers[plan.striker];
         let recorded_velocity = setting.input.striker_velocity;
         let mut striker = Striker {
             velocity: recorded_velocity,
@@ -227,7 +233,7 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
         let periods = properties.modes.periods.clone();
         let run = FrameRun {
             matrices: properties.matrices,
-            ..uncertainty.run(steps)
+            ..uncertainty.frame_run(steps)
         };
         Ok(Inputs {
             run,

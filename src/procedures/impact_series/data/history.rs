@@ -1,6 +1,5 @@
 //! The history of an `escalate`: every impact as an impact history.
 
-use crate::plan::formula::ResultValue;
 use crate::record::{ImpactHistory, NamedResult, Rest, StruckFrame};
 use crate::uncertainty::Contribution;
 
@@ -21,44 +20,28 @@ pub struct SeriesImpact {
 }
 
 impl SeriesImpact {
-    /// The striker and the struck point, step by step; for a frame, the struck floor.
-    #[must_use]
-    pub const fn impact(&self) -> &ImpactHistory {
-        &self.history
-    }
-
     /// All floors, if a frame was struck.
     #[must_use]
     pub const fn storey(&self) -> Option<&StruckFrame> {
         self.history.frame.as_ref()
     }
 
+    /// One of its results.
+    #[must_use]
+    pub fn result(&self, name: &str) -> Option<&NamedResult> {
+        NamedResult::of(&self.results, name)
+    }
+
     /// A number among its results.
     #[must_use]
     pub fn number(&self, name: &str) -> Option<f64> {
-        match self
-            .results
-            .iter()
-            .find(|result| result.name == name)?
-            .value
-        {
-            ResultValue::Number { value, .. } => value,
-            ResultValue::List(_) => None,
-        }
+        self.result(name)?.value.number()
     }
 
     /// A list among its results.
     #[must_use]
     pub fn list(&self, name: &str) -> Option<&[f64]> {
-        match &self
-            .results
-            .iter()
-            .find(|result| result.name == name)?
-            .value
-        {
-            ResultValue::List(values) => Some(values),
-            ResultValue::Number { .. } => None,
-        }
+        self.result(name)?.value.list()
     }
 
     /// Displacement \[m\] and force \[N\] of the struck floor after it.

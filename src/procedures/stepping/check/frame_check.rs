@@ -36,12 +36,7 @@ pub fn check(
         ..
     } = *steps;
     storeys_damped_twice(checker, block, steps);
-    let head = checker.scope.blocks[block].block.head;
-    let at = |checker: &Checker, field| {
-        checker
-            .field(block, field)
-            .map_or(head, |(_, entry)| entry.value.span)
-    };
+    let at = |checker: &Checker, field| checker.value_or_head(block, field);
     let known = damping.known()?;
     let ratios = at(checker, frames::DAMPING_RATIO.name);
     if let ShakeDamping::Modal(given) = damping

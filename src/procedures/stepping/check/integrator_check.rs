@@ -48,12 +48,7 @@ pub fn meets_the_contact(
     if !contact.needs_tangent() || integrator == Integrator::Tangent {
         return Some(());
     }
-    let head = checker.scope.blocks[block].block.head;
-    let at = |field| {
-        checker
-            .field(block, field)
-            .map_or(head, |(_, entry)| entry.value.span)
-    };
+    let at = |field| checker.value_or_head(block, field);
     let (named, struck) = (at(methods::INTEGRATOR.name), at(impact::CONTACT.name));
     checker.fail(fault::law_needs_the_tangent(
         integrator.name(),
@@ -99,10 +94,7 @@ pub fn stable(
         && behaves > assumed * (1.0 + 1e-9)
         && step <= limit
     {
-        let head = checker.scope.blocks[block].block.head;
-        let at = checker
-            .field(block, STIFFNESS.name)
-            .map_or(head, |(_, entry)| entry.value.span);
+        let at = checker.value_or_head(block, STIFFNESS.name);
         checker
             .diagnostics
             .push(fault::stiffer_than_operator(behaves, assumed, at, limit));
@@ -113,10 +105,7 @@ pub fn stable(
         impact.stepping.max_tangent_ratio.constant(),
     ) && behaves > assumed * ratio * (1.0 + 1e-9)
     {
-        let head = checker.scope.blocks[block].block.head;
-        let at = checker
-            .field(block, STIFFNESS.name)
-            .map_or(head, |(_, entry)| entry.value.span);
+        let at = checker.value_or_head(block, STIFFNESS.name);
         checker
             .diagnostics
             .push(fault::stiffer_than_tangent(at, behaves, assumed * ratio));
@@ -124,10 +113,7 @@ pub fn stable(
     if step <= limit {
         return;
     }
-    let head = checker.scope.blocks[block].block.head;
-    let at = checker
-        .field(block, methods::TIME_STEP.name)
-        .map_or(head, |(_, entry)| entry.value.span);
+    let at = checker.value_or_head(block, methods::TIME_STEP.name);
     checker.diagnostics.push(if impact.stepping.allow_unstable {
         frames::unstable_though(at, step, limit)
     } else {

@@ -81,12 +81,7 @@ pub(crate) fn beyond_duration(
     else {
         return;
     };
-    let head = checker.scope.blocks[block].block.head;
-    let at = |field| {
-        checker
-            .field(block, field)
-            .map_or(head, |(_, entry)| entry.value.span)
-    };
+    let at = |field| checker.value_or_head(block, field);
     checker.diagnostics.push(values::step_beyond_duration(
         at(methods::TIME_STEP.name),
         step,

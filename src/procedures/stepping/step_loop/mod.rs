@@ -8,11 +8,11 @@
 //! c·v/`time_scale`.
 
 pub(crate) mod continuous_motion;
-pub(crate) mod pace;
 pub(crate) mod triggers;
 
 use super::axes::{AxesState, Errors, Monitors, report};
 use super::operator_stability_watch::StifferSprings;
+use super::run::Steps;
 use super::start::Start;
 use super::tracking::tracking_summary::Followed;
 use crate::physics::tracking::monitor::Tracking;
@@ -22,7 +22,6 @@ use crate::run::StepReport;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use continuous_motion::{ContinuousMotion, Waypoint};
-use pace::Pace;
 use triggers::Triggers;
 
 /// The energy of a test at the end of a step \[J\].
@@ -73,7 +72,7 @@ pub(crate) trait Stepped {
 
 /// All steps, from the present position of the rig.
 pub(crate) fn run<S: Stepped>(
-    pace: Pace,
+    steps: &Steps,
     plan: &Stepping,
     followed: &mut Followed,
     session: &mut Session<'_>,
@@ -96,13 +95,13 @@ pub(crate) fn run<S: Stepped>(
         Mode::Continuous { time_scale } => Some(ContinuousMotion::from_rest(
             &start.commanded,
             time_scale,
-            pace.time_step,
+            steps.time_step,
         )),
         Mode::StepAndPause => None,
     };
     stepped.keep(&monitors.tracking(), session);
     let mut struck = false;
-    for _ in 0..pace.steps {
+    for _ in 0..steps.count {
         let (reading, broken, is_reached) = if let Some(motion) = &mut motion {
             let (reading, broken) = motion.step(|| waypoints(&mut stepped), session)?;
             let is_reached = broken.is_none();
@@ -110,12 +109,12 @@ pub(crate) fn run<S: Stepped>(
         } else {
             let moved = session.guard.move_to(&stepped.predict(), None);
             let is_reached = moved.is_ok();
-            let paused = moved.and_then(|()| session.guard.pause(pace.pause));
+            let paused = moved.and_then(|()| session.guard.pause(steps.pause));
             let (reading, broken) = session.read_after(paused)?;
             (reading, broken, is_reached)
         };
         if !is_reached {
-            stepped.cut_off(&reading, pace.time_step, session);
+            stepped.cut_off(&reading, steps.time_step, session);
             return broken.map_or(Ok(()), Err);
         }
         stepped.complete(&reading);

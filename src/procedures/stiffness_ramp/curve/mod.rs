@@ -5,9 +5,8 @@ pub(crate) mod curve_report;
 
 use crate::physics::identification::StatedVariance;
 use crate::physics::identification::multilinear_fit::{
-    BreakCount, MultilinearFit, fit_multilinear, fit_multilinear_stated,
+    BreakCount, MultilinearFit, fit_multilinear,
 };
-use crate::plan::formula::ResultValue;
 use crate::record::{LineFit, NamedResult};
 use crate::schema::procedures::stiffness_ramp as schema;
 use crate::schema::{ResultKind, curves};
@@ -22,7 +21,7 @@ pub(crate) fn fitted(
     stated: StatedVariance,
 ) -> (Option<MultilinearFit>, Vec<String>) {
     let (x, r): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
-    let fit = fit_multilinear_stated(&x, &r, count, stated);
+    let fit = fit_multilinear(&x, &r, count, stated);
     let remarks = remarks(fit.as_ref(), count, points.len(), what);
     (fit, remarks)
 }
@@ -36,8 +35,13 @@ const HIDDEN: f64 = 0.1;
 /// An observation that a straight line does not fit the points (m, N) because they bend: strong by BIC, and large in size.
 pub(crate) fn bends(points: &[(f64, f64)], line: &LineFit) -> Option<String> {
     let (x, r): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
-    let fit = fit_multilinear(&x, &r, BreakCount::ByCriterion { most: 1 })
-        .filter(|fit| fit.indistinct_breakpoints().is_empty())?;
+    let fit = fit_multilinear(
+        &x,
+        &r,
+        BreakCount::ByCriterion { most: 1 },
+        StatedVariance::default(),
+    )
+    .filter(|fit| fit.indistinct_breakpoints().is_empty())?;
     let (displacement, _) = fit.breakpoints.first()?;
     let ((first, _), (last, _)) = (fit.stiffnesses.first()?, fit.stiffnesses.last()?);
     let hidden = (last - first).abs() > HIDDEN * first.abs();
@@ -87,14 +91,9 @@ fn remarks(
 
 /// The lists of a curve, in the order of the reference; empty without one.
 pub(crate) fn lists(fit: Option<&MultilinearFit>) -> Vec<NamedResult> {
-    let list = |kind: ResultKind, values: fn(&MultilinearFit) -> &[(f64, f64)]| NamedResult {
-        name: kind.name,
-        value: ResultValue::List(
-            fit.map(|fit| values(fit).iter().map(|(value, _)| *value).collect())
-                .unwrap_or_default(),
-        ),
-        dimension: kind.dimension,
-        contributions: Vec::new(),
+    let list = |kind: ResultKind, values: fn(&MultilinearFit) -> &[(f64, f64)]| {
+        let values = fit.map_or(&[][..], values).iter();
+        kind.found_list(Some(values.map(|(value, _)| *value).collect()))
     };
     vec![
         list(curves::BREAKS, |fit| &fit.breakpoints),

@@ -27,8 +27,6 @@ pub struct RampStep {
 /// A stiffness ramp, position by position, and the fits.
 #[derive(Clone, Debug)]
 pub struct RampHistory {
-    /// The reading before the first increment \[m\] and \[N\].
-    pub start: Option<(f64, f64)>,
     /// The reading before the first increment of each repetition, numbered by the steps before it.
     pub before: Vec<RampStep>,
     pub steps: Vec<RampStep>,

@@ -110,13 +110,11 @@ pub(crate) fn force_displacement(history: &RampHistory) -> Chart {
         points: points(false),
         style: MEASURED,
     });
-    Chart {
-        x: Quantity::along("Displacement X", Dimension::LENGTH),
-        y: Quantity::of("Restoring force R", Dimension::FORCE),
-        bands: Vec::new(),
+    Chart::of(
+        Quantity::along("Displacement X", Dimension::LENGTH),
+        Quantity::of("Restoring force R", Dimension::FORCE),
         series,
-        references: Vec::new(),
-    }
+    )
 }
 
 /// The segments of the curve, between the ends of the readings and through the breakpoints.
@@ -151,18 +149,12 @@ fn curve(fit: &MultilinearFit, history: &RampHistory) -> Series {
             .into_iter()
             .map(|x| (x, fit.force(x)))
             .collect(),
-        style: Style {
-            marker: Some(Marker::Ring(5.0)),
-            ..Style::line(palette::VERMILION, 1.8, SOLID)
-        },
+        style: Style::line(palette::VERMILION, 1.8, SOLID).marked(Marker::Ring(5.0)),
     }
 }
 
 const MEASURED: Style = Style::marker(palette::BLUE, Marker::Disc(4.0));
-const RETURN: Style = Style {
-    marker: Some(Marker::Ring(4.5)),
-    ..Style::line(palette::GREEN, 1.2, DASHED)
-};
+const RETURN: Style = Style::line(palette::GREEN, 1.2, DASHED).marked(Marker::Ring(4.5));
 /// Largest number of readings drawn for a sweep: more points show nothing more.
 const CLOUD_POINTS: usize = 3000;
 
@@ -217,13 +209,11 @@ pub(crate) fn damping_fit(history: &SweepHistory) -> Chart {
             .collect(),
         style: Style::marker(palette::BLUE, Marker::Disc(3.2)),
     });
-    Chart {
-        x: Quantity::along("Velocity", Dimension::VELOCITY),
-        y: Quantity::of("Damping force", Dimension::FORCE),
-        bands: Vec::new(),
+    Chart::of(
+        Quantity::along("Velocity", Dimension::VELOCITY),
+        Quantity::of("Damping force", Dimension::FORCE),
         series,
-        references: Vec::new(),
-    }
+    )
 }
 
 /// Absolute value of the velocity \[m/s\], and the force with the sign of the motion \[N\].

@@ -70,13 +70,11 @@ pub(crate) fn lost(holds: &[Hold], fit: &SuperpositionFit) -> Chart {
             style: Style::marker(COLOURS[DRAWN - chosen.len() + order], Marker::Disc(3.4)),
         });
     }
-    Chart {
-        x: Quantity::along("Dwell time", Dimension::TIME),
-        y: Quantity::of("Force lost", Dimension::FORCE),
-        bands: Vec::new(),
+    Chart::of(
+        Quantity::along("Dwell time", Dimension::TIME),
+        Quantity::of("Force lost", Dimension::FORCE),
         series,
-        references: Vec::new(),
-    }
+    )
 }
 
 fn law_words(fit: &LawFit) -> String {
@@ -131,11 +129,9 @@ pub(crate) fn left(history: &RampHistory, fit: &RelaxationFit) -> Chart {
             style: Style::marker(COLOURS[DRAWN - chosen.len() + order], Marker::Disc(3.4)),
         });
     }
-    Chart {
-        x: Quantity::along("Dwell time", Dimension::TIME),
-        y: Quantity::of("Remaining relaxation", Dimension::FORCE),
-        bands: Vec::new(),
+    Chart::of(
+        Quantity::along("Dwell time", Dimension::TIME),
+        Quantity::of("Remaining relaxation", Dimension::FORCE),
         series,
-        references: Vec::new(),
-    }
+    )
 }

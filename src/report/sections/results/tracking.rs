@@ -3,7 +3,6 @@
 
 use super::actuators;
 use crate::physics::tracking::monitor::Tracking;
-use crate::plan::formula::ResultValue;
 use crate::record::ProcedureRecord;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
@@ -28,10 +27,7 @@ pub(crate) fn sentence(procedure: &ProcedureRecord) -> Option<String> {
 
 /// One row per actuator, from the ground up; none if every actuator reached its targets.
 pub(crate) fn table(procedure: &ProcedureRecord) -> Option<Block> {
-    let list = |name: &str| match procedure.result(name).map(|result| &result.value) {
-        Some(ResultValue::List(values)) => values.as_slice(),
-        _ => &[],
-    };
+    let list = |name: &str| procedure.list(name).unwrap_or_default();
     let (energy, indicator) = (
         list(tracking::FLOOR_TRACKING_ENERGY_ERROR.name),
         list(tracking::FLOOR_TRACKING_INDICATOR.name),

@@ -176,8 +176,8 @@ impl Device for Several {
         let samples = self.each(|_, member| member.device.sample())?;
         let mut channels = vec![Channel::default(); self.axes];
         for (member, sample) in self.members.iter().zip(&samples) {
-            for (axis, channel) in member.axes.iter().zip(sample.axes()) {
-                channels[*axis] = channel;
+            for (axis, channel) in member.axes.iter().zip(&sample.channels) {
+                channels[*axis] = *channel;
             }
         }
         let moving = match samples.iter().map(|sample| sample.moving) {
@@ -186,20 +186,11 @@ impl Device for Several {
             }
             mut all => all.all(|moving| moving == Some(false)).then_some(false),
         };
-        let others = channels.split_off(1.min(channels.len()));
-        let Channel {
-            displacement,
-            force,
-            flags,
-        } = channels.pop().unwrap_or_default();
         let raw = samples.into_iter().flat_map(|sample| sample.raw).collect();
         Ok(Sample {
             time: None,
-            displacement,
-            force,
             moving,
-            flags,
-            others,
+            channels,
             raw,
         })
     }

@@ -43,44 +43,26 @@ pub struct DeviceMove {
 pub struct Sample {
     /// The device's own clock \[s\].
     pub time: Option<f64>,
-    /// Position of its first axis \[m\].
-    pub displacement: Option<f64>,
-    /// Force of its first axis.
-    pub force: Option<Force>,
     /// Whether it reports that any axis still moves.
     pub moving: Option<bool>,
-    /// Flags of its first axis and of the device itself.
-    pub flags: Flags,
-    /// Its other axes, in order; most devices have none.
-    pub others: Vec<Channel>,
+    /// Its axes, in order.
+    pub channels: Vec<Channel>,
     /// The bytes of the answer, one entry a reply.
     pub raw: Vec<Vec<u8>>,
 }
 
 impl Sample {
-    /// Number of axes in the reading.
-    pub fn axis_count(&self) -> usize {
-        1 + self.others.len()
-    }
-
-    /// Every axis, in order.
-    pub fn axes(&self) -> impl Iterator<Item = Channel> + '_ {
-        std::iter::once(self.first()).chain(self.others.iter().copied())
-    }
-
-    /// The axis with this index, which must exist.
-    #[must_use]
-    pub fn axis(&self, index: usize) -> Channel {
-        index
-            .checked_sub(1)
-            .map_or_else(|| self.first(), |other| self.others[other])
-    }
-
-    const fn first(&self) -> Channel {
-        Channel {
-            displacement: self.displacement,
-            force: self.force,
-            flags: self.flags,
+    /// The force of a device that measures one axis, from one reply.
+    pub fn of_force(force: Force, flags: Flags, reply: Vec<u8>) -> Self {
+        let channel = Channel {
+            displacement: None,
+            force: Some(force),
+            flags,
+        };
+        Self {
+            channels: vec![channel],
+            raw: vec![reply],
+            ..Self::default()
         }
     }
 }
@@ -91,6 +73,7 @@ pub struct Channel {
     /// \[m\]
     pub displacement: Option<f64>,
     pub force: Option<Force>,
+    /// Those of the first axis include the flags of the device itself.
     pub flags: Flags,
 }
 

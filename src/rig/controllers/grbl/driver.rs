@@ -7,7 +7,7 @@ use crate::rig::controllers::grbl;
 use crate::rig::controllers::grbl::codec::{State, Status, Word};
 use crate::rig::controllers::request_reply::RequestReply;
 use crate::rig::controllers::{
-    Answer, Device, DeviceFault, DeviceIdentity, DeviceMove, LineClient, Sample, one_axis,
+    Answer, Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, LineClient, Sample, one_axis,
 };
 use crate::rig::{JUST_STARTED, LineStatistics};
 
@@ -239,12 +239,15 @@ pub(crate) fn introduced(welcome: &[u8]) -> Option<DeviceIdentity> {
 }
 
 fn sample_of(status: Status, raw: Vec<u8>) -> Sample {
-    let moving = Some(status.state.is_moving());
-    Sample {
+    let axis = Channel {
         displacement: Some(status.position),
-        moving,
+        ..Channel::default()
+    };
+    Sample {
+        time: None,
+        moving: Some(status.state.is_moving()),
+        channels: vec![axis],
         raw: vec![raw],
-        ..Sample::default()
     }
 }
 

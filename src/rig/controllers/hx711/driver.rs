@@ -41,12 +41,8 @@ pub(crate) fn decoded(line: Vec<u8>) -> Result<Sample, DeviceFault> {
         saturated: hx711::codec::is_saturated(count),
         ..Flags::default()
     };
-    Ok(Sample {
-        force: Some(Force::Counts { count, low, high }),
-        flags,
-        raw: vec![line],
-        ..Sample::default()
-    })
+    let force = Force::Counts { count, low, high };
+    Ok(Sample::of_force(force, flags, line))
 }
 
 impl LoadCell for Hx711Device {
@@ -88,7 +84,7 @@ mod tests {
     }
 
     fn count(sample: &Sample) -> i64 {
-        match sample.force {
+        match sample.channels[0].force {
             Some(Force::Counts {
                 count,
                 low: -8_388_608,
@@ -136,7 +132,10 @@ mod tests {
         for (line, saturated) in [("8388607", true), ("-8388608", true), ("8388606", false)] {
             let (mut device, port, _) = device();
             script_reply(&port, 0.1, &format!("\n{line}\r\n"));
-            assert_eq!(device.sample().unwrap().flags.saturated, saturated);
+            assert_eq!(
+                device.sample().unwrap().channels[0].flags.saturated,
+                saturated
+            );
         }
         for line in ["8388608", "nan", "12.5", "", "HX711 ready"] {
             let (mut device, port, _) = device();

@@ -67,13 +67,8 @@ pub(crate) fn decoded(line: Vec<u8>) -> Result<Sample, DeviceFault> {
         unsettled: weight.status == Status::Unstable,
         ..Flags::default()
     };
-    let force = Some(Force::Newtons(weight.force.unwrap_or(beyond)));
-    Ok(Sample {
-        force,
-        flags,
-        raw: vec![line],
-        ..Sample::default()
-    })
+    let force = Force::Newtons(weight.force.unwrap_or(beyond));
+    Ok(Sample::of_force(force, flags, line))
 }
 
 impl LoadCell for IndicatorDevice {
@@ -119,7 +114,7 @@ mod tests {
     }
 
     fn newtons(sample: &Sample) -> f64 {
-        match sample.force {
+        match sample.channels[0].force {
             Some(Force::Newtons(force)) => force,
             other => panic!("{other:?}"),
         }
@@ -136,8 +131,8 @@ mod tests {
         assert_eq!(
             (
                 newtons(&sample),
-                sample.flags.unsettled,
-                sample.flags.saturated
+                sample.channels[0].flags.unsettled,
+                sample.channels[0].flags.saturated
             ),
             (512.5, true, false)
         );
@@ -180,7 +175,7 @@ mod tests {
             reply(&port, 0.1, line);
             let sample = device.sample().unwrap();
             assert_eq!(
-                (newtons(&sample), sample.flags.saturated),
+                (newtons(&sample), sample.channels[0].flags.saturated),
                 (force, true),
                 "{line}"
             );

@@ -3,6 +3,7 @@
 //! Commands are not answered, so their effect is queried.
 
 use crate::rig::LineStatistics;
+use crate::rig::controllers;
 use crate::rig::controllers::instron;
 use crate::rig::controllers::instron::codec::{Channel, Movement, Question, Trouble};
 use crate::rig::controllers::unsequenced::ask_line;
@@ -225,7 +226,7 @@ impl Device for Instron {
             }
             self.reader(channel).full_scale = full_scale;
         }
-        let flags = self.sample()?.flags;
+        let flags = self.sample()?.channels[0].flags;
         if flags != Flags::default() {
             let trouble = if flags.emergency_stop {
                 Trouble::EmergencyStop
@@ -292,14 +293,15 @@ impl Device for Instron {
         let displacement = self.feedback(Channel::Position, &mut raw)?;
         let force = self.feedback(Channel::Load, &mut raw)?;
         self.last = Some(displacement);
-        let (displacement, force) = (Some(displacement), Some(Force::Newtons(force)));
+        let axis = controllers::Channel {
+            displacement: Some(displacement),
+            force: Some(Force::Newtons(force)),
+            flags,
+        };
         Ok(Sample {
             time: None,
-            displacement,
-            force,
             moving: Some(moving),
-            flags,
-            others: Vec::new(),
+            channels: vec![axis],
             raw,
         })
     }

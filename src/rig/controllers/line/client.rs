@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use crate::rig::controllers::DeviceFault;
 use crate::rig::safety::failpoint::{Guarding, on};
-use crate::rig::transport::{Clock, Emergency, Port};
+use crate::rig::transport::{Clock, Port};
 use crate::rig::{LineStatistics, StopRequest, safety};
 
 /// Longest line with its ending, and the size of the receive buffer, bytes.
@@ -120,14 +120,6 @@ impl LineClient {
     #[must_use]
     pub fn release_allowed(&self) -> bool {
         self.stop_request.release_allowed()
-    }
-
-    /// A second hold on the line that can only send.
-    ///
-    /// # Errors
-    /// The line is lost.
-    pub fn emergency(&self) -> Result<Box<dyn Emergency>, DeviceFault> {
-        self.port.emergency().map_err(|error| lost(&error))
     }
 
     /// Notes a check of the line and reports the time since the last one. A wait for an answer checks the line every [`SLICE`]; a program

@@ -7,7 +7,8 @@ use crate::rig::controllers::mark10;
 use crate::rig::controllers::mark10::codec::{Side, Status};
 use crate::rig::controllers::unsequenced::ask_line;
 use crate::rig::controllers::{
-    Device, DeviceFault, DeviceIdentity, DeviceMove, Flags, Force, LineClient, Sample, one_axis,
+    Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Flags, Force, LineClient, Sample,
+    one_axis,
 };
 
 /// Number of times a setting or a command is sent before it counts as not received.
@@ -223,15 +224,17 @@ impl Device for Mark10 {
         }
         let force_bytes = self.ask(mark10::codec::ASK_FORCE_THROUGH_STAND)?;
         let force = newtons(&force_bytes)?;
-        Ok(Sample {
-            time: None,
+        let axis = Channel {
             displacement: Some(travel),
             force: Some(force),
-            moving: Some(status.moving),
             // Its limits are its targets: a reached limit means that it has arrived.
             flags: Flags::default(),
+        };
+        Ok(Sample {
+            time: None,
+            moving: Some(status.moving),
+            channels: vec![axis],
             raw: vec![status_bytes, travel_bytes, force_bytes],
-            others: Vec::new(),
         })
     }
 

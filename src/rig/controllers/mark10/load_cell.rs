@@ -5,7 +5,7 @@ use super::driver::newtons;
 use crate::rig::LineStatistics;
 use crate::rig::controllers::mark10;
 use crate::rig::controllers::unsequenced::ask_line;
-use crate::rig::controllers::{DeviceFault, DeviceIdentity, LineClient, LoadCell, Sample};
+use crate::rig::controllers::{DeviceFault, DeviceIdentity, Flags, LineClient, LoadCell, Sample};
 
 /// The gauge at the other end of a line.
 pub struct Mark10Gauge {
@@ -49,9 +49,5 @@ pub(crate) fn introduced() -> DeviceIdentity {
 /// The force of its answer.
 pub(crate) fn decoded(reply: Vec<u8>) -> Result<Sample, DeviceFault> {
     let force = newtons(&reply)?;
-    Ok(Sample {
-        force: Some(force),
-        raw: vec![reply],
-        ..Sample::default()
-    })
+    Ok(Sample::of_force(force, Flags::default(), reply))
 }

@@ -78,16 +78,6 @@ pub fn write(unit: u8, start: u16, words: &[u16]) -> Vec<u8> {
     sealed(frame)
 }
 
-/// The words that a write command contains, decoded from its bytes.
-#[must_use]
-pub fn written(frame: &[u8]) -> Vec<u16> {
-    match frame {
-        [_, WRITE_ONE, _, _, data @ .., _, _]
-        | [_, WRITE_SEVERAL, _, _, _, _, _, data @ .., _, _] => words(data),
-        _ => Vec::new(),
-    }
-}
-
 /// The length of the answer to `question`, when enough of it has been received. None: not yet.
 ///
 /// # Errors
@@ -278,8 +268,6 @@ mod tests {
             [0x01, 0x06, 0x00, 0x01, 0x00, 0x03, 0x98, 0x0B]
         );
         assert_eq!(sound(&[0x01, 0x83, 0x02]), [0x01, 0x83, 0x02, 0xC0, 0xF1]);
-        assert_eq!(written(&write(7, 9, &[5])), [5]);
-        assert_eq!(written(&write(7, 9, &[5, 6])), [5, 6]);
         assert_eq!(write(7, 9, &[5, 6]).len(), 13);
     }
 

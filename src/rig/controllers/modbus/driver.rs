@@ -9,7 +9,7 @@ use crate::rig::controllers::modbus;
 use crate::rig::controllers::modbus::codec::{Fault, Table};
 use crate::rig::controllers::unsequenced::{clear, fault, fresh, order};
 use crate::rig::controllers::{
-    Device, DeviceFault, DeviceIdentity, DeviceMove, Flags, Force, LineClient, Sample, one_axis,
+    Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Force, LineClient, Sample, one_axis,
 };
 
 /// Silence before a question: 3.5 characters of 11 bits, and never less than this \[s\].
@@ -157,20 +157,17 @@ impl Device for Modbus {
     }
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
-        let mut sample = Sample {
-            flags: Flags::default(),
-            ..Sample::default()
-        };
+        let (mut sample, mut axis) = (Sample::default(), Channel::default());
         if let Some(register) = self.position {
             let Value { value, raw } =
                 self.read(register, self.map.length_unit, IMPLAUSIBLE_POSITION)?;
-            sample.displacement = Some(value);
+            axis.displacement = Some(value);
             sample.raw.push(raw);
         }
         if let Some(register) = self.force {
             let Value { value, raw } =
                 self.read(register, self.map.force_unit, IMPLAUSIBLE_FORCE)?;
-            sample.force = Some(Force::Newtons(value));
+            axis.force = Some(Force::Newtons(value));
             sample.raw.push(raw);
         }
         if let Some(register) = self.status {
@@ -183,6 +180,7 @@ impl Device for Modbus {
             sample.moving = words.first().map(|word| word & self.map.moving_mask != 0);
             sample.raw.push(raw);
         }
+        sample.channels = vec![axis];
         Ok(sample)
     }
 

@@ -327,21 +327,13 @@ fn measured(fields: &[String], control_point: &str) -> Option<(f64, f64)> {
 
 /// The reading of all control points, from displacement \[m\] and force \[N\] of each.
 pub(crate) fn sample_of(points: &[(f64, f64)], raw: Vec<Vec<u8>>) -> Sample {
-    let mut channels = points.iter().map(|(displacement, force)| Channel {
+    let channels = points.iter().map(|(displacement, force)| Channel {
         displacement: Some(*displacement),
         force: Some(Force::Newtons(*force)),
         flags: Flags::default(),
     });
-    let Channel {
-        displacement,
-        force,
-        flags,
-    } = channels.next().unwrap_or_default();
     Sample {
-        displacement,
-        force,
-        flags,
-        others: channels.collect(),
+        channels: channels.collect(),
         raw,
         ..Sample::default()
     }

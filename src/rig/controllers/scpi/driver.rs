@@ -167,12 +167,8 @@ pub(crate) fn decoded(line: Vec<u8>, newtons_per_unit: &[f64]) -> Result<Sample,
             },
         });
     }
-    let others = channels.split_off(1.min(channels.len()));
-    let Channel { force, flags, .. } = channels.pop().unwrap_or_default();
     Ok(Sample {
-        force,
-        flags,
-        others,
+        channels,
         raw: vec![line],
         ..Sample::default()
     })
@@ -248,7 +244,7 @@ mod tests {
         );
         reply(&port, 0.1, "+5.12375E+00");
         let sample = device.sample().unwrap();
-        assert_eq!(sample.force, Some(Force::Newtons(-512.375)));
+        assert_eq!(sample.channels[0].force, Some(Force::Newtons(-512.375)));
         assert_eq!(
             (sample.raw, sent(&port)),
             (
@@ -265,7 +261,7 @@ mod tests {
             reply(&port, 0.1, line);
             let sample = device.sample().unwrap();
             assert_eq!(
-                (sample.force, sample.flags.saturated),
+                (sample.channels[0].force, sample.channels[0].flags.saturated),
                 (Some(Force::Newtons(force)), true),
                 "turned by the plan's sign"
             );
@@ -286,7 +282,10 @@ mod tests {
         // The name is requested while the old answer is still in transmission; it arrives after that answer.
         reply(&port, 0.1, NAME);
         reply(&port, 0.1, "1.5");
-        assert_eq!(device.sample().unwrap().force, Some(Force::Newtons(-150.0)));
+        assert_eq!(
+            device.sample().unwrap().channels[0].force,
+            Some(Force::Newtons(-150.0))
+        );
         assert_eq!(sent(&port)[1..], [&b"READ?\n"[..], b"*IDN?\n", b"READ?\n"]);
         assert_eq!(
             device.line_statistics(),
@@ -304,7 +303,11 @@ mod tests {
         device.newtons_per_unit = vec![-100.0, 2.0];
         reply(&port, 0.1, "+1.5E+00, 9.9E37");
         let sample = device.sample().unwrap();
-        let forces: Vec<Option<Force>> = sample.axes().map(|channel| channel.force).collect();
+        let forces: Vec<Option<Force>> = sample
+            .channels
+            .iter()
+            .map(|channel| channel.force)
+            .collect();
         assert_eq!(
             forces,
             [
@@ -314,7 +317,8 @@ mod tests {
         );
         assert_eq!(
             sample
-                .axes()
+                .channels
+                .iter()
                 .map(|channel| channel.flags.saturated)
                 .collect::<Vec<_>>(),
             [false, true]

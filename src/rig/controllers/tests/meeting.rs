@@ -112,10 +112,14 @@ impl Emergency for Controller {
 
 fn read(device: &mut dyn Device) -> (f64, f64, Option<bool>) {
     let sample = device.sample().unwrap();
-    let Some(Force::Newtons(force)) = sample.force else {
+    let Some(Force::Newtons(force)) = sample.channels[0].force else {
         panic!("{sample:?}")
     };
-    (sample.displacement.unwrap(), force, sample.moving)
+    (
+        sample.channels[0].displacement.unwrap(),
+        force,
+        sample.moving,
+    )
 }
 
 /// Moves to 2.5 mm and back to −1 mm at 1 mm/s.
@@ -198,7 +202,7 @@ fn the_mark_10_stand_and_the_gauge_alone() {
     alone.clock.advance(1.0);
     let sample = Mark10Gauge::new(alone.client()).sample().unwrap();
     assert_eq!(
-        (sample.force, sample.displacement),
+        (sample.channels[0].force, sample.channels[0].displacement),
         (Some(Force::Newtons(-100.0)), None)
     );
 }

@@ -66,7 +66,7 @@ impl Device for Coupled {
         } else {
             [0.0; 2]
         };
-        let [first, other] = [0, 1].map(|axis| {
+        let channels = [0, 1].map(|axis| {
             let position = self.targets[axis] + errors[axis];
             Channel {
                 displacement: Some(position),
@@ -74,16 +74,9 @@ impl Device for Coupled {
                 ..Channel::default()
             }
         });
-        let Channel {
-            displacement,
-            force,
-            ..
-        } = first;
         Ok(Sample {
-            displacement,
-            force,
             moving: Some(false),
-            others: vec![other],
+            channels: channels.to_vec(),
             ..Sample::default()
         })
     }

@@ -115,7 +115,7 @@ fn a_spike_does_not_change_where_it_is_held() {
         reading += 1;
         // The first one shows that it is at rest.
         if reading == 2 {
-            sample.force = Some(Force::Newtons(1800.0));
+            sample.channels[0].force = Some(Force::Newtons(1800.0));
         }
         Ok(())
     });

@@ -263,7 +263,7 @@ fn what_never_settles_is_held_after_the_timeout() {
     let mut stand = stand();
     // 6 N/s without end; 5 N/s are allowed.
     stand.device.alter(|_, sample| {
-        sample.force = sample.time.map(|time| Force::Newtons(6.0 * time));
+        sample.channels[0].force = sample.time.map(|time| Force::Newtons(6.0 * time));
         Ok(())
     });
     let began = stand.rig.time();
@@ -394,7 +394,7 @@ fn a_force_beyond_its_limit_stops_a_move_and_a_single_spike_does_not() {
     let mut spiked = stand();
     spiked.device.alter(|number, sample| {
         if number == 8 {
-            sample.force = Some(Force::Newtons(6000.0));
+            sample.channels[0].force = Some(Force::Newtons(6000.0));
         }
         Ok(())
     });

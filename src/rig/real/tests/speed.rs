@@ -8,7 +8,7 @@ use crate::rig::{Guard, Rig as _};
 fn a_move_is_seen_no_faster_than_it_went_and_a_little_slower() {
     let mut stand = stand();
     assert_eq!(stand.rig.seen_speed(), None);
-    let mut guard = Guard::new(&mut stand.rig, LIMITS).unwrap();
+    let mut guard = Guard::new(&mut stand.rig, LIMITS, Vec::new()).unwrap();
     guard.move_to(&[0.002], Some(0.001)).unwrap();
     assert_eq!(guard.speed(), Some(0.001), "as it was commanded");
     // Polled 20 times a second, 2 s appear as up to 2.1 s.
@@ -20,7 +20,7 @@ fn a_move_is_seen_no_faster_than_it_went_and_a_little_slower() {
 fn an_actuator_faster_than_commanded_is_detected() {
     let mut stand = stand();
     let device = stand.device.clone();
-    let mut guard = Guard::new(&mut stand.rig, LIMITS).unwrap();
+    let mut guard = Guard::new(&mut stand.rig, LIMITS, Vec::new()).unwrap();
     stand.device.alter(move |sample, _| {
         if sample == 5 {
             device.inside().speed = 0.01;

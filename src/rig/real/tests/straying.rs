@@ -61,7 +61,7 @@ fn an_overshoot_and_a_single_spike_are_no_straying() {
         } else {
             1.0
         };
-        sample.displacement = sample.displacement.map(|at| at * factor);
+        sample.channels[0].displacement = sample.channels[0].displacement.map(|at| at * factor);
         Ok(())
     });
     stand.rig.propose(&[0.002], Some(0.001)).unwrap();
@@ -75,7 +75,7 @@ fn read_with(lost: u64) -> Result<f64, RigFault> {
     stand.rig.execute().unwrap();
     stand.device.alter(move |number, sample| {
         if number < lost {
-            sample.force = Some(Force::Newtons(20.0));
+            sample.channels[0].force = Some(Force::Newtons(20.0));
         }
         Ok(())
     });

@@ -1,6 +1,7 @@
 //! No target is sent and no reading is used before it is durable, and a disk that fails holds the rig.
 
 use super::*;
+use crate::rig::testing::forwarded;
 
 /// A rig that checks at every call which entries of the run log would survive a loss of power.
 struct Suspicious {
@@ -38,14 +39,10 @@ impl Suspicious {
 }
 
 impl Rig for Suspicious {
-    fn identity(&self) -> Identity {
-        self.rig.identity()
-    }
+    forwarded!(rig: identity, time, pause, hold, declared_noise);
+
     fn degrees_of_freedom(&self) -> usize {
         1
-    }
-    fn time(&self) -> f64 {
-        self.rig.time()
     }
     fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
         self.last_reading_is_durable();
@@ -57,9 +54,6 @@ impl Rig for Suspicious {
             self.missing.push("intent");
         }
         self.rig.execute()
-    }
-    fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
-        self.rig.pause(seconds)
     }
     fn read(&mut self) -> Result<Reading, RigFault> {
         self.last_reading_is_durable();
@@ -77,12 +71,6 @@ impl Rig for Suspicious {
             self.missing.push("intent");
         }
         self.rig.traverse(targets, velocity, samples, each)
-    }
-    fn hold(&mut self) {
-        self.rig.hold();
-    }
-    fn declared_noise(&self) -> DeclaredNoise {
-        self.rig.declared_noise()
     }
 }
 

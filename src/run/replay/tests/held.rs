@@ -5,13 +5,13 @@ use std::cell::Cell;
 
 use super::*;
 use super::{RestingRig, Witness, logged};
-use crate::physics::tracking::trajectory::Path;
 use crate::plan::formula::Formula;
 use crate::plan::{Move, Plan, ProcedureKind};
 use crate::record::EventKind;
 use crate::record::journal::Durability;
 use crate::record::journal::testing::PowerLoss;
-use crate::rig::{DeclaredNoise, EachReading, EncodedMove, FinalHold, Identity, Reading, RigFault};
+use crate::rig::testing::forwarded;
+use crate::rig::{EncodedMove, FinalHold, Identity, RigFault};
 use crate::run::session::Session;
 use crate::run::{Inspection, Motion};
 use crate::tests::testing::{elastic_plan, header, ramp};
@@ -28,6 +28,8 @@ struct HeldDuringMotion {
 }
 
 impl Rig for HeldDuringMotion {
+    forwarded!(rig: time, read, traverse, follow_paths, hold, declared_noise);
+
     fn identity(&self) -> Identity {
         Identity {
             simulated: self.at_a_look.is_none(),
@@ -36,9 +38,6 @@ impl Rig for HeldDuringMotion {
     }
     fn degrees_of_freedom(&self) -> usize {
         1
-    }
-    fn time(&self) -> f64 {
-        self.rig.time()
     }
     fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
         self.target = targets[0];
@@ -60,29 +59,6 @@ impl Rig for HeldDuringMotion {
             self.rig.pause(seconds)
         }
     }
-    fn read(&mut self) -> Result<Reading, RigFault> {
-        self.rig.read()
-    }
-    fn traverse(
-        &mut self,
-        targets: &[f64],
-        velocity: f64,
-        samples: usize,
-        each: EachReading<'_>,
-    ) -> Result<(), RigFault> {
-        self.rig.traverse(targets, velocity, samples, each)
-    }
-    fn follow_paths(
-        &mut self,
-        paths: &[Path],
-        samples: usize,
-        each: EachReading<'_>,
-    ) -> Result<(), RigFault> {
-        self.rig.follow_paths(paths, samples, each)
-    }
-    fn hold(&mut self) {
-        self.rig.hold();
-    }
     fn halt(&mut self) -> Option<FinalHold> {
         let unconfirmed = (!self.heard).then(|| "connection lost".to_owned());
         let found = self.heard.then(|| (vec![position()], vec![force()]));
@@ -92,9 +68,6 @@ impl Rig for HeldDuringMotion {
             found,
             raw: Vec::new(),
         })
-    }
-    fn declared_noise(&self) -> DeclaredNoise {
-        self.rig.declared_noise()
     }
 }
 

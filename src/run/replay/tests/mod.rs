@@ -167,7 +167,7 @@ impl Rig for RestingRig {
         self.0.borrow_mut().rig.hold();
     }
     fn declared_noise(&self) -> DeclaredNoise {
-        DeclaredNoise::default()
+        DeclaredNoise::NONE
     }
     fn last_move(&self) -> Option<LastMove> {
         Some(self.0.borrow().last.clone())

@@ -4,9 +4,9 @@ use crate::plan::formula::Formula::Constant;
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
 use crate::plan::{
     Behaviour, Between, Comparison, Condition, Cycle, DampingSweep, DriftCheck, Escalate, Frame,
-    FrameUnload, Ground, Impact, InspectTrigger, Integrator, Level, Mode, Move, Plan, Procedure,
-    ProcedureKind, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload,
-    Until, WatchedHold, WatchedModel, ZeroAfter,
+    Ground, Impact, InspectTrigger, Integrator, Level, Mode, Move, Plan, Procedure, ProcedureKind,
+    Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload, Until, WatchedHold,
+    WatchedModel, ZeroAfter,
 };
 use crate::tests::testing::{elastic_plan, every, impact, ramp, struck_frame};
 use crate::units::Dimension;
@@ -143,7 +143,7 @@ pub(super) fn escalating() -> Plan {
 pub(super) fn unloading() -> Plan {
     let unload = Unload {
         specimen: 0,
-        stiffness: Constant(500.0),
+        stiffness: Some(Constant(500.0)),
         within: None,
         speed: None,
     };
@@ -209,8 +209,9 @@ pub(super) fn frame_row() -> Plan {
     escalate.inspect_between = true;
     let impact = &mut escalate.impact;
     impact.duration = Constant(0.03);
-    let unload = ProcedureKind::FrameUnload(FrameUnload {
+    let unload = ProcedureKind::Unload(Unload {
         specimen: 0,
+        stiffness: None,
         within: Some(Constant(1e-6)),
         speed: None,
     });

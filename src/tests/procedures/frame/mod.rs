@@ -4,7 +4,7 @@ pub(crate) mod impact_series;
 mod unloading;
 
 use crate::plan::formula::Formula::Constant;
-use crate::plan::{Behaviour, Frame, FrameUnload, Plan, ProcedureKind, Storey};
+use crate::plan::{Behaviour, Frame, Plan, ProcedureKind, Storey, Unload};
 use crate::procedures::unload::run::{of_frame, to_rest};
 use crate::record::{Rest, UnloadStep};
 use crate::rig::virtual_rig;
@@ -46,8 +46,9 @@ pub(crate) fn three(post_yield_ratio: f64) -> Plan {
 }
 
 pub(super) fn rest(within: Option<f64>) -> ProcedureKind {
-    ProcedureKind::FrameUnload(FrameUnload {
+    ProcedureKind::Unload(Unload {
         specimen: 0,
+        stiffness: None,
         within: within.map(Constant),
         speed: None,
     })

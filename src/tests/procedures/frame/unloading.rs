@@ -178,7 +178,7 @@ fn one_storey_is_unloaded_as_one_degree_of_freedom() {
     frame.specimens[0].frame = Some(Frame::of_storeys(vec![floor]));
     let unload = Unload {
         specimen: 0,
-        stiffness: Constant(500.0),
+        stiffness: Some(Constant(500.0)),
         within: None,
         speed: None,
     };

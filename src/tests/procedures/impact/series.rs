@@ -120,7 +120,7 @@ fn every_impact_of_a_series_equals_a_single_one() {
     assert_eq!(record.outcome, Outcome::Completed);
     let unload = ProcedureKind::Unload(Unload {
         specimen: 0,
-        stiffness: Constant(2e4),
+        stiffness: Some(Constant(2e4)),
         within: None,
         speed: None,
     });

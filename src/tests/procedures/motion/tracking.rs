@@ -8,9 +8,9 @@ use crate::physics::tracking::monitor::Tracking;
 use crate::plan::{Integrator, Interval, Link, Mode, Plan, ProcedureKind, Stepping, VirtualLink};
 use crate::procedures::stepping::axes::AxesState;
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
+use crate::procedures::stepping::run::Steps;
 use crate::procedures::stepping::start::Start;
 use crate::procedures::stepping::step_loop;
-use crate::procedures::stepping::step_loop::pace::Pace;
 use crate::procedures::stepping::step_loop::{Balance, Stepped};
 use crate::procedures::stepping::tracking::tracking_summary::Followed;
 use crate::record::{NamedResult, Outcome};
@@ -105,10 +105,12 @@ fn followed(link: VirtualLink, mode: Mode, per_cycle: u32) -> (Vec<Vec<Tracking>
     let properties =
         FrameProperties::of(plan.specimens[0].frame.as_ref().unwrap(), &Damping::None).unwrap();
     let time_step = PERIOD / f64::from(per_cycle);
-    let pace = Pace {
+    let steps = Steps {
         time_step,
-        steps: u64::from(per_cycle * CYCLES),
+        critical_time_step: time_step,
+        count: u64::from(per_cycle * CYCLES),
         pause: 0.0,
+        max_tangent_ratio: 1.0,
     };
     let ProcedureKind::Impact(impact) = &plan.procedures[0].kind else {
         panic!("another procedure")
@@ -144,7 +146,7 @@ fn followed(link: VirtualLink, mode: Mode, per_cycle: u32) -> (Vec<Vec<Tracking>
         panic!("no session")
     };
     let ran: Result<(), Stop> =
-        step_loop::run(pace, &stepping, &mut followed, &mut session, |start| {
+        step_loop::run(&steps, &stepping, &mut followed, &mut session, |start| {
             Ok((
                 &mut sine,
                 StifferSprings::of_storeys(&properties.matrices, &stepping, time_step, start),

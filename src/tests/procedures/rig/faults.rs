@@ -2,9 +2,8 @@
 
 use crate::plan::{Plan, ProcedureKind};
 use crate::record::{EventKind, History, Outcome, Record};
-use crate::rig::{
-    DeclaredNoise, EachReading, EncodedMove, Identity, Reading, Rig, RigFault, VirtualRig,
-};
+use crate::rig::testing::forwarded;
+use crate::rig::{EncodedMove, Reading, Rig, RigFault, VirtualRig};
 use crate::run::{Unwatched, run};
 use crate::tests::testing::{elastic_plan, number, ramp};
 
@@ -25,24 +24,14 @@ struct Failing {
 }
 
 impl Rig for Failing {
-    fn identity(&self) -> Identity {
-        self.rig.identity()
-    }
+    forwarded!(rig: identity, time, execute, pause, traverse, declared_noise);
+
     fn degrees_of_freedom(&self) -> usize {
         self.axes
-    }
-    fn time(&self) -> f64 {
-        self.rig.time()
     }
     fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
         self.moves_after_hold = self.moves_after_hold.map(|moves| moves + 1);
         self.rig.propose(targets, speed)
-    }
-    fn execute(&mut self) -> Result<(), RigFault> {
-        self.rig.execute()
-    }
-    fn pause(&mut self, seconds: f64) -> Result<(), RigFault> {
-        self.rig.pause(seconds)
     }
     fn read(&mut self) -> Result<Reading, RigFault> {
         let reading = self.rig.read()?;
@@ -58,21 +47,9 @@ impl Rig for Failing {
             Then::Lost => Err(RigFault::Device("the line is dead".to_owned())),
         }
     }
-    fn traverse(
-        &mut self,
-        targets: &[f64],
-        velocity: f64,
-        samples: usize,
-        each: EachReading<'_>,
-    ) -> Result<(), RigFault> {
-        self.rig.traverse(targets, velocity, samples, each)
-    }
     fn hold(&mut self) {
         self.moves_after_hold.get_or_insert(0);
         self.rig.hold();
-    }
-    fn declared_noise(&self) -> DeclaredNoise {
-        self.rig.declared_noise()
     }
 }
 

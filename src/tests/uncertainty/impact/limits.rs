@@ -44,7 +44,9 @@ fn a_discontinuous_result_is_not_treated_as_smooth() {
 #[test]
 fn a_record_that_does_not_reproduce_its_results_reports_no_uncertainty() {
     use crate::plan::formula::ProcedureId;
+    use crate::procedures::common::perturbed_inputs::UncertainRun;
     use crate::procedures::impact::setting::Setting;
+    use crate::procedures::impact::uncertainty::ImpactUncertainty;
     use crate::record::History;
     use crate::rig::DeclaredNoise;
     use crate::run::inputs::Inputs;
@@ -57,14 +59,16 @@ fn a_record_that_does_not_reproduce_its_results_reports_no_uncertainty() {
         panic!()
     };
     let mut inputs = Inputs::new(&record, ProcedureId(0));
-    let noise = DeclaredNoise::default();
+    let noise = DeclaredNoise::NONE;
     let point = impact.point().unwrap();
     let setting = Setting::of_point(impact, point, &plan.strikers[0], &mut inputs, noise)
         .ok()
         .unwrap();
-    let uncertainty = crate::procedures::impact::uncertainty::ImpactUncertainty::new(
-        impact, point, &plan, &inputs, noise,
-    );
+    let uncertainty = ImpactUncertainty {
+        run: UncertainRun::new(&plan, &inputs, noise),
+        plan: impact,
+        point,
+    };
     let summary = ImpactSummary {
         max_displacement: 0.2,
         time_of_max_displacement: 0.2,

@@ -4,6 +4,7 @@ use psd::physics::integrator::input::FrameInput;
 use psd::physics::integrator::solver::FrameSolver;
 use psd::physics::integrator::state::FrameState;
 use psd::physics::integrator::tangents::Tangents;
+use psd::physics::statistics::DeclaredNoise;
 use psd::physics::structure::{FrameMatrices, SymmetricBand, storey_stiffness};
 use psd::plan::Integrator;
 
@@ -52,8 +53,7 @@ pub fn at<'a>(
         initial_displacement: zero,
         initial_restoring_force: zero,
         initial_load: zero,
-        force_noise: 0.0,
-        resolution: 0.0,
+        noise: DeclaredNoise::NONE,
     }
 }
 

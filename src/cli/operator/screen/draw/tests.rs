@@ -54,19 +54,12 @@ fn model() -> Model {
     for step in 1..=240_u32 {
         let time = f64::from(step) * 1e-4;
         let displacement = 20e-3 * (-20.0 * time).exp() * (130.0 * time).sin();
+        let (command, force) = (displacement + 2e-6, 3e5 * displacement);
         model.step_done(&StepReport {
-            step: step.into(),
-            time,
-            command: displacement + 2e-6,
-            displacement,
-            velocity: None,
-            acceleration: None,
-            force: 3e5 * displacement,
             speed: Some(2e-3),
             energy_error: Some(0.012),
-            others: Vec::new(),
-            tracking: None,
             tracking_energy_error: Some(-0.013),
+            ..StepReport::of_readings(step.into(), time, &[command], &[displacement], &[force])
         });
     }
     for (step, kind, text) in [

@@ -175,13 +175,17 @@ fn a_jog_is_accepted_when_the_axis_shows_it() {
     status(&port, "Jog", 0.75);
     let sample = device.sample().unwrap();
     assert_eq!(
-        (sample.displacement, sample.moving, sample.force),
+        (
+            sample.channels[0].displacement,
+            sample.moving,
+            sample.channels[0].force
+        ),
         (Some(0.75e-3), Some(true), None)
     );
     status(&port, "Idle", 1.25);
     let sample = device.sample().unwrap();
     assert_eq!(
-        (sample.displacement, sample.moving),
+        (sample.channels[0].displacement, sample.moving),
         (Some(1.25e-3), Some(false))
     );
     assert_eq!(sample.raw, [b"<Idle|MPos:1.250,0.000,0.000|FS:0,0>\r"]);
@@ -294,7 +298,10 @@ fn a_late_status_is_not_accepted_as_a_fresh_one() {
     )]);
     status(&port, "Idle", 1.0);
     status(&port, "Idle", 1.0);
-    assert_eq!(device.sample().unwrap().displacement, Some(1e-3));
+    assert_eq!(
+        device.sample().unwrap().channels[0].displacement,
+        Some(1e-3)
+    );
     assert_eq!(device.line_statistics().resent, 1);
 }
 

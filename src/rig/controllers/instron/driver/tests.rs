@@ -54,7 +54,7 @@ fn readings_are_fractions_of_full_scale_and_polls_keep_their_distance() {
     round(&mut script, "1", "0.02500000", "-0.005");
     let sample = console.sample().unwrap();
     assert_eq!(
-        (sample.displacement, sample.force),
+        (sample.channels[0].displacement, sample.channels[0].force),
         (Some(0.025 * 0.1), Some(Force::Newtons(-250.0)))
     );
     assert_eq!((sample.moving, sample.raw.len()), (Some(true), 4));
@@ -145,7 +145,7 @@ fn an_exact_zero_is_asked_again_and_believed_twice() {
     script.on("Q134,2,0 ", "0.00000000").on("Q134,2,0 ", "-0.0");
     let sample = console.sample().unwrap();
     assert_eq!(
-        (sample.displacement, sample.force),
+        (sample.channels[0].displacement, sample.channels[0].force),
         (Some(0.012 * 0.1), Some(Force::Newtons(0.0)))
     );
     // The load is now known to be zero: the question is not repeated without limit.
@@ -182,7 +182,10 @@ fn after_a_silence_only_the_second_of_two_lone_answers_counts() {
         .on("Q134,1,0 ", "0.02")
         .on("Q134,1,0 ", "0.03")
         .on("Q134,2,0 ", "0.01");
-    assert_eq!(console.sample().unwrap().displacement, Some(0.003));
+    assert_eq!(
+        console.sample().unwrap().channels[0].displacement,
+        Some(0.003)
+    );
     script.done();
     assert_eq!(console.line_statistics().resent, 1);
     // No reply at all: the time is bounded.
@@ -218,7 +221,7 @@ fn what_has_tripped_is_a_flag_or_makes_it_unfit() {
             .on("Q1 ", "0")
             .on("Q134,1,0 ", "0.01")
             .on("Q134,2,0 ", "0.01");
-        console.sample().map(|sample| sample.flags)
+        console.sample().map(|sample| sample.channels[0].flags)
     };
     assert!(status(6 << 9).unwrap().emergency_stop);
     assert!(status(1 << 9).unwrap().limit_high);

@@ -45,7 +45,7 @@ fn a_sample_is_status_travel_and_force() {
     round(&mut script, "UL", "2.35", "-0.25 kN");
     let sample = stand.sample().unwrap();
     assert_eq!(
-        (sample.displacement, sample.force),
+        (sample.channels[0].displacement, sample.channels[0].force),
         (Some(0.002_35), Some(Force::Newtons(-250.0)))
     );
     assert_eq!(
@@ -233,7 +233,7 @@ fn after_a_silence_travel_and_force_are_asked_twice() {
     script.on(FORCE, "").on(FORCE, "101 N").on(FORCE, "102 N");
     let sample = stand.sample().unwrap();
     assert_eq!(
-        (sample.displacement, sample.force),
+        (sample.channels[0].displacement, sample.channels[0].force),
         (Some(0.001_02), Some(Force::Newtons(102.0)))
     );
     script.done();
@@ -242,7 +242,10 @@ fn after_a_silence_travel_and_force_are_asked_twice() {
         .port
         .send_unasked(&[Scripted::After(0.0, b"999.99\r\n".to_vec())]);
     round(&mut script, "SL", "1.00", "100 N");
-    assert_eq!(stand.sample().unwrap().displacement, Some(0.001));
+    assert_eq!(
+        stand.sample().unwrap().channels[0].displacement,
+        Some(0.001)
+    );
     assert!(stand.line_statistics().ignored >= 1);
 }
 
@@ -287,7 +290,10 @@ fn the_gauge_alone_measures_force_and_does_not_move() {
         .on("?\r", "2 kgF")
         .on("?\r", "*10");
     gauge.identify().unwrap();
-    assert_eq!(gauge.sample().unwrap().force, Some(Force::Newtons(19.6133)));
+    assert_eq!(
+        gauge.sample().unwrap().channels[0].force,
+        Some(Force::Newtons(19.6133))
+    );
     assert!(matches!(gauge.sample(), Err(DeviceFault::NoReading { .. })));
     script.done();
     assert!(

@@ -61,7 +61,7 @@ fn frames(port: &ScriptedPort) -> Vec<Vec<u8>> {
 }
 
 fn force(sample: &Sample) -> f64 {
-    match sample.force {
+    match sample.channels[0].force {
         Some(Force::Newtons(newtons)) => newtons,
         other => panic!("{other:?}"),
     }
@@ -80,7 +80,7 @@ fn a_sample_equals_the_registers() {
     );
     port.reply(&at_once(sealed(&[1, 3, 2, 0, 5])));
     let sample = device.sample().unwrap();
-    assert_eq!(sample.displacement, Some(0.0125));
+    assert_eq!(sample.channels[0].displacement, Some(0.0125));
     assert_eq!(force(&sample), -300.0);
     assert_eq!(sample.moving, Some(true), "0b101 and mask 1");
     assert_eq!(
@@ -305,7 +305,11 @@ fn a_drive_with_swapped_words_is_sent_no_speed() {
             "{}",
             going.speed
         );
-        let words = modbus::codec::written(&going.frames[0]);
+        // Unit, function, address, number of words and bytes come before the words.
+        let words = going.frames[0][7..11].chunks_exact(2);
+        let words: Vec<u16> = words
+            .map(|word| u16::from_be_bytes([word[0], word[1]]))
+            .collect();
         let turned = modbus::codec::from_words(
             ModbusNumber::Float32 {
                 high_word_first: false,

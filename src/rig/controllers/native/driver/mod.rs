@@ -219,25 +219,15 @@ pub(crate) fn decoded(reply: Reply, axes: usize) -> Result<Sample, DeviceFault> 
             reason,
         });
     };
-    let mut axes = data.axes.iter().map(|axis| Channel {
+    let channels = data.axes.iter().map(|axis| Channel {
         displacement: Some(axis.displacement),
         force: Some(Force::Newtons(axis.force)),
         flags: axis.flags,
     });
-    let Channel {
-        displacement,
-        force,
-        flags,
-    } = axes.next().unwrap_or_default();
-    let others = axes.collect();
-    let moving = Some(data.state == State::Moving);
     Ok(Sample {
         time: Some(data.time),
-        displacement,
-        force,
-        moving,
-        flags,
-        others,
+        moving: Some(data.state == State::Moving),
+        channels: channels.collect(),
         raw: vec![reply.line],
     })
 }

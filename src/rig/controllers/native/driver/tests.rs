@@ -61,7 +61,7 @@ fn reading(sequence: u32, force: &str) -> String {
 }
 
 fn force(sample: &Sample) -> f64 {
-    match sample.force {
+    match sample.channels[0].force {
         Some(Force::Newtons(force)) => force,
         other => panic!("{other:?}"),
     }
@@ -147,11 +147,11 @@ fn limits_are_only_narrowed_a_move_is_accepted_and_a_reading_read() {
     script_reply(&port, &reading(5, "512.375"));
     let sample = device.sample().unwrap();
     assert_eq!(
-        (sample.time, sample.displacement, force(&sample)),
+        (sample.time, sample.channels[0].displacement, force(&sample)),
         (Some(118.203), Some(1.249_871e-3), 512.375)
     );
     assert_eq!(
-        (sample.moving, sample.flags),
+        (sample.moving, sample.channels[0].flags),
         (Some(false), Flags::default())
     );
     assert_eq!(sample.raw, [reading_line(5)]);
@@ -326,6 +326,7 @@ fn a_new_power_up_is_seen_in_any_reply_and_without_the_guard_it_would_pass() {
     assert_eq!(
         without(Guarding::Reboot, || device.sample())
             .unwrap()
+            .channels[0]
             .displacement,
         Some(0.0)
     );

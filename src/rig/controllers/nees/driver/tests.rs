@@ -125,7 +125,7 @@ fn a_reply_to_another_transaction_is_counted_and_left() {
     ]);
     let sample = rig.sample().unwrap();
     assert_eq!(
-        (sample.displacement, sample.force),
+        (sample.channels[0].displacement, sample.channels[0].force),
         (Some(0.002), Some(Force::Newtons(200.0)))
     );
     assert_eq!(
