@@ -3,7 +3,9 @@
 use std::io;
 
 use divan::counter::{BytesCount, ItemsCount};
-use psd::record::journal::{Durability, EntryKind, FileStorage, Journal, Storage, recover};
+use psd::record::journal::{
+    Durability, EntryKind, FileStorage, Journal, LogText, Storage, recover,
+};
 use serde::Serialize;
 
 fn main() {
@@ -100,10 +102,10 @@ fn recover_ten_thousand_records(bencher: divan::Bencher) {
             .expect("the record is taken");
     }
     drop(journal);
-    let bytes = std::fs::read(path).expect("the file is there");
-    let whole = |bytes: &[u8]| recover(bytes).expect("it is whole").lines.len();
-    assert_eq!(whole(&bytes), 10_001);
+    let text = LogText::from(std::fs::read(path).expect("the file is there"));
+    let whole = |text: &LogText| recover(text).expect("it is whole").lines.len();
+    assert_eq!(whole(&text), 10_001);
     bencher
-        .counter(BytesCount::new(bytes.len()))
-        .bench(|| whole(divan::black_box(&bytes)));
+        .counter(BytesCount::new(text.length()))
+        .bench(|| whole(divan::black_box(&text)));
 }
