@@ -326,9 +326,9 @@ impl<'run> Session<'run> {
         &mut self,
         step: u64,
         time: f64,
-        (displacement, force): (f64, f64),
+        reading: (f64, f64),
     ) -> Result<(), Stop> {
-        self.at_rest(step, time, &[displacement], &[force])
+        self.at_rest(step, time, &[reading.0], &[reading.1])
     }
 
     /// The same for every axis.

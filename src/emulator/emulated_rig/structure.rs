@@ -36,12 +36,13 @@ impl Storey {
         }
     }
 
-    /// It comes to this drift, the last `moved` of it in the time `going`, then stays for the other `seconds`.
-    fn bend(&mut self, drift: f64, moved: f64, going: f64, seconds: f64) {
+    /// It comes to this drift, the last `moved` of it in the first of the durations, and rests for the second.
+    fn bend(&mut self, drift: f64, moved: f64, durations: [f64; 2]) {
+        let [going, resting] = durations;
         let velocity = if moved == 0.0 { 0.0 } else { moved / going };
         let motions = [
             (drift - moved, Motion::even(velocity, going)),
-            (drift, Motion::rest(seconds - going)),
+            (drift, Motion::rest(resting)),
         ];
         for (displacement, motion) in motions {
             let from = Deformed {
@@ -84,7 +85,7 @@ impl Structure {
             Self::Storeys(storeys) => {
                 let apart = of_drifts(positions).into_iter().zip(of_drifts(moved));
                 for (storey, (drift, moved)) in storeys.iter_mut().zip(apart) {
-                    storey.bend(drift, moved, going, seconds);
+                    storey.bend(drift, moved, [going, seconds - going]);
                 }
                 of_floors(storeys.iter().map(|storey| storey.shear))
             }

@@ -63,7 +63,8 @@ pub(crate) fn perform(
         let uncertainty = FrameUncertainty::new(
             UncertainRun::new(whole, inputs, session.guard.declared_noise()),
             plan.specimen,
-            (&plan.damping, plan.damping_uncertainty),
+            &plan.damping,
+            plan.damping_uncertainty,
             &plan.stepping,
         );
         stop = session.evaluate_uncertainty(|progress| {

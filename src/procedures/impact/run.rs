@@ -76,7 +76,8 @@ impl<'a> UncertaintyInputs<'a> {
             ImpactTarget::Storey(storey) => Self::Storey(FrameUncertainty::new(
                 run,
                 plan.specimen,
-                (&storey.damping, storey.damping_uncertainty),
+                &storey.damping,
+                storey.damping_uncertainty,
                 &plan.stepping,
             )),
         }

@@ -34,7 +34,8 @@ impl<'run> FrameUncertainty<'run> {
     pub fn new(
         run: UncertainRun<'run>,
         specimen: usize,
-        (damping, damping_uncertainty): (&'run ShakeDamping, f64),
+        damping: &'run ShakeDamping,
+        damping_uncertainty: f64,
         stepping: &'run Stepping,
     ) -> Self {
         Self {
