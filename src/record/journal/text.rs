@@ -103,9 +103,32 @@ impl Window {
         self.start = start;
         self.bytes
             .resize(usize::try_from(end - start).unwrap_or(usize::MAX), 0);
-        let read = self.file.read_exact_at(&mut self.bytes, start);
+        let read = self.fill();
         // Bytes of a failed read are never used.
-        read.inspect_err(|_| self.bytes.clear())
+        self.bytes.truncate(*read.as_ref().unwrap_or(&0));
+        read?;
+        if self.start + (self.bytes.len() as u64) < range.end {
+            return Err(io::ErrorKind::UnexpectedEof.into());
+        }
+        Ok(())
+    }
+
+    /// Reads all bytes from `start` on that the file has; returns their number. The torn end of a log is cut off while its entries are in
+    /// use, so that the last block may be shorter than it was.
+    fn fill(&mut self) -> io::Result<usize> {
+        let mut done = 0;
+        while done < self.bytes.len() {
+            match self
+                .file
+                .read_at(&mut self.bytes[done..], self.start + done as u64)
+            {
+                Ok(0) => break,
+                Ok(count) => done += count,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(done)
     }
 }
 
@@ -149,12 +172,15 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_became_shorter_is_an_error_and_gives_no_bytes() {
+    fn of_a_file_that_became_shorter_the_rest_is_read_and_no_other_byte() {
         let mut file = tempfile::tempfile().unwrap();
-        file.write_all(b"0123456789").unwrap();
+        file.write_all(&vec![7; 300_000]).unwrap();
         let text = LogText::of_file(file.try_clone().unwrap()).unwrap();
-        file.set_len(4).unwrap();
-        assert!(text.read(2..8, |_| ()).is_err());
-        assert!(text.read(2..8, |_| ()).is_err());
+        file.set_len(290_000).unwrap();
+        let sum = |bytes: &[u8]| bytes.iter().map(|byte| u64::from(*byte)).sum::<u64>();
+        assert_eq!(text.read(270_000..290_000, sum).unwrap(), 140_000);
+        assert!(text.read(280_000..290_001, sum).is_err());
+        assert!(text.read(299_000..300_000, sum).is_err());
+        assert_eq!(text.read(0..10, sum).unwrap(), 70);
     }
 }
