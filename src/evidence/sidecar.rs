@@ -58,7 +58,7 @@ fn names(folder: &Folder, bytes: &[u8], of: &str) -> bool {
     let contains = |digest: &[u8]| {
         !digest.is_empty() && bytes.windows(digest.len()).any(|window| window == digest)
     };
-    let is_longer = match &held.content {
+    let has_longer = || match &held.content {
         Content::None => false,
         Content::Bytes(own) => contains(&Sha384::digest(own)) || contains(&Sha512::digest(own)),
         Content::RunLog(text) => {
@@ -70,7 +70,7 @@ fn names(folder: &Folder, bytes: &[u8], of: &str) -> bool {
             read.is_ok() && (contains(&short.finalize()) || contains(&long.finalize()))
         }
     };
-    is_longer || contains(&unhex(&held.digest).unwrap_or_default())
+    contains(&unhex(&held.digest).unwrap_or_default()) || has_longer()
 }
 
 /// Whether the bytes are one DER sequence and nothing else.

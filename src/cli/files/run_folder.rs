@@ -1,7 +1,7 @@
 //! The run folder: new or empty, each file created once. In: the path that the operator gives, and the files. Out: the folder on
 //! disk. It overwrites only incomplete results that are made again, and deletes only files that it has just written.
 
-use std::fs::OpenOptions;
+use std::fs::{File, OpenOptions};
 use std::io::{BufWriter, ErrorKind, IntoInnerError, Write};
 use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::{Component, Path, PathBuf};
@@ -84,14 +84,13 @@ impl RunFolder {
     }
 }
 
-/// Copies one file of a run, by its name in the folder.
+/// Copies one file of a run, by its name in the folder. The copy is new and durable, as every file of a run folder.
 pub fn copy(run: &Path, folder: &Path, name: &str) -> Result<(), Failure> {
-    let to = folder.join(name);
-    let failed = |error: std::io::Error| Failure::file(&to, plain(&error));
-    if let Some(above) = to.parent() {
-        std::fs::create_dir_all(above).map_err(failed)?;
-    }
-    std::fs::copy(run.join(name), &to).map(drop).map_err(failed)
+    let from = run.join(name);
+    let mut read = File::open(&from).map_err(|error| Failure::file(&from, plain(&error)))?;
+    let to = inside(folder, name)?;
+    written(&to, &mut |out| std::io::copy(&mut read, out).map(drop))
+        .map_err(|error| unwritten(&to, &error))
 }
 
 /// Creates one file under `folder`, in which it must not exist.

@@ -162,7 +162,11 @@ fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
     let folder = Folder::read(run)?;
     let rebuilt = Rebuilt::of(&folder, &prediction);
     refuse_unproven(run, &examine(&folder, &rebuilt, &[]))?;
-    let (Some(report), Some(manifest)) = (&rebuilt.report, folder.files.get(MANIFEST)) else {
+    let (Some(report), Some(manifest), Some(run_log)) = (
+        &rebuilt.report,
+        folder.files.get(MANIFEST),
+        folder.run_log(),
+    ) else {
         return Err(Failure::file(run, "has no results yet").help("create them with `psd report`"));
     };
     refuse_rival(run, &report.id, &manifest.digest)?;
@@ -183,7 +187,7 @@ fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
         particulars,
     };
     let file = IssueFile::after(before.as_ref(), one);
-    let read = record_file::read(run)?;
+    let read = record_file::of_text(&run.join(JOURNAL), run_log)?;
     let replayed =
         ReplayedRun::of(read, Some(&file), &prediction).map_err(Failure::command_line)?;
 
