@@ -1,10 +1,11 @@
 //! The raster canvas: a sheet of `psd-raster`. In: shapes in reference pixels. Out: PNG bytes. It knows no axes.
 
 use plotters::style::text_anchor::VPos;
-use psd_raster::{FINE, Sheet};
+use psd_raster::{FINE, Fonts, Sheet};
 
 use super::canvas::{Canvas, Lettering, Point};
 use super::chart::{Colour, Line};
+use crate::report::document::fonts::{SANS, SANS_BOLD};
 
 /// Draws on a white sheet of `width × height` reference pixels and encodes it.
 pub(super) fn png(
@@ -12,10 +13,11 @@ pub(super) fn png(
     height: u32,
     paint: impl FnOnce(&dyn Canvas),
 ) -> Result<Vec<u8>, String> {
-    psd_raster::png(width, height, |sheet| paint(sheet))
+    let fonts = Fonts::new(SANS, SANS_BOLD).map_err(|error| error.to_string())?;
+    psd_raster::png(width, height, &fonts, |sheet| paint(sheet))
 }
 
-impl Canvas for Sheet {
+impl Canvas for Sheet<'_> {
     fn rectangle(&self, from: Point, to: Point, colour: Colour) {
         self.rectangle(from, to, colour);
     }

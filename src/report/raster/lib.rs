@@ -1,119 +1,73 @@
-//! Lines, areas and text as a PNG: shapes are drawn with 8 × 8 subpixels per reference pixel and averaged to 2 × 2, which is 192 dpi. In:
+//! Lines, areas and text as a PNG with two pixels per reference pixel, which is 192 dpi. plotters draws the shapes; their edges are smooth. In:
 //! shapes in reference pixels. Out: PNG bytes. It knows no axes.
 //!
 //! It is a crate of its own for its build: all its work is loops over pixels, and a development build optimises this crate alone.
 
-mod average;
-mod band;
 mod dashes;
+mod letters;
+mod pixels;
 mod shapes;
 
-use std::cell::RefCell;
-use std::ops::Range;
+use std::cell::OnceCell;
+use std::fmt::Display;
+use std::io::Write as _;
 
 use plotters::coord::Shift;
 use plotters::prelude::{
-    BitMapBackend, Circle, DrawingArea, IntoDrawingArea as _, Polygon, RGBColor, Rectangle, Text,
+    Circle, DrawingArea, IntoDrawingArea as _, PathElement, Polygon, RGBColor, Rectangle, Text,
 };
-use plotters::style::text_anchor::VPos;
-use plotters::style::{Color as _, FontTransform, TextStyle};
+use plotters::style::{Color as _, TextStyle};
+use tiny_skia::{Color, Pixmap};
 
-use average::{BOX, take_average};
-use band::Band;
 use dashes::dashes;
+pub use letters::Fonts;
+use pixels::{Pixels, UNITS};
 pub use shapes::{Colour, Line, Point};
 
-/// Subpixels per reference pixel, in each direction.
-pub const FINE: u32 = 8;
-/// Subpixels drawn together, from top to bottom: those of a whole sheet are 60 MB.
-const BAND: u32 = 32 * FINE;
+/// Pixels per reference pixel, in each direction.
+const PIXELS: u32 = 2;
+/// Units of the shapes per reference pixel. A text is drawn this many times as large as its style says.
+pub const FINE: u32 = PIXELS * UNITS;
 /// 192 dpi in pixels per metre.
 const PIXELS_PER_METRE: u32 = 7559;
 
-/// A sheet to draw on: it keeps its shapes.
-#[derive(Default)]
-pub struct Sheet {
-    shapes: RefCell<Vec<Drawn>>,
-}
-
-struct Drawn {
-    shape: Shape,
-    /// Its rows of subpixels, or more.
-    rows: Range<i32>,
-}
-
-/// In subpixels.
-enum Shape {
-    Rectangle([(i32, i32); 2], RGBColor),
-    Disc((i32, i32), i32, RGBColor),
-    Polygon(Vec<(i32, i32)>, RGBColor),
-    Text(String, (i32, i32), Box<TextStyle<'static>>),
+/// A sheet to draw on.
+pub struct Sheet<'a> {
+    area: DrawingArea<Pixels<'a>, Shift>,
+    /// The first shape that could not be drawn.
+    failed: OnceCell<String>,
 }
 
 /// Draws on a white sheet of `width × height` reference pixels and encodes it.
 ///
 /// # Errors
 /// A shape cannot be drawn, or the picture cannot be encoded.
-pub fn png(width: u32, height: u32, paint: impl FnOnce(&Sheet)) -> Result<Vec<u8>, String> {
-    let sheet = Sheet::default();
+pub fn png(
+    width: u32,
+    height: u32,
+    fonts: &Fonts,
+    paint: impl FnOnce(&Sheet),
+) -> Result<Vec<u8>, String> {
+    let mut image =
+        Pixmap::new(width * PIXELS, height * PIXELS).ok_or("a sheet without an area")?;
+    image.fill(Color::WHITE);
+    let area = Pixels {
+        image: &mut image,
+        fonts,
+    }
+    .into_drawing_area();
+    let sheet = Sheet {
+        area,
+        failed: OnceCell::new(),
+    };
     paint(&sheet);
-    let picture = picture(&sheet, width, height, BAND)?;
-    let (width, height) = (width * FINE / BOX, height * FINE / BOX);
-    encode(&picture, width, height).map_err(|error| error.to_string())
+    sheet.failed.into_inner().map_or(Ok(()), Err)?;
+    encode(&image).map_err(|error| error.to_string())
 }
 
-/// The pixels of a sheet, drawn in bands of so many subpixels.
-fn picture(sheet: &Sheet, width: u32, height: u32, band: u32) -> Result<Vec<u8>, String> {
-    let (width, height) = (width * FINE, height * FINE);
-    let row = width as usize * 3;
-    let mut fine = vec![255_u8; row * band as usize];
-    let mut picture = Vec::with_capacity(row * height as usize / (BOX * BOX) as usize);
-    for top in (0..height).step_by(band as usize) {
-        let rows = band.min(height - top);
-        let part = &mut fine[..row * rows as usize];
-        let bottom = (top + rows).cast_signed();
-        let top = top.cast_signed();
-        let area = Band {
-            rows: BitMapBackend::with_buffer(part, (width, rows)),
-            top,
-            sheet: (width, height),
-        }
-        .into_drawing_area();
-        for Drawn { shape, rows } in sheet.shapes.borrow().iter() {
-            if rows.start < bottom && rows.end > top {
-                shape.draw(&area)?;
-            }
-        }
-        area.present().map_err(|error| error.to_string())?;
-        drop(area);
-        picture.extend(take_average(part, width as usize));
-    }
-    Ok(picture)
-}
-
-impl Shape {
-    fn draw(&self, area: &DrawingArea<Band<'_>, Shift>) -> Result<(), String> {
-        let drawn = match self {
-            Self::Rectangle(corners, colour) => {
-                area.draw(&Rectangle::new(*corners, colour.filled()))
-            }
-            Self::Disc(centre, radius, colour) => {
-                area.draw(&Circle::new(*centre, *radius, colour.filled()))
-            }
-            Self::Polygon(corners, colour) => {
-                area.draw(&Polygon::new(corners.clone(), colour.filled()))
-            }
-            Self::Text(text, anchor, style) => {
-                area.draw(&Text::new(text.as_str(), *anchor, style.as_ref().clone()))
-            }
-        };
-        drawn.map_err(|error| error.to_string())
-    }
-}
-
-fn encode(picture: &[u8], width: u32, height: u32) -> Result<Vec<u8>, png::EncodingError> {
+fn encode(image: &Pixmap) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    let mut encoder = png::Encoder::new(&mut bytes, image.width(), image.height());
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     // Large areas of few colours: filters would take longer than the compression, and make the file larger.
@@ -124,7 +78,17 @@ fn encode(picture: &[u8], width: u32, height: u32) -> Result<Vec<u8>, png::Encod
         unit: png::Unit::Meter,
     }));
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(picture)?;
+    let mut rows = writer.stream_writer()?;
+    let width = image.width() as usize;
+    let mut line = vec![0; 3 * width];
+    // The sheet was white before the first shape: every pixel is opaque.
+    for row in image.pixels().chunks_exact(width) {
+        for (bytes, pixel) in line.as_chunks_mut::<3>().0.iter_mut().zip(row) {
+            *bytes = [pixel.red(), pixel.green(), pixel.blue()];
+        }
+        rows.write_all(&line)?;
+    }
+    rows.finish()?;
     writer.finish()?;
     Ok(bytes)
 }
@@ -138,123 +102,163 @@ fn fine(point: Point) -> (i32, i32) {
     (scale(point.0), scale(point.1))
 }
 
+/// A length, at least one unit.
+fn length(length: f64) -> u32 {
+    fine((length, 0.0)).0.max(1).cast_unsigned()
+}
+
 const fn rgb(colour: Colour) -> RGBColor {
     RGBColor(colour.0, colour.1, colour.2)
 }
 
-impl Sheet {
-    fn add(&self, shape: Shape, rows: Range<i32>) {
-        self.shapes.borrow_mut().push(Drawn { shape, rows });
-    }
-
+impl Sheet<'_> {
     /// A filled rectangle.
     pub fn rectangle(&self, from: Point, to: Point, colour: Colour) {
-        let corners = [fine(from), fine(to)];
-        let rows = rows_of(&corners);
-        self.add(Shape::Rectangle(corners, rgb(colour)), rows);
+        let style = rgb(colour).filled();
+        self.keep(
+            self.area
+                .draw(&Rectangle::new([fine(from), fine(to)], style)),
+        );
     }
 
     /// A filled circle.
     pub fn disc(&self, centre: Point, radius: f64, colour: Colour) {
-        let (centre, (radius, _)) = (fine(centre), fine((radius, 0.0)));
-        let rows = centre.1 - radius - 1..centre.1 + radius + 2;
-        self.add(Shape::Disc(centre, radius, rgb(colour)), rows);
+        let style = rgb(colour).filled();
+        self.keep(
+            self.area
+                .draw(&Circle::new(fine(centre), length(radius), style)),
+        );
     }
 
     /// A filled polygon.
     pub fn polygon(&self, corners: &[Point], colour: Colour) {
         let corners: Vec<(i32, i32)> = corners.iter().copied().map(fine).collect();
-        let rows = rows_of(&corners);
-        self.add(Shape::Polygon(corners, rgb(colour)), rows);
+        self.keep(self.area.draw(&Polygon::new(corners, rgb(colour).filled())));
     }
 
-    /// A line of several segments. Each segment is a separate quadrangle: one filled outline would show slits where the line folds back.
+    /// A line of several segments with round joins.
     pub fn polyline(&self, points: &[Point], line: Line, colour: Colour) {
+        let style = rgb(colour).stroke_width(length(line.width));
         for piece in dashes(points, line.dash) {
-            for ends in piece.windows(2) {
-                self.segment(ends[0], ends[1], line.width, colour);
-            }
-            // A dash has square ends; a solid line's joins are round.
-            let joins = if line.dash.is_empty() {
-                &piece[..]
-            } else {
-                piece.get(1..piece.len() - 1).unwrap_or_default()
-            };
-            for join in joins {
-                self.disc(*join, 0.5 * line.width, colour);
-            }
+            let points: Vec<(i32, i32)> = piece.into_iter().map(fine).collect();
+            self.keep(self.area.draw(&PathElement::new(points, style)));
         }
     }
 
     /// A text, `FINE` times as large as its style says in reference pixels.
     pub fn text(&self, text: &str, anchor: Point, style: TextStyle<'static>) {
-        let anchor = fine(anchor);
-        let size = style.font.get_size();
-        // A line is at most 1.3 times as high as the size of its font, a letter at most as wide; a little more at each end.
-        let (above, below) = match (style.font.get_transform(), style.pos.v_pos) {
-            (FontTransform::None, VPos::Top) => (0.3, 1.6),
-            (FontTransform::None, VPos::Center) => (1.0, 1.0),
-            (FontTransform::None, VPos::Bottom) => (1.6, 0.3),
-            _ => {
-                #[expect(clippy::cast_precision_loss, reason = "a text of a figure")]
-                let letters = text.chars().count() as f64 + 1.0;
-                (letters, letters)
-            }
-        };
-        #[expect(clippy::cast_possible_truncation, reason = "a text of a figure")]
-        let rows_in = |sizes: f64| (sizes * size).ceil() as i32;
-        let rows = anchor.1 - rows_in(above)..anchor.1 + rows_in(below);
-        self.add(Shape::Text(text.to_owned(), anchor, Box::new(style)), rows);
+        self.keep(self.area.draw(&Text::new(text, fine(anchor), style)));
     }
 
-    fn segment(&self, from: Point, to: Point, width: f64, colour: Colour) {
-        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-        let length = dx.hypot(dy);
-        if length == 0.0 {
-            return;
+    fn keep<E: Display>(&self, drawn: Result<(), E>) {
+        if let Err(error) = drawn {
+            // Only the first.
+            let _ = self.failed.set(error.to_string());
         }
-        let (nx, ny) = (-dy / length * 0.5 * width, dx / length * 0.5 * width);
-        let corners = [
-            (from.0 + nx, from.1 + ny),
-            (to.0 + nx, to.1 + ny),
-            (to.0 - nx, to.1 - ny),
-            (from.0 - nx, from.1 - ny),
-        ];
-        self.polygon(&corners, colour);
     }
-}
-
-/// The rows of some corners, and one more at each end.
-fn rows_of(corners: &[(i32, i32)]) -> Range<i32> {
-    let rows = corners.iter().map(|corner| corner.1);
-    let (least, largest) = (rows.clone().min(), rows.max());
-    least.unwrap_or_default() - 1..largest.unwrap_or_default() + 2
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Lines of all slopes, dashes, discs and areas, at the edges too.
+    const INK: Colour = (0, 0, 0);
+
+    /// The red of each pixel of a sheet of 16 × 12 reference pixels.
+    fn drawn(paint: impl FnOnce(&Sheet)) -> Vec<Vec<u8>> {
+        let fonts = Fonts::new(FONT, FONT).expect("a font");
+        let bytes = png(16, 12, &fonts, paint).expect("a picture");
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
+            .read_info()
+            .expect("a PNG");
+        let mut pixels = vec![0; 3 * 32 * 24];
+        let info = reader.next_frame(&mut pixels).expect("pixels");
+        assert_eq!((info.width, info.height), (32, 24));
+        let reds: Vec<u8> = pixels.iter().copied().step_by(3).collect();
+        reds.chunks(32).map(<[u8]>::to_vec).collect()
+    }
+
+    const FONT: &[u8] = include_bytes!("../document/fonts/DejaVuSans.ttf");
+
+    /// An edge in the middle of a pixel halves its colour; the corners may come in any order.
     #[test]
-    fn bands_together_are_the_sheet() {
-        let sheet = Sheet::default();
-        sheet.rectangle((-3.0, 5.0), (60.0, 21.3), (232, 232, 232));
-        sheet.polygon(
-            &[(1.0, 70.0), (33.3, 2.2), (58.0, 44.0), (20.0, 30.0)],
-            (0, 95, 255),
-        );
-        for step in 0..12 {
-            let (x, y) = (f64::from(step) * 5.7, f64::from(step % 5) * 16.3);
-            let line = |dash| Line { width: 1.8, dash };
-            sheet.polyline(&[(30.0, 36.0), (x, y), (y, x)], line(&[]), (213, 94, 0));
-            sheet.polyline(&[(x, y), (64.0 - x, 72.0)], line(&[4.0, 2.0]), (40, 40, 40));
-            sheet.disc((x, y), 3.2, (0, 158, 115));
+    fn an_edge_is_smooth() {
+        for corners in [[(1.0, 2.0), (4.25, 5.0)], [(4.25, 5.0), (1.0, 2.0)]] {
+            let rows = drawn(|sheet| sheet.rectangle(corners[0], corners[1], INK));
+            for (y, row) in rows.iter().enumerate() {
+                for (x, red) in row.iter().enumerate() {
+                    let inside = (4..10).contains(&y);
+                    let expected = match x {
+                        2..8 if inside => 0..=0,
+                        8 if inside => 120..=135,
+                        _ => 255..=255,
+                    };
+                    assert!(expected.contains(red), "{x}, {y}: {red}");
+                }
+            }
         }
-        let whole = picture(&sheet, 64, 72, 72 * FINE).unwrap();
-        assert!(whole.iter().any(|colour| *colour != 255));
-        for band in [8, 16, 256, 400] {
-            assert!(picture(&sheet, 64, 72, band).unwrap() == whole, "{band}");
+    }
+
+    /// A line that folds back on itself is as dark as a single one, and as wide.
+    #[test]
+    fn a_line_that_folds_back_has_no_slit() {
+        let line = Line {
+            width: 2.0,
+            dash: &[],
+        };
+        let there_and_back = [(2.0, 6.0), (14.0, 6.0), (2.0, 6.0), (14.0, 6.0)];
+        let rows = drawn(|sheet| sheet.polyline(&there_and_back, line, INK));
+        for (y, row) in rows.iter().enumerate() {
+            let expected = if (10..14).contains(&y) { 0 } else { 255 };
+            assert!(row[6..26].iter().all(|red| *red == expected), "row {y}");
         }
+    }
+
+    /// Its ink is where its anchor is, and a rotated text is the same picture, rotated.
+    #[test]
+    fn a_text_is_placed_by_its_anchor() {
+        use plotters::style::text_anchor::{HPos, Pos, VPos};
+        use plotters::style::{FontStyle, FontTransform, IntoFont as _, register_font};
+        assert!(register_font("raster", FontStyle::Normal, FONT).is_ok());
+        let style = |turned| {
+            let mut font = ("raster", 8.0 * f64::from(FINE), FontStyle::Normal).into_font();
+            if turned {
+                font = font.transform(FontTransform::Rotate270);
+            }
+            TextStyle {
+                font,
+                color: plotters_backend::BackendColor {
+                    alpha: 1.0,
+                    rgb: INK,
+                },
+                pos: Pos::new(HPos::Left, VPos::Top),
+            }
+        };
+        let ink = |rows: &[Vec<u8>]| {
+            let dark = |(x, y): (usize, usize)| rows[y][x] < 128;
+            let places = (0..24).flat_map(|y| (0..32).map(move |x| (x, y)));
+            let places: Vec<_> = places.filter(|place| dark(*place)).collect();
+            let range = |of: fn(&(usize, usize)) -> usize| {
+                let numbers = places.iter().map(of);
+                (numbers.clone().min(), numbers.max())
+            };
+            (range(|place| place.0), range(|place| place.1))
+        };
+        // The em is 8 · 2048/2384 reference pixels, 13.7 pixels. A capital I is a bar from 201 to 401 units of 2048 to the right and up to 1493
+        // above the baseline, which is half the size, 8 pixels, below the anchor.
+        let (across, down) = ink(&drawn(|sheet| sheet.text("I", (3.0, 2.0), style(false))));
+        assert_eq!((across, down), ((Some(7), Some(8)), (Some(2), Some(11))));
+        let turned = ink(&drawn(|sheet| sheet.text("I", (3.0, 9.0), style(true))));
+        assert_eq!(turned, ((Some(4), Some(13)), (Some(15), Some(16))));
+    }
+
+    #[test]
+    fn a_text_in_an_unknown_font_is_an_error() {
+        let style = TextStyle::from(("no such font", 10.0));
+        let fonts = Fonts::new(FONT, FONT).expect("a font");
+        let failed = png(16, 12, &fonts, |sheet| {
+            sheet.text("I", (1.0, 1.0), style);
+        });
+        assert!(failed.is_err());
     }
 }
