@@ -5,7 +5,7 @@
 
 mod dashes;
 mod letters;
-mod pixels;
+mod outlines;
 mod shapes;
 
 use std::cell::OnceCell;
@@ -17,11 +17,11 @@ use plotters::prelude::{
     Circle, DrawingArea, IntoDrawingArea as _, PathElement, Polygon, RGBColor, Rectangle, Text,
 };
 use plotters::style::{Color as _, TextStyle};
-use tiny_skia::{Color, Pixmap};
+use tiny_skia::{Color, FillRule, Paint, Pixmap, Transform};
 
 use dashes::dashes;
 pub use letters::Fonts;
-use pixels::{Pixels, UNITS};
+use outlines::{Area, Outlines, UNITS};
 pub use shapes::{Colour, Line, Point};
 
 /// Pixels per reference pixel, in each direction.
@@ -31,11 +31,22 @@ pub const FINE: u32 = PIXELS * UNITS;
 /// 192 dpi in pixels per metre.
 const PIXELS_PER_METRE: u32 = 7559;
 
+/// Rows that are filled and compressed together, from top to bottom: the pixels of a whole sheet are 5 MB.
+const BAND: u32 = 128;
+
 /// A sheet to draw on.
 pub struct Sheet<'a> {
-    area: DrawingArea<Pixels<'a>, Shift>,
+    area: DrawingArea<Outlines<'a>, Shift>,
     /// The first shape that could not be drawn.
     failed: OnceCell<String>,
+}
+
+/// A sheet that has been drawn on.
+struct Picture {
+    /// In pixels.
+    width: u32,
+    height: u32,
+    areas: Vec<Area>,
 }
 
 /// Draws on a white sheet of `width × height` reference pixels and encodes it.
@@ -48,49 +59,82 @@ pub fn png(
     fonts: &Fonts,
     paint: impl FnOnce(&Sheet),
 ) -> Result<Vec<u8>, String> {
-    let mut image =
-        Pixmap::new(width * PIXELS, height * PIXELS).ok_or("a sheet without an area")?;
-    image.fill(Color::WHITE);
-    let area = Pixels {
-        image: &mut image,
-        fonts,
-    }
-    .into_drawing_area();
-    let sheet = Sheet {
-        area,
-        failed: OnceCell::new(),
+    let mut picture = Picture {
+        width: width * PIXELS,
+        height: height * PIXELS,
+        areas: Vec::new(),
     };
-    paint(&sheet);
-    sheet.failed.into_inner().map_or(Ok(()), Err)?;
-    encode(&image).map_err(|error| error.to_string())
+    picture.draw(fonts, paint)?;
+    let mut band = Pixmap::new(picture.width, BAND).ok_or("a sheet without an area")?;
+    picture.encode(&mut band).map_err(|error| error.to_string())
 }
 
-fn encode(image: &Pixmap) -> Result<Vec<u8>, png::EncodingError> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, image.width(), image.height());
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    // Large areas of few colours: filters would take longer than the compression, and make the file larger.
-    encoder.set_filter(png::Filter::NoFilter);
-    encoder.set_pixel_dims(Some(png::PixelDimensions {
-        xppu: PIXELS_PER_METRE,
-        yppu: PIXELS_PER_METRE,
-        unit: png::Unit::Meter,
-    }));
-    let mut writer = encoder.write_header()?;
-    let mut rows = writer.stream_writer()?;
-    let width = image.width() as usize;
-    let mut line = vec![0; 3 * width];
-    // The sheet was white before the first shape: every pixel is opaque.
-    for row in image.pixels().chunks_exact(width) {
-        for (bytes, pixel) in line.as_chunks_mut::<3>().0.iter_mut().zip(row) {
-            *bytes = [pixel.red(), pixel.green(), pixel.blue()];
+impl Picture {
+    fn draw(&mut self, fonts: &Fonts, paint: impl FnOnce(&Sheet)) -> Result<(), String> {
+        let area = Outlines {
+            width: self.width,
+            height: self.height,
+            fonts,
+            areas: &mut self.areas,
         }
-        rows.write_all(&line)?;
+        .into_drawing_area();
+        let sheet = Sheet {
+            area,
+            failed: OnceCell::new(),
+        };
+        paint(&sheet);
+        sheet.failed.into_inner().map_or(Ok(()), Err)
     }
-    rows.finish()?;
-    writer.finish()?;
-    Ok(bytes)
+
+    /// As a PNG, filled in the memory of a band.
+    fn encode(&self, band: &mut Pixmap) -> Result<Vec<u8>, png::EncodingError> {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, self.width, self.height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        // Large areas of few colours: filters would make the file larger, a higher level takes twice the time for a tenth of the size.
+        encoder.set_filter(png::Filter::NoFilter);
+        encoder.set_deflate_compression(png::DeflateCompression::Level(2));
+        encoder.set_pixel_dims(Some(png::PixelDimensions {
+            xppu: PIXELS_PER_METRE,
+            yppu: PIXELS_PER_METRE,
+            unit: png::Unit::Meter,
+        }));
+        let mut writer = encoder.write_header()?;
+        let mut rows = writer.stream_writer()?;
+        let width = self.width as usize;
+        let mut line = vec![0; 3 * width];
+        for top in (0..self.height).step_by(band.height() as usize) {
+            self.fill(top, band);
+            let lines = band.pixels().chunks_exact(width);
+            // The band was white before its first area: every pixel is opaque.
+            for row in lines.take((self.height - top) as usize) {
+                for (bytes, pixel) in line.as_chunks_mut::<3>().0.iter_mut().zip(row) {
+                    *bytes = [pixel.red(), pixel.green(), pixel.blue()];
+                }
+                rows.write_all(&line)?;
+            }
+        }
+        rows.finish()?;
+        writer.finish()?;
+        Ok(bytes)
+    }
+
+    /// The rows from `top` on into a band.
+    fn fill(&self, top: u32, band: &mut Pixmap) {
+        #[expect(clippy::cast_precision_loss, reason = "a sheet has some thousand rows")]
+        let (first, end) = (top as f32, (top + band.height()) as f32);
+        band.fill(Color::WHITE);
+        for Area { outline, colour } in &self.areas {
+            let bounds = outline.bounds();
+            if bounds.top() < end && bounds.bottom() > first {
+                let mut paint = Paint::default();
+                paint.set_color(*colour);
+                let up = Transform::from_translate(0.0, -first);
+                band.fill_path(outline, &paint, FillRule::Winding, up, None);
+            }
+        }
+    }
 }
 
 #[expect(
@@ -167,15 +211,19 @@ mod tests {
     /// The red of each pixel of a sheet of 16 × 12 reference pixels.
     fn drawn(paint: impl FnOnce(&Sheet)) -> Vec<Vec<u8>> {
         let fonts = Fonts::new(FONT, FONT).expect("a font");
-        let bytes = png(16, 12, &fonts, paint).expect("a picture");
+        let pixels = decoded(&png(16, 12, &fonts, paint).expect("a picture"));
+        assert_eq!(pixels.len(), 3 * 32 * 24);
+        let reds: Vec<u8> = pixels.iter().copied().step_by(3).collect();
+        reds.chunks(32).map(<[u8]>::to_vec).collect()
+    }
+
+    fn decoded(bytes: &[u8]) -> Vec<u8> {
         let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
             .read_info()
             .expect("a PNG");
-        let mut pixels = vec![0; 3 * 32 * 24];
-        let info = reader.next_frame(&mut pixels).expect("pixels");
-        assert_eq!((info.width, info.height), (32, 24));
-        let reds: Vec<u8> = pixels.iter().copied().step_by(3).collect();
-        reds.chunks(32).map(<[u8]>::to_vec).collect()
+        let mut pixels = vec![0; reader.output_buffer_size().expect("small")];
+        reader.next_frame(&mut pixels).expect("pixels");
+        pixels
     }
 
     const FONT: &[u8] = include_bytes!("../document/fonts/DejaVuSans.ttf");
@@ -250,6 +298,46 @@ mod tests {
         assert_eq!((across, down), ((Some(7), Some(8)), (Some(2), Some(11))));
         let turned = ink(&drawn(|sheet| sheet.text("I", (3.0, 9.0), style(true))));
         assert_eq!(turned, ((Some(4), Some(13)), (Some(15), Some(16))));
+    }
+
+    /// Lines of all slopes, dashes, discs and areas, at the edges too.
+    #[test]
+    fn bands_together_are_the_sheet() {
+        let fonts = Fonts::new(FONT, FONT).expect("a font");
+        let mut picture = Picture {
+            width: 128,
+            height: 144,
+            areas: Vec::new(),
+        };
+        let painted = picture.draw(&fonts, |sheet| {
+            sheet.rectangle((-3.0, 5.0), (60.0, 21.3), (232, 232, 232));
+            let corners = [(1.0, 70.0), (33.3, 2.2), (58.0, 44.0), (20.0, 30.0)];
+            sheet.polygon(&corners, (0, 95, 255));
+            for step in 0..12 {
+                let (x, y) = (f64::from(step) * 5.7, f64::from(step % 5) * 16.3);
+                let line = |dash| Line { width: 1.8, dash };
+                sheet.polyline(&[(30.0, 36.0), (x, y), (y, x)], line(&[]), (213, 94, 0));
+                sheet.polyline(&[(x, y), (64.0 - x, 72.0)], line(&[4.0, 2.0]), INK);
+                sheet.disc((x, y), 3.2, (0, 158, 115));
+            }
+        });
+        assert_eq!((painted, picture.areas.len() > 50), (Ok(()), true));
+        let in_bands = |rows| {
+            let mut band = Pixmap::new(128, rows).expect("pixels");
+            picture.encode(&mut band).expect("a picture")
+        };
+        let whole = decoded(&in_bands(144));
+        for rows in [1, 7, 16, 100, 200] {
+            let differences = decoded(&in_bands(rows))
+                .into_iter()
+                .zip(&whole)
+                .map(|(in_bands, whole)| in_bands.abs_diff(*whole))
+                .filter(|difference| *difference > 0)
+                .collect::<Vec<u8>>();
+            // An edge is cut where a band ends and rounded there: one of the four samples of a pixel, one above the other, may change.
+            assert!(differences.len() < whole.len() / 100, "{rows}");
+            assert!(differences.iter().all(|levels| *levels <= 64), "{rows}");
+        }
     }
 
     #[test]

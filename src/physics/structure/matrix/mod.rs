@@ -310,7 +310,7 @@ impl Factor for Pivot {
     #[inline]
     fn replace(&mut self, matrix: &f64) -> Result<(), NotPositiveDefinite> {
         self.0 = *matrix;
-        if *matrix > 0.0 && *matrix < f64::INFINITY {
+        if *matrix > 0.0 && *matrix <= f64::MAX {
             Ok(())
         } else {
             Err(NotPositiveDefinite { row: 0 })

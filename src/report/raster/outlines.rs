@@ -1,4 +1,5 @@
-//! The drawing backend of plotters for pixels with smooth edges, which tiny-skia computes. In: shapes in fractions of a pixel. Out: pixels.
+//! The drawing backend of plotters whose shapes are outlines. In: shapes in fractions of a pixel. Out: filled outlines in pixels, in their order.
+//! It fills nothing.
 
 use std::convert::Infallible;
 
@@ -7,19 +8,26 @@ use plotters_backend::{
     BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingBackend, DrawingErrorKind,
     FontStyle,
 };
-use tiny_skia::{
-    Color, FillRule, LineJoin, Paint, Path, PathBuilder, Pixmap, Rect, Stroke, Transform,
-};
+use tiny_skia::{Color, LineJoin, Path, PathBuilder, Rect, Stroke, Transform};
 
 use super::letters::{Fonts, text_outline};
 
 /// Units of a shape per pixel, in each direction: the coordinates of plotters are integers.
 pub(crate) const UNITS: u32 = 4;
 
-/// An image that plotters draws on.
-pub(crate) struct Pixels<'a> {
-    pub image: &'a mut Pixmap,
+/// An area of one colour.
+pub(crate) struct Area {
+    pub outline: Path,
+    pub colour: Color,
+}
+
+/// A sheet that plotters draws on.
+pub(crate) struct Outlines<'a> {
+    /// In pixels.
+    pub width: u32,
+    pub height: u32,
     pub fonts: &'a Fonts,
+    pub areas: &'a mut Vec<Area>,
 }
 
 type Drawn = Result<(), DrawingErrorKind<Infallible>>;
@@ -48,55 +56,41 @@ fn path(points: impl IntoIterator<Item = BackendCoord>, closed: bool) -> Option<
     path.finish()
 }
 
-fn paint(colour: BackendColor) -> Paint<'static> {
-    let (red, green, blue) = colour.rgb;
-    #[expect(clippy::cast_possible_truncation, reason = "between 0 and 1")]
-    let alpha = (colour.alpha * 255.0).round() as u8;
-    let mut paint = Paint::default();
-    paint.set_color(Color::from_rgba8(red, green, blue, alpha));
-    paint
-}
-
-impl Pixels<'_> {
-    fn to_pixels() -> Transform {
+impl Outlines<'_> {
+    /// Adds the area inside a path, which `placed` moves within the sheet.
+    fn fill(&mut self, path: Option<Path>, colour: BackendColor, placed: Transform) {
         let pixel = 1.0 / unit(UNITS.cast_signed());
-        Transform::from_scale(pixel, pixel)
+        let outline = path.and_then(|path| path.transform(placed.post_scale(pixel, pixel)));
+        let (red, green, blue) = colour.rgb;
+        #[expect(clippy::cast_possible_truncation, reason = "between 0 and 1")]
+        let alpha = (colour.alpha * 255.0).round() as u8;
+        self.areas.extend(outline.map(|outline| Area {
+            outline,
+            colour: Color::from_rgba8(red, green, blue, alpha),
+        }));
     }
 
-    fn fill(&mut self, path: Option<&Path>, colour: BackendColor, placed: Transform) {
-        if let Some(path) = path {
-            let placed = placed.post_concat(Self::to_pixels());
-            self.image
-                .fill_path(path, &paint(colour), FillRule::Winding, placed, None);
-        }
-    }
-
-    fn stroke(&mut self, path: Option<&Path>, colour: BackendColor, width: u32) {
-        let stroke = Stroke {
-            width: unit(width.cast_signed()),
-            line_join: LineJoin::Round,
-            ..Stroke::default()
-        };
-        if let Some(path) = path {
-            self.image
-                .stroke_path(path, &paint(colour), &stroke, Self::to_pixels(), None);
-        }
-    }
-
-    fn draw<S: BackendStyle>(&mut self, path: Option<&Path>, style: &S, fill: bool) {
-        if fill {
-            self.fill(path, style.color(), Transform::identity());
+    /// Adds a filled path, or a line along it.
+    fn draw<S: BackendStyle>(&mut self, path: Option<Path>, style: &S, fill: bool) {
+        let area = if fill {
+            path
         } else {
-            self.stroke(path, style.color(), style.stroke_width());
-        }
+            let stroke = Stroke {
+                width: unit(style.stroke_width().cast_signed()),
+                line_join: LineJoin::Round,
+                ..Stroke::default()
+            };
+            path.and_then(|path| path.stroke(&stroke, 1.0))
+        };
+        self.fill(area, style.color(), Transform::identity());
     }
 }
 
-impl DrawingBackend for Pixels<'_> {
+impl DrawingBackend for Outlines<'_> {
     type ErrorType = Infallible;
 
     fn get_size(&self) -> (u32, u32) {
-        (self.image.width() * UNITS, self.image.height() * UNITS)
+        (self.width * UNITS, self.height * UNITS)
     }
 
     fn ensure_prepared(&mut self) -> Drawn {
@@ -109,7 +103,7 @@ impl DrawingBackend for Pixels<'_> {
 
     fn draw_pixel(&mut self, (x, y): BackendCoord, colour: BackendColor) -> Drawn {
         let square = Rect::from_xywh(unit(x), unit(y), 1.0, 1.0).map(PathBuilder::from_rect);
-        self.fill(square.as_ref(), colour, Transform::identity());
+        self.fill(square, colour, Transform::identity());
         Ok(())
     }
 
@@ -127,7 +121,7 @@ impl DrawingBackend for Pixels<'_> {
         points: I,
         style: &S,
     ) -> Drawn {
-        self.draw(path(points, false).as_ref(), style, false);
+        self.draw(path(points, false), style, false);
         Ok(())
     }
 
@@ -139,7 +133,7 @@ impl DrawingBackend for Pixels<'_> {
         fill: bool,
     ) -> Drawn {
         let corners = [from, (to.0, from.1), to, (from.0, to.1)];
-        self.draw(path(corners, true).as_ref(), style, fill);
+        self.draw(path(corners, true), style, fill);
         Ok(())
     }
 
@@ -151,7 +145,7 @@ impl DrawingBackend for Pixels<'_> {
         fill: bool,
     ) -> Drawn {
         let circle = PathBuilder::from_circle(unit(x), unit(y), unit(radius.cast_signed()));
-        self.draw(circle.as_ref(), style, fill);
+        self.draw(circle, style, fill);
         Ok(())
     }
 
@@ -160,7 +154,7 @@ impl DrawingBackend for Pixels<'_> {
         corners: I,
         style: &S,
     ) -> Drawn {
-        self.draw(path(corners, true).as_ref(), style, true);
+        self.draw(path(corners, true), style, true);
         Ok(())
     }
 
@@ -193,7 +187,7 @@ impl DrawingBackend for Pixels<'_> {
         let placed = Transform::from_translate(unit(dx), unit(dy) + 0.5 * size).post_concat(
             Transform::from_row(right_x, right_y, down_x, down_y, unit(at.0), unit(at.1)),
         );
-        self.fill(outline.as_ref(), style.color(), placed);
+        self.fill(outline, style.color(), placed);
         Ok(())
     }
 }
