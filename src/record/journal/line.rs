@@ -3,6 +3,7 @@
 
 use std::ops::Range;
 
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
@@ -82,9 +83,22 @@ impl Line {
     /// # Errors
     /// The body has a different type, or the file can no longer be read.
     pub fn read<T: DeserializeOwned>(&self) -> serde_json::Result<T> {
-        let range = self.start..self.start + u64::from(self.length);
-        let read = self.text.read(range, |json| serde_json::from_slice(json));
+        let read = self
+            .text
+            .read(self.place(), |json| serde_json::from_slice(json));
         read.unwrap_or_else(|error| Err(serde_json::Error::io(error)))
+    }
+
+    /// Whether its body has the very bytes that are written for `body`.
+    pub fn is_written_as(&self, body: &impl Serialize) -> bool {
+        let mut bytes = Vec::with_capacity(LINE_BYTES.min(self.length as usize));
+        super::body::write(&mut bytes, body).is_ok()
+            && matches!(self.text.read(self.place(), |json| json == bytes), Ok(true))
+    }
+
+    /// Where its body is in the text.
+    fn place(&self) -> Range<u64> {
+        self.start..self.start + u64::from(self.length)
     }
 
     /// The same entry with a different body.

@@ -132,6 +132,10 @@ fn written<T: DeserializeOwned + Serialize>(
     own: &[&str],
 ) -> Result<(), Contradiction> {
     let read: T = body(line).map_err(|fault| at(line, fault.to_string()))?;
+    // This is true of nearly all, and found much faster than the fields of both.
+    if line.is_written_as(&read) {
+        return Ok(());
+    }
     let again = serde_json::to_value(&read).unwrap_or_default();
     let logged = line.body();
     let (Some(again), Some(logged)) = (again.as_object(), logged.as_object()) else {
