@@ -291,7 +291,7 @@ fn firmware(
 #[cfg(test)]
 mod tests {
     use super::super::firmware::sealed;
-    use super::super::InProcess;
+    use super::super::testing::InProcess;
     use super::*;
     use crate::language::check::{Options, check, no_files};
     use crate::plan::{

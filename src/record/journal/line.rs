@@ -58,13 +58,6 @@ impl Line {
         }
     }
 
-    /// An entry with `body`, an object, outside a run log.
-    #[must_use]
-    pub fn new(seq: u64, kind: EntryKind, body: &Value) -> Self {
-        let json = LogText::from(body.to_string().into_bytes());
-        Self::written(seq, kind, body, 0..json.length(), json)
-    }
-
     /// Rig time \[s\], if it is stated.
     #[must_use]
     pub fn time(&self) -> Option<f64> {
@@ -85,13 +78,6 @@ impl Line {
         let range = self.start..self.start + u64::from(self.length);
         let read = self.text.read(range, |json| serde_json::from_slice(json));
         read.unwrap_or_else(|error| Err(serde_json::Error::io(error)))
-    }
-
-    /// The same entry with a different body.
-    pub fn alter(&mut self, alter: impl FnOnce(&mut Value)) {
-        let mut body = self.body();
-        alter(&mut body);
-        *self = Self::new(self.seq, self.kind, &body);
     }
 }
 
