@@ -18,7 +18,6 @@ pub use emulated_rig::fault::MechanicalFault;
 pub use emulated_rig::smooth_paths::{PathEnd, PathRefusal};
 pub use emulated_rig::{EmulatedRig, EmulatedRigSettings, SentMove};
 pub use faulty::Faulty;
-pub use lines::in_process::{InProcess, SimulatedClock, SimulatedPort};
 pub use lines::pseudo_terminal::PseudoTerminal;
 pub use lines::tcp::TcpLine;
 pub use log::Log;

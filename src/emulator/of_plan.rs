@@ -228,7 +228,7 @@ fn controller(
     let firmware = firmware(plan, link, behind, rig, boot);
     match behind.axes.first() {
         // A device with one channel knows one actuator.
-        Some(axis) if *axis > 0 && behind.link.dialect.most_channels() == 1 => {
+        Some(axis) if *axis > 0 && behind.link.dialect.abilities().most_channels == 1 => {
             Box::new(OneActuator {
                 actuator: *axis,
                 firmware,
@@ -290,8 +290,8 @@ fn firmware(
 
 #[cfg(test)]
 mod tests {
-    use super::super::InProcess;
     use super::super::firmware::sealed;
+    use super::super::testing::InProcess;
     use super::*;
     use crate::language::check::{Options, check, no_files};
     use crate::plan::{

@@ -62,12 +62,6 @@ impl RigEmulator {
         &self.rig
     }
 
-    /// The number of lines, which are numbered from 0.
-    #[must_use]
-    pub fn lines(&self) -> usize {
-        self.lines.len()
-    }
-
     /// Advances everything to a later time since power-up \[s\].
     pub fn advance(&mut self, to: f64) {
         self.rig.advance(to);

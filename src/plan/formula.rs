@@ -344,17 +344,6 @@ impl Formula {
 }
 
 impl Function {
-    pub const ALL: &'static [(&'static str, Function)] = &[
-        ("abs", Self::Abs),
-        ("min", Self::Min),
-        ("max", Self::Max),
-        ("sum", Self::Sum),
-        ("mean", Self::Mean),
-        ("sqrt", Self::Sqrt),
-        ("sin", Self::Sin),
-        ("cos", Self::Cos),
-    ];
-
     /// Value of the function over its arguments, with lists expanded; NaN without arguments.
     fn apply(self, values: &[f64]) -> f64 {
         let Some(&first) = values.first() else {

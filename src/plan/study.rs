@@ -9,7 +9,7 @@ use crate::physics::study::Confidence;
 use crate::physics::study::correlation::Pair;
 use crate::physics::study::inputs::Source;
 use crate::physics::study::subset_simulation::SubsetSimulation;
-use crate::units::{Dimension, Quantity};
+use crate::units::Dimension;
 
 /// Most runs of a study.
 pub const MOST_RUNS: u64 = 10_000_000_000;
@@ -61,16 +61,6 @@ pub struct Input {
     pub angle: bool,
     /// Whether it is the number of a ground-motion record.
     pub is_record: bool,
-}
-
-impl Input {
-    /// The argument of `--set` that gives the plan this value \[SI\] to the last bit: `beam.mass=2.1kg`.
-    #[must_use]
-    pub fn setting(&self, value: f64) -> String {
-        let written = Quantity::new(value, self.dimension).in_plan_syntax();
-        let unit = if self.angle { "rad" } else { "" };
-        format!("{}={}{unit}", self.name, written.replace(' ', ""))
-    }
 }
 
 /// A number that is kept for every run.

@@ -277,7 +277,7 @@ fn channels(rig: &RigPlan, axis: usize) -> [Channel; 2] {
             newtons_per_unit.get(channel).copied().unwrap_or(1.0),
             0.0,
         ),
-        Some((dialect, _)) if dialect.counts() => (
+        Some((dialect, _)) if dialect.abilities().counts => (
             GivenIn::Counts,
             calibration.newtons_per_count.unwrap_or(1.0),
             calibration.zero_offset,

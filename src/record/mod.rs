@@ -157,16 +157,6 @@ pub struct NamedResult {
     pub contributions: Vec<Contribution>,
 }
 
-impl Record {
-    /// The procedure of this name; None if the run ended before it.
-    #[must_use]
-    pub fn procedure(&self, name: &str) -> Option<&ProcedureRecord> {
-        self.procedures
-            .iter()
-            .find(|procedure| procedure.name == name)
-    }
-}
-
 impl ProcedureRecord {
     /// The value of the result with this name. None for a list, and if this run has no value.
     #[must_use]

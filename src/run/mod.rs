@@ -39,8 +39,10 @@ pub trait Observer {
         false
     }
     /// The operator is to inspect the specimen; the answer states whether to continue. Asked again while it is
-    /// [`Inspection::Wait`].
-    fn inspect(&mut self, note: &str) -> Inspection;
+    /// [`Inspection::Wait`], as it always is of an observer that only displays the run.
+    fn inspect(&mut self, _note: &str) -> Inspection {
+        Inspection::Wait
+    }
     /// A real rig is about to move for the first time: whether the operator enables this motion. `note` is its text in the run log. Asked
     /// again while it is [`Inspection::Wait`].
     fn release(&mut self, note: &str, _motion: &Motion) -> Inspection {

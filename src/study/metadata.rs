@@ -81,10 +81,17 @@ fn digest(plan: &Plan) -> String {
     sha256(text.as_bytes())
 }
 
-fn column(input: &Input) -> Column {
+/// `--set` takes an angle with its unit only.
+pub(super) fn column(input: &Input) -> Column {
+    let column = Column::new(&input.name, input.dimension, &input.text);
     Column {
         nominal: Some(input.nominal),
-        ..Column::new(&input.name, input.dimension, &input.text)
+        unit: if input.angle {
+            "rad".to_owned()
+        } else {
+            column.unit
+        },
+        ..column
     }
 }
 

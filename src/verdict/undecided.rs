@@ -137,7 +137,7 @@ pub(super) fn beyond(record: &Record, of_interest: impl Fn(&Beyond) -> bool) -> 
         .drift
         .as_ref()
         .filter(|_| failpoint::on(Guarding::ZeroDrift))?;
-    drift.all_beyond().find(of_interest)
+    drift.beyond().find(of_interest)
 }
 
 /// Whether readings of the force, or else of the displacement, enter a result. Results that are integrated or fitted depend on both;

@@ -56,8 +56,7 @@ pub struct EmulatedRig {
     readings: u64,
     /// Targets outside the limits \[m\].
     violations: Vec<f64>,
-    /// Every commanded target \[m\].
-    pub(super) targets: Vec<f64>,
+    /// Every commanded move.
     pub(super) moves: Vec<SentMove>,
     pub(super) paths: PathQueue,
     /// Index of the actuator that a value without an axis belongs to.
@@ -124,7 +123,6 @@ impl EmulatedRig {
             restoring_force: Vec::new(),
             readings: 0,
             violations: Vec::new(),
-            targets: Vec::new(),
             moves: Vec::new(),
             paths: PathQueue::default(),
             view: 0,
@@ -278,7 +276,6 @@ impl EmulatedRig {
             .fold(0.0, f64::max);
         for (actuator, target) in actuators.iter().zip(targets) {
             self.check_limits(*actuator, *target);
-            self.targets.push(*target);
             let travel = travel(self, *actuator, *target);
             self.actuators[*actuator].go(
                 *target,
@@ -445,12 +442,6 @@ impl EmulatedRig {
     #[must_use]
     pub fn violations(&self) -> &[f64] {
         &self.violations
-    }
-
-    /// Every commanded target \[m\], in order; with several actuators one after the other.
-    #[must_use]
-    pub fn targets(&self) -> &[f64] {
-        &self.targets
     }
 }
 

@@ -93,7 +93,6 @@ impl EmulatedRig {
             let (low, high) = path.reach();
             self.check_limits(actuator, low);
             self.check_limits(actuator, high);
-            self.targets.push(path.to);
         }
         let speed = paths.iter().map(Path::fastest).fold(0.0, f64::max);
         self.moves.push(SentMove {

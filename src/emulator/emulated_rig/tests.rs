@@ -4,6 +4,16 @@ use super::*;
 use crate::emulator::testing::elastic_rig;
 use crate::plan::Storey;
 
+impl EmulatedRig {
+    /// Every commanded target \[m\], in order; with several actuators one after the other.
+    pub(crate) fn targets(&self) -> Vec<f64> {
+        self.moves
+            .iter()
+            .flat_map(|sent| sent.targets.clone())
+            .collect()
+    }
+}
+
 #[test]
 fn it_moves_evenly_and_stops_at_its_target() {
     let mut rig = elastic_rig();

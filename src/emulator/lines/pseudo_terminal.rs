@@ -42,12 +42,6 @@ impl PseudoTerminal {
             link: link.to_owned(),
         })
     }
-
-    /// The end a host opens, behind the link.
-    #[must_use]
-    pub fn end(&self) -> &Path {
-        &self.end
-    }
 }
 
 impl Carrier for PseudoTerminal {

@@ -2,7 +2,7 @@
 //! know the contents of the bytes.
 
 use std::io::{self, Error, ErrorKind, Read as _, Write as _};
-use std::net::{SocketAddr, TcpListener, TcpStream, ToSocketAddrs as _};
+use std::net::{TcpListener, TcpStream, ToSocketAddrs as _};
 use std::os::fd::{AsFd as _, BorrowedFd};
 
 use super::real_time::Carrier;
@@ -34,14 +34,6 @@ impl TcpLine {
             listener,
             stream: None,
         })
-    }
-
-    /// Returns the address of the listener.
-    ///
-    /// # Errors
-    /// The listener is closed.
-    pub fn address(&self) -> io::Result<SocketAddr> {
-        self.listener.local_addr()
     }
 }
 
@@ -135,7 +127,7 @@ mod tests {
             vec![("actuator".to_owned(), Box::new(firmware))],
         );
         let line = TcpLine::at("127.0.0.1:0").expect("a free port");
-        let address = line.address().expect("an address");
+        let address = line.listener.local_addr().expect("an address");
         let mut carriers: Vec<Box<dyn Carrier>> = vec![Box::new(line)];
         let host = std::thread::spawn(move || {
             let mut stream = TcpStream::connect(address).expect("it listens");

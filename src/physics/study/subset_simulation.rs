@@ -76,26 +76,6 @@ pub struct Answer {
 }
 
 impl SubsetSimulation {
-    /// The probability that `response` is beyond `limit`. A point without a response counts as beyond it.
-    ///
-    /// # Errors
-    /// Too few inputs, points or replicates.
-    pub fn run(
-        self,
-        limit: f64,
-        confidence: Confidence,
-        response: impl Fn(&[f64]) -> Option<f64>,
-    ) -> Result<Answer, SubsetError> {
-        let mut progress = self.begin(limit)?;
-        while let Some(point) = progress.pending().first() {
-            let found = response(point);
-            progress.add(found);
-        }
-        progress
-            .answer(confidence)
-            .ok_or(SubsetError::Replicates(self.replicates))
-    }
-
     /// A simulation without runs.
     ///
     /// # Errors
@@ -371,6 +351,25 @@ impl Numbers {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    impl SubsetSimulation {
+        /// The probability that `response` is beyond `limit`. A point without a response counts as beyond it.
+        fn run(
+            self,
+            limit: f64,
+            confidence: Confidence,
+            response: impl Fn(&[f64]) -> Option<f64>,
+        ) -> Result<Answer, SubsetError> {
+            let mut progress = self.begin(limit)?;
+            while let Some(point) = progress.pending().first() {
+                let found = response(point);
+                progress.add(found);
+            }
+            progress
+                .answer(confidence)
+                .ok_or(SubsetError::Replicates(self.replicates))
+        }
+    }
 
     fn simulation(seed: u64) -> SubsetSimulation {
         SubsetSimulation {

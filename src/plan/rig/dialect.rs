@@ -51,99 +51,87 @@ impl Dialect {
     /// The keyword of the language.
     #[must_use]
     pub const fn name(&self) -> &'static str {
+        self.abilities().name
+    }
+
+    /// The row of this protocol.
+    #[must_use]
+    pub const fn abilities(&self) -> Abilities {
         match self {
-            Self::Native => "native",
-            Self::Grbl => "grbl",
-            Self::Hx711 => "hx711",
-            Self::Indicator => "indicator",
-            Self::Scpi { .. } => "scpi",
-            Self::Instron => "instron",
-            Self::Mark10 => "mark10",
-            Self::Mark10Gauge => "mark10_gauge",
-            Self::Modbus(_) => "modbus",
-            Self::Nees { .. } => "nees",
+            Self::Native => Abilities::of_frame("native", 6),
+            Self::Grbl => Abilities {
+                measures_position: false,
+                measures_force: false,
+                ..Abilities::of_frame("grbl", 1)
+            },
+            Self::Hx711 => Abilities {
+                counts: true,
+                ..Abilities::of_load_cell("hx711", 1)
+            },
+            Self::Indicator => Abilities::of_load_cell("indicator", 1),
+            Self::Scpi { newtons_per_unit } => {
+                Abilities::of_load_cell("scpi", newtons_per_unit.len())
+            }
+            Self::Instron => Abilities::of_frame("instron", 1),
+            Self::Mark10 => Abilities::of_frame("mark10", 1),
+            Self::Mark10Gauge => Abilities::of_load_cell("mark10_gauge", 1),
+            Self::Modbus(map) => Abilities {
+                moves: map.target.is_some(),
+                measures_force: map.force.is_some(),
+                ..Abilities::of_frame("modbus", 1)
+            },
+            Self::Nees { .. } => Abilities {
+                proposes: true,
+                ..Abilities::of_frame("nees", 6)
+            },
+        }
+    }
+}
+
+/// What a device can do, by its protocol.
+#[derive(Clone, Copy, Debug)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is an ability of its own"
+)]
+pub struct Abilities {
+    name: &'static str,
+    /// Moves the specimen.
+    pub moves: bool,
+    /// A device that moves measures its position. Otherwise the position is the command.
+    pub measures_position: bool,
+    pub measures_force: bool,
+    /// Gives the force as raw counts, which need a scale factor.
+    pub counts: bool,
+    /// A move is proposed to the device before it is commanded.
+    pub proposes: bool,
+    /// Largest number of axes that one device moves together.
+    pub most_axes: usize,
+    /// Largest number of axes whose force one device measures.
+    pub most_channels: usize,
+}
+
+impl Abilities {
+    /// A test frame: moves these axes and measures both quantities of each.
+    const fn of_frame(name: &'static str, axes: usize) -> Self {
+        Self {
+            name,
+            moves: true,
+            measures_position: true,
+            measures_force: true,
+            counts: false,
+            proposes: false,
+            most_axes: axes,
+            most_channels: axes,
         }
     }
 
-    /// Largest number of axes that one device of this protocol moves together.
-    #[must_use]
-    pub const fn most_axes(&self) -> usize {
-        match self {
-            Self::Native | Self::Nees { .. } => 6,
-            Self::Grbl
-            | Self::Hx711
-            | Self::Indicator
-            | Self::Scpi { .. }
-            | Self::Instron
-            | Self::Mark10
-            | Self::Mark10Gauge
-            | Self::Modbus(_) => 1,
+    const fn of_load_cell(name: &'static str, channels: usize) -> Self {
+        Self {
+            moves: false,
+            most_axes: 1,
+            ..Self::of_frame(name, channels)
         }
-    }
-
-    /// Largest number of axes whose force one device of this protocol measures.
-    #[must_use]
-    pub const fn most_channels(&self) -> usize {
-        match self {
-            Self::Scpi { newtons_per_unit } => newtons_per_unit.len(),
-            _ => self.most_axes(),
-        }
-    }
-
-    /// Whether a move is proposed to the device before it is commanded.
-    #[must_use]
-    pub const fn proposes(&self) -> bool {
-        matches!(self, Self::Nees { .. })
-    }
-
-    /// Whether the device can move the specimen.
-    #[must_use]
-    pub const fn moves(&self) -> bool {
-        match self {
-            Self::Native | Self::Grbl | Self::Instron | Self::Mark10 | Self::Nees { .. } => true,
-            Self::Modbus(map) => map.target.is_some(),
-            Self::Hx711 | Self::Indicator | Self::Scpi { .. } | Self::Mark10Gauge => false,
-        }
-    }
-
-    /// Whether a device that moves measures its position. Otherwise the position is the command.
-    #[must_use]
-    pub const fn measures_position(&self) -> bool {
-        match self {
-            Self::Grbl => false,
-            Self::Native
-            | Self::Hx711
-            | Self::Indicator
-            | Self::Scpi { .. }
-            | Self::Instron
-            | Self::Mark10
-            | Self::Mark10Gauge
-            | Self::Modbus(_)
-            | Self::Nees { .. } => true,
-        }
-    }
-
-    /// Whether the device measures the force.
-    #[must_use]
-    pub const fn measures_force(&self) -> bool {
-        match self {
-            Self::Grbl => false,
-            Self::Modbus(map) => map.force.is_some(),
-            Self::Native
-            | Self::Hx711
-            | Self::Indicator
-            | Self::Scpi { .. }
-            | Self::Instron
-            | Self::Mark10
-            | Self::Mark10Gauge
-            | Self::Nees { .. } => true,
-        }
-    }
-
-    /// Whether the device returns the force as raw counts, which need a scale factor.
-    #[must_use]
-    pub const fn counts(&self) -> bool {
-        matches!(self, Self::Hx711)
     }
 }
 

@@ -9,7 +9,7 @@ pub(crate) mod limits;
 
 use super::{AxisPlan, Interval};
 pub use crate::physics::reintegration::perturbation::ReadingErrors;
-pub use dialect::{Dialect, ModbusMap, ModbusNumber};
+pub use dialect::{Abilities, Dialect, ModbusMap, ModbusNumber};
 
 /// The rig of a run, as the plan specifies it.
 #[derive(Clone, Debug, PartialEq)]

@@ -59,13 +59,6 @@ impl Line {
         }
     }
 
-    /// An entry with `body`, an object, outside a run log.
-    #[must_use]
-    pub fn new(seq: u64, kind: EntryKind, body: &Value) -> Self {
-        let json = LogText::from(body.to_string().into_bytes());
-        Self::written(seq, kind, body, 0..json.length(), json)
-    }
-
     /// Rig time \[s\], if it is stated.
     #[must_use]
     pub fn time(&self) -> Option<f64> {
@@ -91,7 +84,7 @@ impl Line {
 
     /// Whether its body has the very bytes that are written for `body`.
     pub fn is_written_as(&self, body: &impl Serialize) -> bool {
-        let mut bytes = Vec::with_capacity(LINE_BYTES.min(self.length as usize));
+        let mut bytes = Vec::with_capacity(self.length as usize);
         super::body::write(&mut bytes, body).is_ok()
             && matches!(self.text.read(self.place(), |json| json == bytes), Ok(true))
     }
@@ -99,13 +92,6 @@ impl Line {
     /// Where its body is in the text.
     fn place(&self) -> Range<u64> {
         self.start..self.start + u64::from(self.length)
-    }
-
-    /// The same entry with a different body.
-    pub fn alter(&mut self, alter: impl FnOnce(&mut Value)) {
-        let mut body = self.body();
-        alter(&mut body);
-        *self = Self::new(self.seq, self.kind, &body);
     }
 }
 

@@ -35,7 +35,8 @@ pub struct Journal {
     written_length: u64,
     /// Whether a part of `buffered` may lie after them.
     half_line: bool,
-    fault: Option<JournalFault>,
+    /// The fault of the storage that ended the run log.
+    pub(super) fault: Option<JournalFault>,
 }
 
 impl Journal {
@@ -188,22 +189,13 @@ impl Journal {
     }
 
     /// Number of entries written, including buffered ones: the number of the last one.
-    pub const fn len(&self) -> u64 {
+    pub const fn count(&self) -> u64 {
         self.count
-    }
-
-    pub const fn is_empty(&self) -> bool {
-        self.count == 0
     }
 
     /// The chain after the last entry: 64 hexadecimal digits.
     pub fn head(&self) -> &str {
         self.chain.as_str()
-    }
-
-    /// The fault of the storage that ended the run log.
-    pub const fn fault(&self) -> Option<&JournalFault> {
-        self.fault.as_ref()
     }
 
     /// A storage that failed is not used again. After a failed sync the kernel discards the data that it could not write, and the next

@@ -62,7 +62,11 @@ impl Outlines<'_> {
         let pixel = 1.0 / unit(UNITS.cast_signed());
         let outline = path.and_then(|path| path.transform(placed.post_scale(pixel, pixel)));
         let (red, green, blue) = colour.rgb;
-        #[expect(clippy::cast_possible_truncation, reason = "between 0 and 1")]
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "between 0 and 1"
+        )]
         let alpha = (colour.alpha * 255.0).round() as u8;
         self.areas.extend(outline.map(|outline| Area {
             outline,

@@ -80,7 +80,7 @@ pub(in crate::report) fn of_run(run: &Run<'_>, with_reason: bool) -> Vec<String>
             text.trim_end_matches('.')
         ));
     }
-    let drifted = run.record.drift.iter().flat_map(Drift::all_beyond);
+    let drifted = run.record.drift.iter().flat_map(Drift::beyond);
     found.extend(drifted.map(|beyond| wording::zero_drift(beyond.reason)));
     found.extend(beyond_calibration(run));
     found.extend(

@@ -65,7 +65,7 @@ pub struct ZeroSummary {
 
 impl ZeroDriftSummary {
     pub(super) fn of(drift: &Drift) -> Self {
-        let reasons: Vec<String> = drift.all_beyond().map(|beyond| beyond.reason).collect();
+        let reasons: Vec<String> = drift.beyond().map(|beyond| beyond.reason).collect();
         let slope_in_holds =
             |axis: usize| drift.held.slopes.get(axis).filter(|_| drift.held.count > 0);
         let axis = |(index, axis): (usize, &AxisDrift)| AxisZeroDriftSummary {

@@ -103,12 +103,6 @@ struct Proposed {
 }
 
 impl RealRig {
-    /// Whether its position and readings can be trusted: no device restarted or lost its reference.
-    #[must_use]
-    pub const fn trusted(&self) -> bool {
-        self.untrusted.is_none()
-    }
-
     /// Publishes its readings as they are made, also during a motion.
     #[must_use]
     pub fn live(&self) -> Live {

@@ -235,7 +235,7 @@ fn axes(plan: &RigPlan, link: &RealLink, limits: &Limits) -> Vec<Axis> {
 /// Whether the position of the actuator is not measured.
 #[must_use]
 pub const fn commands_only(link: &RealLink) -> bool {
-    !link.actuator.dialect.measures_position()
+    !link.actuator.dialect.abilities().measures_position
 }
 
 fn unidentified(name: &str) -> Identity {

@@ -432,7 +432,7 @@ impl<'rig> State<'rig> {
     pub(super) fn sealed(&self) -> Option<(u64, String)> {
         self.journal
             .as_ref()
-            .map(|journal| (journal.len(), journal.head().to_owned()))
+            .map(|journal| (journal.count(), journal.head().to_owned()))
     }
 
     pub(super) const fn mismatch(&self) -> Option<&Mismatch> {

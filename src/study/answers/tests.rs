@@ -11,8 +11,10 @@ use crate::physics::study::distribution::normal;
 use crate::physics::study::probability::Decision;
 use crate::physics::study::sampling::Design;
 use crate::plan::Comparison;
+use crate::plan::study::Input;
 use crate::study::data_set::testing::written;
 use crate::study::data_set::{Column, Event, Outcome, Stopping, Stripes, StudiedRequirement};
+use crate::study::metadata::column;
 use crate::units::Dimension;
 
 fn contains(interval: [f64; 2], value: f64) -> bool {
@@ -189,6 +191,15 @@ fn the_worst_runs_are_those_beyond_the_limit() {
         setting(&Column::new("n", Dimension::NUMBER, ""), -1e-9),
         "n=-0.000000001"
     );
+    let angle = Input {
+        name: "hammer.angle".to_owned(),
+        dimension: Dimension::NUMBER,
+        text: String::new(),
+        nominal: 1.0,
+        angle: true,
+        is_record: false,
+    };
+    assert_eq!(setting(&column(&angle), 1.04), "hammer.angle=\"1.04 rad\"");
 }
 
 fn studied(comparison: Comparison, limit: f64, event: Event) -> StudiedRequirement {

@@ -5,6 +5,7 @@
 use serde::Serialize;
 
 use crate::study::data_set::{Column, Kind, Metadata, Outcome, Row};
+use crate::units::{Dimension, Quantity};
 
 /// Runs that are listed.
 const MOST: usize = 10;
@@ -108,12 +109,13 @@ fn settings(metadata: &Metadata, values: &[f64]) -> Vec<String> {
     fixed.chain(inputs).collect()
 }
 
-/// `NAME="VALUE UNIT"`, as `--set` takes it. The digits are the fewest that give the same number again.
+/// `NAME="VALUE UNIT"`, as `--set` takes it. The value is the same again, to the last bit.
 #[must_use]
 pub fn setting(column: &Column, value: f64) -> String {
     let Column { name, unit, .. } = column;
+    let number = Quantity::new(value, Dimension::NUMBER).in_plan_syntax();
     match unit.as_str() {
-        "1" => format!("{name}={value}"),
-        unit => format!("{name}=\"{value} {unit}\""),
+        "1" => format!("{name}={number}"),
+        unit => format!("{name}=\"{number} {unit}\""),
     }
 }

@@ -7,7 +7,9 @@ use crate::physics::study::inputs::Source;
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
 use crate::plan::study::{Collected, Fragility, Variation};
 use crate::plan::{Comparison, Condition, Test};
+use crate::study::answers::setting;
 use crate::study::data_set::Outcome;
+use crate::study::metadata::column;
 use crate::study::testing::{Studied, checked, plan, usual, variation};
 use crate::units::Dimension;
 
@@ -163,9 +165,9 @@ fn a_run_is_reproduced_by_its_settings() {
             .iter()
             .zip(&row.inputs)
             .map(|(input, value)| {
-                let setting = input.setting(*value);
+                let setting = setting(&column(input), *value);
                 let (name, value) = setting.split_once('=').unwrap();
-                (name.to_owned(), value.to_owned())
+                (name.to_owned(), value.trim_matches('"').to_owned())
             })
             .collect();
         let (_, plan) = checked(&text, &settings);

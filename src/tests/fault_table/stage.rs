@@ -1,8 +1,8 @@
 //! A whole run on a rig emulator. In: a plan and a script of faults. Out: the outputs of the run, with the checks that the fault tests
 //! make on them.
 
-use crate::emulator::testing::SharedText;
-use crate::emulator::{InProcess, Log, Script, SimulatedPort, of_plan};
+use crate::emulator::testing::{InProcess, SharedText, SimulatedPort};
+use crate::emulator::{Log, Script, of_plan};
 use crate::plan::formula::Formula;
 use crate::plan::{
     Behind, Datum, DeviceLink, Dialect, Interval, Limits, Link, Move, Plan, PortPlan, PretestCheck,
@@ -177,13 +177,13 @@ pub(super) fn run_watched(
     })
 }
 
-pub(super) fn emulator(plan: &Plan, script: &str, log: Log, seed: u64) -> InProcess {
+pub(crate) fn emulator(plan: &Plan, script: &str, log: Log, seed: u64) -> InProcess {
     let script = Script::parse(script).unwrap_or_else(|error| panic!("{error}"));
     InProcess::new(of_plan(plan, &script, log, seed, Some(0x7f3a)).unwrap())
 }
 
 /// The plan's rig on an emulator.
-pub(super) fn open(plan: &Plan, emulator: &InProcess) -> Result<RealRig, RigFault> {
+pub(crate) fn open(plan: &Plan, emulator: &InProcess) -> Result<RealRig, RigFault> {
     open_through(plan, emulator, &|port| Box::new(port))
 }
 

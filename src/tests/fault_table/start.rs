@@ -107,7 +107,7 @@ fn a_plan_with_its_zero_at_the_rig_position_counts_from_there() {
                 note.starts_with("the plan's zero is the present position of the rig")
             }));
             let emulator = ended.emulator.lock();
-            let targets = emulator.rig().targets().to_vec();
+            let targets = emulator.rig().targets();
             assert!(
                 (targets[0] - own - sign * 5e-5).abs() < 1e-12,
                 "first the probe: {targets:?}"

@@ -231,7 +231,7 @@ impl Served {
         } else {
             write_made(sink, &kept, |sink| report::put_driven(&steps, drift, sink))?;
         }
-        for beyond in drift.iter().flat_map(|drift| drift.all_beyond()) {
+        for beyond in drift.iter().flat_map(|drift| drift.beyond()) {
             let note = settings.paint_note("  note:");
             print_message(&format!(
                 "{note} {}: the readings are inconclusive\n",

@@ -14,7 +14,7 @@ use super::dialogue::keys::Key;
 use crate::plan::Plan;
 use crate::record::Event;
 use crate::rig::{Live, StopRequest};
-use crate::run::{Inspection, Next, Observer, StepReport};
+use crate::run::{Next, Observer, StepReport};
 use draw::View;
 use model::{Ended, Model};
 use terminal::{Page, TerminalLost};
@@ -180,10 +180,6 @@ impl Observer for Screen {
 
     fn studying(&mut self, done: usize, of: usize) {
         self.shared.lock().model.study = Some((done, of));
-    }
-
-    fn inspect(&mut self, _: &str) -> Inspection {
-        Inspection::Wait
     }
 
     fn next(&mut self) -> Next {

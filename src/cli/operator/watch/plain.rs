@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use crate::cli::output::print_message;
 use crate::record::{Event, EventKind};
 use crate::rig::IS_OUTSIDE;
-use crate::run::{Inspection, Observer, StepReport};
+use crate::run::{Observer, StepReport};
 use crate::text::diagnostic::excerpt::escape;
 use crate::units::Dimension;
 use crate::units::display::readable;
@@ -84,10 +84,6 @@ impl Observer for Bar {
     fn procedure_finished(&mut self, _: &str) {
         self.clear();
     }
-
-    fn inspect(&mut self, _: &str) -> Inspection {
-        Inspection::Wait
-    }
 }
 
 /// One line per procedure, with its result, and one per event that the operator should see when it happens.
@@ -145,10 +141,6 @@ impl Observer for Lines {
 
     fn procedure_finished(&mut self, name: &str) {
         print_message(&self.line(name));
-    }
-
-    fn inspect(&mut self, _: &str) -> Inspection {
-        Inspection::Wait
     }
 
     fn event(&mut self, event: &Event) {

@@ -5,7 +5,7 @@ use super::axes::CheckedAxis;
 use super::device::Device;
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::{axes as message, rigs};
-use crate::plan::Dialect;
+use crate::plan::{Abilities, Dialect};
 use crate::schema::rig as schema;
 
 /// Checks that one device moves every axis and one device measures its force. No device is without an axis, and none has more axes than
@@ -26,19 +26,19 @@ pub fn check(
         without(|axis| axis.actuator.as_ref()),
         without(|axis| axis.load_cell.as_ref()),
     );
-    let unfit = |own: fn(&CheckedAxis) -> Option<&Device>, fit: fn(&Dialect) -> bool| {
+    let unfit = |own: fn(&CheckedAxis) -> Option<&Device>, fit: fn(Abilities) -> bool| {
         axes.iter()
             .filter_map(own)
-            .find(|device| !fit(&device.link.dialect))
+            .find(|device| !fit(device.link.dialect.abilities()))
     };
-    if let Some(device) = unfit(|axis| axis.actuator.as_ref(), Dialect::moves) {
+    if let Some(device) = unfit(|axis| axis.actuator.as_ref(), |can| can.moves) {
         return checker.fail(rigs::cannot_move(
             schema::ACTUATOR.name,
             &device.link.dialect,
             device.dialect_at,
         ));
     }
-    if let Some(device) = unfit(|axis| axis.load_cell.as_ref(), Dialect::measures_force) {
+    if let Some(device) = unfit(|axis| axis.load_cell.as_ref(), |can| can.measures_force) {
         return checker.fail(rigs::cannot_measure_force(
             true,
             schema::LOAD_CELL.name,
@@ -55,17 +55,19 @@ pub fn check(
     // If one device refuses a move, none may begin it: each must support a proposal before the command.
     let all =
         std::iter::once(actuator).chain(axes.iter().filter_map(|axis| axis.actuator.as_ref()));
-    let rash = all.clone().find(|device| !device.link.dialect.proposes());
+    let rash = all
+        .clone()
+        .find(|device| !device.link.dialect.abilities().proposes);
     if let (true, Some(device)) = (axes.iter().any(movers), rash) {
         return checker.fail(message::not_asked(&device.link.dialect, device.dialect_at));
     }
     if let Some((_, written)) = checker
         .field(block, schema::AXES.name)
-        .filter(|_| moved > actuator.link.dialect.most_axes())
+        .filter(|_| moved > actuator.link.dialect.abilities().most_axes)
     {
         return checker.fail(message::too_many(
             moved,
-            actuator.link.dialect.most_axes(),
+            actuator.link.dialect.abilities().most_axes,
             &actuator.link.dialect,
             written.value.span,
         ));
@@ -107,8 +109,8 @@ fn points(checker: &mut Checker, axes: usize, device: &Device) -> Option<()> {
 fn channels(checker: &mut Checker, behind: usize, device: &Device) -> Option<()> {
     let dialect = &device.link.dialect;
     let has = match dialect {
-        Dialect::Native => behind.min(dialect.most_channels()),
-        _ => dialect.most_channels(),
+        Dialect::Native => behind.min(dialect.abilities().most_channels),
+        _ => dialect.abilities().most_channels,
     };
     match dialect {
         Dialect::Nees { .. } => points(checker, behind, device),

@@ -151,7 +151,7 @@ fn fit(
     load_cell_device: Option<&Device>,
     axes: &[CheckedAxis],
 ) -> Option<()> {
-    if !moving.link.dialect.moves() {
+    if !moving.link.dialect.abilities().moves {
         return checker.fail(message::cannot_move(
             field,
             &moving.link.dialect,
@@ -160,7 +160,7 @@ fn fit(
     }
     let cell = load_cell_device.unwrap_or(moving);
     let all_apart = !axes.is_empty() && axes.iter().all(|axis| axis.load_cell.is_some());
-    if !cell.link.dialect.measures_force() && !all_apart {
+    if !cell.link.dialect.abilities().measures_force && !all_apart {
         let own = load_cell_device.is_some();
         return checker.fail(message::cannot_measure_force(
             own,
@@ -170,19 +170,13 @@ fn fit(
         ));
     }
     let unstated = axes.iter().find(|axis| {
-        let counts = axis
-            .load_cell
-            .as_ref()
-            .unwrap_or(cell)
-            .link
-            .dialect
-            .counts();
-        counts && axis.plan.calibration.newtons_per_count.is_none()
+        let cell = axis.load_cell.as_ref().unwrap_or(cell);
+        cell.link.dialect.abilities().counts && axis.plan.calibration.newtons_per_count.is_none()
     });
     match axes
         .iter()
         .filter_map(|axis| axis.load_cell.as_ref())
-        .find(|own| own.link.dialect.counts())
+        .find(|own| own.link.dialect.abilities().counts)
     {
         // If each axis states its scale factor, the rig need not.
         Some(_) if unstated.is_none() => Some(()),
@@ -192,14 +186,16 @@ fn fit(
                 .unwrap_or(own);
             counts(checker, block, &own.link.dialect, own)
         }
-        None if unstated.is_none() && !axes.is_empty() && cell.link.dialect.counts() => Some(()),
+        None if unstated.is_none() && !axes.is_empty() && cell.link.dialect.abilities().counts => {
+            Some(())
+        }
         None => counts(checker, block, &cell.link.dialect, cell),
     }
 }
 
 /// Raw counts need a scale factor; a force in newtons must have none.
 fn counts(checker: &mut Checker, block: usize, dialect: &Dialect, cell: &Device) -> Option<()> {
-    if !dialect.counts() {
+    if !dialect.abilities().counts {
         let given = [schema::FORCE_PER_COUNT.name, schema::ZERO_OFFSET.name]
             .into_iter()
             .find_map(|field| checker.field(block, field));

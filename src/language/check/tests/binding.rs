@@ -6,7 +6,6 @@ use std::collections::BTreeMap;
 use super::{checked, files};
 use crate::language::check::{Options, ParsedPlan};
 use crate::plan::Plan;
-use crate::plan::study::Input;
 use crate::text::diagnostic::Code;
 use crate::units::{Dimension, Quantity};
 
@@ -191,17 +190,9 @@ fn fields_are_bound_as_their_settings_write_them() {
     let settings: Vec<(String, String)> = VALUES
         .iter()
         .map(|(name, value, dimension)| {
-            let input = Input {
-                name: (*name).to_owned(),
-                dimension: *dimension,
-                text: String::new(),
-                nominal: 0.0,
-                angle: name.ends_with("angle"),
-                is_record: false,
-            };
-            let setting = input.setting(*value);
-            let (name, value) = setting.split_once('=').unwrap();
-            (name.to_owned(), value.to_owned())
+            let written = Quantity::new(*value, *dimension).in_plan_syntax();
+            let unit = if name.ends_with("angle") { "rad" } else { "" };
+            ((*name).to_owned(), written + unit)
         })
         .collect();
     let set = parsed_fields(&settings).1;

@@ -92,12 +92,7 @@ impl<'a> Retrace<'a> {
         }
     }
 
-    /// Displacement \[m\] and force \[N\] read at the target \[m\] of the next step.
-    pub fn move_to(&mut self, target: f64) -> (f64, f64) {
-        self.pass(target, 0.0)
-    }
-
-    /// As [`Self::move_to`], for a target that is passed with a velocity \[m/s\].
+    /// Displacement \[m\] and force \[N\] read at the target \[m\] of the next step, which is passed with a velocity \[m/s\].
     pub fn pass(&mut self, target: f64, velocity: f64) -> (f64, f64) {
         let speed = self
             .path

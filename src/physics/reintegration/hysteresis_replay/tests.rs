@@ -7,6 +7,13 @@ use crate::specimen::{
     SpecimenModel,
 };
 
+impl Retrace<'_> {
+    /// The reading at a target at which the actuator stops \[m\].
+    fn move_to(&mut self, target: f64) -> (f64, f64) {
+        self.pass(target, 0.0)
+    }
+}
+
 fn path(force: impl Fn(f64) -> f64, targets: &[f64]) -> RecordedPath {
     let reading = |target: &f64| Reading {
         target: *target,

@@ -91,13 +91,6 @@ impl RelaxationFit {
             self.degrees
         }
     }
-
-    /// Force of a hold `seconds` after its first reading \[N\].
-    #[must_use]
-    pub fn force(&self, hold: usize, seconds: f64) -> Option<f64> {
-        let [relaxed, amplitude] = self.holds.get(hold)?;
-        Some(relaxed + amplitude * (-seconds / self.time_constant.0).exp())
-    }
 }
 
 /// Time constants tried first, over the range that the readings resolve.

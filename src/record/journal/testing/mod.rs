@@ -14,7 +14,9 @@ pub(crate) use power_loss::PowerLoss;
 pub(crate) use sick_disk::{SickDisk, Sickness};
 pub(crate) use vandal::Vandal;
 
-use super::{Damage, Recovered, Unreadable};
+use serde_json::Value;
+
+use super::{Damage, EntryKind, Line, LogText, Recovered, Unreadable};
 
 /// Reads a run log in memory.
 pub(crate) fn recover(bytes: &[u8]) -> Result<Recovered, Damage> {
@@ -22,4 +24,19 @@ pub(crate) fn recover(bytes: &[u8]) -> Result<Recovered, Damage> {
         Unreadable::Damaged(damage) => damage,
         Unreadable::File(error) => panic!("memory is always read: {error}"),
     })
+}
+
+impl Line {
+    /// An entry with `body`, an object, outside a run log.
+    pub(crate) fn new(seq: u64, kind: EntryKind, body: &Value) -> Self {
+        let json = LogText::from(body.to_string().into_bytes());
+        Self::written(seq, kind, body, 0..json.length(), json)
+    }
+
+    /// The same entry with a different body.
+    pub(crate) fn alter(&mut self, alter: impl FnOnce(&mut Value)) {
+        let mut body = self.body();
+        alter(&mut body);
+        *self = Self::new(self.seq, self.kind, &body);
+    }
 }

@@ -53,7 +53,7 @@ fn a_cut_journal_goes_on_where_it_was_cut() {
         let again = recover(&disk.synced()).unwrap();
         assert!(again.ended && again.torn.is_none());
         assert_eq!(records(&again)[..found.lines.len()], records(&found));
-        assert_eq!(again.lines.len() as u64, resumed.len());
+        assert_eq!(again.lines.len() as u64, resumed.count());
         assert_eq!(again.head(), resumed.head());
     }
 }

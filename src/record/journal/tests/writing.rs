@@ -76,7 +76,7 @@ fn header_is_first_and_only_and_nothing_follows_end() {
 #[test]
 fn a_refused_record_leaves_no_trace_and_the_journal_goes_on() {
     let (disk, mut journal) = begun(Durability::EverySyncPoint);
-    let before = (disk.written(), journal.len(), journal.head().to_owned());
+    let before = (disk.written(), journal.count(), journal.head().to_owned());
     let refused = |refusal| Err(JournalFault::Refused(refusal));
     assert_eq!(
         journal.append(EntryKind::Sample, &json!([1])),
@@ -96,10 +96,10 @@ fn a_refused_record_leaves_no_trace_and_the_journal_goes_on() {
         refused(Refusal::Reserved("count"))
     );
     assert_eq!(
-        (disk.written(), journal.len(), journal.head().to_owned()),
+        (disk.written(), journal.count(), journal.head().to_owned()),
         before
     );
-    assert_eq!(journal.fault(), None);
+    assert_eq!(journal.fault, None);
     journal
         .append(EntryKind::Sample, &json!({"force": 1.0}))
         .unwrap();
@@ -258,7 +258,7 @@ fn last_words_fit_on_a_full_disk_thanks_to_the_reserve() {
         assert_eq!(found.torn, None);
         assert_eq!(
             found.lines.len() as u64,
-            journal.len(),
+            journal.count(),
             "the record that did not fit is there too"
         );
         assert_eq!(
@@ -266,7 +266,7 @@ fn last_words_fit_on_a_full_disk_thanks_to_the_reserve() {
             json!({"text": "disk full"})
         );
         assert_eq!(found.head(), journal.head());
-        assert_eq!(journal.fault(), Some(&fault));
+        assert_eq!(journal.fault, Some(fault));
     }
 }
 
@@ -286,7 +286,7 @@ fn a_disk_that_fills_in_a_resumed_run_loses_nothing_of_the_first() {
     {}
     resumed.final_entry(EntryKind::Fault, &json!({})).unwrap();
     let found = recover(&disk.written()).unwrap();
-    assert_eq!(found.lines.len() as u64, resumed.len());
+    assert_eq!(found.lines.len() as u64, resumed.count());
     assert_eq!((found.lines[0].kind, found.torn), (EntryKind::Header, None));
 }
 
@@ -322,7 +322,7 @@ fn an_end_that_found_no_room_leaves_room_for_last_words() {
     });
     let mut journal = on(&disk);
     assert!(journal.end(&json!({})).is_err());
-    assert_eq!(journal.len(), 1);
+    assert_eq!(journal.count(), 1);
     journal.final_entry(EntryKind::Fault, &json!({})).unwrap();
     let found = recover(&disk.written()).unwrap();
     let kinds: Vec<EntryKind> = found.lines.iter().map(|line| line.kind).collect();

@@ -56,7 +56,7 @@ impl Controller {
     fn targets(&self) -> Vec<f64> {
         let shared = self.shared.lock().unwrap();
         assert!(shared.rig.violations().is_empty());
-        shared.rig.targets().to_vec()
+        shared.rig.targets()
     }
 }
 

@@ -18,7 +18,7 @@ fn actuators_of_the_plan_accept_moves_and_opening_sends_nothing() {
         Dialect::Mark10Gauge,
         scpi,
     ] {
-        let moves = dialect.moves();
+        let moves = dialect.abilities().moves;
         let link = DeviceLink {
             port: PortPlan::Tcp {
                 address: "127.0.0.1:1".to_owned(),

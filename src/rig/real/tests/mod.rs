@@ -120,6 +120,13 @@ pub(super) fn stand() -> Stand {
     opened(&plan(), |_| {}).unwrap()
 }
 
+impl RealRig {
+    /// Whether its position and readings can be trusted: no device restarted or lost its reference.
+    pub(crate) const fn trusted(&self) -> bool {
+        self.untrusted.is_none()
+    }
+}
+
 impl Stand {
     /// Moves at 1 mm/s and reads: displacement and force.
     fn go(&mut self, target: f64) -> Result<(f64, f64), RigFault> {

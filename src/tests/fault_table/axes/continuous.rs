@@ -3,7 +3,7 @@
 
 use super::two_axes::{checked, continuous_text, ideal, results, same, upper};
 use super::{logged_run, stopped};
-use crate::emulator::InProcess;
+use crate::emulator::testing::InProcess;
 use crate::plan::{Interval, Plan};
 use crate::record::Outcome;
 use crate::rig::LineStatistics;

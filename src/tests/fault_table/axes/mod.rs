@@ -257,7 +257,7 @@ fn a_controller_of_another_number_of_axes_is_refused_before_anything_is_asked_of
 }
 
 /// Target of every move, by its number.
-fn moves(emulator: &crate::emulator::InProcess) -> Vec<(Option<u64>, Vec<f64>)> {
+fn moves(emulator: &crate::emulator::testing::InProcess) -> Vec<(Option<u64>, Vec<f64>)> {
     emulator
         .lock()
         .rig()

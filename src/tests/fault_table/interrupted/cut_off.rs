@@ -3,7 +3,8 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::emulator::{InProcess, Log};
+use crate::emulator::Log;
+use crate::emulator::testing::InProcess;
 use crate::plan::Plan;
 use crate::record::journal::testing::{Killed, PowerLoss};
 use crate::record::journal::{Durability, EntryKind, Journal};

@@ -8,7 +8,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use super::cut_off::{Resumed, resumed};
-use crate::emulator::{InProcess, Log, SimulatedPort};
+use crate::emulator::Log;
+use crate::emulator::testing::{InProcess, SimulatedPort};
 use crate::plan::{Plan, ProcedureKind, StiffnessRamp};
 use crate::record::journal::testing::PowerLoss;
 use crate::record::journal::{Durability, Journal};

@@ -123,16 +123,17 @@ fn the_zeros_are_read_before_the_first_client_and_after_the_last() {
         (axis.before.force_slope - 0.1).abs() < 1e-9
             && (after.force - axis.before.force - 0.1 * seconds).abs() < 1e-9
     );
-    assert_eq!(drift.beyond(), None);
+    assert_eq!(drift.beyond().next(), None);
     let strict = served(&plan(0.15, ZeroAfter::Start), false).drift.unwrap();
     assert!(
         strict
             .beyond()
+            .next()
             .unwrap()
             .reason
             .starts_with("the zero of the force drifted by"),
         "{:?}",
-        strict.beyond()
+        strict.beyond().next()
     );
 }
 

@@ -64,15 +64,6 @@ impl NativeDevice {
         }
     }
 
-    /// Declares the position of the rig as trusted from now on; `token` states by whom (letters, digits, `-`).
-    ///
-    /// # Errors
-    /// It refuses or does not receive the request.
-    pub fn reference(&mut self, token: &str) -> Result<(), DeviceFault> {
-        self.request(&Request::Reference { token }, Kind::Ack)
-            .map(drop)
-    }
-
     fn hello(&self) -> Result<&Hello, DeviceFault> {
         self.hello
             .as_ref()

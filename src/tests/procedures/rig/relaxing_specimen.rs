@@ -1,14 +1,8 @@
 //! A relaxing specimen with a real rig's driver: native protocol, the simulated rig of the plan, simulated time. The rig waits half a
 //! second in its band after every move; the positions polled during the move show when it moved.
 
-use psd::emulator::{InProcess, Log, Script, of_plan};
-use psd::language::check::{Options, check, no_files};
-use psd::plan::Plan;
-use psd::plan::formula::ResultValue;
-use psd::record::{History, Outcome};
-use psd::rig::real::RealRig;
-use psd::rig::{StopRequest, controllers};
-use psd::run::{Unwatched, run};
+use super::{over_a_line, uncertain};
+use crate::record::{History, Outcome};
 
 const PLAN: &str = r#"
 specimen joint {
@@ -44,44 +38,10 @@ stiffness ramp k {
 /// 0.2 s of move, 0.5 s of dwell: treated as one uniform move they gave 103 of 120 kN/m.
 #[test]
 fn a_real_rig_reports_when_it_moved() {
-    let options = Options {
-        rig: Some("bench".to_owned()),
-        ..Options::default()
-    };
-    let checked = check("joint.psd", PLAN, &no_files, &options);
-    let plan: Plan = checked
-        .plan
-        .unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
-    let stand = of_plan(&plan, &Script::default(), Log::none(), 1, Some(0x7f3a)).expect("a stand");
-    let shared = InProcess::new(stand).at_baud(115_200.0);
-    let link = plan.rig.link.as_real().expect("a real rig");
-    let (stop_request, clock) = (StopRequest::default(), || Box::new(shared.clock()));
-    let actuator = controllers::open(
-        &link.actuator,
-        Box::new(shared.port(0)),
-        clock(),
-        stop_request.clone(),
-        plan.rig.settle.timeout,
-    );
-    let mut rig = RealRig::open(
-        &plan.rig,
-        &plan.limits,
-        actuator,
-        None,
-        clock(),
-        stop_request,
-    )
-    .expect("it answers");
-    let record = run(&plan, &mut rig, &mut Unwatched);
+    let record = over_a_line(PLAN, 115_200.0, 1);
     assert_eq!(record.outcome, Outcome::Completed);
-    let ramp = record.procedure("k").expect("it ran");
-    let Some(ResultValue::Number {
-        value: Some(branch),
-        ..
-    }) = ramp.result("branch_stiffness").map(|result| &result.value)
-    else {
-        panic!("no branch")
-    };
+    let ramp = &record.procedures[0];
+    let (branch, _) = uncertain(ramp, "branch_stiffness");
     assert!((branch / 120e3 - 1.0).abs() < 0.02, "{branch} N/m");
     let History::Ramp(history) = &ramp.history else {
         panic!("no ramp")

@@ -5,7 +5,9 @@ use std::io::{self, ErrorKind};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use crate::emulator::RigEmulator;
+use super::{SharedText, elastic_rig};
+use crate::emulator::firmware::{Native, NativeSettings, sealed};
+use crate::emulator::{Log, RigEmulator, Script};
 use crate::rig::transport::{Clock, Emergency, Port};
 
 /// Interval between two checks of the controllers while time passes \[s\].
@@ -19,15 +21,14 @@ const LINE_BUFFER: usize = 4096;
 
 /// A rig emulator whose ports and clock advance its time.
 #[derive(Clone)]
-pub struct InProcess {
+pub(crate) struct InProcess {
     emulator: Arc<Mutex<RigEmulator>>,
     /// Time of one byte \[s\]. Every byte takes time, so that time passes in a polling loop.
     byte: f64,
 }
 
 impl InProcess {
-    #[must_use]
-    pub fn new(emulator: RigEmulator) -> Self {
+    pub(crate) fn new(emulator: RigEmulator) -> Self {
         Self {
             emulator: Arc::new(Mutex::new(emulator)),
             byte: BITS / BAUD,
@@ -35,8 +36,7 @@ impl InProcess {
     }
 
     /// The same rig emulator with lines of `baud` bits per second.
-    #[must_use]
-    pub fn at_baud(self, baud: f64) -> Self {
+    pub(crate) fn at_baud(self, baud: f64) -> Self {
         Self {
             byte: BITS / baud,
             ..self
@@ -44,8 +44,7 @@ impl InProcess {
     }
 
     /// Opens a line; 0 is the actuator's.
-    #[must_use]
-    pub fn port(&self, line: usize) -> SimulatedPort {
+    pub(crate) fn port(&self, line: usize) -> SimulatedPort {
         self.lock().connect(line);
         SimulatedPort {
             shared: self.clone(),
@@ -55,13 +54,12 @@ impl InProcess {
         }
     }
 
-    #[must_use]
-    pub fn clock(&self) -> SimulatedClock {
+    pub(crate) fn clock(&self) -> SimulatedClock {
         SimulatedClock(self.clone())
     }
 
     /// The rig emulator itself, between two calls of its ports. Do not keep the guard.
-    pub fn lock(&self) -> MutexGuard<'_, RigEmulator> {
+    pub(crate) fn lock(&self) -> MutexGuard<'_, RigEmulator> {
         self.emulator.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -84,7 +82,7 @@ impl InProcess {
 }
 
 /// The host's end of a line.
-pub struct SimulatedPort {
+pub(crate) struct SimulatedPort {
     shared: InProcess,
     line: usize,
     /// Bytes received from the rig emulator and not yet read.
@@ -180,7 +178,7 @@ impl Emergency for SimulatedEmergency {
 }
 
 /// The rig emulator's time.
-pub struct SimulatedClock(InProcess);
+pub(crate) struct SimulatedClock(InProcess);
 
 impl Clock for SimulatedClock {
     fn now(&self) -> f64 {
@@ -198,124 +196,116 @@ impl Clock for SimulatedClock {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::emulator::firmware::{Native, NativeSettings, sealed};
-    use crate::emulator::testing::{SharedText, elastic_rig};
-    use crate::emulator::{Log, Script};
+const SOON: Duration = Duration::from_millis(100);
 
-    const SOON: Duration = Duration::from_millis(100);
+fn native(script: &str, log: Log) -> InProcess {
+    let (rig, script) = (elastic_rig(), Script::parse(script).expect("a script"));
+    let settings = NativeSettings {
+        boot: Some(0x7f3a),
+        ..NativeSettings::default()
+    };
+    let firmware = Native::new(settings, &rig);
+    InProcess::new(RigEmulator::of(
+        rig,
+        log,
+        &script,
+        vec![("actuator".to_owned(), Box::new(firmware))],
+    ))
+}
 
-    fn native(script: &str, log: Log) -> InProcess {
-        let (rig, script) = (elastic_rig(), Script::parse(script).expect("a script"));
-        let settings = NativeSettings {
-            boot: Some(0x7f3a),
-            ..NativeSettings::default()
-        };
-        let firmware = Native::new(settings, &rig);
-        InProcess::new(RigEmulator::of(
-            rig,
-            log,
-            &script,
-            vec![("actuator".to_owned(), Box::new(firmware))],
-        ))
+/// One line from the port.
+fn line(port: &mut SimulatedPort) -> io::Result<String> {
+    let mut text = Vec::new();
+    let mut byte = [0];
+    while !text.ends_with(b"\n") {
+        port.read(&mut byte, SOON)?;
+        text.push(byte[0]);
     }
+    Ok(String::from_utf8(text).expect("text"))
+}
 
-    /// One line from the port.
-    fn line(port: &mut SimulatedPort) -> io::Result<String> {
-        let mut text = Vec::new();
-        let mut byte = [0];
-        while !text.ends_with(b"\n") {
-            port.read(&mut byte, SOON)?;
-            text.push(byte[0]);
-        }
-        Ok(String::from_utf8(text).expect("text"))
+#[test]
+fn a_move_goes_there_and_back_again_and_is_in_the_log() {
+    let text = SharedText::default();
+    let shared = native("", Log::to(Box::new(text.clone())));
+    let (mut port, mut clock) = (shared.port(0), shared.clock());
+    let mut ask = |body: &str| {
+        port.write(&sealed(body), SOON).expect("sent");
+        line(&mut port).expect("answered")
+    };
+    assert!(ask("HELLO 1").starts_with("<ACK 1 7F3A PSD-SIM "));
+    assert!(ask("MOVE 2 17 5.000000 10.000000").starts_with("<ACK 2 7F3A MOVING*"));
+    clock.sleep(0.6);
+    assert!(ask("MEAS 3 1").contains(" 5.000000 500.000 "));
+    assert!((0.6..0.7).contains(&clock.now()), "{}", clock.now());
+    assert!(shared.lock().end());
+    let text = text.text();
+    for event in [
+        " actuator (opened)\n",
+        " bench move 17 to 0.005 m at 0.01 m/s\n",
+        "end: 1 move, all within the limits: ok\n",
+    ] {
+        assert!(text.contains(event), "{event} is not in\n{text}");
     }
+}
 
-    #[test]
-    fn a_move_goes_there_and_back_again_and_is_in_the_log() {
-        let text = SharedText::default();
-        let shared = native("", Log::to(Box::new(text.clone())));
-        let (mut port, mut clock) = (shared.port(0), shared.clock());
-        let mut ask = |body: &str| {
-            port.write(&sealed(body), SOON).expect("sent");
-            line(&mut port).expect("answered")
-        };
-        assert!(ask("HELLO 1").starts_with("<ACK 1 7F3A PSD-SIM "));
-        assert!(ask("MOVE 2 17 5.000000 10.000000").starts_with("<ACK 2 7F3A MOVING*"));
-        clock.sleep(0.6);
-        assert!(ask("MEAS 3 1").contains(" 5.000000 500.000 "));
-        assert!((0.6..0.7).contains(&clock.now()), "{}", clock.now());
-        assert!(shared.lock().end());
-        let text = text.text();
-        for event in [
-            " actuator (opened)\n",
-            " bench move 17 to 0.005 m at 0.01 m/s\n",
-            "end: 1 move, all within the limits: ok\n",
-        ] {
-            assert!(text.contains(event), "{event} is not in\n{text}");
-        }
-    }
+#[test]
+fn waiting_ends_with_its_time_out_and_a_hang_up_is_a_broken_pipe() {
+    let shared = native(
+        "after 1 reply: drop reply\nafter 2 replies: hang up after reply",
+        Log::none(),
+    );
+    let mut port = shared.port(0);
+    port.write(&sealed("HELLO 1"), SOON).expect("sent");
+    line(&mut port).expect("answered");
+    let before = shared.now();
+    port.write(&sealed("STAT 2"), SOON).expect("sent");
+    assert_eq!(
+        line(&mut port).expect_err("no answer").kind(),
+        ErrorKind::TimedOut
+    );
+    assert!((shared.now() - before - 0.1).abs() < 0.01);
+    port.write(&sealed("STAT 2"), SOON).expect("sent");
+    assert!(
+        line(&mut port)
+            .expect("the stored answer")
+            .starts_with("<ACK 2 ")
+    );
+    assert_eq!(
+        line(&mut port).expect_err("hung up").kind(),
+        ErrorKind::BrokenPipe
+    );
+    assert_eq!(
+        port.write(b"!", SOON).expect_err("hung up").kind(),
+        ErrorKind::BrokenPipe
+    );
+    let mut port = shared.port(0);
+    port.write(&sealed("STAT 3"), SOON)
+        .expect("the controller is there as it was");
+    assert!(line(&mut port).expect("answered").starts_with("<ACK 3 "));
+}
 
-    #[test]
-    fn waiting_ends_with_its_time_out_and_a_hang_up_is_a_broken_pipe() {
-        let shared = native(
-            "after 1 reply: drop reply\nafter 2 replies: hang up after reply",
-            Log::none(),
-        );
-        let mut port = shared.port(0);
-        port.write(&sealed("HELLO 1"), SOON).expect("sent");
-        line(&mut port).expect("answered");
-        let before = shared.now();
-        port.write(&sealed("STAT 2"), SOON).expect("sent");
-        assert_eq!(
-            line(&mut port).expect_err("no answer").kind(),
-            ErrorKind::TimedOut
-        );
-        assert!((shared.now() - before - 0.1).abs() < 0.01);
-        port.write(&sealed("STAT 2"), SOON).expect("sent");
-        assert!(
-            line(&mut port)
-                .expect("the stored answer")
-                .starts_with("<ACK 2 ")
-        );
-        assert_eq!(
-            line(&mut port).expect_err("hung up").kind(),
-            ErrorKind::BrokenPipe
-        );
-        assert_eq!(
-            port.write(b"!", SOON).expect_err("hung up").kind(),
-            ErrorKind::BrokenPipe
-        );
-        let mut port = shared.port(0);
-        port.write(&sealed("STAT 3"), SOON)
-            .expect("the controller is there as it was");
-        assert!(line(&mut port).expect("answered").starts_with("<ACK 3 "));
-    }
+#[test]
+fn a_controller_that_does_not_read_fills_the_line() {
+    let shared = native("at 0 s: stop reading", Log::none());
+    let mut port = shared.port(0);
+    shared.clock().sleep(0.01);
+    let accepted = (0..100)
+        .take_while(|_| port.write(&[b'x'; 96], SOON).is_ok())
+        .count();
+    assert_eq!(accepted, LINE_BUFFER / 96);
+    assert!(shared.now() >= 0.1);
+}
 
-    #[test]
-    fn a_controller_that_does_not_read_fills_the_line() {
-        let shared = native("at 0 s: stop reading", Log::none());
-        let mut port = shared.port(0);
-        shared.clock().sleep(0.01);
-        let accepted = (0..100)
-            .take_while(|_| port.write(&[b'x'; 96], SOON).is_ok())
-            .count();
-        assert_eq!(accepted, LINE_BUFFER / 96);
-        assert!(shared.now() >= 0.1);
-    }
-
-    #[test]
-    fn an_emergency_goes_past_whoever_holds_the_port() {
-        let shared = native("", Log::none());
-        let mut port = shared.port(0);
-        let mut emergency = port.emergency().expect("a second hold");
-        port.write(&sealed("HELLO 1"), SOON).expect("sent");
-        port.write(&sealed("MOVE 2 1 9.000000 1.000000"), SOON)
-            .expect("sent");
-        assert!(shared.lock().rig().moving());
-        emergency.send(b"!");
-        assert!(!shared.lock().rig().moving());
-    }
+#[test]
+fn an_emergency_goes_past_whoever_holds_the_port() {
+    let shared = native("", Log::none());
+    let mut port = shared.port(0);
+    let mut emergency = port.emergency().expect("a second hold");
+    port.write(&sealed("HELLO 1"), SOON).expect("sent");
+    port.write(&sealed("MOVE 2 1 9.000000 1.000000"), SOON)
+        .expect("sent");
+    assert!(shared.lock().rig().moving());
+    emergency.send(b"!");
+    assert!(!shared.lock().rig().moving());
 }

@@ -1,7 +1,11 @@
-//! A plain emulated rig for the tests of this folder.
+//! Rig emulators for tests: a plain emulated rig, and the lines and the clock of an emulator in the same thread.
+
+mod in_process;
 
 use std::io::{self, Write};
 use std::sync::{Arc, Mutex};
+
+pub(crate) use in_process::{InProcess, SimulatedPort};
 
 use super::{EmulatedRig, EmulatedRigSettings};
 use crate::plan::{Behaviour, Interval};

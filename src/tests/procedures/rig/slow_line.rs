@@ -1,14 +1,8 @@
 //! A damping sweep with a real rig's driver, over a slow line: native protocol, the simulated rig of the plan, simulated time. c is
 //! within its uncertainty although far fewer readings arrive than requested.
 
-use psd::emulator::{InProcess, Log, Script, of_plan};
-use psd::language::check::{Options, check, no_files};
-use psd::plan::Plan;
-use psd::plan::formula::ResultValue;
-use psd::record::{EventKind, History, Outcome, Record};
-use psd::rig::real::RealRig;
-use psd::rig::{StopRequest, controllers};
-use psd::run::{Unwatched, run};
+use super::{over_a_line, uncertain};
+use crate::record::{EventKind, History, Outcome, Record};
 
 /// c and the Coulomb force of the simulated rig \[N·s/m\] and \[N\].
 const DAMPING: f64 = 600.0;
@@ -50,61 +44,9 @@ damping sweep c {
 }
 "#;
 
-fn plan() -> Plan {
-    let options = Options {
-        rig: Some("bench".to_owned()),
-        ..Options::default()
-    };
-    let checked = check("sweep.psd", PLAN, &no_files, &options);
-    checked
-        .plan
-        .unwrap_or_else(|| panic!("{:?}", checked.diagnostics))
-}
-
-/// The plan, run on its emulator over lines of `baud`.
-fn over_a_line(baud: f64, seed: u64) -> Record {
-    let plan = plan();
-    let stand =
-        of_plan(&plan, &Script::default(), Log::none(), seed, Some(0x7f3a)).expect("a stand");
-    let shared = InProcess::new(stand).at_baud(baud);
-    let link = plan.rig.link.as_real().expect("a real rig");
-    let (stop_request, clock) = (StopRequest::default(), || Box::new(shared.clock()));
-    let actuator = controllers::open(
-        &link.actuator,
-        Box::new(shared.port(0)),
-        clock(),
-        stop_request.clone(),
-        plan.rig.settle.timeout,
-    );
-    let mut rig = RealRig::open(
-        &plan.rig,
-        &plan.limits,
-        actuator,
-        None,
-        clock(),
-        stop_request,
-    )
-    .expect("it answers");
-    run(&plan, &mut rig, &mut Unwatched)
-}
-
-fn result(record: &Record, name: &str) -> (f64, f64) {
-    match record
-        .procedure("c")
-        .and_then(|sweep| sweep.result(name))
-        .map(|result| &result.value)
-    {
-        Some(ResultValue::Number {
-            value: Some(value),
-            uncertainty: Some(uncertainty),
-        }) => (*value, *uncertainty),
-        other => panic!("{name} is {other:?} in {:?}", record.events),
-    }
-}
-
 /// Readings of each pass of the sweep, and the least time between two of them \[s\].
 fn readings(record: &Record) -> (Vec<usize>, f64) {
-    let History::Sweep(sweep) = &record.procedure("c").expect("a sweep").history else {
+    let History::Sweep(sweep) = &record.procedures[1].history else {
         panic!("a sweep")
     };
     let strokes = sweep
@@ -128,7 +70,7 @@ fn damping_is_recovered_at_one_to_seven_milliseconds_a_reading() {
         (160_000.0, 3),
         (115_200.0, 4),
     ] {
-        let record = over_a_line(baud, seed);
+        let record = over_a_line(PLAN, baud, seed);
         assert_eq!(record.outcome, Outcome::Completed, "{:?}", record.events);
         let (strokes, least) = readings(&record);
         assert!(least > 0.0005 && least < 0.008, "{least} s a reading");
@@ -141,7 +83,7 @@ fn damping_is_recovered_at_one_to_seven_milliseconds_a_reading() {
             "50 ms hold fewer readings than were asked for: {strokes:?}"
         );
         for (name, truth) in [("damping", DAMPING), ("coulomb_force", COULOMB)] {
-            let (found, error) = result(&record, name);
+            let (found, error) = uncertain(&record.procedures[1], name);
             assert!(
                 (found - truth).abs() <= 3.0 * error,
                 "{name}: {found} ± {error}, {truth} at {baud} baud"
@@ -162,12 +104,12 @@ fn damping_is_recovered_at_one_to_seven_milliseconds_a_reading() {
 #[test]
 fn a_line_too_slow_for_the_fast_strokes_is_reported() {
     // At 38400 baud a reading takes some 20 ms: the pass of 50 ms has one or two on its steady part.
-    let record = over_a_line(38_400.0, 1);
+    let record = over_a_line(PLAN, 38_400.0, 1);
     assert_eq!(record.outcome, Outcome::Completed, "{:?}", record.events);
     let is_remarked = record.events.iter().any(|event| {
         event.kind == EventKind::Remark && event.text.contains("communication too slow")
     });
     assert!(is_remarked, "{:?}", record.events);
-    let (found, error) = result(&record, "damping");
+    let (found, error) = uncertain(&record.procedures[1], "damping");
     assert!((found - DAMPING).abs() <= 3.0 * error, "{found} ± {error}");
 }
