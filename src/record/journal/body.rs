@@ -1,5 +1,5 @@
-//! The JSON of an entry. In: any value that serde can walk. Out: one object of printable ASCII, appended to a buffer. It
-//! knows no line.
+//! The JSON of an entry. In: any value that serde can walk. Out: one object of printable ASCII, appended to a buffer, or compared with that
+//! of a line. It knows no other part of a line.
 
 use std::io::{self, Write};
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 use serde_json::Value;
 use serde_json::ser::{Formatter, Serializer};
 
-use super::{Refusal, finite};
+use super::{Line, Refusal, finite};
 
 /// Appends the body as JSON.
 ///
@@ -40,6 +40,12 @@ pub fn write_with(
         .iter()
         .map(|(name, value)| ((*name).to_owned(), value.clone()));
     write(out, &own.chain(given).collect::<serde_json::Map<_, _>>())
+}
+
+/// Whether the body of a line has the very bytes that are written for `body`.
+pub fn is_written_as(line: &Line, body: &impl Serialize) -> bool {
+    let mut bytes = Vec::new();
+    write(&mut bytes, body).is_ok() && line.has_json(&bytes)
 }
 
 /// JSON without spaces, in printable ASCII.

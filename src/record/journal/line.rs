@@ -3,7 +3,6 @@
 
 use std::ops::Range;
 
-use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
@@ -82,11 +81,9 @@ impl Line {
         read.unwrap_or_else(|error| Err(serde_json::Error::io(error)))
     }
 
-    /// Whether its body has the very bytes that are written for `body`.
-    pub fn is_written_as(&self, body: &impl Serialize) -> bool {
-        let mut bytes = Vec::with_capacity(self.length as usize);
-        super::body::write(&mut bytes, body).is_ok()
-            && matches!(self.text.read(self.place(), |json| json == bytes), Ok(true))
+    /// Whether its body has these very bytes.
+    pub(super) fn has_json(&self, json: &[u8]) -> bool {
+        matches!(self.text.read(self.place(), |own| own == json), Ok(true))
     }
 
     /// Where its body is in the text.

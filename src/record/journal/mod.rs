@@ -20,6 +20,7 @@ mod tests;
 mod text;
 mod writer;
 
+pub use body::is_written_as;
 pub use damage::{Damage, Wrong};
 pub use fault::{Doing, JournalFault, Refusal};
 pub use file::{FileFault, FileStorage, MOST_BYTES, is_part_of_a_reserve};

@@ -12,7 +12,7 @@ use super::entry::{
 use super::logged_run::{LoggedRun, body};
 use crate::plan::{Datum, Plan};
 use crate::record::Event;
-use crate::record::journal::{EntryKind, Line, Recovered};
+use crate::record::journal::{EntryKind, Line, Recovered, is_written_as};
 use crate::rig::LineStatistics;
 
 /// In a resumed run the time is a sum of two clocks.
@@ -133,7 +133,7 @@ fn written<T: DeserializeOwned + Serialize>(
 ) -> Result<(), Contradiction> {
     let read: T = body(line).map_err(|fault| at(line, fault.to_string()))?;
     // This is true of nearly all, and found much faster than the fields of both.
-    if line.is_written_as(&read) {
+    if is_written_as(line, &read) {
         return Ok(());
     }
     let again = serde_json::to_value(&read).unwrap_or_default();
