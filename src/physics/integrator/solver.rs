@@ -324,6 +324,7 @@ impl<V: HasTangents> Solver<V> {
         std::mem::swap(&mut state.force_at_computed, &mut next.force);
         std::mem::swap(&mut state.load, load_end);
         state.step += 1;
+        // A signed number is converted in one instruction.
         #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]
         let time = state.step.cast_signed() as f64 * time_step;
         state.time = time;
