@@ -1,7 +1,7 @@
-//! The identifier of the build: a digest of all sources of the program and of the tools that built it. With it a log
-//! identifies the program that wrote it, and no other program resumes its run. In: sources, grammar, manifests, the compiler. Out:
-//! `PSD_BUILD` (SHA-256) and `PSD_TOOLCHAIN`, which depend on neither a path of this machine nor a date. The two lines of
-//! `docs/record.md` reproduce it.
+//! The identifier of the build, and the addresses that the program is linked to. The identifier is a digest of all sources of the
+//! program and of the tools that built it. With it a log identifies the program that wrote it, and no other program resumes its run. In:
+//! sources, grammar, manifests, the compiler. Out: `PSD_BUILD` (SHA-256) and `PSD_TOOLCHAIN`, which depend on neither a path of this
+//! machine nor a date. The two lines of `docs/record.md` reproduce it.
 //!
 //! Files that are not part of the program do not count: `tests.rs`, `testing.rs`, `…_tests.rs`, and those in a folder `tests`,
 //! `testing`, `examples` or `benches`. After a change of a test only the tests are built.
