@@ -95,7 +95,7 @@ fn the_summary_is_the_result_where_json_is_asked() {
         .with(0);
     assert_eq!(
         (&ended.json()["schema"], &ended.json()["verdict"]),
-        (&"psd.summary/1".into(), &"pass".into())
+        (&"psd.summary/2".into(), &"pass".into())
     );
     assert_eq!(ended.json()["date"], "2026-05-31");
     assert_eq!(workspace.read("here/summary.json"), ended.stdout);

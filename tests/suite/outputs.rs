@@ -211,7 +211,7 @@ fn the_committed_schema_is_the_generated_one_and_holds_for_a_summary() {
 #[test]
 fn the_summary_has_every_result_of_the_language() {
     let summary: serde_json::Value = serde_json::from_str(text(made(), "summary.json")).unwrap();
-    assert_eq!(summary["schema"], "psd.summary/1");
+    assert_eq!(summary["schema"], "psd.summary/2");
     assert_eq!(summary["verdict"], "pass");
     assert_eq!(summary["rig"]["simulated"], true);
     let hit = &summary["procedures"]["hit"];
