@@ -66,7 +66,7 @@ pub(crate) fn report(
     body.push(storey_energies(procedure));
     body.extend(tracking::table(procedure));
     energy_balance(contact_work(run, index), history, body);
-    contact_log::table(history, body);
+    contact_log::table(history, procedure.number(schema::CONTACTS.name), body);
 }
 
 /// The struck storey, and the integration of the frame.
