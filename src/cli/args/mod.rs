@@ -14,7 +14,7 @@ pub struct PlanSettings {
     /// The rig to use; a real rig moves only when named
     #[arg(long, value_name = "NAME")]
     pub rig: Option<String>,
-    /// Set a `param`: `--set impact_speed="1.5 m/s"`
+    /// Set a `param` or a number of a block: `--set speed="1 m/s"`
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub set: Vec<(String, String)>,
     /// Date on the report [default: the day of the run]

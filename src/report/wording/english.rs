@@ -52,7 +52,7 @@ wording! {
         ZERO_DRIFT = "The zero drift of the rig exceeds its limit. No statement is made on results that depend on it.";
         ABORTED = "The run was stopped before its end. The report covers the run until then.";
         RIG_FAILED = "The rig failed. The report covers the run until then.";
-        SIMULATED_RIG = "Nothing moved and no physical specimen was tested. The results are those of a model.";
+        SIMULATED_RIG = "Nothing moved and no physical specimen was tested. The results describe a model.";
         EMULATED_RIG = "The controller on the line is an emulator. Nothing moved and no physical specimen was tested.";
         CHECK_RUN = "Only the pre-test check and the leading stiffness ramps ran on the rig. This is not the test of \
             the plan, and no requirement is assessed.";
@@ -100,7 +100,7 @@ wording! {
     mod amendment {
         TITLE = "Amendment";
         SAME_RECORD = "The run log and every measured and computed number are unchanged. The report named above is \
-            kept, but is no longer valid.";
+            kept, but no longer valid.";
         NOTHING = "nothing";
         NOTHING_ELSE = "nothing else";
         /// `date` is empty, or begins with a space.

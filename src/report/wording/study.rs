@@ -43,7 +43,7 @@ phrases! {
         whole interval is on one side of the limit, otherwise undecided.";
     BY_LOOKS = "The study chose its own end. Its intervals are those of its last look, which are wider than those of a fixed number \
         of runs: so they hold with this confidence.";
-    NOT_EXACT = "The runs are not independent of each other: the interval is that of as many independent runs.";
+    NOT_EXACT = "The runs are not independent of each other: the interval is computed as if they were.";
 
     // Requirements of the plan.
     REQUIREMENTS = "Requirements of the plan, run by run";
@@ -58,7 +58,7 @@ phrases! {
     // Results.
     RESULTS = "Results";
     RESULT_COLUMNS = ["Result", "Mean", "Standard deviation", "5 %", "50 %", "95 %"];
-    fn kept(runs) = "Quantiles, histograms and cumulative curves are those of the first {runs} runs.";
+    fn kept(runs) = "Quantiles, histograms and cumulative curves use the first {runs} runs.";
     fn by_ranks(confidence) = "In brackets: interval with a confidence of {confidence}; of a quantile by ranks, which holds for any \
         distribution.";
     fn by_replicates(confidence) = "In brackets: interval with a confidence of {confidence}, from the scatter of the replicates.";
@@ -101,8 +101,8 @@ phrases! {
         The rest is that of the other inputs.";
     MODELLING_ALONE = "The dispersion is that of the varied inputs (modelling). It has no record-to-record part: the ground motion \
         does not vary.";
-    RECORDS_ALONE = "The dispersion is record-to-record alone: nothing else varies. Curve and band are those of these records.";
-    OF_THESE_RECORDS = "Curve and band are those of these records, each as probable as the others.";
+    RECORDS_ALONE = "The dispersion is record-to-record alone: nothing else varies. Curve and band hold for these records.";
+    OF_THESE_RECORDS = "Curve and band hold for these records, with equal probabilities.";
     STEPPED = "stepped";
 
     // Levels of a subset simulation.
