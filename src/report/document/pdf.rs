@@ -1,5 +1,5 @@
 //! A report as PDF. In: a [`Document`]. Out: bytes, identical for the same document: date and identifier come from the document, the
-//! fonts from the program. Every text is passed to the template as data, never as markup.
+//! fonts from the program. Every text is passed to the template as data, never as markup. It is set on threads of its own.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
@@ -16,6 +16,8 @@ use super::world::Sealed;
 use crate::text::glyphs;
 
 const TEMPLATE: &str = include_str!("report.typ");
+/// Stack size of the threads that set a report: enough for the deepest nesting of the template, also in a build without optimisation.
+const STACK: usize = 32 << 20;
 
 /// The report as a tagged PDF: PDF/UA-1, and PDF/A-3a, which requires a date, if the day of the test is known.
 pub(crate) fn pdf(document: &Document) -> Result<Vec<u8>, String> {
@@ -48,13 +50,36 @@ pub(crate) fn pdf(document: &Document) -> Result<Vec<u8>, String> {
             .map(|photo| (photo.name.clone(), photo.picture.bytes.clone())),
     );
     let world = Sealed::new(TEMPLATE, files)?;
-    let paged = typst::compile::<PagedDocument>(&world)
+    on_own_threads(&|| set(&world, &document.id, day.is_some()))
+}
+
+/// The result of `work`, on a thread pool with [`STACK`]. typst spreads its work over the pool that it finds: the pool of the caller, or the
+/// global one with the stack size of the system. A thread that waits in such a pool begins other work of it on the same stack, such
+/// as the next report, so that no stack size is enough there. The caller's thread only waits.
+fn on_own_threads<T: Send>(work: &(dyn Fn() -> Result<T, String> + Sync)) -> Result<T, String> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .stack_size(STACK)
+        .build()
+        .map_err(|error| format!("no threads to set the report on: {error}"))?;
+    std::thread::scope(|scope| {
+        let waiting = std::thread::Builder::new()
+            .spawn_scoped(scope, || pool.install(work))
+            .map_err(|error| format!("no thread to set the report on: {error}"))?;
+        waiting
+            .join()
+            .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
+}
+
+/// The typeset bytes, by the strictest standard that accepts them; of a dated report or not.
+fn set(world: &Sealed, id: &str, dated: bool) -> Result<Vec<u8>, String> {
+    let paged = typst::compile::<PagedDocument>(world)
         .output
         .map_err(|errors| messages(&errors))?;
     let mut refused = String::new();
-    for standards in standards(day.is_some()) {
+    for standards in standards(dated) {
         let options = PdfOptions {
-            ident: Smart::Custom(document.id.clone()),
+            ident: Smart::Custom(id.to_owned()),
             creator: Smart::Custom(Some("psd".to_owned())),
             standards: PdfStandards::new(standards).map_err(|error| error.message().to_string())?,
             tagged: true,
