@@ -2,6 +2,7 @@
 //! fonts from the program. Every text is passed to the template as data, never as markup. It is set on threads of its own.
 
 use std::borrow::Cow;
+use std::fmt::Write as _;
 
 use serde_json::Value;
 use typst::diag::SourceDiagnostic;
@@ -10,6 +11,7 @@ use typst_layout::PagedDocument;
 use typst_pdf::{PdfOptions, PdfStandard, PdfStandards};
 
 use super::Document;
+use super::fonts::{FIGURE_FAMILIES, PAGE_FAMILIES, PAGE_OVER_FIGURE};
 use super::world::Sealed;
 use crate::text::glyphs;
 
@@ -39,7 +41,7 @@ pub(crate) fn pdf(document: &Document) -> Result<Vec<u8>, String> {
     files.extend(document.figures().map(|figure| {
         (
             format!("figure-{}.svg", figure.number),
-            figure.svg.clone().into_bytes(),
+            in_letters_of_the_page(&figure.svg).into_bytes(),
         )
     }));
     files.extend(
@@ -89,6 +91,21 @@ fn set(world: &Sealed, id: &str, dated: bool) -> Result<Vec<u8>, String> {
         }
     }
     Err(refused)
+}
+
+/// A figure in the typeface of the page, each text in the size at which it is as high as before. A text of the figure has no quotation
+/// mark that is not escaped, so that an attribute is not taken from it.
+fn in_letters_of_the_page(svg: &str) -> String {
+    const SIZE: &str = " font-size=\"";
+    let svg = svg.replacen(FIGURE_FAMILIES, PAGE_FAMILIES, 1);
+    let mut parts = svg.split(SIZE);
+    let mut drawn = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (size, rest) = part.split_once('"').unwrap_or((part, ""));
+        let size = size.parse::<f64>().unwrap_or_default() * PAGE_OVER_FIGURE;
+        let _ = write!(drawn, "{SIZE}{size:.2}\"{rest}");
+    }
+    drawn
 }
 
 /// Standards of the file, the strictest first: archived and accessible. A text of the plan may have a character that the first does
@@ -162,4 +179,21 @@ fn settable(text: &str) -> Cow<'_, str> {
         }
     }
     Cow::Owned(settable)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_figure_has_the_typeface_of_the_page() {
+        let svg = format!(
+            "<svg font-family=\"{FIGURE_FAMILIES}\"><text x=\"1\" font-size=\"10\" fill=\"#000\">font-size=&quot;9&quot; µΔ</text></svg>"
+        );
+        // 10 · 0.729/0.647
+        assert_eq!(
+            in_letters_of_the_page(&svg),
+            "<svg font-family=\"Libertinus Serif, DejaVu Sans\"><text x=\"1\" font-size=\"11.27\" fill=\"#000\">font-size=&quot;9&quot; µΔ</text></svg>"
+        );
+    }
 }
