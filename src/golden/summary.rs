@@ -18,8 +18,20 @@ const NOT_COMPARED: &[&str] = &[
     "record",
 ];
 
-/// A requirement repeats the condition that decides it. Margin and uncertainty follow from compared values.
-const FOLLOWS: &[&str] = &["value", "limit", "margin", "unit", "u", "condition"];
+/// A requirement repeats the condition that decides it. Margin, difference and uncertainty follow from compared values.
+const FOLLOWS: &[&str] = &[
+    "value",
+    "limit",
+    "margin",
+    "unit",
+    "u",
+    "condition",
+    "difference",
+    "relative_difference",
+];
+
+/// The lists of statements about the run; each entry has a name.
+const STATED: [&str; 2] = ["requirements", "reproductions"];
 
 pub(super) fn compare(
     was: Option<&str>,
@@ -70,7 +82,7 @@ impl Walk<'_> {
         was: &Map<String, Value>,
         is: &Map<String, Value>,
     ) {
-        let requirement = path.len() == 2 && path[0] == "requirements";
+        let requirement = path.len() == 2 && STATED.contains(&path[0].as_str());
         let measure = measure(was).filter(|_| was.get("unit") == is.get("unit") && !requirement);
         for (key, old) in was
             .iter()
@@ -238,6 +250,11 @@ fn named(path: &[String]) -> (Part, String) {
         ["requirements", name, rest @ ..] => (
             Part::Requirement,
             format!("require \"{name}\": {}", rest.join(".")),
+        ),
+        ["reproductions", name] => (Part::Requirement, format!("reproduces {name}")),
+        ["reproductions", name, rest @ ..] => (
+            Part::Requirement,
+            format!("reproduces {name}: {}", rest.join(".")),
         ),
         ["procedures", name, "results", result, "value", index @ ..] => {
             let entries = index

@@ -115,7 +115,8 @@ wording! {
     mod requirements {
         TITLE = "Statement of conformity";
         COLUMNS = ["Requirement", "Value ± U", "Limit", "P", "Statement"];
-        SIMPLE_RULE = "Decision rule: simple acceptance (ILAC-G8:09/2019, guard band w = 0).";
+        SIMPLE_RULE = "Decision rule: simple acceptance (ILAC-G8:09/2019, guard band w = 0). Inconclusive: a value inside \
+            its tolerance with P < 50\u{a0}%, and a value whose U is withheld.";
         EXPANDED = "± is the expanded uncertainty U = 2u, about 95\u{a0}% coverage.";
         PROBABILITY = "P is the probability that the item conforms (JCGM 106): a pass is wrong with probability 1 − P, \
             a fail with probability P. U and P cover the declared uncertainty contributions only.";

@@ -31,6 +31,7 @@ macro_rules! wording {
 }
 
 mod english;
+pub(crate) mod reproductions;
 pub(crate) mod specimen;
 pub(crate) mod study;
 
