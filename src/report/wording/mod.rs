@@ -32,6 +32,7 @@ macro_rules! wording {
 
 mod english;
 pub(crate) mod reproductions;
+pub(crate) mod requirements;
 pub(crate) mod specimen;
 pub(crate) mod study;
 
