@@ -37,6 +37,7 @@ pub(crate) fn empty_plan() -> Plan {
         limits: Limits::NONE,
         procedures: Vec::new(),
         requirements: Vec::new(),
+        reproductions: Vec::new(),
         decision_rule: DecisionRule::Simple,
         report: Report {
             title: None,

@@ -4,6 +4,7 @@
 
 mod condition;
 mod partial;
+mod reproduction;
 mod undecided;
 mod unfinished_peaks;
 
@@ -13,6 +14,7 @@ use crate::record::{ImpactHistory, Outcome, Record};
 use crate::units::Dimension;
 pub(crate) use condition::assess_condition;
 pub(crate) use partial::Declared;
+pub use reproduction::ReproductionOutcome;
 use undecided::{beyond, longer_than_critical, unless_undecided};
 
 /// Completed < Pass < Inconclusive < Fail < Aborted < Error; a parent takes its worst child.
@@ -53,6 +55,8 @@ pub struct Assessment {
     /// The rule that decided every condition.
     pub rule: DecisionRule,
     pub requirements: Vec<RequirementOutcome>,
+    /// Comparisons with published numbers. They do not change the verdict.
+    pub reproductions: Vec<ReproductionOutcome>,
 }
 
 /// One requirement: the worst of its conditions.
@@ -114,12 +118,15 @@ pub enum Bound {
 #[must_use]
 pub fn assess(plan: &Plan, record: &Record) -> Assessment {
     let rule = plan.decision_rule;
+    let results = Declared::of(plan, record);
     let requirements: Vec<_> = plan
         .requirements
         .iter()
-        .map(|requirement| {
-            assess_requirement(requirement, rule, record, &Declared::of(plan, record))
-        })
+        .map(|requirement| assess_requirement(requirement, rule, record, &results))
+        .collect();
+    let reproductions = plan.reproductions.iter();
+    let reproductions = reproductions
+        .map(|reproduction| reproduction::compare(reproduction, record, &results))
         .collect();
     let run = match record.outcome {
         Outcome::Completed if beyond(record, |_| true).is_some() => Verdict::Inconclusive,
@@ -136,6 +143,7 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
         verdict,
         rule,
         requirements,
+        reproductions,
     }
 }
 

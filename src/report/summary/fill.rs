@@ -3,8 +3,8 @@
 use super::{
     BudgetSummary, ChangeSummary, ConditionSummary, ContributionSummary, EventSummary,
     IssueSummary, IssuesSummary, Ordered, OutcomeSummary, ParameterSummary, PlanSummary,
-    ProcedureSummary, Quantity, RecordSummary, RequirementSummary, RigSummary, SCHEMA, Summary,
-    Uncertainty, Value, ZeroDriftSummary, finite,
+    ProcedureSummary, Quantity, RecordSummary, ReproductionSummary, RequirementSummary, RigSummary,
+    SCHEMA, Summary, Uncertainty, Value, ZeroDriftSummary, finite,
 };
 use crate::plan::formula::{Estimate, Part, ProcedureId, ResultReference, ResultValue};
 use crate::record::{NamedResult, Outcome, ProcedureRecord};
@@ -17,7 +17,7 @@ use crate::uncertainty::{
 };
 use crate::units::Dimension;
 use crate::units::display::si_unit;
-use crate::verdict::{Bound, ConditionOutcome, RequirementOutcome};
+use crate::verdict::{Bound, ConditionOutcome, ReproductionOutcome, RequirementOutcome};
 
 impl Summary {
     /// The summary of a run.
@@ -80,6 +80,7 @@ impl Summary {
                     .collect(),
             ),
             requirements: assessment.requirements.iter().map(requirement).collect(),
+            reproductions: assessment.reproductions.iter().map(reproduction).collect(),
             events: record
                 .events
                 .iter()
@@ -315,6 +316,28 @@ fn requirement(requirement: &RequirementOutcome) -> RequirementSummary {
         guard_band: governing.as_ref().and_then(|c| c.guard_band),
         condition: governing.map(|c| c.condition),
         conditions,
+    }
+}
+
+fn reproduction(outcome: &ReproductionOutcome) -> ReproductionSummary {
+    let ReproductionOutcome {
+        name,
+        source,
+        compared,
+    } = outcome;
+    let (published, tolerance) = outcome.published().unzip();
+    ReproductionSummary {
+        name: name.clone(),
+        source: source.clone(),
+        statement: outcome.statement(),
+        value: compared.value.and_then(finite),
+        published: published.and_then(finite),
+        tolerance: tolerance.and_then(finite),
+        difference: outcome.difference().and_then(finite),
+        relative_difference: outcome.relative_difference(),
+        unit: si_unit(compared.dimension),
+        u: compared.uncertainty.and_then(finite),
+        reason: compared.reason.clone(),
     }
 }
 

@@ -59,6 +59,9 @@ pub struct Summary {
     pub procedures: Ordered<ProcedureSummary>,
     /// In the plan's order.
     pub requirements: Vec<RequirementSummary>,
+    /// Comparisons with published numbers, in the plan's order; absent without one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub reproductions: Vec<ReproductionSummary>,
     pub events: Vec<EventSummary>,
     /// By name, in the plan's order.
     pub parameters: Ordered<ParameterSummary>,
@@ -261,9 +264,32 @@ pub struct ConditionSummary {
     pub k: Option<f64>,
     /// Guard band w = U = k·u of the margin under the guarded rule; null under the simple rule or without uncertainty.
     pub guard_band: Option<f64>,
-    /// Probability that the item conforms; null without uncertainty.
+    /// Probability that the item conforms; null without U.
     pub conforms: Option<f64>,
     /// Reason if inconclusive.
+    pub reason: Option<String>,
+}
+
+/// A number of the run beside a published one. It does not change the verdict.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ReproductionSummary {
+    pub name: String,
+    /// The publication.
+    pub source: String,
+    #[schemars(extend("enum" = ["reproduces", "does not reproduce"]))]
+    pub statement: &'static str,
+    pub value: Option<f64>,
+    pub published: Option<f64>,
+    /// Largest difference.
+    pub tolerance: Option<f64>,
+    /// Value minus published number.
+    pub difference: Option<f64>,
+    /// The difference over the size of the published number; null if that is 0.
+    pub relative_difference: Option<f64>,
+    pub unit: String,
+    /// Standard uncertainty of the value.
+    pub u: Option<f64>,
+    /// Reason why the values cannot be compared.
     pub reason: Option<String>,
 }
 

@@ -524,6 +524,7 @@ fn plan() -> Plan {
                 kind,
             })
             .collect(),
+        reproductions: Vec::new(),
         decision_rule: DecisionRule::Simple,
         requirements: vec![
             Requirement {
@@ -606,6 +607,7 @@ fn assessment(largest: f64, error: f64) -> Assessment {
     Assessment {
         verdict: Verdict::Pass,
         rule: DecisionRule::Simple,
+        reproductions: Vec::new(),
         requirements: vec![
             outcome(
                 "stays in travel",
