@@ -217,6 +217,14 @@ impl NamedResult {
 }
 
 impl NamedResult {
+    /// TEMPORARY-UNTIL-MERGE
+    pub fn withhold(&mut self, _reason: &str) {
+        self.contributions.clear();
+        if let ResultValue::Number { uncertainty, .. } = &mut self.value {
+            *uncertainty = None;
+        }
+    }
+
     /// Why a result has no expanded uncertainty, for a procedure of this kind. None if it has one, is exact or does not exist.
     #[must_use]
     pub fn no_uncertainty(&self, kind: &str) -> Option<String> {

@@ -8,8 +8,8 @@ use crate::schema::is_in_percent;
 use crate::uncertainty::{FEW, MeasurementUncertainty, measurement_uncertainty};
 use crate::units::Dimension;
 
-/// Value and bound are evaluated separately, so that a report shows the one that exists.
-pub(crate) fn assess_condition(
+/// In the steps of these results. Value and bound are evaluated separately, so that a report shows the one that exists.
+pub(super) fn decide(
     condition: &Condition,
     rule: DecisionRule,
     record: &dyn Results,
@@ -66,6 +66,7 @@ pub(crate) fn assess_condition(
         conforms,
         wider_than_tolerance,
         reason: missing.or_else(too_near),
+        in_finer_steps: None,
     }
 }
 
@@ -87,6 +88,17 @@ fn no_uncertainty(condition: &Condition, record: &dyn Results) -> Option<String>
         .into_iter()
         .filter(|reference| reference.part == Part::Value)
         .find_map(|read| record.no_uncertainty(read))
+}
+
+/// Whether it is `==` or `!=`.
+pub(super) const fn is_equality(condition: &Condition) -> bool {
+    matches!(
+        condition.test,
+        Test::Compare {
+            comparison: Comparison::Equal | Comparison::NotEqual,
+            ..
+        }
+    )
 }
 
 /// Why a value near its limit is not conclusive, and why the band is wide if it comes from few readings.

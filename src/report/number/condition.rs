@@ -190,6 +190,7 @@ mod tests {
             conforms: None,
             wider_than_tolerance: false,
             reason: None,
+            in_finer_steps: None,
         };
         let below = |limit| Bound::Compare {
             comparison: Comparison::Less,

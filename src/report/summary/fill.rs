@@ -3,8 +3,8 @@
 use super::{
     BudgetSummary, ChangeSummary, ConditionSummary, ContributionSummary, EventSummary,
     IssueSummary, IssuesSummary, Ordered, OutcomeSummary, ParameterSummary, PlanSummary,
-    ProcedureSummary, Quantity, RecordSummary, RequirementSummary, RigSummary, SCHEMA, Summary,
-    Uncertainty, Value, ZeroDriftSummary, finite,
+    ProcedureSummary, Quantity, RecordSummary, RequirementSummary, RigSummary, SCHEMA, StepSummary,
+    Summary, Uncertainty, Value, ZeroDriftSummary, finite,
 };
 use crate::plan::formula::{Estimate, Part, ProcedureId, ResultReference, ResultValue};
 use crate::record::{NamedResult, Outcome, ProcedureRecord};
@@ -13,7 +13,7 @@ use crate::report::run::Run;
 use crate::report::status::{Change, Issues, ReportStatus, deviations, report_status};
 use crate::schema;
 use crate::uncertainty::{
-    MeasurementUncertainty, measurement_uncertainties, measurement_uncertainty,
+    MeasurementUncertainty, StepInterval, measurement_uncertainties, measurement_uncertainty,
 };
 use crate::units::Dimension;
 use crate::units::display::si_unit;
@@ -191,6 +191,18 @@ fn budget(budget: &Budget<'_>) -> BudgetSummary {
         u: finite(budget.uncertainty),
         degrees_of_freedom: coverage_factor::degrees(budget.known),
         contributions: budget.lines.iter().map(contribution).collect(),
+        time_step: budget.time_step.map(time_step),
+    }
+}
+
+fn time_step(step: StepInterval) -> StepSummary {
+    let [lowest, highest] = step.ends;
+    StepSummary {
+        half: finite(step.half),
+        quarter: finite(step.quarter),
+        lowest: finite(lowest),
+        highest: finite(highest),
+        smooth: step.smooth,
     }
 }
 
@@ -335,6 +347,9 @@ fn condition(outcome: &ConditionOutcome) -> ConditionSummary {
             .map(MeasurementUncertainty::coverage),
         guard_band: outcome.guard_band.and_then(finite),
         conforms: outcome.conforms.and_then(finite),
+        in_finer_steps: outcome
+            .in_finer_steps
+            .filter(|ends| ends.iter().all(|end| end.is_finite())),
         reason: outcome.reason.clone(),
     }
 }
