@@ -4,6 +4,8 @@ use super::join;
 use super::uncertain::{decimals_of, joined, parts_in, power_of, tens, with_standard};
 use crate::plan::Comparison;
 #[cfg(test)]
+use crate::plan::formula::UncertaintyStatus;
+#[cfg(test)]
 use crate::units::Dimension;
 use crate::units::display::{is_rounding, minus, significant, trimmed, unit};
 use crate::verdict::{Bound, ConditionOutcome};
@@ -181,6 +183,7 @@ mod tests {
             dimension,
             value: Some(value),
             uncertainty: None,
+            status: UncertaintyStatus::Exact,
             percent: text.ends_with('%'),
             degrees: f64::INFINITY,
             bound: Some(bound),

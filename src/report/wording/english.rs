@@ -119,6 +119,7 @@ wording! {
         EXPANDED = "± is the expanded uncertainty U = 2u, about 95\u{a0}% coverage.";
         PROBABILITY = "P is the probability that the item conforms (JCGM 106): a pass is wrong with probability 1 − P, \
             a fail with probability P. U and P cover the declared uncertainty contributions only.";
+        NO_U = "no U";
         WIDER_THAN_TOLERANCE = "U exceeds the tolerance";
         fn outside(distance) = "outside the limit by {distance}";
         fn inside(distance) = "inside the limit by {distance}";

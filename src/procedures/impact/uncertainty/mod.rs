@@ -18,7 +18,7 @@ use crate::plan::{Impact, Mode, Plan, PointTarget, Striker};
 use crate::procedures::common::perturbed_inputs::{
     LEADS_ELSEWHERE, UncertainRun, uncertain_inputs,
 };
-use crate::procedures::common::results::{Evaluated, flat, give, index_of, layout_of, values};
+use crate::procedures::common::results::{Evaluated, flat, give, layout_of, values};
 use crate::record::{ImpactStep, NamedResult};
 use crate::run::stop::Stop;
 use crate::schema::ResultKind;
