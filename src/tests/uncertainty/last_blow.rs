@@ -101,7 +101,10 @@ fn off(record: &Record, name: &str, exact: f64) -> Option<(f64, f64)> {
 fn the_converged_value_lies_in_the_interval_or_none_is_stated() {
     let exact = converged();
     // As in `docs/method/verification.md`.
-    assert!((exact.max_displacement - 7.740e-3).abs() < 5e-7, "{exact:?}");
+    assert!(
+        (exact.max_displacement - 7.740e-3).abs() < 5e-7,
+        "{exact:?}"
+    );
     assert!((exact.stop_time - 12.5e-3).abs() < 5e-5, "{exact:?}");
     let (mut stated, mut fine) = (0, 0);
     for time_step in STEPS {
