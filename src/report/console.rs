@@ -85,7 +85,7 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
         }
     }
     if let Some(names) = run.plan.studies.requirement_names() {
-        let _ = writeln!(text, "  by a study: {}", one_line(&names));
+        let _ = writeln!(text, "  decided by `psd study run`: {}", one_line(&names));
     }
     text.push_str(&decision_rule(run));
     for deviation in deviations::of_run(run, true) {

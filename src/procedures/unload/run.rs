@@ -1,6 +1,6 @@
 //! `unload`: moves one degree of freedom, or all floors of a frame together, to zero restoring force. In: the stiffness with which the
 //! forces are expected to fall. Out: the unloading path, and the unloaded position. Each target is before the position of zero force, by
-//! the slopes of the moves before it (`physics/frame/unloading_path.rs`); the guard compares every one with the limits.
+//! the slopes of the moves before it (`physics/structure/unloading/path.rs`); the guard compares every one with the limits.
 
 use super::uncertainty::NOISE;
 use crate::physics::structure::frame_properties::FrameProperties;
