@@ -296,6 +296,9 @@ fn no_more_steps_come_than_were_predicted() {
     ] {
         let mut rising = rising(&[0.1, 0.2, 0.3], 1.0, between);
         rising.impact = Impact {
+            contact: Contact::Restitution {
+                coefficient: Constant(0.5),
+            },
             until: Until::Duration,
             duration: Constant(0.1),
             ..given_impact()
