@@ -4,8 +4,8 @@ use crate::plan::formula::Formula;
 use crate::plan::formula::Formula::Constant;
 use crate::plan::formula::{Part, ProcedureId, ResultReference};
 use crate::plan::{
-    Behaviour, Between, Comparison, Condition, Escalate, Impact, Plan, ProcedureKind, Requirement,
-    Test, Unload, Until,
+    Behaviour, Between, Comparison, Condition, Contact, Escalate, Impact, Plan, ProcedureKind,
+    Requirement, Test, Unload, Until,
 };
 use crate::record::{EscalateHistory, EventKind, History, Outcome, Record};
 use crate::rig::VirtualRig;
