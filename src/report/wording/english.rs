@@ -220,7 +220,9 @@ wording! {
         READINGS = "noise and resolution of the readings";
         READINGS_AND_INPUTS = "noise and resolution of the readings, and the inputs of each floor, mode and axis";
         LOOP_POINTS = "points of the loops";
-        TIME_STEP = "time step: re-integrated at a half and a quarter";
+        WHOLE_STEPS = "duration in whole time steps";
+        TIME_STEP = "time step";
+        fn finer_steps(ends, half, quarter) = "time step, not in U: {ends} in finer steps ({half} at Δt/2, {quarter} at Δt/4)";
         FORCE_CALIBRATION = "force calibration";
         DISPLACEMENT_CALIBRATION = "displacement calibration";
         LOAD_CELL_ZERO = "zero offset of the load cell";
