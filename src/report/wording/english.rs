@@ -65,6 +65,7 @@ wording! {
         FAULT = "stopped by a fault of the rig";
         fn simulation(outcome) = "SIMULATION: {outcome}";
         fn check_run(outcome) = "CHECK RUN: {outcome}";
+        fn not_issuable(outcome) = "NOT ISSUABLE: {outcome}";
         fn requirements_met(total) = "all {total} requirements met";
         fn requirements_not_met(count, total) = "{count} of {total} requirements not met";
         fn requirements_inconclusive(count, total) = "{count} of {total} requirements inconclusive";
@@ -82,9 +83,11 @@ wording! {
         CHECK_RUN = "CHECK RUN";
         NOT_ISSUABLE = "NOT ISSUABLE";
         INCOMPLETE = "INCOMPLETE";
-        PARTICULARS_MISSING = "PARTICULARS MISSING";
-        fn lacks(missing) = "Not issuable as a test report. Missing: {missing}.";
-        fn lacks_particulars(missing) = "ISO/IEC 17025:2017, 7.8.2.1. Missing: {missing}.";
+        DRAFT = "DRAFT";
+        fn lacks(missing) = "Not issuable as a test report. Missing, and not to be added after the test: {missing}.";
+        fn lacks_particulars(missing) = "Not issued: `psd issue` adds the particulars of ISO/IEC 17025:2017, 7.8.2.1. \
+            Missing: {missing}.";
+        RELEASED_MOTION = "a test: the motion was not released";
         OPERATOR = "the operator's name";
         CERTIFICATE = "the reference of the calibration";
         DAY_OF_THE_TEST = "the day of the test";
@@ -94,6 +97,7 @@ wording! {
         fn calibrated_range(channel) = "the calibrated range of the {channel}";
         fn due_date(calibration) = "the due date of the {calibration}";
         fn overdue(calibration, due, day) = "a valid {calibration} (due {due}, test ended {day})";
+        fn overdue_before(calibration, due) = "the {calibration} was due on {due}";
     }
 
     mod amendment {
