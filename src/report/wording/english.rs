@@ -124,6 +124,7 @@ wording! {
         PROBABILITY = "P is the probability that the item conforms (JCGM 106): a pass is wrong with probability 1 − P, \
             a fail with probability P. U and P cover the declared uncertainty contributions only.";
         WIDER_THAN_TOLERANCE = "U exceeds the tolerance";
+        fn impact_passes_while(condition) = "an impact passes while {condition}";
         fn outside(distance) = "outside the limit by {distance}";
         fn inside(distance) = "inside the limit by {distance}";
         fn largest_part(input, percent) = "largest part of U: {input} ({percent:.0}\u{a0}% of u²)";
@@ -226,6 +227,7 @@ wording! {
         UNIT = "Unit";
         U_IN_BRACKETS = " (u in parentheses)";
         fn run_with(kind, inputs) = "Inputs{kind}: {inputs}.";
+        fn next_impact_while(condition) = "next impact while {condition}";
     }
 
     mod budget {
@@ -279,10 +281,10 @@ wording! {
         fn tracking(peak, nrms, energy) = "Tracking: largest error {peak}, NRMS error {nrms}{energy}.";
         PUT_IN = "added to the test";
         REMOVED = "removed from the test";
-        fn energy(direction, percent) = ", tracking-error energy {percent} of the input energy, {direction}";
+        fn energy(direction, percent) = ", largest tracking-error energy {percent} of the input energy, {direction}";
         THE_ACTUATORS = "The actuators";
         COLUMNS = ["Actuator of floor", "Largest error", "NRMS error",
-            "Tracking-error energy / input (− added)", "Tracking indicator at the end"];
+            "Largest tracking-error energy / input (− added)", "Tracking indicator at the end"];
     }
 
     mod photos {
