@@ -34,7 +34,7 @@ pub struct Summary {
     pub run_id: String,
     /// Version of psd that ran the plan.
     pub psd: String,
-    /// From the plan or the command line.
+    /// Day of the run: as stated by the plan or the command line, else that of its start (UTC). Null in accepted results.
     pub date: Option<String>,
     pub plan: PlanSummary,
     pub rig: RigSummary,

@@ -27,7 +27,7 @@ pub struct Trials<'a> {
     pub human: bool,
 }
 
-/// Stack size for the deepest plan and for the typesetting of the report, also in a build without optimisation.
+/// Stack size for the deepest plan, also in a build without optimisation.
 const STACK: usize = 32 << 20;
 
 impl Trials<'_> {
