@@ -174,7 +174,7 @@ pub fn plan(
         let warns = findings == Findings::WarningsToo;
         if warns {
             if let Some(rig) = &rig {
-                rig::real_warnings::warn(checker, rig);
+                rig::real_warnings::warn(checker, rig, options.today.as_deref());
                 rig::zero_drift::warn(checker, rig);
             }
             if let Some(limits) = &limits {

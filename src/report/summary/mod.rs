@@ -49,8 +49,8 @@ pub struct Summary {
     /// Decision rule of all conditions.
     #[schemars(extend("enum" = ["simple", "guarded"]))]
     pub decision_rule: &'static str,
-    /// Status of the report: the most serious reason why it is not a test report.
-    #[schemars(extend("enum" = ["issuable", "check run", "simulation", "incomplete", "not issuable", "particulars missing"]))]
+    /// Status of the report: `issued`, or the most serious reason why it is no issued test report.
+    #[schemars(extend("enum" = ["issued", "draft", "not issuable", "check run", "simulation"]))]
     pub report_status: &'static str,
     /// Missing statements of a report of a real rig: first on the measurement, then particulars.
     pub missing: Vec<String>,
