@@ -145,6 +145,7 @@ pub fn plan(
     {
         declarations::limits::check_start(checker, limits);
         declarations::limits::check_targets(checker, limits);
+        declarations::limits::check_forces(checker, limits, &specimens);
         slices::check_limits(checker, &procedures, limits);
     }
     let declared = Declared {
@@ -173,7 +174,7 @@ pub fn plan(
         let warns = findings == Findings::WarningsToo;
         if warns {
             if let Some(rig) = &rig {
-                rig::real_warnings::warn(checker, rig);
+                rig::real_warnings::warn(checker, rig, &specimens);
                 rig::zero_drift::warn(checker, rig);
             }
             if let Some(limits) = &limits {
@@ -194,6 +195,10 @@ pub fn plan(
             let rule = declarations::plan_block::decision_rule(&particulars);
             let requirements = requirements.as_deref().unwrap_or(&[]);
             warnings::left::warn(checker, &procedures, requirements);
+            if let Some(limits) = &limits {
+                let (limits, positive) = (&limits.limits, slices::stays_positive);
+                warnings::decided::check(checker, &procedures, requirements, limits, positive);
+            }
             warnings::guarded::warn(checker, &procedures, requirements, rule);
             warnings::whole_plan(checker, &procedures, requirements, &grounds, head);
         }

@@ -12,7 +12,6 @@ phrases! {
     fn names_undecided(names) = "Undecided: {names}. ";
     fn incomplete(runs, at_most) = "INCOMPLETE: {runs} of up to {at_most} runs. An incomplete study decides nothing.";
     fn curve(median, dispersion) = "Median θ = {median}, dispersion β = {dispersion}.";
-    NO_CURVE = "No fragility curve fits.";
     NO_STUDIED = "The plan has no requirement on a probability of this study.";
 
     // The first page.
@@ -101,8 +100,7 @@ phrases! {
     SPLIT_COLUMNS = ["Records", "Record-to-record β", "Modelling β", "Between records", "Interval"];
     SPLIT = "Between records: fraction of β² that is record-to-record, with its profile likelihood (random effects of the records). \
         The rest is that of the other inputs.";
-    MODELLING_ALONE = "The dispersion is that of the varied inputs (modelling). It has no record-to-record part: the ground motion \
-        does not vary.";
+    MODELLING_ALONE = "The dispersion is that of the varied inputs (modelling).";
     RECORDS_ALONE = "The dispersion is record-to-record alone: nothing else varies. Curve and band are those of these records.";
     OF_THESE_RECORDS = "Curve and band are those of these records, each as probable as the others.";
     STEPPED = "stepped";
@@ -158,7 +156,8 @@ phrases! {
     fn tornado(name) = "{name}: first-order sensitivities by ranks.";
     fn rank_tornado(name) = "{name}: rank correlations with the inputs.";
     fn scatter(result, input) = "{result} against {input}, one dot a run.";
-    fn fragility(condition, intensity) = "Probability of {condition} by {intensity}. Beyond the stripes the curve is dashed.";
+    fn fragility(condition, intensity) = "Probability of {condition} by {intensity}.";
+    EXTRAPOLATED = " Beyond the stripes the curve is dashed.";
     fn described(caption, x, y) = "{caption} x: {x}; y: {y}.";
 }
 
