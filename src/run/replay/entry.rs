@@ -46,11 +46,12 @@ pub struct Header {
     /// As given by `--date`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub date: Option<String>,
-    /// For a real rig: the operator, the machine, and the start.
+    /// For a real rig: the operator and the machine.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub operator: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub host: Option<String>,
+    /// The start, UTC. None in run logs of simulated rigs by older versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub began: Option<String>,
 }
@@ -347,6 +348,8 @@ pub enum Assurance {
     AcceptedRelaxation,
     /// It was on hold, and the hold may be cleared at its position.
     LetGo,
+    /// It may move faster than before.
+    AcceptedSpeed,
 }
 
 impl Assurance {
@@ -358,6 +361,7 @@ impl Assurance {
             Self::ReReferenced => "it was referenced again",
             Self::AcceptedRelaxation => "the change of the force is accepted",
             Self::LetGo => "its hold was cleared, and it did not move",
+            Self::AcceptedSpeed => "the higher speed is accepted",
         }
     }
 }
@@ -392,7 +396,7 @@ pub enum TargetStatus {
     None,
     /// It was executed; its reading is made late.
     Executed,
-    /// It never arrived: it is sent now.
+    /// It never arrived: it is sent again.
     NotExecuted,
     /// The rig was held during the motion: the same absolute target is sent again.
     #[serde(rename = "held_on_the_way")]
@@ -408,6 +412,14 @@ pub enum TargetStatus {
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         others: Vec<f64>,
     },
+}
+
+impl TargetStatus {
+    /// Whether the target is sent again, as a new INTENT. Its first INTENT then no longer counts.
+    #[must_use]
+    pub const fn sends_again(&self) -> bool {
+        matches!(self, Self::NotExecuted | Self::HeldDuringMotion)
+    }
 }
 
 /// The bytes of a frame as text that any log can hold.
