@@ -180,6 +180,7 @@ codes! {
     W733 RunsWithoutResult Warning;
     W734 BandWithinResolution Warning;
     W735 WindowExcludesStiffness Warning;
+    W736 PartialUnderGuard Warning;
 }
 
 impl std::fmt::Display for Code {

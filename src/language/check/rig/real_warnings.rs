@@ -9,8 +9,13 @@ use crate::plan::{Calibration, DeviceLink, Dialect, PretestCheck, Specimen};
 use crate::schema::rig as schema;
 use crate::text::source::Span;
 
-/// Warnings for the real rig of a run whose results would not be reliable.
-pub fn warn(checker: &mut Checker, rig: &CheckedRig, specimens: &[Option<Specimen>]) {
+/// Warnings for the real rig of a run whose results would not be reliable. Due dates are compared with `today`, if it is known.
+pub fn warn(
+    checker: &mut Checker,
+    rig: &CheckedRig,
+    specimens: &[Option<Specimen>],
+    today: Option<&str>,
+) {
     let (Some(block), Some(link)) = (rig.block, rig.plan.link.as_real()) else {
         return;
     };
@@ -33,6 +38,16 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig, specimens: &[Option<Specime
         checker
             .diagnostics
             .push(message::not_issuable(&rig.plan.name, head, reference, due));
+    }
+    let dues = calibrations
+        .iter()
+        .flat_map(|calibration| [calibration.due.as_ref(), displacement_due(calibration)]);
+    let due = dues.flatten().min();
+    if let Some((due, today)) = due.zip(today).filter(|(due, today)| due.as_str() < *today) {
+        let at = checker.value_or_head(block, schema::CALIBRATION_DUE.name);
+        checker
+            .diagnostics
+            .push(message::calibration_overdue(&rig.plan.name, due, today, at));
     }
     let no_day = |calibration: &Calibration| matches!(calibration.displacement, Some((_, None)));
     let of_rig = checker
@@ -149,6 +164,10 @@ fn excluded(specimens: &[Option<Specimen>], check: &PretestCheck) -> Option<f64>
         .filter(|_| specimen.frame.is_none())?;
     let stiffness = behaviour.initial_stiffness();
     (stiffness.is_finite() && !check.stiffness.contains(stiffness)).then_some(stiffness)
+}
+
+fn displacement_due(calibration: &Calibration) -> Option<&String> {
+    calibration.displacement.as_ref()?.1.as_ref()
 }
 
 /// The span of a separate device of an axis; the span of the list of axes, if that is unclear.

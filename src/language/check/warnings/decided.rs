@@ -265,6 +265,7 @@ fn possible(
 }
 
 /// The values that a result can have.
+#[derive(Clone, Copy)]
 struct Found {
     /// Whatever the limits.
     by_nature: Values,
