@@ -199,5 +199,6 @@ fn an_uncertainty_that_the_noise_of_the_rig_lets_grow_is_predicted_withheld() {
         (verdict.as_str(), run),
         ("inconclusive", Verdict::Inconclusive)
     );
-    assert!(why.contains("grow without bound"), "{why}");
+    // The ideal readings of the prediction are withheld for their contacts already, which the rigid law lets follow the time step.
+    assert!(why.contains("is withheld"), "{why}");
 }
