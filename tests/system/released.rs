@@ -219,7 +219,9 @@ fn a_zero_near_the_limits_of_the_rig_is_refused_before_the_release() {
             "safe_state = hold\n  datum      = here",
         )
     };
-    let stage = Stage::of(here, "stands at 9.5 mm");
+    let stage = Stage::of(str::to_owned, "stands at 9.5 mm");
+    let plan = stage.path("plan.psd");
+    fs::write(&plan, here(&fs::read_to_string(&plan).unwrap())).unwrap();
     let refused = wait(&mut stage.run_with(&["--yes"]));
     assert!(
         refused.code == Some(3)

@@ -170,25 +170,6 @@ impl FileStorage {
         })
     }
 
-    /// Whether the path still leads to this file, and the file has exactly the bytes that were appended. Only `psd verify` finds bytes that
-    /// were replaced.
-    fn is_unchanged(&self) -> io::Result<()> {
-        let open = self.file.metadata()?;
-        let there = self.path.symlink_metadata();
-        let same = there.is_ok_and(|there| (there.dev(), there.ino()) == (open.dev(), open.ino()));
-        let changed = |reason| Err(io::Error::new(io::ErrorKind::InvalidData, reason));
-        // A file without a name would be lost when it is closed.
-        if open.nlink() == 0 {
-            changed("its file was deleted")
-        } else if !same {
-            changed("its file was moved or replaced")
-        } else if open.len() != self.length {
-            changed("another program changed the length of its file")
-        } else {
-            Ok(())
-        }
-    }
-
     /// Puts the reserve beside the file and makes file, reserve and their names durable.
     fn settle(&self) -> Result<(), FileFault> {
         let settled = ballast::lay(&self.path)
@@ -206,11 +187,29 @@ impl Storage for FileStorage {
     }
 
     fn sync(&mut self) -> io::Result<()> {
-        self.file.sync_data()?;
-        if on(Guarding::SameFile) {
-            self.is_unchanged()?;
+        self.file.sync_data()
+    }
+
+    /// Whether the path still leads to this file, and the file has exactly the bytes that were appended. Only `psd verify` finds bytes that
+    /// were replaced.
+    fn is_unchanged(&self) -> io::Result<()> {
+        if !on(Guarding::SameFile) {
+            return Ok(());
         }
-        Ok(())
+        let open = self.file.metadata()?;
+        let there = self.path.symlink_metadata();
+        let same = there.is_ok_and(|there| (there.dev(), there.ino()) == (open.dev(), open.ino()));
+        let changed = |reason| Err(io::Error::new(io::ErrorKind::InvalidData, reason));
+        // A file without a name would be lost when it is closed.
+        if open.nlink() == 0 {
+            changed("its file was deleted")
+        } else if !same {
+            changed("its file was moved or replaced")
+        } else if open.len() != self.length {
+            changed("another program changed the length of its file")
+        } else {
+            Ok(())
+        }
     }
 
     fn cut(&mut self, length: u64) -> io::Result<()> {

@@ -316,7 +316,7 @@ fn a_run_log_that_another_program_changed_is_not_continued() {
         let fault = goes_on().unwrap_err();
         assert_eq!(
             fault.to_string(),
-            format!("the run log cannot be made durable: {reason}")
+            format!("the run log cannot be trusted: {reason}")
         );
         assert!(
             without(Guarding::SameFile, goes_on).is_ok(),
