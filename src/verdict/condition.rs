@@ -2,14 +2,14 @@
 
 use super::{Bound, ConditionOutcome, Verdict};
 use crate::physics::statistics::student_t;
-use crate::plan::formula::{Formula, FormulaError, Operator, Part, Results};
+use crate::plan::formula::{Formula, FormulaError, Operator, Part, Results, UncertaintyStatus};
 use crate::plan::{Comparison, Condition, DecisionRule, Test};
 use crate::schema::is_in_percent;
 use crate::uncertainty::{FEW, MeasurementUncertainty, measurement_uncertainty};
 use crate::units::Dimension;
 
-/// Value and bound are evaluated separately, so that a report shows the one that exists.
-pub(crate) fn assess_condition(
+/// In the steps of these results. Value and bound are evaluated separately, so that a report shows the one that exists.
+pub(super) fn decide(
     condition: &Condition,
     rule: DecisionRule,
     record: &dyn Results,
@@ -20,14 +20,26 @@ pub(crate) fn assess_condition(
         (Ok(value), Ok(bound)) => Some((value.value, *bound)),
         _ => None,
     };
-    let undeclared = no_uncertainty(condition, record);
-    let distance_known =
-        known.and_then(|(value, bound)| margin_uncertainty(condition, value, bound, record));
-    let (margin_uncertainty, unguarded) = match rule {
-        DecisionRule::Simple => (None, None),
-        DecisionRule::Guarded => (distance_known, undeclared.clone()),
+    let status = uncertainty_status(condition, record);
+    // An equality is a comparison of numbers, not of a quantity with a tolerance.
+    let rule = match rule {
+        DecisionRule::Simple if is_equality(condition) => DecisionRule::ValueAlone,
+        rule => rule,
     };
-    let distance_uncertainty = distance_known.filter(|_| undeclared.is_none());
+    let (unknown, undecided) = match (&status, rule) {
+        (UncertaintyStatus::Exact | UncertaintyStatus::Known, _) => (false, None),
+        (UncertaintyStatus::Partial(why), DecisionRule::Guarded)
+        | (UncertaintyStatus::Withheld(why), DecisionRule::Guarded | DecisionRule::Simple) => {
+            (true, Some(why.clone()))
+        }
+        (UncertaintyStatus::Partial(_), DecisionRule::Simple) | (_, DecisionRule::ValueAlone) => {
+            (true, None)
+        }
+    };
+    let distance_uncertainty = known
+        .and_then(|(value, bound)| margin_uncertainty(condition, value, bound, record))
+        .filter(|_| !unknown);
+    let margin_uncertainty = distance_uncertainty.filter(|_| rule == DecisionRule::Guarded);
     let conforms = known
         .zip(distance_uncertainty)
         .map(|((value, bound), distance_uncertainty)| bound.conforms(value, distance_uncertainty));
@@ -37,20 +49,29 @@ pub(crate) fn assess_condition(
             Bound::Compare { .. } => false,
         },
     );
-    let guard_band = margin_uncertainty
-        .filter(|_| unguarded.is_none())
-        .map(MeasurementUncertainty::expanded);
-    let verdict = match (known, &unguarded) {
+    let guard_band = margin_uncertainty.map(MeasurementUncertainty::expanded);
+    let verdict = match (known, &undecided) {
         (Some((value, bound)), None) => bound.verdict(value, guard_band),
         _ => Verdict::Inconclusive,
+    };
+    let unlikely = rule == DecisionRule::Simple
+        && conforms.is_some_and(|conforms| is_unlikely(verdict, conforms));
+    let verdict = if unlikely {
+        Verdict::Inconclusive
+    } else {
+        verdict
     };
     let missing = value
         .as_ref()
         .err()
         .or(bound.as_ref().err())
         .map(ToString::to_string)
-        .or(unguarded);
-    let too_near = || (verdict == Verdict::Inconclusive).then(|| near(margin_uncertainty));
+        .or(undecided);
+    let too_near = || match verdict {
+        Verdict::Inconclusive if unlikely => Some(TOO_LARGE.to_owned()),
+        Verdict::Inconclusive => Some(near(margin_uncertainty)),
+        _ => None,
+    };
     ConditionOutcome {
         text: condition.text.clone(),
         verdict,
@@ -58,6 +79,7 @@ pub(crate) fn assess_condition(
         percent: in_percent(condition),
         value: value.as_ref().ok().map(|value| value.value),
         uncertainty: value.as_ref().ok().and_then(|value| value.uncertainty),
+        status,
         degrees: how_well(&condition.value, record).map_or(f64::INFINITY, |known| known.degrees),
         bound: bound.ok(),
         margin: known.map(|(value, bound)| bound.margin(value)),
@@ -66,6 +88,7 @@ pub(crate) fn assess_condition(
         conforms,
         wider_than_tolerance,
         reason: missing.or_else(too_near),
+        in_finer_steps: None,
     }
 }
 
@@ -79,14 +102,41 @@ fn in_percent(condition: &Condition) -> bool {
     condition.dimension == Dimension::NUMBER && (fractions || stated)
 }
 
-/// Why a guard band cannot be applied: a measured result that the condition reads has no expanded uncertainty.
-fn no_uncertainty(condition: &Condition, record: &dyn Results) -> Option<String> {
+/// What is known of the uncertainty of the results that the condition reads.
+fn uncertainty_status(condition: &Condition, record: &dyn Results) -> UncertaintyStatus {
     let mut references = Vec::new();
     condition.collect_references(&mut references);
     references
         .into_iter()
         .filter(|reference| reference.part == Part::Value)
-        .find_map(|read| record.no_uncertainty(read))
+        .map(|read| record.uncertainty_status(read))
+        .fold(UncertaintyStatus::Exact, UncertaintyStatus::and)
+}
+
+/// Whether it is `==` or `!=`.
+pub(super) const fn is_equality(condition: &Condition) -> bool {
+    matches!(
+        condition.test,
+        Test::Compare {
+            comparison: Comparison::Equal | Comparison::NotEqual,
+            ..
+        }
+    )
+}
+
+/// Why a value inside its tolerance does not show conformity.
+const TOO_LARGE: &str = "U is too large for this tolerance";
+
+/// Whether a verdict is more likely wrong than right, by the probability of conformity. A value beside one limit cannot have such a
+/// verdict: the distribution about it is symmetric. A value inside a tolerance can, if U is larger than the tolerance.
+fn is_unlikely(verdict: Verdict, conforms: f64) -> bool {
+    let right = match verdict {
+        Verdict::Pass => conforms,
+        Verdict::Fail => 1.0 - conforms,
+        _ => return false,
+    };
+    // A value at its limit: one half, but for rounding.
+    right < 0.5 - 1e-9
 }
 
 /// Why a value near its limit is not conclusive, and why the band is wide if it comes from few readings.
@@ -189,6 +239,24 @@ pub(super) fn equal(a: f64, b: f64) -> bool {
 }
 
 impl ConditionOutcome {
+    /// Whether the value alone decides: it is exact, or the plan does not declare its uncertainty.
+    #[must_use]
+    pub fn decides_without_uncertainty(&self) -> bool {
+        self.verdict != Verdict::Inconclusive
+            && self.conforms.is_none()
+            && self.status != UncertaintyStatus::Known
+    }
+
+    /// The condition without a decision. Its value is not that of a whole procedure, and has no probability of conformity.
+    pub(super) fn inconclusive(self, reason: String) -> Self {
+        Self {
+            verdict: Verdict::Inconclusive,
+            conforms: None,
+            reason: Some(reason),
+            ..self
+        }
+    }
+
     /// The uncertainty of the value.
     #[must_use]
     pub fn measurement_uncertainty(&self) -> Option<MeasurementUncertainty> {

@@ -98,6 +98,7 @@ fn a_guard_band_needs_an_uncertainty_that_is_known() {
         },
         dimension: Dimension::NUMBER,
         contributions: Vec::new(),
+        withheld: None,
     };
     record.procedures[0]
         .results
@@ -152,6 +153,60 @@ fn a_guard_band_needs_an_uncertainty_that_is_known() {
     );
 }
 
+/// A known uncertainty of any size decides nothing near its limit; an uncertainty that was lost decides nothing at any distance. `==` and
+/// `!=` compare numbers. A budget that the plan leaves partial decides on the value alone under simple acceptance, as an exact value does.
+#[test]
+fn a_withheld_uncertainty_decides_nothing_under_either_rule() {
+    use Comparison::{Equal, Greater, LessEqual, NotEqual};
+    let mut withheld = record(Outcome::Completed);
+    withheld.procedures[0].results[0].withhold("errors grow");
+    assert_eq!(
+        withheld.procedures[0].results[0].value,
+        ResultValue::Number {
+            value: Some(8.0),
+            uncertainty: None
+        }
+    );
+    let outcome = |comparison, limit, rule| {
+        let condition = condition(result("max_displacement"), compare(comparison, limit));
+        assess_condition(&condition, rule, &withheld)
+    };
+    for rule in [DecisionRule::Simple, DecisionRule::Guarded] {
+        for (comparison, limit) in [(LessEqual, 800.0), (LessEqual, 0.08), (Greater, 8.0)] {
+            let found = outcome(comparison, limit, rule);
+            assert_eq!(
+                (found.verdict, found.guard_band, found.conforms),
+                (Verdict::Inconclusive, None, None),
+                "{comparison:?} {limit}"
+            );
+            assert_eq!(
+                found.reason.as_deref(),
+                Some("U of `max_displacement` is withheld: errors grow")
+            );
+        }
+    }
+    assert_eq!(
+        [(Equal, 8.0), (NotEqual, 8.0)].map(|(comparison, limit)| outcome(
+            comparison,
+            limit,
+            DecisionRule::Simple
+        )
+        .verdict),
+        [Verdict::Pass, Verdict::Fail]
+    );
+    let mut undeclared = record(Outcome::Completed);
+    undeclared.procedures[0].results[0].value = ResultValue::Number {
+        value: Some(8.0),
+        uncertainty: None,
+    };
+    let condition = condition(
+        result("max_displacement"),
+        compare(Comparison::LessEqual, 8.5),
+    );
+    let found = assess_condition(&condition, DecisionRule::Simple, &undeclared);
+    assert!(found.verdict == Verdict::Pass && found.decides_without_uncertainty());
+}
+
 /// 8 with u = 0.125 (normal): at its limit 50 %, one u inside 84.1 %; between limits of ±0.125 it is 68.3 %, and U exceeds the limits.
 #[test]
 fn a_probability_of_conformity_is_reported_under_either_rule() {
@@ -200,6 +255,48 @@ fn a_probability_of_conformity_is_reported_under_either_rule() {
         assess_condition(&unknown, DecisionRule::Simple, &record).conforms,
         None
     );
+}
+
+/// 8 with u = 0.125 (normal): between limits of ±0.05 it lies with 2Φ(0.4) − 1 = 31.1 %, between ±0.125 with 68.3 %. Simple acceptance
+/// decides what is more likely right than wrong. Beside one limit, and outside of a tolerance, every verdict is.
+#[test]
+fn a_pass_that_is_more_likely_wrong_than_right_is_inconclusive() {
+    use Verdict::{Fail, Inconclusive, Pass};
+    let mut record = record(Outcome::Completed);
+    record.procedures[0].results[0].value = ResultValue::Number {
+        value: Some(8.0),
+        uncertainty: Some(0.125),
+    };
+    let of =
+        |test, rule| assess_condition(&condition(result("max_displacement"), test), rule, &record);
+    let within = |target, tolerance| Test::Within {
+        target: Formula::Constant(target),
+        tolerance: Formula::Constant(tolerance),
+        relative: false,
+    };
+    for (test, verdict, probability) in [
+        (within(8.0, 0.05), Inconclusive, 0.310_843),
+        (within(8.0, 0.125), Pass, 0.682_689),
+        // The nearer end of the tolerance alone: Φ(0) − Φ(−0.8).
+        (within(8.05, 0.05), Inconclusive, 0.288_145),
+        (within(8.5, 0.5), Pass, 0.5),
+        (within(8.1, 0.05), Fail, 0.229_508),
+        (compare(Comparison::LessEqual, 8.0), Pass, 0.5),
+        (compare(Comparison::Less, 8.0), Fail, 0.5),
+    ] {
+        let found = of(test.clone(), DecisionRule::Simple);
+        assert_eq!(found.verdict, verdict, "{test:?}");
+        assert!(
+            (found.conforms.unwrap() - probability).abs() < 1e-6,
+            "{test:?}: {found:?}"
+        );
+        let too_large = "U is too large for this tolerance";
+        assert_eq!(
+            found.reason.as_deref(),
+            (verdict == Inconclusive).then_some(too_large)
+        );
+        assert_ne!(of(test, DecisionRule::ValueAlone).verdict, Inconclusive);
+    }
 }
 
 /// On a real rig, a budget without both calibrations gives no guard band; on a simulated rig it gives one.

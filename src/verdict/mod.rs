@@ -4,15 +4,18 @@
 
 mod condition;
 mod partial;
+mod reproduction;
+mod time_step;
 mod undecided;
 mod unfinished_peaks;
 
-use crate::plan::formula::{ProcedureId, Results};
+use crate::plan::formula::{ProcedureId, Results, UncertaintyStatus};
 use crate::plan::{Comparison, Condition, DecisionRule, Plan, Requirement};
 use crate::record::{ImpactHistory, Outcome, Record};
 use crate::units::Dimension;
-pub(crate) use condition::assess_condition;
 pub(crate) use partial::Declared;
+pub use reproduction::ReproductionOutcome;
+pub(crate) use time_step::assess_condition;
 use undecided::{beyond, longer_than_critical, unless_undecided};
 
 /// Completed < Pass < Inconclusive < Fail < Aborted < Error; a parent takes its worst child.
@@ -21,8 +24,8 @@ pub enum Verdict {
     /// The run is complete and the plan has no requirement: there is nothing to pass.
     Completed,
     Pass,
-    /// A result that the requirement reads does not exist in this run, or its margin is too small for its uncertainty. Also a run that
-    /// could not continue with its measured values.
+    /// A result that the requirement reads does not exist in this run, its uncertainty is withheld, or its margin is too small for its
+    /// uncertainty. Also a run that could not continue with its measured values.
     Inconclusive,
     Fail,
     /// Stopped by a limit or by the operator.
@@ -53,6 +56,8 @@ pub struct Assessment {
     /// The rule that decided every condition.
     pub rule: DecisionRule,
     pub requirements: Vec<RequirementOutcome>,
+    /// Comparisons with published numbers. They do not change the verdict.
+    pub reproductions: Vec<ReproductionOutcome>,
 }
 
 /// One requirement: the worst of its conditions.
@@ -75,6 +80,8 @@ pub struct ConditionOutcome {
     /// SI; None if a result does not exist.
     pub value: Option<f64>,
     pub uncertainty: Option<f64>,
+    /// What is known of the uncertainty of the results that it reads.
+    pub status: UncertaintyStatus,
     /// Effective degrees of freedom of that uncertainty.
     pub degrees: f64,
     pub bound: Option<Bound>,
@@ -85,12 +92,15 @@ pub struct ConditionOutcome {
     pub guard_band: Option<f64>,
     /// Effective degrees of freedom of the uncertainty of the margin, under the guarded rule.
     pub margin_degrees: f64,
-    /// Probability of conformity, from the uncertainty of the margin (JCGM 106:2012, 7.1); None if that is unknown.
+    /// Probability of conformity, from the uncertainty of the margin (JCGM 106:2012, 7.1), the smallest in any finer time steps; None if
+    /// that is unknown.
     pub conforms: Option<f64>,
     /// Whether the tolerance is narrower than U of the margin.
     pub wider_than_tolerance: bool,
     /// Why it is inconclusive.
     pub reason: Option<String>,
+    /// The smallest and the largest value in any finer time steps, SI; None if the time step has no effect on it.
+    pub in_finer_steps: Option<[f64; 2]>,
 }
 
 /// The bound that the value is compared with, SI.
@@ -112,12 +122,15 @@ pub enum Bound {
 #[must_use]
 pub fn assess(plan: &Plan, record: &Record) -> Assessment {
     let rule = plan.decision_rule;
+    let results = Declared::of(plan, record);
     let requirements: Vec<_> = plan
         .requirements
         .iter()
-        .map(|requirement| {
-            assess_requirement(requirement, rule, record, &Declared::of(plan, record))
-        })
+        .map(|requirement| assess_requirement(requirement, rule, record, &results))
+        .collect();
+    let reproductions = plan.reproductions.iter();
+    let reproductions = reproductions
+        .map(|reproduction| reproduction::compare(reproduction, record, &results))
         .collect();
     let run = match record.outcome {
         Outcome::Completed if beyond(record, |_| true).is_some() => Verdict::Inconclusive,
@@ -134,6 +147,7 @@ pub fn assess(plan: &Plan, record: &Record) -> Assessment {
         verdict,
         rule,
         requirements,
+        reproductions,
     }
 }
 
@@ -173,11 +187,7 @@ pub(crate) fn assess_on_impact(
     let steps = (impact.time_step, impact.critical_time_step);
     let longer = (steps.0 > steps.1).then(|| longer_than_critical("the impact", steps.0, steps.1));
     match longer.or_else(|| unfinished_peaks::undecided_by(condition, rule, results, own, impact)) {
-        Some(why) => ConditionOutcome {
-            verdict: Verdict::Inconclusive,
-            reason: Some(why),
-            ..outcome
-        },
+        Some(why) => outcome.inconclusive(why),
         None => outcome,
     }
 }
@@ -186,3 +196,5 @@ pub(crate) fn assess_on_impact(
 mod guard_band_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod time_step_tests;

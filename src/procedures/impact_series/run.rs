@@ -4,12 +4,12 @@
 use super::repeated_impact::{RepeatedImpact, velocities};
 use super::results::{Left, results};
 use crate::physics::structure::Unloading;
-use crate::plan::formula::{ProcedureId, ResultReference, ResultValue, Results};
+use crate::plan::formula::{ProcedureId, ResultReference, ResultValue, Results, UncertaintyStatus};
 use crate::plan::{Between, Escalate, Plan};
 use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::impact::run::ImpactRun;
 use crate::procedures::stepping::run::above_critical;
-use crate::procedures::unload::run::{MOST_TARGETS, to_rest};
+use crate::procedures::unload::run::{MOST_TARGETS, to_rest, withhold_position};
 use crate::record::{EscalateHistory, EventKind, History, NamedResult, Rest, SeriesImpact};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
@@ -91,17 +91,12 @@ fn run(
         let stated = readable(energy, Dimension::ENERGY);
         if let Some(struck) = history.impacts.last_mut() {
             struck.rest = Some(rest);
-            let (held, reason) = decide(plan, whole, struck, inputs.results());
+            let (held, why) = decide(plan, whole, struck, inputs.results());
             struck.held = held;
-            let ends = match held {
-                Some(true) => None,
-                Some(false) => Some("the condition is false".to_owned()),
-                None => Some(format!("the condition is inconclusive: {reason}")),
-            };
-            if let Some(why) = ends {
+            if held != Some(true) {
                 session.event(
                     EventKind::Remark,
-                    format!("impact {} of {stated}: {why}", index + 1),
+                    format!("impact {} of {stated} ends the series: {why}", index + 1),
                 );
                 return Ok(());
             }
@@ -110,14 +105,23 @@ fn run(
             session.inspect(&format!("after impact {} of {stated}", index + 1))?;
         }
     }
+    let conditions: Vec<&str> = plan
+        .condition
+        .iter()
+        .map(|part| part.text.as_str())
+        .collect();
     session.event(
         EventKind::Remark,
-        "the condition was true after every impact of the series".to_owned(),
+        format!(
+            "{} was true after every impact of the series",
+            conditions.join(" and ")
+        ),
     );
     Ok(())
 }
 
-/// Whether the condition holds after an impact, assessed where the next one begins; None with the reason if that is inconclusive.
+/// Whether the condition holds after an impact, assessed where the next one begins; None if that is inconclusive. With the part of the
+/// condition that ends the series, and why.
 fn decide(
     plan: &Escalate,
     whole: &Plan,
@@ -143,10 +147,16 @@ fn decide(
     });
     match worst {
         Some(part) if part.verdict == Verdict::Inconclusive => {
-            (None, part.reason.unwrap_or_default())
+            let reason = part.reason.unwrap_or_default();
+            (None, format!("{} is inconclusive: {reason}", part.text))
         }
-        Some(part) => (Some(part.verdict == Verdict::Pass), String::new()),
-        None => (Some(true), String::new()),
+        Some(part) if part.verdict != Verdict::Pass => {
+            let value = part.value.map_or_else(String::new, |value| {
+                format!(", the value is {}", readable(value, part.dimension))
+            });
+            (Some(false), format!("{} is false{value}", part.text))
+        }
+        Some(_) | None => (Some(true), String::new()),
     }
 }
 
@@ -165,7 +175,9 @@ fn as_brought(struck: &SeriesImpact, between: Between) -> Vec<NamedResult> {
         left.drift
             .found_list_by(Some(rest.drift()), rest.drift_contributions())
     });
-    for brought in [Some(position), drift].into_iter().flatten() {
+    let mut brought: Vec<NamedResult> = [Some(position), drift].into_iter().flatten().collect();
+    withhold_position(Some(rest), &mut brought);
+    for brought in brought {
         match results
             .iter_mut()
             .find(|result| result.name == brought.name)
@@ -256,11 +268,14 @@ impl Results for OfImpact<'_> {
         self.before.degrees(source)
     }
 
-    fn no_uncertainty(&self, reference: ResultReference) -> Option<String> {
+    fn uncertainty_status(&self, reference: ResultReference) -> UncertaintyStatus {
         if reference.procedure == self.own {
-            return NamedResult::of(&self.results, reference.name)?.no_uncertainty(IMPACT);
+            return NamedResult::of(&self.results, reference.name)
+                .map_or(UncertaintyStatus::Exact, |result| {
+                    result.uncertainty_status(IMPACT)
+                });
         }
-        self.before.no_uncertainty(reference)
+        self.before.uncertainty_status(reference)
     }
 }
 

@@ -31,7 +31,7 @@ use on_rig::{End, on_its_rig};
     With `--yes` it MOVES without this prompt. With `--check-run` it MOVES for the pre-test check and the first stiffness ramps.\n\n\
     Exit codes:\n\
     \x20 0  all requirements met\n\
-    \x20 1  a requirement failed or is inconclusive\n\
+    \x20 1  a requirement failed or is inconclusive, or a published number is not reproduced\n\
     \x20 2  error in the plan or on the command line\n\
     \x20 3  fault of the rig or a file\n\
     \x20 4  stopped by a limit or by the operator"
@@ -100,6 +100,11 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
         .accept
         .then(|| AcceptedFolder::of(&arguments.plan))
         .transpose()?;
+    if let Some(accepted) = &accepted
+        && let Some(reason) = accepted.belongs_to_another()?
+    {
+        return Err(Failure::command_line(reason));
+    }
     if accepted.is_some() && !golden_run::is_as_written(plan, &arguments.plan_settings) {
         return Err(Failure::command_line(
             "`--accept` requires the plan as it is written, on its virtual rig",
@@ -122,7 +127,8 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
             )?);
             print_message(&console::summary_text(
                 &Tested {
-                    name: accepted.path().display().to_string(),
+                    name: arguments.plan.with_extension("").display().to_string(),
+                    folder: accepted.path().display().to_string(),
                     outcome,
                 },
                 settings.color,

@@ -10,6 +10,7 @@ use crate::report::budget::coverage_factor;
 use crate::report::document::{Block, Column, Style, Table, Text};
 use crate::report::number;
 use crate::report::run::Run;
+use crate::report::status::ReportStatus;
 use crate::report::wording::{common, headline, requirements as wording};
 use crate::verdict::{ConditionOutcome, RequirementOutcome, Verdict};
 
@@ -22,7 +23,7 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     body.push(Block::section(wording::TITLE));
     let uncertain = conditions(run).any(|(condition, _)| condition.conforms.is_some());
     let [name, value, accepted, conforms, verdict] = wording::COLUMNS;
-    let mut columns = vec![
+    let columns = vec![
         Column::words(name, 1),
         Column::numbers(if is_partial(run) {
             headline::VALUE_WITH_U
@@ -38,15 +39,9 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
         .requirements
         .iter()
         .zip(&run.plan.requirements);
-    let mut rows: Vec<Vec<Text>> = requirements
+    let rows = requirements
         .flat_map(|(requirement, planned)| rows(run, requirement, planned))
         .collect();
-    if !uncertain {
-        columns.remove(PROBABILITY);
-        for row in &mut rows {
-            row.remove(PROBABILITY);
-        }
-    }
     body.push(Block::Table(Table { columns, rows }));
     body.push(Block::note(decision_rule(run, uncertain)));
     if let Some(names) = run.plan.studies.requirement_names() {
@@ -61,9 +56,6 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
 fn is_partial(run: &Run<'_>) -> bool {
     Scope::of(run) == Scope::PartialReal
 }
-
-/// The column of the probability of conformity; it is omitted if no value has an uncertainty.
-const PROBABILITY: usize = 3;
 
 /// Every condition with the one of the plan.
 fn conditions<'a>(run: &Run<'a>) -> impl Iterator<Item = (&'a ConditionOutcome, &'a Condition)> {
@@ -109,7 +101,7 @@ fn is_reliable(run: &Run<'_>, condition: &Condition) -> bool {
 /// The decision rule with its risk, and the meaning of the columns.
 fn decision_rule(run: &Run<'_>, uncertain: bool) -> String {
     let mut sentences = vec![match run.assessment.rule {
-        DecisionRule::Simple => wording::SIMPLE_RULE.to_owned(),
+        DecisionRule::Simple | DecisionRule::ValueAlone => wording::SIMPLE_RULE.to_owned(),
         DecisionRule::Guarded => wording::guarded_rule(coverage_factor::equation(run.assessment)),
     }];
     if uncertain {
@@ -174,6 +166,9 @@ fn row(
         Some(quantity) => label.soft(quantity),
         None => label.code(&condition.text),
     };
+    if let Some(line) = explanation::criterion(run, planned) {
+        name = name.line().soft(line);
+    }
     if let Some(line) = explanation::distance(run, condition) {
         name = name.line().soft(line);
     }
@@ -183,7 +178,8 @@ fn row(
     if let Some(line) = explanation::largest_part(run, condition, planned) {
         name = name.line().soft(line);
     }
-    if condition.wider_than_tolerance && rule == DecisionRule::Simple {
+    let decided = condition.verdict != Verdict::Inconclusive;
+    if condition.wider_than_tolerance && rule == DecisionRule::Simple && decided {
         name = name.line().soft(wording::WIDER_THAN_TOLERANCE);
     }
     let mark = if is_marked(run, condition, planned) {
@@ -194,7 +190,7 @@ fn row(
     let bound = Text::from(number::bound(condition));
     let bound = match (rule, number::guard_band(condition)) {
         (DecisionRule::Guarded, Some(band)) => bound.line().soft(format!("w = {band}")),
-        (DecisionRule::Simple, _) | (DecisionRule::Guarded, None) => bound,
+        _ => bound,
     };
     vec![
         name,
@@ -203,10 +199,11 @@ fn row(
             |value| Text::from(value + mark),
         ),
         bound,
-        condition
-            .conforms
-            .map_or_else(|| "—".to_owned(), number::probability)
-            .into(),
+        match condition.conforms {
+            Some(probability) => number::probability(probability).into(),
+            None if condition.decides_without_uncertainty() => wording::NO_U.into(),
+            None => "—".into(),
+        },
         verdict(run, condition.verdict),
     ]
 }
@@ -235,11 +232,13 @@ fn quantity(run: &Run<'_>, condition: &Condition) -> Option<String> {
     Some(wording::quantity(name, entry, &procedure.name))
 }
 
-/// In a simulation, a met requirement has no colour: nothing passed a test.
+/// In a simulation, or a report that is not issuable, a met requirement has no colour: nothing passed a test.
 fn verdict(run: &Run<'_>, verdict: Verdict) -> Text {
+    let is_test = !run.record.rig.simulated
+        && !matches!(ReportStatus::of(run), ReportStatus::NotIssuable { .. });
     let style = match verdict {
         Verdict::Completed => Style::Plain,
-        Verdict::Pass if run.record.rig.simulated => Style::Strong,
+        Verdict::Pass if !is_test => Style::Strong,
         Verdict::Pass => Style::Pass,
         Verdict::Inconclusive => Style::Inconclusive,
         Verdict::Fail | Verdict::Aborted | Verdict::Error => Style::Fail,
