@@ -49,8 +49,7 @@ use state::{Begin, State};
 
 use super::{Observer, Unwatched, run};
 use crate::record::remote::DrivenStep;
-use crate::run::client_run::{ClientRunRecord, Driver, drive};
-use crate::run::remote_control::Specimen;
+use crate::run::client_run::{ClientRunRecord, Driver, Requests, drive};
 
 /// Gives the time of day, as text; None for a virtual run.
 pub type Wall = Box<dyn Fn() -> Option<String>>;
@@ -84,8 +83,7 @@ pub fn record_driven(
     rig: &mut dyn Rig,
     observer: &mut dyn Observer,
     log: OpenLog,
-    driver: Driver,
-    client: &mut dyn FnMut(&mut Specimen<'_, '_>),
+    requests: Requests<'_>,
 ) -> (Recorded, Vec<DrivenStep>) {
     let mut done = Vec::new();
     let recorded = perform(
@@ -93,7 +91,7 @@ pub fn record_driven(
         observer,
         State::recording(log.journal, log.wall),
         |rig, observer, _| {
-            let ClientRunRecord { record, steps } = drive(plan, rig, observer, driver, client);
+            let ClientRunRecord { record, steps } = drive(plan, rig, observer, requests);
             done = steps;
             record
         },
@@ -119,9 +117,12 @@ pub fn replay(plan: &Plan, logged: LoggedRun) -> Replayed {
     } = if let Some(driver) = driver {
         let plan = as_run.as_ref();
         perform(None, &mut Unwatched, state, |rig, observer, state| {
-            let driven = drive(plan, rig, observer, driver, &mut |specimen| {
-                state::repeat_requests(state, specimen);
-            });
+            let requests = Requests {
+                driver,
+                clock: &|| 0.0,
+                client: &mut |specimen| state::repeat_requests(state, specimen),
+            };
+            let driven = drive(plan, rig, observer, requests);
             steps = Some(driven.steps);
             driven.record
         })
