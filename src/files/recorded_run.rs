@@ -113,7 +113,7 @@ pub fn plan_of(logged: &LoggedRun) -> Result<Plan, String> {
 
 /// Whether the equipment in the header agrees with plan and rig. This detects a changed calibration.
 fn fits(logged: &LoggedRun, plan: &Plan) -> Result<(), String> {
-    let (Some(equipment), Some(rig)) = (&logged.header.equipment, &logged.rig) else {
+    let (Some(equipment), Some(rig)) = (&logged.header.equipment, logged.rigs.first()) else {
         return Ok(());
     };
     if *equipment == Equipment::of(plan, Device::of(&rig.identity, rig.noise)) {

@@ -4,6 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::plan::DeclaredNoise;
+use crate::plan::rig::limits::NAMES;
 use crate::plan::{Dialect, Interval, Limits, Link, Plan, RigPlan};
 use crate::record::Identity;
 use crate::units::Dimension;
@@ -144,6 +145,14 @@ impl Equipment {
             channels: axes.flat_map(|axis| channels(&plan.rig, axis)).collect(),
             limits,
         }
+    }
+
+    /// The limit of speed, of all axes \[m/s\].
+    #[must_use]
+    pub fn speed_limit(&self) -> Interval {
+        let of_speed = |limit: &&HeldLimit| limit.quantity == NAMES.speed && limit.axis.is_none();
+        let limit = self.limits.iter().find(of_speed);
+        limit.map_or(Interval::ALL, HeldLimit::interval)
     }
 
     /// The change that makes the same number a different quantity, if there is one.

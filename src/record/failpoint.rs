@@ -23,6 +23,12 @@ pub enum Guarding {
     /// A force that does not follow from the dwell before it.
     ForceJump,
     Reboot,
+    /// The speed of a rig that was amended: that of its own resumption, not that of the start.
+    NewestRig,
+    /// The force of a rig that is found when a run is resumed.
+    ForceFound,
+    /// The word order of a drive that no reading has confirmed.
+    WordOrder,
     /// Power cycle of a rig that cannot report whether it was switched off.
     PowerUp,
     Sequence,

@@ -17,7 +17,7 @@ mod virtual_rig;
 use serde::{Deserialize, Serialize};
 
 use crate::physics::tracking::trajectory::Path;
-use crate::plan::{Limits, Plan};
+use crate::plan::{Interval, Limits, Plan};
 use crate::units::{Dimension, display};
 
 pub use crate::plan::DeclaredNoise;
@@ -252,6 +252,15 @@ pub trait Rig {
     /// Rig time since the start of the run \[s\].
     fn time(&self) -> f64;
 
+    /// The next call moves to these targets \[m\] at this speed (\[m/s\]; None: not known). A run log that ends here is continued before
+    /// the speed is decided and compared with its limit.
+    ///
+    /// # Errors
+    /// The run log ends with a different motion.
+    fn before_motion(&mut self, _targets: &[f64], _speed: Option<f64>) -> Result<(), RigFault> {
+        Ok(())
+    }
+
     /// Encodes a move to absolute targets \[m\] at a speed (\[m/s\]; None: the rig's own), and decodes the bytes again.
     /// Nothing is sent, and nothing moves yet.
     ///
@@ -380,6 +389,11 @@ pub trait Rig {
 
     /// Speed of a move without a requested speed \[m/s\]; None: the highest speed that the plan's limits allow.
     fn own_speed(&self) -> Option<f64> {
+        None
+    }
+
+    /// The limit of speed under which the next motion was made \[m/s\], if it is in a run log. None: that of the plan.
+    fn logged_speed_limit(&self) -> Option<Interval> {
         None
     }
 

@@ -54,3 +54,60 @@ fn the_same_plan_needs_no_amendment() {
     let plan = stage.path("plan.psd");
     stage.goes_on(&["--plan", plan.to_str().unwrap()]);
 }
+
+/// The speeds of all targets in the run log, and how many there were before the resumption \[m/s\].
+fn speeds(stage: &Stage) -> (Vec<f64>, usize) {
+    let text = fs::read_to_string(stage.journal()).unwrap();
+    let of = |line: &str| {
+        let (_, rest) = line.split_once("\"rate\":")?;
+        rest.split([',', '}']).next()?.parse::<f64>().ok()
+    };
+    let targets = |text: &str| {
+        let intents = text.lines().filter(|line| line.contains(" INTENT "));
+        intents.filter_map(of).collect::<Vec<_>>()
+    };
+    let (before, _) = text.split_once(" RESUME ").unwrap();
+    (targets(&text), targets(before).len())
+}
+
+#[test]
+fn an_amended_speed_is_the_speed_of_the_rig_and_a_higher_one_needs_its_own_word() {
+    let stage = stopped();
+    let plan = stage.path("plan.psd");
+    let same = plan.to_str().unwrap().to_owned();
+    let text = fs::read_to_string(&plan).unwrap();
+    fs::write(
+        &plan,
+        text.replace("speed      = 20 mm/s", "speed      = 40 mm/s"),
+    )
+    .unwrap();
+    let moves = stage.moves();
+    let faster = wait(&mut stage.resume_with(&["--plan", &same, "--amend"]));
+    assert!(
+        faster.code == Some(3) && faster.output.contains("--accept-speed"),
+        "{}",
+        faster.output
+    );
+    assert_eq!(stage.moves(), moves, "nothing moved");
+
+    // Also the limit of speed is lower than the speed of the first moves.
+    let slow = text.replace("speed      = 20 mm/s", "speed      = 5 mm/s");
+    fs::write(
+        &plan,
+        slow.replace("speed        = 200 mm/s", "speed        = 10 mm/s"),
+    )
+    .unwrap();
+    let slower = wait(&mut stage.resume_with(&["--plan", &same, "--amend"]));
+    assert_eq!(slower.code, Some(0), "{}", slower.output);
+    let (speeds, before) = speeds(&stage);
+    assert!(before >= 8 && speeds.len() > before);
+    assert!(
+        speeds[..before].iter().all(|speed| *speed == 0.02),
+        "{speeds:?}"
+    );
+    assert!(
+        speeds[before..].iter().all(|speed| *speed == 0.005),
+        "{speeds:?}"
+    );
+    stage.proven();
+}

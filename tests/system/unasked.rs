@@ -270,9 +270,13 @@ fn a_resumed_rig_moves_for_somebody_who_lets_it() {
         terminal.answer(RELEASE, "");
         let shown = terminal.shown();
         assert!(
-            shown.contains("found at ") && shown.contains("it MOVES to 0.1000 mm at 0.05 mm/s"),
+            shown.contains("found at ")
+                && shown.contains("last logged at ")
+                && shown.contains("it MOVES to 0.1000 mm, then as the plan specifies")
+                && shown.contains("speed     up to 50.00 µm/s; limit"),
             "{shown}"
         );
+        assert!(!shown.contains("mm at "), "one speed: {shown}");
         terminal.press(no);
         assert_eq!(terminal.code(), Some(4), "{}", terminal.shown());
         until("its last words", || {

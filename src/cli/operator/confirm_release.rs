@@ -3,12 +3,12 @@
 
 use super::watch::Watcher;
 use crate::cli::exit::Failure;
-use crate::plan::{Plan, RealLink};
+use crate::plan::Plan;
 use crate::rig::{Reading, Rig, RigFault, position_and_force};
-use crate::run::replay::{ResumeDecision, TargetStatus};
+use crate::run::replay::{Assurance, ResumeDecision, TargetStatus};
 use crate::run::{Inspection, Motion, Observer as _};
 use crate::units::Dimension;
-use crate::units::display::{plain, readable};
+use crate::units::display::readable;
 
 /// Time between two checks for the operator's decision \[s\]. The rig is not polled in between.
 const BREATH: f64 = 0.05;
@@ -16,14 +16,15 @@ const BREATH: f64 = 0.05;
 /// Asks whether the rig may move again; returns who permitted it, and the text of the answer.
 pub fn ask(
     plan: &Plan,
-    link: &RealLink,
+    assured: &[Assurance],
     found: &Reading,
     decision: &ResumeDecision,
     rig: &mut dyn Rig,
     watcher: &mut Watcher,
 ) -> Result<String, Failure> {
-    let question = question(plan, link, found, decision);
-    let motion = Motion::of(plan, rig.identity(), next(link, found, decision));
+    let next = next(assured, found, decision);
+    let question = format!("resume on rig {}: {next}", plan.rig.name);
+    let motion = Motion::of(plan, rig.identity(), next);
     loop {
         match watcher.release(&question, &motion) {
             Inspection::Stop { reason, .. } => return Err(refused(watcher, reason)),
@@ -52,16 +53,8 @@ fn refused(watcher: &mut Watcher, reason: String) -> Failure {
     Failure::NotReleased { reason }
 }
 
-/// The present reading, the next motion, and how the rig moves.
-fn question(plan: &Plan, link: &RealLink, found: &Reading, decision: &ResumeDecision) -> String {
-    format!(
-        "resume on rig {}: {}",
-        plan.rig.name,
-        next(link, found, decision)
-    )
-}
-
-fn next(link: &RealLink, found: &Reading, decision: &ResumeDecision) -> String {
+/// The present and the last logged reading, and the next motion. Its speed is in the list of the motion, once.
+fn next(assured: &[Assurance], found: &Reading, decision: &ResumeDecision) -> String {
     let joined = |positions: &[f64]| {
         positions
             .iter()
@@ -69,21 +62,17 @@ fn next(link: &RealLink, found: &Reading, decision: &ResumeDecision) -> String {
             .collect::<Vec<_>>()
             .join(", ")
     };
-    let at = |speed: f64| plain(speed, Dimension::VELOCITY, 4);
-    let own = at(link.own_speed);
     let next = match (&decision.sends, &decision.target_status) {
-        (Some((to, speed)), TargetStatus::NotExecuted) => {
+        (Some((to, _)), TargetStatus::NotExecuted) => {
             format!(
-                "the last target did not arrive: it MOVES to {} at {}, then as the plan specifies",
-                joined(to),
-                at(*speed)
+                "the last target did not arrive: it MOVES to {}, then as the plan specifies",
+                joined(to)
             )
         }
-        (Some((to, speed)), _) => {
+        (Some((to, _)), _) => {
             format!(
-                "the last target was not reached: it MOVES to {} at {}, then as the plan specifies",
-                joined(to),
-                at(*speed)
+                "the last target was not reached: it MOVES to {}, then as the plan specifies",
+                joined(to)
             )
         }
         (None, TargetStatus::Stroke { back_to, others }) => {
@@ -91,7 +80,7 @@ fn next(link: &RealLink, found: &Reading, decision: &ResumeDecision) -> String {
                 .chain(others.iter().copied())
                 .collect();
             format!(
-                "a motion was interrupted: it MOVES back to {} at {own}, then as the plan specifies",
+                "a motion was interrupted: it MOVES back to {}, then as the plan specifies",
                 joined(&to)
             )
         }
@@ -99,14 +88,24 @@ fn next(link: &RealLink, found: &Reading, decision: &ResumeDecision) -> String {
             "a motion was interrupted: it MOVES on to its target from here, then as the plan specifies"
                 .to_owned()
         }
+        (None, TargetStatus::Executed) => {
+            "it reached its last target, and MOVES as the plan specifies".to_owned()
+        }
         (None, _) => {
-            format!(
-                "it is at its last logged position, and MOVES as the plan specifies, at {own} if the plan gives no speed"
-            )
+            "it is at its last logged position, and MOVES as the plan specifies".to_owned()
         }
     };
+    let faster = if assured.contains(&Assurance::AcceptedSpeed) {
+        ", FASTER than before"
+    } else {
+        ""
+    };
+    let recorded = decision.held.as_ref().or(decision.recorded.as_ref());
+    let recorded = recorded.map_or_else(String::new, |(positions, forces)| {
+        format!("; last logged at {}", position_and_force(positions, forces))
+    });
     format!(
-        "found at {}; {next}",
+        "found at {}{recorded}; {next}{faster}",
         position_and_force(&found.displacement, &found.force)
     )
 }

@@ -36,7 +36,10 @@ fn replayed(journal: &[u8]) -> Result<(), String> {
         Box::new(|| None),
         no_rig,
     );
-    if let (Some(link), Some(rig)) = (read.plan.rig.link.as_real(), &read.logged.last_rig) {
+    if let (Some(link), Some(rig)) = (
+        read.plan.rig.link.as_real(),
+        read.logged.rigs.last().map(|last| &last.rig),
+    ) {
         let nowhere = vec![0.0; read.plan.degrees_of_freedom()];
         let reading = Reading {
             time: 0.0,

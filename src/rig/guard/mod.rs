@@ -109,13 +109,6 @@ impl<'rig> Guard<'rig> {
     /// A limit is exceeded, or the rig refuses.
     pub fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
         self.proposed = None;
-        let high = Some(self.limits.speed.high).filter(|high| high.is_finite());
-        let own = || {
-            self.rig
-                .own_speed()
-                .map(|own| own.min(self.limits.speed.high))
-        };
-        let speed = speed.or_else(|| own().or(high));
         self.check_targets(targets)?;
         let increments = targets
             .iter()
@@ -123,14 +116,17 @@ impl<'rig> Guard<'rig> {
             .map(|(to, from)| increment(*from, *to));
         let longest = increments.fold(0.0, f64::max);
         self.check(LimitedQuantity::Increment, self.limits.increment, longest)?;
+        let before = self.rig.before_motion(targets, self.speed_of(speed));
+        self.or_hold(before)?;
+        let speed = self.speed_of(speed);
         if let Some(speed) = speed {
-            self.check(LimitedQuantity::Speed, self.limits.speed, speed)?;
+            self.check_speed(speed)?;
         }
         let proposed = self.rig.propose(targets, speed);
         let encoded = self.or_hold(proposed)?;
         // The decoded bytes are the motion that will happen, so they are compared with the limits again.
         self.check_targets(&encoded.targets)?;
-        self.check(LimitedQuantity::Speed, self.limits.speed, encoded.speed)?;
+        self.check_speed(encoded.speed)?;
         self.proposed = Some((targets.to_vec(), encoded.speed));
         Ok(())
     }
@@ -176,9 +172,11 @@ impl<'rig> Guard<'rig> {
             readings: Vec::new(),
             fault: Some(fault),
         };
-        let allowed = self
-            .check_targets(targets)
-            .and_then(|()| self.check(LimitedQuantity::Speed, self.limits.speed, velocity.abs()));
+        let allowed = self.check_targets(targets).and_then(|()| {
+            let before = self.rig.before_motion(targets, Some(velocity));
+            self.or_hold(before)?;
+            self.check_speed(velocity.abs())
+        });
         if let Err(fault) = allowed {
             return refused(fault);
         }

@@ -4,7 +4,7 @@
 
 use crate::physics::tracking::trajectory::Path;
 use crate::rig::safety::failpoint::{Guarding, on};
-use crate::rig::{Guard, LimitedQuantity, RigFault, Traversed};
+use crate::rig::{Guard, RigFault, Traversed};
 
 impl Guard<'_> {
     /// Follows `paths`, one per degree of freedom, and reads at up to `samples` times. The last reading is at the end or at the point
@@ -31,6 +31,8 @@ impl Guard<'_> {
     fn check_paths(&mut self, paths: &[Path]) -> Result<(), RigFault> {
         let ends: Vec<f64> = paths.iter().map(|path| path.to).collect();
         self.check_targets(&ends)?;
+        let before = self.rig.before_motion(&ends, None);
+        self.or_hold(before)?;
         for (axis, path) in paths.iter().enumerate() {
             let going = self.going.get(axis).copied().unwrap_or(0.0);
             let smooth = path.from.to_bits() == self.commanded[axis].to_bits()
@@ -48,7 +50,7 @@ impl Guard<'_> {
             {
                 self.check_target(axis, position)?;
             }
-            self.check(LimitedQuantity::Speed, self.limits.speed, path.fastest())?;
+            self.check_speed(path.fastest())?;
         }
         Ok(())
     }
@@ -59,6 +61,7 @@ mod tests {
     use super::*;
     use crate::physics::tracking::trajectory::ActuatorMotion;
     use crate::plan::{Interval, Limits, Settle, VirtualLink};
+    use crate::rig::LimitedQuantity;
     use crate::rig::VirtualRig;
 
     const AT_ONCE: Settle = Settle {

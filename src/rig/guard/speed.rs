@@ -1,12 +1,31 @@
-//! The speed of the last motion. In: the speed decoded from a move, and the observed speed. Out: a speed for display. It checks nothing:
-//! the guard has compared the speed of a move with the limit before it is sent.
+//! The speed of a motion: its limit before it begins, and the speed of the last motion for display. In: the requested speed, the speed
+//! decoded from a move, and the observed speed.
 
-use crate::rig::Guard;
+use crate::plan::Interval;
+use crate::rig::{Guard, LimitedQuantity, RigFault};
 
 /// Fraction of the commanded speed by which the observed speed must exceed it. The rounding of clocks and positions is smaller.
 const BEYOND: f64 = 1e-3;
 
 impl Guard<'_> {
+    /// The limit of speed \[m/s\]: that of the plan. The motion of a run log had the limit of its own time.
+    fn speed_limit(&self) -> Interval {
+        self.rig.logged_speed_limit().unwrap_or(self.limits.speed)
+    }
+
+    /// The speed of a move \[m/s\]: as requested, otherwise the rig's own, otherwise the highest that the plan allows.
+    pub(super) fn speed_of(&self, requested: Option<f64>) -> Option<f64> {
+        let high = self.speed_limit().high;
+        let own = || self.rig.own_speed().map(|own| own.min(high));
+        requested
+            .or_else(own)
+            .or_else(|| Some(high).filter(|high| high.is_finite()))
+    }
+
+    pub(super) fn check_speed(&mut self, speed: f64) -> Result<(), RigFault> {
+        self.check(LimitedQuantity::Speed, self.speed_limit(), speed)
+    }
+
     /// Speed of the last motion \[m/s\]. For a move: the commanded speed, or the observed speed if that was higher. For a stroke: the
     /// commanded speed. For smooth paths: the highest speed of the fastest axis. None before the first motion.
     #[must_use]

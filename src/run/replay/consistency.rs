@@ -173,7 +173,7 @@ fn runs_on<'a>(lines: impl Iterator<Item = &'a Line>) -> Result<(), Contradictio
 /// For the entries that count: a target has the next number, and the time of the entry before it.
 fn counts_on(logged: &LoggedRun) -> Result<(), Contradiction> {
     let mut targets = 0;
-    let mut time = logged.rig.as_ref().map_or(0.0, |rig| rig.t);
+    let mut time = logged.rigs.first().map_or(0.0, |rig| rig.t);
     for line in &logged.lines {
         if line.kind == EntryKind::Intent {
             let intent: IntentBody = body(line).map_err(|fault| at(line, fault.to_string()))?;

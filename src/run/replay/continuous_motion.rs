@@ -141,10 +141,17 @@ impl RecordedRig<'_> {
         let target_status = self.state.borrow_mut().take_target_status();
         if let Some(TargetStatus::Stroke { back_to, others }) = target_status {
             let back: Vec<f64> = std::iter::once(back_to).chain(others).collect();
-            self.send_again(&back, None)?;
+            self.move_back(&back)?;
         }
         self.record_intent(&mut intent)?;
         self.follow_recorded(0, each, &mut |rig, each| motion.follow(rig, samples, each))
+    }
+
+    /// Moves back to the start of a stroke that is repeated.
+    fn move_back(&mut self, start: &[f64]) -> Result<(), RigFault> {
+        let rig = self.rig()?;
+        let sent = rig.propose(start, None).and_then(|_| rig.execute());
+        sent.or_else(|fault| self.failed(Call::Execute, fault))
     }
 
     /// Executes a motion and logs its readings; the first `done` readings are in the run log already.

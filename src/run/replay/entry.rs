@@ -347,6 +347,8 @@ pub enum Assurance {
     AcceptedRelaxation,
     /// It was on hold, and the hold may be cleared at its position.
     LetGo,
+    /// It may move faster than before.
+    AcceptedSpeed,
 }
 
 impl Assurance {
@@ -358,6 +360,7 @@ impl Assurance {
             Self::ReReferenced => "it was referenced again",
             Self::AcceptedRelaxation => "the change of the force is accepted",
             Self::LetGo => "its hold was cleared, and it did not move",
+            Self::AcceptedSpeed => "the higher speed is accepted",
         }
     }
 }
@@ -392,7 +395,7 @@ pub enum TargetStatus {
     None,
     /// It was executed; its reading is made late.
     Executed,
-    /// It never arrived: it is sent now.
+    /// It never arrived: it is sent again.
     NotExecuted,
     /// The rig was held during the motion: the same absolute target is sent again.
     #[serde(rename = "held_on_the_way")]
@@ -408,6 +411,14 @@ pub enum TargetStatus {
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         others: Vec<f64>,
     },
+}
+
+impl TargetStatus {
+    /// Whether the target is sent again, as a new INTENT. Its first INTENT then no longer counts.
+    #[must_use]
+    pub const fn sends_again(&self) -> bool {
+        matches!(self, Self::NotExecuted | Self::HeldDuringMotion)
+    }
 }
 
 /// The bytes of a frame as text that any log can hold.

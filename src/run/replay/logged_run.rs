@@ -6,6 +6,7 @@ use std::collections::VecDeque;
 use serde::de::DeserializeOwned;
 
 use super::entry::{AmendBody, Header, PlanBody, ResumeBody, RigBody, TargetStatus};
+use super::in_force::Rigs;
 use crate::record::journal::{EntryKind, Line, Recovered};
 use crate::record::{Event, EventKind};
 use crate::rig::{LineStatistics, position_and_force};
@@ -17,16 +18,15 @@ pub struct LoggedRun {
     pub header: Header,
     /// Text of each file of the header.
     pub texts: Vec<String>,
-    /// The rig at the start of the run.
-    pub rig: Option<RigBody>,
-    /// The rig according to its last identification.
-    pub last_rig: Option<RigBody>,
+    pub rigs: Rigs,
     /// Entries that count, in order: targets, readings, steps, answers, faults, events.
     pub lines: VecDeque<Line>,
     /// Resumptions and amendments, as events of the run.
     pub interruptions: Vec<Event>,
-    /// The status of the last target, from the last resumption, if no entry followed it.
-    pub target_status: Option<TargetStatus>,
+    /// The last resumption, if no entry followed it.
+    pub resumption: Option<ResumeBody>,
+    /// The last target, if that resumption set it aside in order to send it again.
+    pub set_aside: Option<Line>,
     /// Rig time of the last entry \[s\].
     pub time: f64,
     /// Whether the run was completed.
@@ -71,11 +71,11 @@ impl LoggedRun {
         let mut logged = Self {
             texts: Vec::new(),
             header: body(first)?,
-            rig: None,
-            last_rig: None,
+            rigs: Rigs::default(),
             lines: VecDeque::with_capacity(recovered.lines.len()),
             interruptions: Vec::new(),
-            target_status: None,
+            resumption: None,
+            set_aside: None,
             time: 0.0,
             ended: recovered.ended,
             line_statistics: LineStatistics::default(),
@@ -96,9 +96,8 @@ impl LoggedRun {
         }
         match line.kind {
             EntryKind::Rig => {
-                let rig: RigBody = body(line)?;
-                self.rig.get_or_insert_with(|| rig.clone());
-                self.last_rig = Some(rig);
+                let rig = body(line)?;
+                self.answered(rig);
             }
             EntryKind::Plan => {
                 let part: PlanBody = body(line)?;
@@ -126,7 +125,7 @@ impl LoggedRun {
             | EntryKind::Event
             | EntryKind::Fault
             | EntryKind::Held => {
-                self.target_status = None;
+                (self.resumption, self.set_aside) = (None, None);
                 self.lines.push_back(line.clone());
             }
         }
@@ -146,17 +145,29 @@ impl LoggedRun {
         self.texts.clear();
     }
 
+    /// A rig answered; it applies from the next resumption on.
+    pub fn answered(&mut self, rig: RigBody) {
+        self.rigs.answered(rig, &self.header);
+    }
+
     /// The run is continued from here.
     pub fn resumed(&mut self, resume: ResumeBody) {
+        // A target that an earlier resumption set aside without sending it is decided again.
+        self.lines.extend(self.set_aside.take());
         while self
             .lines
             .back()
             .is_some_and(|last| last.seq >= resume.from)
         {
-            self.lines.pop_back();
+            let last = self.lines.pop_back();
+            self.set_aside = last.filter(|last| last.kind == EntryKind::Intent);
         }
+        if !resume.target_status.sends_again() {
+            self.set_aside = None;
+        }
+        self.rigs.applies(resume.from, &self.header);
         self.interrupted(EventKind::Resume, describe(&resume));
-        self.target_status = Some(resume.target_status);
+        self.resumption = Some(resume);
     }
 
     /// Bytes after the last entry were put aside.

@@ -12,6 +12,7 @@ mod continuous_motion;
 mod continuous_move;
 mod entry;
 mod entry_of;
+mod in_force;
 mod logged_run;
 mod recorded_observer;
 mod recorded_rig;
@@ -27,12 +28,13 @@ pub use entry::{
     AmendBody, Assurance, BY_HAND, Call, Header, HeaderFile, IntentBody, RecoverBody, ResumeBody,
     RigBody, SampleBody, StrokeBody, TargetStatus,
 };
+pub use in_force::{InForce, Rigs};
 pub use logged_run::{LoggedRun, Mismatch, UnreadableLog};
 pub use recorded_observer::RecordedObserver;
 pub use recorded_rig::RecordedRig;
 pub use resume_decision::{
-    Bands, ResumeDecision, ResumeRefusal, decide, not_restarted, same_measure, same_resolution,
-    same_rig,
+    Bands, ResumeDecision, ResumeRefusal, decide, no_faster, not_restarted, same_measure,
+    same_resolution, same_rig,
 };
 pub use shape::{Malformed, well_formed};
 pub use state::{CUT_OFF, Continuation};
@@ -47,7 +49,7 @@ use crate::rig::Rig;
 use entry::PlanBody;
 use state::{Begin, State};
 
-use super::{Observer, Unwatched, run};
+use super::{Observer, Request, Unwatched, run};
 use crate::record::remote::DrivenStep;
 use crate::run::client_run::{ClientRunRecord, Driver, Requests, drive};
 
@@ -120,7 +122,7 @@ pub fn replay(plan: &Plan, logged: LoggedRun) -> Replayed {
             let requests = Requests {
                 driver,
                 clock: &|| 0.0,
-                client: &mut |specimen| state::repeat_requests(state, specimen),
+                client: &mut |specimen| repeat_requests(state, specimen),
             };
             let driven = drive(plan, rig, observer, requests);
             steps = Some(driven.steps);
@@ -152,7 +154,7 @@ pub fn resume<'rig, E: From<ResumeRefusal> + 'rig>(
     begin: impl FnOnce() -> Result<Continuation<'rig>, E> + 'rig,
 ) -> Result<Recorded, E> {
     let lines = resume_decision::without_stop_entries(logged)?;
-    let undecided = resume_decision::undecided_stroke(&lines).map_err(ResumeRefusal::from)?;
+    let undecided = resume_decision::undecided(&lines).map_err(ResumeRefusal::from)?;
     let refused = Rc::new(RefCell::new(None));
     let refusal = Rc::clone(&refused);
     let begin: Begin<'rig> =
@@ -239,6 +241,35 @@ fn perform<'rig>(
         mismatch: state.take_mismatch(),
         fault: state.take_fault(),
         sealed: state.sealed(),
+    }
+}
+
+/// Repeats the logged requests of a client on the specimen.
+fn repeat_requests(state: &RefCell<State<'_>>, specimen: &mut Specimen<'_, '_>) {
+    loop {
+        let (over, stayed) = {
+            let state = state.borrow();
+            (
+                state.next_kind().is_none() || state.mismatch().is_some(),
+                state.front_is_pause_fault(),
+            )
+        };
+        if over {
+            return;
+        }
+        if stayed {
+            specimen.repeat_stay();
+            continue;
+        }
+        let Some(request) = state.borrow_mut().next_request() else {
+            return;
+        };
+        let last = request == Request::Close;
+        specimen.carry_out(request);
+        // The entries after it come from the session itself: recovered communication errors.
+        if last {
+            return;
+        }
     }
 }
 

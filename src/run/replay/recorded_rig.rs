@@ -6,12 +6,12 @@ use std::rc::Rc;
 
 use super::continuous_move::ContinuousMove;
 use super::entry::{
-    Call, FaultBody, HeldBody, IntentBody, RigBody, SampleBody, StrokeBody, TargetStatus, escaped,
+    Call, FaultBody, HeldBody, IntentBody, RigBody, SampleBody, StrokeBody, escaped,
 };
 use super::entry_of::{append_sample, in_log_time, intent, same_bits, unknown_rig};
 use super::state::{State, ended};
 use crate::physics::tracking::trajectory::Path;
-use crate::plan::Limits;
+use crate::plan::{Interval, Limits};
 use crate::record::journal::EntryKind;
 use crate::rig::safety::failpoint;
 use crate::rig::safety::failpoint::Guarding;
@@ -34,7 +34,7 @@ pub struct RecordedRig<'rig> {
 
 impl<'rig> RecordedRig<'rig> {
     pub(super) fn new(live: Option<&'rig mut dyn Rig>, state: Rc<RefCell<State<'rig>>>) -> Self {
-        let known = state.borrow().rig.clone();
+        let known = state.borrow().rigs.first().cloned();
         let about = known.unwrap_or_else(|| {
             let about = live.as_deref().map_or_else(unknown_rig, RigBody::of);
             let mut state = state.borrow_mut();
@@ -136,17 +136,6 @@ impl<'rig> RecordedRig<'rig> {
         } else {
             Ok(())
         }
-    }
-
-    /// Sends a target that is in the run log already.
-    pub(super) fn send_again(
-        &mut self,
-        targets: &[f64],
-        speed: Option<f64>,
-    ) -> Result<(), RigFault> {
-        let rig = self.rig()?;
-        let sent = rig.propose(targets, speed).and_then(|_| rig.execute());
-        sent.or_else(|fault| self.failed(Call::Execute, fault))
     }
 
     /// The next entry as an INTENT, if it has these targets.
@@ -271,6 +260,16 @@ impl Rig for RecordedRig<'_> {
         self.state.borrow().time
     }
 
+    fn before_motion(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
+        let undecided = self.state.borrow().target_is_undecided();
+        if undecided {
+            self.logged_intent(targets, speed, None)?;
+            self.state.borrow_mut().open();
+        }
+        self.answers_from_the_log();
+        Ok(())
+    }
+
     fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
         if self.answers_from_the_log() {
             if let Some(fault) = self.state.borrow_mut().logged_fault(Call::Propose) {
@@ -327,12 +326,9 @@ impl Rig for RecordedRig<'_> {
             if !state.can_continue() {
                 return Err(ended());
             }
-            let target_status = state.take_target_status();
-            drop(state);
-            return match target_status {
-                Some(TargetStatus::Executed) => Ok(()),
-                _ => self.send_again(&targets, speed),
-            };
+            // A target that is sent again is no longer in the run log.
+            state.target_is_done();
+            return Ok(());
         }
         self.rig()?;
         self.record_intent(&mut intent(&targets, speed, &encoded, None))?;
@@ -468,7 +464,16 @@ impl Rig for RecordedRig<'_> {
     }
 
     fn own_speed(&self) -> Option<f64> {
-        self.about.own_speed
+        let state = self.state.borrow();
+        let in_force = state.rig_in_force().map(|in_force| &in_force.rig);
+        in_force.unwrap_or(&self.about).own_speed
+    }
+
+    /// The limit of the plan applies to every motion that is not logged yet.
+    fn logged_speed_limit(&self) -> Option<Interval> {
+        let state = self.state.borrow();
+        let logged = state.rig_in_force().filter(|_| state.next_kind().is_some());
+        logged.and_then(|in_force| in_force.speed_limit)
     }
 
     fn take_broken(&mut self) -> Option<Reading> {

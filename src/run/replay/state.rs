@@ -1,7 +1,6 @@
 //! The common state of the recorded rig and the recorded observer: the entries still to be replayed, the run log that is
 //! written, the time of the last entry. In: bodies to append, kinds to expect. Out: logged bodies.
 
-use std::cell::RefCell;
 use std::collections::VecDeque;
 
 use serde::Serialize;
@@ -10,15 +9,15 @@ use serde::de::DeserializeOwned;
 use super::Wall;
 use super::compatibility::has_present_wording;
 use super::entry::{
-    Call, EndBody, EndOutcome, FaultBody, HeldBody, IntentBody, OperatorBody, RigBody, SampleBody,
+    Call, EndBody, EndOutcome, FaultBody, HeldBody, IntentBody, OperatorBody, SampleBody,
     TargetStatus,
 };
+use super::in_force::{InForce, Rigs};
 use super::logged_run::{LoggedRun, Mismatch, body};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Journal, JournalFault, Line};
 use crate::rig::{LineStatistics, Reading, Rig, RigFault};
 use crate::run::Request;
-use crate::run::remote_control::Specimen;
 
 /// The rig and the run log with which a run is continued after its replay.
 pub struct Continuation<'rig> {
@@ -32,19 +31,28 @@ pub struct Continuation<'rig> {
 /// Opens the continuation. None: the run cannot be continued.
 pub(super) type Begin<'rig> = Box<dyn FnOnce() -> Option<Continuation<'rig>> + 'rig>;
 
+/// An entry that counts or not, by the state of the rig.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Undecided {
+    /// A motion with readings, most of which are missing.
+    Stroke(u64),
+    /// A target without a reading after it. It is compared with the plan before the rig is opened.
+    Target(u64),
+}
+
 pub(super) struct State<'rig> {
     lines: VecDeque<Line>,
     /// The continuation, until it is opened.
     begin: Option<Begin<'rig>>,
     /// The entry before which it is opened, if the rig decides whether that and the following entries count.
-    undecided: Option<u64>,
+    undecided: Option<Undecided>,
     /// The rig, until it is used.
     opened: Option<&'rig mut dyn Rig>,
     /// A client drove the rig: the client's requests are logged between a proposal and its target.
     pub(super) driven: bool,
     /// Events and questions of the run log have the wording of this version: their texts are compared.
     pub(super) present_wording: bool,
-    pub(super) rig: Option<RigBody>,
+    pub(super) rigs: Rigs,
     journal: Option<Journal>,
     /// The status of the target at the end of the replay, from the resumption.
     target_status: Option<TargetStatus>,
@@ -75,13 +83,13 @@ impl<'rig> State<'rig> {
     }
 
     pub(super) fn replaying(logged: LoggedRun) -> Self {
-        let time = logged.rig.as_ref().map_or(0.0, |rig| rig.t);
+        let time = logged.rigs.first().map_or(0.0, |rig| rig.t);
         Self {
             driven: logged.header.served.is_some(),
             present_wording: has_present_wording(&logged),
             lines: logged.lines,
             time,
-            rig: logged.rig,
+            rigs: logged.rigs,
             ended: logged.ended,
             interruptions: logged.interruptions,
             recovered_before: logged.line_statistics,
@@ -93,7 +101,7 @@ impl<'rig> State<'rig> {
     pub(super) fn resuming(
         logged: LoggedRun,
         begin: Begin<'rig>,
-        undecided: Option<u64>,
+        undecided: Option<Undecided>,
         wall: Wall,
     ) -> Self {
         Self {
@@ -112,7 +120,7 @@ impl<'rig> State<'rig> {
             opened: None,
             driven: false,
             present_wording: true,
-            rig: None,
+            rigs: Rigs::default(),
             journal: None,
             target_status: None,
             time: 0.0,
@@ -131,12 +139,16 @@ impl<'rig> State<'rig> {
     /// Whether answers still come from the run log. After the last of them the continuation is opened: not earlier, because
     /// a rig is not kept waiting for a replay.
     pub(super) fn answers_from_the_log(&mut self) -> bool {
-        let decides = self
-            .lines
-            .front()
-            .is_none_or(|line| Some(line.seq) == self.undecided);
-        if decides
-            && self.mismatch.is_none()
+        let stroke = |line: &Line| self.undecided == Some(Undecided::Stroke(line.seq));
+        if self.lines.front().is_none_or(stroke) {
+            self.open();
+        }
+        !self.lines.is_empty() || self.mismatch.is_some()
+    }
+
+    /// Opens the continuation, unless plan and run log differ.
+    pub(super) fn open(&mut self) {
+        if self.mismatch.is_none()
             && let Some(begin) = self.begin.take()
             && let Some(Continuation {
                 rig,
@@ -146,10 +158,10 @@ impl<'rig> State<'rig> {
         {
             let last = logged.lines.back().map(|line| line.seq);
             self.lines.retain(|line| Some(line.seq) <= last);
-            (self.target_status, self.interruptions) = (logged.target_status, logged.interruptions);
+            self.target_status = logged.resumption.map(|resume| resume.target_status);
+            (self.interruptions, self.rigs) = (logged.interruptions, logged.rigs);
             (self.journal, self.opened) = (Some(journal), Some(rig));
         }
-        !self.lines.is_empty() || self.mismatch.is_some()
     }
 
     /// The run holds. If its run log is being replayed without a continuation, it ends there, and would end again.
@@ -164,6 +176,17 @@ impl<'rig> State<'rig> {
         self.opened.take()
     }
 
+    /// The rig that applies to the next entry.
+    pub(super) fn rig_in_force(&self) -> Option<&InForce> {
+        self.rigs.at(self.lines.front().map(|line| line.seq))
+    }
+
+    /// Whether the rig decides whether the next entry, a target, counts.
+    pub(super) fn target_is_undecided(&self) -> bool {
+        let undecided = |line: &Line| self.undecided == Some(Undecided::Target(line.seq));
+        self.begin.is_some() && self.lines.front().is_some_and(undecided)
+    }
+
     /// Whether the replay has reached the END of the run.
     pub(super) fn is_at_the_logged_end(&self) -> bool {
         self.ended && self.lines.is_empty() && self.mismatch.is_none()
@@ -176,6 +199,14 @@ impl<'rig> State<'rig> {
 
     pub(super) fn take_target_status(&mut self) -> Option<TargetStatus> {
         self.target_status.take()
+    }
+
+    /// The last target of the run log was executed. A stroke after it may still have to be repeated.
+    pub(super) fn target_is_done(&mut self) {
+        self.target_status = self
+            .target_status
+            .take()
+            .filter(|status| *status != TargetStatus::Executed);
     }
 
     pub(super) fn wall(&self) -> Option<String> {
@@ -290,7 +321,7 @@ impl<'rig> State<'rig> {
     }
 
     /// The client's next request, not consumed.
-    fn next_request(&mut self) -> Option<Request> {
+    pub(super) fn next_request(&mut self) -> Option<Request> {
         match self.peek(EntryKind::Operator, "a request of the client") {
             Ok(OperatorBody::Asked { request }) => Some(request),
             Ok(_) => {
@@ -454,35 +485,6 @@ impl<'rig> State<'rig> {
 
 /// Reported at the end of the replay of a run log without an END.
 pub const CUT_OFF: &str = "the run log ends here: the run was interrupted";
-
-/// Repeats the logged requests of a client on the specimen.
-pub(super) fn repeat_requests(state: &RefCell<State<'_>>, specimen: &mut Specimen<'_, '_>) {
-    loop {
-        let (over, stayed) = {
-            let state = state.borrow();
-            (
-                state.lines.is_empty() || state.mismatch.is_some(),
-                state.front_is_pause_fault(),
-            )
-        };
-        if over {
-            return;
-        }
-        if stayed {
-            specimen.repeat_stay();
-            continue;
-        }
-        let Some(request) = state.borrow_mut().next_request() else {
-            return;
-        };
-        let last = request == Request::Close;
-        specimen.carry_out(request);
-        // The entries after it come from the session itself: recovered communication errors.
-        if last {
-            return;
-        }
-    }
-}
 
 /// The fault at the end of the replay of a run log without an END.
 pub(super) fn ended() -> RigFault {

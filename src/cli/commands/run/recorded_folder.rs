@@ -15,11 +15,8 @@ pub(super) fn equipment_of(read: &ReadRecord) -> Result<Equipment, Failure> {
     if let Some(stated) = &read.logged.header.equipment {
         return Ok(stated.clone());
     }
-    let rig = read
-        .logged
-        .rig
-        .as_ref()
-        .ok_or(replay::ResumeRefusal::NothingRecorded)?;
+    let first = read.logged.rigs.first();
+    let rig = first.ok_or(replay::ResumeRefusal::NothingRecorded)?;
     Ok(Equipment::of(
         &read.plan,
         Device::of(&rig.identity, rig.noise),

@@ -19,7 +19,7 @@ use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::evidence::MANIFEST;
 use crate::files::provenance::{BUILD, TOOLCHAIN};
-use crate::plan::{Plan, RealLink};
+use crate::plan::Plan;
 use crate::record::equipment::Equipment;
 use crate::record::journal::{Durability, EntryKind, FileStorage, Journal};
 use crate::report::Provenance;
@@ -67,6 +67,9 @@ pub struct ResumeArguments {
     /// Confirm a force change after inspecting the specimen (logged)
     #[arg(long)]
     pub accept_relaxation: bool,
+    /// Confirm that the rig may move faster than before (logged)
+    #[arg(long)]
+    pub accept_speed: bool,
     /// Answer every prompt with yes, including the motion release
     #[arg(long)]
     pub yes: bool,
@@ -111,12 +114,12 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
                 .help("start a new run with `psd rig serve`"),
         );
     }
-    let Some(link) = read.plan.rig.link.as_real().cloned() else {
+    if read.plan.rig.link.as_real().is_none() {
         return Err(Failure::command_line(
             "a run on a virtual rig moved nothing: there is nothing to resume",
         )
         .help("start a new run with `psd run`"));
-    };
+    }
     let (plan, provenance, amendment) = what_holds(arguments, &read)?;
 
     replay::same_measure(&read.plan.rig, &plan.rig)?;
@@ -130,6 +133,8 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         .filter(|line| line.kind == EntryKind::Step)
         .count() as u64;
     let (extent, planned) = expected::of(&plan);
+    let before = expected::of(&read.plan).0.speed;
+    let planned_speed = ("highest speed in the plan", before, extent.speed);
     let expected = expected::rest(extent, planned, steps);
     let attendance = Attendance {
         yes: arguments.yes,
@@ -137,18 +142,15 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     };
     let stop_request = StopRequest::default().with_release_allowed(arguments.let_go);
     // The zero is that of the start of the run; the present position of the rig does not change it.
-    let datum = read
-        .logged
-        .rig
-        .as_ref()
-        .and_then(|rig| rig.datum.as_deref());
+    let first = read.logged.rigs.first();
+    let datum = first.and_then(|rig| rig.datum.as_deref());
     let at_its_datum = plan.rig.with_recorded_datum(datum);
     let signals = Signals::caught(&stop_request).map_err(Failure::Signals)?;
     let simulated = read
         .logged
-        .last_rig
-        .as_ref()
-        .is_some_and(|rig| rig.identity.simulated);
+        .rigs
+        .last()
+        .is_some_and(|last| last.rig.identity.simulated);
     let watcher = RefCell::new(Watcher::new(
         settings,
         &attendance,
@@ -173,7 +175,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         let resumption = settle(
             arguments,
             &plan,
-            &link,
+            planned_speed,
             &read.logged,
             rig,
             &mut watcher.borrow_mut(),
@@ -206,13 +208,12 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
             replay::amend(&mut journal, &amendment, &texts)?;
             logged.amended(amendment);
         }
-        journal.append(
-            EntryKind::Rig,
-            &RigBody {
-                t: logged.time,
-                ..RigBody::of(rig)
-            },
-        )?;
+        let answered = RigBody {
+            t: logged.time,
+            ..RigBody::of(rig)
+        };
+        journal.append(EntryKind::Rig, &answered)?;
+        logged.answered(answered);
         journal.append(EntryKind::Resume, &resumption)?;
         journal.sync()?;
         logged.resumed(resumption);
@@ -359,22 +360,31 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Continue
     ))
 }
 
+/// A speed that the plan determines, before and now \[m/s\].
+type Speeds = (&'static str, Option<f64>, Option<f64>);
+
 /// Reads from the rig, without a move, whether it reached the last target. Then asks the operator whether it may move.
 fn settle(
     arguments: &ResumeArguments,
     plan: &Plan,
-    link: &RealLink,
+    planned_speed: Speeds,
     logged: &LoggedRun,
     rig: &mut RealRig,
     watcher: &mut Watcher,
 ) -> Result<ResumeBody, Failure> {
-    let recorded = logged
-        .last_rig
-        .as_ref()
-        .ok_or(replay::ResumeRefusal::NothingRecorded)?;
-    let assured = assured(arguments);
+    let (Some(last), Some(link)) = (logged.rigs.last(), plan.rig.link.as_real()) else {
+        return Err(replay::ResumeRefusal::NothingRecorded.into());
+    };
+    let (recorded, assured) = (&last.rig, assured(arguments));
     replay::same_rig(&recorded.identity, &rig.identity(), &assured)?;
     replay::same_resolution(recorded.noise, rig.declared_noise())?;
+    let limit = last.speed_limit.map(|limit| limit.high);
+    let speeds = [
+        ("own speed", recorded.own_speed, rig.own_speed()),
+        ("limit of speed", limit, Some(plan.limits.speed.high)),
+        planned_speed,
+    ];
+    replay::no_faster(&speeds, &assured)?;
     let found = rig.read()?;
     let bands = Bands::of(&plan.rig, link);
     let decision = replay::decide(
@@ -384,7 +394,7 @@ fn settle(
         &bands,
         arguments.accept_relaxation,
     )?;
-    let released = confirm_release::ask(plan, link, &found, &decision, rig, watcher)?;
+    let released = confirm_release::ask(plan, &assured, &found, &decision, rig, watcher)?;
     let resumption =
         decision.resumption(&arguments.operator, &arguments.reason, &found, logged.time);
     let released = Some(released);
@@ -403,6 +413,7 @@ fn assured(arguments: &ResumeArguments) -> Vec<Assurance> {
         (arguments.re_referenced, Assurance::ReReferenced),
         (arguments.accept_relaxation, Assurance::AcceptedRelaxation),
         (arguments.let_go, Assurance::LetGo),
+        (arguments.accept_speed, Assurance::AcceptedSpeed),
     ];
     assurances
         .into_iter()
@@ -430,6 +441,7 @@ pub fn go_on(
         same_power_up: true,
         let_go: true,
         accept_relaxation: false,
+        accept_speed: false,
         yes: false,
     };
     match resume(&arguments, settings) {

@@ -9,15 +9,16 @@ use super::entry::{
     HeldBody, IntentBody, OperatorBody, ResumeBody, RigBody, SampleBody, TargetStatus,
 };
 use super::logged_run::{LoggedRun, UnreadableLog, body};
+use super::state::Undecided;
 use crate::record::journal::{EntryKind, Line};
 use crate::record::{Event, EventKind};
 use crate::rig::Reading;
 use crate::run::{Inspection, UNLOADING};
 
 pub use position::Bands;
-use position::{FoundPosition, InterruptedMotion, check_relaxation, mostly_lost};
+use position::{FoundPosition, InterruptedMotion, Place, may_move, mostly_lost};
 pub use refusal::ResumeRefusal;
-pub use same_rig::{not_restarted, same_measure, same_resolution, same_rig};
+pub use same_rig::{no_faster, not_restarted, same_measure, same_resolution, same_rig};
 
 /// The point from which the run log is continued.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,39 +73,87 @@ pub fn decide(
     let Some(last) = lines.last() else {
         return Err(ResumeRefusal::NothingRecorded);
     };
+    let lines = lines.as_slice();
+    let recorded = last_reading(lines)?;
+    let held = last_final_hold(logged, last.seq)?;
     let found_position = FoundPosition {
         positions: &found.displacement,
         bands: &bands.displacement,
     };
-    let recorded = last_reading(&lines)?;
-    let last_intent = lines
-        .iter()
-        .rposition(|line| line.kind == EntryKind::Intent);
-    let held = last_final_hold(logged, last.seq)?;
-    let decision = |from, target_status| ResumeDecision {
+    let LastTarget {
         from,
         target_status,
-        recorded: recorded.clone(),
-        held: held.clone(),
-        sends: None,
-    };
+        place,
+        sends,
+    } = last_target(logged, lines, rig, found_position)?;
+    let resumed = logged.resumption.as_ref().map(|resume| &resume.found);
+    let reference = held.as_ref().or(resumed).or(recorded.as_ref());
     if let Some((held_at, _)) = &held {
         // A later motion is not logged: the specimen has a different history.
         found_position.expect_at(held_at)?;
-        check_relaxation(held.as_ref(), found, bands, accept_relaxation)?;
     }
+    may_move(
+        &place,
+        reference,
+        found,
+        &bands.softened_by(lines),
+        accept_relaxation,
+    )?;
+    Ok(ResumeDecision {
+        from,
+        target_status,
+        recorded,
+        held,
+        sends,
+    })
+}
 
+/// What became of the last target, and where the rig must then be.
+struct LastTarget {
+    /// Entries from this one on no longer count.
+    from: u64,
+    target_status: TargetStatus,
+    place: Place,
+    sends: Option<(Vec<f64>, f64)>,
+}
+
+/// What became of the last target of these lines, by the memory and the position of the rig.
+fn last_target(
+    logged: &LoggedRun,
+    lines: &[Line],
+    rig: &RigBody,
+    found: FoundPosition<'_>,
+) -> Result<LastTarget, ResumeRefusal> {
+    let after = lines.last().map_or(0, |last| last.seq) + 1;
+    let decided = |from, target_status, place| LastTarget {
+        from,
+        target_status,
+        place,
+        sends: None,
+    };
+    let recorded = last_reading(lines)?;
+    let axes = found.positions.len();
+    if let Some(ResumeBody {
+        target_status: again @ TargetStatus::Stroke { back_to, others },
+        found: (resumed_at, _),
+        ..
+    }) = &logged.resumption
+    {
+        // It was on its way back to the start of the stroke.
+        let start = std::iter::once(*back_to).chain(others.iter().copied());
+        let place = Place::Between(resumed_at.clone(), start.collect());
+        return Ok(decided(after, again.clone(), place));
+    }
+    let last_intent = lines
+        .iter()
+        .rposition(|line| line.kind == EntryKind::Intent);
     let Some(at) = last_intent else {
         // No target was sent: there are only readings at rest.
-        let start = recorded
-            .as_ref()
-            .map_or_else(|| vec![0.0; found.displacement.len()], |(x, _)| x.clone());
-        found_position.expect_at(&start)?;
-        check_relaxation(recorded.as_ref(), found, bands, accept_relaxation)?;
-        return Ok(decision(last.seq + 1, TargetStatus::None));
+        let start = recorded.map_or_else(|| vec![0.0; axes], |(x, _)| x);
+        return Ok(decided(after, TargetStatus::None, Place::At(start)));
     };
     let intent: IntentBody = body(&lines[at])?;
-    let before = position_before(&lines[..at], found.displacement.len())?;
+    let before = position_before(&lines[..at], axes)?;
     let target = intent.to;
     if intent.samples.is_some()
         && lines[at..]
@@ -115,78 +164,59 @@ pub fn decide(
             .iter()
             .filter(|line| line.kind == EntryKind::Sample)
             .count();
-        let reached = if readings_done > 0 {
-            recorded.as_ref().map_or(&before, |(x, _)| x)
-        } else {
-            &before
-        };
-        let samples = intent.samples.unwrap_or(0);
+        let reached = recorded.filter(|_| readings_done > 0);
         let motion = InterruptedMotion {
-            reached,
-            target: &target,
+            reached: reached.map_or_else(|| before.clone(), |(x, _)| x),
+            target,
             paths: intent.path.as_deref(),
-            samples,
+            samples: intent.samples.unwrap_or(0),
             readings_done,
         };
-        return Ok(match motion.target_status(found_position, &before)? {
-            target_status @ TargetStatus::Stroke { .. } => decision(lines[at].seq, target_status),
-            target_status => decision(last.seq + 1, target_status),
-        });
-    }
-    if at + 1 < lines.len()
-        && let Some(paths) = intent
-            .path
-            .as_ref()
-            .filter(|_| !found_position.is_at(&target))
-    {
-        // It passed its target at the velocity of the path, and held. After it is moved back, it continues from rest.
-        found_position.expect_past(paths)?;
-        return Ok(decision(
-            last.seq + 1,
-            TargetStatus::Stroke {
-                back_to: target[0],
-                others: target[1..].to_vec(),
-            },
-        ));
+        let (target_status, place) = motion.target_status(found, &before);
+        let from = match target_status {
+            TargetStatus::Stroke { .. } => lines[at].seq,
+            _ => after,
+        };
+        return Ok(decided(from, target_status, place));
     }
     if at + 1 < lines.len() {
-        found_position.expect_at(&target)?;
-        check_relaxation(recorded.as_ref(), found, bands, accept_relaxation)?;
-        return Ok(decision(last.seq + 1, TargetStatus::None));
+        return Ok(match intent.path {
+            // It passed its target at the velocity of the path, and held. After it is moved back, it continues from rest.
+            Some(paths) if !found.is_at(&target) => decided(
+                after,
+                TargetStatus::Stroke {
+                    back_to: target[0],
+                    others: target[1..].to_vec(),
+                },
+                Place::past(&paths),
+            ),
+            _ => decided(after, TargetStatus::None, Place::At(target)),
+        });
     }
-    if let Some(TargetStatus::Stroke { .. }) = logged.target_status {
-        return Ok(decision(
-            last.seq + 1,
-            logged.target_status.clone().unwrap_or(TargetStatus::None),
-        ));
-    }
-    let target_status = match (&rig.last_move, intent.id) {
+    let on_the_way = || Place::Between(before.clone(), target.clone());
+    let (target_status, place) = match (&rig.last_move, intent.id) {
         (Some(moved), Some(id))
-            if moved.id >= id
-                && found_position.is_at(&moved.targets)
-                && found_position.is_at(&target) =>
+            if moved.id >= id && found.is_at(&moved.targets) && found.is_at(&target) =>
         {
-            TargetStatus::Executed
+            (TargetStatus::Executed, Place::At(target.clone()))
         }
         (Some(moved), Some(id)) if moved.id < id => {
-            found_position.expect_at(&before)?;
-            TargetStatus::NotExecuted
+            (TargetStatus::NotExecuted, Place::At(before.clone()))
         }
-        (Some(_), Some(_)) => found_position.expect_between(&before, &target)?,
+        (Some(_), Some(_)) => (TargetStatus::HeldDuringMotion, on_the_way()),
         // Without a memory of moves only the position decides; if both are equally near, the same target is requested
         // again.
-        _ if found_position.is_at(&before) => TargetStatus::NotExecuted,
-        _ if found_position.is_at(&target) => TargetStatus::Executed,
-        _ => found_position.expect_between(&before, &target)?,
+        _ if found.is_at(&before) => (TargetStatus::NotExecuted, Place::At(before.clone())),
+        _ if found.is_at(&target) => (TargetStatus::Executed, Place::At(target.clone())),
+        _ => (TargetStatus::HeldDuringMotion, on_the_way()),
     };
-    let sends = matches!(
-        target_status,
-        TargetStatus::NotExecuted | TargetStatus::HeldDuringMotion
-    )
-    .then_some((target, intent.rate));
-    Ok(ResumeDecision {
-        sends,
-        ..decision(last.seq + 1, target_status)
+    Ok(if target_status.sends_again() {
+        LastTarget {
+            sends: Some((target, intent.rate)),
+            ..decided(lines[at].seq, target_status, place)
+        }
+    } else {
+        decided(after, target_status, place)
     })
 }
 
@@ -206,7 +236,8 @@ fn last_final_hold(logged: &LoggedRun, last: u64) -> Result<Option<Measured>, Un
 
 /// The entries without those that only report the stop: the run reports them again, or no longer.
 pub(super) fn without_stop_entries(logged: &LoggedRun) -> Result<Vec<Line>, ResumeRefusal> {
-    let mut lines: Vec<Line> = logged.lines.iter().cloned().collect();
+    let entries = logged.lines.iter().chain(&logged.set_aside);
+    let mut lines: Vec<Line> = entries.cloned().collect();
     while let Some(last) = lines.last() {
         match last.kind {
             EntryKind::Fault | EntryKind::Held => {}
@@ -243,9 +274,9 @@ pub(super) fn without_stop_entries(logged: &LoggedRun) -> Result<Vec<Line>, Resu
     }
 }
 
-/// The entry from which an interrupted run may be repeated: the stroke at its end, if most of its readings are missing. The state of the
-/// rig then decides.
-pub(super) fn undecided_stroke(lines: &[Line]) -> Result<Option<u64>, UnreadableLog> {
+/// The entry from which an interrupted run may be repeated, by the state of the rig: the target at its end without a reading, or the
+/// stroke at its end, if most of its readings are missing.
+pub(super) fn undecided(lines: &[Line]) -> Result<Option<Undecided>, UnreadableLog> {
     let Some(at) = lines
         .iter()
         .rposition(|line| line.kind == EntryKind::Intent)
@@ -253,6 +284,10 @@ pub(super) fn undecided_stroke(lines: &[Line]) -> Result<Option<u64>, Unreadable
         return Ok(None);
     };
     let intent: IntentBody = body(&lines[at])?;
+    let seq = lines[at].seq;
+    if intent.samples.is_none() && at + 1 == lines.len() {
+        return Ok(Some(Undecided::Target(seq)));
+    }
     let is_cut = intent.path.is_none()
         && lines[at..]
             .iter()
@@ -264,7 +299,7 @@ pub(super) fn undecided_stroke(lines: &[Line]) -> Result<Option<u64>, Unreadable
     let lost = intent
         .samples
         .is_some_and(|samples| mostly_lost(samples, readings_done));
-    Ok((is_cut && lost).then_some(lines[at].seq))
+    Ok((is_cut && lost).then_some(Undecided::Stroke(seq)))
 }
 
 /// \[m\] and \[N\], one entry per degree of freedom.

@@ -1,22 +1,31 @@
 //! The position and force of a rig that is found when a run is resumed, compared with those of its run log.
 
+use super::Measured;
 use super::refusal::ResumeRefusal;
 use crate::physics::tracking::trajectory::Path;
-use crate::plan::{RealLink, RigPlan};
+use crate::plan::{Interval, RealLink, RigPlan};
+use crate::record::journal::{EntryKind, Line};
+use crate::rig::safety::failpoint::{Guarding, on};
 use crate::rig::{Reading, named_axis};
-use crate::run::replay::entry::TargetStatus;
+use crate::run::replay::entry::{SampleBody, TargetStatus};
+use crate::run::replay::logged_run::body;
 
 /// Longest time for which a rig without a next path continues before it holds \[s\]: 0.25 s of the controller, and the
 /// delay of its line and its clock.
 const LONGEST_OVERRUN: f64 = 1.0;
 
-/// Largest distance of the rig from its logged position, one entry per axis.
+/// Readings before the last one in which its motion is looked for.
+const RECENT: usize = 64;
+
+/// Largest distance of the rig from its logged position and force, one entry per axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bands {
     /// \[m\]
     pub displacement: Vec<f64>,
     /// \[N\], for the relaxation since then.
     pub force: Vec<f64>,
+    /// Stiffness of the pre-test check \[N/m\]: the change of force in a motion since then.
+    pub stiffness: Vec<Interval>,
 }
 
 impl Bands {
@@ -26,17 +35,45 @@ impl Bands {
     pub fn of(rig: &RigPlan, link: &RealLink) -> Self {
         let axes = 0..rig.axes().unwrap_or(1);
         let readings = axes.map(|axis| (link.readings_of(axis), link.pretest_check_of(axis)));
-        let bands = readings.map(|(read, pretest_check)| {
-            (
-                rig.settle.band.max(4.0 * read.resolution),
-                pretest_check.zero.max(6.0 * read.noise),
-            )
-        });
-        let (displacement, force) = bands.unzip();
-        Self {
-            displacement,
-            force,
+        let mut bands = Self {
+            displacement: Vec::new(),
+            force: Vec::new(),
+            stiffness: Vec::new(),
+        };
+        for (read, pretest_check) in readings {
+            bands
+                .displacement
+                .push(rig.settle.band.max(4.0 * read.resolution));
+            bands.force.push(pretest_check.zero.max(6.0 * read.noise));
+            bands.stiffness.push(pretest_check.stiffness);
         }
+        bands
+    }
+
+    /// The same, for a specimen that was softer in the last logged motion: after yield the force follows its tangent. No stiffness is below
+    /// zero: a specimen that loses force must be inspected.
+    pub(super) fn softened_by(&self, lines: &[Line]) -> Self {
+        let mut bands = self.clone();
+        let mut readings = lines
+            .iter()
+            .rev()
+            .filter(|line| line.kind == EntryKind::Sample)
+            .map_while(|line| body::<SampleBody>(line).ok());
+        let Some(last) = readings.next() else {
+            return bands;
+        };
+        let earlier: Vec<SampleBody> = readings.take(RECENT).collect();
+        for (axis, stiffness) in bands.stiffness.iter_mut().enumerate() {
+            let of = |sample: &SampleBody| Some((*sample.x.get(axis)?, *sample.r.get(axis)?));
+            let Some((x, r)) = of(&last) else { continue };
+            let far =
+                |(before, _): &(f64, f64)| (x - before).abs() > band(&self.displacement, axis);
+            if let Some((before, force)) = earlier.iter().filter_map(of).find(far) {
+                let tangent = (r - force) / (x - before);
+                stiffness.low = stiffness.low.min(tangent.max(0.0));
+            }
+        }
+        bands
     }
 }
 
@@ -50,44 +87,105 @@ pub(super) const fn mostly_lost(samples: usize, readings_done: usize) -> bool {
     readings_done + 1 < samples && 2 * readings_done < samples
 }
 
-/// A relaxation beyond its band must be accepted by the operator.
-pub(super) fn check_relaxation(
-    recorded: Option<&(Vec<f64>, Vec<f64>)>,
+/// The position in which the run log allows the rig to move again \[m\], one entry per axis.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Place {
+    At(Vec<f64>),
+    /// On the way of a motion, ends included.
+    Between(Vec<f64>, Vec<f64>),
+}
+
+impl Place {
+    /// Between the end of each path and the farthest position at which its axis may have held.
+    pub(super) fn past(paths: &[Path]) -> Self {
+        let farthest = |path: &Path| path.to + LONGEST_OVERRUN * path.end_velocity;
+        Self::Between(
+            paths.iter().map(|path| path.to).collect(),
+            paths.iter().map(farthest).collect(),
+        )
+    }
+}
+
+/// Every way back into motion passes here. The rig must be in a place that the run log allows, with a force that follows from the last
+/// logged reading, `reference` (\[m\], \[N\]).
+pub(super) fn may_move(
+    place: &Place,
+    reference: Option<&Measured>,
     found: &Reading,
     bands: &Bands,
-    accept: bool,
+    accept_relaxation: bool,
 ) -> Result<(), ResumeRefusal> {
-    let Some((_, recorded)) = recorded.filter(|_| !accept) else {
-        return Ok(());
+    let position = FoundPosition {
+        positions: &found.displacement,
+        bands: &bands.displacement,
     };
-    let inside = |(axis, (recorded, found)): (usize, (&f64, &f64))| {
-        (found - recorded).abs() <= band(&bands.force, axis)
-    };
-    let Some(axis_index) = recorded
-        .iter()
-        .zip(&found.force)
-        .enumerate()
-        .position(|axis| !inside(axis))
+    match place {
+        Place::At(at) => position.expect_at(at)?,
+        Place::Between(from, to) => position.expect_between(from, to)?,
+    }
+    let Some(reference) = reference.filter(|_| !accept_relaxation && on(Guarding::ForceFound))
     else {
         return Ok(());
     };
-    let (axis, band) = (
-        named_axis(axis_index, found.force.len()),
-        band(&bands.force, axis_index),
-    );
-    Err(ResumeRefusal::Relaxed {
-        recorded: recorded[axis_index],
-        found: found.force[axis_index],
-        band,
-        axis,
-    })
+    let axes = found.force.len();
+    for (axis, force) in found.force.iter().enumerate() {
+        let Interval { low, high } = allowed_force(axis, reference, &found.displacement, bands);
+        if !(low..=high).contains(force) {
+            return Err(ResumeRefusal::Relaxed {
+                recorded: reference.1.get(axis).copied().unwrap_or(f64::NAN),
+                found: *force,
+                low,
+                high,
+                axis: named_axis(axis, axes),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// The force of one axis at `positions` \[N\], if the specimen is that of the logged reading: r + k Δ ± band. k is the stiffness of the
+/// axis. The other axes add at most √(kᵢ kⱼ) Δⱼ each, because the stiffness matrix is symmetric and positive.
+fn allowed_force(
+    axis: usize,
+    (from, forces): &Measured,
+    positions: &[f64],
+    bands: &Bands,
+) -> Interval {
+    let travel = |axis: usize| match (positions.get(axis), from.get(axis)) {
+        (Some(to), Some(from)) => to - from,
+        _ => f64::NAN,
+    };
+    let stiffness = |axis: usize| bands.stiffness.get(axis).copied().unwrap_or(Interval::ALL);
+    // A stiffness without a bound times no travel is no force.
+    let product = |stiffness: f64, travel: f64| {
+        if travel == 0.0 {
+            0.0
+        } else {
+            stiffness * travel
+        }
+    };
+    let own = stiffness(axis);
+    let ends = [own.low, own.high].map(|end| product(end, travel(axis)));
+    let others: f64 = (0..positions.len())
+        .filter(|other| *other != axis)
+        .map(|other| {
+            let coupling = (own.high * stiffness(other).high).sqrt();
+            product(coupling, travel(other).abs())
+        })
+        .sum();
+    let margin = band(&bands.force, axis) + others;
+    let force = forces.get(axis).copied().unwrap_or(f64::NAN);
+    Interval {
+        low: force + ends[0].min(ends[1]) - margin,
+        high: force + ends[0].max(ends[1]) + margin,
+    }
 }
 
 /// An interrupted motion with readings during the motion.
 pub(super) struct InterruptedMotion<'a> {
     /// The position of its last reading, else its start \[m\].
-    pub(super) reached: &'a [f64],
-    pub(super) target: &'a [f64],
+    pub(super) reached: Vec<f64>,
+    pub(super) target: Vec<f64>,
     /// For a motion along smooth paths.
     pub(super) paths: Option<&'a [Path]>,
     /// Readings that were requested, and those that were logged.
@@ -99,31 +197,30 @@ impl InterruptedMotion<'_> {
     /// A specimen with a memory travels no path twice: the rest is travelled from the present position. A stroke is repeated only if it
     /// continued to its end and most of its readings are missing.
     pub(super) fn target_status(
-        &self,
+        self,
         found: FoundPosition<'_>,
         before: &[f64],
-    ) -> Result<TargetStatus, ResumeRefusal> {
-        match self.paths {
-            Some(paths) => {
-                let (low, high): (Vec<f64>, Vec<f64>) = paths.iter().map(possible_hold).unzip();
-                found.expect_between(&low, &high)?;
-            }
-            None if mostly_lost(self.samples, self.readings_done)
-                && found.is_at(self.target)
-                && !found.is_at(self.reached) =>
-            {
-                return Ok(TargetStatus::Stroke {
-                    back_to: before[0],
-                    others: before[1..].to_vec(),
-                });
-            }
-            None => {
-                found.expect_between(self.reached, self.target)?;
-            }
+    ) -> (TargetStatus, Place) {
+        if self.paths.is_none()
+            && mostly_lost(self.samples, self.readings_done)
+            && found.is_at(&self.target)
+            && !found.is_at(&self.reached)
+        {
+            let status = TargetStatus::Stroke {
+                back_to: before[0],
+                others: before[1..].to_vec(),
+            };
+            return (status, Place::At(self.target));
         }
-        Ok(TargetStatus::RemainingMotion {
-            from: before.to_vec(),
-        })
+        let (low, high) = match self.paths {
+            Some(paths) => paths.iter().map(possible_hold).unzip(),
+            None => (self.reached, self.target),
+        };
+        let from = before.to_vec();
+        (
+            TargetStatus::RemainingMotion { from },
+            Place::Between(low, high),
+        )
     }
 }
 
@@ -181,21 +278,7 @@ impl FoundPosition<'_> {
         })
     }
 
-    /// Whether each axis is between the end of its path and the farthest position at which it may have held.
-    pub(super) fn expect_past(self, paths: &[Path]) -> Result<(), ResumeRefusal> {
-        let ends: Vec<f64> = paths.iter().map(|path| path.to).collect();
-        let farthest: Vec<f64> = paths
-            .iter()
-            .map(|path| path.to + LONGEST_OVERRUN * path.end_velocity)
-            .collect();
-        self.expect_between(&ends, &farthest).map(drop)
-    }
-
-    pub(super) fn expect_between(
-        self,
-        from: &[f64],
-        to: &[f64],
-    ) -> Result<TargetStatus, ResumeRefusal> {
+    pub(super) fn expect_between(self, from: &[f64], to: &[f64]) -> Result<(), ResumeRefusal> {
         let axes = self.positions.iter().zip(from.iter().zip(to));
         for (axis_index, (found, (from, to))) in axes.enumerate() {
             let band = band(self.bands, axis_index);
@@ -210,6 +293,6 @@ impl FoundPosition<'_> {
                 });
             }
         }
-        Ok(TargetStatus::HeldDuringMotion)
+        Ok(())
     }
 }

@@ -55,14 +55,22 @@ pub enum ResumeRefusal {
         axis: Option<usize>,
     },
     #[error(
-        "the force{} is {}, but its last logged value is {} (limit ±{}): inspect the specimen, then confirm with --accept-relaxation",
-        of_axis(*.axis), force(*.found), force(*.recorded), force(*.band)
+        "the force{} is {}, but its last logged value, {}, allows {} .. {} here: inspect the specimen and the load cell, then confirm with \
+         --accept-relaxation",
+        of_axis(*.axis), force(*.found), force(*.recorded), force(*.low), force(*.high)
     )]
     Relaxed {
         recorded: f64,
         found: f64,
-        band: f64,
+        low: f64,
+        high: f64,
         axis: Option<usize>,
+    },
+    #[error("{}", faster(*.what, *.was, *.is))]
+    Faster {
+        what: &'static str,
+        was: f64,
+        is: f64,
     },
     #[error("the plan differs from the plan of the run log: {0}")]
     Otherwise(#[from] Mismatch),
@@ -84,4 +92,20 @@ fn position(position: f64) -> String {
 /// A force in N, as text with its unit.
 fn force(force: f64) -> String {
     plain(force, Dimension::FORCE, 6)
+}
+
+/// The rig would move faster than before; an infinite limit is none.
+fn faster(what: &str, was: f64, is: f64) -> String {
+    let speed = |speed: f64| {
+        if speed.is_finite() {
+            plain(speed, Dimension::VELOCITY, 6)
+        } else {
+            "none".to_owned()
+        }
+    };
+    format!(
+        "the rig would move faster than before: its {what}, {}, became {}. If it may, confirm with --accept-speed",
+        speed(was),
+        speed(is)
+    )
 }

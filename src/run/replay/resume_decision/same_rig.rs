@@ -103,6 +103,28 @@ pub fn same_resolution(recorded: DeclaredNoise, found: DeclaredNoise) -> Result<
     Err(ResumeRefusal::OtherMeasure { what: "resolution" })
 }
 
+/// Whether the rig moves no faster than before: by its own speed, by the limit of speed, and by the highest speed of the plan. Pairs of
+/// speeds before and now \[m/s\].
+///
+/// # Errors
+/// It moves faster, and the operator has not accepted it.
+pub fn no_faster(
+    speeds: &[(&'static str, Option<f64>, Option<f64>)],
+    assured: &[Assurance],
+) -> Result<(), ResumeRefusal> {
+    if assured.contains(&Assurance::AcceptedSpeed) {
+        return Ok(());
+    }
+    for (what, was, is) in speeds {
+        if let (Some(was), Some(is)) = (*was, *is)
+            && is > was
+        {
+            return Err(ResumeRefusal::Faster { what, was, is });
+        }
+    }
+    Ok(())
+}
+
 /// Whether a logged number means the same position and the same force under a different plan: no amendment may change polarity or scale.
 ///
 /// # Errors

@@ -6,7 +6,7 @@ use std::cell::Cell;
 use super::*;
 use super::{RestingRig, Witness, logged};
 use crate::plan::formula::Formula;
-use crate::plan::{Move, Plan, ProcedureKind};
+use crate::plan::{Interval, Move, Plan, ProcedureKind};
 use crate::record::EventKind;
 use crate::record::journal::Durability;
 use crate::record::journal::testing::PowerLoss;
@@ -213,7 +213,15 @@ fn decided(
     accept: bool,
 ) -> Result<ResumeDecision, ResumeRefusal> {
     let (_, bytes) = held(heard);
-    let (_, logged) = logged(&bytes);
+    decided_of(&logged(&bytes).1, displacement, force, accept)
+}
+
+fn decided_of(
+    logged: &LoggedRun,
+    displacement: f64,
+    force: f64,
+    accept: bool,
+) -> Result<ResumeDecision, ResumeRefusal> {
     let rig = RestingRig::new(&plan());
     let about = RigBody {
         last_move: None,
@@ -228,8 +236,12 @@ fn decided(
     let bands = Bands {
         displacement: vec![1e-6],
         force: vec![1e-3],
+        stiffness: vec![Interval {
+            low: 300.0,
+            high: 300.0,
+        }],
     };
-    decide(&logged, &about, &found, &bands, accept)
+    decide(logged, &about, &found, &bands, accept)
 }
 
 #[test]
@@ -275,12 +287,51 @@ fn a_rig_that_was_moved_or_let_go_of_since_is_refused() {
         decided(true, position(), 0.0, true).is_ok(),
         "an operator is responsible for the force"
     );
-    // The position at rest is not known: only the position on the path is logged, and the operator is asked.
-    let decision = decided(false, 2.1e-4, 0.0, false).unwrap();
-    assert_eq!(
-        (decision.target_status, decision.held),
-        (TargetStatus::HeldDuringMotion, None)
-    );
+}
+
+/// The position at rest is not known: the run log ends with the target, and the last reading was made before it.
+#[test]
+fn the_force_is_compared_whatever_became_of_the_last_target() {
+    for (displacement, status) in [
+        (2e-4, TargetStatus::NotExecuted),
+        (2.1e-4, TargetStatus::HeldDuringMotion),
+        (3e-4, TargetStatus::Executed),
+    ] {
+        let elastic = 300.0 * displacement;
+        let decision = decided(false, displacement, elastic, false).unwrap();
+        assert_eq!((&decision.target_status, decision.held), (&status, None));
+        // 2 mN from the elastic force, beyond the band of 1 mN, or no force: another specimen, or none.
+        for force in [elastic - 2e-3, elastic + 2e-3, 0.0] {
+            let refused = decided(false, displacement, force, false);
+            assert!(
+                matches!(refused, Err(ResumeRefusal::Relaxed { .. })),
+                "{status:?}: {refused:?}"
+            );
+            assert!(decided(false, displacement, force, true).is_ok());
+            let unguarded = without(Guarding::ForceFound, || {
+                decided(false, displacement, force, false)
+            });
+            assert!(unguarded.is_ok(), "nothing else sees it");
+        }
+    }
+}
+
+#[test]
+fn a_specimen_that_yielded_may_go_on_along_its_tangent_and_lose_nothing() {
+    let (_, bytes) = held(false);
+    let (mut recovered, _) = logged(&bytes);
+    // The last readings: 0.03 N at 0.1 mm, and as much at 0.2 mm.
+    for line in &mut recovered.lines {
+        if line.kind == EntryKind::Sample && line.body()["r"][0].as_f64().unwrap() > 0.03 {
+            line.alter(|body| body["r"][0] = serde_json::json!(0.03));
+        }
+    }
+    let logged = LoggedRun::of(&recovered).unwrap();
+    let decided = |force| decided_of(&logged, 3e-4, force, false);
+    // From 0.2 mm to 0.3 mm the force may stay, or grow by 300 N/m: 0.03 N .. 0.06 N, each ± 1 mN.
+    for (force, fits) in [(0.03, true), (0.06, true), (0.028, false), (0.062, false)] {
+        assert_eq!(decided(force).is_ok(), fits, "{force} N");
+    }
 }
 
 #[test]

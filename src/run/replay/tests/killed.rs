@@ -1,6 +1,7 @@
 //! A run that is killed at every write and every sync is resumed to the same end, and no target is executed twice.
 
 use super::*;
+use crate::plan::Interval;
 
 #[test]
 fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end() {
@@ -62,6 +63,7 @@ fn go_on_and_compare(
     let bands = Bands {
         displacement: vec![1e-9; axes],
         force: vec![1e-6; axes],
+        stiffness: vec![Interval::ALL; axes],
     };
     let about = RigBody::of(&rig);
     let decision = match decide(&before, &about, &found, &bands, false) {

@@ -1,6 +1,7 @@
 //! The run log of a run: its replay gives the same run, a changed run log is found, and after an interruption anywhere the
 //! run is resumed to the same end with no target executed twice.
 
+mod amended_speed;
 mod durable;
 mod held;
 mod killed;
@@ -472,10 +473,8 @@ fn what_cannot_be_gone_on_with_is_known_without_a_rig() {
         Err(ResumeRefusal::OtherMeasure { what: "polarity" })
     );
 
-    let fine = DeclaredNoise {
-        force: 1.0,
-        resolution: 1e-6,
-    };
+    let (force, resolution) = (1.0, 1e-6);
+    let fine = DeclaredNoise { force, resolution };
     same_resolution(fine, DeclaredNoise { force: 2.0, ..fine }).unwrap();
     assert!(
         same_resolution(

@@ -329,7 +329,17 @@ fn each_axis_is_held_to_its_own_bands_when_it_goes_on() {
         bands,
         Bands {
             displacement: vec![4e-4, 5e-6],
-            force: vec![60.0, 5.0]
+            force: vec![60.0, 5.0],
+            stiffness: vec![
+                Interval {
+                    low: 400e3,
+                    high: 600e3
+                },
+                Interval {
+                    low: 150e3,
+                    high: 250e3
+                }
+            ],
         }
     );
     let (logged_run, about, found) = cut_off(&base_excited_plan("60 ms"), 60);
@@ -360,9 +370,11 @@ fn each_axis_is_held_to_its_own_bands_when_it_goes_on() {
             relaxed,
             replay::ResumeRefusal::Relaxed {
                 axis: Some(2),
-                band: 5.0,
+                recorded,
+                low,
+                high,
                 ..
-            }
+            } if high - recorded >= 5.0 && recorded - low >= 5.0 && high - low < 11.0
         ),
         "{relaxed}"
     );

@@ -51,7 +51,7 @@ pub(crate) fn resumed(plan: &Plan, emulator: &InProcess, disk: &PowerLoss, call:
     if before.ended {
         return Resumed::Ended;
     }
-    let datum = before.rig.as_ref().and_then(|rig| rig.datum.clone());
+    let datum = before.rigs.first().and_then(|rig| rig.datum.clone());
     let at_its_datum = Plan {
         rig: plan.rig.with_recorded_datum(datum.as_deref()),
         ..plan.clone()

@@ -157,11 +157,8 @@ pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure
 fn datum_of(run: &Path, plan: &Plan) -> Result<Vec<f64>, Failure> {
     let read = record_file::read(run)?;
     let of_this_rig = read.plan.rig.name == plan.rig.name;
-    let datum = read
-        .logged
-        .rig
-        .filter(|_| of_this_rig)
-        .and_then(|rig| rig.datum);
+    let first = read.logged.rigs.first().filter(|_| of_this_rig);
+    let datum = first.and_then(|rig| rig.datum.clone());
     datum.ok_or_else(|| {
         Failure::command_line(format!(
             "{}: its run log has no datum of rig `{}`",

@@ -1,0 +1,215 @@
+//! A rig that was amended to another speed: from its resumption on it moves at that speed, also to the target that is sent again, and the
+//! run log of both parts is replayed.
+
+use std::cell::Cell;
+
+use super::entry::IntentBody;
+use super::*;
+use crate::plan::{Interval, Plan};
+use crate::record::equipment::{Device, Equipment};
+use crate::rig::testing::forwarded;
+use crate::tests::testing::{elastic_plan, header, ramp};
+
+/// Speed of the rig at the start of the run, and of the amended rig \[m/s\].
+const FAST: f64 = 9e-3;
+const SLOW: f64 = 1e-3;
+
+/// A rig with a speed of its own, and the speed of each target that it executed \[m/s\].
+#[derive(Clone)]
+struct Paced {
+    rig: RestingRig,
+    own: f64,
+    offered: Cell<f64>,
+    executed: Rc<RefCell<Vec<f64>>>,
+}
+
+impl Rig for Paced {
+    forwarded!(rig: identity, degrees_of_freedom, time, pause, read, traverse, follow_paths, hold, declared_noise);
+
+    fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<EncodedMove, RigFault> {
+        self.offered.set(speed.unwrap());
+        self.rig.propose(targets, speed)
+    }
+    fn execute(&mut self) -> Result<(), RigFault> {
+        self.executed.borrow_mut().push(self.offered.get());
+        self.rig.execute()
+    }
+    fn own_speed(&self) -> Option<f64> {
+        Some(self.own)
+    }
+    fn last_move(&self) -> Option<LastMove> {
+        self.rig.last_move()
+    }
+}
+
+/// A ramp with this limit of speed \[m/s\].
+fn limited(speed: f64) -> Plan {
+    let mut plan = elastic_plan(300.0, vec![ProcedureKind::StiffnessRamp(ramp(1e-4))]);
+    plan.limits.speed = Interval {
+        low: 0.0,
+        high: speed,
+    };
+    plan
+}
+
+fn header_of(plan: &Plan) -> Header {
+    let rig = RestingRig::new(plan);
+    let device = Device::of(&rig.identity(), rig.declared_noise());
+    Header {
+        equipment: Some(Equipment::of(plan, device)),
+        ..header()
+    }
+}
+
+/// Kills a run at this disk call, and resumes it on the amended rig. Gives the speeds before and after, and the bytes of the run log;
+/// None after the last call.
+fn slowed_down(call: usize, after: bool) -> Option<(Vec<f64>, Vec<f64>, Vec<u8>)> {
+    let (plan, amended) = (limited(FAST), limited(2.0 * SLOW));
+    let disk = PowerLoss::new();
+    let mut rig = Paced {
+        rig: RestingRig::new(&plan),
+        own: FAST,
+        offered: Cell::new(0.0),
+        executed: Rc::default(),
+    };
+    let storage = Killed::at(&disk, call, after);
+    let ended = catch_unwind(AssertUnwindSafe(|| {
+        let mut journal = journal(storage);
+        begin(&mut journal, &header_of(&plan), &["text".to_owned()]).unwrap();
+        record(&plan, &mut rig.clone(), &mut Witness, journal, no_wall())
+    }));
+    if ended.is_ok() {
+        return None;
+    }
+    let (recovered, before) = logged(&disk.written());
+    let fast = rig.executed.take();
+    rig.own = SLOW;
+    let found = rig.read().unwrap();
+    let bands = Bands {
+        displacement: vec![1e-9],
+        force: vec![1e-6],
+        stiffness: vec![Interval::ALL],
+    };
+    let about = RigBody {
+        t: before.time,
+        ..RigBody::of(&rig)
+    };
+    let decision = match decide(&before, &about, &found, &bands, false) {
+        Err(ResumeRefusal::NothingRecorded | ResumeRefusal::Ended) => {
+            return Some((fast, Vec::new(), disk.written()));
+        }
+        other => other.unwrap_or_else(|refusal| panic!("call {call}: {refusal}")),
+    };
+    let resumption = decision.resumption("A. Witness", "too fast", &found, before.time);
+    let mut journal = Journal::reopen(
+        Box::new(disk.clone()),
+        Durability::EverySyncPoint,
+        &recovered,
+    );
+    let amendment = AmendBody {
+        by: "A. Witness".to_owned(),
+        reason: "too fast".to_owned(),
+        differences: Vec::new(),
+        header: header_of(&amended),
+    };
+    amend(&mut journal, &amendment, &["text".to_owned()]).unwrap();
+    journal.append(EntryKind::Rig, &about).unwrap();
+    journal.append(EntryKind::Resume, &resumption).unwrap();
+    let (_, again) = logged(&disk.written());
+    let mut slow = rig.clone();
+    let goes_on = || {
+        Ok::<_, ResumeRefusal>(Continuation {
+            rig: &mut slow,
+            journal,
+            logged: again,
+        })
+    };
+    let resumed = resume(&amended, &before, &mut Witness, no_wall(), goes_on)
+        .unwrap_or_else(|refusal| panic!("call {call}: {refusal}"));
+    assert_eq!(
+        resumed.record.outcome,
+        Outcome::Completed,
+        "call {call}: {:?}",
+        resumed.record.events
+    );
+    let (recovered, whole) = logged(&disk.written());
+    assert_eq!(
+        check_consistency(&recovered, &whole, &amended),
+        Ok(()),
+        "call {call}"
+    );
+    let intents: Vec<IntentBody> = whole
+        .lines
+        .iter()
+        .filter(|line| line.kind == EntryKind::Intent)
+        .map(|line| line.read().unwrap())
+        .collect();
+    let executed: Vec<f64> = fast
+        .iter()
+        .chain(&*rig.executed.borrow())
+        .copied()
+        .collect();
+    assert_eq!(
+        intents.iter().map(|intent| intent.rate).collect::<Vec<_>>(),
+        executed,
+        "call {call}: each executed target is in the run log, with its speed"
+    );
+    let replayed = replay(&amended, whole);
+    assert_eq!(replayed.mismatch, None, "call {call}");
+    assert_eq!(
+        format!("{:?}", replayed.record),
+        format!("{:?}", resumed.record),
+        "call {call}"
+    );
+    Some((fast, rig.executed.take(), disk.written()))
+}
+
+#[test]
+fn an_amended_rig_moves_at_its_own_speed_from_its_resumption_on() {
+    let mut resumed = 0;
+    for call in 4.. {
+        for after in [false, true] {
+            let Some((fast, slow, _)) = slowed_down(call, after) else {
+                assert!(resumed > 40, "{resumed}");
+                return;
+            };
+            assert!(
+                fast.iter().all(|speed| *speed == FAST),
+                "call {call}: {fast:?}"
+            );
+            assert!(
+                slow.iter().all(|speed| *speed == SLOW),
+                "call {call}: {slow:?}"
+            );
+            resumed += usize::from(!slow.is_empty());
+        }
+    }
+}
+
+#[test]
+fn without_the_newest_rig_it_would_move_at_the_speed_of_the_start() {
+    let moved = |call| without(Guarding::NewestRig, || slowed_down(call, true));
+    let speeds = catch_unwind(AssertUnwindSafe(|| moved(20).map(|(_, slow, _)| slow)));
+    let at_the_old_speed = |slow: &Vec<f64>| slow.iter().any(|speed| *speed != SLOW);
+    assert!(speeds.map_or(true, |slow| {
+        slow.is_some_and(|slow| at_the_old_speed(&slow))
+    }));
+}
+
+#[test]
+fn a_faster_rig_needs_an_acceptance_of_its_own() {
+    let speeds = |was, is| [("own speed", Some(was), Some(is))];
+    assert_eq!(no_faster(&speeds(FAST, SLOW), &[]), Ok(()));
+    assert_eq!(no_faster(&speeds(FAST, FAST), &[]), Ok(()));
+    let refused = no_faster(&speeds(SLOW, FAST), &[Assurance::AcceptedRelaxation]).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "the rig would move faster than before: its own speed, 1 mm/s, became 9 mm/s. If it may, confirm with --accept-speed"
+    );
+    assert_eq!(
+        no_faster(&speeds(SLOW, FAST), &[Assurance::AcceptedSpeed]),
+        Ok(())
+    );
+    let unlimited = [("limit of speed", Some(FAST), Some(f64::INFINITY))];
+    assert!(no_faster(&unlimited, &[]).is_err());
+}
