@@ -52,6 +52,7 @@ use state::{Begin, State};
 use super::{Observer, Request, Unwatched, run};
 use crate::record::remote::DrivenStep;
 use crate::run::client_run::{ClientRunRecord, Driver, Requests, drive};
+use crate::run::remote_control::Specimen;
 
 /// Gives the time of day, as text; None for a virtual run.
 pub type Wall = Box<dyn Fn() -> Option<String>>;
@@ -225,6 +226,7 @@ fn perform<'rig>(
     if record.outcome == Outcome::Completed
         && state.mismatch().is_none()
         && state.next_kind().is_some()
+        && state.final_entry().is_none()
     {
         // Entries beyond the end of the plan belong to a different plan.
         let reason = state.report_mismatch("its end".to_owned()).to_string();
