@@ -1,6 +1,6 @@
-//! Operator, machine and start time of a run on a real rig.
+//! Operator, machine and start time of a run.
 
-/// Data about operator and machine, which only the run log of a real rig has.
+/// Data of a run that do not follow from its plan. Operator and machine are only in the run log of a real rig.
 #[derive(Clone, Debug, Default)]
 pub struct Circumstances {
     pub operator: Option<String>,

@@ -44,6 +44,17 @@ pub fn of(plan: &Plan, date: Option<&str>) -> Provenance {
     }
 }
 
+/// The provenance of a run on a simulated rig. Its date is that of plan or command line, else the day on which it began. The start
+/// is not part of its id: the same plan gives the same results on every day.
+pub fn of_simulated_run(plan: &Plan, date: Option<&str>, began: Option<&str>) -> Provenance {
+    let provenance = of(plan, date);
+    let day = || began.and_then(|began| began.get(..10)).map(str::to_owned);
+    Provenance {
+        date: provenance.date.or_else(day),
+        ..provenance
+    }
+}
+
 /// The number of a report. Run logs of real rigs and of incomplete runs differ from each other, so that the run id is not enough. The
 /// number is then the run id with the head hash of the run log.
 pub fn report_number(run_id: &str, plan: &Plan, ended: bool, head: Option<&str>) -> Option<String> {
@@ -82,7 +93,6 @@ pub fn of_real_run(plan: &Plan, date: Option<&str>, circumstances: &Circumstance
 /// The run id of a run log, from its header and its plan.
 pub fn recorded_id(header: &Header, plan: &Plan) -> String {
     let planned = run_id(plan, &header.psd, header.date.as_deref());
-    // A manual run or a client run on a simulated rig has an operator and no date.
     let is_real = plan.rig.link.as_real().is_some() && header.began.is_some();
     if is_real {
         real_id(&planned, &[&header.operator, &header.host, &header.began])
@@ -239,6 +249,21 @@ mod tests {
             "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
         );
         assert_eq!(provenance.date.as_deref(), Some("2026-05-31"));
+    }
+
+    #[test]
+    fn a_simulation_has_the_day_of_its_start_and_the_id_of_its_plan() {
+        let began = Some("2026-11-21T23:00:00.000Z");
+        let stated = plan(&[], &[], 0);
+        let unstated = Plan {
+            particulars: Vec::new(),
+            ..stated.clone()
+        };
+        let run = of_simulated_run(&unstated, None, began);
+        assert_eq!(run.date.as_deref(), Some("2026-11-21"));
+        assert_eq!(run.run_id, of(&unstated, None).run_id);
+        let run = of_simulated_run(&stated, None, began);
+        assert_eq!(run.date.as_deref(), Some("2026-05-31"), "of the plan");
     }
 
     #[test]

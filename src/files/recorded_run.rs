@@ -122,7 +122,7 @@ fn fits(logged: &LoggedRun, plan: &Plan) -> Result<(), String> {
     Err("rig, calibration or limits of its header differ from its plan and its rig".to_owned())
 }
 
-/// The provenance from the run log; the plan's own date applies if the command line gave none.
+/// The provenance from the run log.
 fn provenance_of(header: &Header, plan: &Plan, recovered: &Recovered) -> Provenance {
     let number = super::provenance::report_number(
         &header.run_id,
@@ -143,7 +143,7 @@ fn provenance_of(header: &Header, plan: &Plan, recovered: &Recovered) -> Provena
             .first()
             .map_or_else(String::new, |file| file.sha256.clone()),
         equipment: header.equipment.clone(),
-        ..super::provenance::of(plan, header.date.as_deref())
+        ..super::provenance::of_simulated_run(plan, header.date.as_deref(), header.began.as_deref())
     };
     if plan.rig.link.as_real().is_none() {
         return stated;

@@ -6,12 +6,14 @@ use crate::units::Dimension;
 /// The part of the results that a finding is about, the most important first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Part {
+    /// The plan's text, a parameter, an input that follows from no changed result, or the rig.
+    Cause,
     Diagnostics,
     Verdict,
     Requirement,
     Result,
     Table,
-    /// A parameter, an input, an event, or a text about plan and rig.
+    /// An input that follows from results, an event, or a deviation.
     Other,
     Figure,
 }
@@ -21,6 +23,7 @@ impl Part {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Cause => "cause",
             Self::Diagnostics => "diagnostics",
             Self::Verdict => "verdict",
             Self::Requirement => "requirement",

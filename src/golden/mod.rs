@@ -133,6 +133,12 @@ pub fn compare(accepted: &Truth, now: &Truth, tolerances: &Tolerances) -> Vec<Fi
     );
     table::compare_all(accepted, now, tolerances, &mut found);
     figures::compare(accepted, now, tolerances, &mut found);
+    if !found.is_empty() {
+        found.extend(summary::plan_change(
+            accepted.text(SUMMARY),
+            now.text(SUMMARY),
+        ));
+    }
     found.sort_by_key(|finding| finding.part);
     found
 }

@@ -93,24 +93,13 @@ pub(super) fn completed(mut was: Value) -> Value {
     was
 }
 
-/// Renames one result, and its uncertainty budget. A result that is the uncertainty of another now is dropped: the other has it.
+/// Renames one result. A result that is the uncertainty of another now is dropped: the other has it.
 fn rename(procedure: &mut Value, was: &str, is: &str) {
     if let Some(results) = procedure.get_mut("results").and_then(Value::as_object_mut)
         && let Some(result) = results.remove(was)
         && !is.contains('.')
     {
         results.insert(is.to_owned(), result);
-    }
-    let budgets = procedure
-        .get_mut("uncertainty_budgets")
-        .and_then(Value::as_array_mut);
-    for name in budgets
-        .into_iter()
-        .flatten()
-        .filter_map(|budget| budget.get_mut("result"))
-        .filter(|name| *name == was)
-    {
-        *name = Value::from(is);
     }
 }
 
@@ -149,10 +138,7 @@ mod tests {
 
     #[test]
     fn what_was_called_residual_at_the_last_step_is_read_as_final() {
-        let of = |kind: &str, result: &str| {
-            json!({ "procedures": { "one": { "kind": kind, "results": { "max_drift": 1, result: 2 },
-                "uncertainty_budgets": [{ "result": result }, { "result": "max_drift" }] } } })
-        };
+        let of = |kind: &str, result: &str| json!({ "procedures": { "one": { "kind": kind, "results": { "max_drift": 1, result: 2 } } } });
         for (kind, was, is) in [
             ("impact", "residual_displacement", "final_displacement"),
             ("impact", "residual_drift", "final_drift"),

@@ -7,6 +7,8 @@ use super::finding::Finding;
 pub struct Tested {
     /// For example `plans/beam`.
     pub name: String,
+    /// The folder of its accepted results.
+    pub folder: String,
     pub outcome: Outcome,
 }
 
@@ -18,9 +20,7 @@ pub enum Outcome {
     },
     Differs(Vec<Finding>),
     /// There are no accepted results for a comparison.
-    NotAccepted {
-        folder: String,
-    },
+    NotAccepted,
     /// It could not be run or compared.
     Failed(String),
     /// An earlier plan failed, and the first failure ends the test.
@@ -35,7 +35,7 @@ pub enum Accepted {
     /// The differences from before; empty if the same results were written again.
     Changed(Vec<Finding>),
     Unchanged,
-    Refused(&'static str),
+    Refused(String),
 }
 
 /// All outcomes, in order.
@@ -62,7 +62,7 @@ impl Outcome {
         match self {
             Self::Same { .. } => "same",
             Self::Differs(_) => "differs",
-            Self::NotAccepted { .. } => "not accepted",
+            Self::NotAccepted => "not accepted",
             Self::Failed(_) => "failed",
             Self::NotRun => "not run",
             Self::Accepted(Accepted::New) => "accepted new",
@@ -80,25 +80,28 @@ impl Outcome {
             _ => &[],
         }
     }
+}
 
+impl Tested {
     /// The reason of a failure, in one line; None if there is no failure.
     #[must_use]
     pub fn complaint(&self) -> Option<String> {
-        match self {
-            Self::Differs(found) if found.len() == 1 => {
+        match &self.outcome {
+            Outcome::Differs(found) if found.len() == 1 => {
                 Some("1 difference from the accepted results".to_owned())
             }
-            Self::Differs(found) => Some(format!(
+            Outcome::Differs(found) => Some(format!(
                 "{} differences from the accepted results",
                 found.len()
             )),
-            Self::NotAccepted { folder } => Some(format!(
-                "no accepted results in {folder}; review a run, then use `--accept`"
+            Outcome::NotAccepted => Some(format!(
+                "no accepted results in {}; review a run, then use `--accept`",
+                self.folder
             )),
-            Self::Failed(reason) => Some(reason.clone()),
-            Self::NotRun => Some("not run: the test ended at the first failure".to_owned()),
-            Self::Accepted(Accepted::Refused(reason)) => Some(format!("not accepted: {reason}")),
-            Self::Same { .. } | Self::Accepted(_) => None,
+            Outcome::Failed(reason) => Some(reason.clone()),
+            Outcome::NotRun => Some("not run: the test ended at the first failure".to_owned()),
+            Outcome::Accepted(Accepted::Refused(reason)) => Some(format!("not accepted: {reason}")),
+            Outcome::Same { .. } | Outcome::Accepted(_) => None,
         }
     }
 }

@@ -4,7 +4,9 @@
 
 use super::contribution::{Contribution, combined, combined_entries};
 use super::results::{Moved, sources_of};
-pub use super::results::{NoResults, Part, ResultReference, ResultValue, Results};
+pub use super::results::{
+    NoResults, Part, ResultReference, ResultValue, Results, UncertaintyStatus,
+};
 pub use super::source::ProcedureId;
 use super::source::Source;
 

@@ -60,6 +60,37 @@ impl ResultValue {
     }
 }
 
+/// What a run knows of the uncertainty of a result.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum UncertaintyStatus {
+    /// By definition it has none: a count, a number that describes the run. Also a result that does not exist.
+    Exact,
+    /// Every declared source is in it: it has an expanded uncertainty U.
+    Known,
+    /// The plan does not declare what it requires, so that it has no U. The text says what.
+    Partial(String),
+    /// Its uncertainty could not be evaluated, however large it is. The text gives the reason.
+    Withheld(String),
+}
+
+impl UncertaintyStatus {
+    /// The status of a number that reads both: the one that knows less, of equals the first.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        let rank = |status: &Self| match status {
+            Self::Exact => 0,
+            Self::Known => 1,
+            Self::Partial(_) => 2,
+            Self::Withheld(_) => 3,
+        };
+        if rank(&other) > rank(&self) {
+            other
+        } else {
+            self
+        }
+    }
+}
+
 /// The results that formulas read.
 pub trait Results: Sync {
     /// The result, or None if its procedure has not run to it.
@@ -97,9 +128,9 @@ pub trait Results: Sync {
         0.0
     }
 
-    /// Why a measured result that exists has no expanded uncertainty; None if it has one or is exact.
-    fn no_uncertainty(&self, _: ResultReference) -> Option<String> {
-        None
+    /// What is known of the uncertainty of the result; by default it is exact.
+    fn uncertainty_status(&self, _: ResultReference) -> UncertaintyStatus {
+        UncertaintyStatus::Exact
     }
 }
 
@@ -163,8 +194,8 @@ impl Results for Moved<'_> {
         self.results.degrees(source)
     }
 
-    fn no_uncertainty(&self, reference: ResultReference) -> Option<String> {
-        self.results.no_uncertainty(reference)
+    fn uncertainty_status(&self, reference: ResultReference) -> UncertaintyStatus {
+        self.results.uncertainty_status(reference)
     }
 }
 

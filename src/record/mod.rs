@@ -21,7 +21,7 @@ pub use crate::physics::relaxation::hold::Hold;
 pub use crate::physics::relaxation::superposition::{LawFit, SuperpositionFit};
 pub use crate::physics::relaxation::time_constant::RelaxationFit;
 pub use crate::physics::structure::{FrameEnergies, Modes};
-use crate::plan::formula::{Estimate, ResultReference, ResultValue, Results};
+use crate::plan::formula::{Estimate, ResultReference, ResultValue, Results, UncertaintyStatus};
 use crate::schema::block_of_words;
 use crate::uncertainty::{Contribution, Source, combined_entries};
 use crate::units::Dimension;
@@ -155,6 +155,8 @@ pub struct NamedResult {
     /// The uncertainty contributions of a number, or of each entry of a list. Empty if its uncertainty is a separate contribution, or if
     /// it has none.
     pub contributions: Vec<Contribution>,
+    /// Why its uncertainty is withheld; it then has no contributions.
+    pub withheld: Option<String>,
 }
 
 impl ProcedureRecord {
@@ -217,13 +219,32 @@ impl NamedResult {
 }
 
 impl NamedResult {
-    /// Why a result has no expanded uncertainty, for a procedure of this kind. None if it has one, is exact or does not exist.
+    /// Withholds its uncertainty for this reason. The first reason remains.
+    pub fn withhold(&mut self, reason: &str) {
+        self.contributions.clear();
+        if let ResultValue::Number { uncertainty, .. } = &mut self.value {
+            *uncertainty = None;
+        }
+        self.withheld.get_or_insert_with(|| reason.to_owned());
+    }
+
+    /// What is known of the uncertainty of a result, for a procedure of this kind.
     #[must_use]
-    pub fn no_uncertainty(&self, kind: &str) -> Option<String> {
+    pub fn uncertainty_status(&self, kind: &str) -> UncertaintyStatus {
         let words: Vec<&str> = kind.split(' ').collect();
-        block_of_words(&words)?
-            .result(self.name)
-            .filter(|result| result.measured)?;
+        let measured = block_of_words(&words)
+            .and_then(|block| block.result(self.name))
+            .is_some_and(|result| result.measured);
+        let exists = self.value.values().iter().any(|value| value.is_finite());
+        if !measured || !exists {
+            return UncertaintyStatus::Exact;
+        }
+        if let Some(reason) = &self.withheld {
+            return UncertaintyStatus::Withheld(format!(
+                "U of `{}` is withheld: {reason}",
+                self.name
+            ));
+        }
         let lacks = match &self.value {
             ResultValue::Number { value, uncertainty } => value.is_some() && uncertainty.is_none(),
             ResultValue::List(values) => {
@@ -234,12 +255,14 @@ impl NamedResult {
                 values.iter().enumerate().any(lacks)
             }
         };
-        lacks.then(|| {
-            format!(
+        if lacks {
+            UncertaintyStatus::Partial(format!(
                 "no uncertainty of `{}` is known, but a guard band requires one",
                 self.name
-            )
-        })
+            ))
+        } else {
+            UncertaintyStatus::Known
+        }
     }
 }
 
@@ -278,11 +301,13 @@ impl Results for Record {
             .unwrap_or(f64::INFINITY)
     }
 
-    fn no_uncertainty(&self, reference: ResultReference) -> Option<String> {
-        let procedure = self.procedures.get(reference.procedure.0)?;
-        procedure
-            .result(reference.name)?
-            .no_uncertainty(procedure.kind)
+    fn uncertainty_status(&self, reference: ResultReference) -> UncertaintyStatus {
+        let found = self.procedures.get(reference.procedure.0);
+        found
+            .and_then(|procedure| Some((procedure.result(reference.name)?, procedure.kind)))
+            .map_or(UncertaintyStatus::Exact, |(result, kind)| {
+                result.uncertainty_status(kind)
+            })
     }
 }
 

@@ -52,16 +52,15 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
                 ];
             };
             let value = number::value(governing).unwrap_or_else(|| "no value".to_owned());
-            let margin = number::margin(governing).map_or_else(
-                || governing.reason.clone().unwrap_or_default(),
-                |margin| format!("margin {margin}{}", band(governing, run.assessment.rule)),
-            );
+            let margin = number::margin(governing).map_or_else(String::new, |margin| {
+                format!("margin {margin}{}", band(governing, run.assessment.rule))
+            });
             [
                 requirement.verdict.name().to_owned(),
                 name,
                 value,
                 number::bound(governing),
-                one_line(&margin),
+                margin,
             ]
         })
         .collect();
@@ -79,9 +78,14 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
             .collect();
         let line = format!("  {verdict}  {}  {}", cells.join("  "), row[4]);
         let _ = writeln!(text, "{}", line.trim_end());
+        let reason = summary::governing(requirement).and_then(|it| it.reason.as_deref());
+        if let Some(reason) = reason {
+            let below = " ".repeat(widths[0] + 4);
+            let _ = writeln!(text, "{below}{}", one_line(reason));
+        }
     }
     if let Some(names) = run.plan.studies.requirement_names() {
-        let _ = writeln!(text, "  by a study: {}", one_line(&names));
+        let _ = writeln!(text, "  decided by `psd study run`: {}", one_line(&names));
     }
     text.push_str(&decision_rule(run));
     for deviation in deviations::of_run(run, true) {
@@ -97,8 +101,12 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
     text
 }
 
-/// The guard band; under simple acceptance the probability of conformity, if U exceeds the tolerance.
+/// The guard band; under simple acceptance the probability of conformity, if U exceeds the tolerance. A value that decides without U
+/// says so.
 fn band(condition: &ConditionOutcome, rule: DecisionRule) -> String {
+    if condition.decides_without_uncertainty() {
+        return ", no U".to_owned();
+    }
     match (rule, number::guard_band(condition)) {
         (DecisionRule::Simple, _) => match condition
             .conforms
@@ -111,10 +119,7 @@ fn band(condition: &ConditionOutcome, rule: DecisionRule) -> String {
             None => String::new(),
         },
         (DecisionRule::Guarded, Some(band)) => format!(", guard band {band}"),
-        (DecisionRule::Guarded, None) => condition
-            .reason
-            .as_ref()
-            .map_or_else(String::new, |reason| format!(", {reason}")),
+        (DecisionRule::Guarded, None) => String::new(),
     }
 }
 

@@ -1,5 +1,5 @@
-//! The input of every output: plan, record, assessment and provenance of one run. On a simulated rig no field is read from the machine,
-//! so that equal runs give bit-identical output.
+//! The input of every output: plan, record, assessment and provenance of one run. On a simulated rig the date is the only field that
+//! is read from the machine, so that equal runs give equal results.
 
 use std::borrow::Cow;
 
@@ -58,7 +58,7 @@ pub struct Provenance {
     pub build: Build,
     /// SHA-256 of the plan's text, hex.
     pub plan_sha256: String,
-    /// Date from the plan or `--date`; for a real run otherwise the day of its start.
+    /// Date from the plan or `--date`, otherwise the day of the start.
     pub date: Option<String>,
     /// Only for a run on a real rig.
     pub real: Option<RealRun>,

@@ -4,7 +4,7 @@
 use super::stop::Stop;
 use super::{Inspection, Motion, Next, Observer, Settings, StepReport};
 use crate::plan::{Plan, Procedure};
-use crate::record::{Event, EventKind};
+use crate::record::{Event, EventKind, NamedResult};
 use crate::rig::{Guard, Identity, LineStatistics, Reading, Rig, RigFault};
 use crate::uncertainty::engine::{Progress, Unknown};
 
@@ -277,22 +277,26 @@ impl<'run> Session<'run> {
         self.breathe()
     }
 
-    /// Evaluates the uncertainty of results, unless the run requests none. If it is not known, the reason is an event. The stop is that
-    /// of a rig that failed meanwhile.
+    /// Evaluates the uncertainty of results, unless the run requests none. If it cannot be evaluated, it is withheld, and the reason is an
+    /// event. The stop is that of a rig that failed meanwhile.
     pub(crate) fn evaluate_uncertainty(
         &mut self,
-        propagation: impl FnOnce(Progress<'_, Stop>) -> Result<(), Unknown<Stop>>,
+        results: &mut [NamedResult],
+        propagation: impl FnOnce(&mut [NamedResult], Progress<'_, Stop>) -> Result<(), Unknown<Stop>>,
     ) -> Option<Stop> {
         if !self.settings.uncertainty {
             return None;
         }
-        match propagation(&mut |done, of| self.propagation(done, of)) {
+        match propagation(results, &mut |done, of| self.propagation(done, of)) {
             Ok(()) => None,
             Err(Unknown::Ended(stop)) => Some(stop),
             Err(Unknown::Reason(reason)) => {
+                results
+                    .iter_mut()
+                    .for_each(|result| result.withhold(&reason));
                 self.event(
                     EventKind::Remark,
-                    format!("the uncertainty of the results is not known: {reason}"),
+                    format!("the uncertainty of the results is withheld: {reason}"),
                 );
                 None
             }

@@ -2,7 +2,7 @@
 
 use super::{Bound, ConditionOutcome, Verdict};
 use crate::physics::statistics::student_t;
-use crate::plan::formula::{Formula, FormulaError, Operator, Part, Results};
+use crate::plan::formula::{Formula, FormulaError, Operator, Part, Results, UncertaintyStatus};
 use crate::plan::{Comparison, Condition, DecisionRule, Test};
 use crate::schema::is_in_percent;
 use crate::uncertainty::{FEW, MeasurementUncertainty, measurement_uncertainty};
@@ -20,14 +20,22 @@ pub(crate) fn assess_condition(
         (Ok(value), Ok(bound)) => Some((value.value, *bound)),
         _ => None,
     };
-    let undeclared = no_uncertainty(condition, record);
-    let distance_known =
-        known.and_then(|(value, bound)| margin_uncertainty(condition, value, bound, record));
-    let (margin_uncertainty, unguarded) = match rule {
-        DecisionRule::Simple => (None, None),
-        DecisionRule::Guarded => (distance_known, undeclared.clone()),
+    let status = uncertainty_status(condition, record);
+    let (unknown, undecided) = match (&status, rule) {
+        (UncertaintyStatus::Exact | UncertaintyStatus::Known, _) => (false, None),
+        (UncertaintyStatus::Partial(_), DecisionRule::Simple) => (true, None),
+        // An equality is a comparison of numbers, not of a quantity with a tolerance.
+        (UncertaintyStatus::Withheld(_), DecisionRule::Simple) if is_equality(condition) => {
+            (true, None)
+        }
+        (UncertaintyStatus::Partial(why) | UncertaintyStatus::Withheld(why), _) => {
+            (true, Some(why.clone()))
+        }
     };
-    let distance_uncertainty = distance_known.filter(|_| undeclared.is_none());
+    let distance_uncertainty = known
+        .and_then(|(value, bound)| margin_uncertainty(condition, value, bound, record))
+        .filter(|_| !unknown);
+    let margin_uncertainty = distance_uncertainty.filter(|_| rule == DecisionRule::Guarded);
     let conforms = known
         .zip(distance_uncertainty)
         .map(|((value, bound), distance_uncertainty)| bound.conforms(value, distance_uncertainty));
@@ -37,10 +45,8 @@ pub(crate) fn assess_condition(
             Bound::Compare { .. } => false,
         },
     );
-    let guard_band = margin_uncertainty
-        .filter(|_| unguarded.is_none())
-        .map(MeasurementUncertainty::expanded);
-    let verdict = match (known, &unguarded) {
+    let guard_band = margin_uncertainty.map(MeasurementUncertainty::expanded);
+    let verdict = match (known, &undecided) {
         (Some((value, bound)), None) => bound.verdict(value, guard_band),
         _ => Verdict::Inconclusive,
     };
@@ -49,7 +55,7 @@ pub(crate) fn assess_condition(
         .err()
         .or(bound.as_ref().err())
         .map(ToString::to_string)
-        .or(unguarded);
+        .or(undecided);
     let too_near = || (verdict == Verdict::Inconclusive).then(|| near(margin_uncertainty));
     ConditionOutcome {
         text: condition.text.clone(),
@@ -58,6 +64,7 @@ pub(crate) fn assess_condition(
         percent: in_percent(condition),
         value: value.as_ref().ok().map(|value| value.value),
         uncertainty: value.as_ref().ok().and_then(|value| value.uncertainty),
+        status,
         degrees: how_well(&condition.value, record).map_or(f64::INFINITY, |known| known.degrees),
         bound: bound.ok(),
         margin: known.map(|(value, bound)| bound.margin(value)),
@@ -79,14 +86,26 @@ fn in_percent(condition: &Condition) -> bool {
     condition.dimension == Dimension::NUMBER && (fractions || stated)
 }
 
-/// Why a guard band cannot be applied: a measured result that the condition reads has no expanded uncertainty.
-fn no_uncertainty(condition: &Condition, record: &dyn Results) -> Option<String> {
+/// What is known of the uncertainty of the results that the condition reads.
+fn uncertainty_status(condition: &Condition, record: &dyn Results) -> UncertaintyStatus {
     let mut references = Vec::new();
     condition.collect_references(&mut references);
     references
         .into_iter()
         .filter(|reference| reference.part == Part::Value)
-        .find_map(|read| record.no_uncertainty(read))
+        .map(|read| record.uncertainty_status(read))
+        .fold(UncertaintyStatus::Exact, UncertaintyStatus::and)
+}
+
+/// Whether it is `==` or `!=`.
+const fn is_equality(condition: &Condition) -> bool {
+    matches!(
+        condition.test,
+        Test::Compare {
+            comparison: Comparison::Equal | Comparison::NotEqual,
+            ..
+        }
+    )
 }
 
 /// Why a value near its limit is not conclusive, and why the band is wide if it comes from few readings.
@@ -189,6 +208,24 @@ pub(super) fn equal(a: f64, b: f64) -> bool {
 }
 
 impl ConditionOutcome {
+    /// Whether the value alone decides: it is exact, or the plan does not declare its uncertainty.
+    #[must_use]
+    pub fn decides_without_uncertainty(&self) -> bool {
+        self.verdict != Verdict::Inconclusive
+            && self.conforms.is_none()
+            && self.status != UncertaintyStatus::Known
+    }
+
+    /// The condition without a decision. Its value is not that of a whole procedure, and has no probability of conformity.
+    pub(super) fn inconclusive(self, reason: String) -> Self {
+        Self {
+            verdict: Verdict::Inconclusive,
+            conforms: None,
+            reason: Some(reason),
+            ..self
+        }
+    }
+
     /// The uncertainty of the value.
     #[must_use]
     pub fn measurement_uncertainty(&self) -> Option<MeasurementUncertainty> {

@@ -98,6 +98,7 @@ fn a_guard_band_needs_an_uncertainty_that_is_known() {
         },
         dimension: Dimension::NUMBER,
         contributions: Vec::new(),
+        withheld: None,
     };
     record.procedures[0]
         .results
@@ -150,6 +151,60 @@ fn a_guard_band_needs_an_uncertainty_that_is_known() {
         assess_condition(&simple, DecisionRule::Simple, &record).verdict,
         Verdict::Pass
     );
+}
+
+/// A known uncertainty of any size decides nothing near its limit; an uncertainty that was lost decides nothing at any distance. `==` and
+/// `!=` compare numbers. A budget that the plan leaves partial decides on the value alone under simple acceptance, as an exact value does.
+#[test]
+fn a_withheld_uncertainty_decides_nothing_under_either_rule() {
+    use Comparison::{Equal, Greater, LessEqual, NotEqual};
+    let mut withheld = record(Outcome::Completed);
+    withheld.procedures[0].results[0].withhold("errors grow");
+    assert_eq!(
+        withheld.procedures[0].results[0].value,
+        ResultValue::Number {
+            value: Some(8.0),
+            uncertainty: None
+        }
+    );
+    let outcome = |comparison, limit, rule| {
+        let condition = condition(result("max_displacement"), compare(comparison, limit));
+        assess_condition(&condition, rule, &withheld)
+    };
+    for rule in [DecisionRule::Simple, DecisionRule::Guarded] {
+        for (comparison, limit) in [(LessEqual, 800.0), (LessEqual, 0.08), (Greater, 8.0)] {
+            let found = outcome(comparison, limit, rule);
+            assert_eq!(
+                (found.verdict, found.guard_band, found.conforms),
+                (Verdict::Inconclusive, None, None),
+                "{comparison:?} {limit}"
+            );
+            assert_eq!(
+                found.reason.as_deref(),
+                Some("U of `max_displacement` is withheld: errors grow")
+            );
+        }
+    }
+    assert_eq!(
+        [(Equal, 8.0), (NotEqual, 8.0)].map(|(comparison, limit)| outcome(
+            comparison,
+            limit,
+            DecisionRule::Simple
+        )
+        .verdict),
+        [Verdict::Pass, Verdict::Fail]
+    );
+    let mut undeclared = record(Outcome::Completed);
+    undeclared.procedures[0].results[0].value = ResultValue::Number {
+        value: Some(8.0),
+        uncertainty: None,
+    };
+    let condition = condition(
+        result("max_displacement"),
+        compare(Comparison::LessEqual, 8.5),
+    );
+    let found = assess_condition(&condition, DecisionRule::Simple, &undeclared);
+    assert!(found.verdict == Verdict::Pass && found.decides_without_uncertainty());
 }
 
 /// 8 with u = 0.125 (normal): at its limit 50 %, one u inside 84.1 %; between limits of ±0.125 it is 68.3 %, and U exceeds the limits.

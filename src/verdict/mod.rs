@@ -7,7 +7,7 @@ mod partial;
 mod undecided;
 mod unfinished_peaks;
 
-use crate::plan::formula::{ProcedureId, Results};
+use crate::plan::formula::{ProcedureId, Results, UncertaintyStatus};
 use crate::plan::{Comparison, Condition, DecisionRule, Plan, Requirement};
 use crate::record::{ImpactHistory, Outcome, Record};
 use crate::units::Dimension;
@@ -21,8 +21,8 @@ pub enum Verdict {
     /// The run is complete and the plan has no requirement: there is nothing to pass.
     Completed,
     Pass,
-    /// A result that the requirement reads does not exist in this run, or its margin is too small for its uncertainty. Also a run that
-    /// could not continue with its measured values.
+    /// A result that the requirement reads does not exist in this run, its uncertainty is withheld, or its margin is too small for its
+    /// uncertainty. Also a run that could not continue with its measured values.
     Inconclusive,
     Fail,
     /// Stopped by a limit or by the operator.
@@ -75,6 +75,8 @@ pub struct ConditionOutcome {
     /// SI; None if a result does not exist.
     pub value: Option<f64>,
     pub uncertainty: Option<f64>,
+    /// What is known of the uncertainty of the results that it reads.
+    pub status: UncertaintyStatus,
     /// Effective degrees of freedom of that uncertainty.
     pub degrees: f64,
     pub bound: Option<Bound>,
@@ -173,11 +175,7 @@ pub(crate) fn assess_on_impact(
     let steps = (impact.time_step, impact.critical_time_step);
     let longer = (steps.0 > steps.1).then(|| longer_than_critical("the impact", steps.0, steps.1));
     match longer.or_else(|| unfinished_peaks::undecided_by(condition, rule, results, own, impact)) {
-        Some(why) => ConditionOutcome {
-            verdict: Verdict::Inconclusive,
-            reason: Some(why),
-            ..outcome
-        },
+        Some(why) => outcome.inconclusive(why),
         None => outcome,
     }
 }

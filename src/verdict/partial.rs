@@ -1,9 +1,9 @@
 //! Results with the uncertainty that the plan declares. On a real rig a budget without the calibration of force and displacement is
-//! partial. It gives no expanded uncertainty, and therefore no guard band. In: a plan and its results. Out: the same results, and for
-//! each the reason why it has no U.
+//! partial. It gives no expanded uncertainty, and therefore no guard band. In: a plan and its results. Out: the same results, each with
+//! what is known of its uncertainty.
 
 use crate::plan::Plan;
-use crate::plan::formula::{ResultReference, ResultValue, Results};
+use crate::plan::formula::{ResultReference, ResultValue, Results, UncertaintyStatus};
 use crate::uncertainty::{Contribution, Source};
 
 /// Results of a run on the rig of a plan.
@@ -42,18 +42,16 @@ impl Results for Declared<'_> {
         self.results.moved(source)
     }
 
-    fn no_uncertainty(&self, reference: ResultReference) -> Option<String> {
-        let partial = || {
-            let uncertain =
-                !self.undeclared.is_empty() && !self.results.contributions(reference).is_empty();
-            let name = reference.name;
-            uncertain.then(|| {
-                format!(
-                    "the budget of `{name}` is partial (not declared in the plan: {})",
-                    self.undeclared.join(" and ")
-                )
-            })
-        };
-        self.results.no_uncertainty(reference).or_else(partial)
+    fn uncertainty_status(&self, reference: ResultReference) -> UncertaintyStatus {
+        let own = self.results.uncertainty_status(reference);
+        let partial =
+            !self.undeclared.is_empty() && !self.results.contributions(reference).is_empty();
+        if !partial {
+            return own;
+        }
+        let (name, undeclared) = (reference.name, self.undeclared.join(" and "));
+        own.and(UncertaintyStatus::Partial(format!(
+            "the budget of `{name}` is partial (not declared in the plan: {undeclared})"
+        )))
     }
 }

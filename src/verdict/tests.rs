@@ -13,6 +13,7 @@ pub(super) fn record(outcome: Outcome) -> Record {
         value: ResultValue::Number { value, uncertainty },
         dimension: Dimension::LENGTH,
         contributions: Vec::new(),
+        withheld: None,
     };
     Record {
         rig: Identity {
@@ -246,6 +247,7 @@ fn what_a_scheme_made_of_its_energy_decides_nothing() {
             value: error,
             dimension: Dimension::NUMBER,
             contributions: Vec::new(),
+            withheld: None,
         };
         record.procedures[0].results.push(error);
         record

@@ -2,7 +2,7 @@
 //! critical one, a zero drift, or a peak that was not reached. In: the outcome of a condition. Out: the outcome, or inconclusive with the
 //! reason.
 
-use super::{ConditionOutcome, Verdict, unfinished_peaks};
+use super::{ConditionOutcome, unfinished_peaks};
 use crate::physics::impact::energy::WORTHLESS;
 use crate::plan::formula::{ResultReference, ResultValue, Results};
 use crate::plan::{Condition, DecisionRule};
@@ -52,11 +52,7 @@ pub(super) fn unless_undecided(
         }
     };
     match drifted(&read, record).or_else(unfinished) {
-        Some(reason) => ConditionOutcome {
-            verdict: Verdict::Inconclusive,
-            reason: Some(reason),
-            ..outcome
-        },
+        Some(reason) => outcome.inconclusive(reason),
         None => outcome,
     }
 }

@@ -4,7 +4,9 @@
 
 use super::ConditionOutcome;
 use super::condition::assess_condition;
-use crate::plan::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
+use crate::plan::formula::{
+    Part, ProcedureId, ResultReference, ResultValue, Results, UncertaintyStatus,
+};
 use crate::plan::{Condition, DecisionRule};
 use crate::record::{EscalateHistory, FloorStep, Floors, History, ImpactHistory, SeriesImpact};
 use crate::schema::ResultKind;
@@ -137,8 +139,8 @@ impl Results for Grown<'_> {
         self.results.moved(source)
     }
 
-    fn no_uncertainty(&self, reference: ResultReference) -> Option<String> {
-        self.results.no_uncertainty(reference)
+    fn uncertainty_status(&self, reference: ResultReference) -> UncertaintyStatus {
+        self.results.uncertainty_status(reference)
     }
 }
 

@@ -55,7 +55,8 @@ fn changed(from: &str, to: &str) -> String {
 #[test]
 fn a_run_gives_its_folder_on_stdout_and_the_verdict_on_stderr() {
     let workspace = Workspace::new(&[("plans/small.psd", &with_every_output())]);
-    let first = workspace.psd(&["run", "plans/small.psd"]).with(0);
+    let run = ["run", "plans/small.psd", "--date", "2026-05-31"];
+    let first = workspace.psd(&run).with(0);
     assert_eq!(first.stdout, "runs/small-1\n");
     assert!(
         first.stderr.contains("PASS") && first.stderr.contains("stays in travel"),
@@ -66,16 +67,42 @@ fn a_run_gives_its_folder_on_stdout_and_the_verdict_on_stderr() {
         !first.stderr.contains('\u{1b}'),
         "no colour and no bar in a pipe"
     );
-    assert_eq!(
-        workspace.psd(&["run", "plans/small.psd"]).with(0).stdout,
-        "runs/small-2\n"
-    );
-    let (one, two) = (
-        every_file(&workspace.path("runs/small-1")),
-        every_file(&workspace.path("runs/small-2")),
-    );
+    assert_eq!(workspace.psd(&run).with(0).stdout, "runs/small-2\n");
+    // The run log has the start of the run, and the manifest its digest.
+    let results = |folder| {
+        let mut files = every_file(&workspace.path(folder));
+        files.retain(|(path, _)| {
+            !path.ends_with("journal.psdj") && !path.ends_with("manifest.sha256")
+        });
+        files
+    };
+    let (one, two) = (results("runs/small-1"), results("runs/small-2"));
     assert!(one.iter().any(|(path, _)| path.ends_with("summary.json")));
     assert!(one == two, "the same plan gives the same bytes");
+}
+
+/// Without a stated date a simulated run has the day of its start: in the summary, in the report, and again when it is verified.
+#[test]
+fn a_simulated_run_has_a_date() {
+    let workspace = Workspace::new(&[("small.psd", SOUND)]);
+    workspace
+        .psd(&["run", "small.psd", "--out", "here"])
+        .with(0);
+    let summary: Value = serde_json::from_str(&workspace.read("here/summary.json")).unwrap();
+    let date = summary["date"].as_str().expect("a date");
+    assert!(date.parse::<jiff::civil::Date>().is_ok(), "{date}");
+    assert!(
+        workspace
+            .read("here/journal.psdj")
+            .contains(&format!("\"began\":\"{date}T")),
+        "the day is that of the run log"
+    );
+    assert!(
+        workspace
+            .read("here/report.html")
+            .contains(&format!("Simulated {date}"))
+    );
+    workspace.psd(&["verify", "here"]).with(0);
 }
 
 #[test]
@@ -95,7 +122,7 @@ fn the_summary_is_the_result_where_json_is_asked() {
         .with(0);
     assert_eq!(
         (&ended.json()["schema"], &ended.json()["verdict"]),
-        (&"psd.summary/1".into(), &"pass".into())
+        (&"psd.summary/2".into(), &"pass".into())
     );
     assert_eq!(ended.json()["date"], "2026-05-31");
     assert_eq!(workspace.read("here/summary.json"), ended.stdout);
@@ -458,8 +485,13 @@ fn accept_writes_beside_the_plans_folder() {
         .psd(&["run", "plans/small.psd", "--accept", "--out", "here"])
         .with(0);
     assert_eq!(
-        workspace.read("reports/small/summary.json"),
-        workspace.read("here/summary.json")
+        workspace.undated_summary("reports/small"),
+        workspace.undated_summary("here")
+    );
+    assert!(
+        workspace
+            .read("reports/small/summary.json")
+            .contains("\"date\": null")
     );
     assert!(
         workspace.path("here/report.html").exists()

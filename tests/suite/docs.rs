@@ -1,9 +1,11 @@
 //! Checks of the pages at the root: their plans check, their links lead to a target, and the commands they name exist.
 
+use std::collections::BTreeSet;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use super::source_text::{none, rust_files};
 use psd::language::check::{Options, check, no_files};
 
 fn page(name: &str) -> String {
@@ -38,24 +40,83 @@ fn links_of_the_pages_lead_somewhere() {
     }
 }
 
-/// Paths in code marks on these pages exist.
+/// Every path of the tree, and each of its ends: `frame/modes.rs` is a path seen from its folder.
+fn ends_of_paths() -> BTreeSet<String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut folders: Vec<PathBuf> = ["src", "tests", "grammar", "docs", "plans", "benches"]
+        .map(|folder| root.join(folder))
+        .to_vec();
+    let mut ends = BTreeSet::from(["build.rs".to_owned()]);
+    while let Some(folder) = folders.pop() {
+        let inside = fs::read_dir(&folder).expect("the folder can be read");
+        let paths: Vec<PathBuf> = inside.map(|entry| entry.unwrap().path()).collect();
+        for path in paths.iter().chain([&folder]) {
+            let path = path.strip_prefix(root).expect("below the root");
+            let mut end = path.to_string_lossy().into_owned();
+            while ends.insert(end.clone())
+                && let Some((_, shorter)) = end.split_once('/')
+            {
+                end = shorter.to_owned();
+            }
+        }
+        folders.extend(paths.into_iter().filter(|path| path.is_dir()));
+    }
+    ends
+}
+
+/// Whether a text in code marks is a path of the tree. A word in capitals, such as `NAME`, is a placeholder.
+fn is_path(quoted: &str) -> bool {
+    let is_placeholder =
+        |word: &str| word.len() > 1 && word.chars().all(|letter| letter.is_ascii_uppercase());
+    let is_name = |letter: char| letter.is_ascii_alphanumeric() || "._-/".contains(letter);
+    quoted.chars().all(is_name)
+        && !quoted.split(['/', '.', '_']).any(is_placeholder)
+        && (quoted.ends_with(".rs")
+            || ["src/", "tests/", "grammar/", "docs/"]
+                .iter()
+                .any(|root| quoted.starts_with(root)))
+}
+
+/// Paths in code marks exist: on the pages, and in the comments of the code.
 #[test]
-fn paths_named_on_the_pages_exist() {
-    for name in ["ARCHITECTURE.md", "CONTRIBUTING.md"] {
-        for quoted in page(name).split('`').skip(1).step_by(2) {
-            let is_path = quoted.starts_with("src/")
-                || quoted.starts_with("tests/")
-                || quoted.starts_with("grammar/");
-            let is_pattern =
-                quoted.contains(['{', ' ']) || quoted.contains("NAME") || quoted.contains("CODE");
-            if is_path && !is_pattern {
-                assert!(
-                    Path::new(env!("CARGO_MANIFEST_DIR")).join(quoted).exists(),
-                    "{name} names {quoted}"
-                );
+fn paths_in_pages_and_comments_exist() {
+    let ends = ends_of_paths();
+    let mut texts: Vec<(String, String)> = ["ARCHITECTURE.md", "CONTRIBUTING.md", "README.md"]
+        .map(|name| (name.to_owned(), page(name)))
+        .to_vec();
+    for path in crate::book::pages() {
+        let name = format!("docs/{}", path.display());
+        let text = page(&name);
+        texts.push((name, text));
+    }
+    for folder in ["src", "tests"] {
+        for file in rust_files(folder) {
+            let comments = file.text.lines().filter_map(|line| line.split_once("//"));
+            let text = comments
+                .map(|(_, comment)| format!("{comment}\n"))
+                .collect();
+            texts.push((format!("{folder}/{}", file.path), text));
+        }
+    }
+    let mut shown = 0;
+    let mut absent = Vec::new();
+    for (name, text) in &texts {
+        for line in text.lines() {
+            for quoted in line
+                .split('`')
+                .skip(1)
+                .step_by(2)
+                .filter(|quoted| is_path(quoted))
+            {
+                shown += 1;
+                if !ends.contains(quoted.trim_end_matches('/')) {
+                    absent.push(format!("{name} names {quoted}"));
+                }
             }
         }
     }
+    assert!(shown > 300, "{shown}");
+    none(&absent, "a path that does not exist");
 }
 
 #[test]

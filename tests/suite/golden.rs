@@ -72,10 +72,14 @@ fn a_plan_is_accepted_then_passes_and_is_not_accepted_again() {
         "FAILED    plans/small  no accepted results in reports/small",
         "--accept",
     ]);
-    workspace
-        .psd(&["test", "--accept"])
-        .with(0)
-        .prints(&["accepted  plans/small  new", "1 plan, 1 accepted"]);
+    workspace.psd(&["test", "--accept"]).with(0).prints(&[
+        "accepted  plans/small  new, in reports/small",
+        "1 plan, 1 accepted",
+    ]);
+    assert_eq!(
+        workspace.read("reports/small/plan.txt"),
+        "plans/small.psd\n"
+    );
     workspace
         .psd(&["test"])
         .with(0)
@@ -100,11 +104,11 @@ fn a_plan_is_accepted_then_passes_and_is_not_accepted_again() {
     workspace
         .psd(&["run", "plans/small.psd", "--accept", "--out", "again"])
         .with(0)
-        .prints(&["accepted  reports/small  new"]);
+        .prints(&["accepted  plans/small  new, in reports/small"]);
     assert_eq!(every_file(&workspace.path("reports")), accepted);
     assert_eq!(
-        workspace.read("reports/small/summary.json"),
-        workspace.read("again/summary.json")
+        workspace.undated_summary("reports/small"),
+        workspace.undated_summary("again")
     );
     workspace
         .psd(&["run", "plans/small.psd", "--accept", "--date", "2026-05-31"])
@@ -321,7 +325,7 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
 }
 
 #[test]
-fn a_requirement_that_changes_its_verdict_comes_first() {
+fn the_cause_comes_first_then_a_requirement_that_changes_its_verdict() {
     let workspace = with_plans(&[("small", PLAN)]);
     workspace.psd(&["test", "--accept"]).with(0);
     workspace.edit("plans/small.psd", "velocity = 1 m/s", "velocity = 1.1 m/s");
@@ -331,6 +335,7 @@ fn a_requirement_that_changes_its_verdict_comes_first() {
         "hit.max_displacement  ",
     ]);
     let position = |words: &str| output.stderr.find(words).unwrap();
+    assert!(position("  cause        text of the plan") < position("  verdict "));
     assert!(
         position("  verdict ") < position("stays in travel")
             && position("stays in travel") < position("hit.max_displacement")
@@ -383,6 +388,46 @@ fn a_plan_that_must_fail_to_check_has_its_words_accepted() {
         .with(5)
         .prints(&["delete its results folder first"]);
     assert!(workspace.path("reports/wrong/summary.json").exists());
+}
+
+/// Plans of one name in folders side by side have one folder of results: it is that of the first plan accepted.
+#[test]
+fn the_results_of_another_plan_are_neither_compared_nor_replaced() {
+    let workspace = Workspace::new(&[]);
+    workspace.write("a/t.psd", PLAN);
+    workspace.write("b/t.psd", PLAN.replace("327.65 N/m", "400 N/m"));
+    workspace.psd(&["test", "a", "--accept"]).with(0);
+    assert_eq!(workspace.read("reports/t/plan.txt"), "a/t.psd\n");
+    let accepted = every_file(&workspace.path("reports"));
+    let refusal = "reports/t has the accepted results of a/t.psd, not of b/t.psd";
+    for arguments in [&["test", "b", "--accept"][..], &["test", "b"]] {
+        workspace.psd(arguments).with(5).prints(&[refusal]);
+    }
+    workspace
+        .psd(&["run", "b/t.psd", "--accept", "--out", "here"])
+        .with(2)
+        .prints(&[refusal]);
+    workspace
+        .psd(&["test", "a", "b", "--accept"])
+        .with(2)
+        .prints(&["a/t.psd and b/t.psd would share the accepted results in reports/t"]);
+    assert_eq!(every_file(&workspace.path("reports")), accepted);
+    workspace.psd(&["test", "a"]).with(0);
+    // Its own folder, named from any place.
+    workspace
+        .psd(&["test", "b", "--accept", "--golden", "b/kept"])
+        .with(0)
+        .prints(&["accepted  b/t  new, in b/kept/t"]);
+    assert_eq!(workspace.read("b/kept/t/plan.txt"), "t.psd\n");
+    let folder = workspace.path("b/kept");
+    workspace
+        .psd(&["test", "b", "--golden", folder.to_str().unwrap()])
+        .with(0);
+    // Results of an older version name no plan.
+    std::fs::remove_file(workspace.path("reports/t/plan.txt")).unwrap();
+    workspace.psd(&["test", "a"]).with(0);
+    workspace.psd(&["test", "a", "--accept"]).with(0);
+    assert_eq!(every_file(&workspace.path("reports")), accepted);
 }
 
 #[test]

@@ -13,6 +13,7 @@ mod document;
 mod evidence;
 mod explain;
 mod golden;
+mod growth;
 mod house;
 mod import_graph;
 mod lang;

@@ -103,7 +103,7 @@ fn resting(plan: &str) -> String {
 fn released(stage: &Stage) {
     until("the release", || {
         std::fs::read_to_string(stage.journal())
-            .is_ok_and(|record| record.contains("answered by --yes"))
+            .is_ok_and(|record| record.contains("released with --yes, without a prompt"))
     });
 }
 

@@ -14,10 +14,10 @@ pub struct PlanSettings {
     /// The rig to use; a real rig moves only when named
     #[arg(long, value_name = "NAME")]
     pub rig: Option<String>,
-    /// Set a `param`: `--set impact_speed="1.5 m/s"`
+    /// Set a `param` or a number of a block: `--set speed="1 m/s"`
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     pub set: Vec<(String, String)>,
-    /// Date on the test report [real rig: from its run log]
+    /// Date on the report [default: the day of the run]
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = date)]
     pub date: Option<String>,
 }

@@ -1,7 +1,7 @@
 //! The accepted results of a plan. In: the path of the plan, and the files of a run. Out: the folder `reports/NAME`, beside the folder of
 //! `plans/NAME.psd`, read or replaced as a whole. No other folder is changed.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use super::run_folder::write_new;
 use crate::evidence::names::present_name;
@@ -10,19 +10,22 @@ use crate::files::failure::plain;
 use crate::golden::{Accepted, SUMMARY, Tolerances, Truth, compare};
 use crate::report::OutputFile;
 
+/// The file that names the plan whose results a folder has: its path, from the folder above `reports`.
+const PLAN: &str = "plan.txt";
+
 /// The folder of the accepted results of a plan.
 #[derive(Clone, Debug)]
 pub struct AcceptedFolder {
     reports: PathBuf,
     name: String,
+    /// The content of [`PLAN`] for its plan.
+    plan: String,
 }
 
 impl AcceptedFolder {
     /// The folder for `plan`, which exists.
     pub fn of(plan: &Path) -> Result<Self, Failure> {
-        let path = plan
-            .canonicalize()
-            .map_err(|error| Failure::file(plan, plain(&error)))?;
+        let path = canonical(plan)?;
         match path.parent().and_then(Path::parent) {
             Some(above) => {
                 // As the operator would write it, if that is the same path.
@@ -54,19 +57,48 @@ impl AcceptedFolder {
         }
     }
 
-    /// The folder for `plan` among others in `reports`.
+    /// The folder for `plan`, which exists, among others in `reports`.
     pub fn within(reports: &Path, plan: &Path) -> Result<Self, Failure> {
-        match plan.file_stem() {
-            Some(name) => Ok(Self {
-                reports: reports.to_owned(),
-                name: name.to_string_lossy().into_owned(),
-            }),
-            None => Err(Failure::file(plan, "has no name for its accepted results")),
-        }
+        let Some(name) = plan.file_stem() else {
+            return Err(Failure::file(plan, "has no name for its accepted results"));
+        };
+        let above = resolved(reports);
+        let from = above.parent().unwrap_or(&above);
+        Ok(Self {
+            reports: reports.to_owned(),
+            name: name.to_string_lossy().into_owned(),
+            plan: relative(from, &canonical(plan)?)
+                .to_string_lossy()
+                .into_owned(),
+        })
     }
 
     pub fn path(&self) -> PathBuf {
         self.reports.join(&self.name)
+    }
+
+    /// The path, the same for every way to write it.
+    pub fn absolute(&self) -> PathBuf {
+        resolved(&self.reports).join(&self.name)
+    }
+
+    /// The reason not to use the folder: it has the accepted results of another plan. A folder that names no plan is that of this one.
+    pub fn belongs_to_another(&self) -> Result<Option<String>, Failure> {
+        let path = self.path().join(PLAN);
+        let owner = match std::fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(Failure::file(&path, plain(&error))),
+        };
+        let owner = owner.trim_end();
+        Ok((owner != self.plan).then(|| {
+            format!(
+                "{} has the accepted results of {owner}, not of {}: name another folder with `--golden`, or delete {} if the plan was moved",
+                self.path().display(),
+                self.plan,
+                path.display()
+            )
+        }))
     }
 
     /// The compared part of the accepted results; empty if there are none.
@@ -83,10 +115,14 @@ impl AcceptedFolder {
         rewrite: bool,
         pages: bool,
     ) -> Result<Accepted, Failure> {
+        if let Some(reason) = self.belongs_to_another()? {
+            return Ok(Accepted::Refused(reason));
+        }
         let (old, new) = (self.truth()?, truth_of(files));
         if old.text(SUMMARY).is_some() && new.is_of_faults() {
             return Ok(Accepted::Refused(
-                "the plan had results and now fails to check; delete its results folder first",
+                "the plan had results and now fails to check; delete its results folder first"
+                    .to_owned(),
             ));
         }
         let before = names(&self.path())?;
@@ -99,6 +135,10 @@ impl AcceptedFolder {
                 path: path.to_owned(),
                 bytes: text.as_bytes().to_vec(),
             }))
+            .chain([OutputFile {
+                path: PLAN.to_owned(),
+                bytes: format!("{}\n", self.plan).into_bytes(),
+            }])
             .collect();
         kept.sort_by(|one, other| one.path.cmp(&other.path));
         if old.is_empty() {
@@ -136,6 +176,33 @@ impl AcceptedFolder {
     fn beside(&self, what: &str) -> PathBuf {
         self.reports.join(format!(".{}.{what}", self.name))
     }
+}
+
+fn canonical(plan: &Path) -> Result<PathBuf, Failure> {
+    plan.canonicalize()
+        .map_err(|error| Failure::file(plan, plain(&error)))
+}
+
+/// The absolute path of a folder whose last parts need not exist.
+fn resolved(folder: &Path) -> PathBuf {
+    let path = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
+    path.ancestors()
+        .find_map(|above| {
+            let rest = path.strip_prefix(above).ok()?;
+            Some(above.canonicalize().ok()?.join(rest))
+        })
+        .unwrap_or(path)
+}
+
+/// The path to a file from a folder, both absolute.
+fn relative(from: &Path, to: &Path) -> PathBuf {
+    let shared = from
+        .components()
+        .zip(to.components())
+        .take_while(|(one, other)| one == other)
+        .count();
+    let up = from.components().skip(shared).map(|_| Component::ParentDir);
+    up.chain(to.components().skip(shared)).collect()
 }
 
 /// The compared part of a folder of results; empty if there is none.

@@ -100,6 +100,14 @@ pub fn circumstances(plan: &Plan, attendance: &Attendance) -> Circumstances {
     }
 }
 
+/// The start of a run on a simulated rig, which needs no operator.
+pub fn start_alone() -> Circumstances {
+    Circumstances {
+        began: wall_clock()(),
+        ..Circumstances::default()
+    }
+}
+
 /// UTC, to the millisecond.
 pub fn wall_clock() -> Wall {
     Box::new(|| {

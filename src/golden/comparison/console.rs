@@ -66,7 +66,7 @@ pub fn comparison_text(comparison: &Comparison) -> String {
     for (name, lines) in &comparison.plans {
         let _ = writeln!(
             text,
-            "Plan of {name} compared with that of {}",
+            "Plan of {name} compared with the plan of {}",
             comparison.names[0]
         );
         for line in lines {

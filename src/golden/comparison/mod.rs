@@ -23,7 +23,7 @@ use crate::units::{Dimension, unit};
 pub struct Side {
     /// As the operator named it: `runs/beam-1`.
     pub name: String,
-    /// `psd.summary/1`
+    /// The content of its `summary.json`.
     pub summary: Value,
     pub figures: Figures,
     /// The plan as it was run; None for accepted results, which do not contain it.

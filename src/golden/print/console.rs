@@ -21,22 +21,26 @@ pub fn summary_text(tested: &Tested, coloured: bool) -> String {
             verdict: Some(verdict),
         } => ("ok", GREEN, (*verdict).to_owned()),
         Outcome::Same { verdict: None } => ("ok", GREEN, "fails to check, as accepted".to_owned()),
-        Outcome::Accepted(Accepted::New) => ("accepted", YELLOW, "new".to_owned()),
+        Outcome::Accepted(Accepted::New) => {
+            ("accepted", YELLOW, format!("new, in {}", tested.folder))
+        }
         Outcome::Accepted(Accepted::Changed(found)) if found.is_empty() => (
             "accepted",
             YELLOW,
-            "written again, no result changed".to_owned(),
+            format!("written again, no result changed, in {}", tested.folder),
         ),
-        Outcome::Accepted(Accepted::Changed(found)) => {
-            ("accepted", YELLOW, format!("{} changed", found.len()))
-        }
+        Outcome::Accepted(Accepted::Changed(found)) => (
+            "accepted",
+            YELLOW,
+            format!("{} changed, in {}", found.len(), tested.folder),
+        ),
         Outcome::Accepted(Accepted::Unchanged) => (
             "same",
             GREEN,
             "within tolerance: nothing written".to_owned(),
         ),
         Outcome::NotRun => ("skipped", YELLOW, "not run".to_owned()),
-        other => ("FAILED", RED, other.complaint().unwrap_or_default()),
+        _ => ("FAILED", RED, tested.complaint().unwrap_or_default()),
     };
     let word = format!("{word:<8}");
     let word = if coloured {

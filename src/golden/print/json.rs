@@ -24,10 +24,11 @@ pub fn document(report: &Report) -> Value {
             };
             json!({
                 "plan": tested.name,
+                "folder": tested.folder,
                 "outcome": tested.outcome.name(),
                 "good": tested.outcome.is_good(),
                 "verdict": verdict,
-                "message": tested.outcome.complaint(),
+                "message": tested.complaint(),
                 "differences": tested.outcome.findings().iter().map(finding).collect::<Vec<_>>(),
             })
         })

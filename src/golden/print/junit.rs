@@ -38,7 +38,7 @@ fn status(tested: &Tested) -> TestCaseStatus {
     if tested.outcome.is_good() {
         return TestCaseStatus::success();
     }
-    let complaint = one_line(&tested.outcome.complaint().unwrap_or_default());
+    let complaint = one_line(&tested.complaint().unwrap_or_default());
     if tested.outcome == Outcome::NotRun {
         let mut status = TestCaseStatus::skipped();
         status.set_message(complaint);

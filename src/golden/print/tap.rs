@@ -30,7 +30,7 @@ pub fn tap(report: &Report) -> String {
         if result == "ok" {
             continue;
         }
-        let complaint = tested.outcome.complaint().unwrap_or_default();
+        let complaint = tested.complaint().unwrap_or_default();
         let _ = writeln!(
             text,
             "  ---\n  message: {}\n  severity: fail",
@@ -70,6 +70,7 @@ mod tests {
     fn a_failure_carries_its_differences_and_a_name_steers_nothing() {
         let tested = |name: &str, outcome| Tested {
             name: name.to_owned(),
+            folder: "reports".to_owned(),
             outcome,
         };
         let found = vec![

@@ -114,6 +114,9 @@ fn pair(moved: &Moved) -> String {
     format!("{} → {}", number(moved.was), number(moved.is))
 }
 
+/// Above it, as from a probability of nearly 0 to 1, a percentage says nothing.
+const LARGEST_FRACTION: f64 = 100.0;
+
 fn by(moved: &Moved) -> String {
     let Some(by) = moved.by() else {
         return String::new();
@@ -129,7 +132,7 @@ fn by(moved: &Moved) -> String {
     };
     let absolute = join(&signed(by / factor, 3), &unit);
     match moved.by_fraction() {
-        Some(fraction) if fraction.is_finite() => {
+        Some(fraction) if fraction.abs() <= LARGEST_FRACTION => {
             format!("{absolute}  {} %", signed(100.0 * fraction, 3))
         }
         _ => absolute,

@@ -64,7 +64,7 @@ fn touches(span: Span, others: &[Span]) -> bool {
         .is_some_and(|last| last.file == span.file && span.start < last.end)
 }
 
-/// The lines at which the text could not be parsed.
+/// The lines at which the text could not be parsed, in order, each once.
 pub fn unread_lines(sources: &Sources, errors: &[Diagnostic]) -> Vec<Span> {
     let line = |span: Span| {
         let text = &sources.file(span.file).text;
@@ -82,7 +82,16 @@ pub fn unread_lines(sources: &Sources, errors: &[Diagnostic]) -> Vec<Span> {
         .iter()
         .filter(|error| is_of_the_text(error))
         .flat_map(|error| &error.labels);
-    labels.map(|label| line(label.span)).collect()
+    let mut lines: Vec<Span> = labels.map(|label| line(label.span)).collect();
+    lines.sort_unstable();
+    lines.dedup_by(|next, kept| {
+        let joins = next.file == kept.file && next.start <= kept.end;
+        if joins {
+            kept.end = kept.end.max(next.end);
+        }
+        joins
+    });
+    lines
 }
 
 /// Checks every block, then all of them together. None if a part of the plan has an error.

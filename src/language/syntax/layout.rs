@@ -5,7 +5,7 @@ use super::{
     ast::ITEM_WORDS,
     control,
     lexical::tokens::{JOINING_WORDS, Kind, Tokens},
-    messages,
+    limits, messages,
 };
 use crate::text::diagnostic::Diagnostic;
 
@@ -39,7 +39,7 @@ pub fn cut(tokens: &Tokens) -> (Vec<Piece>, Vec<Diagnostic>) {
         errors: Vec::new(),
     };
     let mut pieces = Vec::new();
-    while cutter.skip_lines() {
+    while cutter.goes_on() {
         if cutter.is("}") {
             cutter.unexpected("an item");
             cutter.at += 1;
@@ -90,15 +90,22 @@ impl Cutter<'_> {
         )
     }
 
-    /// Skips line ends and comments; returns whether anything is left.
-    fn skip_lines(&mut self) -> bool {
-        while matches!(
-            self.tokens.kind(self.at),
-            Some(Kind::Newline | Kind::Comment)
-        ) {
-            self.at += 1;
-        }
-        self.at < self.tokens.list.len()
+    /// The index of the first token from `at` on that is neither a line end nor a comment.
+    fn after_lines(&self, at: usize) -> usize {
+        let between =
+            |at: &usize| matches!(self.tokens.kind(*at), Some(Kind::Newline | Kind::Comment));
+        (at..).find(|at| !between(at)).unwrap_or(at)
+    }
+
+    /// Skips line ends and comments; returns whether anything is left that is worth reading: more errors than are reported are not
+    /// looked for.
+    fn goes_on(&mut self) -> bool {
+        self.at = self.after_lines(self.at);
+        self.at < self.tokens.list.len() && !self.has_enough()
+    }
+
+    fn has_enough(&self) -> bool {
+        self.errors.len() > limits::ERRORS
     }
 
     fn unexpected(&mut self, expected: &str) {
@@ -127,40 +134,43 @@ impl Cutter<'_> {
     fn statement(&mut self) -> Statement {
         let start = self.at;
         let mut end = start;
-        let mut open: Vec<usize> = Vec::new();
+        let mut open = OpenBrackets::default();
         let mut broken = false;
         while let Some(kind) = self.tokens.kind(self.at) {
             match kind {
-                Kind::Newline if open.is_empty() && !self.continues(end) => {
-                    if !self.goes_on_below() {
+                Kind::Newline => {
+                    if open.list.is_empty() && !self.continues(end) {
+                        if !self.goes_on_below() {
+                            break;
+                        }
+                        broken = true;
+                    } else if self.starts_something() {
                         break;
                     }
-                    broken = true;
+                    // The lines between are looked at once.
+                    self.at = self.after_lines(self.at);
+                    continue;
                 }
-                Kind::Newline if self.starts_something() => break,
-                Kind::Newline | Kind::Comment => {}
+                Kind::Comment => {}
                 _ if self.is("{") || self.is("}") => break,
                 _ => {
-                    if self.is("(") || self.is("[") {
-                        open.push(self.at);
-                    } else if self.is(")") || self.is("]") {
-                        let fits = |bracket: &usize| {
-                            self.is(closing(self.tokens.text_of(self.tokens.list[*bracket])))
-                        };
-                        if let Some(position) = open.iter().rposition(fits) {
-                            if position + 1 < open.len() {
-                                self.unclosed(open[open.len() - 1]);
+                    let text = self.tokens.text_of(self.tokens.list[self.at]);
+                    match text {
+                        "(" | "[" => open.push(self.at, text),
+                        ")" | "]" => {
+                            if let Some(skipped) = open.close(text) {
+                                self.unclosed(skipped);
                                 broken = true;
                             }
-                            open.truncate(position);
                         }
+                        _ => {}
                     }
                     end = self.at + 1;
                 }
             }
             self.at += 1;
         }
-        if let Some(innermost) = open.last() {
+        if let Some((innermost, _)) = open.list.last() {
             self.unclosed(*innermost);
             broken = true;
         }
@@ -185,10 +195,7 @@ impl Cutter<'_> {
 
     /// A brace on a separate line below the head of its block: it is reported, and read as that block's.
     fn brace_below(&mut self, head: Statement) {
-        let mut next = self.at;
-        while matches!(self.tokens.kind(next), Some(Kind::Newline | Kind::Comment)) {
-            next += 1;
-        }
+        let next = self.after_lines(self.at);
         let words = (head.start..head.end)
             .all(|at| matches!(self.tokens.kind(at), Some(Kind::Word | Kind::Text)));
         let item = ITEM_WORDS
@@ -210,10 +217,7 @@ impl Cutter<'_> {
         let item = ITEM_WORDS
             .iter()
             .any(|word| self.tokens.is(head.start, word));
-        let mut next = self.at;
-        while matches!(self.tokens.kind(next), Some(Kind::Newline | Kind::Comment)) {
-            next += 1;
-        }
+        let next = self.after_lines(self.at);
         let field = self.tokens.kind(next) == Some(Kind::Word) && self.tokens.is(next + 1, "=");
         // The search is bounded, so that the time for a file is proportional to its length.
         let closed = || {
@@ -244,10 +248,7 @@ impl Cutter<'_> {
 
     /// Whether the line after this line end starts a field, an item, a block or ends a block.
     fn starts_something(&self) -> bool {
-        let mut next = self.at;
-        while matches!(self.tokens.kind(next), Some(Kind::Newline | Kind::Comment)) {
-            next += 1;
-        }
+        let next = self.after_lines(self.at);
         self.tokens.is(next, "}")
             || (self.tokens.kind(next) == Some(Kind::Word) && self.tokens.is(next + 1, "="))
             || self.starts_item(next)
@@ -324,8 +325,10 @@ impl Cutter<'_> {
         let mut fields = Vec::new();
         self.at += usize::from(self.is("{"));
         loop {
-            if !self.skip_lines() {
-                self.unclosed(open);
+            if !self.goes_on() {
+                if !self.has_enough() {
+                    self.unclosed(open);
+                }
                 return Piece::Block {
                     head,
                     open,
@@ -425,6 +428,49 @@ impl Cutter<'_> {
                 return;
             }
         }
+    }
+}
+
+/// The brackets that are open in a statement. One that closes nothing is found without a search, so that the time for a statement is
+/// proportional to its length.
+#[derive(Default)]
+struct OpenBrackets {
+    /// The token of each, with the bracket that closes it.
+    list: Vec<(usize, &'static str)>,
+    /// How many `(` and `[` are among them.
+    round: usize,
+    square: usize,
+}
+
+impl OpenBrackets {
+    fn count(&mut self, close: &str) -> &mut usize {
+        if close == ")" {
+            &mut self.round
+        } else {
+            &mut self.square
+        }
+    }
+
+    fn push(&mut self, token: usize, text: &str) {
+        let close = closing(text);
+        self.list.push((token, close));
+        *self.count(close) += 1;
+    }
+
+    /// Closes the innermost bracket that `close` fits, with those inside it. Returns the innermost of these, which is never closed.
+    fn close(&mut self, close: &str) -> Option<usize> {
+        if *self.count(close) == 0 {
+            return None;
+        }
+        let mut unclosed = None;
+        while let Some((token, fits)) = self.list.pop() {
+            *self.count(fits) -= 1;
+            if fits == close {
+                break;
+            }
+            unclosed = unclosed.or(Some(token));
+        }
+        unclosed
     }
 }
 

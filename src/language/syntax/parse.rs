@@ -13,8 +13,8 @@ use super::{
     ast::{Ast, Block, Entry, Ident, Item, ItemKind},
     grammar::{Grammar, Rule},
     layout::{self, Piece, Statement},
-    lexical::confusables,
     lexical::tokens::{Kind, Tokens},
+    lexical::{confusables, long_lines},
     limits,
     lower::{Lowering, unescape},
     messages, rule_names,
@@ -87,6 +87,10 @@ fn parse_text(text: &str, file: FileId) -> (Ast, Vec<Diagnostic>) {
                 "bytes",
             )],
         );
+    }
+    let too_long = long_lines::errors(text, file);
+    if !too_long.is_empty() {
+        return (ast, too_long);
     }
     if let Some(at) = text.find('\r').filter(|_| !text.contains('\n')) {
         return (

@@ -67,14 +67,14 @@ pub(crate) fn perform(
             plan.damping_uncertainty,
             &plan.stepping,
         );
-        stop = session.evaluate_uncertainty(|progress| {
+        stop = session.evaluate_uncertainty(&mut results, |results, progress| {
             let shake = ShakeUncertainty {
                 uncertainty: &uncertainty,
                 plan,
                 ground,
                 setting: &setting,
             };
-            uncertainty::propagate(shake, &shaking.history, &mut results, progress)
+            uncertainty::propagate(shake, &shaking.history, results, progress)
         });
     }
     Performed {

@@ -31,7 +31,7 @@ pub(crate) fn limits_on(
             let label = format!(
                 "{}{entry}: {}",
                 short(&requirement.label),
-                number::bound(held)
+                number::bound_alone(held)
             );
             match held.bound {
                 Some(Bound::Compare { limit, .. }) => lines.push(Reference { label, y: limit }),

@@ -11,16 +11,18 @@ impl ResultKind {
         self.found_with(value.map(|value| (value, None)))
     }
 
-    /// This result with its standard uncertainty, if it has one.
+    /// This result with its standard uncertainty, if it has one. One that is not finite is withheld.
     pub(crate) fn found_with(self, value: Option<(f64, Option<f64>)>) -> NamedResult {
         let value = value.filter(|(value, _)| value.is_finite());
-        let uncertainty = value
-            .and_then(|(_, uncertainty)| uncertainty)
-            .filter(|uncertainty| uncertainty.is_finite());
-        self.holding(ResultValue::Number {
+        let own = value.and_then(|(_, uncertainty)| uncertainty);
+        let mut result = self.holding(ResultValue::Number {
             value: value.map(|(value, _)| value),
-            uncertainty,
-        })
+            uncertainty: own,
+        });
+        if own.is_some_and(|own| !own.is_finite()) {
+            result.withhold(NOT_DETERMINED);
+        }
+        result
     }
 
     /// This result with the uncertainty that its contributions combine to.
@@ -29,11 +31,11 @@ impl ResultKind {
         value: Option<f64>,
         contributions: Vec<Contribution>,
     ) -> NamedResult {
-        let result = self.found_with(value.map(|value| (value, combined(&contributions))));
-        NamedResult {
-            contributions,
-            ..result
+        let mut result = self.found_with(value.map(|value| (value, combined(&contributions))));
+        if result.withheld.is_none() {
+            result.contributions = contributions;
         }
+        result
     }
 
     /// This result as a list; None if it does not exist in this run.
@@ -62,6 +64,7 @@ impl ResultKind {
             value,
             dimension: self.dimension,
             contributions: Vec::new(),
+            withheld: None,
         }
     }
 }
@@ -72,11 +75,8 @@ pub(crate) fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
 }
 
 /// Contributions that count; of a result that nothing moves, not even the time step, that of the step, because its uncertainty is
-/// known to be none. Nothing is known of a result with one that is not finite.
+/// known to be none.
 fn counting(mut parts: Vec<Contribution>) -> Vec<Contribution> {
-    if !parts.iter().all(|part| part.amount.is_finite()) {
-        return Vec::new();
-    }
     let moves = parts.iter().any(|part| part.amount != 0.0);
     parts.retain(|part| {
         if moves {
@@ -131,7 +131,13 @@ pub(crate) fn values(layout: &[(&'static str, usize)], results: &[NamedResult]) 
     layout.iter().flat_map(of_result).collect()
 }
 
-/// Gives results the contributions to their values.
+/// Why a fitted result has no standard error.
+const NOT_DETERMINED: &str = "its readings do not determine its standard error";
+/// Why a result has no uncertainty although its contributions were evaluated: one of them is not finite.
+const VANISHES: &str =
+    "the run has no such result once its inputs or readings are moved by their uncertainty";
+
+/// Gives results the contributions to their values. A result with one that is not finite has its uncertainty withheld.
 pub(crate) fn give(
     layout: &[(&'static str, usize)],
     contributions: Vec<Vec<Contribution>>,
@@ -139,12 +145,16 @@ pub(crate) fn give(
 ) {
     let mut contributions = contributions.into_iter();
     for (name, count) in layout {
-        let of_result: Vec<Vec<Contribution>> =
-            contributions.by_ref().take(*count).map(counting).collect();
+        let of_result: Vec<Vec<Contribution>> = contributions.by_ref().take(*count).collect();
         let Some(result) = results.iter_mut().find(|result| result.name == *name) else {
             continue;
         };
-        let parts = of_result.into_iter().enumerate();
+        let finite = |part: &Contribution| part.amount.is_finite();
+        if !of_result.iter().flatten().all(finite) {
+            result.withhold(VANISHES);
+            continue;
+        }
+        let parts = of_result.into_iter().map(counting).enumerate();
         result.contributions = parts
             .flat_map(|(entry, parts)| {
                 parts

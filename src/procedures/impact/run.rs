@@ -144,22 +144,24 @@ pub(crate) fn strike(
     let mut results = results(summary.as_ref(), &followed, &history);
     if let (Some(summary), None) = (&summary, &stop) {
         let summary = summary.impact();
-        stop = session.evaluate_uncertainty(|progress| match (uncertainty, &history.frame) {
-            (UncertaintyInputs::Storey(storey), Some(frame)) => storey::propagate(
-                storey,
-                plan,
-                StoreyRecord {
-                    setting,
-                    floors: &frame.floors,
-                    summary: &summary,
-                },
-                &mut results,
-                progress,
-            ),
-            (UncertaintyInputs::Point(point), _) => {
-                point.propagate(setting, &history.steps, &summary, &mut results, progress)
+        stop = session.evaluate_uncertainty(&mut results, |results, progress| {
+            match (uncertainty, &history.frame) {
+                (UncertaintyInputs::Storey(storey), Some(frame)) => storey::propagate(
+                    storey,
+                    plan,
+                    StoreyRecord {
+                        setting,
+                        floors: &frame.floors,
+                        summary: &summary,
+                    },
+                    results,
+                    progress,
+                ),
+                (UncertaintyInputs::Point(point), _) => {
+                    point.propagate(setting, &history.steps, &summary, results, progress)
+                }
+                (UncertaintyInputs::Storey(_), None) => Ok(()),
             }
-            (UncertaintyInputs::Storey(_), None) => Ok(()),
         });
     }
     ImpactRun {

@@ -16,7 +16,46 @@ pub(crate) fn results(history: &EscalateHistory, between: Between) -> Vec<NamedR
     if impacts.iter().any(|impact| impact.storey().is_some()) {
         results.extend(of_storeys(impacts, &left));
     }
+    for result in &mut results {
+        withhold(result, impacts, &left);
+    }
     results
+}
+
+/// The results of a series, each with the result of its impacts that it is made of.
+const OF_IMPACTS: [(ResultKind, ResultKind); 11] = [
+    (schema::LAST_PASSED_ENERGY, impact::STRIKER_ENERGY),
+    (schema::FIRST_FAILED_ENERGY, impact::STRIKER_ENERGY),
+    (schema::VELOCITIES, impact::STRIKER_ENERGY),
+    (schema::IMPACT_ENERGIES, impact::STRIKER_ENERGY),
+    (schema::MAX_DISPLACEMENT, impact::MAX_DISPLACEMENT),
+    (schema::MAX_DISPLACEMENTS, impact::MAX_DISPLACEMENT),
+    (schema::ABSORBED_ENERGY, impact::ABSORBED_ENERGY),
+    (schema::ABSORBED_ENERGIES, impact::ABSORBED_ENERGY),
+    (schema::IMPULSES, impact::IMPULSE),
+    (schema::MAX_DRIFT, impact::MAX_DRIFT),
+    (schema::STOREY_ENERGY, impact::STOREY_ENERGY),
+];
+
+/// Withholds the uncertainty of a result of the series if that of one of its impacts, or of the
+/// position after it, is withheld.
+fn withhold(result: &mut NamedResult, impacts: &[SeriesImpact], left: &Left) {
+    let is = |kind: ResultKind| kind.name == result.name;
+    let incomplete = |impact: &SeriesImpact| impact.rest.as_ref()?.incomplete.clone();
+    let reason = if is(left.displacement) || is(left.drift) {
+        impacts.last().and_then(incomplete)
+    } else if is(left.displacements) {
+        impacts.iter().find_map(incomplete)
+    } else {
+        let of_impact = OF_IMPACTS.iter().find(|(kind, _)| is(*kind));
+        of_impact.and_then(|(_, kind)| {
+            let own = |impact: &SeriesImpact| impact.result(kind.name)?.withheld.clone();
+            impacts.iter().find_map(own)
+        })
+    };
+    if let Some(reason) = reason {
+        result.withhold(&reason);
+    }
 }
 
 /// The results for the position in which an impact leaves the specimen: residual only where it is unloaded.

@@ -4,12 +4,12 @@
 use super::repeated_impact::{RepeatedImpact, velocities};
 use super::results::{Left, results};
 use crate::physics::structure::Unloading;
-use crate::plan::formula::{ProcedureId, ResultReference, ResultValue, Results};
+use crate::plan::formula::{ProcedureId, ResultReference, ResultValue, Results, UncertaintyStatus};
 use crate::plan::{Between, Escalate, Plan};
 use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::impact::run::ImpactRun;
 use crate::procedures::stepping::run::above_critical;
-use crate::procedures::unload::run::{MOST_TARGETS, to_rest};
+use crate::procedures::unload::run::{MOST_TARGETS, to_rest, withhold_position};
 use crate::record::{EscalateHistory, EventKind, History, NamedResult, Rest, SeriesImpact};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
@@ -165,7 +165,9 @@ fn as_brought(struck: &SeriesImpact, between: Between) -> Vec<NamedResult> {
         left.drift
             .found_list_by(Some(rest.drift()), rest.drift_contributions())
     });
-    for brought in [Some(position), drift].into_iter().flatten() {
+    let mut brought: Vec<NamedResult> = [Some(position), drift].into_iter().flatten().collect();
+    withhold_position(Some(rest), &mut brought);
+    for brought in brought {
         match results
             .iter_mut()
             .find(|result| result.name == brought.name)
@@ -256,11 +258,14 @@ impl Results for OfImpact<'_> {
         self.before.degrees(source)
     }
 
-    fn no_uncertainty(&self, reference: ResultReference) -> Option<String> {
+    fn uncertainty_status(&self, reference: ResultReference) -> UncertaintyStatus {
         if reference.procedure == self.own {
-            return NamedResult::of(&self.results, reference.name)?.no_uncertainty(IMPACT);
+            return NamedResult::of(&self.results, reference.name)
+                .map_or(UncertaintyStatus::Exact, |result| {
+                    result.uncertainty_status(IMPACT)
+                });
         }
-        self.before.no_uncertainty(reference)
+        self.before.uncertainty_status(reference)
     }
 }
 

@@ -1,6 +1,6 @@
 //! `unload`: moves one degree of freedom, or all floors of a frame together, to zero restoring force. In: the stiffness with which the
 //! forces are expected to fall. Out: the unloading path, and the unloaded position. Each target is before the position of zero force, by
-//! the slopes of the moves before it (`physics/frame/unloading_path.rs`); the guard compares every one with the limits.
+//! the slopes of the moves before it (`physics/structure/unloading/path.rs`); the guard compares every one with the limits.
 
 use super::uncertainty::NOISE;
 use crate::physics::structure::frame_properties::FrameProperties;
@@ -93,10 +93,21 @@ fn of_farthest(rest: Option<&Rest>) -> Vec<NamedResult> {
         let [_, parts] = rest.contributions_at_floor(floor);
         (rest.largest().1, parts)
     });
-    vec![
-        number(schema::RESIDUAL_DISPLACEMENT, position),
-        number(schema::RESIDUAL_FORCE, force),
-    ]
+    let mut position = number(schema::RESIDUAL_DISPLACEMENT, position);
+    withhold_position(rest, [&mut position]);
+    vec![position, number(schema::RESIDUAL_FORCE, force)]
+}
+
+/// Withholds the uncertainty of positions at which the specimen is not unloaded.
+pub(crate) fn withhold_position<'a>(
+    rest: Option<&Rest>,
+    positions: impl IntoIterator<Item = &'a mut NamedResult>,
+) {
+    if let Some(reason) = rest.and_then(|rest| rest.incomplete.as_deref()) {
+        positions
+            .into_iter()
+            .for_each(|position| position.withhold(reason));
+    }
 }
 
 /// In the order of the reference.
@@ -106,7 +117,7 @@ fn frame_results(rest: Option<&Rest>) -> Vec<NamedResult> {
         kind.found_list_by(values, contributions.unwrap_or_default())
     };
     let mut results = of_farthest(rest);
-    results.extend([
+    let mut positions = [
         list(
             schema::FLOOR_DISPLACEMENT,
             rest.map(|rest| (rest.displacement.clone(), rest.position_contributions())),
@@ -115,11 +126,13 @@ fn frame_results(rest: Option<&Rest>) -> Vec<NamedResult> {
             schema::RESIDUAL_DRIFT,
             rest.map(|rest| (rest.drift(), rest.drift_contributions())),
         ),
-        list(
-            schema::RESIDUAL_SHEAR,
-            rest.map(|rest| (rest.shear(), rest.shear_contributions())),
-        ),
-    ]);
+    ];
+    withhold_position(rest, &mut positions);
+    results.extend(positions);
+    results.push(list(
+        schema::RESIDUAL_SHEAR,
+        rest.map(|rest| (rest.shear(), rest.shear_contributions())),
+    ));
     results
 }
 
@@ -206,10 +219,12 @@ pub(crate) fn to_rest(
             readable(within, Dimension::FORCE),
         );
         let force = readable(force, Dimension::FORCE);
-        session.event(
-            EventKind::Remark,
-            format!("unloading incomplete: remaining force {force} (limit {wanted})"),
-        );
+        let incomplete = format!("unloading incomplete: remaining force {force} (limit {wanted})");
+        session.event(EventKind::Remark, incomplete.clone());
+        return Ok(Rest {
+            incomplete: Some(incomplete),
+            ..rest(at)
+        });
     }
     Ok(rest(at))
 }

@@ -68,7 +68,7 @@ pub fn page(comparison: &ComparisonPage<'_>, figures: &[(String, Vec<u8>)]) -> S
                         @for (what, texts) in comparison.facts { tr { td { (what) } @for text in texts { td class="n" { (short(text)) } } } }
                     } }
                 }
-                @for (name, lines) in comparison.plans { h2 { "Plan of " (name) " against that of " (comparison.names[0]) } pre { (lines.join("\n")) } }
+                @for (name, lines) in comparison.plans { h2 { "Plan of " (name) " against the plan of " (comparison.names[0]) } pre { (lines.join("\n")) } }
                 @if !figures.is_empty() {
                     h2 { "Figures" }
                     @for (caption, png) in figures {

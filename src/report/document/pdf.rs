@@ -1,7 +1,8 @@
 //! A report as PDF. In: a [`Document`]. Out: bytes, identical for the same document: date and identifier come from the document, the
-//! fonts from the program. Every text is passed to the template as data, never as markup.
+//! fonts from the program. Every text is passed to the template as data, never as markup. It is set on threads of its own.
 
 use std::borrow::Cow;
+use std::fmt::Write as _;
 
 use serde_json::Value;
 use typst::diag::SourceDiagnostic;
@@ -10,10 +11,13 @@ use typst_layout::PagedDocument;
 use typst_pdf::{PdfOptions, PdfStandard, PdfStandards};
 
 use super::Document;
+use super::fonts::{FIGURE_FAMILIES, PAGE_FAMILIES, PAGE_OVER_FIGURE};
 use super::world::Sealed;
 use crate::text::glyphs;
 
 const TEMPLATE: &str = include_str!("report.typ");
+/// Stack size of the threads that set a report: enough for the deepest nesting of the template, also in a build without optimisation.
+const STACK: usize = 32 << 20;
 
 /// The report as a tagged PDF: PDF/UA-1, and PDF/A-3a, which requires a date, if the day of the test is known.
 pub(crate) fn pdf(document: &Document) -> Result<Vec<u8>, String> {
@@ -37,7 +41,7 @@ pub(crate) fn pdf(document: &Document) -> Result<Vec<u8>, String> {
     files.extend(document.figures().map(|figure| {
         (
             format!("figure-{}.svg", figure.number),
-            figure.svg.clone().into_bytes(),
+            in_letters_of_the_page(&figure.svg).into_bytes(),
         )
     }));
     files.extend(
@@ -46,13 +50,36 @@ pub(crate) fn pdf(document: &Document) -> Result<Vec<u8>, String> {
             .map(|photo| (photo.name.clone(), photo.picture.bytes.clone())),
     );
     let world = Sealed::new(TEMPLATE, files)?;
-    let paged = typst::compile::<PagedDocument>(&world)
+    on_own_threads(&|| set(&world, &document.id, day.is_some()))
+}
+
+/// The result of `work`, on a thread pool with [`STACK`]. typst spreads its work over the pool that it finds: the pool of the caller, or the
+/// global one with the stack size of the system. A thread that waits in such a pool begins other work of it on the same stack, such
+/// as the next report, so that no stack size is enough there. The caller's thread only waits.
+fn on_own_threads<T: Send>(work: &(dyn Fn() -> Result<T, String> + Sync)) -> Result<T, String> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .stack_size(STACK)
+        .build()
+        .map_err(|error| format!("no threads to set the report on: {error}"))?;
+    std::thread::scope(|scope| {
+        let waiting = std::thread::Builder::new()
+            .spawn_scoped(scope, || pool.install(work))
+            .map_err(|error| format!("no thread to set the report on: {error}"))?;
+        waiting
+            .join()
+            .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
+}
+
+/// The typeset bytes, by the strictest standard that accepts them; of a dated report or not.
+fn set(world: &Sealed, id: &str, dated: bool) -> Result<Vec<u8>, String> {
+    let paged = typst::compile::<PagedDocument>(world)
         .output
         .map_err(|errors| messages(&errors))?;
     let mut refused = String::new();
-    for standards in standards(day.is_some()) {
+    for standards in standards(dated) {
         let options = PdfOptions {
-            ident: Smart::Custom(document.id.clone()),
+            ident: Smart::Custom(id.to_owned()),
             creator: Smart::Custom(Some("psd".to_owned())),
             standards: PdfStandards::new(standards).map_err(|error| error.message().to_string())?,
             tagged: true,
@@ -64,6 +91,21 @@ pub(crate) fn pdf(document: &Document) -> Result<Vec<u8>, String> {
         }
     }
     Err(refused)
+}
+
+/// A figure in the typeface of the page, each text in the size at which it is as high as before. A text of the figure has no quotation
+/// mark that is not escaped, so that an attribute is not taken from it.
+fn in_letters_of_the_page(svg: &str) -> String {
+    const SIZE: &str = " font-size=\"";
+    let svg = svg.replacen(FIGURE_FAMILIES, PAGE_FAMILIES, 1);
+    let mut parts = svg.split(SIZE);
+    let mut drawn = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (size, rest) = part.split_once('"').unwrap_or((part, ""));
+        let size = size.parse::<f64>().unwrap_or_default() * PAGE_OVER_FIGURE;
+        let _ = write!(drawn, "{SIZE}{size:.2}\"{rest}");
+    }
+    drawn
 }
 
 /// Standards of the file, the strictest first: archived and accessible. A text of the plan may have a character that the first does
@@ -137,4 +179,21 @@ fn settable(text: &str) -> Cow<'_, str> {
         }
     }
     Cow::Owned(settable)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_figure_has_the_typeface_of_the_page() {
+        let svg = format!(
+            "<svg font-family=\"{FIGURE_FAMILIES}\"><text x=\"1\" font-size=\"10\" fill=\"#000\">font-size=&quot;9&quot; µΔ</text></svg>"
+        );
+        // 10 · 0.729/0.647
+        assert_eq!(
+            in_letters_of_the_page(&svg),
+            "<svg font-family=\"Libertinus Serif, DejaVu Sans\"><text x=\"1\" font-size=\"11.27\" fill=\"#000\">font-size=&quot;9&quot; µΔ</text></svg>"
+        );
+    }
 }

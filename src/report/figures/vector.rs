@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 
 use plotters::style::text_anchor::{HPos, VPos};
 
+use super::super::document::fonts::FIGURE_FAMILIES;
 use super::canvas::{Canvas, Lettering, Point};
 use super::chart::{Colour, Line};
 
@@ -24,7 +25,7 @@ pub(super) fn svg(width: u32, height: u32, paint: impl FnOnce(&dyn Canvas)) -> S
     paint(&drawing);
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
-         font-family=\"DejaVu Sans, Verdana, sans-serif\" fill=\"none\" stroke-linejoin=\"round\" style=\"background:#ffffff\">\n\
+         font-family=\"{FIGURE_FAMILIES}\" fill=\"none\" stroke-linejoin=\"round\" style=\"background:#ffffff\">\n\
          {}</svg>\n",
         drawing.shapes.into_inner()
     )

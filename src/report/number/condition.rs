@@ -4,8 +4,10 @@ use super::join;
 use super::uncertain::{decimals_of, joined, parts_in, power_of, tens, with_standard};
 use crate::plan::Comparison;
 #[cfg(test)]
+use crate::plan::formula::UncertaintyStatus;
+#[cfg(test)]
 use crate::units::Dimension;
-use crate::units::display::{is_rounding, minus, significant, trimmed, unit};
+use crate::units::display::{self, is_rounding, minus, significant, trimmed, unit};
 use crate::verdict::{Bound, ConditionOutcome};
 
 /// The value of a condition with its expanded uncertainty U, in percent if the plan specifies percent; with u in parentheses if its
@@ -18,7 +20,7 @@ pub(in crate::report) fn value(condition: &ConditionOutcome) -> Option<String> {
     let (unit, factor) = if condition.percent {
         ("%".to_owned(), 0.01)
     } else {
-        unit(value, condition.dimension)
+        common_unit(condition)
     };
     Some(match (known, condition.conforms) {
         (Some(known), None) => {
@@ -28,8 +30,37 @@ pub(in crate::report) fn value(condition: &ConditionOutcome) -> Option<String> {
     })
 }
 
-/// The bound of a condition as mathematics: `≤ 8.5 mm`, `8.5 … 11.5 J`, `< 1 %`.
-pub(crate) fn bound(condition: &ConditionOutcome) -> String {
+/// The unit of a row, in which the larger of value and limit is readable: `0.004 ± 0.015 mm` beside `< 0.1 mm`.
+fn common_unit(condition: &ConditionOutcome) -> (String, f64) {
+    let value = condition.value.unwrap_or_default();
+    let limit = condition.bound.map_or(0.0, bounding);
+    let larger = if value.abs() > limit.abs() {
+        value
+    } else {
+        limit
+    };
+    unit(larger, condition.dimension)
+}
+
+const fn bounding(bound: Bound) -> f64 {
+    match bound {
+        Bound::Compare { limit, .. } => limit,
+        Bound::Within { target, .. } => target,
+    }
+}
+
+/// The bound of a condition as mathematics, in the unit of its row: `≤ 8.5 mm`, `8.5 … 11.5 J`, `< 1 %`.
+pub(in crate::report) fn bound(condition: &ConditionOutcome) -> String {
+    bound_in(&common_unit(condition), condition)
+}
+
+/// The same in the usual unit of the bound, for a label without a value beside it.
+pub(crate) fn bound_alone(condition: &ConditionOutcome) -> String {
+    let own = unit(condition.bound.map_or(0.0, bounding), condition.dimension);
+    bound_in(&own, condition)
+}
+
+fn bound_in((unit, factor): &(String, f64), condition: &ConditionOutcome) -> String {
     /// Digits of a computed bound.
     const DIGITS: usize = 5;
     let (scale, percent) = if condition.percent {
@@ -39,25 +70,23 @@ pub(crate) fn bound(condition: &ConditionOutcome) -> String {
     };
     let digits =
         |value: f64, factor: f64| minus(&trimmed(&rounded(scale * value / factor, DIGITS)));
-    let number = |value: f64| {
-        let (unit, factor) = unit(value, condition.dimension);
-        join(&digits(value, factor), &unit) + percent
-    };
+    let number = |value: f64| join(&digits(value, *factor), unit) + percent;
     match condition.bound {
         None => "—".to_owned(),
         Some(Bound::Compare { comparison, limit }) => {
             format!("{} {}", comparison_sign(comparison), number(limit))
         }
         Some(Bound::Within { target, tolerance }) => {
-            let (unit, factor) = unit(target, condition.dimension);
             // A tolerance below a thousandth of the target is printed in a separate unit.
             if unit.is_empty() || (tolerance >= 1e-3 * target.abs() && target != 0.0) {
                 join(
                     &between(scale * target / factor, scale * tolerance / factor),
-                    &unit,
+                    unit,
                 ) + percent
             } else {
-                format!("{} within {}", number(target), number(tolerance))
+                let (own, factor) = display::unit(tolerance, condition.dimension);
+                let tolerance = join(&digits(tolerance, factor), &own) + percent;
+                format!("{} within {tolerance}", number(target))
             }
         }
     }
@@ -98,7 +127,7 @@ fn between(target: f64, tolerance: f64) -> String {
     }
 }
 
-/// The margin of a condition in the unit of its value; None if it has no margin.
+/// The margin of a condition in the unit of its row; None if it has no margin.
 pub(in crate::report) fn margin(condition: &ConditionOutcome) -> Option<String> {
     /// Digits of a distance to a limit: a difference has no more.
     const DIGITS: usize = 3;
@@ -108,7 +137,7 @@ pub(in crate::report) fn margin(condition: &ConditionOutcome) -> Option<String> 
         .map(|margin| distance(margin, DIGITS, condition))
 }
 
-/// The guard band of a condition in the unit of its value; None if it has no guard band.
+/// The guard band of a condition in the unit of its row; None if it has no guard band.
 pub(in crate::report) fn guard_band(condition: &ConditionOutcome) -> Option<String> {
     /// The band is U, of which two digits are printed.
     const DIGITS: usize = 2;
@@ -123,11 +152,13 @@ fn distance(distance: f64, digits: usize, condition: &ConditionOutcome) -> Strin
     } else {
         (1.0, "")
     };
-    // In the unit of the value, or in a separate unit if that would give many zeros.
-    let beside = condition.value.filter(|value| {
-        distance == 0.0 || (distance / unit(*value, condition.dimension).1).abs() >= 1e-3
-    });
-    let (unit, factor) = unit(beside.unwrap_or(distance), condition.dimension);
+    // In the unit of the row, or in a separate unit if that would give many zeros.
+    let common = common_unit(condition);
+    let (unit, factor) = if distance == 0.0 || (distance / common.1).abs() >= 1e-3 {
+        common
+    } else {
+        unit(distance, condition.dimension)
+    };
     join(&minus(&rounded(scale * distance / factor, digits)), &unit) + percent
 }
 
@@ -181,6 +212,7 @@ mod tests {
             dimension,
             value: Some(value),
             uncertainty: None,
+            status: UncertaintyStatus::Exact,
             percent: text.ends_with('%'),
             degrees: f64::INFINITY,
             bound: Some(bound),
@@ -197,6 +229,25 @@ mod tests {
         };
         let travel = condition("x < 0.2 m", Dimension::LENGTH, below(0.2), 0.199_986_2);
         assert_eq!(margin(&travel).unwrap(), "13.8\u{a0}µm");
+        let small = condition("x < 0.1 mm", Dimension::LENGTH, below(1e-4), 4e-6);
+        assert_eq!(
+            (
+                value(&small).unwrap(),
+                bound(&small),
+                margin(&small).unwrap()
+            ),
+            (
+                "0.004000\u{a0}mm".to_owned(),
+                "< 0.1\u{a0}mm".to_owned(),
+                "0.0960\u{a0}mm".to_owned()
+            ),
+            "one unit for value, limit and margin"
+        );
+        let large = condition("x < 0.1 mm", Dimension::LENGTH, below(1e-4), 0.4);
+        assert_eq!(
+            (bound(&large), bound_alone(&large)),
+            ("< 1 × 10⁻⁴\u{a0}m".to_owned(), "< 0.1\u{a0}mm".to_owned())
+        );
         let closes = condition("abs(e) < 1e-6", Dimension::NUMBER, below(1e-6), 0.0);
         assert_eq!(bound(&closes), "< 1 × 10⁻⁶");
         let percent = condition("abs(e) < 1 %", Dimension::NUMBER, below(0.01), 0.001_71);

@@ -4,8 +4,8 @@
 mod condition;
 mod uncertain;
 
-pub(crate) use condition::{bound, comparison_sign};
-pub(super) use condition::{guard_band, margin, probability, value};
+pub(super) use condition::{bound, guard_band, margin, probability, value};
+pub(crate) use condition::{bound_alone, comparison_sign};
 pub(crate) use uncertain::with_uncertainty;
 pub(super) use uncertain::{of_result, parts_of_result, plus_minus, with_expanded};
 

@@ -164,11 +164,12 @@ fn procedure(run: &Run<'_>, index: usize, procedure: &ProcedureRecord) -> Proced
                 .map(|r| (r.name.to_owned(), result(run, index, procedure.kind, r)))
                 .collect(),
         ),
-        uncertainty_budgets: budgets(run, index, procedure).iter().map(budget).collect(),
+        uncertainty_budgets: Ordered(budgets(run, index, procedure).iter().map(budget).collect()),
     }
 }
 
-fn budget(budget: &Budget<'_>) -> BudgetSummary {
+/// The name of a result, or of a number of its list, and its budget.
+fn budget(budget: &Budget<'_>) -> (String, BudgetSummary) {
     let contribution = |line: &Line| ContributionSummary {
         input: line.input.clone(),
         method: if line.draws.is_some() {
@@ -184,14 +185,17 @@ fn budget(budget: &Budget<'_>) -> BudgetSummary {
         degrees_of_freedom: finite(line.degrees),
         smooth: line.smooth,
     };
-    BudgetSummary {
-        result: budget.result.name,
-        entry: budget.entry,
+    let name = budget.result.name;
+    let key = budget
+        .entry
+        .map_or_else(|| name.to_owned(), |entry| format!("{name}[{entry}]"));
+    let summary = BudgetSummary {
         unit: si_unit(budget.result.dimension),
         u: finite(budget.uncertainty),
         degrees_of_freedom: coverage_factor::degrees(budget.known),
         contributions: budget.lines.iter().map(contribution).collect(),
-    }
+    };
+    (key, summary)
 }
 
 /// A result; a count is a whole number.

@@ -1,4 +1,4 @@
-//! `summary.json`, the results for programs: schema `psd.summary/1`, SI, stable order. In: a run.
+//! `summary.json`, the results for programs: schema `psd.summary/2`, SI, stable order. In: a run.
 //! Out: [`Summary`] and its JSON. `grammar/summary.schema.json` is generated from these types.
 
 mod fill;
@@ -23,7 +23,7 @@ pub use prediction::{
 pub use zero_drift::{AxisZeroDriftSummary, ZeroDriftSummary, ZeroSummary};
 
 /// Name and version of the format; a change that breaks a reader raises the number.
-pub const SCHEMA: &str = "psd.summary/1";
+pub const SCHEMA: &str = "psd.summary/2";
 
 /// Results of one run of one plan. Every value is in the SI unit beside it.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -34,7 +34,7 @@ pub struct Summary {
     pub run_id: String,
     /// Version of psd that ran the plan.
     pub psd: String,
-    /// From the plan or the command line.
+    /// Day of the run: as stated by the plan or the command line, else that of its start (UTC). Null in accepted results.
     pub date: Option<String>,
     pub plan: PlanSummary,
     pub rig: RigSummary,
@@ -150,23 +150,20 @@ pub struct ProcedureSummary {
     /// Values of the inputs of the procedure.
     pub inputs: Ordered<Quantity>,
     pub results: Ordered<Quantity>,
-    /// Contributions of the uncertain inputs to each result, the largest first.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub uncertainty_budgets: Vec<BudgetSummary>,
+    /// Contributions of the uncertain inputs to each result, by its name; a number of a list has its index, `max_drift[1]`.
+    #[serde(skip_serializing_if = "Ordered::is_empty")]
+    pub uncertainty_budgets: Ordered<BudgetSummary>,
 }
 
 /// Uncertainty budget of a result: u² is the sum of the squares of the contributions.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct BudgetSummary {
-    pub result: &'static str,
-    /// Index of the entry of a list, from 0.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub entry: Option<usize>,
     pub unit: String,
     pub u: Option<f64>,
     /// Effective degrees of freedom of u; absent above 10,000.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub degrees_of_freedom: Option<f64>,
+    /// The largest first.
     pub contributions: Vec<ContributionSummary>,
 }
 
@@ -293,6 +290,12 @@ pub struct ParameterSummary {
 #[derive(Clone, Debug)]
 pub struct Ordered<T>(pub Vec<(String, T)>);
 
+impl<T> Ordered<T> {
+    const fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
 impl<T: Serialize> Serialize for Ordered<T> {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(self.0.len()))?;
@@ -318,7 +321,7 @@ impl<T: JsonSchema> JsonSchema for Ordered<T> {
 }
 
 impl Summary {
-    /// The JSON Schema of `psd.summary/1`, as committed in `grammar/summary.schema.json`.
+    /// The JSON Schema of `psd.summary/2`, as committed in `grammar/summary.schema.json`.
     #[must_use]
     pub fn json_schema() -> String {
         // As written, not as read: every field is always there, null where it has no value.

@@ -80,10 +80,11 @@ impl<'a> Table<'a> {
                 let names: Vec<&str> = names.map(PlSmallStr::as_str).collect();
                 writeln!(out, "{}", names.join(","))?;
             }
-            CsvWriter::new(&mut *out)
-                .include_header(false)
-                .finish(&mut frame)
-                .map_err(io::Error::other)?;
+            let mut writer = CsvWriter::new(&mut *out).include_header(false);
+            if in_a_pool() {
+                writer = writer.n_threads(1);
+            }
+            writer.finish(&mut frame).map_err(io::Error::other)?;
         }
         Ok(())
     }
@@ -93,7 +94,9 @@ impl<'a> Table<'a> {
         let Some(first) = chunks.next().transpose()? else {
             return Ok(());
         };
-        let writer = ParquetWriter::new(out).with_compression(ParquetCompression::Zstd(None));
+        let writer = ParquetWriter::new(out)
+            .with_compression(ParquetCompression::Zstd(None))
+            .set_parallel(!in_a_pool());
         let mut writer = writer.batched(first.schema()).map_err(io::Error::other)?;
         for frame in std::iter::once(Ok(first)).chain(chunks) {
             writer.write_batch(&frame?).map_err(io::Error::other)?;
@@ -110,6 +113,12 @@ impl<'a> Table<'a> {
             DataFrame::new(height, columns).map_err(io::Error::other)
         })
     }
+}
+
+/// Whether this is a thread of a pool. Waiting there for the pool of Polars, it would begin other work of its own pool on the same stack:
+/// the next report, which waits in turn, until the stack overflows.
+fn in_a_pool() -> bool {
+    rayon::current_thread_index().is_some()
 }
 
 #[cfg(test)]

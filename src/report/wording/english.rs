@@ -52,7 +52,7 @@ wording! {
         ZERO_DRIFT = "The zero drift of the rig exceeds its limit. No statement is made on results that depend on it.";
         ABORTED = "The run was stopped before its end. The report covers the run until then.";
         RIG_FAILED = "The rig failed. The report covers the run until then.";
-        SIMULATED_RIG = "Nothing moved and no physical specimen was tested. The results are those of a model.";
+        SIMULATED_RIG = "Nothing moved and no physical specimen was tested. The results describe a model.";
         EMULATED_RIG = "The controller on the line is an emulator. Nothing moved and no physical specimen was tested.";
         CHECK_RUN = "Only the pre-test check and the leading stiffness ramps ran on the rig. This is not the test of \
             the plan, and no requirement is assessed.";
@@ -72,6 +72,7 @@ wording! {
         fn undecided(count, total) = "{count} of {total} requirements are inconclusive.";
         fn not_met(count, total) = "{count} of {total} requirements are not met.";
         fn reason(reason) = " Reason: {reason}.";
+        fn outside_limit(value, limit) = "{value}, limit {limit}";
         fn failed(names) = "Not met: {names}.";
         fn inconclusive(names) = "Inconclusive: {names}.";
         fn more(count) = "; and {count} more";
@@ -99,7 +100,7 @@ wording! {
     mod amendment {
         TITLE = "Amendment";
         SAME_RECORD = "The run log and every measured and computed number are unchanged. The report named above is \
-            kept, but not valid any more.";
+            kept, but no longer valid.";
         NOTHING = "nothing";
         NOTHING_ELSE = "nothing else";
         /// `date` is empty, or begins with a space.
@@ -114,11 +115,12 @@ wording! {
 
     mod requirements {
         TITLE = "Statement of conformity";
-        COLUMNS = ["Requirement", "Value ± U", "Limit", "P", "Statement"];
+        COLUMNS = ["Requirement", "Value ± U", "Limit", "Probability of conformity", "Statement"];
         SIMPLE_RULE = "Decision rule: simple acceptance (ILAC-G8:09/2019, guard band w = 0).";
         EXPANDED = "± is the expanded uncertainty U = 2u, about 95\u{a0}% coverage.";
-        PROBABILITY = "P is the probability that the item conforms (JCGM 106): a pass is wrong with probability 1 − P, \
-            a fail with probability P. U and P cover the declared uncertainty contributions only.";
+        PROBABILITY = "P is the probability of conformity (JCGM 106): a pass is wrong with probability 1 − P, a fail with \
+            probability P. U and P cover the declared uncertainty contributions only.";
+        NO_U = "no U";
         WIDER_THAN_TOLERANCE = "U exceeds the tolerance";
         fn outside(distance) = "outside the limit by {distance}";
         fn inside(distance) = "inside the limit by {distance}";
@@ -272,10 +274,10 @@ wording! {
         fn continuous(time_scale) = "Continuous motion at {time_scale} times the simulated time: the measured force \
             contains the damping of the specimen at that speed.";
         fn at_every_target(subject) = "{subject} reached every target.";
-        fn tracking(peak, nrms, energy) = "Tracking: largest error {peak}, NRMS error {nrms}{energy}.";
-        PUT_IN = "added to the test";
-        REMOVED = "removed from the test";
-        fn energy(direction, percent) = ", tracking-error energy {percent} of the input energy, {direction}";
+        fn tracking(peak, nrms, energy) = "Tracking errors: at most {peak}, NRMS {nrms}{energy}.";
+        PUT_IN = "added";
+        REMOVED = "removed";
+        fn energy(direction, percent) = "; they {direction} {percent} of the input energy";
         THE_ACTUATORS = "The actuators";
         COLUMNS = ["Actuator of floor", "Largest error", "NRMS error",
             "Tracking-error energy / input (− added)", "Tracking indicator at the end"];
@@ -447,7 +449,8 @@ wording! {
         MANIFEST_REAL = "The file manifest.sha256 beside this report holds the SHA-256 of every file of the run. The \
             run log journal.psdj holds every target, reading and reply; ";
         VERIFIES = " replays the run from it and requires the same targets, bit for bit.";
-        MANIFEST_SIMULATED = "manifest.sha256 has the SHA-256 of every file. The same plan, seed, settings and program give identical files.";
+        MANIFEST_SIMULATED = "manifest.sha256 has the SHA-256 of every file. The same plan, seed, settings and \
+            program give identical results; only the date of the run and its run log differ.";
         NOT_RECORDED = "not recorded";
         REPORT = "Report";
         REPORT_AND_RUN = "Report and run";

@@ -8,8 +8,6 @@ phrases! {
     SIMULATED = "Every run of this study is simulated. It describes the model with scattered inputs, not a specimen.";
     fn outcome(heading, outcome) = "{heading}: {outcome}";
     fn undecided(count, total) = "{count} of {total} requirements undecided";
-    fn names_not_met(names) = "Not met: {names}. ";
-    fn names_undecided(names) = "Undecided: {names}. ";
     fn incomplete(runs, at_most) = "INCOMPLETE: {runs} of up to {at_most} runs. An incomplete study decides nothing.";
     fn curve(median, dispersion) = "Median θ = {median}, dispersion β = {dispersion}.";
     NO_CURVE = "No fragility curve fits.";
@@ -45,7 +43,7 @@ phrases! {
         whole interval is on one side of the limit, otherwise undecided.";
     BY_LOOKS = "The study chose its own end. Its intervals are those of its last look, which are wider than those of a fixed number \
         of runs: so they hold with this confidence.";
-    NOT_EXACT = "The runs are not independent of each other: the interval is that of as many independent runs.";
+    NOT_EXACT = "The runs are not independent of each other: the interval is computed as if they were.";
 
     // Requirements of the plan.
     REQUIREMENTS = "Requirements of the plan, run by run";
@@ -60,7 +58,7 @@ phrases! {
     // Results.
     RESULTS = "Results";
     RESULT_COLUMNS = ["Result", "Mean", "Standard deviation", "5 %", "50 %", "95 %"];
-    fn kept(runs) = "Quantiles, histograms and cumulative curves are those of the first {runs} runs.";
+    fn kept(runs) = "Quantiles, histograms and cumulative curves use the first {runs} runs.";
     fn by_ranks(confidence) = "In brackets: interval with a confidence of {confidence}; of a quantile by ranks, which holds for any \
         distribution.";
     fn by_replicates(confidence) = "In brackets: interval with a confidence of {confidence}, from the scatter of the replicates.";
@@ -103,23 +101,23 @@ phrases! {
         The rest is that of the other inputs.";
     MODELLING_ALONE = "The dispersion is that of the varied inputs (modelling). It has no record-to-record part: the ground motion \
         does not vary.";
-    RECORDS_ALONE = "The dispersion is record-to-record alone: nothing else varies. Curve and band are those of these records.";
-    OF_THESE_RECORDS = "Curve and band are those of these records, each as probable as the others.";
+    RECORDS_ALONE = "The dispersion is record-to-record alone: nothing else varies. Curve and band hold for these records.";
+    OF_THESE_RECORDS = "Curve and band hold for these records, with equal probabilities.";
     STEPPED = "stepped";
 
     // Levels of a subset simulation.
     LEVELS = "Levels of the subset simulation";
     LEVEL_COLUMNS = ["Level", "Threshold", "Replicates", "Beyond it", "Accepted moves"];
     LEVELS_EXPLAINED = "The probability of a replicate is the product of the fractions beyond its thresholds (S.-K. Au, J. L. Beck, \
-        Prob. Eng. Mech. 16 (2001) 263–277). Each level begins with the tenth of the runs that is nearest to the limit.";
+        Prob. Eng. Mech. 16 (2001) 263–277). Each level starts from the 10 % of runs closest to the limit.";
     fn variation(fraction) = "Coefficient of variation of one replicate: {fraction}.";
     fn levels_without_result(runs) = "{runs} runs without a result count as failures, so the interval begins at 0.";
 
     // Looks.
     LOOKS = "Looks of the stopping rule";
     LOOK_COLUMNS = ["Look", "Runs", "Confidence"];
-    SPENT = "Look m spends α/(m(m + 1)) of the error probability α. Their sum is at most α, so the decision holds although the study \
-        chose its own end.";
+    SPENT = "The study looked at its runs several times. Look m uses the part α/(m(m + 1)) of the error probability α. The sum of all \
+        parts is at most α, so the decision holds although the study chose its own end.";
 
     // Inputs, runs without result, provenance.
     INPUTS = "Inputs";
@@ -134,7 +132,7 @@ phrases! {
     SETTINGS = "Settings on the command line";
     NO_SETTINGS = "none";
     DATA_SET = "Data set";
-    fn data_set(runs) = "{runs} rows, one a run";
+    fn data_set(runs) = "{runs} rows, one per run";
     REPORT = "Report, first digits of the SHA-256 of the data set's metadata";
     SAME_LEVELS = "A run depends on the seed and on the runs of the level before it. The same plan, seed and program give the same \
         data set, bit for bit.";
@@ -157,9 +155,23 @@ phrases! {
     fn cumulative(name) = "{name}: cumulative curve of the runs.";
     fn tornado(name) = "{name}: first-order sensitivities by ranks.";
     fn rank_tornado(name) = "{name}: rank correlations with the inputs.";
-    fn scatter(result, input) = "{result} against {input}, one dot a run.";
+    fn scatter(result, input) = "{result} against {input}, one dot per run.";
     fn fragility(condition, intensity) = "Probability of {condition} by {intensity}. Beyond the stripes the curve is dashed.";
     fn described(caption, x, y) = "{caption} x: {x}; y: {y}.";
+}
+
+/// The answers in the box of the first page.
+pub(crate) mod in_the_box {
+    phrases! {
+        fn name(requirement) = "{requirement}: ";
+        MET = "met";
+        NOT_MET = "not met";
+        UNDECIDED = "undecided";
+        fn answer(decision, probability, confidence, interval, limit) = "{decision}. Probability {probability} ({confidence} \
+            interval: {interval}), limit {limit}.";
+        fn without_probability(decision, limit) = "{decision}. No probability is known; limit {limit}.";
+        fn more(count) = "{count} more requirements are in the table below.";
+    }
 }
 
 /// The name of a fitted curve, by what runs without a result count as.

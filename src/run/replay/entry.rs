@@ -46,11 +46,12 @@ pub struct Header {
     /// As given by `--date`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub date: Option<String>,
-    /// For a real rig: the operator, the machine, and the start.
+    /// For a real rig: the operator and the machine.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub operator: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub host: Option<String>,
+    /// The start, UTC. None in run logs of simulated rigs by older versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub began: Option<String>,
 }

@@ -90,7 +90,7 @@ pub(crate) const DECISION_RULE: Field = Field::choice(
     &[
         Variant::word(
             "simple",
-            "simple acceptance: the value decides; its uncertainty has no effect",
+            "simple acceptance: the value decides; without a verdict if its uncertainty is withheld",
         ),
         Variant::word(
             "guarded",

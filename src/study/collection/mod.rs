@@ -76,7 +76,7 @@ pub enum CollectionFault {
         path: PathBuf,
         difference: Difference,
     },
-    #[error("{}: it contains runs {first} to {end}, which are not those of this shard", path.display())]
+    #[error("{}: it contains runs {first} to {end}, which belong to another shard", path.display())]
     OtherRuns { path: PathBuf, first: u64, end: u64 },
     #[error("{}: another process adds runs to this study", path.display())]
     Locked { path: PathBuf },

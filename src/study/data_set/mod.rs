@@ -1,4 +1,4 @@
-//! The data set of a study: one Parquet file with one row a run. In: metadata and rows. Out: the file, and its rows again, a row group at a
+//! The data set of a study: one Parquet file with one row per run. In: metadata and rows. Out: the file, and its rows again, a row group at a
 //! time. It knows neither the plan nor the engine that made the rows.
 //!
 //! | column | type | contents |

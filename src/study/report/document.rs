@@ -6,12 +6,13 @@ use crate::plan::Comparison;
 use crate::plan::study::Sampling;
 use crate::report::document::{Block, Column, Document, Style, Table, Text, Tone, Verdict};
 use crate::report::number::comparison_sign;
+use crate::report::wording::study::in_the_box;
 use crate::report::wording::{LABELS, study as wording, verdict};
 use crate::study::answers::{Answers, StudiedAnswer};
 use crate::study::data_set::{Kind, Metadata, Stopping};
 
 use super::figures::{FigureKind, percent};
-use super::numbers::{probability, range};
+use super::numbers::{estimate, percents, probability, range};
 use super::source::Source;
 use super::{fragility, provenance, results, runs, subset};
 
@@ -102,20 +103,19 @@ fn tone(answers: &Answers) -> Tone {
 /// The worst decision is part of the heading.
 fn heading(answers: &Answers) -> String {
     let total = answers.studied.len();
-    let count = |decision| named(answers, decision).len();
+    let count = |decision| {
+        let decided = answers.studied.iter();
+        decided.filter(|it| it.decision == decision).count()
+    };
     let outcome = match (count(Decision::NotMet), count(Decision::Undecided)) {
-        (0, 0) => return wording::HEADING.to_owned(),
+        (0, 0) if total == 0 => return wording::HEADING.to_owned(),
+        (0, 0) if total == 1 => verdict::REQUIREMENT_MET.to_owned(),
+        (0, 0) => verdict::requirements_met(total),
         (0, undecided) => wording::undecided(undecided, total),
         (1, _) if total == 1 => verdict::REQUIREMENT_NOT_MET.to_owned(),
         (not_met, _) => verdict::requirements_not_met(not_met, total),
     };
     wording::outcome(wording::HEADING, outcome)
-}
-
-/// The labels of the requirements with this decision.
-fn named(answers: &Answers, decision: Decision) -> Vec<&str> {
-    let decided = answers.studied.iter().filter(|it| it.decision == decision);
-    decided.map(|it| it.label.as_str()).collect()
 }
 
 fn statement(metadata: &Metadata, answers: &Answers) -> Text {
@@ -124,23 +124,64 @@ fn statement(metadata: &Metadata, answers: &Answers) -> Text {
         let words = wording::incomplete(answers.runs, answers.at_most);
         text = text.with(Style::Strong, words).and(" ");
     }
-    let decided = if let Some(curve) = fragility::statement(metadata, answers) {
-        curve + " "
+    if let Some(curve) = fragility::statement(metadata, answers) {
+        text = text.and(curve).line();
     } else if answers.studied.is_empty() {
-        wording::NO_STUDIED.to_owned() + " "
-    } else {
-        let sentence = |decision, words: fn(String) -> String| {
-            let names = named(answers, decision).join("; ");
-            if names.is_empty() {
-                names
-            } else {
-                words(names)
-            }
-        };
-        sentence(Decision::NotMet, wording::names_not_met)
-            + &sentence(Decision::Undecided, wording::names_undecided)
+        text = text.and(wording::NO_STUDIED).line();
+    }
+    for (answer, comparison) in answered_first(metadata, answers).take(IN_THE_BOX) {
+        text = text
+            .with(Style::Strong, in_the_box::name(&answer.label))
+            .and(answer_in_words(answer, comparison, answers.confidence))
+            .line();
+    }
+    if answers.studied.len() > IN_THE_BOX {
+        text = text
+            .and(in_the_box::more(answers.studied.len() - IN_THE_BOX))
+            .line();
+    }
+    text.and(wording::SIMULATED)
+}
+
+/// Requirements whose answers are in the box of the first page; the table below it has all.
+const IN_THE_BOX: usize = 4;
+
+/// The requirements with the ones that are not met first, then the undecided ones.
+fn answered_first<'a>(
+    metadata: &'a Metadata,
+    answers: &'a Answers,
+) -> impl Iterator<Item = (&'a StudiedAnswer, Comparison)> {
+    let order = [Decision::NotMet, Decision::Undecided, Decision::Met];
+    order.into_iter().flat_map(|decision| {
+        let all = answers.studied.iter().zip(&metadata.studied);
+        all.filter(move |(answer, _)| answer.decision == decision)
+            .map(|(answer, studied)| (answer, studied.comparison))
+    })
+}
+
+/// `met. Probability 0.98 % (95 % interval: 0.43 % to 1.87 %), limit < 2 %.`
+fn answer_in_words(answer: &StudiedAnswer, comparison: Comparison, confidence: f64) -> String {
+    let decision = match answer.decision {
+        Decision::Met => in_the_box::MET,
+        Decision::NotMet => in_the_box::NOT_MET,
+        Decision::Undecided => in_the_box::UNDECIDED,
     };
-    text.and(decided).and(wording::SIMULATED)
+    let limit = limit_of(answer, comparison);
+    let Some(found) = &answer.probability else {
+        return in_the_box::without_probability(decision, limit);
+    };
+    in_the_box::answer(
+        decision,
+        estimate(found),
+        percent(confidence),
+        percents(found.interval),
+        limit,
+    )
+}
+
+/// `< 2 %`
+fn limit_of(answer: &StudiedAnswer, comparison: Comparison) -> String {
+    format!("{} {}", comparison_sign(comparison), percent(answer.limit))
 }
 
 /// The statements of the first page.
@@ -207,7 +248,7 @@ fn statement_row(answer: &StudiedAnswer, comparison: Comparison) -> Vec<Text> {
         Text::from(answer.label.as_str()).line().code(&answer.text),
         probability(answer.probability.as_ref()),
         range(answer.probability.as_ref()),
-        format!("{} {}", comparison_sign(comparison), percent(answer.limit)).into(),
+        limit_of(answer, comparison).into(),
         Text::new().with(style, word).soft(look),
     ]
 }

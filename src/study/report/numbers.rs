@@ -9,15 +9,17 @@ use crate::units::{Dimension, display};
 
 /// The estimate, or both bounds; without failures an upper bound.
 pub fn probability(found: Option<&Probability>) -> Text {
-    let Some(Probability {
+    found.map_or_else(|| "–".into(), |found| estimate(found).into())
+}
+
+/// The same in words.
+pub fn estimate(found: &Probability) -> String {
+    let Probability {
         bounds: [low, high],
         interval,
         ..
-    }) = found
-    else {
-        return "–".into();
-    };
-    let text = if *high == 0.0 {
+    } = found;
+    if *high == 0.0 {
         wording::below(short_percent(interval[1]))
     } else if *low >= 1.0 {
         wording::above(short_percent(interval[0]))
@@ -25,8 +27,7 @@ pub fn probability(found: Option<&Probability>) -> Text {
         short_percent(*low)
     } else {
         wording::between(short_percent(*low), short_percent(*high))
-    };
-    text.into()
+    }
 }
 
 /// The interval of a probability.

@@ -78,6 +78,28 @@ fn a_study_is_never_a_pass() {
     }
 }
 
+/// The box at the top of the first page answers each requirement in words.
+#[test]
+fn the_box_of_the_first_page_has_the_answer() {
+    for (limit, answer, heading) in [
+        (0.05, "met.", "requirement met"),
+        (0.001, "not met.", "requirement not met"),
+        (0.02, "undecided.", "1 of 1 requirements undecided"),
+    ] {
+        let (metadata, answers) = study(limit, 1000);
+        let found = answers.studied[0].probability.as_ref().unwrap();
+        let [low, high] = found.interval.map(numbers::short_percent);
+        let page = page(&metadata, &answers);
+        let sentence = format!(
+            "{answer} Probability {} (95 % interval: {low} to {high}), limit &lt; {}.",
+            numbers::estimate(found),
+            figures::percent(limit)
+        );
+        assert!(page.contains(&sentence), "{sentence}");
+        assert!(page.contains(&format!("STUDY (SIMULATION): {heading}")));
+    }
+}
+
 #[test]
 fn an_incomplete_study_is_marked_on_its_first_page() {
     let (metadata, answers) = study(0.05, 500);

@@ -5,7 +5,9 @@ use psd::physics::contact::state::StepState;
 use psd::physics::identification::LineFit;
 use psd::physics::impact::energy::Energies;
 use psd::physics::tracking::monitor::Tracking;
-use psd::plan::formula::{Estimate, Formula, Part, ProcedureId, ResultReference, ResultValue};
+use psd::plan::formula::{
+    Estimate, Formula, Part, ProcedureId, ResultReference, ResultValue, UncertaintyStatus,
+};
 use psd::plan::{
     Annex, Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, DecisionRule,
     Figure, FigureKind, Impact, ImpactTarget, InspectTrigger, Integrator, Interval, Limits, Link,
@@ -68,6 +70,7 @@ pub fn finished() -> Finished {
         value: ResultValue::Number { value, uncertainty },
         dimension,
         contributions: Vec::new(),
+        withheld: None,
     };
     let ramp = ProcedureRecord {
         name: "k0".into(),
@@ -593,6 +596,7 @@ fn assessment(largest: f64, error: f64) -> Assessment {
                 guard_band: None,
                 margin_degrees: f64::INFINITY,
                 // Far below its limit.
+                status: uncertainty.map_or(UncertaintyStatus::Exact, |_| UncertaintyStatus::Known),
                 conforms: uncertainty.map(|_| 1.0),
                 wider_than_tolerance: false,
                 reason: None,

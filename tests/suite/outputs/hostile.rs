@@ -330,7 +330,7 @@ fn tested_with(label: &str) -> Report {
             verdict: Some("pass"),
         },
         TestOutcome::Differs(found),
-        TestOutcome::NotAccepted { folder: own() },
+        TestOutcome::NotAccepted,
         TestOutcome::Failed(own()),
         TestOutcome::NotRun,
     ];
@@ -338,6 +338,7 @@ fn tested_with(label: &str) -> Report {
         tested: outcomes
             .into_iter()
             .map(|outcome| Tested {
+                folder: own(),
                 name: own(),
                 outcome,
             })

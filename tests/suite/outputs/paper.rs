@@ -1,6 +1,7 @@
 //! The test report as a PDF: made from the same document as the page, without access to the clock.
 
 use psd::plan::Format;
+use rayon::prelude::*;
 
 use super::fixture::finished;
 use super::{bytes, files, hostile};
@@ -32,4 +33,27 @@ fn another_day_is_another_paper_and_an_impossible_day_is_none() {
     assert!(archived(&dated("2026-05-31")) && archived(&dated("2026-06-01T10:00:00Z")));
     assert!(!archived(&dated("2026-02-31")) && !archived(&dated("next week")));
     assert!(dated("2026-05-31") != dated("2026-06-01"));
+}
+
+/// A thread of a pool that waits for another pool begins the next report of its own on the same stack. This stack holds three reports, not
+/// two hundred.
+#[test]
+fn reports_that_a_pool_makes_do_not_pile_up_on_its_stack() {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(2)
+        .stack_size(1 << 20)
+        .build()
+        .unwrap();
+    let report = |number: usize| {
+        let mut finished = finished();
+        finished.plan.report.figures.clear();
+        finished.plan.report.formats = vec![Format::Csv, Format::Parquet];
+        if number.is_multiple_of(50) {
+            finished.plan.report.formats.push(Format::Pdf);
+        }
+        finished.provenance.date = Some(format!("{}-05-31", 2000 + number));
+        files(&finished).len()
+    };
+    let made = pool.install(|| (0..200_usize).into_par_iter().map(report).min());
+    assert!(made > Some(2));
 }

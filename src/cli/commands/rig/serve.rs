@@ -106,9 +106,13 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
             let mut watcher = Watcher::new(settings, &attendance, plan, true, signals, false);
             let circumstances = Circumstances {
                 served: Some(arguments.client.protocol.name().to_owned()),
-                ..Circumstances::default()
+                ..real_rig::start_alone()
             };
-            let provenance = provenance::of(plan, arguments.plan_settings.date.as_deref());
+            let provenance = provenance::of_simulated_run(
+                plan,
+                arguments.plan_settings.date.as_deref(),
+                circumstances.began.as_deref(),
+            );
             let mut rig = virtual_rig(plan);
             let stage = Stage {
                 plan,

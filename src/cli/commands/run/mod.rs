@@ -100,6 +100,11 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
         .accept
         .then(|| AcceptedFolder::of(&arguments.plan))
         .transpose()?;
+    if let Some(accepted) = &accepted
+        && let Some(reason) = accepted.belongs_to_another()?
+    {
+        return Err(Failure::command_line(reason));
+    }
     if accepted.is_some() && !golden_run::is_as_written(plan, &arguments.plan_settings) {
         return Err(Failure::command_line(
             "`--accept` requires the plan as it is written, on its virtual rig",
@@ -122,7 +127,8 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
             )?);
             print_message(&console::summary_text(
                 &Tested {
-                    name: accepted.path().display().to_string(),
+                    name: arguments.plan.with_extension("").display().to_string(),
+                    folder: accepted.path().display().to_string(),
                     outcome,
                 },
                 settings.color,

@@ -7,7 +7,6 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::finish_run::{finish_run, summary};
 use crate::cli::files::provenance;
 use crate::cli::files::record_file;
-use crate::cli::files::record_file::Circumstances;
 use crate::cli::files::run_folder::RunFolder;
 use crate::cli::operator::watch::{Attendance, Signals, Watcher};
 use crate::cli::operator::{expected, held, real_rig};
@@ -114,7 +113,7 @@ pub(crate) fn on_its_rig(
     }
 }
 
-/// No data of the machine are read, and no real time passes.
+/// The clock is read once, for the date of the run. Nothing else of the machine is read, and no real time passes.
 fn on_a_virtual_rig(
     plan: &Plan,
     arguments: &RunArguments,
@@ -124,7 +123,12 @@ fn on_a_virtual_rig(
     let signals = Signals::caught(&StopRequest::default()).map_err(Failure::Signals)?;
     let mut watcher = Watcher::new(settings, attendance, plan, true, signals, true);
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
-    let provenance = provenance::of(plan, arguments.plan_settings.date.as_deref());
+    let circumstances = real_rig::start_alone();
+    let provenance = provenance::of_simulated_run(
+        plan,
+        arguments.plan_settings.date.as_deref(),
+        circumstances.began.as_deref(),
+    );
     let mut rig = virtual_rig(plan);
     let device = record_file::device(rig.as_ref());
     let header = record_file::header(
@@ -132,7 +136,7 @@ fn on_a_virtual_rig(
         device,
         &arguments.plan_settings,
         &provenance,
-        Circumstances::default(),
+        circumstances,
     );
     let provenance = Provenance {
         equipment: header.equipment.clone(),

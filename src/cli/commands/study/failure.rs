@@ -53,7 +53,7 @@ pub fn of_collection(fault: CollectionFault) -> Failure {
         }
         CollectionFault::OtherRuns { path, first, end } => Failure::file(
             path,
-            format!("it contains runs {first} to {end}, which are not those of this shard"),
+            format!("it contains runs {first} to {end}, which belong to another shard"),
         )
         .help("name a new folder with `--out`: only a study in one file can grow"),
         CollectionFault::Locked { path } => {

@@ -36,7 +36,7 @@ pub enum StudyCommand {
     },
     /// Put the shards of a study together
     #[command(
-        after_help = "The file is that of a study run by one process, byte for byte.\n\n\
+        after_help = "The file equals the file of one process, byte for byte.\n\n\
     Exit codes:\n\
     \x20 0  all requirements on probabilities are met, or there is none\n\
     \x20 1  a requirement on a probability is not met or undecided\n\

@@ -1,7 +1,7 @@
 //! The plans that are tested. In: paths as typed. Out: a case for each plan, in order of name, and the folders of accepted
 //! results that none of them uses.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::TestArguments;
@@ -105,17 +105,18 @@ pub fn find(arguments: &TestArguments) -> Result<Cases, Failure> {
     Ok(Cases { cases, unused })
 }
 
-/// `beam.psd` and `beam.md` would have the same folder of accepted results.
+/// `beam.psd` and `beam.md`, or `a/beam.psd` and `b/beam.psd`, would have the same folder of accepted results.
 fn refuse_shared_results(cases: &[Case]) -> Result<(), Failure> {
-    for pair in cases.windows(2) {
-        let same = pair[0].name == pair[1].name;
-        if same && pair[0].golden.path() == pair[1].golden.path() {
-            let [one, other] = [&pair[0], &pair[1]].map(|case| case.plan.display());
+    let mut plans: BTreeMap<PathBuf, &Path> = BTreeMap::new();
+    for case in cases {
+        if let Some(other) = plans.insert(case.golden.absolute(), &case.plan) {
             return Err(Failure::command_line(format!(
-                "{one} and {other} would share the accepted results in {}",
-                pair[0].golden.path().display()
+                "{} and {} would share the accepted results in {}",
+                other.display(),
+                case.plan.display(),
+                case.golden.path().display()
             ))
-            .help("rename one of the two plans"));
+            .help("rename one of the two plans, or test them one after the other, each with its own `--golden`"));
         }
     }
     Ok(())

@@ -27,7 +27,7 @@ pub struct Trials<'a> {
     pub human: bool,
 }
 
-/// Stack size for the deepest plan and for the typesetting of the report, also in a build without optimisation.
+/// Stack size for the deepest plan, also in a build without optimisation.
 const STACK: usize = 32 << 20;
 
 impl Trials<'_> {
@@ -59,6 +59,7 @@ impl Trials<'_> {
             }
             let tested = Tested {
                 name: case.name.clone(),
+                folder: case.golden.path().display().to_string(),
                 outcome,
             };
             printer.print(index, tested.clone());
@@ -93,13 +94,14 @@ impl Trials<'_> {
                 self.arguments.pages,
             )?));
         }
+        if let Some(reason) = case.golden.belongs_to_another()? {
+            return Ok(Outcome::Failed(reason));
+        }
         let trial = golden_run::of(&case.plan, Extent::Compared)?;
         let accepted = case.golden.truth()?;
         failures::clear(&self.arguments.out, case)?;
         if accepted.is_empty() {
-            return Ok(Outcome::NotAccepted {
-                folder: case.golden.path().display().to_string(),
-            });
+            return Ok(Outcome::NotAccepted);
         }
         let found = compare(&accepted, &truth_of(&trial.files), &trial.tolerances);
         if found.is_empty() {

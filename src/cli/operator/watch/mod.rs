@@ -316,7 +316,10 @@ impl Watcher {
     fn ask(&mut self, question: &Question) -> Inspection {
         match &self.asking {
             Asking::Yes(operator) => Inspection::GoOn {
-                note: Some("answered by --yes".to_owned()),
+                note: Some(match question.kind {
+                    Kind::Release => "released with --yes, without a prompt".to_owned(),
+                    _ => "answered by --yes".to_owned(),
+                }),
                 by: operator.clone(),
             },
             Asking::NoOperatorNeeded => Inspection::GoOn {

@@ -129,7 +129,7 @@ pub fn limits_wider(
 ) -> Diagnostic {
     Diagnostic::new(
         Code::LimitsWider,
-        format!("the plan's limit on `{field}` exceeds that of the rig"),
+        format!("the plan's limit on `{field}` exceeds the limit of the rig"),
     )
     .at(plan, format!("plan: `{plan_text}`"))
     .at(rig, format!("rig: `{rig_text}`"))

@@ -112,6 +112,7 @@ pub fn normalize(text: &str, file: FileId) -> Normalized<'_> {
         normalized: Vec::new(),
         confusables: Vec::new(),
         known: BTreeMap::new(),
+        last_comment_end: text.rfind("*/"),
     };
     while normalizer.at < text.len() {
         normalizer.at += normalizer.read_next();
@@ -151,6 +152,8 @@ struct Normalizer<'a> {
     confusables: Vec<(Confusable<'a>, Vec<Range<usize>>)>,
     /// The index of each among them.
     known: BTreeMap<Confusable<'a>, usize>,
+    /// Where the last `*/` of the text is.
+    last_comment_end: Option<usize>,
 }
 
 impl<'a> Normalizer<'a> {
@@ -239,9 +242,10 @@ impl<'a> Normalizer<'a> {
 
     /// Up to `*/`, else to the end of the line. Line ends stay.
     fn long_comment(&mut self, rest: &str) -> usize {
-        let length = rest[2..]
-            .find("*/")
-            .map_or_else(|| line(rest).len(), |end| 2 + end + 2);
+        // Only an end that exists is looked for, so that no text is searched twice.
+        let closed = self.last_comment_end.is_some_and(|end| end >= self.at + 2);
+        let end = closed.then(|| rest[2..].find("*/")).flatten();
+        let length = end.map_or_else(|| line(rest).len(), |end| 2 + end + 2);
         self.note(Confusable::Comment("/*"), self.at..self.at + 2);
         let mut at = self.at;
         for piece in rest[..length].split_inclusive('\n') {

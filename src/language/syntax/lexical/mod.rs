@@ -4,6 +4,7 @@ pub mod characters;
 pub mod confusable;
 pub mod confusables;
 pub mod letters;
+pub mod long_lines;
 pub mod numbers;
 pub mod tokens;
 mod unit_tokens;

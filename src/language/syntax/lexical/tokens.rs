@@ -133,7 +133,6 @@ impl<'a> Reader<'a> {
     }
 
     fn read(&mut self) {
-        self.lines_too_long();
         while let Some(first) = self.rest().chars().next() {
             if self.tokens.list.len() >= limits::TOKENS {
                 self.tokens.cut_short = true;
@@ -182,27 +181,6 @@ impl<'a> Reader<'a> {
         let field = sign.starts_with('=') && !sign.starts_with("==");
         if !word.is_empty() && (field || ITEM_WORDS.contains(&word)) {
             self.open.clear();
-        }
-    }
-
-    fn lines_too_long(&mut self) {
-        let mut start = 0;
-        for line in self.tokens.text.split_inclusive('\n') {
-            let length = line.trim_end_matches(['\n', '\r']).len();
-            if length > limits::LINE_BYTES {
-                let mut end = start + 40;
-                while !self.tokens.text.is_char_boundary(end) {
-                    end += 1;
-                }
-                let span = self.tokens.span(start, end);
-                self.error(messages::too_large(
-                    span,
-                    "this line",
-                    limits::LINE_BYTES,
-                    "bytes",
-                ));
-            }
-            start += line.len();
         }
     }
 

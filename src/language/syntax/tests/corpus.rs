@@ -45,15 +45,18 @@ fn hostile_files_are_refused_quickly() {
     refused(&format!("let x = \"{}", "a".repeat(1 << 20)), TooLarge);
     refused(&format!("let x = \"{}", "a".repeat(1 << 19)), TooLarge);
     refused(&"/*\n".repeat(10_000), Syntax);
-    refused(&format!("let x = {}", "(".repeat(100_000)), NestedTooDeep);
+    // As many of a bracket as the longest line holds.
+    let (open, close) = ("(".repeat(4_000) + "\n", ")".repeat(4_000) + "\n");
+    refused(&format!("let x = {}", open.repeat(25)), NestedTooDeep);
     refused(
-        &format!("let x = {}1{}", "(".repeat(100_000), ")".repeat(100_000)),
+        &format!("let x = {}1{}", open.repeat(25), close.repeat(25)),
         NestedTooDeep,
     );
     refused(
         &format!("let x = {}1{}", "(\n".repeat(100_000), ")\n".repeat(99_000)),
         NestedTooDeep,
     );
+    refused(&format!("let x = {}1", "(".repeat(100_000)), TooLarge);
     refused(&format!("let x = {}1", "-".repeat(100_000)), TooLarge);
     refused(&format!("let x = 1{}", " + 1".repeat(199_999)), TooLarge);
     refused(&format!("let x = 1{}", " +\n 1".repeat(60_000)), TooLarge);
@@ -65,15 +68,15 @@ fn hostile_files_are_refused_quickly() {
     refused(&"{\n".repeat(90_000), UnclosedBracket);
     refused(&"a {\n".repeat(60_000), UnclosedBracket);
     refused(&"x = f(\n".repeat(35_000), UnclosedBracket);
-    refused(&"\u{1}a".repeat(100_000), BadText);
+    refused(&("\u{1}a".repeat(2_000) + "\n").repeat(50), BadText);
     refused(&"1 1\n".repeat(60_000), Syntax);
-    refused(&"«".repeat(500_000), Syntax);
+    refused(&("«".repeat(2_000) + "\n").repeat(250), Syntax);
     refused(&"a\nx = 1\n".repeat(30_000), Syntax);
     let mut words = String::new();
     for word in 0..60_000 {
         words.push('б');
         words.push_str(&word.to_string());
-        words.push(' ');
+        words.push(if word % 200 == 0 { '\n' } else { ' ' });
     }
     refused(&words, BadText);
 }

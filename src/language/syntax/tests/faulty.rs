@@ -324,3 +324,29 @@ fn helps_are_written_for_the_error() {
         assert_eq!(found(text), expected);
     }
 }
+
+/// Everything else in the file waits until the line is short: the work on one line may grow with the square of its length.
+#[test]
+fn the_length_of_a_line_is_checked_before_anything_else() {
+    for text in ["}{".repeat(10_000), "“a” ".repeat(1_000), "x".repeat(4_097)] {
+        let whole = format!("let a = \n{text}\n}}\n");
+        let start: String = text.chars().take(40).collect();
+        let (_, found, sources) = read(&whole);
+        let codes: Vec<Code> = found.iter().map(|error| error.code).collect();
+        assert_eq!(codes, [TooLarge]);
+        let at = sources.text(found[0].span().unwrap());
+        assert!(at.len() <= 42 && start.starts_with(at), "{at}");
+    }
+    let longest = format!("let a = 1 {}", "# ".repeat(2_043));
+    assert_eq!(longest.len(), 4_096);
+    assert_eq!(errors(&format!("{longest}  \r\n")), []);
+    one(&format!("{longest}#\n"), TooLarge, &longest[..40]);
+}
+
+#[test]
+fn a_long_paragraph_around_the_plan_of_a_document_is_no_line_of_the_plan() {
+    let mut sources = crate::text::source::Sources::default();
+    let text = format!("{}\n\n```psd\nlet a = 1\n```\n", "word ".repeat(2_000));
+    let file = sources.add("plan.md", text);
+    assert_eq!(super::parse(&sources, file).1, []);
+}

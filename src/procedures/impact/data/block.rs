@@ -122,7 +122,7 @@ pub(crate) const IMPULSE: ResultKind = ResultKind::measured(
 
 pub(crate) const CONTACTS: ResultKind = ResultKind::count(
     "contacts",
-    "number of contact events, including those within a step",
+    "number of contacts, including those within a step",
 );
 
 pub(crate) const RESTITUTION: ResultKind = ResultKind::measured(

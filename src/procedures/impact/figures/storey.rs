@@ -96,7 +96,7 @@ pub(crate) fn chart(
         FigureKind::StrikerVelocity => (
             charts::striker_velocity(history),
             format!(
-                "{name}: velocity of the striker against simulated time; each drop is a contact event."
+                "{name}: velocity of the striker against simulated time; each drop is a contact."
             ),
         ),
         FigureKind::ContactForce => (

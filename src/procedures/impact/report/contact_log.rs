@@ -1,16 +1,18 @@
-//! The contact log of an impact: every contact with its time, impulse and largest force. In: the steps. Out: a table.
+//! The contact log of an impact: every contact period with its time, impulse and largest force. In: the steps. Out: a table. A
+//! period is not a contact: a law that follows the contact inside a step can have several contacts in one period, which the result
+//! `contacts` counts.
 
 use crate::record::{ImpactHistory, ImpactStep, StepState};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::units::Dimension;
 
-/// Contacts printed; the tables hold every step.
+/// Contact periods printed; the tables hold every step.
 const PRINTED: usize = 24;
 
 /// Consecutive steps in contact or at the limit force.
 #[derive(Debug, PartialEq)]
-struct Contact {
+struct Period {
     start: f64,
     end: f64,
     impulse: f64,
@@ -19,53 +21,57 @@ struct Contact {
     limited: bool,
 }
 
-/// The log, shortened if it is long.
-pub(crate) fn table(history: &ImpactHistory, body: &mut Vec<Block>) {
-    let contacts = contacts(&history.steps);
-    if contacts.is_empty() {
+/// The log, shortened if it is long; `contacts` is the number of contacts of the impact.
+pub(crate) fn table(history: &ImpactHistory, contacts: Option<f64>, body: &mut Vec<Block>) {
+    let periods = periods(&history.steps);
+    if periods.is_empty() {
         body.push(Block::paragraph("Striker and structure did not touch."));
         return;
     }
     let end = history.steps.last().map_or(0.0, |step| step.time);
-    let row = |(index, contact): (usize, &Contact)| -> Vec<Text> {
-        let limited = if contact.limited {
-            " (limit force)"
-        } else {
-            ""
-        };
+    let row = |(index, period): (usize, &Period)| -> Vec<Text> {
+        let limited = if period.limited { " (limit force)" } else { "" };
         vec![
             format!(
-                "contact {} at {}{limited}",
+                "period {} at {}{limited}",
                 index + 1,
-                number::text_beside(contact.start, end, Dimension::TIME)
+                number::text_beside(period.start, end, Dimension::TIME)
             )
             .into(),
-            number::text(contact.end - contact.start, Dimension::TIME).into(),
-            number::text(contact.impulse, Dimension::IMPULSE).into(),
-            number::text(contact.largest_force, Dimension::FORCE).into(),
+            number::text(period.end - period.start, Dimension::TIME).into(),
+            number::text(period.impulse, Dimension::IMPULSE).into(),
+            number::text(period.largest_force, Dimension::FORCE).into(),
         ]
     };
     let columns = vec![
-        Column::words("Contact log", 1),
+        Column::words("Contact period", 1),
         Column::numbers("Duration"),
         Column::numbers("Impulse"),
         Column::numbers("Largest force"),
     ];
     body.push(Block::Table(Table {
         columns,
-        rows: contacts.iter().take(PRINTED).enumerate().map(row).collect(),
+        rows: periods.iter().take(PRINTED).enumerate().map(row).collect(),
     }));
-    if contacts.len() > PRINTED {
+    if periods.len() > PRINTED {
         body.push(Block::note(format!(
-            "{} more contact events are in the table of this procedure.",
-            contacts.len() - PRINTED
+            "{} more contact periods are in the table of this procedure.",
+            periods.len() - PRINTED
+        )));
+    }
+    #[expect(clippy::cast_precision_loss, reason = "fewer periods than steps")]
+    let differs = |contacts: &f64| *contacts != periods.len() as f64;
+    if let Some(contacts) = contacts.filter(differs) {
+        body.push(Block::note(format!(
+            "A contact period is a sequence of steps in contact. It can have several contacts: this impact has {}.",
+            number::text(contacts, Dimension::NUMBER)
         )));
     }
 }
 
 /// A step's force is its mean over the time since the step before; step 0 has none.
-fn contacts(steps: &[ImpactStep]) -> Vec<Contact> {
-    let mut contacts: Vec<Contact> = Vec::new();
+fn periods(steps: &[ImpactStep]) -> Vec<Period> {
+    let mut periods: Vec<Period> = Vec::new();
     let mut touching = false;
     for pair in steps.windows(2) {
         let (before, step) = (&pair[0], &pair[1]);
@@ -75,14 +81,14 @@ fn contacts(steps: &[ImpactStep]) -> Vec<Contact> {
         }
         let impulse = step.contact_force * (step.time - before.time);
         let limited = step.state == StepState::Limit;
-        match contacts.last_mut().filter(|_| touched) {
-            Some(contact) => {
-                contact.end = step.time;
-                contact.impulse += impulse;
-                contact.largest_force = contact.largest_force.max(step.contact_force);
-                contact.limited |= limited;
+        match periods.last_mut().filter(|_| touched) {
+            Some(period) => {
+                period.end = step.time;
+                period.impulse += impulse;
+                period.largest_force = period.largest_force.max(step.contact_force);
+                period.limited |= limited;
             }
-            None => contacts.push(Contact {
+            None => periods.push(Period {
                 start: before.time,
                 end: step.time,
                 impulse,
@@ -91,7 +97,7 @@ fn contacts(steps: &[ImpactStep]) -> Vec<Contact> {
             }),
         }
     }
-    contacts
+    periods
 }
 
 #[cfg(test)]
@@ -101,7 +107,7 @@ mod tests {
     use crate::physics::tracking::monitor::Tracking;
 
     #[test]
-    fn consecutive_steps_in_contact_are_one_contact() {
+    fn consecutive_steps_in_contact_are_one_period() {
         let step = |index: u32, state, contact_force| ImpactStep {
             step: u64::from(index),
             time: f64::from(index),
@@ -128,18 +134,18 @@ mod tests {
             step(3, StepState::Free, 0.0),
             step(4, StepState::Contact, 5.0),
         ];
-        let found = contacts(&steps);
+        let found = periods(&steps);
         assert_eq!(
             found,
             [
-                Contact {
+                Period {
                     start: 0.0,
                     end: 2.0,
                     impulse: 12.0,
                     largest_force: 9.0,
                     limited: true
                 },
-                Contact {
+                Period {
                     start: 3.0,
                     end: 4.0,
                     impulse: 5.0,

@@ -67,7 +67,7 @@ pub(crate) fn report(
     force_note(run, index, procedure, history, body);
     method_note(run, index, history, body);
     energy_balance(contact_work(run, index), history, body);
-    contact_log::table(history, body);
+    contact_log::table(history, procedure.number(schema::CONTACTS.name), body);
 }
 
 /// The peak contact force with its impulse, time step and contact law.

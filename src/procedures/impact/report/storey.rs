@@ -66,7 +66,7 @@ pub(crate) fn report(
     body.push(storey_energies(procedure));
     body.extend(tracking::table(procedure));
     energy_balance(contact_work(run, index), history, body);
-    contact_log::table(history, body);
+    contact_log::table(history, procedure.number(schema::CONTACTS.name), body);
 }
 
 /// The struck storey, and the integration of the frame.
@@ -152,7 +152,7 @@ fn struck_mass(run: &Run<'_>, impact: &Impact, target: &StoreyTarget) -> Option<
         format!("; the rigid law then implies a coefficient of restitution e = Ms/(Ms + 2M) = {restitution}")
     });
     Some(format!(
-        "The effective mass of an instantaneous impact is that of the floor alone, {mass}{}.",
+        "The effective mass of an instantaneous impact is the mass of the floor alone, {mass}{}.",
         implied.unwrap_or_default()
     ))
 }

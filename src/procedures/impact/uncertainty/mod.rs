@@ -88,8 +88,8 @@ impl ImpactUncertainty<'_> {
                 &mut contributions,
             );
         }
-        no_known_force(setting.input.law, recorded, &layout, &mut contributions);
         give(&layout, contributions, results);
+        no_known_force(setting.input.law, recorded, results);
         Ok(())
     }
 
@@ -244,13 +244,15 @@ pub(crate) fn at_least(
 pub(crate) fn no_known_force(
     law: ContactLaw,
     recorded: &ImpactSummary,
-    layout: &[(&'static str, usize)],
-    contributions: &mut Contributions,
+    results: &mut [NamedResult],
 ) {
-    if law.force_follows_the_step(recorded.max_contact_force)
-        && let Some(index) = index_of(layout, schema::MAX_CONTACT_FORCE)
-    {
-        contributions[index].clear();
+    if law.force_follows_the_step(recorded.max_contact_force) {
+        let force = results
+            .iter_mut()
+            .find(|result| result.name == schema::MAX_CONTACT_FORCE.name);
+        force
+            .into_iter()
+            .for_each(|force| force.withhold("it grows without bound as the time step shrinks"));
     }
 }
 

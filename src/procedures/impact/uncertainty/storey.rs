@@ -91,7 +91,6 @@ pub(crate) fn propagate(
         reported,
         progress,
     )?;
-    no_known_force(setting.input.law, summary, &layout, &mut contributions);
     let time_step = frame.steps.time_step;
     // From the beginning of a step to the end of one: two times.
     let duration = (schema::CONTACT_DURATION, time_step / 6.0_f64.sqrt());
@@ -104,6 +103,7 @@ pub(crate) fn propagate(
         );
     }
     give(&layout, contributions, results);
+    no_known_force(setting.input.law, summary, results);
     Ok(())
 }
 

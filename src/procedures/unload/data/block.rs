@@ -8,7 +8,7 @@ use crate::units::Dimension;
 pub(crate) const RESIDUAL_DISPLACEMENT: ResultKind = ResultKind::measured(
     "residual_displacement",
     Dimension::LENGTH,
-    "unloaded position; of a frame, that of the floor with the largest",
+    "unloaded position; of a frame, the largest of all floors",
 );
 
 pub(crate) const RESIDUAL_FORCE: ResultKind = ResultKind::measured(

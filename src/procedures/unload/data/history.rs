@@ -46,6 +46,8 @@ pub struct Rest {
     pub of_displacement: Vec<Vec<Contribution>>,
     /// The same for the remaining force \[N\].
     pub of_force: Vec<Vec<Contribution>>,
+    /// Why it is not the position of zero force; the uncertainty of the position is then withheld.
+    pub incomplete: Option<String>,
 }
 
 impl Rest {

@@ -7,6 +7,14 @@ use typst::foundations::Bytes;
 use typst::text::{Font, FontBook};
 use typst::utils::LazyHash;
 
+/// Families of the letters of a figure that is a file. In the PDF a figure has the letters of the page.
+pub(crate) const FIGURE_FAMILIES: &str = "DejaVu Sans, Verdana, sans-serif";
+/// Families of the letters of the page, in the order in which a letter is looked for; the template names the same.
+pub(crate) const PAGE_FAMILIES: &str = "Libertinus Serif, DejaVu Sans";
+/// Size of the page's letters over that of a figure's, at which capitals are equally high: 1493/2048 em in DejaVu Sans, 0.647 em in
+/// Libertinus Serif. Words are then no wider.
+pub(crate) const PAGE_OVER_FIGURE: f64 = 1493.0 / 2048.0 / 0.647;
+
 /// The two fonts of the figures; the report uses them for letters that its text font lacks.
 pub(crate) static SANS: &[u8] = include_bytes!("DejaVuSans.ttf");
 pub(crate) static SANS_BOLD: &[u8] = include_bytes!("DejaVuSans-Bold.ttf");

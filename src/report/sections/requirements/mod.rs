@@ -22,7 +22,7 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     body.push(Block::section(wording::TITLE));
     let uncertain = conditions(run).any(|(condition, _)| condition.conforms.is_some());
     let [name, value, accepted, conforms, verdict] = wording::COLUMNS;
-    let mut columns = vec![
+    let columns = vec![
         Column::words(name, 1),
         Column::numbers(if is_partial(run) {
             headline::VALUE_WITH_U
@@ -38,15 +38,9 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
         .requirements
         .iter()
         .zip(&run.plan.requirements);
-    let mut rows: Vec<Vec<Text>> = requirements
+    let rows = requirements
         .flat_map(|(requirement, planned)| rows(run, requirement, planned))
         .collect();
-    if !uncertain {
-        columns.remove(PROBABILITY);
-        for row in &mut rows {
-            row.remove(PROBABILITY);
-        }
-    }
     body.push(Block::Table(Table { columns, rows }));
     body.push(Block::note(decision_rule(run, uncertain)));
     if let Some(names) = run.plan.studies.requirement_names() {
@@ -61,9 +55,6 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
 fn is_partial(run: &Run<'_>) -> bool {
     Scope::of(run) == Scope::PartialReal
 }
-
-/// The column of the probability of conformity; it is omitted if no value has an uncertainty.
-const PROBABILITY: usize = 3;
 
 /// Every condition with the one of the plan.
 fn conditions<'a>(run: &Run<'a>) -> impl Iterator<Item = (&'a ConditionOutcome, &'a Condition)> {
@@ -203,10 +194,11 @@ fn row(
             |value| Text::from(value + mark),
         ),
         bound,
-        condition
-            .conforms
-            .map_or_else(|| "—".to_owned(), number::probability)
-            .into(),
+        match condition.conforms {
+            Some(probability) => number::probability(probability).into(),
+            None if condition.decides_without_uncertainty() => wording::NO_U.into(),
+            None => "—".into(),
+        },
         verdict(run, condition.verdict),
     ]
 }

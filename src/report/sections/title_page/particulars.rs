@@ -6,11 +6,15 @@ use crate::report::run::Run;
 use crate::report::status::particulars::{FRONT, Wanted, missing_names, stated};
 use crate::report::status::report_status;
 use crate::report::wording::particulars as wording;
-use crate::schema::plan_block::REVISION;
+use crate::schema::plan_block::{DATE, REVISION};
 
-/// Names and values that are stated; the plan with its digest last.
+/// Names and values that are stated; the plan with its digest last. A simulation is no test: its date is beside the title only.
 pub(in super::super) fn rows(run: &Run<'_>) -> Vec<(Text, Text)> {
-    let rows = FRONT.iter().filter_map(|particular| {
+    let is_printed = |field| field != DATE.name || !run.record.rig.simulated;
+    let front = FRONT
+        .iter()
+        .filter(|particular| is_printed(particular.field));
+    let rows = front.filter_map(|particular| {
         Some((
             particular.name.into(),
             stated(run, particular.field)?.into(),

@@ -1,9 +1,12 @@
 //! The statement on the whole run. In: a run. Out: heading and sentence of the document.
 
+use std::borrow::Cow;
+
 use crate::record::Outcome;
 use crate::report::document::{Text, Tone, Verdict as Stated};
 use crate::report::run::Run;
 use crate::report::wording::verdict as wording;
+use crate::rig::IS_OUTSIDE;
 use crate::run::check_run;
 use crate::verdict::Verdict;
 
@@ -15,7 +18,7 @@ pub(in super::super) fn verdict(run: &Run<'_>) -> Stated {
         Outcome::Aborted { reason }
         | Outcome::NotReleased { reason }
         | Outcome::Blocked { reason }
-        | Outcome::Faulted { reason } => wording::reason(reason.trim_end_matches('.')),
+        | Outcome::Faulted { reason } => wording::reason(in_words(reason.trim_end_matches('.'))),
     };
     let (simulated, checked) = (
         run.record.rig.simulated,
@@ -46,6 +49,16 @@ pub(in super::super) fn verdict(run: &Run<'_>) -> Stated {
             names => Text::from(sentence + &reason).line().and(names),
         },
     }
+}
+
+/// A limit that was broken as value and limit: `force 1.80835 kN, limit −2 kN … 1.8 kN`. Every other reason is in words already.
+fn in_words(reason: &str) -> Cow<'_, str> {
+    let Some((value, limit)) = reason.split_once(IS_OUTSIDE) else {
+        return reason.into();
+    };
+    let printed = |text: &str| text.replace(" -", " −").replace(" .. ", " … ");
+    let limit = printed(&format!(" {limit}"));
+    wording::outside_limit(printed(value), limit.trim_start()).into()
 }
 
 /// The requirements that are not met, and those that are inconclusive, by their names. A run that was stopped has its reason instead.
@@ -138,5 +151,19 @@ fn sentence(run: &Run<'_>) -> String {
         },
         Verdict::Aborted => wording::ABORTED.to_owned(),
         Verdict::Error => wording::RIG_FAILED.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_broken_limit_is_value_and_limit() {
+        assert_eq!(
+            in_words("force -2.1 kN is outside its limit -2 kN .. 1.8 kN"),
+            "force −2.1 kN, limit −2 kN … 1.8 kN"
+        );
+        assert_eq!(in_words("stopped on request"), "stopped on request");
     }
 }
