@@ -25,8 +25,8 @@ pub(crate) mod tests;
 pub use compatibility::RULES;
 pub use consistency::{Contradiction, check_consistency};
 pub use entry::{
-    AmendBody, Assurance, BY_HAND, Call, Header, HeaderFile, IntentBody, RecoverBody, ResumeBody,
-    RigBody, SampleBody, StrokeBody, TargetStatus,
+    AmendBody, Assurance, BY_HAND, Call, Header, HeaderFile, HeldBody, IntentBody, RecoverBody,
+    ResumeBody, RigBody, SampleBody, StrokeBody, TargetStatus,
 };
 pub use in_force::{InForce, Rigs};
 pub use logged_run::{LoggedRun, Mismatch, UnreadableLog};

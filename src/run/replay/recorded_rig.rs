@@ -407,13 +407,15 @@ impl Rig for RecordedRig<'_> {
         };
         let mut state = self.state.borrow_mut();
         let held = HeldBody::of(&halted, state.wall());
-        let logged = state
-            .append(EntryKind::Held, &held)
-            .and_then(|()| state.sync_point());
-        if logged.is_err() {
+        state.time = halted.time;
+        if state.healthy().is_ok() {
+            // If the run log fails here, its final entries contain this one.
+            let _ = state
+                .append(EntryKind::Held, &held)
+                .and_then(|()| state.sync_point());
+        } else {
             state.append_finally(EntryKind::Held, &held);
         }
-        state.time = halted.time;
         Some(halted)
     }
 

@@ -181,30 +181,36 @@ impl Case {
         let all = Obeys {
             speed: true,
             stop: true,
-            target: true,
+            coarse: 0.0,
+            by_time: self.devices == Devices::Instron,
         };
         let obeys = match self.devices {
             Devices::Nees => Obeys {
                 speed: false,
                 ..all
             },
-            Devices::Mark10 => Obeys {
-                target: false,
-                ..all
-            },
-            Devices::Modbus(Registers { speed, command, .. }) => Obeys {
+            Devices::Modbus(Registers {
+                number,
+                speed,
+                command,
+                ..
+            }) => Obeys {
                 speed,
                 stop: command,
+                coarse: match number {
+                    ModbusNumber::Float32 { .. } => 0.5_f64.powi(7),
+                    _ => 0.0,
+                },
                 ..all
             },
             _ => all,
         };
-        let sign = if self.turned { -1.0 } else { 1.0 };
+        let (sign, plan) = (if self.turned { -1.0 } else { 1.0 }, self.plan());
         Witness::new(
             obeys,
             (sign, self.start()),
-            self.plan().limits.displacement,
-            self.resolution(),
+            plan.limits.displacement,
+            (self.resolution(), plan.rig.settle.band),
         )
     }
 }

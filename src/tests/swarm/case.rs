@@ -192,7 +192,7 @@ fn legs(draw: &mut Draw) -> Vec<Leg> {
 fn session(draw: &mut Draw, devices: Devices, legs: usize, first: bool) -> Session {
     let mut faults = Vec::new();
     for _ in 0..draw.few() {
-        faults.push(of_the_rig(draw));
+        faults.push(of_the_rig(draw, devices));
     }
     if draw.chance(if first { 0.6 } else { 0.3 }) {
         faults.push(Fault::Killed(killed(draw)));
@@ -248,7 +248,7 @@ fn session(draw: &mut Draw, devices: Devices, legs: usize, first: bool) -> Sessi
     }
 }
 
-fn of_the_rig(draw: &mut Draw) -> Fault {
+fn of_the_rig(draw: &mut Draw, devices: Devices) -> Fault {
     let after = u64::from(draw.between(0, 140));
     match draw.between(0, 10) {
         0..=5 => Fault::Reply {
@@ -260,10 +260,11 @@ fn of_the_rig(draw: &mut Draw) -> Fault {
         6 | 7 => Fault::Controller {
             after,
             what: match draw.between(0, 5) {
-                0 => LineFault::Reboot,
+                0 => LineFault::HangUp,
                 1 => LineFault::StopReading,
                 2 => LineFault::FreezeFirmware(f64::from(draw.between(1, 40)) * 0.1),
-                3 => LineFault::HangUp,
+                // This stand then has another zero and another mode, and a letter that is on its way has another meaning.
+                _ if devices == Devices::Mark10 => LineFault::HangUp,
                 _ => LineFault::Reboot,
             },
         },

@@ -10,8 +10,9 @@ use super::fault::{Change, Fault, Kill};
 use super::laws::{Breach, Law, Released};
 use super::operator::Operator;
 use super::tally::Tally;
-use super::world::{Endless, State, World};
+use super::world::{Endless, World};
 use crate::emulator::Log;
+use crate::emulator::script::LineFault;
 use crate::plan::{Behind, Plan};
 use crate::record::journal::testing::recover;
 use crate::record::journal::{Durability, EntryKind, Journal, Recovered};
@@ -54,6 +55,9 @@ pub(super) struct Life<'a> {
     /// Present at this rig: whether it is the first one, and whether it has kept its power.
     pub(super) same_rig: bool,
     pub(super) same_power: bool,
+    /// Number of power-ups beside the first, and of resumptions in the run log.
+    power_ups: u16,
+    resumptions: usize,
     tally: Tally,
 }
 
@@ -72,14 +76,25 @@ impl<'a> Life<'a> {
             .iter()
             .flat_map(|session| &session.faults)
             .collect();
+        let freezes = faults.iter().any(|fault| {
+            matches!(
+                fault,
+                Fault::Controller {
+                    what: LineFault::FreezeFirmware(_),
+                    ..
+                }
+            )
+        });
         Self {
             case,
-            world: World::new(case.rig(&faults, None, log), case.witness()),
+            world: World::new(case.rig(&faults, None, log), case.witness(), freezes),
             plan: case.plan(),
             bytes: Vec::new(),
             disk: Disk::default(),
             same_rig: true,
             same_power: true,
+            power_ups: 0,
+            resumptions: 0,
             tally: Tally::default(),
         }
     }
@@ -250,6 +265,15 @@ impl<'a> Life<'a> {
                 return false;
             }
         };
+        let resumptions = recovered
+            .lines
+            .iter()
+            .filter(|line| line.kind == EntryKind::Resume);
+        let resumptions = resumptions.count();
+        if resumptions > self.resumptions {
+            // The run log has the power-up of the rig with which it went on.
+            (self.resumptions, self.same_power) = (resumptions, true);
+        }
         let amendments = recovered
             .lines
             .iter()
@@ -261,12 +285,11 @@ impl<'a> Life<'a> {
         }
         self.verified(&recovered, &logged, ended);
         let allowed = repeated(&recovered, &logged) + self.tally.count("command twice");
+        let at_rest = self.world.at_rest();
         let mut state = self.world.lock();
-        let State { bench, witness, .. } = &mut *state;
+        let witness = &mut state.witness;
         match ended {
-            Ended::Recorded(recorded) => {
-                witness.session_ended(&recorded.record, bench.rig(), allowed)
-            }
+            Ended::Recorded(recorded) => witness.session_ended(&recorded.record, at_rest, allowed),
             // What was sent again is counted in the run log a moment later.
             _ => witness.repeated = witness.repeated.min(allowed),
         }

@@ -12,7 +12,7 @@ use crate::plan::Plan;
 use crate::record::journal::{Durability, EntryKind, Journal, Storage as _};
 use crate::rig::{Reading, Rig as _, RigFault, StopRequest};
 use crate::run::replay::{
-    self, AmendBody, Assurance, Bands, Continuation, IntentBody, LoggedRun, RecoverBody,
+    self, AmendBody, Assurance, Bands, Continuation, HeldBody, IntentBody, LoggedRun, RecoverBody,
     ResumeBody, ResumeDecision, ResumeRefusal, RigBody, SampleBody,
 };
 use crate::run::{Inspection, Motion, Next, Observer};
@@ -200,9 +200,23 @@ fn other_specimen(
     let (at, force) = (found.displacement[0], found.force[0]);
     let (band, slack) = (2.0 * bands.displacement[0], 2.0 * bands.force[0]);
     let last = |kind: EntryKind| before.lines.iter().rev().find(|line| line.kind == kind);
-    let intent = last(EntryKind::Intent);
+    let intent = before
+        .set_aside
+        .as_ref()
+        .or_else(|| last(EntryKind::Intent));
     let sample = last(EntryKind::Sample)?;
-    let sampled: SampleBody = sample.read().ok()?;
+    let mut sampled: SampleBody = sample.read().ok()?;
+    // The final hold was read later.
+    let held = before
+        .lines
+        .iter()
+        .rev()
+        .take_while(|line| line.seq > sample.seq);
+    if let Some(line) = { held }.find(|line| line.kind == EntryKind::Held)
+        && let Some((positions, forces)) = line.read::<HeldBody>().ok()?.found
+    {
+        (sampled.x, sampled.r) = (positions, forces);
+    }
     let (mut from, mut to) = (sampled.x[0], sampled.x[0]);
     if let Some(intent) = intent.filter(|intent| intent.seq > sample.seq) {
         let intent: IntentBody = intent.read().ok()?;
@@ -213,7 +227,20 @@ fn other_specimen(
             "it went on from {at} m, the run log leaves it in {from} .. {to} m"
         ));
     }
-    let window = plan.rig.link.as_real()?.pretest_check.stiffness;
+    // A specimen that was softer in the readings before may be so again.
+    let mut window = plan.rig.link.as_real()?.pretest_check.stiffness;
+    let readings = before
+        .lines
+        .iter()
+        .rev()
+        .filter(|line| line.kind == EntryKind::Sample);
+    let elsewhere = readings
+        .filter_map(|line| line.read::<SampleBody>().ok())
+        .find(|earlier| (earlier.x[0] - sampled.x[0]).abs() > band);
+    if let Some(earlier) = elsewhere {
+        let tangent = (sampled.r[0] - earlier.r[0]) / (sampled.x[0] - earlier.x[0]);
+        window.low = window.low.min(tangent.max(0.0));
+    }
     let ends =
         [window.low, window.high].map(|stiffness| sampled.r[0] + stiffness * (at - sampled.x[0]));
     let (low, high) = (ends[0].min(ends[1]) - slack, ends[0].max(ends[1]) + slack);

@@ -17,6 +17,8 @@ use crate::rig::transport::{Clock, Emergency, Port};
 const SLICE: f64 = 0.02;
 /// Time that a command takes \[s\]: time passes in a polling loop.
 const COMMAND: f64 = 0.001;
+/// Time in which a rig that moves is seen to move \[s\].
+const LOOK: f64 = 0.1;
 /// Longest session \[s\].
 const LONGEST: f64 = 3600.0;
 
@@ -41,12 +43,14 @@ pub(super) struct State {
     kill: Option<Kill>,
     dead: bool,
     struck: Vec<&'static str>,
+    freezes: bool,
     /// Blocks of bytes that each line has received from the rig since its power-up.
     pub(super) replies: [u64; 2],
 }
 
 impl World {
-    pub(super) fn new(bench: RigEmulator, witness: Witness) -> Self {
+    /// `freezes`: the controller of this rig freezes at some time.
+    pub(super) fn new(bench: RigEmulator, witness: Witness, freezes: bool) -> Self {
         Self(Arc::new(Mutex::new(State {
             bench,
             disk: Disk::default(),
@@ -59,6 +63,7 @@ impl World {
             kill: None,
             dead: false,
             struck: Vec::new(),
+            freezes,
             replies: [0; 2],
         })))
     }
@@ -84,7 +89,10 @@ impl World {
                 _ => {}
             }
         }
-        state.witness.released = None;
+        // A controller that was frozen carries out what the session before has sent.
+        if !state.freezes {
+            state.witness.released = None;
+        }
         (state.witness.moved, state.witness.other_specimen) = (0, None);
     }
 
@@ -138,6 +146,17 @@ impl World {
         if endless {
             panic_any(Endless);
         }
+    }
+
+    /// Whether the rig does not move, whatever its controller wants.
+    pub(super) fn at_rest(&self) -> bool {
+        let mut state = self.lock();
+        if !state.bench.rig().moving() {
+            return true;
+        }
+        let before = state.bench.rig_mut().displacement();
+        state.pass(LOOK);
+        (state.bench.rig_mut().displacement() - before).abs() < 1e-9
     }
 
     /// Seconds that the life has taken so far.

@@ -5,7 +5,7 @@ use crate::emulator::Log;
 use crate::plan::Plan;
 use crate::record::journal::testing::{SickDisk, Sickness, recover};
 use crate::record::journal::{Durability, Journal};
-use crate::record::{EventKind, Outcome};
+use crate::record::{Event, EventKind, Outcome, Record};
 use crate::run::Unwatched;
 use crate::run::replay::{self, LoggedRun};
 use crate::tests::fault_table::stage::{emulator, header, open, plan_of, to};
@@ -21,12 +21,11 @@ fn fails(plan: &Plan, sickness: Sickness) -> bool {
     }
     let recorded = replay::record(plan, &mut rig, &mut Unwatched, journal, Box::new(|| None));
     let record = recorded.record;
-    let held = record
-        .events
-        .iter()
-        .any(|event| event.kind == EventKind::Held);
+    let is_hold = |event: &Event| event.kind == EventKind::Held;
+    let held = record.events.iter().any(is_hold);
+    let moved = !emulator.lock().rig().moves().is_empty();
     assert!(
-        held || record.outcome == Outcome::Completed,
+        held || !moved || record.outcome == Outcome::Completed,
         "{sickness:?}: {:?}",
         record.events
     );
@@ -40,11 +39,11 @@ fn fails(plan: &Plan, sickness: Sickness) -> bool {
     );
     let replayed = replay::replay(plan, logged);
     assert_eq!(replayed.mismatch, None, "{sickness:?}");
-    assert_eq!(
-        format!("{:?}", replayed.record),
-        format!("{record:?}"),
-        "{sickness:?}"
-    );
+    let holds = |record: &Record| {
+        let holds = record.events.iter().filter(|event| is_hold(event));
+        holds.map(|event| event.text.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(holds(&replayed.record), holds(&record), "{sickness:?}");
     recorded.fault.is_some()
 }
 
