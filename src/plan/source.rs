@@ -1,4 +1,7 @@
-//! The sources of uncertainty: the uncertain inputs of a plan, of its rig and of the readings of a run.
+//! The sources of uncertainty: the uncertain inputs of a plan, of its rig and of the readings of a run. Beside them the time step, whose
+//! effect is known and not in u.
+
+use super::time_step::Refinement;
 
 /// Position of a procedure in the plan, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -91,8 +94,19 @@ pub enum Source {
     LoopSampling {
         procedure: ProcedureId,
     },
-    /// The time step of an integration, including times that are reported as whole steps: the run is integrated again with finer steps.
-    TimeStep {
+    /// A duration that is counted in whole time steps.
+    WholeSteps {
         procedure: ProcedureId,
     },
+    /// The time steps of all integrations. It is no source of uncertainty: its effect is a difference of known size and sign, and is not
+    /// in u.
+    TimeStep(Refinement),
+}
+
+impl Source {
+    /// Whether it is a source of uncertainty, whose contribution is in u.
+    #[must_use]
+    pub const fn is_of_uncertainty(self) -> bool {
+        !matches!(self, Self::TimeStep(_))
+    }
 }

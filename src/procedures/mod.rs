@@ -281,7 +281,7 @@ pub(crate) fn chart(
         History::Impact(history) => impact::figures::chart(run, name, history, figure),
         History::Shake(history) => base_excitation::figures::chart(run, name, history, figure),
         History::Cycle(history) => cycle::figures::chart(name, history, kind),
-        History::Escalate(history) => impact_series::figures::chart(name, history, kind),
+        History::Escalate(history) => impact_series::figures::chart(run, name, history, figure),
         History::FrameUnload(steps) => base_excitation::figures::unloading_chart(name, steps, kind),
         History::Move(_) | History::Inspect => None,
     }

@@ -9,7 +9,7 @@ mod functions;
 mod renamed;
 mod types;
 
-pub(crate) use blocks::evaluation::{golden, report, study};
+pub(crate) use blocks::evaluation::{golden, report, reproduces, study};
 pub(crate) use blocks::{
     behaviours, curves, devices, frames, ground, limits, methods, plan_block, procedures, rig,
     specimen, striker,
@@ -38,6 +38,7 @@ const DECLARATIONS: &[&BlockKind] = &[
 ];
 
 const ABOUT_THE_RUN: &[&BlockKind] = &[
+    &blocks::evaluation::reproduces::REPRODUCES,
     &blocks::evaluation::report::REPORT,
     &blocks::evaluation::golden::GOLDEN,
     &blocks::evaluation::study::STUDY,

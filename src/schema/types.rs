@@ -13,6 +13,7 @@ pub enum Kind {
     Rig,
     Ground,
     Report,
+    Reproduces,
     Golden,
     Study,
     Fragility,
@@ -110,6 +111,8 @@ pub enum FieldType {
     ColumnName,
     /// A tolerance: in the unit of the number, or in `%` of its absolute value.
     Tolerance,
+    /// A number of any dimension, which may read results, as in `require`.
+    Formula,
     /// Conditions on the results of an impact, as in `require`.
     Condition,
     /// A list of `INPUT ~ DISTRIBUTION`, with these distributions.

@@ -192,6 +192,14 @@ fn verdict_lines(record: &Record, assessment: &Assessment) -> String {
             );
         }
     }
+    for compared in &assessment.reproductions {
+        let difference = compared.difference().map_or_else(
+            || "none".to_owned(),
+            |difference| readable(difference, compared.compared.dimension),
+        );
+        let (statement, name) = (compared.statement(), &compared.name);
+        let _ = writeln!(text, "{statement}: {name}, difference {difference}");
+    }
     text
 }
 

@@ -276,6 +276,30 @@ fn the_beam_is_within_the_papers_measurement() {
     );
 }
 
+/// `20 J` says nothing without the condition that an impact passes.
+#[test]
+fn the_report_of_a_series_states_its_criterion() {
+    let folder = &ran("rising_blows").folder;
+    let page = fs::read_to_string(folder.join("report.html")).expect("a report");
+    for expected in [
+        "an impact passes while max displacement &lt; 15 mm",
+        "next impact while max displacement &lt; 15 mm",
+        "impact 5 of 80.00 J ends the series: max_displacement &lt; 15 mm is false, the value is ",
+    ] {
+        assert!(page.contains(expected), "{expected}");
+    }
+    let figures = fs::read_dir(folder.join("figures")).expect("figures");
+    let lines = figures
+        .map(|entry| entry.expect("readable").path())
+        .filter(|path| path.extension().is_some_and(|ending| ending == "svg"))
+        .filter(|path| {
+            let text = fs::read_to_string(path).expect("a picture");
+            text.contains("while max displacement")
+        })
+        .count();
+    assert_eq!(lines, 2, "the series, and its motion in time");
+}
+
 #[test]
 fn the_same_plan_and_date_give_the_same_bytes_of_every_result() {
     let scratch = tempfile::tempdir().expect("a folder");

@@ -158,6 +158,7 @@ pub fn plan(
         }
     }
     let requirements = checker.requirements();
+    let reproductions = declarations::reproduces::reproductions(checker);
     // Studies bind the plan again and again, and their runs read no study.
     let studies = match findings {
         Findings::WarningsToo | Findings::OfStudies => declarations::study::studies(checker),
@@ -173,7 +174,7 @@ pub fn plan(
         let warns = findings == Findings::WarningsToo;
         if warns {
             if let Some(rig) = &rig {
-                rig::real_warnings::warn(checker, rig);
+                rig::real_warnings::warn(checker, rig, options.today.as_deref());
                 rig::zero_drift::warn(checker, rig);
             }
             if let Some(limits) = &limits {
@@ -195,7 +196,12 @@ pub fn plan(
             let requirements = requirements.as_deref().unwrap_or(&[]);
             warnings::left::warn(checker, &procedures, requirements);
             warnings::guarded::warn(checker, &procedures, requirements, rule);
-            warnings::whole_plan(checker, &procedures, requirements, &grounds, head);
+            let reproductions = reproductions.as_deref().unwrap_or(&[]);
+            let stated = warnings::Stated {
+                requirements,
+                reproductions,
+            };
+            warnings::whole_plan(checker, &procedures, stated, &grounds, head);
         }
     }
     let rig_block = rig.as_ref().and_then(|rig| rig.block);
@@ -209,6 +215,7 @@ pub fn plan(
         limits: limits?.limits,
         procedures: in_plan_order.into_iter().collect::<Option<_>>()?,
         requirements: requirements?,
+        reproductions: reproductions?,
         decision_rule: declarations::plan_block::decision_rule(&particulars),
         particulars,
         report: report?,
@@ -223,6 +230,7 @@ pub fn plan(
         let blocks: Vec<usize> = procedures.iter().map(|(block, _)| *block).collect();
         if findings == Findings::WarningsToo {
             warnings::tracking::warn(checker, &plan, &blocks, rig_block);
+            warnings::guarded::warn_of_partial(checker, &plan, rig_block);
         }
         warnings::recorded_steps::check(checker, &plan, &blocks);
     }

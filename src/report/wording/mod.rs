@@ -31,6 +31,8 @@ macro_rules! wording {
 }
 
 mod english;
+pub(crate) mod reproductions;
+pub(crate) mod requirements;
 pub(crate) mod specimen;
 pub(crate) mod study;
 

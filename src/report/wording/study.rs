@@ -38,7 +38,7 @@ phrases! {
     MET = "MET";
     NOT_MET = "NOT MET";
     UNDECIDED = "UNDECIDED";
-    fn at_look(number) = " at look {number}";
+    fn after_runs(runs) = " after {runs} runs";
     fn intervals(confidence) = "Intervals have a confidence of {confidence} (Clopper–Pearson). A requirement is met or not met if its \
         whole interval is on one side of the limit, otherwise undecided.";
     BY_LOOKS = "The study chose its own end. Its intervals are those of its last look, which are wider than those of a fixed number \

@@ -21,7 +21,10 @@ pub(crate) const CONTACT: Field = Field::text("contact", "contact details of the
 
 pub(crate) const OPERATOR: Field = Field::text("operator", "person who carries out the test");
 
-pub(crate) const DATE: Field = Field::text("date", "date of the test, ISO 8601");
+pub(crate) const DATE: Field = Field::text(
+    "date",
+    "date of the test, ISO 8601; without it, the day on which the run begins",
+);
 
 pub(crate) const ISSUED: Field =
     Field::text("issued", "day on which the report is issued, ISO 8601");
@@ -90,7 +93,7 @@ pub(crate) const DECISION_RULE: Field = Field::choice(
     &[
         Variant::word(
             "simple",
-            "simple acceptance: the value decides; without a verdict if its uncertainty is withheld",
+            "simple acceptance: the value decides, unless its U is withheld, or too large for a tolerance (P < 50 %)",
         ),
         Variant::word(
             "guarded",

@@ -175,6 +175,7 @@ codes! {
     W729 NothingToGuard Warning;
     W730 FinalIsNotResidual Warning;
     W731 TooFewRuns Warning;
+    W736 PartialUnderGuard Warning;
 }
 
 impl std::fmt::Display for Code {

@@ -309,6 +309,15 @@ pub fn not_issuable(rig: &str, head: Span, reference: bool, due: bool) -> Diagno
     .help(format!("add to the rig\n{lines}"))
 }
 
+pub fn calibration_overdue(rig: &str, due: &str, today: &str, at: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::CalibrationWithoutDay,
+        format!("test reports of rig `{rig}` cannot be issued: its calibration was due on {due} (today: {today})"),
+    )
+    .at(at, "overdue")
+    .help("calibrate the rig before the test, then write the new due date")
+}
+
 /// `of`: ` of axis 2`, if it belongs to one axis.
 pub fn device_not_pinned(field: &str, of: &str, port: &PortPlan, span: Span) -> Diagnostic {
     Diagnostic::new(

@@ -449,6 +449,17 @@ pub fn nothing_to_guard(result: &str, required: Span) -> Diagnostic {
     .help("write a limit that includes a margin, or require a measured result")
 }
 
+/// Under the guarded rule, and on a rig that does not declare these `fields`, no measured result is decided.
+pub fn partial_under_guard(rig: &str, fields: &[&str], head: Span) -> Diagnostic {
+    let fields: Vec<String> = fields.iter().map(|field| format!("`{field}`")).collect();
+    Diagnostic::new(
+        Code::PartialUnderGuard,
+        format!("under `guarded` nothing that is measured can be decided on rig `{rig}`"),
+    )
+    .at(head, format!("without {}", fields.join(" and ")))
+    .help(format!("declare {}", fields.join(" and ")))
+}
+
 /// `read` is a position at the last step of a run; `row`: of an impact series.
 pub fn final_is_not_residual(read: &str, row: bool, required: Span, head: Span) -> Diagnostic {
     let or_row = if row {

@@ -9,8 +9,8 @@ use crate::plan::{Calibration, DeviceLink, Dialect};
 use crate::schema::rig as schema;
 use crate::text::source::Span;
 
-/// Warnings for the real rig of a run whose results would not be reliable.
-pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
+/// Warnings for the real rig of a run whose results would not be reliable. Due dates are compared with `today`, if it is known.
+pub fn warn(checker: &mut Checker, rig: &CheckedRig, today: Option<&str>) {
     let (Some(block), Some(link)) = (rig.block, rig.plan.link.as_real()) else {
         return;
     };
@@ -33,6 +33,16 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
         checker
             .diagnostics
             .push(message::not_issuable(&rig.plan.name, head, reference, due));
+    }
+    let dues = calibrations
+        .iter()
+        .flat_map(|calibration| [calibration.due.as_ref(), displacement_due(calibration)]);
+    let due = dues.flatten().min();
+    if let Some((due, today)) = due.zip(today).filter(|(due, today)| due.as_str() < *today) {
+        let at = checker.value_or_head(block, schema::CALIBRATION_DUE.name);
+        checker
+            .diagnostics
+            .push(message::calibration_overdue(&rig.plan.name, due, today, at));
     }
     let no_day = |calibration: &Calibration| matches!(calibration.displacement, Some((_, None)));
     let of_rig = checker
@@ -112,6 +122,10 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
             }
         }
     }
+}
+
+fn displacement_due(calibration: &Calibration) -> Option<&String> {
+    calibration.displacement.as_ref()?.1.as_ref()
 }
 
 /// The span of a separate device of an axis; the span of the list of axes, if that is unclear.

@@ -199,7 +199,7 @@ pub(crate) const RELAXATION_RATE: ResultKind = ResultKind::measured(
 pub(crate) const BIC_MARGIN: ResultKind = ResultKind::new(
     "bic_margin",
     Dimension::NUMBER,
-    "BIC of the exponential minus that of the logarithm, with `either`; positive: the logarithm fits better",
+    "BIC of the exponential minus BIC of the logarithm, with `either`; positive: the logarithm fits better",
 );
 
 /// What it leaves, in the order of the tables and of `summary.json`.

@@ -10,6 +10,7 @@ use crate::report::budget::coverage_factor;
 use crate::report::document::{Block, Column, Style, Table, Text};
 use crate::report::number;
 use crate::report::run::Run;
+use crate::report::status::ReportStatus;
 use crate::report::wording::{common, headline, requirements as wording};
 use crate::verdict::{ConditionOutcome, RequirementOutcome, Verdict};
 
@@ -100,7 +101,7 @@ fn is_reliable(run: &Run<'_>, condition: &Condition) -> bool {
 /// The decision rule with its risk, and the meaning of the columns.
 fn decision_rule(run: &Run<'_>, uncertain: bool) -> String {
     let mut sentences = vec![match run.assessment.rule {
-        DecisionRule::Simple => wording::SIMPLE_RULE.to_owned(),
+        DecisionRule::Simple | DecisionRule::ValueAlone => wording::SIMPLE_RULE.to_owned(),
         DecisionRule::Guarded => wording::guarded_rule(coverage_factor::equation(run.assessment)),
     }];
     if uncertain {
@@ -165,6 +166,9 @@ fn row(
         Some(quantity) => label.soft(quantity),
         None => label.code(&condition.text),
     };
+    if let Some(line) = explanation::criterion(run, planned) {
+        name = name.line().soft(line);
+    }
     if let Some(line) = explanation::distance(run, condition) {
         name = name.line().soft(line);
     }
@@ -174,7 +178,8 @@ fn row(
     if let Some(line) = explanation::largest_part(run, condition, planned) {
         name = name.line().soft(line);
     }
-    if condition.wider_than_tolerance && rule == DecisionRule::Simple {
+    let decided = condition.verdict != Verdict::Inconclusive;
+    if condition.wider_than_tolerance && rule == DecisionRule::Simple && decided {
         name = name.line().soft(wording::WIDER_THAN_TOLERANCE);
     }
     let mark = if is_marked(run, condition, planned) {
@@ -185,7 +190,7 @@ fn row(
     let bound = Text::from(number::bound(condition));
     let bound = match (rule, number::guard_band(condition)) {
         (DecisionRule::Guarded, Some(band)) => bound.line().soft(format!("w = {band}")),
-        (DecisionRule::Simple, _) | (DecisionRule::Guarded, None) => bound,
+        _ => bound,
     };
     vec![
         name,
@@ -227,11 +232,13 @@ fn quantity(run: &Run<'_>, condition: &Condition) -> Option<String> {
     Some(wording::quantity(name, entry, &procedure.name))
 }
 
-/// In a simulation, a met requirement has no colour: nothing passed a test.
+/// In a simulation, or a report that is not issuable, a met requirement has no colour: nothing passed a test.
 fn verdict(run: &Run<'_>, verdict: Verdict) -> Text {
+    let is_test = !run.record.rig.simulated
+        && !matches!(ReportStatus::of(run), ReportStatus::NotIssuable { .. });
     let style = match verdict {
         Verdict::Completed => Style::Plain,
-        Verdict::Pass if run.record.rig.simulated => Style::Strong,
+        Verdict::Pass if !is_test => Style::Strong,
         Verdict::Pass => Style::Pass,
         Verdict::Inconclusive => Style::Inconclusive,
         Verdict::Fail | Verdict::Aborted | Verdict::Error => Style::Fail,

@@ -5,13 +5,15 @@ use std::borrow::Cow;
 use crate::record::Outcome;
 use crate::report::document::{Text, Tone, Verdict as Stated};
 use crate::report::run::Run;
-use crate::report::wording::verdict as wording;
+use crate::report::sections::reproductions::not_reproduced;
+use crate::report::status::ReportStatus;
+use crate::report::wording::{reproductions, verdict as wording};
 use crate::rig::IS_OUTSIDE;
 use crate::run::check_run;
 use crate::verdict::Verdict;
 
 /// The statement, and the reason if the run was not completed. A simulation is headed as such, and so is a check run: neither is
-/// the test of the plan.
+/// the test of the plan. The report of a test that is not issuable says so before the outcome.
 pub(in super::super) fn verdict(run: &Run<'_>) -> Stated {
     let reason = match &run.record.outcome {
         Outcome::Completed => String::new(),
@@ -24,6 +26,7 @@ pub(in super::super) fn verdict(run: &Run<'_>) -> Stated {
         run.record.rig.simulated,
         check_run::performed_part(run.plan).is_some(),
     );
+    let not_issuable = matches!(ReportStatus::of(run), ReportStatus::NotIssuable { .. });
     let name = run.assessment.verdict.name().to_uppercase();
     let (heading, sentence) = match (simulated, checked) {
         (true, _) => (
@@ -39,10 +42,11 @@ pub(in super::super) fn verdict(run: &Run<'_>) -> Stated {
             wording::check_run(outcome(run)),
             wording::CHECK_RUN.to_owned(),
         ),
+        (false, false) if not_issuable => (wording::not_issuable(outcome(run)), sentence(run)),
         (false, false) => (name, sentence(run)),
     };
     Stated {
-        tone: tone(run, simulated || checked),
+        tone: tone(run, simulated || checked || not_issuable),
         heading,
         text: match unmet(run) {
             names if names.is_empty() => (sentence + &reason).into(),
@@ -61,7 +65,8 @@ fn in_words(reason: &str) -> Cow<'_, str> {
     wording::outside_limit(printed(value), limit.trim_start()).into()
 }
 
-/// The requirements that are not met, and those that are inconclusive, by their names. A run that was stopped has its reason instead.
+/// The names of the requirements that are not met or inconclusive, and of the published numbers that are not reproduced. A run that was
+/// stopped has its reason instead.
 fn unmet(run: &Run<'_>) -> String {
     /// Names of each kind.
     const MOST: usize = 3;
@@ -85,12 +90,16 @@ fn unmet(run: &Run<'_>) -> String {
     };
     let failed = named(Verdict::Fail, wording::failed);
     let inconclusive = named(Verdict::Inconclusive, wording::inconclusive);
-    let both = [failed, inconclusive];
-    let found: Vec<String> = both.into_iter().filter(|text| !text.is_empty()).collect();
+    let different = match not_reproduced(run) {
+        names if names.is_empty() => String::new(),
+        names => reproductions::not_reproduced(names.join("; ")),
+    };
+    let all = [failed, inconclusive, different];
+    let found: Vec<String> = all.into_iter().filter(|text| !text.is_empty()).collect();
     found.join(" ")
 }
 
-/// Only the test of a specimen is green.
+/// Only a test of a specimen whose report can be issued is green.
 fn tone(run: &Run<'_>, not_the_test: bool) -> Tone {
     match run.assessment.verdict {
         Verdict::Completed => Tone::Neutral,
@@ -114,7 +123,11 @@ fn count(run: &Run<'_>, verdict: Verdict) -> (usize, usize) {
 /// The outcome in a few words, for a heading.
 fn outcome(run: &Run<'_>) -> String {
     match run.assessment.verdict {
-        Verdict::Completed => wording::COMPLETED.to_owned(),
+        Verdict::Completed => match run.assessment.reproductions.len() {
+            0 => wording::COMPLETED.to_owned(),
+            1 if not_reproduced(run).is_empty() => reproductions::ONE.to_owned(),
+            total => reproductions::of(total - not_reproduced(run).len(), total),
+        },
         Verdict::Pass => match count(run, Verdict::Pass) {
             (_, 1) => wording::REQUIREMENT_MET.to_owned(),
             (_, total) => wording::requirements_met(total),
@@ -135,7 +148,10 @@ fn outcome(run: &Run<'_>) -> String {
 fn sentence(run: &Run<'_>) -> String {
     let blocked = matches!(run.record.outcome, Outcome::Blocked { .. });
     match run.assessment.verdict {
-        Verdict::Completed => wording::NO_REQUIREMENT.to_owned(),
+        Verdict::Completed if run.assessment.reproductions.is_empty() => {
+            wording::NO_REQUIREMENT.to_owned()
+        }
+        Verdict::Completed => reproductions::NO_CONFORMITY.to_owned(),
         Verdict::Pass => match count(run, Verdict::Pass) {
             (_, 1) => wording::THE_REQUIREMENT_IS_MET.to_owned(),
             (_, total) => wording::all_met(total),
