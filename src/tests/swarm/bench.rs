@@ -233,7 +233,7 @@ pub(super) fn amended(plan: &Plan, amendments: &[Amendment]) -> Plan {
             }
             Amendment::Speed(leg, speed) => {
                 change(&mut plan, *leg, |leg| {
-                    leg.speed = Some(Formula::Constant(*speed))
+                    leg.speed = Some(Formula::Constant(*speed));
                 });
             }
             Amendment::Target(leg, target) => {

@@ -23,6 +23,10 @@ pub(super) enum Devices {
 
 /// What the register map of a Modbus drive contains.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is a register of its own"
+)]
 pub(super) struct Registers {
     pub(super) number: ModbusNumber,
     pub(super) speed: bool,

@@ -159,7 +159,9 @@ impl<'a> Life<'a> {
                 matches!(change, Change::OtherRig { loaded: false }),
             )
         };
-        let exchange = |serial_number: &str, boot| {
+        self.power_ups += 1;
+        let boot = self.power_ups;
+        let exchange = |serial_number: &str| {
             let faults: Vec<&Fault> = session.faults.iter().collect();
             self.world.exchange(
                 self.case
@@ -170,11 +172,11 @@ impl<'a> Life<'a> {
         match change {
             Change::Waits(seconds) => self.world.pass(seconds),
             Change::OtherRig { .. } => {
-                exchange("0099", 0x1234);
+                exchange("0099");
                 (self.same_rig, self.same_power) = (false, false);
             }
             Change::Restarted => {
-                exchange(if self.same_rig { "0042" } else { "0099" }, 0x4321);
+                exchange(if self.same_rig { "0042" } else { "0099" });
                 self.same_power = false;
             }
             Change::OtherPlace(by) => self.world.move_by_hand(at + by),

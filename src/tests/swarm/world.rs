@@ -128,7 +128,7 @@ impl World {
         self.lock().bench.connect(line);
         Line {
             world: self.clone(),
-            line,
+            index: line,
             come: Vec::new(),
         }
     }
@@ -228,7 +228,7 @@ impl State {
 /// psd's end of a line.
 pub(super) struct Line {
     world: World,
-    line: usize,
+    index: usize,
     /// Bytes received and not yet read.
     come: Vec<u8>,
 }
@@ -237,8 +237,8 @@ impl Line {
     fn fetch(&mut self) -> bool {
         if self.come.is_empty() {
             let mut state = self.world.lock();
-            if let Some(bytes) = state.bench.take(self.line) {
-                state.replies[self.line.min(1)] += 1;
+            if let Some(bytes) = state.bench.take(self.index) {
+                state.replies[self.index.min(1)] += 1;
                 self.come = bytes;
             }
         }
@@ -247,7 +247,7 @@ impl Line {
 
     fn gone(&self) -> bool {
         let state = self.world.lock();
-        state.dead || state.bench.hung_up(self.line)
+        state.dead || state.bench.hung_up(self.index)
     }
 }
 
@@ -261,7 +261,7 @@ impl Port for Line {
         let fault = state.due();
         let kill = state.kill.filter(|kill| kill.at == now);
         if kill.is_none_or(|kill| kill.after) {
-            if !state.bench.reads(self.line) {
+            if !state.bench.reads(self.index) {
                 drop(state);
                 self.world.pass(timeout.as_secs_f64());
                 return Err(ErrorKind::TimedOut.into());
@@ -272,9 +272,9 @@ impl Port for Line {
                 Some(CommandFault::Torn) => bytes[..bytes.len() / 2].to_vec(),
                 None => bytes.to_vec(),
             };
-            let line = self.line;
+            let index = self.index;
             state.pass(COMMAND);
-            state.observed(|bench| bench.give(line, &bytes));
+            state.observed(|bench| bench.give(index, &bytes));
         }
         drop(state);
         if kill.is_some() {
