@@ -4,32 +4,7 @@
 
 use super::contribution::Contribution;
 use super::results::{Results, with_shifts};
-use super::source::Source;
-
-/// Integrations of the whole plan along their recorded paths, whose results differ from those of the run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Refinement {
-    /// In the steps of the run. Peaks and stops are interpolated between their ends, at which the run reports them.
-    Own,
-    /// In half of the steps of the run.
-    Half,
-    /// In a quarter of the steps of the run.
-    Quarter,
-}
-
-impl Refinement {
-    pub const ALL: [Self; 3] = [Self::Own, Self::Half, Self::Quarter];
-
-    /// Refinement for each step of the run.
-    #[must_use]
-    pub const fn finer(self) -> u8 {
-        match self {
-            Self::Own => 1,
-            Self::Half => 2,
-            Self::Quarter => 4,
-        }
-    }
-}
+use super::source::{Refinement, Source};
 
 /// Results in finer steps, as weights of the differences in own, half and quarter steps: those in half and in quarter steps, and two bounds
 /// of those in still finer ones. A method of first order has left after the second halving as much as this halving changed, and half as

@@ -10,8 +10,8 @@ mod threads;
 
 pub use crate::plan::contribution::{Contribution, combined, combined_entries, share};
 pub use crate::plan::results::{sources_of, with_shifts};
-pub use crate::plan::source::Source;
-pub use crate::plan::time_step::{Refinement, StepInterval};
+pub use crate::plan::source::{Refinement, Source};
+pub use crate::plan::time_step::StepInterval;
 pub use degrees::{
     FEW, MOST_DRAWS, MeasurementUncertainty, measurement_uncertainties, measurement_uncertainty,
 };

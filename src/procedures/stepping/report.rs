@@ -8,7 +8,7 @@ pub(crate) const UNCERTAINTY: &str = "Each input was perturbed by ± its standar
  contribution, and u is the root sum of squares (JCGM 100:2008). An input at its bound was perturbed to one side \
  only. The contact law and rate effects are not among the inputs. The time step is a systematic effect that is bounded, \
  not corrected, and not in U: the run was re-integrated with half and a quarter of it. The ends of its interval are \
- these differences and three times what a method of first order has left after them.";
+ these differences, and three times the remainder of a method of first order.";
 
 /// Results of a frame that have a budget even if no requirement reads any.
 pub(crate) const FRAME_BUDGET: &[&str] = &[schema::MAX_DRIFT.name, schema::MAX_BASE_SHEAR.name];

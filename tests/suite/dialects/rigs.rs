@@ -191,7 +191,7 @@ impact hit {{
   duration  = {duration} ms
 }}
 
-require "is struck" hit.max_displacement > 1 mm
+require "is struck" hit.contacts >= 1
 
 report {{
   figures = []
