@@ -5,9 +5,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use super::continuous_move::ContinuousMove;
-use super::entry::{
-    Call, FaultBody, HeldBody, IntentBody, RigBody, SampleBody, StrokeBody, escaped,
-};
+use super::entry::{Call, FaultBody, HeldBody, IntentBody, RigBody, SampleBody, StrokeBody};
 use super::entry_of::{append_sample, in_log_time, intent, same_bits, target_text, unknown_rig};
 use super::state::{State, ended};
 use crate::physics::tracking::trajectory::Path;
