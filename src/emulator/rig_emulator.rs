@@ -62,6 +62,12 @@ impl RigEmulator {
         &self.rig
     }
 
+    /// The emulated rig, for what befalls it beside its controllers.
+    #[cfg(test)]
+    pub(crate) const fn rig_mut(&mut self) -> &mut EmulatedRig {
+        &mut self.rig
+    }
+
     /// Advances everything to a later time since power-up \[s\].
     pub fn advance(&mut self, to: f64) {
         self.rig.advance(to);

@@ -7,7 +7,7 @@
 
 use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::net::TcpStream;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::net::sockopt::set_tcp_quickack;
@@ -94,7 +94,7 @@ impl<'a> Connection<'a> {
     }
 
     /// Waits for bytes and returns their number, at least one. The time between two messages is not limited; `owed_since` is
-    /// the start of an incomplete message.
+    /// the start of an incomplete message, by the clock of the session \[s\].
     ///
     /// # Errors
     /// No more bytes will be received.
@@ -102,10 +102,11 @@ impl<'a> Connection<'a> {
         &mut self,
         buffer: &mut [u8],
         specimen: &mut Specimen<'_, '_>,
-        owed_since: Option<Instant>,
+        owed_since: Option<f64>,
     ) -> Result<usize, Broken> {
         loop {
-            if owed_since.is_some_and(|since| since.elapsed() > self.patience) {
+            let owed_for = owed_since.map_or(0.0, |since| specimen.now() - since);
+            if owed_for > self.patience.as_secs_f64() {
                 return Err(Broken::Silent);
             }
             if self.stop_request.end_requested() {
@@ -134,7 +135,7 @@ impl<'a> Connection<'a> {
         buffer: &mut [u8],
         specimen: &mut Specimen<'_, '_>,
     ) -> Result<(), Broken> {
-        let (mut filled, since) = (0, Instant::now());
+        let (mut filled, since) = (0, specimen.now());
         while filled < buffer.len() {
             filled += self.read(&mut buffer[filled..], specimen, Some(since))?;
         }
@@ -152,18 +153,18 @@ impl<'a> Connection<'a> {
         silence: Duration,
     ) -> Result<(), Broken> {
         let mut filled = 0;
-        let mut deadline = Instant::now() + silence;
+        let mut deadline = specimen.now() + silence.as_secs_f64();
         while filled < buffer.len() {
             let _ = specimen.listen();
             match self.stream.read(&mut buffer[filled..]) {
                 Ok(0) => return Err(Broken::HungUp),
                 Ok(count) => {
                     filled += count;
-                    deadline = Instant::now() + silence;
+                    deadline = specimen.now() + silence.as_secs_f64();
                     set_tcp_quickack(&self.stream, true)
                         .map_err(|error| Broken::Lost(error.into()))?;
                 }
-                Err(error) if waits(&error) && Instant::now() < deadline => {}
+                Err(error) if waits(&error) && specimen.now() < deadline => {}
                 Err(error) => return Err(disconnected(error)),
             }
         }
@@ -179,12 +180,12 @@ impl<'a> Connection<'a> {
         mut bytes: &[u8],
         specimen: &mut Specimen<'_, '_>,
     ) -> Result<(), Broken> {
-        let deadline = Instant::now() + WRITE_TIMEOUT;
+        let deadline = specimen.now() + WRITE_TIMEOUT.as_secs_f64();
         while !bytes.is_empty() {
             match self.stream.write(bytes) {
                 Ok(0) => return Err(Broken::HungUp),
                 Ok(count) => bytes = &bytes[count..],
-                Err(error) if waits(&error) && Instant::now() < deadline => {
+                Err(error) if waits(&error) && specimen.now() < deadline => {
                     specimen.listen().map_err(Broken::Rig)?;
                 }
                 Err(error) => return Err(disconnected(error)),

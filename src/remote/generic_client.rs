@@ -14,7 +14,7 @@
 //! has n·n words. One message moves all axes; if a limit refuses one, none moves. The messages of a `GenericTCP` with an
 //! init file are accepted, noted and otherwise ignored.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::Ended;
 use super::connection::{Broken, Connection};
@@ -78,8 +78,8 @@ fn bid_farewell(
     let mut message = vec![0; 8 * words];
     message[..begun.len()].copy_from_slice(begun);
     let mut filled = begun.len();
-    let over = Instant::now() + FAREWELL;
-    while Instant::now() < over {
+    let over = specimen.now() + FAREWELL.as_secs_f64();
+    while specimen.now() < over {
         connection.read_soon(&mut message[filled..], specimen, SILENCE)?;
         filled = 0;
         match word(&message, 0) {
@@ -124,7 +124,7 @@ fn converse(
         }
         // Kept as received: if it is interrupted here, its end is still received later.
         begun.extend_from_slice(&message[..first]);
-        let since = Some(Instant::now());
+        let since = Some(specimen.now());
         while begun.len() < message.len() {
             let came = connection.read(&mut message[begun.len()..], specimen, since)?;
             begun.extend_from_slice(&message[begun.len()..begun.len() + came]);

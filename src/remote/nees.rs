@@ -6,8 +6,6 @@
 //! keeps its last target. Control points of auxiliary devices such as cameras (`MDL-AUX`) move nothing. Names and directions
 //! are echoed as they were written; answers have the line ending of the client.
 
-use std::time::Instant;
-
 use super::Ended;
 use super::connection::Connection;
 use super::nees_message::{self, Refusal, Request, Why};
@@ -108,7 +106,7 @@ fn converse(
     let mut begun: Vec<u8> = Vec::new();
     let mut buffer = [0; 1024];
     // It owes the rest of a line, and first of all a session.
-    let mut owed_since = Some(Instant::now());
+    let mut owed_since = Some(specimen.now());
     loop {
         let count = connection.read(&mut buffer, specimen, owed_since)?;
         let mut answered = false;
@@ -135,7 +133,7 @@ fn converse(
         let owes = !begun.is_empty() || !state.open;
         owed_since = owed_since
             .filter(|_| !answered || !state.open)
-            .or_else(|| Some(Instant::now()))
+            .or_else(|| Some(specimen.now()))
             .filter(|_| owes);
         if begun.len() > LONGEST {
             return Err(Ended::Misspoken(format!(

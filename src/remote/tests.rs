@@ -5,6 +5,7 @@ use std::net::{TcpListener, TcpStream};
 
 use super::*;
 use crate::plan::{Behaviour, Interval, Limits, Settle, Specimen as PlanSpecimen, VirtualLink};
+use crate::rig::transport::{Clock as _, MonotonicClock};
 use crate::rig::{Guard, Rig, VirtualRig};
 use crate::run::Unwatched;
 
@@ -71,7 +72,9 @@ pub(super) fn served_on<T: Send>(
             }
         };
         let mut nobody = Unwatched;
-        let mut specimen = Specimen::new(&mut guard, &mut nobody, None);
+        let clock = MonotonicClock::start();
+        let now = || clock.now();
+        let mut specimen = Specimen::new(&mut guard, &mut nobody, None, &now);
         serve(
             &listener,
             protocol,
@@ -456,7 +459,9 @@ fn ended_in_silence(protocol: &Protocol, sent: &[u8]) -> Ended {
     client.write_all(sent).unwrap();
     let (mut rig, mut nobody, stop_request) = (spring(), Unwatched, StopRequest::default());
     let mut guard = Guard::new(&mut rig, LIMITS, Vec::new()).unwrap();
-    let mut specimen = Specimen::new(&mut guard, &mut nobody, None);
+    let clock = MonotonicClock::start();
+    let now = || clock.now();
+    let mut specimen = Specimen::new(&mut guard, &mut nobody, None, &now);
     let mut connection =
         Connection::new(listener.accept().unwrap().0, LOOK, &stop_request).unwrap();
     connection.patience = Duration::from_millis(50);

@@ -27,15 +27,27 @@ pub enum Driver {
     ByHand,
 }
 
-/// Lets `client` drive the plan's rig. Never fails: a fault is the outcome of the record.
+/// A client that drives a rig.
+pub struct Requests<'a> {
+    pub driver: Driver,
+    /// Seconds since a fixed moment.
+    pub clock: &'a dyn Fn() -> f64,
+    pub client: &'a mut dyn FnMut(&mut Specimen<'_, '_>),
+}
+
+/// Lets the client of `requests` drive the plan's rig. Never fails: a fault is the outcome of the record.
 #[must_use]
 pub fn drive(
     plan: &Plan,
     rig: &mut dyn Rig,
     observer: &mut dyn Observer,
-    driver: Driver,
-    client: &mut dyn FnMut(&mut Specimen<'_, '_>),
+    requests: Requests<'_>,
 ) -> ClientRunRecord {
+    let Requests {
+        driver,
+        clock,
+        client,
+    } = requests;
     let identity = rig.identity();
     let ended = |events, outcome| ClientRunRecord {
         record: Record {
@@ -73,7 +85,7 @@ pub fn drive(
     };
     let (guard, observer, events) = session.parts();
     let beat = link.map(|link| Duration::from_secs_f64((link.watchdog / 8.0).max(0.0)));
-    let mut specimen = Specimen::new(guard, observer, beat);
+    let mut specimen = Specimen::new(guard, observer, beat, clock);
     client(&mut specimen);
     let (mut outcome, steps) = (specimen.outcome(), std::mem::take(&mut specimen.steps));
     events.append(&mut specimen.events);

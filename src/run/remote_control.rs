@@ -4,7 +4,7 @@
 //! Every action of a protocol on the rig uses [`Specimen`], which reports it to the observer first. The logged requests are repeated
 //! through `Specimen::carry_out`. They make the same calls to the guard and the rig again.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use crate::record::remote::{Disconnect, DrivenStep, Request};
 use crate::record::{Event, EventKind, Outcome};
@@ -38,7 +38,9 @@ pub struct Specimen<'session, 'rig> {
     observer: &'session mut dyn Observer,
     /// A real rig must be polled at least this often.
     beat: Option<Duration>,
-    heard: Instant,
+    clock: &'session dyn Fn() -> f64,
+    /// When the rig was polled last, by the clock \[s\].
+    heard: f64,
     feedback: Feedback,
     driven: Driven,
     pub(super) steps: Vec<DrivenStep>,
@@ -52,17 +54,19 @@ pub struct Specimen<'session, 'rig> {
 }
 
 impl<'session, 'rig> Specimen<'session, 'rig> {
-    /// `beat`: for a rig that must be polled at least this often.
+    /// `beat`: for a rig that must be polled at least this often. `clock`: seconds since a fixed moment.
     pub fn new(
         guard: &'session mut Guard<'rig>,
         observer: &'session mut dyn Observer,
         beat: Option<Duration>,
+        clock: &'session dyn Fn() -> f64,
     ) -> Self {
         Self {
             guard,
             observer,
             beat,
-            heard: Instant::now(),
+            clock,
+            heard: clock(),
             feedback: Feedback::default(),
             driven: Driven::default(),
             steps: Vec::new(),
@@ -97,6 +101,11 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
     /// The targets on the path to `targets`, in increments inside the limit.
     pub fn increments_to(&self, targets: &[f64]) -> Vec<Vec<f64>> {
         self.guard.increments_to(targets)
+    }
+
+    /// Seconds since a fixed moment, by the clock of the session.
+    pub fn now(&self) -> f64 {
+        (self.clock)()
     }
 
     /// Rig time \[s\].
@@ -240,7 +249,8 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
     /// # Errors
     /// The rig fails, or is outside a limit.
     pub fn listen(&mut self) -> Result<(), RigFault> {
-        let Some(beat) = self.beat.filter(|beat| self.heard.elapsed() >= *beat) else {
+        let due = |beat: &Duration| self.now() - self.heard >= beat.as_secs_f64();
+        let Some(beat) = self.beat.filter(due) else {
             return Ok(());
         };
         self.stay(beat)
@@ -291,13 +301,13 @@ impl<'session, 'rig> Specimen<'session, 'rig> {
 
     fn stay(&mut self, seconds: Duration) -> Result<(), RigFault> {
         let stayed = self.guard.pause(seconds.as_secs_f64());
-        self.heard = Instant::now();
+        self.heard = self.now();
         self.note_fault(stayed)
     }
 
     fn read_feedback(&mut self) -> Result<(), RigFault> {
         let read = self.guard.read();
-        self.heard = Instant::now();
+        self.heard = self.now();
         let reading = self.note_fault(read)?;
         let largest = |values: &[f64], so_far: f64| {
             values

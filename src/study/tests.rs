@@ -12,6 +12,7 @@ use crate::language::check::{LoadError, Options, ParsedPlan};
 use crate::physics::study::Confidence;
 use crate::physics::study::distribution::normal;
 use crate::plan::Plan;
+use crate::rig::transport::MonotonicClock;
 use crate::study::answers::Answers;
 
 /// A pulse of 1 m/s² and one of half of it: the response of an elastic frame to the second is half that to the first.
@@ -156,7 +157,7 @@ fn collected(
     };
     let mut left = rounds;
     let (ended, _) = collection
-        .run(&mut |_| {
+        .run(&MonotonicClock::start(), &mut |_| {
             left -= 1;
             left > 0
         })

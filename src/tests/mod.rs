@@ -5,6 +5,7 @@ pub(crate) mod fault_table;
 #[path = "../physics/statistics/testing.rs"]
 pub(crate) mod noise;
 pub(crate) mod procedures;
+mod swarm;
 pub(crate) mod testing;
 pub(crate) mod uncertainty;
 pub(crate) mod whole_runs;

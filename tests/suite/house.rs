@@ -86,6 +86,27 @@ fn the_core_reads_no_clock_file_or_environment() {
     none(&found, "the core is a function of its input");
 }
 
+/// Below the command line, code takes the clock as an argument. A test gives it a simulated one.
+#[test]
+fn one_file_reads_the_clock_of_the_machine() {
+    let reads = [
+        "Instant::now",
+        "SystemTime",
+        "Timestamp::now",
+        "Zoned::now",
+        "clock_gettime",
+    ];
+    let files = rust_files("src");
+    let mut readers: Vec<&str> = files
+        .iter()
+        .filter(|file| !file.is_in(&["cli"]) && !file.is_test())
+        .filter(|file| reads.iter().any(|word| !file.lines_with(word).is_empty()))
+        .map(|file| file.path.as_str())
+        .collect();
+    readers.sort_unstable();
+    assert_eq!(readers, ["rig/transport/clock.rs"]);
+}
+
 #[test]
 fn each_library_is_known_to_one_part_only() {
     let files = rust_files("src");

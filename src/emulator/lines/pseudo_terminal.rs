@@ -149,6 +149,7 @@ mod tests {
     use crate::emulator::lines::real_time::{Until, serve};
     use crate::emulator::testing::elastic_rig;
     use crate::emulator::{Log, RigEmulator, Script};
+    use crate::rig::transport::MonotonicClock;
 
     fn emulator(script: &str) -> RigEmulator {
         let rig = elastic_rig();
@@ -213,6 +214,7 @@ mod tests {
                 let served = serve(
                     &mut emulator,
                     &mut carriers,
+                    &MonotonicClock::start(),
                     Until {
                         last_host_left: false,
                         stopped: &stopped,

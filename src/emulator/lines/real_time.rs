@@ -3,12 +3,12 @@
 
 use std::io;
 use std::os::fd::BorrowedFd;
-use std::time::Instant;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 
 use crate::emulator::RigEmulator;
+use crate::rig::transport::Clock;
 
 /// Longest interval between two checks of the lines, 4 ms. Bytes of a host end it.
 const NAP: Timespec = Timespec {
@@ -63,16 +63,17 @@ struct Served<'a> {
     outbox: Vec<u8>,
 }
 
-/// Serves a rig emulator, with one carrier per line.
+/// Serves a rig emulator, with one carrier per line, in the time of the clock.
 ///
 /// # Errors
 /// A line cannot be served any more.
 pub fn serve(
     emulator: &mut RigEmulator,
     carriers: &mut [Box<dyn Carrier>],
+    clock: &dyn Clock,
     until: Until<'_>,
 ) -> io::Result<()> {
-    let start = Instant::now();
+    let start = clock.now();
     let mut lines: Vec<Served<'_>> = carriers
         .iter_mut()
         .map(|carrier| Served {
@@ -83,7 +84,7 @@ pub fn serve(
         .collect();
     let mut anybody = false;
     while !(until.stopped)() {
-        emulator.advance(start.elapsed().as_secs_f64());
+        emulator.advance(clock.now() - start);
         let mut busy = false;
         for (at, line) in lines.iter_mut().enumerate() {
             busy |= line.turn(emulator, at)?;

@@ -115,6 +115,7 @@ mod tests {
     use crate::emulator::lines::real_time::{Until, serve};
     use crate::emulator::testing::elastic_rig;
     use crate::emulator::{Log, RigEmulator, Script};
+    use crate::rig::transport::MonotonicClock;
 
     #[test]
     fn it_serves_until_its_only_host_leaves() {
@@ -141,6 +142,7 @@ mod tests {
         serve(
             &mut emulator,
             &mut carriers,
+            &MonotonicClock::start(),
             Until {
                 last_host_left: true,
                 stopped: &|| false,

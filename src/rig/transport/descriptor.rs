@@ -3,12 +3,12 @@
 
 use std::io::{self, ErrorKind};
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 
-use super::Emergency;
+use super::{Clock as _, Emergency, MonotonicClock};
 
 /// Longest time to send an emergency command.
 const EMERGENCY_TIMEOUT: Duration = Duration::from_millis(200);
@@ -19,13 +19,13 @@ pub(super) fn write(
     mut bytes: &[u8],
     timeout: Duration,
 ) -> io::Result<()> {
-    let deadline = Instant::now() + timeout;
+    let deadline = Deadline::after(timeout);
     while !bytes.is_empty() {
         match rustix::io::write(descriptor, bytes) {
             Ok(0) => return Err(ErrorKind::BrokenPipe.into()),
             Ok(count) => bytes = &bytes[count..],
             Err(Errno::INTR) => {}
-            Err(Errno::AGAIN) => wait(descriptor, PollFlags::OUT, deadline)?,
+            Err(Errno::AGAIN) => wait(descriptor, PollFlags::OUT, &deadline)?,
             Err(errno) => return Err(hang_up(errno)),
         }
     }
@@ -38,22 +38,41 @@ pub(super) fn read(
     buffer: &mut [u8],
     timeout: Duration,
 ) -> io::Result<usize> {
-    let deadline = Instant::now() + timeout;
+    let deadline = Deadline::after(timeout);
     loop {
         match rustix::io::read(descriptor, &mut *buffer) {
             Ok(0) => return Err(ErrorKind::BrokenPipe.into()),
             Ok(count) => return Ok(count),
             Err(Errno::INTR) => {}
-            Err(Errno::AGAIN) => wait(descriptor, PollFlags::IN, deadline)?,
+            Err(Errno::AGAIN) => wait(descriptor, PollFlags::IN, &deadline)?,
             Err(errno) => return Err(hang_up(errno)),
         }
     }
 }
 
+/// The end of a time-out.
+struct Deadline {
+    clock: MonotonicClock,
+    timeout: Duration,
+}
+
+impl Deadline {
+    fn after(timeout: Duration) -> Self {
+        let clock = MonotonicClock::start();
+        Self { clock, timeout }
+    }
+
+    /// The remaining time; zero after the end.
+    fn left(&self) -> Duration {
+        let passed = Duration::try_from_secs_f64(self.clock.now()).unwrap_or(Duration::MAX);
+        self.timeout.saturating_sub(passed)
+    }
+}
+
 /// Waits until the descriptor is ready, or the line is lost.
-fn wait(descriptor: BorrowedFd<'_>, flags: PollFlags, deadline: Instant) -> io::Result<()> {
+fn wait(descriptor: BorrowedFd<'_>, flags: PollFlags, deadline: &Deadline) -> io::Result<()> {
     loop {
-        let left = deadline.saturating_duration_since(Instant::now());
+        let left = deadline.left();
         if left.is_zero() {
             return Err(ErrorKind::TimedOut.into());
         }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::physics::tracking::trajectory::Path;
 use crate::record::equipment::Equipment;
-use crate::rig::{DeclaredNoise, Identity, LastMove, RigFault};
+use crate::rig::{DeclaredNoise, FinalHold, Identity, LastMove, RigFault};
 use crate::run::{Inspection, Request};
 
 /// Written instead of a protocol if the operator drives by hand.
@@ -284,6 +284,35 @@ pub struct HeldBody {
     pub raw: Vec<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wall: Option<String>,
+}
+
+impl HeldBody {
+    /// The result of a final hold, at its time in the run log.
+    pub(super) fn of(halted: &FinalHold, wall: Option<String>) -> Self {
+        let FinalHold {
+            time,
+            unconfirmed,
+            found,
+            raw,
+        } = halted.clone();
+        Self {
+            t: time,
+            unconfirmed,
+            found,
+            raw: raw.iter().map(|raw| escaped(raw)).collect(),
+            wall,
+        }
+    }
+
+    /// The final hold, without its bytes.
+    pub(super) fn into_final_hold(self) -> FinalHold {
+        FinalHold {
+            time: self.t,
+            unconfirmed: self.unconfirmed,
+            found: self.found,
+            raw: Vec::new(),
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -25,8 +25,8 @@ pub(crate) mod tests;
 pub use compatibility::RULES;
 pub use consistency::{Contradiction, check_consistency};
 pub use entry::{
-    AmendBody, Assurance, BY_HAND, Call, Header, HeaderFile, IntentBody, RecoverBody, ResumeBody,
-    RigBody, SampleBody, StrokeBody, TargetStatus,
+    AmendBody, Assurance, BY_HAND, Call, Header, HeaderFile, HeldBody, IntentBody, RecoverBody,
+    ResumeBody, RigBody, SampleBody, StrokeBody, TargetStatus,
 };
 pub use in_force::{InForce, Rigs};
 pub use logged_run::{LoggedRun, Mismatch, UnreadableLog};
@@ -51,7 +51,7 @@ use state::{Begin, State};
 
 use super::{Observer, Request, Unwatched, run};
 use crate::record::remote::DrivenStep;
-use crate::run::client_run::{ClientRunRecord, Driver, drive};
+use crate::run::client_run::{ClientRunRecord, Driver, Requests, drive};
 use crate::run::remote_control::Specimen;
 
 /// Gives the time of day, as text; None for a virtual run.
@@ -86,8 +86,7 @@ pub fn record_driven(
     rig: &mut dyn Rig,
     observer: &mut dyn Observer,
     log: OpenLog,
-    driver: Driver,
-    client: &mut dyn FnMut(&mut Specimen<'_, '_>),
+    requests: Requests<'_>,
 ) -> (Recorded, Vec<DrivenStep>) {
     let mut done = Vec::new();
     let recorded = perform(
@@ -95,7 +94,7 @@ pub fn record_driven(
         observer,
         State::recording(log.journal, log.wall),
         |rig, observer, _| {
-            let ClientRunRecord { record, steps } = drive(plan, rig, observer, driver, client);
+            let ClientRunRecord { record, steps } = drive(plan, rig, observer, requests);
             done = steps;
             record
         },
@@ -121,9 +120,12 @@ pub fn replay(plan: &Plan, logged: LoggedRun) -> Replayed {
     } = if let Some(driver) = driver {
         let plan = as_run.as_ref();
         perform(None, &mut Unwatched, state, |rig, observer, state| {
-            let driven = drive(plan, rig, observer, driver, &mut |specimen| {
-                repeat_requests(state, specimen);
-            });
+            let requests = Requests {
+                driver,
+                clock: &|| 0.0,
+                client: &mut |specimen| repeat_requests(state, specimen),
+            };
+            let driven = drive(plan, rig, observer, requests);
             steps = Some(driven.steps);
             driven.record
         })
@@ -224,6 +226,7 @@ fn perform<'rig>(
     if record.outcome == Outcome::Completed
         && state.mismatch().is_none()
         && state.next_kind().is_some()
+        && state.final_entry().is_none()
     {
         // Entries beyond the end of the plan belong to a different plan.
         let reason = state.report_mismatch("its end".to_owned()).to_string();

@@ -5,10 +5,8 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use super::continuous_move::ContinuousMove;
-use super::entry::{
-    Call, FaultBody, HeldBody, IntentBody, RigBody, SampleBody, StrokeBody, escaped,
-};
-use super::entry_of::{append_sample, in_log_time, intent, same_bits, unknown_rig};
+use super::entry::{Call, FaultBody, HeldBody, IntentBody, RigBody, SampleBody, StrokeBody};
+use super::entry_of::{append_sample, in_log_time, intent, same_bits, target_text, unknown_rig};
 use super::state::{State, ended};
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::{Interval, Limits};
@@ -38,14 +36,11 @@ impl<'rig> RecordedRig<'rig> {
         let about = known.unwrap_or_else(|| {
             let about = live.as_deref().map_or_else(unknown_rig, RigBody::of);
             let mut state = state.borrow_mut();
+            state.time = about.t;
             // A run log that fails here reports it at the first call.
-            if state
+            let _ = state
                 .append(EntryKind::Rig, &about)
-                .and_then(|()| state.sync_point())
-                .is_ok()
-            {
-                state.time = about.t;
-            }
+                .and_then(|()| state.sync_point());
             about
         });
         Self {
@@ -153,7 +148,7 @@ impl<'rig> RecordedRig<'rig> {
         if same {
             return Ok(intent);
         }
-        Err(state.report_mismatch(format!("a target of {targets:?} m at {speed:?} m/s")))
+        Err(state.report_mismatch(format!("a move {}", target_text(targets, speed))))
     }
 
     fn logged_reading(&self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
@@ -398,21 +393,9 @@ impl Rig for RecordedRig<'_> {
             if let (None, Some(rig)) = (&logged, self.live()) {
                 rig.hold();
             }
-            return logged.map(
-                |HeldBody {
-                     t,
-                     unconfirmed,
-                     found,
-                     ..
-                 }| FinalHold {
-                    time: t,
-                    unconfirmed,
-                    found,
-                    raw: Vec::new(),
-                },
-            );
+            return logged.map(HeldBody::into_final_hold);
         }
-        // Also if the run log fails: the rig comes first. An answer that is not logged is not part of the run.
+        // Also if the run log fails: the rig comes first, and the operator must know whether it holds.
         let rig = self.live()?;
         let before = rig.time();
         let halted = rig.halt()?;
@@ -423,25 +406,16 @@ impl Rig for RecordedRig<'_> {
             ..halted
         };
         let mut state = self.state.borrow_mut();
-        let FinalHold {
-            unconfirmed,
-            found,
-            raw,
-            ..
-        } = halted.clone();
-        let raw = raw.iter().map(|raw| escaped(raw)).collect();
-        let held = HeldBody {
-            t: halted.time,
-            unconfirmed,
-            found,
-            raw,
-            wall: state.wall(),
-        };
-        state
-            .append(EntryKind::Held, &held)
-            .and_then(|()| state.sync_point())
-            .ok()?;
+        let held = HeldBody::of(&halted, state.wall());
         state.time = halted.time;
+        if state.healthy().is_ok() {
+            // If the run log fails here, its final entries contain this one.
+            let _ = state
+                .append(EntryKind::Held, &held)
+                .and_then(|()| state.sync_point());
+        } else {
+            state.append_finally(EntryKind::Held, &held);
+        }
         Some(halted)
     }
 

@@ -283,20 +283,18 @@ impl<'rig> State<'rig> {
         }
     }
 
-    /// The result of the final hold. None if the run log, of an older version, does not state it.
+    /// The result of the final hold, which a run log that failed states after its failure. None: an older version did not log it.
     pub(super) fn logged_final_hold(&mut self) -> Option<HeldBody> {
-        if self.mismatch.is_some() || self.next_kind() != Some(EntryKind::Held) {
-            return None;
-        }
-        let held = self
-            .peek(EntryKind::Held, "the final hold of the rig")
-            .ok()?;
-        self.consume();
+        let at = usize::from(self.final_entry().is_some());
+        let is_held = |line: &&Line| self.mismatch.is_none() && line.kind == EntryKind::Held;
+        let held: HeldBody = body(self.lines.get(at).filter(is_held)?).ok()?;
+        self.lines.remove(at);
+        self.time = held.t;
         Some(held)
     }
 
     /// The final entry of a run log that failed. It ends the run whatever the next call is, and is not consumed.
-    fn final_entry(&self) -> Option<RigFault> {
+    pub(super) fn final_entry(&self) -> Option<RigFault> {
         let line = self
             .lines
             .front()
@@ -366,7 +364,7 @@ impl<'rig> State<'rig> {
     pub(super) fn report_mismatch(&mut self, called: String) -> RigFault {
         let front = self.lines.front();
         let (seq, found) = front.map_or((0, "its end".to_owned()), |line| {
-            (line.seq, format!("{:?} {}", line.kind, line.body()))
+            (line.seq, format!("{} {}", line.kind.word(), line.body()))
         });
         self.differs(Mismatch { seq, called, found })
     }
@@ -424,19 +422,23 @@ impl<'rig> State<'rig> {
 
     fn broken(&mut self, fault: JournalFault) -> RigFault {
         let message = unkept(&fault);
-        if let Some(journal) = &mut self.journal {
-            let words = FaultBody {
-                t: self.time,
-                call: Call::Record,
-                fault: message.clone(),
-                reading: None,
-                wall: (self.wall)(),
-            };
-            // The disk has failed already: the entry is attempted once.
-            let _ = journal.final_entry(EntryKind::Fault, &words);
-        }
+        let words = FaultBody {
+            t: self.time,
+            call: Call::Record,
+            fault: message.clone(),
+            reading: None,
+            wall: (self.wall)(),
+        };
+        self.append_finally(EntryKind::Fault, &words);
         self.fault = Some(fault);
         message
+    }
+
+    /// Appends an entry to a run log that has failed. It is attempted once.
+    pub(super) fn append_finally(&mut self, kind: EntryKind, body: &impl Serialize) {
+        if let Some(journal) = &mut self.journal {
+            let _ = journal.final_entry(kind, body);
+        }
     }
 
     /// The run was completed.

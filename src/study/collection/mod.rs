@@ -14,12 +14,12 @@ mod tests;
 use std::ops::Range;
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 use rustix::fs::{FlockOperation, flock};
 use thiserror::Error;
 
 use crate::plan::study::Runs;
+use crate::rig::transport::Clock;
 use crate::study::cluster::shard::Shard;
 use crate::study::counts::Counts;
 use crate::study::data_set::{DataSetFault, Metadata, Reader, Row, Writer};
@@ -29,10 +29,10 @@ use crate::study::stopping::Looks;
 use folder::DataSetFiles;
 use same::{Difference, grown, same};
 
-/// Longest time whose runs a kill may cost.
-const PIECE: Duration = Duration::from_mins(1);
-/// A round of runs takes about this long: after each one, a stop request is obeyed.
-const ROUND: Duration = Duration::from_millis(250);
+/// Longest time whose runs a kill may cost \[s\].
+const PIECE: f64 = 60.0;
+/// A round of runs takes about this long \[s\]: after each one, a stop request is obeyed.
+const ROUND: f64 = 0.25;
 /// Runs of the first round.
 const FIRST_ROUND: u64 = 64;
 /// Most runs of a round.
@@ -99,6 +99,7 @@ impl Collection<'_> {
     /// The folder contains another study, or cannot be written.
     pub fn run(
         &self,
+        clock: &dyn Clock,
         observe: &mut dyn FnMut(&Progress<'_>) -> bool,
     ) -> Result<(Ended, Looks), CollectionFault> {
         let files = DataSetFiles::of(self.folder, self.shard);
@@ -141,17 +142,17 @@ impl Collection<'_> {
                     ..self.metadata.clone()
                 },
             )?;
-            let began = Instant::now();
-            while goes_on && !looks.are_over() && began.elapsed() < PIECE {
+            let began = clock.now();
+            while goes_on && !looks.are_over() && clock.now() - began < PIECE {
                 let next = range.start + looks.counts.runs;
                 let end = (next + round).min(range.start + looks.next());
-                let before = Instant::now();
+                let before = clock.now();
                 for row in self.rows(&looks, next..end) {
                     looks.add(&row);
                     piece.push(&row)?;
                 }
                 simulated += end - next;
-                round = next_round(round, before.elapsed());
+                round = next_round(round, clock.now() - before);
                 goes_on = observe(&Progress {
                     counts: &looks.counts,
                     of,
@@ -284,11 +285,11 @@ fn remove(path: &Path) -> Result<(), DataSetFault> {
     std::fs::remove_file(path).map_err(|error| DataSetFault::new(path, error.to_string()))
 }
 
-/// The number of runs of the next round, from that of the last one and its time.
-fn next_round(runs: u64, took: Duration) -> u64 {
-    if took < ROUND / 2 {
+/// The number of runs of the next round, from that of the last one and its time \[s\].
+fn next_round(runs: u64, took: f64) -> u64 {
+    if took < ROUND / 2.0 {
         (2 * runs).min(LARGEST_ROUND)
-    } else if took > 2 * ROUND {
+    } else if took > 2.0 * ROUND {
         (runs / 2).max(1)
     } else {
         runs

@@ -8,6 +8,7 @@ use super::{Collection, CollectionFault, Ended};
 use crate::physics::study::Confidence;
 use crate::plan::Comparison;
 use crate::plan::study::{Runs, Sampling, StudyEvent, StudyRequirement, Variation};
+use crate::rig::transport::MonotonicClock;
 use crate::study::cluster::shard::Shard;
 use crate::study::data_set::{Metadata, Reader, Row};
 use crate::study::definition::{Definition, DefinitionError};
@@ -38,7 +39,7 @@ fn add(
         shard,
     };
     let mut left = rounds;
-    collection.run(&mut |_| {
+    collection.run(&MonotonicClock::start(), &mut |_| {
         left -= 1;
         left > 0
     })
@@ -302,7 +303,7 @@ fn two_processes_do_not_add_to_one_study() {
     };
     let mut refused = None;
     collection
-        .run(&mut |_| {
+        .run(&MonotonicClock::start(), &mut |_| {
             refused = Some(add(&studied, None, folder.path(), None, u32::MAX));
             false
         })

@@ -6,6 +6,7 @@
 //! |---|---|---|
 //! | 1 | killed at every command to the rig | `words::killed_at_every_word_it_goes_on_to_the_same_end_and_no_target_is_carried_out_twice` |
 //! | 6 | a disk with too little free space | `src/cli/files/disk_space.rs`, `tests/system/disk.rs` |
+//! | 5, 6 | a disk that fails at any write or flush | `interrupted::disk` |
 //! | 10 | no reply | `line::a_reply_that_never_comes_is_asked_for_at_t_2t_and_4t_and_then_the_rig_is_held` |
 //! | 11 | partial replies, two replies in one read | `line::a_reply_in_any_two_pieces_or_byte_by_byte_is_the_same_reply`, `line::a_reply_cut_anywhere_is_never_a_shorter_number` |
 //! | 12 | garbage, a megabyte without a line end | `line::garbage_of_any_kind_is_counted_and_none_of_it_is_used` |

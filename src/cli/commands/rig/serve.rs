@@ -27,8 +27,10 @@ use crate::remote;
 use crate::remote::{Ended, Event, Protocol, Session};
 use crate::report;
 use crate::report::Provenance;
+use crate::rig::transport::{Clock as _, MonotonicClock};
 use crate::rig::{Rig, StopRequest, virtual_rig};
-use crate::run::client_run::Driver;
+use crate::run::client_run::{Driver, Requests};
+use crate::run::remote_control::Specimen;
 use crate::run::replay;
 use crate::run::replay::{OpenLog, Recorded, Wall};
 use crate::text::diagnostic::excerpt::escape;
@@ -292,38 +294,43 @@ fn on_record(
     let mut exit = Exit::Met;
     let mut printed = Ok(());
     let mut served = Ok(());
+    let mut client = |specimen: &mut Specimen<'_, '_>| {
+        if !clients.address.ip().is_loopback() {
+            print_message(&open_listener(clients.address, *settings));
+        }
+        // The program that started this one waits for the line.
+        printed = print_result(&format!(
+            "ready: {} on {}\n",
+            arguments.client.protocol.name(),
+            clients.address
+        ));
+        let mut print_event = |event: Event<'_>| match event {
+            Event::Connected(client) => print_message(&format!("  {client} is connected\n")),
+            Event::Ended(session) => {
+                exit = exit.max(exit_of(session));
+                let given = print_result(&summary(session));
+                printed = std::mem::replace(&mut printed, Ok(())).and(given);
+            }
+        };
+        served = remote::serve(
+            &clients.listener,
+            protocol,
+            specimen,
+            arguments.once,
+            stop_request,
+            &mut print_event,
+        );
+    };
+    let clock = MonotonicClock::start();
     let (recorded, steps) = replay::record_driven(
         plan,
         rig,
         watcher,
         OpenLog { journal, wall },
-        Driver::Client,
-        &mut |specimen| {
-            if !clients.address.ip().is_loopback() {
-                print_message(&open_listener(clients.address, *settings));
-            }
-            // The program that started this one waits for the line.
-            printed = print_result(&format!(
-                "ready: {} on {}\n",
-                arguments.client.protocol.name(),
-                clients.address
-            ));
-            let mut print_event = |event: Event<'_>| match event {
-                Event::Connected(client) => print_message(&format!("  {client} is connected\n")),
-                Event::Ended(session) => {
-                    exit = exit.max(exit_of(session));
-                    let given = print_result(&summary(session));
-                    printed = std::mem::replace(&mut printed, Ok(())).and(given);
-                }
-            };
-            served = remote::serve(
-                &clients.listener,
-                protocol,
-                specimen,
-                arguments.once,
-                stop_request,
-                &mut print_event,
-            );
+        Requests {
+            driver: Driver::Client,
+            clock: &|| clock.now(),
+            client: &mut client,
         },
     );
     watcher.finish();

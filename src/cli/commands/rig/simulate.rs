@@ -16,6 +16,7 @@ use crate::cli::settings::Settings;
 use crate::emulator::lines::real_time::{Carrier, Until, serve};
 use crate::emulator::{Log, PseudoTerminal, RigEmulator, Script, TcpLine, of_plan};
 use crate::plan::{DeviceLink, Plan, PortPlan, RealLink};
+use crate::rig::transport::MonotonicClock;
 use crate::text::diagnostic::excerpt::escape;
 
 #[derive(Debug, Args)]
@@ -91,7 +92,12 @@ pub fn simulate(arguments: &SimulateArguments, settings: Settings) -> Result<Exi
         last_host_left: arguments.once,
         stopped: &|| stopped.load(Ordering::Relaxed),
     };
-    let served = serve(&mut emulator, &mut carriers, until);
+    let served = serve(
+        &mut emulator,
+        &mut carriers,
+        &MonotonicClock::start(),
+        until,
+    );
     // The links are removed before anything else can fail.
     drop(carriers);
     end(&mut emulator, arguments.log.as_deref(), served)

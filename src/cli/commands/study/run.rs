@@ -15,6 +15,7 @@ use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::{Settings, variable};
 use crate::plan::study::Sampling;
 use crate::rig::StopRequest;
+use crate::rig::transport::MonotonicClock;
 use crate::study::cluster::shard::{self, NamedShard, Shard};
 use crate::study::collection::{Collection, Ended};
 use crate::study::data_set::Metadata;
@@ -148,10 +149,13 @@ fn collected(
         .map_err(|error| Failure::command_line(format!("no threads to simulate on: {error}")))?;
     let mut progress = StudyProgress::new(&collection.metadata.study, settings);
     let result = pool.install(|| {
-        collection.run(&mut |now: &collection::Progress<'_>| {
-            progress.show(now);
-            !stop.end_requested()
-        })
+        collection.run(
+            &MonotonicClock::start(),
+            &mut |now: &collection::Progress<'_>| {
+                progress.show(now);
+                !stop.end_requested()
+            },
+        )
     });
     progress.finish();
     result.map_err(failure::of_collection)

@@ -31,7 +31,10 @@ pub fn encode(value: f64, number: ModbusNumber) -> Vec<u16> {
             high_word_first,
         ),
         ModbusNumber::Float32 { high_word_first } => {
-            pair((value as f32).to_bits(), high_word_first)
+            let float = value as f32;
+            // As most controllers, it has no subnormal numbers.
+            let float = if float.is_subnormal() { 0.0 } else { float };
+            pair(float.to_bits(), high_word_first)
         }
     }
 }
@@ -91,6 +94,7 @@ mod tests {
         assert_eq!(encode(70_000.0, reversed), [0x1170, 0x0001]);
         // −12.5 = −1.1001b × 2³
         assert_eq!(encode(-12.5, float), [0xC148, 0x0000]);
+        assert_eq!(encode(1e-40, float), [0, 0]);
         for (words, number, value) in [
             (&[0xFFFE][..], ModbusNumber::Int16, -2.0),
             (&[0xFFFF, 0xFFFF], whole, -1.0),

@@ -33,6 +33,8 @@ pub struct LineClient {
     /// Time of the last check of the line \[s\], by the clock. None: it has not been checked yet.
     looked: Option<f64>,
     line_statistics: LineStatistics,
+    /// A question without a sequence number was given up: its answer may still arrive.
+    pub(super) owes_an_answer: bool,
 }
 
 /// Why no line was received.
@@ -75,6 +77,7 @@ impl LineClient {
             overlong: false,
             looked: None,
             line_statistics,
+            owes_an_answer: false,
         }
     }
 

@@ -20,14 +20,17 @@ pub fn clear(client: &mut LineClient, quiet: f64) -> Result<(), DeviceFault> {
 
 /// Sends the question, and after silence sends it twice more. A late answer to the first question would arrive before or between the
 /// other two answers, and would be one too many. So only the second of two single answers counts. Every silence is waited for in full.
+/// After a question that was given up, the next one is asked so from the start: the late answer could be to another question.
 pub fn fresh<T>(
     client: &mut LineClient,
     mut ask: impl FnMut(&mut LineClient) -> Result<T, DeviceFault>,
 ) -> Result<T, DeviceFault> {
     let began = client.now();
-    match ask(client) {
-        Err(DeviceFault::Silent { .. }) if on(Guarding::Resend) => {}
-        answer => return answer,
+    if !(client.owes_an_answer && on(Guarding::Sequence)) {
+        match ask(client) {
+            Err(DeviceFault::Silent { .. }) if on(Guarding::Resend) => client.owes_an_answer = true,
+            answer => return answer,
+        }
     }
     for _ in 0..AGAIN {
         client.line_statistics_mut().resent += 1;
@@ -45,7 +48,10 @@ pub fn fresh<T>(
         }
         match ask(client) {
             Err(DeviceFault::Silent { .. }) => {}
-            answer => return answer,
+            answer => {
+                client.owes_an_answer = false;
+                return answer;
+            }
         }
     }
     Err(DeviceFault::Silent {

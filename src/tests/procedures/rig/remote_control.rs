@@ -10,7 +10,7 @@ use crate::record::journal::{Durability, Journal};
 use crate::record::remote::DrivenStep;
 use crate::record::{Outcome, Record};
 use crate::rig::{RigFault, virtual_rig};
-use crate::run::client_run::Driver;
+use crate::run::client_run::{Driver, Requests};
 use crate::run::remote_control::Specimen;
 use crate::run::replay;
 use crate::run::replay::{Header, LoggedRun};
@@ -103,8 +103,11 @@ fn recorded(plan: &Plan, wants: bool) -> (PowerLoss, Record, Vec<DrivenStep>) {
         rig.as_mut(),
         &mut person,
         replay::OpenLog { journal, wall },
-        Driver::Client,
-        &mut |specimen| client(specimen),
+        Requests {
+            driver: Driver::Client,
+            clock: &|| 0.0,
+            client: &mut |specimen| client(specimen),
+        },
     );
     (disk, recorded.record, steps)
 }

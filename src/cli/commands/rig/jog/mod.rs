@@ -25,9 +25,10 @@ use crate::plan::{Datum, Link, Plan};
 use crate::record::remote::DrivenStep;
 use crate::report;
 use crate::report::Provenance;
+use crate::rig::transport::{Clock as _, MonotonicClock};
 use crate::rig::{Connected, Rig, StopRequest, connect, virtual_rig};
 use crate::run::Unwatched;
-use crate::run::client_run::Driver;
+use crate::run::client_run::{Driver, Requests};
 use crate::run::remote_control::Specimen;
 use crate::run::replay;
 use crate::run::replay::{BY_HAND, Header, OpenLog, Recorded};
@@ -297,14 +298,18 @@ impl<'a> Jog<'a> {
             settings: self.settings,
             ended: None,
         };
+        let clock = MonotonicClock::start();
         let mut drive = |specimen: &mut Specimen<'_, '_>| session.drive(specimen);
         let (recorded, steps) = replay::record_driven(
             self.plan,
             rig,
             &mut Unwatched,
             log,
-            Driver::ByHand,
-            &mut drive,
+            Requests {
+                driver: Driver::ByHand,
+                clock: &|| clock.now(),
+                client: &mut drive,
+            },
         );
         (recorded, steps, session)
     }

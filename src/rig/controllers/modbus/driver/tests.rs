@@ -250,6 +250,38 @@ fn a_late_answer_is_never_accepted_and_only_the_guard_stops_it() {
     assert_eq!(without(Guarding::Sequence, late_answer), 111.0);
 }
 
+/// The drive holds by its present position. The last question for the force, before it, is answered after 1.2 T, when it was given up.
+/// Gives the numbers that the drive is told to move to.
+fn holds_after_a_late_force() -> Vec<Vec<u8>> {
+    let (mut device, port, _) = device(ModbusMap {
+        command: None,
+        status: None,
+        ..MAP
+    });
+    port.reply(&at_once(float(2.5)));
+    for _ in 0..3 {
+        port.reply(&[]);
+    }
+    port.reply(&[Scripted::After(1.2 * T, float(111.0))]);
+    assert!(matches!(device.sample(), Err(DeviceFault::Silent { .. })));
+    for _ in 0..2 {
+        port.reply(&at_once(float(2.5)));
+    }
+    // Unguarded, one of these answers is left for the write.
+    let _ = device.hold();
+    let writes = |frame: &Vec<u8>| frame[1] == 16;
+    frames(&port).into_iter().filter(writes).collect()
+}
+
+#[test]
+fn a_late_force_is_never_the_position_at_which_a_drive_holds() {
+    let there = modbus::codec::write(1, 40, &[0x4020, 0]);
+    let force = modbus::codec::write(1, 40, &[0x42DE, 0]);
+    assert_eq!(holds_after_a_late_force()[0], there, "2.5 mm");
+    let unguarded = without(Guarding::Sequence, holds_after_a_late_force);
+    assert_eq!(unguarded[0], force, "111 N, as 111 mm");
+}
+
 #[test]
 fn an_answer_that_comes_while_the_second_question_is_open_is_one_too_many() {
     let (mut device, port, _) = device(CELL);

@@ -1,0 +1,269 @@
+//! A resumption, in the steps and the order of `psd resume`. In: the run log that the session before left, the rig, the operator. Out: the
+//! run that went on, or the reason why not. The witness learns what was released, and whether this specimen may go on at all.
+
+use std::cell::RefCell;
+
+use super::bench;
+use super::case::Session;
+use super::laws::{Law, Released};
+use super::life::{Ended, Life, open, read};
+use super::operator::Operator;
+use crate::plan::Plan;
+use crate::record::journal::{Durability, EntryKind, Journal, Storage as _};
+use crate::rig::{Reading, Rig as _, RigFault, StopRequest};
+use crate::run::replay::{
+    self, AmendBody, Assurance, Bands, Continuation, HeldBody, IntentBody, LoggedRun, RecoverBody,
+    ResumeBody, ResumeDecision, ResumeRefusal, RigBody, SampleBody,
+};
+use crate::run::{Inspection, Motion, Next, Observer};
+
+impl Life<'_> {
+    /// The same steps in the same order as `psd resume`.
+    pub(super) fn resume(&mut self, session: &Session, stop_request: &StopRequest) -> Ended {
+        let (recovered, before) = match read(&self.bytes) {
+            Ok(read) => read,
+            Err(reason) => return Ended::Refused(reason),
+        };
+        if before.ended {
+            return Ended::Refused(ResumeRefusal::Ended.to_string());
+        }
+        let plan = bench::amended(&self.plan, &session.amended);
+        let assured = assured(session);
+        if let Err(refusal) = replay::same_measure(&self.plan.rig, &plan.rig)
+            .and_then(|()| replay::not_restarted(&before, &assured))
+        {
+            return Ended::Refused(refusal.to_string());
+        }
+        let datum = before.rigs.first().and_then(|rig| rig.datum.clone());
+        let at_its_datum = Plan {
+            rig: plan.rig.with_recorded_datum(datum.as_deref()),
+            ..plan.clone()
+        };
+        let operator = RefCell::new(self.operator(session, &plan, stop_request));
+        let mut opened = None;
+        let opened_rig = &mut opened;
+        let life = &*self;
+        let begin = || -> Result<Continuation<'_>, Refused> {
+            let opened = opened_rig;
+            let rig = opened.insert(open(&at_its_datum, &life.world, stop_request)?);
+            let last = before.rigs.last().ok_or(ResumeRefusal::NothingRecorded)?;
+            replay::same_rig(&last.rig.identity, &rig.identity(), &assured)?;
+            replay::same_resolution(last.rig.noise, rig.declared_noise())?;
+            let planned = [&life.plan, &plan].map(|plan| Some(Released::of(plan).fastest()));
+            let speeds = [
+                ("own speed", last.rig.own_speed, rig.own_speed()),
+                ("highest speed in the plan", planned[0], planned[1]),
+            ];
+            replay::no_faster(&speeds, &assured)?;
+            let found = rig.read()?;
+            let link = plan.rig.link.as_real().expect("a real rig");
+            let bands = Bands::of(&plan.rig, link);
+            let decision = replay::decide(
+                &before,
+                &RigBody::of(rig),
+                &found,
+                &bands,
+                session.operator.accept_relaxation,
+            )?;
+            let motion = Motion::of(&plan, rig.identity(), "it MOVES on".to_owned());
+            loop {
+                let answer = operator.borrow_mut().release("resume", &motion);
+                match answer {
+                    _ if stop_request.end_requested() => {
+                        return Err(Refused("stopped on request".to_owned()));
+                    }
+                    Inspection::Stop { reason, .. } => return Err(Refused(reason)),
+                    Inspection::GoOn { .. } => break,
+                    Inspection::Wait => match rig.pause(0.05) {
+                        Ok(()) | Err(RigFault::Interrupted) => {}
+                        Err(fault) => return Err(fault.into()),
+                    },
+                }
+            }
+            life.released(session, &plan, &decision, &before, &found, &bands);
+            let resumption = decision.resumption("A. Operator", "power", &found, before.time);
+            let resumption = ResumeBody {
+                assured: assured.clone(),
+                ..resumption
+            };
+            let torn = recovered.torn.is_some();
+            let mut storage = life.disk.clone();
+            storage.cut(recovered.whole).ok();
+            let mut journal =
+                Journal::reopen(Box::new(storage), Durability::EverySyncPoint, &recovered);
+            let mut logged = before.clone();
+            if torn {
+                let recovery = RecoverBody {
+                    t: logged.time,
+                    put_aside: "torn".to_owned(),
+                };
+                journal.append(EntryKind::Recover, &recovery)?;
+                logged.recovered();
+            }
+            if !session.amended.is_empty() {
+                let amendment = AmendBody {
+                    by: "A. Operator".to_owned(),
+                    reason: "otherwise".to_owned(),
+                    differences: vec!["the plan".to_owned()],
+                    header: logged.header.clone(),
+                };
+                replay::amend(&mut journal, &amendment, &["text".to_owned()])?;
+                logged.amended(amendment);
+            }
+            let about = RigBody {
+                t: logged.time,
+                ..RigBody::of(rig)
+            };
+            journal.append(EntryKind::Rig, &about)?;
+            logged.answered(about);
+            journal.append(EntryKind::Resume, &resumption)?;
+            journal.sync()?;
+            logged.resumed(resumption);
+            Ok(Continuation {
+                rig,
+                journal,
+                logged,
+            })
+        };
+        let mut shared = Shared(&operator);
+        match replay::resume(&plan, &before, &mut shared, Box::new(|| None), begin) {
+            Ok(recorded) => Ended::Recorded(Box::new(recorded)),
+            Err(Refused(reason)) => Ended::Refused(reason),
+        }
+    }
+
+    /// The operator has released a resumption: what the witness must know of it.
+    fn released(
+        &self,
+        session: &Session,
+        plan: &Plan,
+        decision: &ResumeDecision,
+        before: &LoggedRun,
+        found: &Reading,
+        bands: &Bands,
+    ) {
+        let mut state = self.world.lock();
+        let witness = &mut state.witness;
+        witness.released = Some(Released::of(plan).and(decision));
+        witness.limits = plan.limits.displacement;
+        witness.other_specimen = other_rig(self, session)
+            .or_else(|| other_specimen(plan, before, found, bands, session));
+        witness.decided[Law::SameSpecimen as usize] += 1;
+    }
+}
+
+/// The reason of a refusal to resume.
+struct Refused(String);
+
+impl<E: std::fmt::Display> From<E> for Refused {
+    fn from(reason: E) -> Self {
+        Self(reason.to_string())
+    }
+}
+
+fn assured(session: &Session) -> Vec<Assurance> {
+    let answers = session.operator;
+    [
+        (answers.same_power_up, Assurance::SamePowerUp),
+        (answers.re_referenced, Assurance::ReReferenced),
+        (answers.accept_relaxation, Assurance::AcceptedRelaxation),
+        (answers.let_go, Assurance::LetGo),
+        (answers.accept_speed, Assurance::AcceptedSpeed),
+    ]
+    .into_iter()
+    .filter(|(given, _)| *given)
+    .map(|(_, assurance)| assurance)
+    .collect()
+}
+
+/// Why a rig that tells its identity must not go on.
+fn other_rig(life: &Life<'_>, session: &Session) -> Option<String> {
+    if !life.case.tells_identity() {
+        return None;
+    }
+    if !life.same_rig {
+        return Some("it went on with another rig".to_owned());
+    }
+    (!life.same_power && !session.operator.re_referenced)
+        .then(|| "it went on after a restart without a reference".to_owned())
+}
+
+/// Why this specimen must not go on: it is not where the run log left it, or does not carry what it must carry there. The force follows
+/// the displacement since the last reading within the stiffness window of the pre-test check.
+fn other_specimen(
+    plan: &Plan,
+    before: &LoggedRun,
+    found: &Reading,
+    bands: &Bands,
+    session: &Session,
+) -> Option<String> {
+    let (at, force) = (found.displacement[0], found.force[0]);
+    let (band, slack) = (2.0 * bands.displacement[0], 2.0 * bands.force[0]);
+    let last = |kind: EntryKind| before.lines.iter().rev().find(|line| line.kind == kind);
+    let intent = before
+        .set_aside
+        .as_ref()
+        .or_else(|| last(EntryKind::Intent));
+    let sample = last(EntryKind::Sample)?;
+    let mut sampled: SampleBody = sample.read().ok()?;
+    // The final hold was read later.
+    let held = before
+        .lines
+        .iter()
+        .rev()
+        .take_while(|line| line.seq > sample.seq);
+    if let Some(line) = { held }.find(|line| line.kind == EntryKind::Held)
+        && let Some((positions, forces)) = line.read::<HeldBody>().ok()?.found
+    {
+        (sampled.x, sampled.r) = (positions, forces);
+    }
+    let (mut from, mut to) = (sampled.x[0], sampled.x[0]);
+    if let Some(intent) = intent.filter(|intent| intent.seq > sample.seq) {
+        let intent: IntentBody = intent.read().ok()?;
+        (from, to) = (from.min(intent.to[0]), to.max(intent.to[0]));
+    }
+    if !(from - band..=to + band).contains(&at) {
+        return Some(format!(
+            "it went on from {at} m, the run log leaves it in {from} .. {to} m"
+        ));
+    }
+    // A specimen that was softer in the readings before may be so again.
+    let mut window = plan.rig.link.as_real()?.pretest_check.stiffness;
+    let readings = before
+        .lines
+        .iter()
+        .rev()
+        .filter(|line| line.kind == EntryKind::Sample);
+    let elsewhere = readings
+        .filter_map(|line| line.read::<SampleBody>().ok())
+        .find(|earlier| (earlier.x[0] - sampled.x[0]).abs() > band);
+    if let Some(earlier) = elsewhere {
+        let tangent = (sampled.r[0] - earlier.r[0]) / (sampled.x[0] - earlier.x[0]);
+        window.low = window.low.min(tangent.max(0.0));
+    }
+    let ends =
+        [window.low, window.high].map(|stiffness| sampled.r[0] + stiffness * (at - sampled.x[0]));
+    let (low, high) = (ends[0].min(ends[1]) - slack, ends[0].max(ends[1]) + slack);
+    let other = !(low..=high).contains(&force) && !session.operator.accept_relaxation;
+    other.then(|| format!("it went on with {force} N at {at} m, expected {low} .. {high} N"))
+}
+
+struct Shared<'a>(&'a RefCell<Operator>);
+
+impl Observer for Shared<'_> {
+    fn stop_requested(&self) -> bool {
+        self.0.borrow().stop_requested()
+    }
+    fn inspect(&mut self, note: &str) -> Inspection {
+        self.0.borrow_mut().inspect(note)
+    }
+    fn release(&mut self, note: &str, motion: &Motion) -> Inspection {
+        self.0.borrow_mut().release(note, motion)
+    }
+    fn may_unload(&mut self, question: &str, motion: &Motion) -> Option<Inspection> {
+        self.0.borrow_mut().may_unload(question, motion)
+    }
+    fn next(&mut self) -> Next {
+        self.0.borrow_mut().next()
+    }
+}
