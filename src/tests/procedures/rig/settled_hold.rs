@@ -83,8 +83,8 @@ fn logarithmic(dwell: f64, link: VirtualLink) -> Plan {
 fn readings_of_an_actuator_that_still_arrives_count_where_it_is() {
     let at = |lag: f64, noise: f64, seed: u64| {
         let link = VirtualLink {
-            lag,
             noise,
+            lag,
             seed,
             ..VirtualLink::default()
         };
