@@ -8,14 +8,14 @@ use crate::files::failure::DiskSpaceFault;
 pub use crate::files::failure::Failure;
 use crate::rig::RigFault;
 use crate::text::diagnostic::excerpt::escape;
-use crate::verdict::Verdict;
+use crate::verdict::{Assessment, ReproductionOutcome, Verdict};
 
 /// An exit code, worst last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Exit {
     /// 0: all requirements are met, or there is none.
     Met,
-    /// 1: a requirement failed or is inconclusive; a file is not formatted.
+    /// 1: a requirement failed or is inconclusive; a published number is not reproduced; a file is not formatted.
     Missed,
     /// 2: the plan or the command line is wrong.
     Wrong,
@@ -53,6 +53,18 @@ impl From<Verdict> for Exit {
             Verdict::Aborted => Self::Stopped,
             Verdict::Error => Self::Fault,
         }
+    }
+}
+
+impl From<&Assessment> for Exit {
+    fn from(assessment: &Assessment) -> Self {
+        let mut reproductions = assessment.reproductions.iter();
+        let compared = if reproductions.all(ReproductionOutcome::reproduces) {
+            Self::Met
+        } else {
+            Self::Missed
+        };
+        Self::from(assessment.verdict).max(compared)
     }
 }
 

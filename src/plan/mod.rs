@@ -6,11 +6,13 @@ pub(crate) mod declaration;
 pub mod formula;
 pub mod procedure;
 pub mod report;
+pub mod reproduction;
 pub mod results;
 pub(crate) mod rig;
 pub mod source;
 pub mod specimen;
 pub mod study;
+pub mod time_step;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -52,6 +54,7 @@ pub use report::figure::{Figure, FigureKind, MOST_TOGETHER};
 pub use report::golden::{ColumnTolerance, Golden, ResultTolerance, Tolerance};
 pub use report::picture::{MOST_PHOTOS, PICTURE_BYTES, Picture, PictureKind};
 pub use report::undeclared::Dependence;
+pub use reproduction::Reproduction;
 pub use rig::axis::{AxisCalibration, AxisPlan};
 pub(crate) use rig::axis_names::{named_axis, of_axis, who};
 pub use rig::devices::Behind;
@@ -80,6 +83,8 @@ pub struct Plan {
     pub limits: Limits,
     pub procedures: Vec<Procedure>,
     pub requirements: Vec<Requirement>,
+    /// Numbers of the run that are compared with published ones.
+    pub reproductions: Vec<Reproduction>,
     pub decision_rule: DecisionRule,
     pub report: Report,
     pub golden: Golden,
@@ -302,11 +307,15 @@ impl Condition {
 /// How conformity with a limit is assessed (ILAC-G8:09/2019).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DecisionRule {
-    /// The value alone is compared with the limit, whatever its uncertainty (simple acceptance).
+    /// The value is compared with the limit (simple acceptance). Without a verdict if that is more likely wrong than right, or if the
+    /// uncertainty is withheld.
     #[default]
     Simple,
     /// A guard band w = U = k·u is kept between the value and the limit: within it no statement of conformity is made.
     Guarded,
+    /// The value alone is compared with the limit, whatever its uncertainty: in a study, whose runs scatter instead, and beside a published
+    /// number. No plan states it.
+    ValueAlone,
 }
 
 impl DecisionRule {
@@ -316,6 +325,7 @@ impl DecisionRule {
         match self {
             Self::Simple => "simple",
             Self::Guarded => "guarded",
+            Self::ValueAlone => "value alone",
         }
     }
 }

@@ -5,11 +5,13 @@ use std::fmt::Write as _;
 use super::budget::coverage_factor;
 use super::run::Run;
 use super::status::{ReportStatus, deviations};
+use super::wording::reproductions as wording;
 use super::{number, summary};
 use crate::plan::DecisionRule;
 use crate::record::Outcome;
+use crate::text::columns::columns;
 use crate::text::sanitize::one_line;
-use crate::verdict::{ConditionOutcome, Verdict};
+use crate::verdict::{ConditionOutcome, ReproductionOutcome, Verdict};
 
 /// The verdict, each requirement with value, limit and margin, the decision rule and the deviations.
 #[must_use]
@@ -37,7 +39,7 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
         one_line(&run.plan.title),
         status_text(&status, &one_line(&run.plan.rig.name))
     );
-    if run.assessment.requirements.is_empty() {
+    if run.assessment.requirements.is_empty() && run.assessment.reproductions.is_empty() {
         text.push_str("  no requirement\n");
     }
     let rows: Vec<[String; 5]> = run
@@ -88,6 +90,7 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
             let _ = writeln!(text, "{below}{}", one_line(reason));
         }
     }
+    text.push_str(&compared(run));
     if let Some(names) = run.plan.studies.requirement_names() {
         let _ = writeln!(text, "  decided by `psd study run`: {}", one_line(&names));
     }
@@ -112,14 +115,19 @@ fn band(condition: &ConditionOutcome, rule: DecisionRule) -> String {
         return ", no U".to_owned();
     }
     match (rule, number::guard_band(condition)) {
-        (DecisionRule::Simple, _) => match condition
+        (DecisionRule::Simple | DecisionRule::ValueAlone, _) => match condition
             .conforms
             .filter(|_| condition.wider_than_tolerance)
         {
-            Some(probability) => format!(
-                ", U exceeds the tolerance: probability of conformity {}",
-                number::probability(probability)
-            ),
+            Some(probability) => {
+                let probability = number::probability(probability);
+                // The reason follows.
+                let wide = match condition.verdict {
+                    Verdict::Inconclusive => "",
+                    _ => "U exceeds the tolerance: ",
+                };
+                format!(", {wide}probability of conformity {probability}")
+            }
             None => String::new(),
         },
         (DecisionRule::Guarded, Some(band)) => format!(", guard band {band}"),
@@ -151,8 +159,33 @@ fn decision_rule(run: &Run<'_>) -> String {
         {
             format!("  decision rule: simple acceptance; {expanded}\n")
         }
-        DecisionRule::Simple => String::new(),
+        DecisionRule::Simple | DecisionRule::ValueAlone => String::new(),
     }
+}
+
+/// The comparisons with published numbers: statement, name, value, published number, difference, tolerance.
+fn compared(run: &Run<'_>) -> String {
+    let row = |outcome: &ReproductionOutcome| {
+        let value = number::value(&outcome.compared).unwrap_or_else(|| "no value".to_owned());
+        let tolerance = number::tolerance(&outcome.compared);
+        vec![
+            outcome.statement().to_owned(),
+            one_line(&outcome.name),
+            value,
+            wording::published(number::target(&outcome.compared)),
+            wording::differs(number::difference(outcome), tolerance),
+        ]
+    };
+    let rows: Vec<Vec<String>> = run.assessment.reproductions.iter().map(row).collect();
+    let lines = columns(&rows);
+    let mut text = String::new();
+    for (line, outcome) in lines.lines().zip(&run.assessment.reproductions) {
+        let _ = writeln!(text, "{line}");
+        if let Some(reason) = &outcome.compared.reason {
+            let _ = writeln!(text, "    {}", one_line(reason));
+        }
+    }
+    text
 }
 
 /// The status of the report, if it is not issued as a test report.

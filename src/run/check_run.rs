@@ -87,6 +87,7 @@ pub fn measured_part(plan: &Plan) -> Result<Plan, NoCheckRun> {
     part.particulars.push((FIELD, text));
     part.check_run_of = Some(Box::new(plan.clone()));
     part.requirements.clear();
+    part.reproductions.clear();
     // The zeros belong to a test: a check run does not move for them.
     part.rig.zero_drift = None;
     part.report

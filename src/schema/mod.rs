@@ -9,7 +9,7 @@ mod functions;
 mod renamed;
 mod types;
 
-pub(crate) use blocks::evaluation::{golden, report, study};
+pub(crate) use blocks::evaluation::{golden, report, reproduces, study};
 pub(crate) use blocks::{
     behaviours, curves, devices, frames, ground, limits, methods, plan_block, procedures, rig,
     specimen, striker,
@@ -18,7 +18,8 @@ pub use columns::Column;
 pub use functions::{FUNCTIONS, FunctionKind};
 pub use renamed::{NameRole, RENAMED, Renamed, renamed_at, renamed_result};
 pub use types::{
-    BlockKind, Field, FieldType, Kind, Naming, Presence, Range, ResultKind, RigKind, Variant,
+    BlockKind, Field, FieldType, Kind, Naming, Possible, Presence, Range, ResultKind, RigKind,
+    Variant,
 };
 
 use crate::units::{Dimension, display};
@@ -38,6 +39,7 @@ const DECLARATIONS: &[&BlockKind] = &[
 ];
 
 const ABOUT_THE_RUN: &[&BlockKind] = &[
+    &blocks::evaluation::reproduces::REPRODUCES,
     &blocks::evaluation::report::REPORT,
     &blocks::evaluation::golden::GOLDEN,
     &blocks::evaluation::study::STUDY,

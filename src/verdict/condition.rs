@@ -8,8 +8,8 @@ use crate::schema::is_in_percent;
 use crate::uncertainty::{FEW, MeasurementUncertainty, measurement_uncertainty};
 use crate::units::Dimension;
 
-/// Value and bound are evaluated separately, so that a report shows the one that exists.
-pub(crate) fn assess_condition(
+/// In the steps of these results. Value and bound are evaluated separately, so that a report shows the one that exists.
+pub(super) fn decide(
     condition: &Condition,
     rule: DecisionRule,
     record: &dyn Results,
@@ -21,15 +21,19 @@ pub(crate) fn assess_condition(
         _ => None,
     };
     let status = uncertainty_status(condition, record);
+    // An equality is a comparison of numbers, not of a quantity with a tolerance.
+    let rule = match rule {
+        DecisionRule::Simple if is_equality(condition) => DecisionRule::ValueAlone,
+        rule => rule,
+    };
     let (unknown, undecided) = match (&status, rule) {
         (UncertaintyStatus::Exact | UncertaintyStatus::Known, _) => (false, None),
-        (UncertaintyStatus::Partial(_), DecisionRule::Simple) => (true, None),
-        // An equality is a comparison of numbers, not of a quantity with a tolerance.
-        (UncertaintyStatus::Withheld(_), DecisionRule::Simple) if is_equality(condition) => {
-            (true, None)
-        }
-        (UncertaintyStatus::Partial(why) | UncertaintyStatus::Withheld(why), _) => {
+        (UncertaintyStatus::Partial(why), DecisionRule::Guarded)
+        | (UncertaintyStatus::Withheld(why), DecisionRule::Guarded | DecisionRule::Simple) => {
             (true, Some(why.clone()))
+        }
+        (UncertaintyStatus::Partial(_), DecisionRule::Simple) | (_, DecisionRule::ValueAlone) => {
+            (true, None)
         }
     };
     let distance_uncertainty = known
@@ -50,13 +54,24 @@ pub(crate) fn assess_condition(
         (Some((value, bound)), None) => bound.verdict(value, guard_band),
         _ => Verdict::Inconclusive,
     };
+    let unlikely = rule == DecisionRule::Simple
+        && conforms.is_some_and(|conforms| is_unlikely(verdict, conforms));
+    let verdict = if unlikely {
+        Verdict::Inconclusive
+    } else {
+        verdict
+    };
     let missing = value
         .as_ref()
         .err()
         .or(bound.as_ref().err())
         .map(ToString::to_string)
         .or(undecided);
-    let too_near = || (verdict == Verdict::Inconclusive).then(|| near(margin_uncertainty));
+    let too_near = || match verdict {
+        Verdict::Inconclusive if unlikely => Some(TOO_LARGE.to_owned()),
+        Verdict::Inconclusive => Some(near(margin_uncertainty)),
+        _ => None,
+    };
     ConditionOutcome {
         text: condition.text.clone(),
         verdict,
@@ -73,6 +88,7 @@ pub(crate) fn assess_condition(
         conforms,
         wider_than_tolerance,
         reason: missing.or_else(too_near),
+        in_finer_steps: None,
     }
 }
 
@@ -98,7 +114,7 @@ fn uncertainty_status(condition: &Condition, record: &dyn Results) -> Uncertaint
 }
 
 /// Whether it is `==` or `!=`.
-const fn is_equality(condition: &Condition) -> bool {
+pub(super) const fn is_equality(condition: &Condition) -> bool {
     matches!(
         condition.test,
         Test::Compare {
@@ -106,6 +122,21 @@ const fn is_equality(condition: &Condition) -> bool {
             ..
         }
     )
+}
+
+/// Why a value inside its tolerance does not show conformity.
+const TOO_LARGE: &str = "U is too large for this tolerance";
+
+/// Whether a verdict is more likely wrong than right, by the probability of conformity. A value beside one limit cannot have such a
+/// verdict: the distribution about it is symmetric. A value inside a tolerance can, if U is larger than the tolerance.
+fn is_unlikely(verdict: Verdict, conforms: f64) -> bool {
+    let right = match verdict {
+        Verdict::Pass => conforms,
+        Verdict::Fail => 1.0 - conforms,
+        _ => return false,
+    };
+    // A value at its limit: one half, but for rounding.
+    right < 0.5 - 1e-9
 }
 
 /// Why a value near its limit is not conclusive, and why the band is wide if it comes from few readings.

@@ -257,6 +257,48 @@ fn a_probability_of_conformity_is_reported_under_either_rule() {
     );
 }
 
+/// 8 with u = 0.125 (normal): between limits of ±0.05 it lies with 2Φ(0.4) − 1 = 31.1 %, between ±0.125 with 68.3 %. Simple acceptance
+/// decides what is more likely right than wrong. Beside one limit, and outside of a tolerance, every verdict is.
+#[test]
+fn a_pass_that_is_more_likely_wrong_than_right_is_inconclusive() {
+    use Verdict::{Fail, Inconclusive, Pass};
+    let mut record = record(Outcome::Completed);
+    record.procedures[0].results[0].value = ResultValue::Number {
+        value: Some(8.0),
+        uncertainty: Some(0.125),
+    };
+    let of =
+        |test, rule| assess_condition(&condition(result("max_displacement"), test), rule, &record);
+    let within = |target, tolerance| Test::Within {
+        target: Formula::Constant(target),
+        tolerance: Formula::Constant(tolerance),
+        relative: false,
+    };
+    for (test, verdict, probability) in [
+        (within(8.0, 0.05), Inconclusive, 0.310_843),
+        (within(8.0, 0.125), Pass, 0.682_689),
+        // The nearer end of the tolerance alone: Φ(0) − Φ(−0.8).
+        (within(8.05, 0.05), Inconclusive, 0.288_145),
+        (within(8.5, 0.5), Pass, 0.5),
+        (within(8.1, 0.05), Fail, 0.229_508),
+        (compare(Comparison::LessEqual, 8.0), Pass, 0.5),
+        (compare(Comparison::Less, 8.0), Fail, 0.5),
+    ] {
+        let found = of(test.clone(), DecisionRule::Simple);
+        assert_eq!(found.verdict, verdict, "{test:?}");
+        assert!(
+            (found.conforms.unwrap() - probability).abs() < 1e-6,
+            "{test:?}: {found:?}"
+        );
+        let too_large = "U is too large for this tolerance";
+        assert_eq!(
+            found.reason.as_deref(),
+            (verdict == Inconclusive).then_some(too_large)
+        );
+        assert_ne!(of(test, DecisionRule::ValueAlone).verdict, Inconclusive);
+    }
+}
+
 /// On a real rig, a budget without both calibrations gives no guard band; on a simulated rig it gives one.
 #[test]
 fn a_partial_budget_of_a_real_rig_gives_no_guard_band() {

@@ -47,7 +47,11 @@ pub(super) fn unless_undecided(
             .or_else(|| unbalanced(&read))
             .or_else(|| above_critical(&read))
         {
-            Some(why) => Some(outcome.reason.clone().unwrap_or(why)),
+            // A result that does not exist has its own reason.
+            Some(why) => match &outcome.reason {
+                Some(missing) if outcome.margin.is_none() => Some(missing.clone()),
+                _ => Some(why),
+            },
             None => no_peak(),
         }
     };

@@ -24,6 +24,7 @@ const STAGES: &[(&str, u8)] = &[
     ("blocked", 1),
     ("aborted", 4),
     ("fail", 1),
+    ("faulted", 3),
 ];
 
 /// Codes without a separate case, with the reason.
@@ -191,6 +192,14 @@ fn verdict_lines(record: &Record, assessment: &Assessment) -> String {
                     .unwrap_or_default()
             );
         }
+    }
+    for compared in &assessment.reproductions {
+        let difference = compared.difference().map_or_else(
+            || "none".to_owned(),
+            |difference| readable(difference, compared.compared.dimension),
+        );
+        let (statement, name) = (compared.statement(), &compared.name);
+        let _ = writeln!(text, "{statement}: {name}, difference {difference}");
     }
     text
 }

@@ -310,7 +310,7 @@ fn the_console_aligns_requirements_and_colours_only_when_asked() {
     insta::assert_snapshot!(plain, @r"
     PASS  Simply supported beam, midspan impact  (rig `simulated`: a simulation)
       pass  stays in travel  0.15735 ± 0.00040 m  ≤ 0.17 m  margin 0.0126 m
-      pass  energy closes    0 %                  ≤ 1 %     margin 1.00 %
+      pass  energy closes    0 %                  ≤ 1 %     margin 1.00 %, no U
       decision rule: simple acceptance; ± is U = 2u
       note: Parameter impact_speed was set to 1 m/s for this run.
       run 0123456789abcdef

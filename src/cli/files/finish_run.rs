@@ -64,7 +64,7 @@ pub fn finish_run(
         let sink = &mut ProgressSink::new(sink, settings);
         put_results(plan, &recorded.record, &assessment, provenance, None, sink)
     })?;
-    let exit = Exit::from(assessment.verdict);
+    let exit = Exit::from(&assessment);
     match (&recorded.fault, &recorded.mismatch) {
         (None, None) => Ok(exit),
         (Some(fault), _) => {

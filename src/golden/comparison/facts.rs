@@ -8,22 +8,25 @@ use super::{Side, text};
 /// Largest number of different plan lines shown.
 const LINES: usize = 40;
 
-/// Verdicts of every requirement in each run.
+/// Verdicts of every requirement in each run, and statements of every comparison with a published number.
 pub(super) fn requirements(sides: &[Side]) -> Vec<(String, Vec<Option<String>>)> {
     let mut found: Vec<(String, Vec<Option<String>>)> = Vec::new();
     for (column, side) in sides.iter().enumerate() {
-        for requirement in side.summary["requirements"]
-            .as_array()
-            .into_iter()
-            .flatten()
-        {
-            let name = text(&requirement["name"]);
+        let entries = |list: &str| side.summary[list].as_array().into_iter().flatten();
+        let required = entries("requirements").map(|it| (text(&it["name"]), text(&it["verdict"])));
+        let compared = entries("reproductions").map(|it| {
+            (
+                format!("reproduces {}", text(&it["name"])),
+                text(&it["statement"]),
+            )
+        });
+        for (name, verdict) in required.chain(compared) {
             let known = found.iter().position(|(known, _)| *known == name);
             let index = known.unwrap_or_else(|| {
                 found.push((name, vec![None; sides.len()]));
                 found.len() - 1
             });
-            found[index].1[column] = Some(text(&requirement["verdict"]));
+            found[index].1[column] = Some(verdict);
         }
     }
     found

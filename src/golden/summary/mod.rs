@@ -18,7 +18,7 @@ const NOT_COMPARED: &[&str] = &[
     "record",
 ];
 
-/// A requirement repeats the condition that decides it. Margin and uncertainty follow from compared values.
+/// A requirement repeats the condition that decides it. Margin, difference and uncertainty follow from compared values.
 const FOLLOWS: &[&str] = &[
     "value",
     "limit",
@@ -27,7 +27,12 @@ const FOLLOWS: &[&str] = &[
     "u",
     "guard_band",
     "condition",
+    "difference",
+    "relative_difference",
 ];
+
+/// The lists of statements on the run; each entry has a name.
+const STATED: [&str; 2] = ["requirements", "reproductions"];
 
 /// Printed digits of a digest.
 const DIGITS: usize = 12;
@@ -94,7 +99,7 @@ impl Walk<'_> {
         is: &Map<String, Value>,
         unit: Option<Dimension>,
     ) {
-        let requirement = path.len() == 2 && path[0] == "requirements";
+        let requirement = path.len() == 2 && STATED.contains(&path[0].as_str());
         let units = Units::of(was, unit).filter(|_| was.get("unit") == is.get("unit"));
         for (key, old) in was
             .iter()
@@ -294,9 +299,10 @@ impl Units {
         match (key, self.input) {
             ("value" | "input_u", Some(input)) => Some(input),
             ("sensitivity", Some(input)) => self.own.over(input),
-            ("value" | "limit" | "tolerance" | "u" | "guard_band" | "contribution", _) => {
-                Some(self.own)
-            }
+            (
+                "value" | "limit" | "published" | "tolerance" | "u" | "guard_band" | "contribution",
+                _,
+            ) => Some(self.own),
             _ => None,
         }
     }
@@ -358,6 +364,11 @@ fn named(path: &[String]) -> (Part, String) {
         ["requirements", name, rest @ ..] => (
             Part::Requirement,
             format!("require \"{name}\": {}", rest.join(".")),
+        ),
+        ["reproductions", name] => (Part::Requirement, format!("reproduces {name}")),
+        ["reproductions", name, rest @ ..] => (
+            Part::Requirement,
+            format!("reproduces {name}: {}", rest.join(".")),
         ),
         ["procedures", name, "results", result, "value", index @ ..] => {
             let entries = index

@@ -262,3 +262,32 @@ fn an_input_is_a_cause_unless_a_result_before_it_changed() {
     assert_eq!(changed(false), ["cause input again.mass"]);
     assert_eq!(changed(true), ["result hit.x", "other input again.mass"]);
 }
+
+/// A comparison with a published number: its statement and its published number count, its difference follows from the value.
+#[test]
+fn a_reproduction_is_named_and_its_difference_follows() {
+    let with = |statement: &str, published: f64, difference: f64| {
+        let mut summary = summary();
+        summary["reproductions"] = json!([{ "name": "peak", "statement": statement, "value": 0.5, "published": published,
+            "tolerance": 0.1, "difference": difference, "unit": "m", "u": null }]);
+        summary.to_string()
+    };
+    let compared = |is: String| {
+        let mut found = Vec::new();
+        let was = with("reproduces", 0.45, 0.05);
+        compare(Some(&was), Some(&is), &Tolerances::default(), &mut found);
+        found
+            .iter()
+            .map(|finding| finding.name.clone())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(compared(with("reproduces", 0.45, 0.06)), [""; 0]);
+    assert_eq!(
+        compared(with("does not reproduce", 0.45, 0.05)),
+        ["reproduces peak: statement"]
+    );
+    assert_eq!(
+        compared(with("reproduces", 0.46, 0.05)),
+        ["reproduces peak: published"]
+    );
+}

@@ -145,6 +145,7 @@ pub fn plan(
     {
         declarations::limits::check_start(checker, limits);
         declarations::limits::check_targets(checker, limits);
+        declarations::limits::check_forces(checker, limits, &specimens);
         slices::check_limits(checker, &procedures, limits);
     }
     let declared = Declared {
@@ -158,6 +159,7 @@ pub fn plan(
         }
     }
     let requirements = checker.requirements();
+    let reproductions = declarations::reproduces::reproductions(checker);
     // Studies bind the plan again and again, and their runs read no study.
     let studies = match findings {
         Findings::WarningsToo | Findings::OfStudies => declarations::study::studies(checker),
@@ -173,7 +175,8 @@ pub fn plan(
         let warns = findings == Findings::WarningsToo;
         if warns {
             if let Some(rig) = &rig {
-                rig::real_warnings::warn(checker, rig, options.today.as_deref());
+                let today = options.today.as_deref();
+                rig::real_warnings::warn(checker, rig, &specimens, today);
                 rig::zero_drift::warn(checker, rig);
             }
             if let Some(limits) = &limits {
@@ -194,8 +197,17 @@ pub fn plan(
             let rule = declarations::plan_block::decision_rule(&particulars);
             let requirements = requirements.as_deref().unwrap_or(&[]);
             warnings::left::warn(checker, &procedures, requirements);
+            if let Some(limits) = &limits {
+                let (limits, positive) = (&limits.limits, slices::stays_positive);
+                warnings::decided::check(checker, &procedures, requirements, limits, positive);
+            }
             warnings::guarded::warn(checker, &procedures, requirements, rule);
-            warnings::whole_plan(checker, &procedures, requirements, &grounds, head);
+            let reproductions = reproductions.as_deref().unwrap_or(&[]);
+            let stated = warnings::Stated {
+                requirements,
+                reproductions,
+            };
+            warnings::whole_plan(checker, &procedures, stated, &grounds, head);
         }
     }
     let rig_block = rig.as_ref().and_then(|rig| rig.block);
@@ -209,6 +221,7 @@ pub fn plan(
         limits: limits?.limits,
         procedures: in_plan_order.into_iter().collect::<Option<_>>()?,
         requirements: requirements?,
+        reproductions: reproductions?,
         decision_rule: declarations::plan_block::decision_rule(&particulars),
         particulars,
         report: report?,
@@ -223,6 +236,7 @@ pub fn plan(
         let blocks: Vec<usize> = procedures.iter().map(|(block, _)| *block).collect();
         if findings == Findings::WarningsToo {
             warnings::tracking::warn(checker, &plan, &blocks, rig_block);
+            warnings::guarded::warn_of_partial(checker, &plan, rig_block);
         }
         warnings::recorded_steps::check(checker, &plan, &blocks);
     }

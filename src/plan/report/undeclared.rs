@@ -63,9 +63,12 @@ impl RigPlan {
     pub fn undeclared(&self, axes: usize) -> Vec<&'static str> {
         let lacks = |read| self.lacks(axes, read);
         let all = [
-            (FORCE, lacks(|calibration| calibration.force_uncertainty)),
             (
-                DISPLACEMENT,
+                FORCE_CALIBRATION,
+                lacks(|calibration| calibration.force_uncertainty),
+            ),
+            (
+                DISPLACEMENT_CALIBRATION,
                 lacks(|calibration| calibration.displacement_uncertainty),
             ),
             (
@@ -85,7 +88,7 @@ impl RigPlan {
     pub fn undeclared_calibrations(&self, axes: usize) -> Vec<&'static str> {
         self.undeclared(axes)
             .into_iter()
-            .filter(|name| [FORCE, DISPLACEMENT].contains(name))
+            .filter(|name| [FORCE_CALIBRATION, DISPLACEMENT_CALIBRATION].contains(name))
             .collect()
     }
 
@@ -94,8 +97,10 @@ impl RigPlan {
     }
 }
 
-const FORCE: &str = "force calibration";
-const DISPLACEMENT: &str = "displacement calibration";
+/// In messages and reports, by axis.
+pub const FORCE_CALIBRATION: &str = "force calibration";
+/// The same.
+pub const DISPLACEMENT_CALIBRATION: &str = "displacement calibration";
 
 #[cfg(test)]
 mod tests {

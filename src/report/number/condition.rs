@@ -8,7 +8,7 @@ use crate::plan::formula::UncertaintyStatus;
 #[cfg(test)]
 use crate::units::Dimension;
 use crate::units::display::{self, is_rounding, minus, significant, trimmed, unit};
-use crate::verdict::{Bound, ConditionOutcome};
+use crate::verdict::{Bound, ConditionOutcome, ReproductionOutcome};
 
 /// The value of a condition with its expanded uncertainty U, in percent if the plan specifies percent; with u in parentheses if its
 /// budget gives no U.
@@ -61,16 +61,8 @@ pub(crate) fn bound_alone(condition: &ConditionOutcome) -> String {
 }
 
 fn bound_in((unit, factor): &(String, f64), condition: &ConditionOutcome) -> String {
-    /// Digits of a computed bound.
-    const DIGITS: usize = 5;
-    let (scale, percent) = if condition.percent {
-        (100.0, "\u{a0}%")
-    } else {
-        (1.0, "")
-    };
-    let digits =
-        |value: f64, factor: f64| minus(&trimmed(&rounded(scale * value / factor, DIGITS)));
-    let number = |value: f64| join(&digits(value, *factor), unit) + percent;
+    let (scale, percent) = scale(condition);
+    let number = |value: f64| limit(value, unit, *factor, condition);
     match condition.bound {
         None => "—".to_owned(),
         Some(Bound::Compare { comparison, limit }) => {
@@ -85,11 +77,67 @@ fn bound_in((unit, factor): &(String, f64), condition: &ConditionOutcome) -> Str
                 ) + percent
             } else {
                 let (own, factor) = display::unit(tolerance, condition.dimension);
-                let tolerance = join(&digits(tolerance, factor), &own) + percent;
+                let tolerance = limit(tolerance, &own, factor, condition);
                 format!("{} within {tolerance}", number(target))
             }
         }
     }
+}
+
+/// The factor of percent, if the plan specifies it, and its sign.
+const fn scale(condition: &ConditionOutcome) -> (f64, &'static str) {
+    if condition.percent {
+        (100.0, "\u{a0}%")
+    } else {
+        (1.0, "")
+    }
+}
+
+/// A number that a value is compared with.
+fn limit(value: f64, unit: &str, factor: f64, condition: &ConditionOutcome) -> String {
+    /// Digits of a computed bound.
+    const DIGITS: usize = 5;
+    let (scale, percent) = scale(condition);
+    let digits = minus(&trimmed(&rounded(scale * value / factor, DIGITS)));
+    join(&digits, unit) + percent
+}
+
+/// The published number, or the target of a tolerance, in the unit of its row.
+pub(in crate::report) fn target(condition: &ConditionOutcome) -> String {
+    let (unit, factor) = common_unit(condition);
+    match condition.bound {
+        Some(Bound::Within { target, .. }) => limit(target, &unit, factor, condition),
+        _ => "—".to_owned(),
+    }
+}
+
+/// The tolerance about a published number.
+pub(in crate::report) fn tolerance(condition: &ConditionOutcome) -> String {
+    match condition.bound {
+        Some(Bound::Within { tolerance, .. }) => {
+            let (unit, factor) = unit(tolerance, condition.dimension);
+            limit(tolerance, &unit, factor, condition)
+        }
+        _ => "—".to_owned(),
+    }
+}
+
+/// The signed difference from the published number, with its fraction: `+0.914 mm (+0.58 %)`.
+pub(in crate::report) fn difference(outcome: &ReproductionOutcome) -> String {
+    /// Digits of a difference, and of its fraction.
+    const DIGITS: (usize, usize) = (3, 2);
+    let sign = |number: f64| if number > 0.0 { "+" } else { "" };
+    let Some(difference) = outcome.difference() else {
+        return "—".to_owned();
+    };
+    let text = distance(difference, DIGITS.0, &outcome.compared);
+    let percent = outcome
+        .relative_difference()
+        .map_or_else(String::new, |relative| {
+            let digits = minus(&rounded(100.0 * relative, DIGITS.1));
+            format!(" ({}{digits}\u{a0}%)", sign(relative))
+        });
+    format!("{}{text}{percent}", sign(difference))
 }
 
 /// The ends of a tolerance interval, to the third digit of the tolerance if it has no more digits, else to the second.
@@ -147,11 +195,7 @@ pub(in crate::report) fn guard_band(condition: &ConditionOutcome) -> Option<Stri
 }
 
 fn distance(distance: f64, digits: usize, condition: &ConditionOutcome) -> String {
-    let (scale, percent) = if condition.percent {
-        (100.0, "\u{a0}%")
-    } else {
-        (1.0, "")
-    };
+    let (scale, percent) = scale(condition);
     // In the unit of the row, or in a separate unit if that would give many zeros.
     let common = common_unit(condition);
     let (unit, factor) = if distance == 0.0 || (distance / common.1).abs() >= 1e-3 {
@@ -222,6 +266,7 @@ mod tests {
             conforms: None,
             wider_than_tolerance: false,
             reason: None,
+            in_finer_steps: None,
         };
         let below = |limit| Bound::Compare {
             comparison: Comparison::Less,

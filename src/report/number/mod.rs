@@ -4,7 +4,9 @@
 mod condition;
 mod uncertain;
 
-pub(super) use condition::{bound, guard_band, margin, probability, value};
+pub(super) use condition::{
+    bound, difference, guard_band, margin, probability, target, tolerance, value,
+};
 pub(crate) use condition::{bound_alone, comparison_sign};
 pub(crate) use uncertain::with_uncertainty;
 pub(super) use uncertain::{of_result, parts_of_result, plus_minus, with_expanded};

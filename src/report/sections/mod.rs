@@ -9,6 +9,7 @@ mod headline;
 mod plan;
 mod prediction;
 mod provenance;
+mod reproductions;
 mod requirements;
 pub(crate) mod results;
 mod statements;
@@ -29,6 +30,7 @@ const SECTIONS: &[(Division, &[Section])] = &[
         &[
             title_page::amendments,
             requirements::section,
+            reproductions::section,
             deviations::section,
             statements::signatures,
         ],

@@ -3,8 +3,8 @@
 use super::{
     BudgetSummary, ChangeSummary, ConditionSummary, ContributionSummary, EventSummary,
     IssueSummary, IssuesSummary, Ordered, OutcomeSummary, ParameterSummary, PlanSummary,
-    ProcedureSummary, Quantity, RecordSummary, RequirementSummary, RigSummary, SCHEMA, Summary,
-    Uncertainty, Value, ZeroDriftSummary, finite,
+    ProcedureSummary, Quantity, RecordSummary, ReproductionSummary, RequirementSummary, RigSummary,
+    SCHEMA, StepSummary, Summary, Uncertainty, Value, ZeroDriftSummary, finite,
 };
 use crate::plan::formula::{Estimate, Part, ProcedureId, ResultReference, ResultValue};
 use crate::record::{NamedResult, Outcome, ProcedureRecord};
@@ -13,11 +13,11 @@ use crate::report::run::Run;
 use crate::report::status::{Change, Issues, ReportStatus, deviations, report_status};
 use crate::schema;
 use crate::uncertainty::{
-    MeasurementUncertainty, measurement_uncertainties, measurement_uncertainty,
+    MeasurementUncertainty, StepInterval, measurement_uncertainties, measurement_uncertainty,
 };
 use crate::units::Dimension;
 use crate::units::display::si_unit;
-use crate::verdict::{Bound, ConditionOutcome, RequirementOutcome};
+use crate::verdict::{Bound, ConditionOutcome, ReproductionOutcome, RequirementOutcome};
 
 impl Summary {
     /// The summary of a run.
@@ -80,6 +80,7 @@ impl Summary {
                     .collect(),
             ),
             requirements: assessment.requirements.iter().map(requirement).collect(),
+            reproductions: assessment.reproductions.iter().map(reproduction).collect(),
             events: record
                 .events
                 .iter()
@@ -194,8 +195,20 @@ fn budget(budget: &Budget<'_>) -> (String, BudgetSummary) {
         u: finite(budget.uncertainty),
         degrees_of_freedom: coverage_factor::degrees(budget.known),
         contributions: budget.lines.iter().map(contribution).collect(),
+        time_step: budget.time_step.map(time_step),
     };
     (key, summary)
+}
+
+fn time_step(step: StepInterval) -> StepSummary {
+    let [lowest, highest] = step.ends;
+    StepSummary {
+        half: finite(step.half),
+        quarter: finite(step.quarter),
+        lowest: finite(lowest),
+        highest: finite(highest),
+        smooth: step.smooth,
+    }
 }
 
 /// A result; a count is a whole number.
@@ -318,6 +331,28 @@ fn requirement(requirement: &RequirementOutcome) -> RequirementSummary {
     }
 }
 
+fn reproduction(outcome: &ReproductionOutcome) -> ReproductionSummary {
+    let ReproductionOutcome {
+        name,
+        source,
+        compared,
+    } = outcome;
+    let (published, tolerance) = outcome.published().unzip();
+    ReproductionSummary {
+        name: name.clone(),
+        source: source.clone(),
+        statement: outcome.statement(),
+        value: compared.value.and_then(finite),
+        published: published.and_then(finite),
+        tolerance: tolerance.and_then(finite),
+        difference: outcome.difference().and_then(finite),
+        relative_difference: outcome.relative_difference(),
+        unit: si_unit(compared.dimension),
+        u: compared.uncertainty.and_then(finite),
+        reason: compared.reason.clone(),
+    }
+}
+
 fn condition(outcome: &ConditionOutcome) -> ConditionSummary {
     let (limit, tolerance) = match outcome.bound {
         None => (None, None),
@@ -339,6 +374,9 @@ fn condition(outcome: &ConditionOutcome) -> ConditionSummary {
             .map(MeasurementUncertainty::coverage),
         guard_band: outcome.guard_band.and_then(finite),
         conforms: outcome.conforms.and_then(finite),
+        in_finer_steps: outcome
+            .in_finer_steps
+            .filter(|ends| ends.iter().all(|end| end.is_finite())),
         reason: outcome.reason.clone(),
     }
 }

@@ -59,6 +59,9 @@ pub struct Summary {
     pub procedures: Ordered<ProcedureSummary>,
     /// In the plan's order.
     pub requirements: Vec<RequirementSummary>,
+    /// Comparisons with published numbers, in the plan's order; absent without one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub reproductions: Vec<ReproductionSummary>,
     pub events: Vec<EventSummary>,
     /// By name, in the plan's order.
     pub parameters: Ordered<ParameterSummary>,
@@ -165,6 +168,24 @@ pub struct BudgetSummary {
     pub degrees_of_freedom: Option<f64>,
     /// The largest first.
     pub contributions: Vec<ContributionSummary>,
+    /// The effect of the time step, which is not in u; absent if it has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_step: Option<StepSummary>,
+}
+
+/// Differences of a result in finer time steps from its value, in the unit of the result.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct StepSummary {
+    /// In half of the time step.
+    pub half: Option<f64>,
+    /// In a quarter of the time step.
+    pub quarter: Option<f64>,
+    /// The smallest difference in any finer steps, at most 0.
+    pub lowest: Option<f64>,
+    /// The largest difference in any finer steps, at least 0.
+    pub highest: Option<f64>,
+    /// Whether the steps converge; otherwise the interval is an estimate.
+    pub smooth: bool,
 }
 
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -261,9 +282,35 @@ pub struct ConditionSummary {
     pub k: Option<f64>,
     /// Guard band w = U = k·u of the margin under the guarded rule; null under the simple rule or without uncertainty.
     pub guard_band: Option<f64>,
-    /// Probability that the item conforms; null without uncertainty.
+    /// Probability that the item conforms, the smallest in any finer time steps; null without U.
     pub conforms: Option<f64>,
+    /// The smallest and the largest value in any finer time steps; absent if the time step has no effect on it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub in_finer_steps: Option<[f64; 2]>,
     /// Reason if inconclusive.
+    pub reason: Option<String>,
+}
+
+/// A number of the run beside a published one. It does not change the verdict.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct ReproductionSummary {
+    pub name: String,
+    /// The publication.
+    pub source: String,
+    #[schemars(extend("enum" = ["reproduces", "does not reproduce"]))]
+    pub statement: &'static str,
+    pub value: Option<f64>,
+    pub published: Option<f64>,
+    /// Largest difference.
+    pub tolerance: Option<f64>,
+    /// Value minus published number.
+    pub difference: Option<f64>,
+    /// The difference over the size of the published number; null if that is 0.
+    pub relative_difference: Option<f64>,
+    pub unit: String,
+    /// Standard uncertainty of the value.
+    pub u: Option<f64>,
+    /// Reason why the values cannot be compared.
     pub reason: Option<String>,
 }
 

@@ -79,28 +79,6 @@ wording! {
         fn more(count) = "; and {count} more";
     }
 
-    mod requirements {
-        TITLE = "Statement of conformity";
-        COLUMNS = ["Requirement", "Value ± U", "Limit", "Probability of conformity", "Statement"];
-        SIMPLE_RULE = "Decision rule: simple acceptance (ILAC-G8:09/2019, guard band w = 0).";
-        EXPANDED = "± is the expanded uncertainty U = 2u, about 95\u{a0}% coverage.";
-        PROBABILITY = "P is the probability of conformity (JCGM 106): a pass is wrong with probability 1 − P, a fail with \
-            probability P. U and P cover the declared uncertainty contributions only.";
-        NO_U = "no U";
-        WIDER_THAN_TOLERANCE = "U exceeds the tolerance";
-        fn impact_passes_while(condition) = "an impact passes while {condition}";
-        fn outside(distance) = "outside the limit by {distance}";
-        fn inside(distance) = "inside the limit by {distance}";
-        fn largest_part(input, percent) = "largest part of U: {input} ({percent:.0}\u{a0}% of u²)";
-        fn of_studies(names) = "Not decided by one run, but by a study of the plan: {names}.";
-        fn guarded_rule(equation) = "Decision rule: guarded acceptance (ILAC-G8:09/2019), guard band w = {equation} of \
-            the distance between value and limit. Pass: inside the limit by at least w. Fail: outside by more than \
-            w. Otherwise, and where no uncertainty is known: inconclusive. Exact values are compared without w.";
-        fn expanded_up_to(k) = "± is the expanded uncertainty U = k·u, about 95\u{a0}% coverage, k ≤ {k} (Student's t, \
-            JCGM 100, G.4).";
-        fn quantity(result, entry, procedure) = "{result}{entry} of {procedure}";
-    }
-
     mod headline {
         TITLE = "Results";
         NO_PROCEDURE = "No procedure was run.";
@@ -209,7 +187,9 @@ wording! {
         READINGS = "noise and resolution of the readings";
         READINGS_AND_INPUTS = "noise and resolution of the readings, and the inputs of each floor, mode and axis";
         LOOP_POINTS = "points of the loops";
-        TIME_STEP = "time step: re-integrated at a half and a quarter";
+        WHOLE_STEPS = "duration in whole time steps";
+        TIME_STEP = "time step";
+        fn finer_steps(ends, half, quarter) = "time step, not in U: {ends} in finer steps ({half} at Δt/2, {quarter} at Δt/4)";
         FORCE_CALIBRATION = "force calibration";
         DISPLACEMENT_CALIBRATION = "displacement calibration";
         LOAD_CELL_ZERO = "zero offset of the load cell";

@@ -32,6 +32,8 @@ macro_rules! wording {
 
 mod english;
 mod issue;
+pub(crate) mod reproductions;
+pub(crate) mod requirements;
 pub(crate) mod specimen;
 pub(crate) mod study;
 

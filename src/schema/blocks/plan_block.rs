@@ -93,7 +93,7 @@ pub(crate) const DECISION_RULE: Field = Field::choice(
     &[
         Variant::word(
             "simple",
-            "simple acceptance: the value decides; without a verdict if its uncertainty is withheld",
+            "simple acceptance: the value decides, unless its U is withheld, or too large for a tolerance (P < 50 %)",
         ),
         Variant::word(
             "guarded",

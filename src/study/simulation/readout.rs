@@ -1,7 +1,7 @@
 //! What is kept of a run: one number for each column of results, one outcome for each requirement. In: the plan of a run and its record.
 //! Out: numbers, outcomes, and why one is missing. It runs nothing.
 //!
-//! A requirement is decided on its value alone (simple acceptance), as in a run of the plan. What a run calls inconclusive has no result
+//! A requirement is decided on its value alone: the scatter of the runs replaces the uncertainty of one run. What a run calls inconclusive has no result
 //! here: a stop by a limit, a result that does not exist, a peak that was not reached.
 
 use crate::plan::formula::{Formula, Part, ResultReference};
@@ -207,7 +207,7 @@ impl Readout {
 
     /// Makes the plan of a run decide what the study decides, on the value alone.
     pub fn prepare(&self, plan: &mut Plan) {
-        plan.decision_rule = DecisionRule::Simple;
+        plan.decision_rule = DecisionRule::ValueAlone;
         if let Some((study_index, requirement)) = &self.exceeds {
             // The limit may be a parameter of the run.
             let own = plan.studies.fragilities.get(*study_index);

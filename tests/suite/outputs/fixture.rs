@@ -524,6 +524,7 @@ fn plan() -> Plan {
                 kind,
             })
             .collect(),
+        reproductions: Vec::new(),
         decision_rule: DecisionRule::Simple,
         requirements: vec![
             Requirement {
@@ -600,12 +601,14 @@ fn assessment(largest: f64, error: f64) -> Assessment {
                 conforms: uncertainty.map(|_| 1.0),
                 wider_than_tolerance: false,
                 reason: None,
+                in_finer_steps: None,
             }],
         }
     };
     Assessment {
         verdict: Verdict::Pass,
         rule: DecisionRule::Simple,
+        reproductions: Vec::new(),
         requirements: vec![
             outcome(
                 "stays in travel",

@@ -28,7 +28,7 @@ pub fn finish_replayed(
     write_made(FolderSink::replacing(folder), beside, |sink| {
         replayed.results(&mut ProgressSink::new(sink, settings))
     })?;
-    let exit = Exit::from(replayed.assessment.verdict);
+    let exit = Exit::from(&replayed.assessment);
     let Some(mismatch) = &replayed.mismatch else {
         return Ok(exit);
     };

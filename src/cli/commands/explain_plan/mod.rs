@@ -17,7 +17,9 @@ use std::fmt::Write as _;
 use super::explain_plan::dry_rig::{Reach, Watched};
 use crate::cli::exit::Exit;
 use crate::cli::settings::Settings;
-use crate::plan::{Condition, DecisionRule, Interval, Link, Plan, ProcedureKind, VirtualLink};
+use crate::plan::{
+    Condition, DecisionRule, Interval, Link, Plan, ProcedureKind, ReadingErrors, VirtualLink,
+};
 use crate::record::{History, Outcome, Record};
 use crate::report::wording::specimen as specimen_text;
 use crate::report::{PredictedProcedure, PredictedRequirement, Prediction};
@@ -25,7 +27,7 @@ use crate::text::columns::columns;
 use crate::text::diagnostic::excerpt::escape;
 use crate::units::Dimension;
 use crate::units::display::{readable, stated};
-use crate::verdict::{self, Assessment, ConditionOutcome};
+use crate::verdict::{self, Assessment, ConditionOutcome, Declared, ReproductionOutcome, Verdict};
 use cells::{row, span};
 
 /// The prediction of a run.
@@ -70,6 +72,21 @@ impl<'a> Explained<'a> {
     }
 }
 
+/// The plan on a simulated rig whose readings have the errors that an ideal copy only predicts; None if there are none.
+fn with_reading_errors(ideal: &Plan) -> Option<Plan> {
+    let link = ideal.rig.link.as_virtual()?;
+    let errors = link.predicted.filter(ReadingErrors::any)?;
+    let mut noisy = ideal.clone();
+    noisy.rig.link = Link::Virtual(VirtualLink {
+        noise: errors.noise,
+        resolution: errors.resolution,
+        force_resolution: errors.force_resolution,
+        predicted: None,
+        ..*link
+    });
+    Some(noisy)
+}
+
 /// A simulated run that moves no hardware.
 pub struct DryRun<'a> {
     plan: &'a Plan,
@@ -88,14 +105,34 @@ impl<'a> DryRun<'a> {
             "dry run on an ideal copy of rig `{}`: same specimen and limits, no noise, lag or drift",
             plan.rig.name
         );
-        Self::on(plan, &ideal, model)
+        let mut dry = Self::on(plan, &ideal, model);
+        if let Some(noisy) = with_reading_errors(&ideal) {
+            // The path of exact readings is determined even where that of the rig's own readings is not.
+            let (record, _) = Watched::run(&noisy, None);
+            dry.withhold_as_in(&record);
+            dry.assessment = verdict::assess(plan, &dry.record);
+        }
+        dry
+    }
+
+    /// Withholds the uncertainties that a run with the errors of the rig withholds.
+    fn withhold_as_in(&mut self, noisy: &Record) {
+        for (own, noisy) in self.record.procedures.iter_mut().zip(&noisy.procedures) {
+            for result in &mut own.results {
+                let noisy = noisy.result(result.name);
+                if let Some(reason) = noisy.and_then(|noisy| noisy.withheld.as_deref()) {
+                    result.withhold(reason);
+                }
+            }
+        }
     }
 
     /// Runs the plan on the simulated rig of `stand_in`.
     pub fn on(plan: &'a Plan, stand_in: &Plan, model: String) -> Self {
         let (record, reaches) =
             Watched::run(stand_in, plan.rig.link.as_real().map(|link| link.own_speed));
-        let assessment = verdict::assess(stand_in, &record);
+        // The rig of the plan decides whether a budget is partial, not its stand-in.
+        let assessment = verdict::assess(plan, &record);
         Self {
             plan,
             model,
@@ -221,6 +258,7 @@ impl<'a> DryRun<'a> {
         section("Limits", self.limits());
         section("Zeros", zero_drift::rows(self.plan, &self.record));
         section("Requirements, as predicted", self.requirements());
+        section("Published numbers, as predicted", self.reproductions());
         let undeclared = self.plan.rig.undeclared(self.plan.degrees_of_freedom());
         if !undeclared.is_empty()
             && self
@@ -381,28 +419,49 @@ impl<'a> DryRun<'a> {
         rows.collect()
     }
 
-    /// The declared uncertainty of a condition, and whether the guard band leaves it conclusive.
+    /// One row per published number: predicted value, and its difference.
+    fn reproductions(&self) -> Vec<Vec<String>> {
+        let row = |outcome: &ReproductionOutcome| {
+            let dimension = outcome.compared.dimension;
+            let shown = |value: Option<f64>| {
+                value.map_or_else(|| "–".to_owned(), |value| readable(value, dimension))
+            };
+            let (published, tolerance) = outcome.published().unzip();
+            vec![
+                outcome.statement().to_owned(),
+                escape(&outcome.name),
+                shown(outcome.compared.value),
+                format!("published {}", shown(published)),
+                format!(
+                    "difference {}, tolerance {}",
+                    shown(outcome.difference()),
+                    shown(tolerance)
+                ),
+            ]
+        };
+        self.assessment.reproductions.iter().map(row).collect()
+    }
+
+    /// The declared uncertainty of a condition, and whether it leaves it conclusive.
     fn known(&self, condition: &Condition, outcome: &ConditionOutcome) -> [String; 2] {
-        let unknown = || ["u unknown".to_owned(), String::new()];
-        let band =
-            verdict::assess_condition(condition, DecisionRule::Guarded, &self.record).guard_band;
-        let (Some(band), Some(margin)) = (band, outcome.margin) else {
-            return unknown();
+        let results = Declared::of(self.plan, &self.record);
+        let guarded = verdict::assess_condition(condition, DecisionRule::Guarded, &results);
+        let conclusion = match (guarded.guard_band.zip(outcome.margin), outcome.verdict) {
+            (_, Verdict::Inconclusive) => {
+                let reason = outcome.reason.as_deref().unwrap_or_default();
+                format!("INCONCLUSIVE: {}", escape(reason))
+            }
+            (Some((band, margin)), _) if margin.abs() >= band => "conclusive".to_owned(),
+            (Some(_), _) => "value alone compared: the limit is within U".to_owned(),
+            (None, _) => "no U".to_owned(),
         };
-        let uncertain = outcome
-            .uncertainty
-            .map_or_else(|| "–".to_owned(), |u| readable(u, outcome.dimension));
-        let conclusion = match (margin.abs() >= band, self.plan.decision_rule) {
-            (true, _) => "conclusive",
-            (false, DecisionRule::Guarded) => "INCONCLUSIVE: the limit is within U",
-            (false, DecisionRule::Simple) => "value alone compared: the limit is within U",
-        };
-        [
-            format!("u {uncertain}"),
-            format!(
-                "U of the margin {}, {conclusion}",
-                readable(band, outcome.dimension)
-            ),
-        ]
+        let uncertain = outcome.uncertainty.map_or_else(
+            || "u –".to_owned(),
+            |u| format!("u {}", readable(u, outcome.dimension)),
+        );
+        let band = guarded.guard_band.map_or_else(String::new, |band| {
+            format!("U of the margin {}, ", readable(band, outcome.dimension))
+        });
+        [uncertain, band + &conclusion]
     }
 }

@@ -114,3 +114,90 @@ fn a_limit_that_would_stop_the_run_is_reported() {
     );
     assert_eq!(dry.exit(), Exit::Stopped);
 }
+
+/// The verdict and the last column of the only requirement, as predicted.
+fn predicted(plan: &Plan) -> (String, String) {
+    let rows = DryRun::of(plan).requirements();
+    (rows[0][0].clone(), rows[0].last().unwrap().clone())
+}
+
+/// Example 1 with a requirement that is met by far.
+fn required(rule: DecisionRule) -> Plan {
+    use crate::plan::formula::Formula::Constant;
+    use crate::plan::{Comparison, Requirement, Test};
+    use crate::tests::testing::result_of;
+    let condition = Condition {
+        text: "hit.max_displacement < 1 m".to_owned(),
+        value: result_of(0, "max_displacement"),
+        test: Test::Compare {
+            comparison: Comparison::Less,
+            limit: Constant(1.0),
+        },
+        dimension: Dimension::LENGTH,
+    };
+    Plan {
+        decision_rule: rule,
+        requirements: vec![Requirement {
+            label: "stays".to_owned(),
+            conditions: vec![condition],
+        }],
+        ..example(0.2)
+    }
+}
+
+/// On a real rig without declared calibrations no verdict is possible under the guarded rule, and none is predicted. Simple acceptance
+/// decides, without U.
+#[test]
+fn a_rig_without_declared_calibrations_is_predicted_inconclusive() {
+    let on_a_real_rig = |rule| {
+        let mut plan = required(rule);
+        plan.rig = crate::tests::fault_table::stage::plan().rig;
+        plan
+    };
+    let mut plan = on_a_real_rig(DecisionRule::Guarded);
+    let (verdict, why) = predicted(&plan);
+    assert_eq!(verdict, "inconclusive");
+    assert!(
+        why.starts_with("INCONCLUSIVE: the budget of `max_displacement` is partial"),
+        "{why}"
+    );
+    let (verdict, why) = predicted(&on_a_real_rig(DecisionRule::Simple));
+    assert_eq!((verdict.as_str(), why.as_str()), ("pass", "no U"));
+    plan.rig.calibration.force_uncertainty = 0.005;
+    plan.rig.calibration.displacement_uncertainty = 0.002;
+    let (verdict, why) = predicted(&plan);
+    assert_eq!(verdict, "pass");
+    assert!(why.ends_with("conclusive"), "{why}");
+}
+
+/// A long free vibration: its exact readings determine a path, those with the noise of the rig do not. The run withholds U, and so does
+/// the prediction.
+#[test]
+fn an_uncertainty_that_the_noise_of_the_rig_lets_grow_is_predicted_withheld() {
+    use crate::plan::Until;
+    use crate::plan::formula::Formula::Constant;
+    let with_duration = |seconds: f64, until: Until| {
+        let mut plan = required(DecisionRule::Guarded);
+        let ProcedureKind::Impact(impact) = &mut plan.procedures[0].kind else {
+            panic!()
+        };
+        impact.duration = Constant(seconds);
+        impact.until = until;
+        impact.stepping = crate::tests::testing::every(0.001);
+        let Link::Virtual(link) = &mut plan.rig.link else {
+            panic!()
+        };
+        (link.noise, link.lag, link.seed) = (2.0, 0.0, 3);
+        let predicted = predicted(&plan);
+        let record = crate::tests::testing::run_unwatched(&plan);
+        (predicted, verdict::assess(&plan, &record).verdict)
+    };
+    let ((verdict, why), run) = with_duration(1.0, Until::StrikerStop);
+    assert_eq!((verdict.as_str(), run), ("pass", Verdict::Pass), "{why}");
+    let ((verdict, why), run) = with_duration(80.0, Until::Duration);
+    assert_eq!(
+        (verdict.as_str(), run),
+        ("inconclusive", Verdict::Inconclusive)
+    );
+    assert!(why.contains("grow without bound"), "{why}");
+}

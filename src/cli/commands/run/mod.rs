@@ -31,7 +31,7 @@ use on_rig::{End, on_its_rig};
     With `--yes` it MOVES without this prompt. With `--check-run` it MOVES for the pre-test check and the first stiffness ramps.\n\n\
     Exit codes:\n\
     \x20 0  all requirements met\n\
-    \x20 1  a requirement failed or is inconclusive\n\
+    \x20 1  a requirement failed or is inconclusive, or a published number is not reproduced\n\
     \x20 2  error in the plan or on the command line\n\
     \x20 3  fault of the rig or a file\n\
     \x20 4  stopped by a limit or by the operator"

@@ -99,7 +99,7 @@ fn result_tolerance<'a>(
         (reference.procedure, reference.name),
         of.span,
     )?;
-    let tolerance = tolerance(checker, chosen, typed.dimension)?;
+    let tolerance = narrow(checker, chosen, typed.dimension)?;
     Some(ResultTolerance {
         procedure: reference.procedure,
         name: reference.name,
@@ -117,7 +117,7 @@ fn column_tolerance<'a>(
     let of = chosen.find(schema::COLUMN.name)?.1?;
     let (procedure, column) = column(checker, of)?;
     once(checker, named, (procedure, column.name), of.span)?;
-    let tolerance = tolerance(checker, chosen, column.dimension)?;
+    let tolerance = narrow(checker, chosen, column.dimension)?;
     Some(ColumnTolerance {
         procedure,
         name: column.name,
@@ -198,27 +198,40 @@ fn once<T: PartialEq>(
     Some(())
 }
 
-/// `1 us` is absolute, `0.1 %` is relative to the absolute value of the number.
-fn tolerance<'a>(
+/// The tolerance of an accepted number, with a warning of one that would hide changes.
+fn narrow<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
     dimension: Dimension,
 ) -> Option<Tolerance> {
     let written = chosen.find(schema::WITHIN.name)?.1?;
+    let tolerance = tolerance(checker, schema::WITHIN.name, written, dimension)?;
+    if let Tolerance::Relative(value) = tolerance
+        && value > WIDE
+    {
+        checker.diagnostics.push(message::wide(value, written.span));
+    }
+    Some(tolerance)
+}
+
+/// `1 us` is absolute, `0.1 %` is relative to the absolute value of the number.
+pub(super) fn tolerance<'a>(
+    checker: &mut Checker<'a>,
+    field: &str,
+    written: &'a Expr,
+    dimension: Dimension,
+) -> Option<Tolerance> {
     let typed = checker.single(written, CONSTANT)?;
     let relative = typed.percent
         || (typed.dimension == Dimension::NUMBER && dimension != Dimension::NUMBER && !typed.bare);
     let typed = if relative {
         typed
     } else {
-        checker.expect(typed, dimension, schema::WITHIN.name, written)?
+        checker.expect(typed, dimension, field, written)?
     };
     let value = typed.constant()?;
     if value < 0.0 {
         return checker.fail(message::negative(written.span, checker.text(written.span)));
-    }
-    if relative && value > WIDE {
-        checker.diagnostics.push(message::wide(value, written.span));
     }
     Some(if relative {
         Tolerance::Relative(value)

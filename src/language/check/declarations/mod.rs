@@ -8,6 +8,7 @@ pub(crate) mod limits;
 pub(crate) mod plan_block;
 pub(crate) mod print;
 pub(crate) mod report;
+pub(crate) mod reproduces;
 pub(crate) mod require;
 pub(crate) mod specimen;
 pub(crate) mod striker;

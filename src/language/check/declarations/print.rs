@@ -1,4 +1,4 @@
-//! Strings that appear in the report, compared with the characters of its fonts. In: titles, administrative data, names of requirements.
+//! Strings that appear in the report, compared with the characters of its fonts. In: titles, administrative data, names of requirements, publications.
 //! Out: one warning for all strings with a character that the fonts lack. It knows neither fonts nor pages.
 
 use crate::language::check::checker::Checker;
@@ -20,12 +20,12 @@ pub fn warn(checker: &mut Checker, report: &Report) {
         .iter()
         .map(|requirement| (requirement.label.span, requirement.label.node.as_str()))
         .collect();
-    for declared in checker
-        .scope
-        .blocks
-        .iter()
-        .filter(|declared| matches!(declared.kind.kind, Kind::Plan | Kind::Report))
-    {
+    for declared in checker.scope.blocks.iter().filter(|declared| {
+        matches!(
+            declared.kind.kind,
+            Kind::Plan | Kind::Report | Kind::Reproduces
+        )
+    }) {
         texts.extend(
             declared
                 .block

@@ -5,12 +5,17 @@ use super::CheckedRig;
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::rigs as message;
 use crate::language::syntax::ast::{Expr, ExprKind};
-use crate::plan::{Calibration, DeviceLink, Dialect};
+use crate::plan::{Calibration, DeviceLink, Dialect, PretestCheck, Specimen};
 use crate::schema::rig as schema;
 use crate::text::source::Span;
 
 /// Warnings for the real rig of a run whose results would not be reliable. Due dates are compared with `today`, if it is known.
-pub fn warn(checker: &mut Checker, rig: &CheckedRig, today: Option<&str>) {
+pub fn warn(
+    checker: &mut Checker,
+    rig: &CheckedRig,
+    specimens: &[Option<Specimen>],
+    today: Option<&str>,
+) {
     let (Some(block), Some(link)) = (rig.block, rig.plan.link.as_real()) else {
         return;
     };
@@ -63,8 +68,24 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig, today: Option<&str>) {
             .diagnostics
             .push(message::resolution_unknown(&rig.plan.name, at));
     }
+    let coarsest = axes
+        .clone()
+        .map(|axis| link.readings_of(axis).resolution)
+        .fold(0.0, f64::max);
+    let band = rig.plan.settle.band;
+    if let (true, Some((_, entry))) = (
+        band < coarsest * (1.0 - 1e-9),
+        checker.field(block, schema::SETTLE.name),
+    ) {
+        let at = entry.value.span;
+        checker
+            .diagnostics
+            .push(message::band_within_resolution(band, coarsest, at));
+    }
+    let excluded = excluded(specimens, &link.pretest_check_of(0));
     let drowned = axes
         .clone()
+        .filter(|_| excluded.is_none())
         .map(|axis| (link.pretest_check_of(axis), link.readings_of(axis).noise))
         .find(|(pretest_check, noise)| {
             // A value that is ten times as large in the plan must be ten times as large here.
@@ -74,6 +95,14 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig, today: Option<&str>) {
     let given = checker
         .field(block, schema::PRETEST_CHECK.name)
         .or_else(|| checker.field(block, schema::AXES.name));
+    if let (Some(stiffness), Some((_, entry))) = (excluded, given) {
+        let window = link.pretest_check_of(0).stiffness;
+        checker.diagnostics.push(message::window_excludes(
+            window,
+            stiffness,
+            entry.value.span,
+        ));
+    }
     if let (Some((pretest_check, noise)), Some((_, entry))) = (drowned, given) {
         checker.diagnostics.push(message::check_within_noise(
             &pretest_check,
@@ -122,6 +151,19 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig, today: Option<&str>) {
             }
         }
     }
+}
+
+/// The stated stiffness \[N/m\] of the one specimen of the plan, of one degree of freedom, if the window of the pre-test check excludes it.
+fn excluded(specimens: &[Option<Specimen>], check: &PretestCheck) -> Option<f64> {
+    let [Some(specimen)] = specimens else {
+        return None;
+    };
+    let behaviour = specimen
+        .behaviour
+        .as_ref()
+        .filter(|_| specimen.frame.is_none())?;
+    let stiffness = behaviour.initial_stiffness();
+    (stiffness.is_finite() && !check.stiffness.contains(stiffness)).then_some(stiffness)
 }
 
 fn displacement_due(calibration: &Calibration) -> Option<&String> {

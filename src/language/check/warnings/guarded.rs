@@ -1,5 +1,5 @@
-//! Requirements to which the guarded rule cannot apply, because they read a result that never has an uncertainty (W729). In: procedures,
-//! requirements, the rule. Out: warnings. It knows no run.
+//! Requirements to which the guarded rule cannot apply: they read a result that never has an uncertainty (W729), or the rig does not declare
+//! its calibrations (W736). In: procedures, requirements, the rule, the rig. Out: warnings. It knows no run.
 
 use crate::schema::procedures::{impact, impact_series};
 use std::collections::BTreeSet;
@@ -7,7 +7,9 @@ use std::collections::BTreeSet;
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::values as message;
 use crate::plan::formula::Part;
-use crate::plan::{DecisionRule, Procedure, Requirement};
+use crate::plan::report::undeclared::{DISPLACEMENT_CALIBRATION, FORCE_CALIBRATION};
+use crate::plan::{DecisionRule, Plan, Procedure, Requirement};
+use crate::schema::{block_of_words, rig};
 
 /// Exact results that are not measured: those from the plan, and the closure of the energy balance.
 const EXACT: [&str; 3] = [
@@ -15,6 +17,41 @@ const EXACT: [&str; 3] = [
     impact::ENERGY_ERROR.name,
     impact_series::ENERGY_ERRORS.name,
 ];
+
+/// Warns if every requirement on a measured result will be inconclusive, because the real rig of the run declares no calibration.
+pub fn warn_of_partial(checker: &mut Checker, plan: &Plan, rig_block: Option<usize>) {
+    let measured = |requirement: &Requirement| {
+        let mut references = Vec::new();
+        for condition in &requirement.conditions {
+            condition.collect_references(&mut references);
+        }
+        references.iter().any(|reference| {
+            let procedure = plan.procedures.get(reference.procedure.0);
+            let words = procedure.map(|procedure| procedure.kind.keyword());
+            let words: Vec<&str> = words.iter().flat_map(|words| words.split(' ')).collect();
+            let kind = block_of_words(&words).and_then(|block| block.result(reference.name));
+            kind.is_some_and(|kind| kind.measured)
+        })
+    };
+    let guarded = plan.decision_rule == DecisionRule::Guarded;
+    let Some(block) = rig_block.filter(|_| guarded && plan.rig.link.as_real().is_some()) else {
+        return;
+    };
+    let undeclared = plan.rig.undeclared_calibrations(plan.degrees_of_freedom());
+    let fields: Vec<&str> = [
+        (FORCE_CALIBRATION, rig::FORCE_UNCERTAINTY.name),
+        (DISPLACEMENT_CALIBRATION, rig::DISPLACEMENT_UNCERTAINTY.name),
+    ]
+    .into_iter()
+    .filter_map(|(calibration, field)| undeclared.contains(&calibration).then_some(field))
+    .collect();
+    if !fields.is_empty() && plan.requirements.iter().any(measured) {
+        let head = checker.scope.blocks[block].block.head;
+        checker
+            .diagnostics
+            .push(message::partial_under_guard(&plan.rig.name, &fields, head));
+    }
+}
 
 pub fn warn(
     checker: &mut Checker,

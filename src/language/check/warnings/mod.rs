@@ -1,6 +1,7 @@
 //! Warnings: plans that can run but give poor results. In: the checked plan. Out: diagnostics with
 //! the numbers. They change nothing in the plan.
 
+pub(crate) mod decided;
 pub(crate) mod guarded;
 pub(crate) mod left;
 pub(crate) mod recorded_steps;
@@ -8,29 +9,37 @@ pub mod tracking;
 
 use super::checker::Checker;
 use super::messages::{cyclic, values, whole as message};
-use crate::plan::{Condition, Ground, Procedure, Requirement};
+use crate::plan::{Condition, Ground, Procedure, Reproduction, Requirement};
 use crate::procedures::facts::{Leaves, Motion};
 use crate::schema::Kind;
 use crate::schema::procedures::impact::MAX_CONTACT_FORCE;
 use crate::schema::procedures::impact_series::WHILE;
+use crate::schema::reproduces;
 use crate::schema::specimen::MASS_UNCERTAINTY;
 use crate::text::source::{FileId, Span, Spanned};
 use crate::uncertainty::Source;
+
+/// What a plan states about the numbers of its run.
+#[derive(Clone, Copy)]
+pub struct Stated<'a> {
+    pub requirements: &'a [Requirement],
+    pub reproductions: &'a [Reproduction],
+}
 
 /// Warnings of the whole plan; called only if there is no error.
 pub fn whole_plan(
     checker: &mut Checker,
     procedures: &[(usize, Option<Procedure>)],
-    requirements: &[Requirement],
+    stated: Stated<'_>,
     grounds: &[Option<Ground>],
     plan: Span,
 ) {
-    peak_forces(checker, procedures, requirements);
+    peak_forces(checker, procedures, stated);
     impacts_on_moving_specimens(checker, procedures, grounds);
-    unused_uncertainties(checker, procedures, requirements);
+    unused_uncertainties(checker, procedures, stated.requirements);
     match procedures.last() {
         None => checker.diagnostics.push(message::nothing_runs(plan)),
-        Some((block, _)) if requirements.is_empty() => {
+        Some((block, _)) if stated.requirements.is_empty() && stated.reproductions.is_empty() => {
             let head = checker.scope.blocks[*block].block.head;
             checker.diagnostics.push(message::nothing_required(head));
         }
@@ -142,7 +151,7 @@ fn unused_uncertainties(
 fn peak_forces(
     checker: &mut Checker,
     procedures: &[(usize, Option<Procedure>)],
-    requirements: &[Requirement],
+    stated: Stated<'_>,
 ) {
     let law = |procedure: &Procedure| {
         let contact = crate::procedures::facts_of(&procedure.kind).contact?;
@@ -167,9 +176,15 @@ fn peak_forces(
             }
         }
     };
-    for (index, requirement) in requirements.iter().enumerate() {
+    for (index, requirement) in stated.requirements.iter().enumerate() {
         let span = checker.scope.requirements[index].condition.span;
         read(checker, &requirement.conditions, span);
+    }
+    let blocks = checker.scope.of_kind(Kind::Reproduces);
+    let blocks: Vec<usize> = blocks.map(|(block, _)| block).collect();
+    for (block, reproduction) in blocks.into_iter().zip(stated.reproductions) {
+        let span = checker.value_or_head(block, reproduces::VALUE.name);
+        read(checker, std::slice::from_ref(&reproduction.condition), span);
     }
     for (block, procedure) in procedures {
         let kind = procedure.as_ref().map(|procedure| &procedure.kind);

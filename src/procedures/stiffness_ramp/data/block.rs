@@ -5,7 +5,7 @@ use crate::plan::declaration::{fields, names};
 use crate::plan::procedure::identification::stiffness_ramp_fields;
 use crate::schema::curves;
 use crate::schema::methods::TRUTH;
-use crate::schema::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
+use crate::schema::{BlockKind, Field, Kind, Naming, Possible, ResultKind, Variant};
 use crate::units::Dimension;
 
 pub(crate) const ACCURACY: Field = Field::quantity(
@@ -104,7 +104,8 @@ pub(crate) const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
     "max_displacement",
     Dimension::LENGTH,
     "peak absolute measured displacement",
-);
+)
+.within(Possible::PeakDisplacement);
 
 pub(crate) const LOOP_ENERGY: ResultKind = ResultKind::measured(
     "loop_energy",

@@ -12,16 +12,18 @@ use crate::report::number;
 use crate::report::run::Run;
 use crate::verdict::{ConditionOutcome, Verdict};
 
-/// Whether the value of a complete run decides the condition to the disadvantage of the item, or is too near to its limit.
+/// Whether the value of a complete run decides the condition to the disadvantage of the item, or is too near to its
+/// limit, or too uncertain for its tolerance.
 fn is_explained(run: &Run<'_>, condition: &ConditionOutcome) -> bool {
     let near = || {
         let known = condition.guard_band.zip(condition.margin);
         known.is_some_and(|(band, margin)| margin.abs() < band)
     };
+    let too_large = || condition.conforms.is_some() && condition.wider_than_tolerance;
     run.record.outcome == Outcome::Completed
         && match condition.verdict {
             Verdict::Fail => true,
-            Verdict::Inconclusive => near(),
+            Verdict::Inconclusive => near() || too_large(),
             _ => false,
         }
 }

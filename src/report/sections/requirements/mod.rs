@@ -101,7 +101,7 @@ fn is_reliable(run: &Run<'_>, condition: &Condition) -> bool {
 /// The decision rule with its risk, and the meaning of the columns.
 fn decision_rule(run: &Run<'_>, uncertain: bool) -> String {
     let mut sentences = vec![match run.assessment.rule {
-        DecisionRule::Simple => wording::SIMPLE_RULE.to_owned(),
+        DecisionRule::Simple | DecisionRule::ValueAlone => wording::SIMPLE_RULE.to_owned(),
         DecisionRule::Guarded => wording::guarded_rule(coverage_factor::equation(run.assessment)),
     }];
     if uncertain {
@@ -178,7 +178,8 @@ fn row(
     if let Some(line) = explanation::largest_part(run, condition, planned) {
         name = name.line().soft(line);
     }
-    if condition.wider_than_tolerance && rule == DecisionRule::Simple {
+    let decided = condition.verdict != Verdict::Inconclusive;
+    if condition.wider_than_tolerance && rule == DecisionRule::Simple && decided {
         name = name.line().soft(wording::WIDER_THAN_TOLERANCE);
     }
     let mark = if is_marked(run, condition, planned) {
@@ -189,7 +190,7 @@ fn row(
     let bound = Text::from(number::bound(condition));
     let bound = match (rule, number::guard_band(condition)) {
         (DecisionRule::Guarded, Some(band)) => bound.line().soft(format!("w = {band}")),
-        (DecisionRule::Simple, _) | (DecisionRule::Guarded, None) => bound,
+        _ => bound,
     };
     vec![
         name,

@@ -1,4 +1,4 @@
-//! The results that the requirements of a plan read. In: a plan. Out: results, each with the entry of a list that is read.
+//! The results that the requirements of a plan read, and those that it compares with published numbers. In: a plan. Out: results, each with the entry of a list that is read.
 
 use crate::plan::formula::{Formula, Part, ResultReference, ResultValue};
 use crate::plan::{Condition, Plan};
@@ -38,11 +38,13 @@ impl ReadResult {
     }
 }
 
-/// Every result that a requirement reads, in order.
+/// Every result that a requirement or a comparison with a published number reads, in order.
 pub(crate) fn read_by_requirements(plan: &Plan) -> Vec<ReadResult> {
+    let reproductions = plan.reproductions.iter();
     plan.requirements
         .iter()
         .flat_map(|requirement| &requirement.conditions)
+        .chain(reproductions.map(|reproduction| &reproduction.condition))
         .flat_map(read_by)
         .collect()
 }

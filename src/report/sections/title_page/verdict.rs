@@ -5,8 +5,9 @@ use std::borrow::Cow;
 use crate::record::Outcome;
 use crate::report::document::{Text, Tone, Verdict as Stated};
 use crate::report::run::Run;
+use crate::report::sections::reproductions::not_reproduced;
 use crate::report::status::ReportStatus;
-use crate::report::wording::verdict as wording;
+use crate::report::wording::{reproductions, verdict as wording};
 use crate::rig::IS_OUTSIDE;
 use crate::run::check_run;
 use crate::verdict::Verdict;
@@ -64,7 +65,8 @@ fn in_words(reason: &str) -> Cow<'_, str> {
     wording::outside_limit(printed(value), limit.trim_start()).into()
 }
 
-/// The requirements that are not met, and those that are inconclusive, by their names. A run that was stopped has its reason instead.
+/// The names of the requirements that are not met or inconclusive, and of the published numbers that are not reproduced. A run that was
+/// stopped has its reason instead.
 fn unmet(run: &Run<'_>) -> String {
     /// Names of each kind.
     const MOST: usize = 3;
@@ -88,8 +90,12 @@ fn unmet(run: &Run<'_>) -> String {
     };
     let failed = named(Verdict::Fail, wording::failed);
     let inconclusive = named(Verdict::Inconclusive, wording::inconclusive);
-    let both = [failed, inconclusive];
-    let found: Vec<String> = both.into_iter().filter(|text| !text.is_empty()).collect();
+    let different = match not_reproduced(run) {
+        names if names.is_empty() => String::new(),
+        names => reproductions::not_reproduced(names.join("; ")),
+    };
+    let all = [failed, inconclusive, different];
+    let found: Vec<String> = all.into_iter().filter(|text| !text.is_empty()).collect();
     found.join(" ")
 }
 
@@ -117,7 +123,11 @@ fn count(run: &Run<'_>, verdict: Verdict) -> (usize, usize) {
 /// The outcome in a few words, for a heading.
 fn outcome(run: &Run<'_>) -> String {
     match run.assessment.verdict {
-        Verdict::Completed => wording::COMPLETED.to_owned(),
+        Verdict::Completed => match run.assessment.reproductions.len() {
+            0 => wording::COMPLETED.to_owned(),
+            1 if not_reproduced(run).is_empty() => reproductions::ONE.to_owned(),
+            total => reproductions::of(total - not_reproduced(run).len(), total),
+        },
         Verdict::Pass => match count(run, Verdict::Pass) {
             (_, 1) => wording::REQUIREMENT_MET.to_owned(),
             (_, total) => wording::requirements_met(total),
@@ -138,7 +148,10 @@ fn outcome(run: &Run<'_>) -> String {
 fn sentence(run: &Run<'_>) -> String {
     let blocked = matches!(run.record.outcome, Outcome::Blocked { .. });
     match run.assessment.verdict {
-        Verdict::Completed => wording::NO_REQUIREMENT.to_owned(),
+        Verdict::Completed if run.assessment.reproductions.is_empty() => {
+            wording::NO_REQUIREMENT.to_owned()
+        }
+        Verdict::Completed => reproductions::NO_CONFORMITY.to_owned(),
         Verdict::Pass => match count(run, Verdict::Pass) {
             (_, 1) => wording::THE_REQUIREMENT_IS_MET.to_owned(),
             (_, total) => wording::all_met(total),

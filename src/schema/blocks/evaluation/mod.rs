@@ -2,4 +2,5 @@
 
 pub(crate) mod golden;
 pub(crate) mod report;
+pub(crate) mod reproduces;
 pub(crate) mod study;

@@ -4,8 +4,8 @@ use crate::plan::formula::Formula;
 use crate::plan::formula::Formula::Constant;
 use crate::plan::formula::{Part, ProcedureId, ResultReference};
 use crate::plan::{
-    Behaviour, Between, Comparison, Condition, Escalate, Impact, Plan, ProcedureKind, Requirement,
-    Test, Unload, Until,
+    Behaviour, Between, Comparison, Condition, Contact, Escalate, Impact, Plan, ProcedureKind,
+    Requirement, Test, Unload, Until,
 };
 use crate::record::{EscalateHistory, EventKind, History, Outcome, Record};
 use crate::rig::VirtualRig;
@@ -292,6 +292,9 @@ fn no_more_steps_come_than_were_predicted() {
     ] {
         let mut rising = rising(&[0.1, 0.2, 0.3], 1.0, between);
         rising.impact = Impact {
+            contact: Contact::Restitution {
+                coefficient: Constant(0.5),
+            },
             until: Until::Duration,
             duration: Constant(0.1),
             ..given_impact()

@@ -43,6 +43,7 @@ pub(super) fn value(field: &Field, blocks: &[&BlockKind]) -> String {
             )
         }
         FieldType::Condition => "condition, as in `require`".to_owned(),
+        FieldType::Formula => "number with its unit".to_owned(),
         FieldType::Figures => "list of `figure(PROCEDURE)`".to_owned(),
         FieldType::ResultNames => "list of results, such as `[hit.stop_time]`".to_owned(),
         FieldType::ResultName => "result, such as `hit.stop_time`".to_owned(),
