@@ -49,7 +49,7 @@ pub struct Summary {
     /// Decision rule of all conditions.
     #[schemars(extend("enum" = ["simple", "guarded"]))]
     pub decision_rule: &'static str,
-    /// Status of the report: `issued`, or the most serious reason why it is no issued test report.
+    /// Status of the report: `issued`, or the most serious reason against a test report.
     #[schemars(extend("enum" = ["issued", "draft", "not issuable", "check run", "simulation"]))]
     pub report_status: &'static str,
     /// Missing statements of a report of a real rig: first on the measurement, then particulars.

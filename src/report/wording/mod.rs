@@ -31,12 +31,14 @@ macro_rules! wording {
 }
 
 mod english;
+mod issue;
 pub(crate) mod reproductions;
 pub(crate) mod requirements;
 pub(crate) mod specimen;
 pub(crate) mod study;
 
 pub(crate) use english::*;
+pub(crate) use issue::*;
 
 /// Words that the layout of a page adds to the text.
 #[derive(Clone, Copy, Debug, serde::Serialize)]

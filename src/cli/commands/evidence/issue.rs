@@ -308,7 +308,7 @@ fn refuse_rival(run: &Path, report: &str, manifest_sha256: &str) -> Result<(), F
                     path.display()
                 ),
             )
-            .help("amend that report; if nobody has received it, you can delete its folder and issue again"));
+            .help("amend that report; as long as it has not left the laboratory, you can delete its folder and issue again"));
         }
     }
     Ok(())
