@@ -1,10 +1,15 @@
-//! Settings of the output. In: arguments, environment and terminal. Out: settings. No other file reads the environment.
+//! Settings of the output. In: arguments, environment and terminal. Out: settings. No other file reads the environment. Also the present day.
 
 use std::io::IsTerminal as _;
 use std::path::Path;
 
 use super::args::Color;
 use crate::text::diagnostic::render::Appearance;
+
+/// The day by the clock of the computer, UTC, `YYYY-MM-DD`.
+pub fn today() -> String {
+    jiff::Timestamp::now().strftime("%Y-%m-%d").to_string()
+}
 
 /// Colours, characters and terminals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

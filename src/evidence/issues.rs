@@ -323,7 +323,8 @@ fn in_order(one: &One, [issued, tested]: [Option<&str>; 2], before: usize) -> Re
     Ok(())
 }
 
-fn stated(plan: &Plan, field: &str) -> Option<String> {
+/// The text of a particular; None if it is blank.
+pub(super) fn stated(plan: &Plan, field: &str) -> Option<String> {
     let found = plan
         .particulars
         .iter()

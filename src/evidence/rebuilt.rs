@@ -15,10 +15,12 @@ use crate::record::journal::EntryKind;
 use crate::record::remote::DrivenStep;
 use crate::record::{Outcome, Record};
 use crate::report::{
-    FileDigest, Issue, IssueKind, NullSink, OutputError, OutputSink, Prediction, Provenance, Run,
+    FileDigest, Issue, IssueKind, NullSink, OutputError, OutputSink, Prediction, Provenance,
+    ReportStatus, Run,
 };
 use crate::run::replay;
 use crate::run::replay::{CUT_OFF, Mismatch, Replayed};
+use crate::schema::plan_block::ISSUED;
 use crate::verdict::{self, Assessment};
 
 /// Predicts a whole run from the record of its low-level check run; None for any other run.
@@ -115,6 +117,10 @@ pub struct Rebuilt {
 pub struct Report {
     pub run_id: String,
     pub id: String,
+    /// Its status, as in `summary.json`.
+    pub status: &'static str,
+    /// Its day of issue, as stated.
+    pub issued: Option<String>,
     /// The roles that sign it, as in the plan.
     pub roles: Vec<String>,
     /// Path and SHA-256 of every file of the results, in hex, without the manifest.
@@ -264,6 +270,8 @@ impl Rebuilt {
         let report = Report {
             run_id: replayed.provenance.run_id.clone(),
             id: replayed.provenance.report_id().to_owned(),
+            status: ReportStatus::of(&replayed.run()).name(),
+            issued: super::issues::stated(&replayed.plan, ISSUED.name),
             roles: replayed.plan.report.sign.clone(),
             files,
             other_build,

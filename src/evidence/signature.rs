@@ -31,6 +31,10 @@ const SHOWN_CHARACTERS: usize = 200;
 pub struct Statement {
     pub run: String,
     pub report: String,
+    /// Status of the report, such as `issued`; None in signatures of older versions.
+    pub status: Option<String>,
+    /// Its day of issue, as stated.
+    pub issued: Option<String>,
     pub role: Option<String>,
     pub name: Option<String>,
     /// The public key, so that the signature can be checked against the key that it names.
@@ -51,6 +55,8 @@ impl Statement {
                 "report",
                 Some(self.report.clone()).filter(|report| *report != self.run),
             ),
+            ("status", self.status.clone()),
+            ("issued", self.issued.as_ref().map(cut)),
             ("role", self.role.as_ref().map(cut)),
             ("name", self.name.as_ref().map(cut)),
             ("key", self.key.clone()),
@@ -73,6 +79,8 @@ impl Statement {
         let read = Self {
             run,
             report,
+            status: of("status"),
+            issued: of("issued"),
             role: of("role"),
             name: of("name"),
             key: of("key"),
@@ -275,6 +283,16 @@ fn check_statement(
             one_line(&statement.report)
         ));
     }
+    let issued = report.issued.as_deref().map(one_line);
+    if let Some(status) = &statement.status
+        && (status != report.status || statement.issued != issued)
+    {
+        return Err(format!(
+            "it states a report with the status `{}`, but the status is `{}`",
+            one_line(status),
+            report.status
+        ));
+    }
     if file_name(statement.role.as_deref(), &report.roles) != name {
         return Err("its file has the name of another role".to_owned());
     }
@@ -340,6 +358,8 @@ mod tests {
         let statement = Statement {
             run: "0123456789abcdef".to_owned(),
             report: "0123456789abcdef".to_owned(),
+            status: Some("issued".to_owned()),
+            issued: Some("2026-06-02".to_owned()),
             role: Some("Quality\tkey:x\n\u{202e}".to_owned()),
             name: None,
             key: Some("RWQ".to_owned()),
@@ -350,6 +370,10 @@ mod tests {
             Some("Quality\\u{9}key:x\\u{a}\\u{202e}")
         );
         assert_eq!((read.name, read.key.as_deref()), (None, Some("RWQ")));
+        assert_eq!(
+            (read.status.as_deref(), read.issued.as_deref()),
+            (Some("issued"), Some("2026-06-02"))
+        );
         assert_eq!(
             Statement::read("timestamp:1\tfile:manifest.sha256\thashed"),
             None

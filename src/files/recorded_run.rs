@@ -94,6 +94,7 @@ pub fn plan_of(logged: &LoggedRun) -> Result<Plan, String> {
         for_studies: false,
         rig,
         settings,
+        today: None,
         date,
         unattended: false,
         recorded: true,

@@ -23,7 +23,7 @@ const KEYS: [(&str, &str); 2] = [("drift", "zero_drift"), ("standing", "report_s
 /// Names of the status of a report.
 const STATUS: [(&str, &str); 3] = [
     ("rehearsal", "simulation"),
-    ("certifiable", "issuable"),
+    ("certifiable", "issued"),
     ("not certifiable", "not issuable"),
 ];
 

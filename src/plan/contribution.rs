@@ -3,7 +3,7 @@
 
 use super::source::Source;
 
-/// The effect of one source on one number.
+/// The effect of one source on one number. For [`Source::TimeStep`] it is the difference from the value of the run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contribution {
     pub source: Source,
@@ -25,6 +25,16 @@ impl Contribution {
             smooth: true,
         }
     }
+
+    /// Its part of u²; 0 for the time step.
+    #[must_use]
+    pub fn variance(&self) -> f64 {
+        if self.source.is_of_uncertainty() {
+            self.amount * self.amount
+        } else {
+            0.0
+        }
+    }
 }
 
 /// Adds `part` to the contribution of the same source in `parts`: the contributions of one source to one number are summed.
@@ -41,13 +51,13 @@ pub fn share(parts: &mut Vec<Contribution>, part: Contribution) {
     }
 }
 
-/// u of each of `count` entries of a list; None for an entry without an uncertain input.
+/// u of each of `count` entries of a list; None for an entry without contributions.
 #[must_use]
 pub fn combined_entries(contributions: &[Contribution], count: usize) -> Vec<Option<f64>> {
     let mut squares = vec![None; count];
     for part in contributions {
         if let Some(square) = squares.get_mut(part.entry) {
-            *square = Some(square.unwrap_or(0.0) + part.amount * part.amount);
+            *square = Some(square.unwrap_or(0.0) + part.variance());
         }
     }
     squares
@@ -61,7 +71,7 @@ pub fn combined_entries(contributions: &[Contribution], count: usize) -> Vec<Opt
 pub fn combined(contributions: &[Contribution]) -> Option<f64> {
     let variance = contributions
         .iter()
-        .map(|part| part.amount * part.amount)
+        .map(Contribution::variance)
         .reduce(|sum, square| sum + square)?;
     Some(variance.sqrt())
 }

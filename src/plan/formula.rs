@@ -151,6 +151,10 @@ impl Formula {
                 critical,
             )?;
             let (above, below) = (up - value, value - down);
+            // Finer steps are to one side.
+            if !source.is_of_uncertainty() {
+                return Ok(Contribution::new(source, above));
+            }
             // Both perturbations have an effect of the same sign, as for `abs` about 0: half of their difference would be nearly zero.
             let folds = above * below < 0.0;
             Ok(Contribution::new(

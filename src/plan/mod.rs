@@ -12,6 +12,7 @@ pub(crate) mod rig;
 pub mod source;
 pub mod specimen;
 pub mod study;
+pub mod time_step;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;

@@ -199,6 +199,26 @@ impl Results for Moved<'_> {
     }
 }
 
+/// Calls with results that have each of these sources perturbed, by so many of its standard uncertainties.
+pub fn with_shifts<T>(
+    results: &dyn Results,
+    shifts: &[(Source, f64)],
+    then: &mut dyn FnMut(&dyn Results) -> T,
+) -> T {
+    match shifts.split_first() {
+        None => then(results),
+        Some(((source, by), rest)) => with_shifts(
+            &Moved {
+                results,
+                source: *source,
+                by: *by,
+            },
+            rest,
+            then,
+        ),
+    }
+}
+
 /// Every source of the results that are read, each once, in the order of their first appearance.
 #[must_use]
 pub fn sources_of(references: &[ResultReference], results: &dyn Results) -> Vec<Source> {

@@ -1,4 +1,5 @@
-//! The sources of uncertainty: the uncertain inputs of a plan, of its rig and of the readings of a run.
+//! The sources of uncertainty: the uncertain inputs of a plan, of its rig and of the readings of a run. Beside them the time step, whose
+//! effect is known and not in u.
 
 /// Position of a procedure in the plan, from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -91,8 +92,44 @@ pub enum Source {
     LoopSampling {
         procedure: ProcedureId,
     },
-    /// The time step of an integration, including times that are reported as whole steps: the run is integrated again with finer steps.
-    TimeStep {
+    /// A duration that is counted in whole time steps.
+    WholeSteps {
         procedure: ProcedureId,
     },
+    /// The time steps of all integrations. It is no source of uncertainty: its effect is a difference of known size and sign, and is not
+    /// in u.
+    TimeStep(Refinement),
+}
+
+/// Integrations of the whole plan along their recorded paths, whose results differ from those of the run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Refinement {
+    /// In the steps of the run. Peaks and stops are interpolated between their ends, at which the run reports them.
+    Own,
+    /// In half of the steps of the run.
+    Half,
+    /// In a quarter of the steps of the run.
+    Quarter,
+}
+
+impl Refinement {
+    pub const ALL: [Self; 3] = [Self::Own, Self::Half, Self::Quarter];
+
+    /// Refinement for each step of the run.
+    #[must_use]
+    pub const fn finer(self) -> u8 {
+        match self {
+            Self::Own => 1,
+            Self::Half => 2,
+            Self::Quarter => 4,
+        }
+    }
+}
+
+impl Source {
+    /// Whether it is a source of uncertainty, whose contribution is in u.
+    #[must_use]
+    pub const fn is_of_uncertainty(self) -> bool {
+        !matches!(self, Self::TimeStep(_))
+    }
 }

@@ -18,6 +18,7 @@ use crate::language::check::checker::Checker;
 use crate::language::check::declarations::limits::CheckedLimits;
 use crate::language::check::declared::Declared;
 use crate::physics::self_test::Part;
+use crate::plan::formula::Formula;
 use crate::plan::{
     DeclaredNoise, Figure, FigureKind, Ground, Impact, Plan, Procedure, ProcedureBlock,
     ProcedureKind,
@@ -92,6 +93,22 @@ pub(crate) fn check_limits(
     limits: &CheckedLimits,
 ) {
     cycle::declared_cycles::check_cycles(checker, procedures, limits);
+}
+
+/// Check: whether a procedure certainly moves the specimen to no negative displacement.
+pub(crate) fn stays_positive(kind: &ProcedureKind) -> bool {
+    let positive = |target: &Formula| target.constant().is_some_and(|target| target >= 0.0);
+    match kind {
+        ProcedureKind::StiffnessRamp(ramp) => ramp.displacements.iter().all(positive),
+        ProcedureKind::Move(to) => positive(&to.to),
+        ProcedureKind::Inspect { .. } => true,
+        ProcedureKind::Impact(_)
+        | ProcedureKind::Escalate(_)
+        | ProcedureKind::Shake(_)
+        | ProcedureKind::DampingSweep(_)
+        | ProcedureKind::Cycle(_)
+        | ProcedureKind::Unload(_) => false,
+    }
 }
 
 /// Check: the state in which a procedure leaves the specimen.
@@ -292,7 +309,7 @@ pub(crate) fn chart(
         History::Impact(history) => impact::figures::chart(run, name, history, figure),
         History::Shake(history) => base_excitation::figures::chart(run, name, history, figure),
         History::Cycle(history) => cycle::figures::chart(name, history, kind),
-        History::Escalate(history) => impact_series::figures::chart(name, history, kind),
+        History::Escalate(history) => impact_series::figures::chart(run, name, history, figure),
         History::FrameUnload(steps) => base_excitation::figures::unloading_chart(name, steps, kind),
         History::Move(_) | History::Inspect => None,
     }

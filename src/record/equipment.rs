@@ -129,9 +129,9 @@ pub struct HeldLimit {
 impl Equipment {
     #[must_use]
     pub fn of(plan: &Plan, device: Device) -> Self {
-        let axes = 0..plan.rig.axes().unwrap_or_else(|| plan.degrees_of_freedom());
+        let axes = axes(plan);
         let mut limits = held(&plan.limits, None);
-        for axis in axes.clone() {
+        for axis in axes {
             let own = plan.rig.limits_of(axis, &plan.limits);
             limits.extend(
                 held(&own, Some(axis + 1))
@@ -142,9 +142,17 @@ impl Equipment {
         }
         Self {
             device,
-            channels: axes.flat_map(|axis| channels(&plan.rig, axis)).collect(),
+            channels: Self::channels_of(plan),
             limits,
         }
+    }
+
+    /// The measuring channels of the plan's rig.
+    #[must_use]
+    pub fn channels_of(plan: &Plan) -> Vec<Channel> {
+        axes(plan)
+            .flat_map(|axis| channels(&plan.rig, axis))
+            .collect()
     }
 
     /// The limit of speed, of all axes \[m/s\].
@@ -265,6 +273,10 @@ impl HeldLimit {
         };
         format!("{} .. {}", end(self.low), end(self.high))
     }
+}
+
+fn axes(plan: &Plan) -> std::ops::Range<usize> {
+    0..plan.rig.axes().unwrap_or_else(|| plan.degrees_of_freedom())
 }
 
 /// The two channels of the axis with this index.

@@ -25,15 +25,19 @@ pub fn verdict_text(run: &Run<'_>, coloured: bool) -> String {
     }
     let mut text = String::new();
     let paint = |verdict: Verdict, words: &str| paint(verdict, words, coloured);
+    let status = ReportStatus::of(run);
+    let verdict = run.assessment.verdict.name().to_uppercase();
+    // A pass is green only if its report can be issued.
+    let issuable = !matches!(status, ReportStatus::NotIssuable { .. });
+    let verdict = match run.assessment.verdict {
+        Verdict::Pass if !issuable => verdict,
+        other => paint(other, &verdict),
+    };
     let _ = writeln!(
         text,
-        "{}  {}{}",
-        paint(
-            run.assessment.verdict,
-            &run.assessment.verdict.name().to_uppercase()
-        ),
+        "{verdict}  {}{}",
         one_line(&run.plan.title),
-        status_text(&ReportStatus::of(run), &one_line(&run.plan.rig.name))
+        status_text(&status, &one_line(&run.plan.rig.name))
     );
     if run.assessment.requirements.is_empty() && run.assessment.reproductions.is_empty() {
         text.push_str("  no requirement\n");
@@ -184,19 +188,18 @@ fn compared(run: &Run<'_>) -> String {
     text
 }
 
-/// The status of the report, if it is not issuable as a test report.
+/// The status of the report, if it is not issued as a test report.
 fn status_text(status: &ReportStatus, rig: &str) -> String {
     match status {
-        ReportStatus::Issuable => String::new(),
+        ReportStatus::Issued => String::new(),
         ReportStatus::CheckRun => "  (CHECK RUN: not the test of the plan)".to_owned(),
         ReportStatus::Simulation => format!("  (rig `{rig}`: a simulation)"),
-        ReportStatus::Incomplete => "  (INCOMPLETE)".to_owned(),
         ReportStatus::NotIssuable { missing } => {
             format!("  (NOT ISSUABLE: lacks {})", one_line(&missing.join(", ")))
         }
-        ReportStatus::ParticularsMissing { missing } => {
+        ReportStatus::Draft { missing } => {
             format!(
-                "  (PARTICULARS MISSING: {}; see `psd issue`)",
+                "  (DRAFT: `psd issue` adds {})",
                 one_line(&missing.join(", "))
             )
         }

@@ -1,6 +1,8 @@
 //! Constructors of the entries of the schema, to be chained: `Field::quantity(…).above_zero().required(…)`.
 
-use super::types::{Field, FieldType, Kind, Presence, Range, ResultKind, RigKind, Variant};
+use super::types::{
+    Field, FieldType, Kind, Possible, Presence, Range, ResultKind, RigKind, Variant,
+};
 use crate::units::Dimension;
 
 impl Field {
@@ -245,8 +247,14 @@ impl ResultKind {
             list: false,
             fraction: false,
             of_storey: false,
+            possible: Possible::Any,
             doc,
         }
+    }
+
+    /// Its values are among these.
+    pub(crate) const fn within(self, possible: Possible) -> Self {
+        Self { possible, ..self }
     }
 
     /// A fraction is printed in percent.
@@ -279,6 +287,7 @@ impl ResultKind {
     pub(crate) const fn count(name: &'static str, doc: &'static str) -> Self {
         Self {
             count: true,
+            possible: Possible::NotNegative,
             ..Self::new(name, Dimension::NUMBER, doc)
         }
     }

@@ -18,7 +18,8 @@ pub use columns::Column;
 pub use functions::{FUNCTIONS, FunctionKind};
 pub use renamed::{NameRole, RENAMED, Renamed, renamed_at, renamed_result};
 pub use types::{
-    BlockKind, Field, FieldType, Kind, Naming, Presence, Range, ResultKind, RigKind, Variant,
+    BlockKind, Field, FieldType, Kind, Naming, Possible, Presence, Range, ResultKind, RigKind,
+    Variant,
 };
 
 use crate::units::{Dimension, display};

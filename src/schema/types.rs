@@ -219,7 +219,21 @@ pub struct ResultKind {
     pub fraction: bool,
     /// Whether an impact has it only on a storey of a frame.
     pub of_storey: bool,
+    /// The values that it can have.
+    pub possible: Possible,
     pub doc: &'static str,
+}
+
+/// The values that a result can have, whatever the run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Possible {
+    Any,
+    /// 0 or more.
+    NotNegative,
+    /// The largest absolute displacement: 0 or more, and within the limits of the displacement.
+    PeakDisplacement,
+    /// The largest displacement of a motion: not below that of its start, and within the limits of the displacement.
+    LargestDisplacement,
 }
 
 /// One variant of a choice, with its arguments.

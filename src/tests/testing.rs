@@ -177,14 +177,14 @@ impl Impact {
     }
 }
 
-/// Results as if from a different procedure: its time step is then the source.
+/// Results as if from a different procedure: durations in its time steps are then the source.
 pub(crate) fn as_of(procedure: usize, results: &[NamedResult]) -> Vec<NamedResult> {
     let mut results = results.to_vec();
     for part in results
         .iter_mut()
         .flat_map(|result| &mut result.contributions)
     {
-        if let Source::TimeStep { procedure: own } = &mut part.source {
+        if let Source::WholeSteps { procedure: own } = &mut part.source {
             *own = ProcedureId(procedure);
         }
     }

@@ -75,7 +75,7 @@ pub fn measurement_uncertainty(
             }
             _ => continue,
         };
-        let square = part.amount * part.amount;
+        let square = part.variance();
         match estimates.iter_mut().find(|(known, ..)| *known == of) {
             Some((_, squares, degrees)) => {
                 *squares += square;
@@ -84,7 +84,7 @@ pub fn measurement_uncertainty(
             None => estimates.push((of, square, degrees + each)),
         }
     }
-    let variance: f64 = parts.iter().map(|part| part.amount * part.amount).sum();
+    let variance: f64 = parts.iter().map(Contribution::variance).sum();
     let spread: f64 = estimates
         .iter()
         .map(|(_, squares, degrees)| squares * squares / degrees)

@@ -1,13 +1,13 @@
 //! The uncertainty engine: the contribution of each source to each result of a procedure. In: a procedure as a pure function of its
 //! inputs and readings. Out: for each number, half the difference of the results at ±u of each source (JCGM 100:2008, 5.1.3 and 5.1.4),
-//! the results of Monte Carlo trials of the reading errors (JCGM 101:2008), and those in finer time steps. It knows no procedure and no
+//! the results of Monte Carlo trials of the reading errors (JCGM 101:2008), and the differences in finer time steps. It knows no procedure and no
 //! rig.
 
 use super::cost::TrialBudget;
 use super::instruments::InstrumentUncertainty;
 pub use super::instruments::Shifts;
 use super::threads::in_threads;
-use super::{Contribution, MOST_DRAWS, Source};
+use super::{Contribution, MOST_DRAWS, Refinement, Source};
 use crate::physics::reintegration::perturbation::{Perturbation, sign_of_input};
 use crate::plan::formula::ProcedureId;
 
@@ -20,10 +20,8 @@ const ONE_SIDED: f64 = 0.2;
 const HALVED: f64 = 0.1;
 /// An input that cannot be perturbed by its full uncertainty to either side is perturbed by at least this fraction of it.
 const LEAST_SHARE: f64 = 1e-3;
-/// Refinements of a re-integrated run: steps for each step of the run.
-pub const FINER: [u8; 2] = [2, 4];
 /// The second halving of the step may change a result by this fraction of the first change. A first-order scheme gives one half; the rest
-/// is a margin for higher terms. Otherwise the steps do not converge.
+/// is a margin for higher terms. Otherwise the steps do not converge yet, and their effect is an estimate.
 const CONVERGES: f64 = 0.75;
 /// If a run reaches this many times the displacement of the recorded one, it grows without bound.
 const FARTHER: f64 = 10.0;
@@ -129,16 +127,22 @@ impl<P: Evaluate> Propagation<'_, P> {
             .collect();
         sources.sort_unstable();
         sources.dedup();
+        let (sources, mut steps): (Vec<Source>, Vec<Source>) = sources
+            .into_iter()
+            .partition(|source| source.is_of_uncertainty());
+        if self.reported.is_some() {
+            steps = Refinement::ALL.map(Source::TimeStep).to_vec();
+        }
         let budget = TrialBudget::new(self.steps, &sources, self.instruments.has_reading_errors());
         let (drawn, moved): (Vec<Source>, Vec<Source>) = sources
             .into_iter()
             .partition(|source| budget.draws(*source));
         let first = self.impact.saturating_mul(MOST_DRAWS);
         let trials = (first..first.saturating_add(budget.trials)).map(Part::Trial);
-        let parts: Vec<Part> = moved
+        let parts: Vec<Part> = steps
             .into_iter()
+            .chain(moved)
             .map(Part::Source)
-            .chain(self.reported.as_ref().map(|_| Part::TimeStep))
             .chain(trials)
             .collect();
         let nominal = self.evaluate.evaluate(
@@ -163,6 +167,9 @@ impl<P: Evaluate> Propagation<'_, P> {
                 }));
             }
         }
+        for (parts, nominal) in contributions.iter_mut().zip(&propagation.nominal.values) {
+            mark_if_not_converging(*nominal, parts);
+        }
         Ok(contributions)
     }
 }
@@ -171,7 +178,6 @@ impl<P: Evaluate> Propagation<'_, P> {
 #[derive(Clone, Copy)]
 enum Part {
     Source(Source),
-    TimeStep,
     Trial(u16),
 }
 
@@ -191,7 +197,6 @@ impl<P: Evaluate> Prepared<'_, P> {
         let procedure = self.propagation.procedure;
         match part {
             Part::Source(source) => source,
-            Part::TimeStep => Source::TimeStep { procedure },
             Part::Trial(draw) if self.budget.together => Source::Drawn { procedure, draw },
             Part::Trial(draw) => Source::Readings { procedure, draw },
         }
@@ -199,8 +204,8 @@ impl<P: Evaluate> Prepared<'_, P> {
 
     fn effects(&self, part: Part) -> Result<Effects, String> {
         match part {
+            Part::Source(Source::TimeStep(steps)) => self.of_the_time_step(steps),
             Part::Source(source) => self.of_source(source),
-            Part::TimeStep => self.of_the_time_step(),
             Part::Trial(trial) => self.of_trial(trial),
         }
     }
@@ -281,36 +286,32 @@ impl<P: Evaluate> Prepared<'_, P> {
         Ok(self.nominal.values.iter().enumerate().map(effect).collect())
     }
 
-    fn of_the_time_step(&self) -> Result<Effects, String> {
-        let inputs = self.propagation.evaluate.inputs(&[])?;
-        let in_steps = |finer| {
+    /// The differences of the results in other steps from the reported ones. Inputs that are results of earlier procedures are those in
+    /// the same steps. A procedure without time steps has only such inputs.
+    fn of_the_time_step(&self, steps: Refinement) -> Result<Effects, String> {
+        let Propagation {
+            evaluate,
+            instruments,
+            reported,
+            ..
+        } = self.propagation;
+        let found = if steps == Refinement::Own {
+            self.nominal.clone()
+        } else {
+            let readings = instruments.perturbed(&[], None);
+            let finer = reported.as_ref().map_or(readings.finer, |_| steps.finer());
             self.run(
-                &Perturbation {
-                    finer,
-                    ..self.propagation.instruments.perturbed(&[], None)
-                },
-                &inputs,
-            )
+                &Perturbation { finer, ..readings },
+                &evaluate.inputs(&[(Source::TimeStep(steps), 1.0)])?,
+            )?
         };
-        let [half, quarter] = FINER.map(in_steps);
-        let (half, quarter) = (half?, quarter?);
+        let reported = reported.as_ref().unwrap_or(&self.nominal.values);
         let effect = |(index, reported): (usize, &f64)| {
-            let (amount, converges) = of_finer_steps(
-                *reported,
-                self.nominal.values[index],
-                [half.values[index], quarter.values[index]],
-            );
-            let known = amount == 0.0 || half.is_known(index) && quarter.is_known(index);
-            reported.is_finite().then_some((amount, converges && known))
+            let amount = found.values[index] - reported;
+            let known = amount == 0.0 || found.is_known(index);
+            reported.is_finite().then_some((amount, known))
         };
-        Ok(self
-            .propagation
-            .reported
-            .iter()
-            .flatten()
-            .enumerate()
-            .map(effect)
-            .collect())
+        Ok(reported.iter().enumerate().map(effect).collect())
     }
 
     fn of_trial(&self, trial: u16) -> Result<Effects, String> {
@@ -379,15 +380,23 @@ fn effect(nominal: f64, [up, down]: [f64; 2], half: Option<[f64; 2]>) -> (f64, b
     (central, true)
 }
 
-/// The effect of the time step on a number: the largest difference between the `reported` value and those of finer steps. `nominal` is
-/// the re-integrated value. The effect is reliable if the steps converge.
-fn of_finer_steps(reported: f64, nominal: f64, [half, quarter]: [f64; 2]) -> (f64, bool) {
-    let off = [reported - half, reported - quarter]
-        .into_iter()
-        .reduce(|one, other| if other.abs() > one.abs() { other } else { one });
+/// Marks the effects of the time step on a number if the steps do not converge yet.
+fn mark_if_not_converging(nominal: f64, parts: &mut [Contribution]) {
+    let of = |steps| {
+        let part = parts
+            .iter()
+            .find(|part| part.source == Source::TimeStep(steps));
+        part.map_or(0.0, |part| part.amount)
+    };
+    let [own, half, quarter] = Refinement::ALL.map(of);
     let converges =
-        (half - quarter).abs() <= CONVERGES * (nominal - half).abs() + CLOSE * nominal.abs();
-    (off.unwrap_or_default(), converges)
+        (quarter - half).abs() <= CONVERGES * (own - half).abs() + CLOSE * nominal.abs();
+    for part in parts
+        .iter_mut()
+        .filter(|part| !part.source.is_of_uncertainty())
+    {
+        part.smooth &= converges;
+    }
 }
 
 #[cfg(test)]

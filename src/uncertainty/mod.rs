@@ -9,8 +9,9 @@ mod instruments;
 mod threads;
 
 pub use crate::plan::contribution::{Contribution, combined, combined_entries, share};
-pub use crate::plan::results::{Moved, sources_of};
-pub use crate::plan::source::Source;
+pub use crate::plan::results::{sources_of, with_shifts};
+pub use crate::plan::source::{Refinement, Source};
+pub use crate::plan::time_step::StepInterval;
 pub use degrees::{
     FEW, MOST_DRAWS, MeasurementUncertainty, measurement_uncertainties, measurement_uncertainty,
 };

@@ -36,7 +36,9 @@ const fn unit(
     }
 }
 
-const POUND_FORCE: f64 = 0.453_592_37 * 9.806_65;
+/// Standard gravity \[m/s²\], 3rd CGPM (1901).
+pub const STANDARD_GRAVITY: f64 = 9.806_65;
+const POUND_FORCE: f64 = 0.453_592_37 * STANDARD_GRAVITY;
 
 /// Every unit name; exact factors from the SI brochure and the international yard and pound agreement (1959).
 pub const UNITS: &[UnitName] = &[
@@ -52,7 +54,7 @@ pub const UNITS: &[UnitName] = &[
     unit("Hz", 1.0, Dimension::FREQUENCY, true, "hertz"),
     unit(
         "gn",
-        9.806_65,
+        STANDARD_GRAVITY,
         Dimension::ACCELERATION,
         false,
         "standard gravity",

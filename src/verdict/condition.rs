@@ -8,8 +8,8 @@ use crate::schema::is_in_percent;
 use crate::uncertainty::{FEW, MeasurementUncertainty, measurement_uncertainty};
 use crate::units::Dimension;
 
-/// Value and bound are evaluated separately, so that a report shows the one that exists.
-pub(crate) fn assess_condition(
+/// In the steps of these results. Value and bound are evaluated separately, so that a report shows the one that exists.
+pub(super) fn decide(
     condition: &Condition,
     rule: DecisionRule,
     record: &dyn Results,
@@ -88,6 +88,7 @@ pub(crate) fn assess_condition(
         conforms,
         wider_than_tolerance,
         reason: missing.or_else(too_near),
+        in_finer_steps: None,
     }
 }
 
@@ -113,7 +114,7 @@ fn uncertainty_status(condition: &Condition, record: &dyn Results) -> Uncertaint
 }
 
 /// Whether it is `==` or `!=`.
-const fn is_equality(condition: &Condition) -> bool {
+pub(super) const fn is_equality(condition: &Condition) -> bool {
     matches!(
         condition.test,
         Test::Compare {

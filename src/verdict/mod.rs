@@ -5,6 +5,7 @@
 mod condition;
 mod partial;
 mod reproduction;
+mod time_step;
 mod undecided;
 mod unfinished_peaks;
 
@@ -12,9 +13,9 @@ use crate::plan::formula::{ProcedureId, Results, UncertaintyStatus};
 use crate::plan::{Comparison, Condition, DecisionRule, Plan, Requirement};
 use crate::record::{ImpactHistory, Outcome, Record};
 use crate::units::Dimension;
-pub(crate) use condition::assess_condition;
 pub(crate) use partial::Declared;
 pub use reproduction::ReproductionOutcome;
+pub(crate) use time_step::assess_condition;
 use undecided::{beyond, longer_than_critical, unless_undecided};
 
 /// Completed < Pass < Inconclusive < Fail < Aborted < Error; a parent takes its worst child.
@@ -91,12 +92,15 @@ pub struct ConditionOutcome {
     pub guard_band: Option<f64>,
     /// Effective degrees of freedom of the uncertainty of the margin, under the guarded rule.
     pub margin_degrees: f64,
-    /// Probability of conformity, from the uncertainty of the margin (JCGM 106:2012, 7.1); None if that is unknown.
+    /// Probability of conformity, from the uncertainty of the margin (JCGM 106:2012, 7.1), the smallest in any finer time steps; None if
+    /// that is unknown.
     pub conforms: Option<f64>,
     /// Whether the tolerance is narrower than U of the margin.
     pub wider_than_tolerance: bool,
     /// Why it is inconclusive.
     pub reason: Option<String>,
+    /// The smallest and the largest value in any finer time steps, SI; None if the time step has no effect on it.
+    pub in_finer_steps: Option<[f64; 2]>,
 }
 
 /// The bound that the value is compared with, SI.
@@ -192,3 +196,5 @@ pub(crate) fn assess_on_impact(
 mod guard_band_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod time_step_tests;

@@ -3,7 +3,7 @@
 //! its verdict. It assesses no condition alone, and does not read the plan.
 
 use super::ConditionOutcome;
-use super::condition::assess_condition;
+use super::assess_condition;
 use crate::plan::formula::{
     Part, ProcedureId, ResultReference, ResultValue, Results, UncertaintyStatus,
 };

@@ -53,7 +53,7 @@ stiffness ramp k0 {
 impact hit {
   striker   = pendulum
   stiffness = k0.stiffness
-  contact   = rigid
+  contact   = restitution(0.93)
   time_step = 0.5 ms
   duration  = 50 ms
 }

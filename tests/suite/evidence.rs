@@ -4,7 +4,9 @@
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::PathBuf;
+use std::process::Stdio;
 use std::sync::LazyLock;
+use std::time::{Duration, Instant};
 
 use super::workspace::{Workspace, every_file};
 
@@ -38,6 +40,59 @@ report {
 }
 "#;
 
+/// A test on a rig whose protocol cannot tell an emulator from the machine: for psd it is a test of a specimen.
+const TEST: &str = r#"plan "Evidence" {
+  laboratory  = "Test House"
+  address     = "1 Mill Lane"
+  customer    = "Somebody Ltd"
+  contact     = "test@example.org"
+  specimen_id = "B-17"
+  standard    = "SOP 17"
+}
+
+limits {
+  displacement = -1 mm .. 12 mm
+  force        = 5 kN
+  speed        = 50 mm/s
+}
+
+rig bench {
+  link          = serial(port: "PORT", dialect: instron, reply_timeout: 30 s)
+  force_range   = 15 kN
+  settle        = within(2 um, 50 kN/s, timeout: 10 min)
+  safe_state    = hold
+  pretest_check = probe(0.1 mm, stiffness: 250 kN/m .. 350 kN/m, zero: 2 N)
+  speed         = 50 mm/s
+  watchdog      = 300 s
+  rate          = 200 Hz
+  samples       = 1
+  resolution    = 1 um
+  calibration   = "UKAS 4711"
+  calibration_due                = "2099-12-31"
+  force_calibration_range        = 0 N .. 15 kN
+  displacement_calibration_range = 0 mm .. 25 mm
+}
+
+specimen beam {
+  mass      = 1 kg
+  behaviour = elastic(stiffness: 300 kN/m)
+}
+
+stiffness ramp k0 {
+  displacements = 0.25 mm .. 1 mm step 0.25 mm
+  pause         = 0 s
+  samples       = 1
+}
+
+require "stiff enough" k0.stiffness > 100 kN/m
+
+report {
+  figures = [force_displacement(k0)]
+  formats = [html, csv]
+  sign    = ["Test engineer", "Quality"]
+}
+"#;
+
 /// Files by their paths, with their bytes.
 type Files = Vec<(PathBuf, Vec<u8>)>;
 
@@ -56,6 +111,56 @@ fn with_run() -> Workspace {
 fn with_paper() -> Workspace {
     static RUN: LazyLock<Files> = LazyLock::new(|| made(PLAN));
     with(&RUN)
+}
+
+/// A folder with a test in `run`.
+fn with_test() -> Workspace {
+    static RUN: LazyLock<Files> = LazyLock::new(|| tested(TEST).0);
+    with(&RUN)
+}
+
+/// Output of a test of the plan, and what psd said.
+fn tested(plan: &str) -> (Files, String) {
+    let workspace = Workspace::new(&[]);
+    let port = workspace.path("rig");
+    workspace.write("plan.psd", plan.replace("PORT", port.to_str().unwrap()));
+    let mut emulator = workspace
+        .command(&["rig", "simulate", "plan.psd", "--rig", "bench", "--once"])
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let until = Instant::now() + Duration::from_mins(2);
+    while port.symlink_metadata().is_err() {
+        assert!(Instant::now() < until, "the emulator does not start");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let said = workspace.ends(
+        0,
+        &[
+            "run",
+            "plan.psd",
+            "--rig",
+            "bench",
+            "--yes",
+            "--operator",
+            "A. Tester",
+            "--out",
+            "run",
+        ],
+    );
+    let _ = emulator.kill();
+    emulator.wait().unwrap();
+    let files = every_file(workspace.folder())
+        .into_iter()
+        .filter(|(name, _)| name.starts_with("run"))
+        .collect();
+    (files, said)
+}
+
+/// The day that is so many days after today, by the clock of this machine, as in the run log.
+fn day(after: i64) -> String {
+    let now = jiff::Timestamp::now() + jiff::SignedDuration::from_hours(24 * after);
+    now.strftime("%Y-%m-%d").to_string()
 }
 
 fn with(files: &Files) -> Workspace {
@@ -310,7 +415,8 @@ fn a_report_is_the_same_in_any_folder_and_at_any_time() {
 
 #[test]
 fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
-    let workspace = with_run();
+    let workspace = with_test();
+    let today = day(0);
     let before = every_file(&workspace.path("run"));
     let amend = |run: &str, particular: &str, code| {
         let by = [
@@ -320,7 +426,7 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
             "--by",
             "B. Editor",
             "--date",
-            "2026-06-12",
+            &today,
             "--reason",
             "the name was wrong",
         ];
@@ -338,7 +444,8 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
     let page = fs::read_to_string(workspace.path("run-amended-1/report.html")).unwrap();
     for expected in [
         "Amendment to report",
-        "B. Editor on 2026-06-12",
+        &format!("B. Editor on {today}"),
+        "Authorised by</dt><dd>B. Editor",
         "the name was wrong",
         "Somebody &amp; Sons",
         "Somebody Ltd",
@@ -349,8 +456,9 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
         serde_json::from_slice(&fs::read(workspace.path(path)).unwrap()).unwrap()
     };
     let (own, amended) = (json("run/summary.json"), json("run-amended-1/summary.json"));
-    assert_eq!(amended["issues"]["issues"][0]["replaces"], own["run_id"]);
-    assert_ne!(amended["issues"]["report_id"], own["run_id"]);
+    let replaced = amended["issues"]["issues"][0]["replaces"].as_str().unwrap();
+    assert!(replaced.starts_with(own["run_id"].as_str().unwrap()));
+    assert_ne!(amended["issues"]["report_id"], replaced);
     assert!(
         own.get("issues").is_none()
             && own["procedures"] == amended["procedures"]
@@ -358,9 +466,8 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
     );
     for same in [
         "journal.psdj",
-        "tables/hit.csv",
-        "tables/hit.parquet",
-        "figures/hit_displacement.png",
+        "tables/k0.csv",
+        "figures/k0_force_displacement.png",
         "plan/plan.psd",
     ] {
         assert!(
@@ -378,7 +485,7 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
     assert!(!workspace.path("run-amended-2").exists());
 
     // An amendment may be amended; the chain of reports is stated.
-    amend("run-amended-1", "customer=", 0);
+    amend("run-amended-1", "customer=Fourth Ltd", 0);
     let last = json("run-amended-2/summary.json");
     assert_eq!(
         last["issues"]["issues"][1]["replaces"],
@@ -426,6 +533,8 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
         ("date=2020-01-01", "logged date"),
         ("custumer=X", "did you mean `customer`?"),
         ("title=X", "not a particular"),
+        ("authorised_by=X", "--by NAME"),
+        ("customer=", "--set-particular customer="),
     ] {
         let output = amend("run-amended-2", particular, 2);
         assert!(output.contains(expected), "{output}");
@@ -438,7 +547,7 @@ fn an_amendment_is_a_report_of_its_own_and_both_are_kept() {
 
 #[test]
 fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
-    let workspace = with_run();
+    let workspace = with_test();
     let before = every_file(&workspace.path("run"));
     let issue = |run: &str, date: &str, more: &[&str], code| {
         workspace.ends(
@@ -450,20 +559,31 @@ fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
             .concat(),
         )
     };
-    assert!(issue("run", "2026-05-29", &[], 2).contains("the test ended on 2026-05-31"));
+    assert!(issue("run", &day(-3), &[], 2).contains("the test ended on"));
     assert!(
         issue(
             "run",
-            "2026-06-02",
+            &day(0),
             &["--set-particular", "issued=2026-06-03"],
             2
         )
         .contains("--date")
     );
     assert!(issue("run", "2026-02-30", &[], 2).contains("not a date"));
+    for (particular, missing) in [
+        ("customer=", "it lacks customer"),
+        ("receipt_date=2199-01-01", "days in their order"),
+    ] {
+        let refused = issue("run", &day(0), &["--set-particular", particular], 2);
+        assert!(
+            refused.contains("cannot be issued") && refused.contains(missing),
+            "{refused}"
+        );
+        assert!(!workspace.path("run-issued").exists(), "nothing is written");
+    }
     let output = issue(
         "run",
-        "2026-06-02",
+        &day(0),
         &[
             "--set-particular",
             "temperature=21 °C",
@@ -482,8 +602,9 @@ fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
     );
 
     let page = fs::read_to_string(workspace.path("run-issued/report.html")).unwrap();
+    let today = day(0);
     for stated in [
-        "2026-06-02",
+        today.as_str(),
         "Q. Head",
         "21 °C",
         "stated after the test: temperature (was not given",
@@ -503,14 +624,22 @@ fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
     assert!(
         workspace
             .ends(0, &["verify", "run-issued"])
-            .contains("issued on 2026-06-02 by Q. Head from report")
+            .contains(&format!("issued on {today} by Q. Head from report"))
     );
 
     // It is issued once. After that there are amendments, and each states its date.
     assert!(
-        issue("run", "2026-06-02", &["--out", "again"], 3).contains("has already been replaced")
+        issue("run", &today, &["--out", "again"], 3).contains("delete its folder and issue again")
     );
-    assert!(issue("run-issued", "2026-06-03", &[], 2).contains("was issued on 2026-06-02"));
+    assert!(issue("run-issued", &day(1), &[], 2).contains(&format!("was issued on {today}")));
+    // A day that is not there yet is taken with a remark.
+    workspace.ends(0, &["keygen", "key", "--no-password"]);
+    std::fs::rename(workspace.path("run-issued"), workspace.path("first")).unwrap();
+    std::fs::remove_file(workspace.path("first/issue.json")).unwrap();
+    assert!(issue("run", &day(400), &["--out", "late"], 0).contains("400 days after today"));
+    std::fs::remove_dir_all(workspace.path("late")).unwrap();
+    std::fs::remove_dir_all(workspace.path("first")).unwrap();
+    issue("run", &today, &["--set-particular", "temperature=21 °C"], 0);
     let amend = |date: &str, code| {
         let by = [
             "report",
@@ -530,23 +659,67 @@ fn an_issue_states_what_is_known_after_the_test_and_is_no_amendment() {
             .concat(),
         )
     };
-    assert!(amend("2026-06-01", 2).contains("issued on 2026-06-02"));
-    amend("2026-06-12", 0);
+    assert!(amend(&day(-1), 2).contains(&format!("issued on {today}")));
+    let tomorrow = day(1);
+    amend(&tomorrow, 0);
     let page = fs::read_to_string(workspace.path("run-amended-1/report.html")).unwrap();
     assert!(
         page.contains("Amendment to report")
-            && page.contains("issued (was “2026-06-02”, is “2026-06-12”)"),
+            && page.contains(&format!("issued (was “{today}”, is “{tomorrow}”)"))
+            && page.contains("authorised by (was “Q. Head”, is “B. Editor”)"),
         "{page}"
     );
-    workspace.ends(0, &["keygen", "key", "--no-password"]);
     for run in ["run-issued", "run-amended-1"] {
         for role in ["Quality", "Test engineer"] {
             workspace.ends(0, &["sign", run, "--key", "key", "--role", role]);
         }
         workspace.ends(0, &["verify", run, "--key", "key.pub"]);
     }
+    let signature = workspace.read("run-issued/manifest.sha256.quality.minisig");
+    assert!(
+        signature.contains(&format!("\tstatus:issued\tissued:{today}\trole:Quality\t")),
+        "{signature}"
+    );
     let file = workspace.path("run-issued/issue.json");
     let text = fs::read_to_string(&file).unwrap();
     fs::write(&file, text.replace("21 °C", "20 °C")).unwrap();
     workspace.ends(3, &["verify", "run-issued"]);
+}
+
+#[test]
+fn what_is_no_test_report_is_not_issued() {
+    let refused = |workspace: &Workspace, run: &str| {
+        let issue = ["issue", run, "--authorised-by", "Q", "--date", &day(0)];
+        let said = workspace.ends(2, &issue);
+        assert!(
+            said.contains(&format!("the report of {run} cannot be issued")),
+            "{said}"
+        );
+        assert!(!workspace.path(format!("{run}-issued")).exists());
+        said
+    };
+    assert!(refused(&with_run(), "run").contains("it is a simulation: no specimen was tested"));
+
+    // Known before the test, shown after it, and not to be mended then; the customer can still be stated.
+    let plan = TEST
+        .replace("2099-12-31", "2020-01-31")
+        .replace("  customer    = \"Somebody Ltd\"\n", "");
+    let (files, said) = tested(&plan);
+    assert!(
+        said.contains("W707") && said.contains("its calibration was due on 2020-01-31"),
+        "{said}"
+    );
+    assert!(
+        said.contains("(NOT ISSUABLE: lacks a valid calibration (due 2020-01-31, test ended "),
+        "{said}"
+    );
+    let workspace = with(&files);
+    let page = workspace.read("run/report.html");
+    assert!(page.contains("NOT ISSUABLE: requirement met") && !page.contains("\"verdict pass\""));
+    let said = refused(&workspace, "run");
+    assert!(
+        said.contains("which cannot be added after the test; it lacks customer")
+            && said.contains("--set-particular customer="),
+        "{said}"
+    );
 }

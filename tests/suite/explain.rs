@@ -79,6 +79,7 @@ fn checked(code: Code, kind: &str) -> Checked {
         .option("set")
         .and_then(|setting| setting.split_once('='));
     let options = Options {
+        today: None,
         rig: plan.option("rig").map(str::to_owned),
         settings: settings
             .into_iter()

@@ -475,6 +475,11 @@ fn runs_are_laid_side_by_side_with_differences_or_with_their_spread() {
         &PLAN
             .replace("mass      = 1 kg", "mass      = weight")
             .replace(
+                "time_step = 10 ms",
+                "contact   = restitution(0.5)\n  time_step = 10 ms",
+            )
+            .replace("< 0.16 m", "< 0.3 m")
+            .replace(
                 "specimen",
                 "param weight = 1 kg between 0.5 kg .. 2 kg\n\nspecimen",
             ),

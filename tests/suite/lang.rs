@@ -24,6 +24,7 @@ const STAGES: &[(&str, u8)] = &[
     ("blocked", 1),
     ("aborted", 4),
     ("fail", 1),
+    ("faulted", 3),
 ];
 
 /// Codes without a separate case, with the reason.

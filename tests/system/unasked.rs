@@ -273,7 +273,7 @@ fn a_resumed_rig_moves_for_somebody_who_lets_it() {
             shown.contains("found at ")
                 && shown.contains("last logged at ")
                 && shown.contains("it MOVES to 0.1000 mm, then as the plan specifies")
-                && shown.contains("speed     up to 50.00 µm/s; limit"),
+                && shown.contains("speed     up to 0.05000 mm/s; limit"),
             "{shown}"
         );
         assert!(!shown.contains("mm at "), "one speed: {shown}");

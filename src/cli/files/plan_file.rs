@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::loader::{FolderLoader, read_plan};
 use crate::cli::args::PlanSettings;
 use crate::cli::output::print_message;
-use crate::cli::settings::{Settings, folder_of};
+use crate::cli::settings::{Settings, folder_of, today};
 use crate::files::failure::Failure;
 use crate::language::check::{Checked, Options, ParsedPlan};
 use crate::text::diagnostic::{json, render};
@@ -67,6 +67,7 @@ fn parsed(
     let options = Options {
         rig,
         settings: set,
+        today: Some(date.clone().unwrap_or_else(today)),
         date,
         ..options.clone()
     };

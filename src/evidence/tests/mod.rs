@@ -125,6 +125,8 @@ fn statement(rebuilt: &Rebuilt, role: &str) -> Statement {
     Statement {
         run,
         report,
+        status: Some("simulation".to_owned()),
+        issued: None,
         role: Some(role.to_owned()),
         name: Some("A. Engineer".to_owned()),
         key: None,

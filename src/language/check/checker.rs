@@ -61,6 +61,8 @@ pub struct End {
     pub value: Quantity,
     /// The distribution.
     pub span: Span,
+    /// For a plan that is invalid there.
+    pub help: &'static str,
 }
 
 /// The context of an expression.
@@ -114,6 +116,8 @@ pub struct Checker<'a> {
     pub for_studies: bool,
     /// Ends of the inputs of studies, at which the plan must be valid.
     pub ends: Vec<End>,
+    /// Values of the inputs of studies that one draw in 1000 exceeds.
+    pub tails: Vec<End>,
     stack: Vec<Node>,
     /// Whether it was reported that values depend on one another too deeply.
     too_deep: bool,
@@ -167,6 +171,7 @@ impl<'a> Checker<'a> {
             results: Vec::new(),
             for_studies: false,
             ends: Vec::new(),
+            tails: Vec::new(),
             stack,
             too_deep: false,
         }

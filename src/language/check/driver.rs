@@ -145,6 +145,7 @@ pub fn plan(
     {
         declarations::limits::check_start(checker, limits);
         declarations::limits::check_targets(checker, limits);
+        declarations::limits::check_forces(checker, limits, &specimens);
         slices::check_limits(checker, &procedures, limits);
     }
     let declared = Declared {
@@ -174,7 +175,8 @@ pub fn plan(
         let warns = findings == Findings::WarningsToo;
         if warns {
             if let Some(rig) = &rig {
-                rig::real_warnings::warn(checker, rig);
+                let today = options.today.as_deref();
+                rig::real_warnings::warn(checker, rig, &specimens, today);
                 rig::zero_drift::warn(checker, rig);
             }
             if let Some(limits) = &limits {
@@ -195,6 +197,10 @@ pub fn plan(
             let rule = declarations::plan_block::decision_rule(&particulars);
             let requirements = requirements.as_deref().unwrap_or(&[]);
             warnings::left::warn(checker, &procedures, requirements);
+            if let Some(limits) = &limits {
+                let (limits, positive) = (&limits.limits, slices::stays_positive);
+                warnings::decided::check(checker, &procedures, requirements, limits, positive);
+            }
             warnings::guarded::warn(checker, &procedures, requirements, rule);
             let reproductions = reproductions.as_deref().unwrap_or(&[]);
             let stated = warnings::Stated {

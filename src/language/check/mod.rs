@@ -56,6 +56,8 @@ pub struct Options {
     pub settings: Vec<(String, String)>,
     /// `--date`, ISO 8601.
     pub date: Option<String>,
+    /// The day of the check, `YYYY-MM-DD`: due dates of calibrations are compared with it. None: they are not.
+    pub today: Option<String>,
     /// A run is about to begin, the command line names no operator, and no operator can be asked.
     pub unattended: bool,
     /// The plan comes from a run log: names of older versions are read too.

@@ -52,6 +52,7 @@ struct Outcome {
     rig_links: Vec<Span>,
     data: Vec<DataFile>,
     ends: Vec<End>,
+    tails: Vec<End>,
 }
 
 impl ParsedPlan {
@@ -101,7 +102,7 @@ impl ParsedPlan {
         }
     }
 
-    /// Whether the plan is valid at the ends of the inputs of its studies. Not where a value is set: a run of a study is one point, and the
+    /// Whether the plan is valid at the ends of the inputs of its studies, and at values that one draw in 1000 exceeds. Not where a value is set: a run of a study is one point, and the
     /// ends of the other inputs do not matter there.
     fn try_ends(&self, outcome: &mut Outcome) {
         if outcome.plan.is_none() || !self.settings.is_empty() || self.options.recorded {
@@ -116,13 +117,30 @@ impl ParsedPlan {
             if let Some(first) = errors.first().filter(|_| !reported.contains(&end.span)) {
                 reported.push(end.span);
                 let shown = end.value.in_plan_syntax();
-                outcome.diagnostics.push(messages::studies::invalid_end(
-                    &end.name, &shown, first, end.span,
-                ));
+                let diagnostic = messages::studies::intensity::invalid_end(
+                    &end.name, &shown, first, end.span, end.help,
+                );
+                outcome.diagnostics.push(diagnostic);
             }
         }
         if !reported.is_empty() {
             outcome.plan = None;
+        }
+        for tail in outcome.tails.iter().take(MOST_ENDS) {
+            if reported.contains(&tail.span) {
+                continue;
+            }
+            let value = BTreeMap::from([(tail.name.clone(), tail.value)]);
+            if let Some(first) = self.bind(&value).err().iter().flatten().next() {
+                reported.push(tail.span);
+                let shown = messages::shown(tail.value.value, tail.value.dimension);
+                let diagnostic = messages::studies::scatter::runs_without_result(
+                    &tail.name, &shown, first, tail.span, tail.help,
+                );
+                outcome.diagnostics.push(diagnostic);
+            }
+        }
+        if !reported.is_empty() {
             outcome
                 .diagnostics
                 .sort_by_key(|found| found.span().map(|span| (span.file, span.start, span.end)));
@@ -218,6 +236,7 @@ impl ParsedPlan {
             rig_links,
             data: checker.data,
             ends: checker.ends,
+            tails: checker.tails,
         }
     }
 }

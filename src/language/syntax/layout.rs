@@ -91,10 +91,11 @@ impl Cutter<'_> {
     }
 
     /// The index of the first token from `at` on that is neither a line end nor a comment.
-    fn after_lines(&self, at: usize) -> usize {
-        let between =
-            |at: &usize| matches!(self.tokens.kind(*at), Some(Kind::Newline | Kind::Comment));
-        (at..).find(|at| !between(at)).unwrap_or(at)
+    fn after_lines(&self, mut at: usize) -> usize {
+        while matches!(self.tokens.kind(at), Some(Kind::Newline | Kind::Comment)) {
+            at += 1;
+        }
+        at
     }
 
     /// Skips line ends and comments; returns whether anything is left that is worth reading: more errors than are reported are not

@@ -216,9 +216,17 @@ impl ContactLaw {
     /// Whether a peak contact force \[N\] is that of an impulse over one step: it grows as 1/Δt and is not a property of the impact.
     #[must_use]
     pub fn force_follows_the_step(&self, largest: f64) -> bool {
+        self.blows_follow_the_step(largest) || self.is_impulsive()
+    }
+
+    /// Whether each contact lasts one step, up to a peak contact force of `largest` \[N\]. The times of the contacts, and possibly their
+    /// number, then depend on the step.
+    #[must_use]
+    pub fn blows_follow_the_step(&self, largest: f64) -> bool {
         match self {
+            Self::Rigid => true,
             Self::Limit { force } => largest < *force * (1.0 - 1e-9),
-            _ => self.is_impulsive(),
+            Self::Restitution { .. } | Self::Hertz { .. } => false,
         }
     }
 }

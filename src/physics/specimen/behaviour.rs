@@ -24,6 +24,12 @@ impl Behaviour {
             .find_map(|declared| Some((declared.word, (declared.numbers)(self)?)))
     }
 
+    /// Whether the force is the stiffness times the displacement at any displacement.
+    #[must_use]
+    pub const fn is_elastic(&self) -> bool {
+        matches!(self, Self::Elastic { .. } | Self::Beam(_))
+    }
+
     /// Initial stiffness without relaxation \[N/m\]; for a joint with clearance and no friction, that in bearing.
     #[must_use]
     pub fn initial_stiffness(&self) -> f64 {

@@ -47,11 +47,11 @@ macro_rules! limits_fields {
             #[derive(Clone, Copy, Debug, PartialEq)]
             struct Limits {
                 /// Every target and every displacement reading \[m\].
-                displacement: Interval = bounds(Dimension::LENGTH, true, "of all targets and readings"),
+                displacement: Interval = bounds(Dimension::LENGTH, true, "displacement of all targets and readings"),
                 /// Every force reading \[N\].
-                force: Interval = bounds(Dimension::FORCE, true, "of all readings"),
+                force: Interval = bounds(Dimension::FORCE, true, "force of all readings"),
                 /// Speed of the actuator \[m/s\]; 0 ≤ speed ≤ high.
-                speed: Interval = bounds(Dimension::VELOCITY, false, "of the actuator"),
+                speed: Interval = bounds(Dimension::VELOCITY, false, "speed of the actuator"),
                 /// Largest change of target in one step, absolute value \[m\].
                 increment: Interval = bounds(Dimension::LENGTH, false, "largest change of the target in one step"),
                 /// abs(measured − target) after settling \[m\].

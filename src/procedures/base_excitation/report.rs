@@ -2,7 +2,7 @@
 //! energy. In: a plan and a record. Out: blocks.
 
 use crate::physics::structure::{SymmetricBand, storeys_of, widen};
-use crate::plan::{Frame, Ground, Integrator, ProcedureKind, Shake, ShakeDamping};
+use crate::plan::{Frame, Ground, Integrator, Link, ProcedureKind, Shake, ShakeDamping};
 use crate::procedures::stepping::energy;
 use crate::record::{Floors, Modes, NamedResult, ProcedureRecord, ShakeHistory, UnloadStep};
 use crate::report::document::{Block, Column, Table, Text};
@@ -40,9 +40,20 @@ pub(crate) fn shaken(
             frame,
             schema::MAX_DISPLACEMENT,
         ));
+        body.extend(noise_note(run));
         body.extend(tracking::table(procedure));
         body.push(energy_balance(history));
     }
+}
+
+/// Why the result of the base shear is smaller than the largest reading of the table; None without noise.
+pub(crate) fn noise_note(run: &Run<'_>) -> Option<Block> {
+    let noise = match &run.plan.rig.link {
+        Link::Virtual(link) => link.noise,
+        Link::Real(link) => link.readings.noise,
+    };
+    (noise > 0.0)
+        .then(|| Block::note("Max base shear is the largest reading minus its part due to noise."))
 }
 
 /// The integration of the frame, and the ground motion on it.
@@ -198,7 +209,7 @@ pub(crate) fn storey_table<S: Floors>(
         with_u("Peak drift", schema::MAX_DRIFT),
         Column::numbers("Over height"),
         with_u("Final drift", schema::FINAL_DRIFT),
-        Column::numbers("Peak shear"),
+        Column::numbers("Peak shear as read"),
     ];
     let height = |storey: usize| {
         frame

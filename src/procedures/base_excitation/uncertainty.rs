@@ -16,12 +16,12 @@ use crate::procedures::stepping::run::Steps;
 use crate::record::{NamedResult, ShakeHistory};
 use crate::run::stop::Stop;
 use crate::schema::procedures::base_excitation as schema;
-use crate::uncertainty::Source;
-use crate::uncertainty::engine::{Evaluate, Evaluation, FINER, Progress, Shifts, Unknown};
+use crate::uncertainty::engine::{Evaluate, Evaluation, Progress, Shifts, Unknown};
+use crate::uncertainty::{Refinement, Source};
 use crate::units::Dimension;
 
 /// Steps of the finest run for each of the record.
-const FINEST: u8 = FINER[1];
+const FINEST: u8 = Refinement::Quarter.finer();
 
 /// The uncertain inputs of a ground-motion test.
 #[derive(Clone, Copy)]

@@ -1,7 +1,9 @@
-//! Bounds of requirements as lines of a chart. In: a run, a result of a procedure. Out: reference lines with their labels. It draws
-//! nothing.
+//! Bounds of requirements, and of the condition of a series, as lines of a chart. In: a run, a result of a procedure. Out: reference lines
+//! with their labels. It draws nothing.
 
 use crate::plan::formula::{Formula, Function, Part, ProcedureId};
+use crate::plan::{Condition, Test};
+use crate::procedures;
 use crate::report::Run;
 use crate::report::figures::chart::Reference;
 use crate::report::number;
@@ -51,6 +53,52 @@ pub(crate) fn limits_on(
     }
     lines.retain(|line| line.y.is_finite());
     lines
+}
+
+/// The bounds that the condition of a series sets on a result of one of its impacts, as far as the plan alone gives them.
+pub(crate) fn conditions_on(
+    run: &Run<'_>,
+    procedure: ProcedureId,
+    result: ResultKind,
+) -> Vec<Reference> {
+    let planned = run.plan.procedures.get(procedure.0);
+    let conditions = planned
+        .and_then(|planned| procedures::facts_of(&planned.kind).conditions)
+        .unwrap_or_default();
+    let of_result = conditions
+        .iter()
+        .filter(|condition| reads(&condition.value, procedure, result.name));
+    let line = |condition: &Condition| {
+        let label = short(&format!("while {}", condition.text.replace('_', " ")));
+        match &condition.test {
+            Test::Compare { limit, .. } => limit
+                .constant()
+                .map(|y| vec![Reference { label, y }])
+                .unwrap_or_default(),
+            Test::Within {
+                target,
+                tolerance,
+                relative,
+            } => match (target.constant(), tolerance.constant()) {
+                (Some(target), Some(tolerance)) => {
+                    let tolerance = if *relative {
+                        tolerance * target.abs()
+                    } else {
+                        tolerance
+                    };
+                    // One label for both lines, so that two labels never overlap.
+                    let ends = [(label, -tolerance), (String::new(), tolerance)];
+                    ends.map(|(label, by)| Reference {
+                        label,
+                        y: target + by,
+                    })
+                    .into()
+                }
+                _ => Vec::new(),
+            },
+        }
+    };
+    of_result.flat_map(line).collect()
 }
 
 /// The entry of a list to which a condition applies, from 1; None if it applies to all of them.

@@ -6,7 +6,7 @@ use crate::plan::{DeclaredNoise, Plan};
 use crate::run::inputs::Inputs;
 use crate::run::stop::Stop;
 use crate::uncertainty::engine::{Contributions, Evaluate, Progress, Propagation, Shifts, Unknown};
-use crate::uncertainty::{InstrumentUncertainty, Moved, Source, sources_of};
+use crate::uncertainty::{InstrumentUncertainty, Source, sources_of, with_shifts};
 
 /// The reason why no uncertainty of a run is reported.
 pub(crate) const LEADS_ELSEWHERE: &str =
@@ -82,26 +82,6 @@ impl<'run> UncertainRun<'run> {
             reported: Some(reported),
         };
         propagation.contributions(progress)
-    }
-}
-
-/// Calls with results that have sources perturbed.
-fn with_shifts<T>(
-    results: &dyn Results,
-    shifts: Shifts<'_>,
-    then: &mut dyn FnMut(&dyn Results) -> T,
-) -> T {
-    match shifts.split_first() {
-        None => then(results),
-        Some(((source, by), rest)) => with_shifts(
-            &Moved {
-                results,
-                source: *source,
-                by: *by,
-            },
-            rest,
-            then,
-        ),
     }
 }
 

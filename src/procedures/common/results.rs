@@ -82,7 +82,7 @@ fn counting(mut parts: Vec<Contribution>) -> Vec<Contribution> {
         if moves {
             part.amount != 0.0
         } else {
-            matches!(part.source, Source::TimeStep { .. })
+            matches!(part.source, Source::TimeStep(_))
         }
     });
     parts

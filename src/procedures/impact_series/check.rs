@@ -1,7 +1,6 @@
 //! `escalate NAME { … }`: the fields of an impact, its levels, and the condition for the next impact.
 
 use crate::language::check::checker::{Checker, Context, Reads};
-use crate::language::check::declarations::striker::STANDARD_GRAVITY;
 use crate::language::check::messages::{cyclic as fault, names, values};
 use crate::plan::formula::{Formula, Function, Operator};
 use crate::plan::{Between, Condition, Escalate, MOST_IMPACTS, ProcedureKind};
@@ -11,6 +10,7 @@ use crate::schema::procedures::impact::STRIKER;
 use crate::schema::procedures::impact_series as schema;
 use crate::schema::striker;
 use crate::text::source::Span;
+use crate::units::unit::STANDARD_GRAVITY;
 
 /// The fields that give the levels; exactly one of them is given.
 const LEVELS: [&str; 3] = [

@@ -3,9 +3,11 @@
 
 use std::borrow::Cow;
 
-use crate::plan::FigureKind;
+use crate::plan::{Figure, FigureKind};
 use crate::procedures::base_excitation;
+use crate::procedures::common::limit_lines::conditions_on;
 use crate::record::{EscalateHistory, FloorStep, ImpactStep, SeriesImpact};
+use crate::report::Run;
 use crate::report::figures::chart::{
     Chart, Colour, DASHED, Marker, Quantity, SOLID, Series, Style, palette,
 };
@@ -31,10 +33,14 @@ pub(crate) const STOREY_FIGURES: &[FigureKind] = &[
 
 /// A figure and its caption; None if nothing was recorded for it, or for a figure of a different procedure.
 pub(crate) fn chart(
+    run: &Run<'_>,
     name: &str,
     history: &EscalateHistory,
-    kind: FigureKind,
+    figure: &Figure,
 ) -> Option<(Chart, String)> {
+    let kind = figure.kind;
+    // The condition under which the series goes on.
+    let limits = |result| conditions_on(run, figure.procedure, result);
     let struck = |impact: &SeriesImpact| !impact.history.steps.is_empty();
     if !history.impacts.iter().any(struck) {
         return None;
@@ -47,7 +53,10 @@ pub(crate) fn chart(
             ),
         ),
         FigureKind::Displacement => (
-            displacement(history),
+            Chart {
+                references: limits(schema::MAX_DISPLACEMENT),
+                ..displacement(history)
+            },
             match history.storeys().next() {
                 None => format!(
                     "{name}: displacement against the simulated time of each impact; lighter lines are earlier impacts."
@@ -59,7 +68,10 @@ pub(crate) fn chart(
             },
         ),
         FigureKind::ImpactSeries => (
-            impact_series(history),
+            Chart {
+                references: limits(schema::MAX_DISPLACEMENT),
+                ..impact_series(history)
+            },
             match history.storeys().next() {
                 None => format!(
                     "{name}: largest displacement of each impact, and the position after it, against its energy."
@@ -71,7 +83,10 @@ pub(crate) fn chart(
             },
         ),
         FigureKind::Drift => (
-            drift(history),
+            Chart {
+                references: limits(schema::MAX_DRIFT),
+                ..drift(history)
+            },
             format!(
                 "{name}: largest drift of each storey in each impact, and the drift after it, against its energy."
             ),

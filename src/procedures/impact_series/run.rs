@@ -96,17 +96,12 @@ fn run(
         let stated = readable(energy, Dimension::ENERGY);
         if let Some(struck) = history.impacts.last_mut() {
             struck.rest = Some(rest);
-            let (held, reason) = decide(plan, whole, struck, inputs.results());
+            let (held, why) = decide(plan, whole, struck, inputs.results());
             struck.held = held;
-            let ends = match held {
-                Some(true) => None,
-                Some(false) => Some("the condition is false".to_owned()),
-                None => Some(format!("the condition is inconclusive: {reason}")),
-            };
-            if let Some(why) = ends {
+            if held != Some(true) {
                 session.event(
                     EventKind::Remark,
-                    format!("impact {} of {stated}: {why}", index + 1),
+                    format!("impact {} of {stated} ends the series: {why}", index + 1),
                 );
                 return Ok(());
             }
@@ -115,14 +110,23 @@ fn run(
             session.inspect(&format!("after impact {} of {stated}", index + 1))?;
         }
     }
+    let conditions: Vec<&str> = plan
+        .condition
+        .iter()
+        .map(|part| part.text.as_str())
+        .collect();
     session.event(
         EventKind::Remark,
-        "the condition was true after every impact of the series".to_owned(),
+        format!(
+            "{} was true after every impact of the series",
+            conditions.join(" and ")
+        ),
     );
     Ok(())
 }
 
-/// Whether the condition holds after an impact, assessed where the next one begins; None with the reason if that is inconclusive.
+/// Whether the condition holds after an impact, assessed where the next one begins; None if that is inconclusive. With the part of the
+/// condition that ends the series, and why.
 fn decide(
     plan: &Escalate,
     whole: &Plan,
@@ -148,10 +152,16 @@ fn decide(
     });
     match worst {
         Some(part) if part.verdict == Verdict::Inconclusive => {
-            (None, part.reason.unwrap_or_default())
+            let reason = part.reason.unwrap_or_default();
+            (None, format!("{} is inconclusive: {reason}", part.text))
         }
-        Some(part) => (Some(part.verdict == Verdict::Pass), String::new()),
-        None => (Some(true), String::new()),
+        Some(part) if part.verdict != Verdict::Pass => {
+            let value = part.value.map_or_else(String::new, |value| {
+                format!(", the value is {}", readable(value, part.dimension))
+            });
+            (Some(false), format!("{} is false{value}", part.text))
+        }
+        Some(_) | None => (Some(true), String::new()),
     }
 }
 

@@ -172,7 +172,10 @@ impl Input {
             Source::LoopSampling { .. } => {
                 Self::unnamed(wording::LOOP_POINTS, Origin::Program, Dimension::ENERGY)
             }
-            Source::TimeStep { .. } => {
+            Source::WholeSteps { .. } => {
+                Self::unnamed(wording::WHOLE_STEPS, Origin::Program, Dimension::TIME)
+            }
+            Source::TimeStep(_) => {
                 Self::unnamed(wording::TIME_STEP, Origin::Program, Dimension::TIME)
             }
         }

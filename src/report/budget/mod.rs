@@ -9,7 +9,9 @@ pub(super) use line::{Line, Origin};
 use super::run::Run;
 use crate::plan::formula::{ProcedureId, ResultValue};
 use crate::record::{NamedResult, ProcedureRecord};
-use crate::uncertainty::{Contribution, MeasurementUncertainty, Source, measurement_uncertainty};
+use crate::uncertainty::{
+    Contribution, MeasurementUncertainty, Source, StepInterval, measurement_uncertainty,
+};
 
 /// The budget of one result.
 #[derive(Clone, Debug)]
@@ -23,12 +25,19 @@ pub(super) struct Budget<'a> {
     /// The same with its effective degrees of freedom.
     pub known: MeasurementUncertainty,
     pub lines: Vec<Line>,
+    /// The effect of the time step, beside U.
+    pub time_step: Option<StepInterval>,
 }
 
 impl Budget<'_> {
     /// Fraction of u² that a line contributes.
     pub fn fraction(&self, line: &Line) -> f64 {
         (line.contribution / self.uncertainty).powi(2)
+    }
+
+    /// Whether an input or the time step has an effect on the result.
+    fn exists(&self) -> bool {
+        self.uncertainty > 0.0 || self.time_step.is_some()
     }
 }
 
@@ -58,12 +67,9 @@ pub(super) fn budgets<'a>(
                     uncertainty: *uncertainty,
                     known,
                     lines,
+                    time_step: StepInterval::of(&result.contributions),
                 };
-                if *uncertainty > 0.0 {
-                    vec![budget]
-                } else {
-                    Vec::new()
-                }
+                budget.exists().then_some(budget).into_iter().collect()
             }
             ResultValue::Number { .. } => Vec::new(),
             ResultValue::List(values) => entry_budgets(run, result, values),
@@ -81,16 +87,17 @@ fn entry_budgets<'a>(run: &Run<'_>, result: &'a NamedResult, values: &[f64]) -> 
             .filter(|part| part.entry == entry)
             .copied()
             .collect();
-        let lines = lines(run, own.iter());
-        let uncertainty = uncertainty.filter(|uncertainty| *uncertainty > 0.0)?;
-        Some(Budget {
+        let uncertainty = uncertainty?;
+        let budget = Budget {
             result,
             entry: Some(entry),
             value,
             uncertainty,
             known: combined(run, &own, uncertainty),
-            lines,
-        })
+            lines: lines(run, own.iter()),
+            time_step: StepInterval::of(&own),
+        };
+        budget.exists().then_some(budget)
     };
     let entries = values.iter().zip(uncertainties).enumerate();
     entries
@@ -108,8 +115,9 @@ fn lines<'a>(run: &Run<'_>, contributions: impl Iterator<Item = &'a Contribution
     let is_trial = |part: &&Contribution| {
         matches!(part.source, Source::Readings { .. } | Source::Drawn { .. })
     };
-    let (trials, others): (Vec<&Contribution>, Vec<&Contribution>) =
-        contributions.partition(is_trial);
+    let (trials, others): (Vec<&Contribution>, Vec<&Contribution>) = contributions
+        .filter(|part| part.source.is_of_uncertainty())
+        .partition(is_trial);
     let (readings, others): (Vec<&Contribution>, Vec<&Contribution>) = others
         .into_iter()
         .partition(|part| matches!(part.source, Source::RestReading { .. }));

@@ -266,6 +266,7 @@ mod tests {
             conforms: None,
             wider_than_tolerance: false,
             reason: None,
+            in_finer_steps: None,
         };
         let below = |limit| Bound::Compare {
             comparison: Comparison::Less,

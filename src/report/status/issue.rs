@@ -59,7 +59,11 @@ pub struct Change {
 /// One sentence per amendment, in order.
 pub(in crate::report) fn amendments(issues: Option<&Issues>) -> Vec<String> {
     let sentence = |issue: &Issue| {
-        let changes: Vec<String> = issue.changes.iter().map(change).collect();
+        let changed = issue
+            .changes
+            .iter()
+            .filter(|change| change.was != change.is);
+        let changes: Vec<String> = changed.map(change).collect();
         let changes = if changes.is_empty() {
             wording::NOTHING.to_owned()
         } else {

@@ -106,13 +106,22 @@ fn days(run: &Run<'_>) -> Option<String> {
 
 /// Names of particulars with one of these requirements that are not stated.
 pub(in crate::report) fn missing_names(run: &Run<'_>, wanted: &[Wanted]) -> Vec<&'static str> {
-    FRONT
-        .iter()
-        .filter(|particular| {
-            wanted.contains(&particular.wanted) && stated(run, particular.field).is_none()
-        })
+    not_stated(run, wanted)
         .map(|particular| particular.name)
         .collect()
+}
+
+/// The fields of the required particulars that are not stated.
+pub(super) fn missing_fields(run: &Run<'_>) -> Vec<&'static str> {
+    not_stated(run, &[Wanted::Always])
+        .map(|particular| particular.field)
+        .collect()
+}
+
+fn not_stated(run: &Run<'_>, wanted: &[Wanted]) -> impl Iterator<Item = &'static Particular> {
+    FRONT.iter().filter(move |particular| {
+        wanted.contains(&particular.wanted) && stated(run, particular.field).is_none()
+    })
 }
 
 /// The required particulars that the report of a test does not state, and days that are out of order.

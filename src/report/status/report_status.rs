@@ -1,4 +1,4 @@
-//! The status of a run's report: issuable as a test report, or the reasons against it. In: a run. Out: its [`ReportStatus`], and every
+//! The status of a run's report: issued as a test report, or the reasons against it. In: a run. Out: its [`ReportStatus`], and every
 //! reason, the most serious first. Due dates are compared with the days of the run log: no clock is read.
 
 use std::collections::BTreeSet;
@@ -6,26 +6,26 @@ use std::collections::BTreeSet;
 use super::days::last_day;
 use super::particulars;
 use crate::physics::self_test;
+use crate::plan::Plan;
 use crate::record::Outcome;
+use crate::record::equipment::{Channel, Equipment};
 use crate::report::run::Run;
 use crate::report::wording::status as wording;
 use crate::run::check_run;
 
-/// Whether a report may be signed as the report of a test.
+/// Whether a report is the report of a test. A test that was stopped is one, and its report says so.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ReportStatus {
-    /// A real rig, a completed run, and no field is missing.
-    Issuable,
+    /// The test of a specimen. No field is missing, the issuer and the day of issue included.
+    Issued,
     /// Only the pre-test check and the leading ramps were run, to predict the rest.
     CheckRun,
     /// No real rig moved.
     Simulation,
-    /// The run was not completed, or its run log has no end.
-    Incomplete,
     /// A test of a specimen. Fields are missing that cannot be added after the test.
     NotIssuable { missing: Vec<String> },
-    /// A test of a specimen. Particulars of ISO/IEC 17025, 7.8.2.1, are missing; an issue of the report may add them.
-    ParticularsMissing { missing: Vec<String> },
+    /// A test of a specimen, not issued yet. Particulars of ISO/IEC 17025, 7.8.2.1, are missing; an issue of the report adds them.
+    Draft { missing: Vec<String> },
 }
 
 impl ReportStatus {
@@ -35,10 +35,10 @@ impl ReportStatus {
         Self::reasons(run)
             .into_iter()
             .next()
-            .unwrap_or(Self::Issuable)
+            .unwrap_or(Self::Issued)
     }
 
-    /// Every reason against a test report, the most serious first; none if the report is issuable.
+    /// Every reason against a test report, the most serious first; none if the report is issued.
     #[must_use]
     pub fn reasons(run: &Run<'_>) -> Vec<Self> {
         let mut reasons = Vec::new();
@@ -48,16 +48,13 @@ impl ReportStatus {
         if run.record.rig.simulated {
             reasons.push(Self::Simulation);
         }
-        if run.record.outcome != Outcome::Completed {
-            reasons.push(Self::Incomplete);
-        }
         let missing = missing_fields(run);
         if !missing.is_empty() {
             reasons.push(Self::NotIssuable { missing });
         }
         let missing = missing_particulars(run);
         if !missing.is_empty() {
-            reasons.push(Self::ParticularsMissing { missing });
+            reasons.push(Self::Draft { missing });
         }
         reasons
     }
@@ -66,24 +63,43 @@ impl ReportStatus {
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
-            Self::Issuable => "issuable",
+            Self::Issued => "issued",
             Self::CheckRun => "check run",
             Self::Simulation => "simulation",
-            Self::Incomplete => "incomplete",
             Self::NotIssuable { .. } => "not issuable",
-            Self::ParticularsMissing { .. } => "particulars missing",
+            Self::Draft { .. } => "draft",
         }
     }
+}
+
+/// Whether the run was stopped before its end, or its run log has no end.
+#[must_use]
+pub fn is_incomplete(run: &Run<'_>) -> bool {
+    run.record.outcome != Outcome::Completed
 }
 
 /// The missing particulars that the report of a test must state. A check run is not a test: none is missing there.
 #[must_use]
 pub fn missing_particulars(run: &Run<'_>) -> Vec<String> {
-    if run.plan.rig.link.as_real().is_none() || run.record.rig.simulated || is_check_run(run) {
+    if is_no_test(run) {
         Vec::new()
     } else {
         particulars::missing(run)
     }
+}
+
+/// The fields of these particulars in the `plan` block.
+#[must_use]
+pub fn missing_particular_fields(run: &Run<'_>) -> Vec<&'static str> {
+    if is_no_test(run) {
+        Vec::new()
+    } else {
+        particulars::missing_fields(run)
+    }
+}
+
+fn is_no_test(run: &Run<'_>) -> bool {
+    run.plan.rig.link.as_real().is_none() || run.record.rig.simulated || is_check_run(run)
 }
 
 fn is_check_run(run: &Run<'_>) -> bool {
@@ -98,6 +114,9 @@ pub fn missing_fields(run: &Run<'_>) -> Vec<String> {
         return Vec::new();
     }
     let mut missing = Vec::new();
+    if matches!(run.record.outcome, Outcome::NotReleased { .. }) {
+        missing.push(wording::RELEASED_MOTION.to_owned());
+    }
     let is_given = |text: Option<&str>| text.is_some_and(|text| !text.trim().is_empty());
     if !is_given(run.provenance.operator()) {
         missing.push(wording::OPERATOR.to_owned());
@@ -115,18 +134,8 @@ pub fn missing_fields(run: &Run<'_>) -> Vec<String> {
     {
         missing.push(wording::calibrated_range(channel.measures.name()));
     }
-    // Force and displacement with the same due date are one calibration.
-    let days: BTreeSet<Option<&str>> = channels
-        .iter()
-        .map(|channel| channel.due.as_deref())
-        .collect();
-    for channel in channels {
-        let calibration = if days.len() > 1 {
-            wording::calibration_of(channel.measures.name())
-        } else {
-            wording::CALIBRATION.to_owned()
-        };
-        match (channel.due.as_deref(), last_day(run.provenance)) {
+    for (calibration, due) in calibrations(channels) {
+        match (due, last_day(run.provenance)) {
             (None, _) => missing.push(wording::due_date(calibration)),
             (Some(_), None) => missing.push(wording::DAY_OF_THE_TEST.to_owned()),
             (Some(due), Some(day)) if due < day => {
@@ -142,4 +151,41 @@ pub fn missing_fields(run: &Run<'_>) -> Vec<String> {
     let mut listed = BTreeSet::new();
     missing.retain(|field| listed.insert(field.clone()));
     missing
+}
+
+/// The calibration of each channel, and its due date. Force and displacement with the same due date are one calibration.
+fn calibrations(channels: &[Channel]) -> Vec<(String, Option<&str>)> {
+    let days: BTreeSet<Option<&str>> = channels
+        .iter()
+        .map(|channel| channel.due.as_deref())
+        .collect();
+    let named = |channel: &Channel| {
+        if days.len() <= 1 {
+            wording::CALIBRATION.to_owned()
+        } else {
+            wording::calibration_of(channel.measures.name())
+        }
+    };
+    channels
+        .iter()
+        .map(|channel| (named(channel), channel.due.as_deref()))
+        .collect()
+}
+
+/// The calibrations of a real rig that are overdue on a day, each once: the report of a test on that day cannot be issued.
+#[must_use]
+pub fn overdue(plan: &Plan, day: &str) -> Vec<String> {
+    if plan.rig.link.as_real().is_none() {
+        return Vec::new();
+    }
+    let channels = Equipment::channels_of(plan);
+    let mut listed = BTreeSet::new();
+    calibrations(&channels)
+        .into_iter()
+        .filter_map(|(calibration, due)| {
+            let due = due.filter(|due| *due < day)?;
+            Some(wording::overdue_before(calibration, due))
+        })
+        .filter(|text| listed.insert(text.clone()))
+        .collect()
 }

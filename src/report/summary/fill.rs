@@ -4,7 +4,7 @@ use super::{
     BudgetSummary, ChangeSummary, ConditionSummary, ContributionSummary, EventSummary,
     IssueSummary, IssuesSummary, Ordered, OutcomeSummary, ParameterSummary, PlanSummary,
     ProcedureSummary, Quantity, RecordSummary, ReproductionSummary, RequirementSummary, RigSummary,
-    SCHEMA, Summary, Uncertainty, Value, ZeroDriftSummary, finite,
+    SCHEMA, StepSummary, Summary, Uncertainty, Value, ZeroDriftSummary, finite,
 };
 use crate::plan::formula::{Estimate, Part, ProcedureId, ResultReference, ResultValue};
 use crate::record::{NamedResult, Outcome, ProcedureRecord};
@@ -13,7 +13,7 @@ use crate::report::run::Run;
 use crate::report::status::{Change, Issues, ReportStatus, deviations, report_status};
 use crate::schema;
 use crate::uncertainty::{
-    MeasurementUncertainty, measurement_uncertainties, measurement_uncertainty,
+    MeasurementUncertainty, StepInterval, measurement_uncertainties, measurement_uncertainty,
 };
 use crate::units::Dimension;
 use crate::units::display::si_unit;
@@ -195,8 +195,20 @@ fn budget(budget: &Budget<'_>) -> (String, BudgetSummary) {
         u: finite(budget.uncertainty),
         degrees_of_freedom: coverage_factor::degrees(budget.known),
         contributions: budget.lines.iter().map(contribution).collect(),
+        time_step: budget.time_step.map(time_step),
     };
     (key, summary)
+}
+
+fn time_step(step: StepInterval) -> StepSummary {
+    let [lowest, highest] = step.ends;
+    StepSummary {
+        half: finite(step.half),
+        quarter: finite(step.quarter),
+        lowest: finite(lowest),
+        highest: finite(highest),
+        smooth: step.smooth,
+    }
 }
 
 /// A result; a count is a whole number.
@@ -362,6 +374,9 @@ fn condition(outcome: &ConditionOutcome) -> ConditionSummary {
             .map(MeasurementUncertainty::coverage),
         guard_band: outcome.guard_band.and_then(finite),
         conforms: outcome.conforms.and_then(finite),
+        in_finer_steps: outcome
+            .in_finer_steps
+            .filter(|ends| ends.iter().all(|end| end.is_finite())),
         reason: outcome.reason.clone(),
     }
 }

@@ -49,8 +49,8 @@ pub struct Summary {
     /// Decision rule of all conditions.
     #[schemars(extend("enum" = ["simple", "guarded"]))]
     pub decision_rule: &'static str,
-    /// Status of the report: the most serious reason why it is not a test report.
-    #[schemars(extend("enum" = ["issuable", "check run", "simulation", "incomplete", "not issuable", "particulars missing"]))]
+    /// Status of the report: `issued`, or the most serious reason why it is no issued test report.
+    #[schemars(extend("enum" = ["issued", "draft", "not issuable", "check run", "simulation"]))]
     pub report_status: &'static str,
     /// Missing statements of a report of a real rig: first on the measurement, then particulars.
     pub missing: Vec<String>,
@@ -168,6 +168,24 @@ pub struct BudgetSummary {
     pub degrees_of_freedom: Option<f64>,
     /// The largest first.
     pub contributions: Vec<ContributionSummary>,
+    /// The effect of the time step, which is not in u; absent if it has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_step: Option<StepSummary>,
+}
+
+/// Differences of a result in finer time steps from its value, in the unit of the result.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct StepSummary {
+    /// In half of the time step.
+    pub half: Option<f64>,
+    /// In a quarter of the time step.
+    pub quarter: Option<f64>,
+    /// The smallest difference in any finer steps, at most 0.
+    pub lowest: Option<f64>,
+    /// The largest difference in any finer steps, at least 0.
+    pub highest: Option<f64>,
+    /// Whether the steps converge; otherwise the interval is an estimate.
+    pub smooth: bool,
 }
 
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -264,8 +282,11 @@ pub struct ConditionSummary {
     pub k: Option<f64>,
     /// Guard band w = U = k·u of the margin under the guarded rule; null under the simple rule or without uncertainty.
     pub guard_band: Option<f64>,
-    /// Probability that the item conforms; null without U.
+    /// Probability that the item conforms, the smallest in any finer time steps; null without U.
     pub conforms: Option<f64>,
+    /// The smallest and the largest value in any finer time steps; absent if the time step has no effect on it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub in_finer_steps: Option<[f64; 2]>,
     /// Reason if inconclusive.
     pub reason: Option<String>,
 }

@@ -65,6 +65,7 @@ wording! {
         FAULT = "stopped by a fault of the rig";
         fn simulation(outcome) = "SIMULATION: {outcome}";
         fn check_run(outcome) = "CHECK RUN: {outcome}";
+        fn not_issuable(outcome) = "NOT ISSUABLE: {outcome}";
         fn requirements_met(total) = "all {total} requirements met";
         fn requirements_not_met(count, total) = "{count} of {total} requirements not met";
         fn requirements_inconclusive(count, total) = "{count} of {total} requirements inconclusive";
@@ -83,9 +84,11 @@ wording! {
         CHECK_RUN = "CHECK RUN";
         NOT_ISSUABLE = "NOT ISSUABLE";
         INCOMPLETE = "INCOMPLETE";
-        PARTICULARS_MISSING = "PARTICULARS MISSING";
-        fn lacks(missing) = "Not issuable as a test report. Missing: {missing}.";
-        fn lacks_particulars(missing) = "ISO/IEC 17025:2017, 7.8.2.1. Missing: {missing}.";
+        DRAFT = "DRAFT";
+        fn lacks(missing) = "Not issuable as a test report. Missing, and not to be added after the test: {missing}.";
+        fn lacks_particulars(missing) = "Not issued: `psd issue` adds the particulars of ISO/IEC 17025:2017, 7.8.2.1. \
+            Missing: {missing}.";
+        RELEASED_MOTION = "a test: the motion was not released";
         OPERATOR = "the operator's name";
         CERTIFICATE = "the reference of the calibration";
         DAY_OF_THE_TEST = "the day of the test";
@@ -95,6 +98,7 @@ wording! {
         fn calibrated_range(channel) = "the calibrated range of the {channel}";
         fn due_date(calibration) = "the due date of the {calibration}";
         fn overdue(calibration, due, day) = "a valid {calibration} (due {due}, test ended {day})";
+        fn overdue_before(calibration, due) = "the {calibration} was due on {due}";
     }
 
     mod amendment {
@@ -203,6 +207,7 @@ wording! {
         UNIT = "Unit";
         U_IN_BRACKETS = " (u in parentheses)";
         fn run_with(kind, inputs) = "Inputs{kind}: {inputs}.";
+        fn next_impact_while(condition) = "next impact while {condition}";
     }
 
     mod budget {
@@ -220,7 +225,9 @@ wording! {
         READINGS = "noise and resolution of the readings";
         READINGS_AND_INPUTS = "noise and resolution of the readings, and the inputs of each floor, mode and axis";
         LOOP_POINTS = "points of the loops";
-        TIME_STEP = "time step: re-integrated at a half and a quarter";
+        WHOLE_STEPS = "duration in whole time steps";
+        TIME_STEP = "time step";
+        fn finer_steps(ends, half, quarter) = "time step, not in U: {ends} in finer steps ({half} at Δt/2, {quarter} at Δt/4)";
         FORCE_CALIBRATION = "force calibration";
         DISPLACEMENT_CALIBRATION = "displacement calibration";
         LOAD_CELL_ZERO = "zero offset of the load cell";
@@ -256,10 +263,10 @@ wording! {
         fn tracking(peak, nrms, energy) = "Tracking errors: at most {peak}, NRMS {nrms}{energy}.";
         PUT_IN = "added";
         REMOVED = "removed";
-        fn energy(direction, percent) = "; they {direction} {percent} of the input energy";
+        fn energy(direction, percent) = "; they {direction} at most {percent} of the input energy";
         THE_ACTUATORS = "The actuators";
         COLUMNS = ["Actuator of floor", "Largest error", "NRMS error",
-            "Tracking-error energy / input (− added)", "Tracking indicator at the end"];
+            "Largest tracking-error energy / input (− added)", "Tracking indicator at the end"];
     }
 
     mod photos {

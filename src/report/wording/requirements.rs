@@ -10,6 +10,7 @@ phrases! {
         probability P. U and P cover the declared uncertainty contributions only.";
     NO_U = "no U";
     WIDER_THAN_TOLERANCE = "U exceeds the tolerance";
+    fn impact_passes_while(condition) = "an impact passes while {condition}";
     fn outside(distance) = "outside the limit by {distance}";
     fn inside(distance) = "inside the limit by {distance}";
     fn largest_part(input, percent) = "largest part of U: {input} ({percent:.0}\u{a0}% of u²)";

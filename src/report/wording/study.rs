@@ -10,7 +10,6 @@ phrases! {
     fn undecided(count, total) = "{count} of {total} requirements undecided";
     fn incomplete(runs, at_most) = "INCOMPLETE: {runs} of up to {at_most} runs. An incomplete study decides nothing.";
     fn curve(median, dispersion) = "Median θ = {median}, dispersion β = {dispersion}.";
-    NO_CURVE = "No fragility curve fits.";
     NO_STUDIED = "The plan has no requirement on a probability of this study.";
 
     // The first page.
@@ -38,7 +37,7 @@ phrases! {
     MET = "MET";
     NOT_MET = "NOT MET";
     UNDECIDED = "UNDECIDED";
-    fn at_look(number) = " at look {number}";
+    fn after_runs(runs) = " after {runs} runs";
     fn intervals(confidence) = "Intervals have a confidence of {confidence} (Clopper–Pearson). A requirement is met or not met if its \
         whole interval is on one side of the limit, otherwise undecided.";
     BY_LOOKS = "The study chose its own end. Its intervals are those of its last look, which are wider than those of a fixed number \
@@ -99,8 +98,7 @@ phrases! {
     SPLIT_COLUMNS = ["Records", "Record-to-record β", "Modelling β", "Between records", "Interval"];
     SPLIT = "Between records: fraction of β² that is record-to-record, with its profile likelihood (random effects of the records). \
         The rest is that of the other inputs.";
-    MODELLING_ALONE = "The dispersion is that of the varied inputs (modelling). It has no record-to-record part: the ground motion \
-        does not vary.";
+    MODELLING_ALONE = "The dispersion comes from the varied inputs (modelling).";
     RECORDS_ALONE = "The dispersion is record-to-record alone: nothing else varies. Curve and band hold for these records.";
     OF_THESE_RECORDS = "Curve and band hold for these records, with equal probabilities.";
     STEPPED = "stepped";
@@ -156,7 +154,8 @@ phrases! {
     fn tornado(name) = "{name}: first-order sensitivities by ranks.";
     fn rank_tornado(name) = "{name}: rank correlations with the inputs.";
     fn scatter(result, input) = "{result} against {input}, one dot per run.";
-    fn fragility(condition, intensity) = "Probability of {condition} by {intensity}. Beyond the stripes the curve is dashed.";
+    fn fragility(condition, intensity) = "Probability of {condition} by {intensity}.";
+    EXTRAPOLATED = " Beyond the stripes the curve is dashed.";
     fn described(caption, x, y) = "{caption} x: {x}; y: {y}.";
 }
 

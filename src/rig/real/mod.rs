@@ -227,9 +227,16 @@ impl Rig for RealRig {
             .encode(&turned, speed)
             .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
         let encoded = self.in_plan(&going.targets);
+        // A first target that is rounded is settled at where it was sent.
+        let (rounding, settles_at) = if self.actuator.rounds_first_target() {
+            (self.settle.band / 2.0, encoded.clone())
+        } else {
+            (0.0, targets.to_vec())
+        };
         // The resolution of the devices bounds how close the decoded target can be.
         let apt = |(axis, (encoded, target)): (&Axis, (&f64, &f64))| {
-            let allowed = WIRE_ROUNDING.max(axis.rules.resolution / 2.0) * (1.0 + 1e-6);
+            let allowed =
+                WIRE_ROUNDING.max(axis.rules.resolution / 2.0).max(rounding) * (1.0 + 1e-6);
             (encoded - target).abs() <= allowed
         };
         let apt = going.speed > 0.0
@@ -258,7 +265,7 @@ impl Rig for RealRig {
         };
         self.proposed = Some(Proposed {
             going,
-            targets: targets.to_vec(),
+            targets: settles_at,
             from,
         });
         Ok(propose)

@@ -25,7 +25,7 @@ const STOREY: &[Variant] = &[Variant::with(
             .above_zero(),
         Field {
             example: "stiffness: 3 MN/m",
-            ..STIFFNESS.default_in_words("that of the behaviour, or 2 × `column_stiffness`")
+            ..STIFFNESS.default_in_words("from the behaviour, or 2 × `column_stiffness`")
         },
         Field::quantity(
             storey::COLUMN_STIFFNESS,

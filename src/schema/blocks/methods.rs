@@ -109,7 +109,7 @@ pub(crate) const AT_TIME: Field = Field::quantity("time", Dimension::TIME, "simu
     .at_least_zero();
 
 const INSPECT_TRIGGERS: &[Variant] = &[
-    Variant::with("every", &[STEPS_BETWEEN], "every so many steps"),
+    Variant::with("every", &[STEPS_BETWEEN], "after a fixed number of steps"),
     Variant::with(
         "force_drop",
         &[FRACTION],

@@ -21,7 +21,10 @@ pub(crate) const CONTACT: Field = Field::text("contact", "contact details of the
 
 pub(crate) const OPERATOR: Field = Field::text("operator", "person who carries out the test");
 
-pub(crate) const DATE: Field = Field::text("date", "date of the test, ISO 8601");
+pub(crate) const DATE: Field = Field::text(
+    "date",
+    "date of the test, ISO 8601; without it, the day on which the run begins",
+);
 
 pub(crate) const ISSUED: Field =
     Field::text("issued", "day on which the report is issued, ISO 8601");

@@ -274,10 +274,23 @@ fn no_fit(reason: NoFit, column: &Column) -> String {
             printed(intensity)
         ),
         NoFit::Step { below, above } => format!(
-            "no run exceeds the limit up to {}, every run from {}: intensities between them are missing",
+            "no run exceeds the limit up to {}, every run from {}: add intensities between them",
             printed(below),
             printed(above)
         ),
+        NoFit::OneMixed {
+            mixed,
+            below,
+            above,
+        } => {
+            let wanted = if above.is_finite() {
+                format!("between {} and {}", printed(below), printed(above))
+            } else {
+                format!("above {}", printed(below))
+            };
+            let mixed = printed(mixed);
+            format!("only one intensity ({mixed}) has both outcomes: add intensities {wanted}")
+        }
         NoFit::OneIntensity | NoFit::NoneExceeds | NoFit::AllExceed | NoFit::NotRising => {
             reason.to_string()
         }

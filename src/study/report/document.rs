@@ -8,7 +8,7 @@ use crate::report::document::{Block, Column, Document, Style, Table, Text, Tone,
 use crate::report::number::comparison_sign;
 use crate::report::wording::study::in_the_box;
 use crate::report::wording::{LABELS, study as wording, verdict};
-use crate::study::answers::{Answers, StudiedAnswer};
+use crate::study::answers::{Answers, LookAnswer, StudiedAnswer};
 use crate::study::data_set::{Kind, Metadata, Stopping};
 
 use super::figures::{FigureKind, percent};
@@ -202,7 +202,7 @@ fn statements(source: &Source<'_>, body: &mut Vec<Block>) {
                 .studied
                 .iter()
                 .zip(&source.metadata.studied)
-                .map(|(answer, studied)| statement_row(answer, studied.comparison))
+                .map(|(answer, studied)| statement_row(answers, answer, studied.comparison))
                 .collect(),
         }));
         let confidence = percent(answers.confidence);
@@ -237,13 +237,15 @@ fn first_figure(source: &Source<'_>, body: &mut Vec<Block>) {
     body.extend(source.figures_of(|figure| figure.kind == shown).take(1));
 }
 
-fn statement_row(answer: &StudiedAnswer, comparison: Comparison) -> Vec<Text> {
+fn statement_row(answers: &Answers, answer: &StudiedAnswer, comparison: Comparison) -> Vec<Text> {
     let (style, word) = match answer.decision {
         Decision::Met => (Style::Strong, wording::MET),
         Decision::NotMet => (Style::Fail, wording::NOT_MET),
         Decision::Undecided => (Style::Inconclusive, wording::UNDECIDED),
     };
-    let look = answer.look.map(wording::at_look).unwrap_or_default();
+    let decided = |look: &&LookAnswer| Some(look.number) == answer.look;
+    let look = answers.looks.iter().find(decided);
+    let look = look.map_or_else(String::new, |look| wording::after_runs(look.runs));
     vec![
         Text::from(answer.label.as_str()).line().code(&answer.text),
         probability(answer.probability.as_ref()),

@@ -22,7 +22,8 @@ pub fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     };
     body.push(Block::section(wording::FRAGILITY));
     let fitted = |fit: &&FitAnswer| fit.no_fit.is_none();
-    if fragility.fits.iter().any(|fit| fitted(&fit)) {
+    let any = fragility.fits.iter().any(|fit| fitted(&fit));
+    if any {
         let mut titles = wording::FIT_COLUMNS.into_iter();
         let mut columns = vec![Column::words(titles.next().unwrap_or_default(), 1)];
         columns.extend(titles.map(Column::numbers));
@@ -57,6 +58,7 @@ pub fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     }
     let records = matches!(&source.metadata.kind, Kind::Fragility(it) if it.record.is_some());
     match (records, source.metadata.inputs.len()) {
+        _ if !any => {}
         (true, 2) => body.push(Block::note(wording::RECORDS_ALONE)),
         (true, _) => body.push(Block::note(wording::OF_THESE_RECORDS)),
         (false, 1) => {}
@@ -87,7 +89,8 @@ pub fn statement(metadata: &Metadata, answers: &Answers) -> Option<String> {
         ..
     }) = fitted
     else {
-        return Some(wording::NO_CURVE.to_owned());
+        let reason = fits.iter().rev().find_map(|fit| fit.no_fit.as_ref());
+        return reason.map(wording::no_fit);
     };
     let median = display::readable(*median, dimension);
     Some(wording::curve(median, decimals(*dispersion)))

@@ -122,7 +122,15 @@ fn a_fragility_shows_its_curve_or_why_there_is_none() {
     let few = [0.1, 0.15];
     let metadata = fragility_metadata(&few, 10);
     let none = crate::study::answers::testing::answers(&metadata, &fragility_rows(&few, 10));
-    assert!(page(&metadata, &none).contains("No curve fits: no run exceeds the limit"));
+    let without = page(&metadata, &none);
+    let reason = "No curve fits: no run exceeds the limit";
+    assert_eq!(
+        without.matches(reason).count(),
+        2,
+        "on the first page and in the section"
+    );
+    assert!(!without.contains("dashed") && !without.contains("dispersion comes"));
+    assert!(shown.contains("dashed") && !shown.contains("ground motion"));
 }
 
 /// Names and labels are data: none of them is markup in the page.

@@ -14,7 +14,7 @@ use crate::record::journal::EntryKind;
 use crate::record::journal::testing::PowerLoss;
 use crate::record::{EventKind, Outcome};
 use crate::rig::Rig as _;
-use crate::rig::safety::failpoint::Guarding;
+use crate::rig::safety::failpoint::{Guarding, without};
 
 const AT_3_MM: &str = "stands at 3 mm";
 
@@ -254,6 +254,12 @@ fn a_drive_in_the_other_word_order_is_not_moved() {
         force_unit: 1.0,
         ..whole
     };
+    let whole = ModbusMap {
+        number: ModbusNumber::Int32 {
+            high_word_first: true,
+        },
+        ..whole
+    };
     for map in [whole, shorts] {
         for (noise, start) in [
             (1.0, ""),
@@ -292,6 +298,76 @@ fn a_drive_in_the_other_word_order_is_not_moved() {
                 "{:?}, noise {noise}: {outcome}",
                 map.number
             );
+        }
+    }
+}
+
+/// The largest target of a drive whose word order is not that of the plan, while all its readings are exactly 0 \[m\], and why the run
+/// ended.
+fn moved_at_zero(number: ModbusNumber) -> (f64, String) {
+    let Dialect::Modbus(map) = modbus()
+        .rig
+        .link
+        .as_real()
+        .unwrap()
+        .actuator
+        .dialect
+        .clone()
+    else {
+        panic!()
+    };
+    // 0.05 of the first unit, 50 of the second.
+    let length_unit = match number {
+        ModbusNumber::Float32 { .. } => 1e-3,
+        _ => 1e-6,
+    };
+    // Nothing else holds it: the drive moves at its own speed.
+    let map = ModbusMap {
+        number,
+        speed: None,
+        length_unit,
+        ..map
+    };
+    let mut drive = plan();
+    link(&mut drive).readings.noise = 0.0;
+    link(&mut drive).actuator = device_link(Dialect::Modbus(map));
+    let mut asked = drive.clone();
+    link(&mut asked).actuator = device_link(Dialect::Modbus(ModbusMap {
+        number: swapped(number),
+        ..map
+    }));
+    let emulator = emulator(&drive, "", Log::none(), 1);
+    let mut rig = open(&asked, &emulator).unwrap();
+    let record = crate::run::run(&asked, &mut rig, &mut crate::run::Unwatched);
+    let (Outcome::Faulted { reason } | Outcome::Aborted { reason }) = record.outcome else {
+        panic!("{:?}", record.outcome)
+    };
+    let emulator = emulator.lock();
+    let targets = emulator.rig().moves().iter().flat_map(|sent| &sent.targets);
+    (
+        targets.map(|target| target.abs()).fold(0.0, f64::max),
+        reason,
+    )
+}
+
+/// Readings of exactly 0 are possible in both orders.
+#[test]
+fn a_drive_in_the_other_word_order_that_reads_zero_is_not_moved_either() {
+    for high_word_first in [true, false] {
+        let (float, whole) = (
+            ModbusNumber::Float32 { high_word_first },
+            ModbusNumber::Int32 { high_word_first },
+        );
+        let (moved, reason) = moved_at_zero(float);
+        assert!(moved < 1e-30, "{moved} m: {reason}");
+        let (moved, reason) = moved_at_zero(whole);
+        assert!(
+            moved == 0.0 && reason.contains("do not show the order of the two words"),
+            "{moved} m: {reason}"
+        );
+        for number in [float, whole] {
+            let (moved, _) = without(Guarding::WordOrder, || moved_at_zero(number));
+            assert!(moved > 1.0, "nothing else sees it: {moved} m");
         }
     }
 }

@@ -7,6 +7,7 @@ pub(crate) mod expected_scatter;
 pub(crate) mod frame;
 pub(crate) mod hold_quantization;
 pub(crate) mod impact;
+pub(crate) mod last_blow;
 pub(crate) mod matrices;
 pub(crate) mod path_matrix;
 pub(crate) mod quantization;

@@ -145,6 +145,7 @@ codes! {
     E664 NothingToDecide Error;
     E665 StudyOnRealRig Error;
     E666 InvalidEnd Error;
+    E667 NeverMet Error;
     // 7: plans that run but are not advisable
     W701 StepAboveCritical Warning;
     W702 PeakForceUnderRigidLaw Warning;
@@ -175,6 +176,10 @@ codes! {
     W729 NothingToGuard Warning;
     W730 FinalIsNotResidual Warning;
     W731 TooFewRuns Warning;
+    W732 AlwaysMet Warning;
+    W733 RunsWithoutResult Warning;
+    W734 BandWithinResolution Warning;
+    W735 WindowExcludesStiffness Warning;
     W736 PartialUnderGuard Warning;
 }
 

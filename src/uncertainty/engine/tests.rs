@@ -134,21 +134,77 @@ fn trials_come_to_the_errors_of_the_readings() {
     assert!((crate::uncertainty::combined(&found).unwrap() - 0.2).abs() < 1e-12);
 }
 
-/// First order, second order, and steps that do not converge.
+/// First order, second order, no effect, and steps that do not converge.
 #[test]
-fn the_time_step_contributes_what_finer_steps_leave_out() {
-    let of = |errors: [f64; 3]| {
-        let [own, half, quarter] = errors.map(|error| 10.0 + error);
-        of_finer_steps(own, own, [half, quarter])
+fn effects_of_the_time_step_are_marked_if_the_steps_do_not_converge() {
+    let sure = |errors: [f64; 3]| {
+        let amounts = Refinement::ALL.into_iter().zip(errors);
+        let mut parts: Vec<Contribution> = amounts
+            .map(|(steps, error)| Contribution::new(Source::TimeStep(steps), error - errors[0]))
+            .collect();
+        mark_if_not_converging(10.0, &mut parts);
+        assert_eq!(crate::uncertainty::combined(&parts), Some(0.0));
+        parts.iter().all(|part| part.smooth)
     };
-    let (first, sure) = of([1.0, 0.5, 0.25]);
-    assert!((first - 0.75).abs() < 1e-12 && sure);
-    let (second, sure) = of([1.0, 0.25, 0.0625]);
-    assert!((second - 0.9375).abs() < 1e-12 && sure);
-    let (none, sure) = of([0.0, 0.0, 0.0]);
-    assert!(none == 0.0 && sure);
-    let (wild, sure) = of([0.1, -0.4, 0.3]);
-    assert!((wild - 0.5).abs() < 1e-12 && !sure);
-    // A value at the end of a step is off by that too.
-    assert!((of_finer_steps(10.5, 10.0, [10.0, 10.0]).0 - 0.5).abs() < 1e-12);
+    assert!(sure([1.0, 0.5, 0.25]));
+    assert!(sure([1.0, 0.25, 0.0625]));
+    assert!(sure([0.0, 0.0, 0.0]));
+    assert!(!sure([0.1, -0.4, 0.3]));
+}
+
+/// y = a·e(Δt) with the error e of first order and a of an earlier procedure, 1 in its own steps, 1.5 and 1.75 in finer ones. The value
+/// is reported at the end of a step, 0.25 too large.
+#[test]
+fn finer_steps_are_those_of_every_procedure() {
+    struct Stepped;
+    impl Evaluate for Stepped {
+        type Inputs = f64;
+
+        fn inputs(&self, shifts: Shifts<'_>) -> Result<f64, String> {
+            let earlier = |(source, by): &(Source, f64)| match source {
+                Source::TimeStep(Refinement::Half) => 0.5 * by,
+                Source::TimeStep(Refinement::Quarter) => 0.75 * by,
+                _ => 0.0,
+            };
+            Ok(1.0 + shifts.iter().map(earlier).sum::<f64>())
+        }
+
+        fn evaluate(&self, readings: &Perturbation, a: &f64) -> Evaluation {
+            let error = 1.0 / f64::from(readings.finer);
+            Evaluation {
+                farthest: 1.0,
+                ..Evaluation::of_readings(vec![a * (1.0 + error)])
+            }
+        }
+    }
+    let instruments = InstrumentUncertainty::exact_but_for(ReadingErrors::default());
+    let found = |reported| {
+        let propagation = Propagation {
+            procedure: ProcedureId(1),
+            impact: 0,
+            evaluate: &Stepped,
+            instruments: &instruments,
+            inputs: vec![Source::TimeStep(Refinement::Half)],
+            steps: 10,
+            reported,
+        };
+        let Ok(found) = propagation.contributions::<()>(&mut |_, _| Ok(())) else {
+            panic!("not evaluated")
+        };
+        found[0]
+            .iter()
+            .map(|part| (part.source, part.amount))
+            .collect::<Vec<_>>()
+    };
+    let of = Source::TimeStep;
+    assert_eq!(
+        found(Some(vec![2.25])),
+        [
+            (of(Refinement::Own), -0.25),
+            (of(Refinement::Half), 1.5 * 1.5 - 2.25),
+            (of(Refinement::Quarter), 1.75 * 1.25 - 2.25)
+        ]
+    );
+    // A procedure without time steps has the effect of its inputs.
+    assert_eq!(found(None), [(of(Refinement::Half), 1.5 * 2.0 - 2.0)]);
 }

@@ -79,8 +79,8 @@ pub const CASES: &[Case] = &[
         force_error: 0.05,
         ..serial(
             "modbus with mark10 gauge",
-            "actuator = serial(port: \"FOLDER/a\", dialect: modbus(unit: 1, number: int32(low_word_first), target: 100, \
-             position: 102, length_unit: 1 um, speed: 106, speed_unit: 1 um/s, status: 108, moving_mask: 1, command: 109, \
+            "actuator = serial(port: \"FOLDER/a\", dialect: modbus(unit: 1, number: float32(low_word_first), target: 100, \
+             position: 102, length_unit: 1 mm, speed: 106, speed_unit: 1 mm/s, status: 108, moving_mask: 1, command: 109, \
              start_word: 1, stop_word: 2))\n  load_cell = serial(port: \"FOLDER/b\", dialect: mark10_gauge)",
         )
     },
@@ -191,7 +191,7 @@ impact hit {{
   duration  = {duration} ms
 }}
 
-require "is struck" hit.max_displacement > 1 mm
+require "is struck" hit.contacts >= 1
 
 report {{
   figures = []

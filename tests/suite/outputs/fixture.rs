@@ -601,6 +601,7 @@ fn assessment(largest: f64, error: f64) -> Assessment {
                 conforms: uncertainty.map(|_| 1.0),
                 wider_than_tolerance: false,
                 reason: None,
+                in_finer_steps: None,
             }],
         }
     };

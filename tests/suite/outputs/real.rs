@@ -5,8 +5,8 @@ use psd::plan::{
     ReadingRules, RealLink, SafeState,
 };
 use psd::record::{Event, EventKind, Outcome};
-use psd::report::ReportStatus;
 use psd::report::{Change, Issue, IssueKind, Issues, RealRun, console};
+use psd::report::{ReportStatus, report_status};
 
 use super::fixture::{Finished, finished};
 use super::{files, text};
@@ -108,9 +108,9 @@ fn missing(finished: &Finished) -> Vec<String> {
 }
 
 #[test]
-fn a_complete_real_run_is_issuable_and_names_its_equipment() {
+fn the_report_of_a_real_run_with_every_particular_is_issued_and_names_its_equipment() {
     let finished = real();
-    assert_eq!(ReportStatus::of(&finished.run()), ReportStatus::Issuable);
+    assert_eq!(ReportStatus::of(&finished.run()), ReportStatus::Issued);
     let files = files(&finished);
     let html = text(&files, "report.html").replace('\u{a0}', " ");
     for expected in [
@@ -144,7 +144,7 @@ fn a_complete_real_run_is_issuable_and_names_its_equipment() {
     let summary: serde_json::Value = serde_json::from_str(text(&files, "summary.json")).unwrap();
     assert_eq!(
         (&summary["report_status"], &summary["record"]["records"]),
-        (&"issuable".into(), &1234.into())
+        (&"issued".into(), &1234.into())
     );
     assert_eq!(
         summary["procedures"]["hit"]["results"]["contacts"]["value"].to_string(),
@@ -183,6 +183,13 @@ fn what_a_report_must_state_and_lacks_is_named() {
             && html.contains("NOT ISSUABLE")
             && html.contains("OVERDUE</span> on 2027-03-01")
     );
+    // The requirements are met, and nothing is green.
+    assert!(html.contains("NOT ISSUABLE: all ") && !html.contains("class=\"verdict pass\""));
+    assert_eq!(
+        report_status::overdue(&expired.plan, "2027-03-01"),
+        ["the calibration was due on 2027-02-28"]
+    );
+    assert_eq!(report_status::overdue(&expired.plan, "2027-02-28"), [""; 0]);
     assert!(
         console::verdict_text(&expired.run(), false)
             .contains("(NOT ISSUABLE: lacks a valid calibration")
@@ -196,7 +203,23 @@ fn what_a_report_must_state_and_lacks_is_named() {
     undated.provenance.date = Some("next week, perhaps".into());
     assert_eq!(missing(&undated), ["the day of the test"]);
     undated.provenance.date = Some("2027-02-28".into());
-    assert_eq!(ReportStatus::of(&undated.run()), ReportStatus::Issuable);
+    assert_eq!(ReportStatus::of(&undated.run()), ReportStatus::Issued);
+}
+
+#[test]
+fn a_test_that_was_stopped_is_reported_as_what_it_is() {
+    let mut aborted = real();
+    aborted.record.outcome = Outcome::Aborted {
+        reason: "stopped on request".into(),
+    };
+    assert_eq!(ReportStatus::of(&aborted.run()), ReportStatus::Issued);
+    let html = files(&aborted);
+    assert!(text(&html, "report.html").contains("<div>INCOMPLETE</div>"));
+    // Without a release nothing was tested.
+    aborted.record.outcome = Outcome::NotReleased {
+        reason: "declined".into(),
+    };
+    assert_eq!(missing(&aborted), ["a test: the motion was not released"]);
 }
 
 #[test]
@@ -241,13 +264,13 @@ fn particulars_missing(change: impl FnOnce(&mut Vec<(&'static str, String)>)) ->
     let mut finished = real();
     change(&mut finished.plan.particulars);
     match ReportStatus::of(&finished.run()) {
-        ReportStatus::ParticularsMissing { missing } => missing,
+        ReportStatus::Draft { missing } => missing,
         other => panic!("{other:?}"),
     }
 }
 
 #[test]
-fn a_report_without_what_every_report_states_is_not_issuable_and_names_it() {
+fn a_report_without_what_every_report_states_is_a_draft_and_names_it() {
     for (field, name) in [
         ("standard", "method"),
         ("specimen_id", "item tested"),
@@ -272,14 +295,14 @@ fn a_report_without_what_every_report_states_is_not_issuable_and_names_it() {
     bare.plan
         .particulars
         .retain(|(field, _)| *field != "receipt_date");
-    assert_eq!(ReportStatus::of(&bare.run()), ReportStatus::Issuable);
+    assert_eq!(ReportStatus::of(&bare.run()), ReportStatus::Issued);
     assert!(text(&files(&bare), "report.html").contains("Not given: Condition, Item received."));
 
     bare.plan.particulars.clear();
     let files = files(&bare);
     let html = text(&files, "report.html");
     for expected in [
-        "<div>PARTICULARS MISSING</div>",
+        "<div>DRAFT</div>",
         "7.8.2.1. Missing: laboratory; address; ",
     ] {
         assert!(html.contains(expected), "{expected}");
@@ -294,11 +317,11 @@ fn a_report_without_what_every_report_states_is_not_issuable_and_names_it() {
             &summary["report_status"],
             summary["missing"].as_array().unwrap().len()
         ),
-        (&"particulars missing".into(), 8)
+        (&"draft".into(), 8)
     );
     let line = console::verdict_text(&bare.run(), false);
     assert!(
-        line.contains("(PARTICULARS MISSING: laboratory, address, ") && line.contains("psd issue"),
+        line.contains("(DRAFT: `psd issue` adds laboratory, address, "),
         "{line}"
     );
     // A simulation is not issuable.
@@ -342,7 +365,7 @@ fn dates_out_of_order_are_reported() {
     }
     assert_eq!(
         ReportStatus::of(&near.run()),
-        ReportStatus::Issuable,
+        ReportStatus::Issued,
         "the days of a laboratory may be one off those of UTC"
     );
 }
@@ -392,7 +415,7 @@ fn a_simulated_rig_on_a_real_line_is_marked_across_the_page_whatever_else_is_wro
     };
     assert_eq!(
         ReportStatus::reasons(&emulated.run()),
-        [ReportStatus::Simulation, ReportStatus::Incomplete]
+        [ReportStatus::Simulation]
     );
     let files = files(&emulated);
     let html = text(&files, "report.html");

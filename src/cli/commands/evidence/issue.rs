@@ -1,6 +1,6 @@
 //! `psd issue RUN` and `psd report RUN --amend`: a report that states particulars known only after the test, or that replaces another
 //! report. In: a run folder that verifies, the particulars, the day, the issuer and the reason. Out: a new folder beside it with the same
-//! run log. The original folder and all measured numbers are not changed.
+//! run log. The original folder and all measured numbers are not changed. Only the report of a test that lacks nothing is issued.
 
 use std::path::{Path, PathBuf};
 
@@ -14,13 +14,14 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::record_file;
 use crate::cli::files::run_folder::{RunFolder, copy, write_new};
 use crate::cli::output::{print_message, print_result};
-use crate::cli::settings::Settings;
+use crate::cli::settings::{Settings, today};
 use crate::evidence::{
     Folder, ISSUE, IssueFile, MANIFEST, One, OneKind, Rebuilt, ReplayedRun, examine, may_be_stated,
 };
 use crate::files::failure::plain;
 use crate::files::recorded_run::JOURNAL;
-use crate::report::OutputFile;
+use crate::report::status::days::days_after;
+use crate::report::{OutputFile, ReportStatus, Run, report_status};
 use crate::schema::plan_block::{AUTHORISED_BY, ISSUED};
 use crate::text::diagnostic::excerpt::one_line;
 
@@ -45,7 +46,7 @@ struct Wanted<'a> {
     `psd report --amend`.\n\n\
     Exit codes:\n\
     \x20 0  issued\n\
-    \x20 2  error on the command line, or dates out of order\n\
+    \x20 2  error on the command line, dates out of order, or a report that cannot be issued\n\
     \x20 3  the folder does not verify, or fault of a file"
 )]
 pub struct IssueArguments {
@@ -71,23 +72,11 @@ pub struct IssueArguments {
 
 /// Issues a report: issuer, day, and particulars that are known only after the test.
 pub fn issue(arguments: &IssueArguments, settings: Settings) -> Result<Exit, Failure> {
-    let mut particulars = particulars(&arguments.set_particular, arguments.particulars.as_deref())?;
-    if let Some((field, _)) = particulars
-        .iter()
-        .find(|(field, _)| field == AUTHORISED_BY.name)
-    {
-        return Err(
-            Failure::command_line(format!("`{field}` is the issuer of the report"))
-                .help("write `--authorised-by NAME`"),
-        );
-    }
-    particulars.insert(
-        0,
-        (
-            AUTHORISED_BY.name.to_owned(),
-            arguments.authorised_by.clone(),
-        ),
-    );
+    let particulars = particulars(
+        &arguments.set_particular,
+        arguments.particulars.as_deref(),
+        "--authorised-by",
+    )?;
     make(
         Wanted {
             run: &arguments.run,
@@ -138,7 +127,11 @@ pub fn amend(
             "an amendment requires `--by`, `--date` and `--reason`",
         ));
     };
-    let particulars = particulars(&arguments.set_particular, arguments.particulars.as_deref())?;
+    let particulars = particulars(
+        &arguments.set_particular,
+        arguments.particulars.as_deref(),
+        "--by",
+    )?;
     if particulars.is_empty() {
         return Err(Failure::command_line("the amendment changes nothing")
             .help("state the change: `--set-particular customer=\"Other Ltd\"`"));
@@ -171,8 +164,9 @@ fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
     };
     refuse_rival(run, &report.id, &manifest.digest)?;
     let before = IssueFile::of(&folder).map_err(|fault| Failure::file(run, fault))?;
-    // The day of the issue is the day of the report.
+    // The issuer authorises this report, and the day of the issue is its day.
     let particulars = [
+        vec![(AUTHORISED_BY.name.to_owned(), wanted.by.clone())],
         wanted.particulars,
         vec![(ISSUED.name.to_owned(), wanted.date.to_owned())],
     ]
@@ -190,6 +184,8 @@ fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
     let read = record_file::of_text(&run.join(JOURNAL), run_log)?;
     let replayed =
         ReplayedRun::of(read, Some(&file), &prediction).map_err(Failure::command_line)?;
+    refuse_unissuable(run, &replayed.run())?;
+    print_message(&in_the_future(wanted.date));
 
     let beside = beside(run, wanted.kind);
     let created = RunFolder::create(Some(wanted.out.unwrap_or(&beside)), run)?;
@@ -219,6 +215,76 @@ fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
     Ok(Exit::Met)
 }
 
+/// Only the report of a test is issued, and only with everything that it must state.
+fn refuse_unissuable(folder: &Path, run: &Run<'_>) -> Result<(), Failure> {
+    let (mut why, mut never) = (Vec::new(), false);
+    for reason in ReportStatus::reasons(run) {
+        let (text, for_ever) = match reason {
+            ReportStatus::Issued => continue,
+            ReportStatus::Simulation => (
+                "it is a simulation: no specimen was tested".to_owned(),
+                true,
+            ),
+            ReportStatus::CheckRun => (
+                "it is a check run, not the test of the plan".to_owned(),
+                true,
+            ),
+            // A simulation has neither operator nor calibration.
+            ReportStatus::NotIssuable { .. } if run.record.rig.simulated => continue,
+            ReportStatus::NotIssuable { missing } => (
+                format!(
+                    "it lacks {}, which cannot be added after the test",
+                    missing.join(", ")
+                ),
+                true,
+            ),
+            ReportStatus::Draft { missing } => (format!("it lacks {}", missing.join(", ")), false),
+        };
+        why.push(text);
+        never |= for_ever;
+    }
+    if why.is_empty() {
+        return Ok(());
+    }
+    let fields = report_status::missing_particular_fields(run);
+    let given: Vec<String> = fields
+        .iter()
+        .map(|field| format!("--set-particular {field}=\"…\""))
+        .collect();
+    let help = match (never, given.is_empty()) {
+        (true, true) => {
+            "issue the report of a test on a real rig whose plan states all of this".to_owned()
+        }
+        (true, false) => format!(
+            "repeat the test with all of this in the plan; after a test only these can be added: {}",
+            given.join(" ")
+        ),
+        (false, false) => format!("add {}", given.join(" ")),
+        (false, true) => {
+            "state the right days, for example `--set-particular receipt_date=\"2026-05-31\"`"
+                .to_owned()
+        }
+    };
+    Err(Failure::command_line(format!(
+        "the report of {} cannot be issued: {}",
+        folder.display(),
+        one_line(&why.join("; "))
+    ))
+    .help(help))
+}
+
+/// A remark on a day of issue that is not there yet; empty for any other. Time zones are a day apart.
+fn in_the_future(date: &str) -> String {
+    const TIME_ZONES: i64 = 1;
+    let today = today();
+    match days_after(&today, date) {
+        Some(days) if days > TIME_ZONES => format!(
+            "  the date of issue, {date}, is {days} days after today ({today}, by the clock of this computer): is it right?\n"
+        ),
+        _ => String::new(),
+    }
+}
+
 /// A report can be replaced only once. With two replacements, neither would be the valid one.
 fn refuse_rival(run: &Path, report: &str, manifest_sha256: &str) -> Result<(), Failure> {
     let run = run
@@ -242,7 +308,7 @@ fn refuse_rival(run: &Path, report: &str, manifest_sha256: &str) -> Result<(), F
                     path.display()
                 ),
             )
-            .help("amend that report"));
+            .help("amend that report; if nobody has received it, you can delete its folder and issue again"));
         }
     }
     Ok(())
@@ -270,10 +336,11 @@ fn beside(run: &Path, kind: OneKind) -> PathBuf {
         .unwrap_or_else(|| named(u32::MAX))
 }
 
-/// The particulars of the command line and of the file, in this order, each once.
+/// The particulars of the command line and of the file, in this order, each once. `issuer`: the option that names the issuer.
 fn particulars(
     given: &[(String, String)],
     file: Option<&Path>,
+    issuer: &str,
 ) -> Result<Vec<(String, String)>, Failure> {
     let mut all = given.to_vec();
     if let Some(path) = file {
@@ -281,6 +348,12 @@ fn particulars(
     }
     for (at, (field, text)) in all.iter().enumerate() {
         may_be_stated(field).map_err(Failure::command_line)?;
+        if field == AUTHORISED_BY.name {
+            return Err(
+                Failure::command_line(format!("`{field}` is the issuer of this report"))
+                    .help(format!("write `{issuer} NAME`")),
+            );
+        }
         if field == ISSUED.name {
             return Err(Failure::command_line("`issued` is the date of this report")
                 .help("write `--date YYYY-MM-DD`"));

@@ -11,9 +11,10 @@ use super::dialogue::Dialogue;
 use super::dialogue::by_lines::Person;
 use super::question::{self, After, Kind, Question, Stay};
 use super::screen::{self, Screen};
-use crate::cli::settings::Settings;
+use crate::cli::settings::{Settings, today};
 use crate::plan::Plan;
 use crate::record::{Event, EventKind, NO_OPERATOR_ASKED};
+use crate::report::report_status;
 use crate::rig::{Live, StopRequest};
 use crate::run::{Extent, Inspection, Motion, Next, Observer, StepReport};
 use crate::schema::plan_block::OPERATOR;
@@ -28,6 +29,8 @@ pub struct Watcher {
     stop_request: StopRequest,
     /// The expected demand of the run.
     expected: Extent,
+    /// The calibrations that are overdue today.
+    overdue: Vec<String>,
     /// The motion for which the rig was released.
     released: Option<Motion>,
     /// The reason for the early end of the run.
@@ -135,6 +138,7 @@ impl Watcher {
             asking,
             stop_request,
             expected: Extent::default(),
+            overdue: report_status::overdue(plan, &today()),
             released: None,
             ended: None,
             alarm: None,
@@ -278,7 +282,12 @@ impl Observer for Watcher {
 
     fn release(&mut self, _: &str, motion: &Motion) -> Inspection {
         let motion = motion.clone().expecting(self.expected);
-        let question = Question::of(Kind::Release, &motion);
+        let mut question = Question::of(Kind::Release, &motion);
+        question.lines.extend(
+            self.overdue
+                .iter()
+                .map(|calibration| escape(&format!("{:<9} NOT ISSUABLE: {calibration}", "report"))),
+        );
         self.released = Some(motion);
         self.ask(&question)
     }

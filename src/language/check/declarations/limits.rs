@@ -8,7 +8,7 @@ use crate::language::syntax::ast::{Expr, ExprKind};
 use crate::plan::declaration::reader;
 use crate::plan::formula::Formula;
 use crate::plan::rig::limits::limits_fields;
-use crate::plan::{Interval, Limits};
+use crate::plan::{Interval, Limits, Specimen};
 use crate::schema::limits::NAMES;
 use crate::schema::procedures::{SPEED, damping_sweep, move_to, stiffness_ramp};
 use crate::schema::{Field, FieldType, Kind};
@@ -125,12 +125,17 @@ impl<'a> Checker<'a> {
         self.moves_at_all(field.name, interval, written.span)
     }
 
-    /// An actuator with a speed limit of zero never arrives.
+    /// An actuator with a speed limit of zero never arrives; a displacement or force limit of zero stops a run at its first reading.
     fn moves_at_all(&mut self, field: &str, interval: Interval, span: Span) -> Option<Interval> {
-        if field == NAMES.speed && interval.high <= 0.0 {
-            return self.fail(values::no_speed(span));
-        }
-        Some(interval)
+        let nothing = interval.low >= 0.0 && interval.high <= 0.0;
+        let help = match field {
+            _ if !nothing || self.recorded => return Some(interval),
+            _ if field == NAMES.speed => "write the largest speed of the actuator, as in `10 mm/s`",
+            _ if field == NAMES.displacement => "write the travel, as in `-5 mm .. 60 mm`",
+            _ if field == NAMES.force => "write the largest force, as in `12 kN`",
+            _ => return Some(interval),
+        };
+        self.fail(values::no_motion(field, help, span))
     }
 
     /// Every `limits` block; the intersection of those without a name and the one that the rig names. A plan that asks for
@@ -254,6 +259,47 @@ pub fn check_start(checker: &mut Checker, limits: &CheckedLimits) {
     }
 }
 
+/// Compares the forces of an elastic specimen on a virtual rig at the targets that are known before the run with the limits: they follow
+/// from its stiffness. A real specimen has the force that it has, and a recorded run has ended.
+pub fn check_forces(checker: &mut Checker, limits: &CheckedLimits, specimens: &[Option<Specimen>]) {
+    let (Some(at), None, false) = (limits.force_at, checker.real_rig, checker.recorded) else {
+        return;
+    };
+    let interval = limits.limits.force;
+    let procedures: Vec<usize> = checker.scope.procedures().map(|(index, _)| index).collect();
+    for block in procedures {
+        for field in [stiffness_ramp::NAMES.displacements, move_to::NAMES.to] {
+            let Some((entry, written)) = checker.field(block, field) else {
+                continue;
+            };
+            let span = written.value.span;
+            let tested = checker.specimen_block(block);
+            let specimen = tested.map(|tested| checker.scope.index_in_kind(tested));
+            let specimen = specimen.and_then(|index| specimens.get(index)?.as_ref());
+            let behaviour = specimen.and_then(|specimen| specimen.behaviour.as_ref());
+            let Some(behaviour) = behaviour.filter(|behaviour| behaviour.is_elastic()) else {
+                continue;
+            };
+            let stiffness = behaviour.initial_stiffness();
+            let typed = checker.entry(block, entry, span);
+            let targets = typed.map(|typed| typed.parts()).unwrap_or_default();
+            let beyond = targets.iter().filter_map(Formula::constant);
+            let beyond = beyond
+                .into_iter()
+                .find(|target| !interval.contains(stiffness * target));
+            if let Some(target) = beyond {
+                let force = stiffness * target;
+                checker.diagnostics.push(whole::force_beyond_limits(
+                    field, target, force, span, interval, at,
+                ));
+            }
+        }
+    }
+}
+
+/// Relative error of the targets of a range.
+const ROUNDING: f64 = 1e-9;
+
 /// Compares targets \[m\] and speeds \[m/s\] of the procedures that are known before the run with the limits.
 pub fn check_targets(checker: &mut Checker, limits: &CheckedLimits) {
     let procedures: Vec<usize> = checker.scope.procedures().map(|(index, _)| index).collect();
@@ -288,15 +334,22 @@ pub fn check_targets(checker: &mut Checker, limits: &CheckedLimits) {
             else {
                 continue;
             };
+            // Limits that exclude the start are reported.
+            let of_displacement = field.dimension() == Some(Dimension::LENGTH);
+            if of_displacement && checker.real_rig.is_none() && !interval.contains(0.0) {
+                continue;
+            }
             let Some(typed) = checker.entry(block, entry, written.value.span) else {
                 continue;
             };
-            let beyond = typed
-                .parts()
-                .iter()
-                .filter_map(Formula::constant)
-                .find(|value| !interval.contains(*value));
-            if let Some(value) = beyond {
+            let values: Vec<f64> = typed.parts().iter().filter_map(Formula::constant).collect();
+            // A target that is at the limit but for rounding is not the one to show.
+            let slack = ROUNDING * interval.low.abs().max(interval.high.abs());
+            let visibly =
+                |value: &&f64| **value < interval.low - slack || **value > interval.high + slack;
+            let beyond = values.iter().find(|value| !interval.contains(**value));
+            let beyond = values.iter().find(visibly).or(beyond);
+            if let Some(&value) = beyond {
                 let diagnostic = whole::beyond_limits(
                     field.name,
                     value,

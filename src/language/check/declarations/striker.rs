@@ -9,9 +9,7 @@ use crate::schema::striker::{
 };
 use crate::text::source::Span;
 use crate::uncertainty::Source;
-
-/// Standard gravity \[m/s²\].
-pub const STANDARD_GRAVITY: f64 = 9.806_65;
+use crate::units::unit::STANDARD_GRAVITY;
 
 /// The fields of which each gives the velocity; an angle requires its arm.
 const FORMS: [&str; 3] = [VELOCITY.name, DROP_HEIGHT.name, ANGLE.name];

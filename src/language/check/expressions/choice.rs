@@ -18,6 +18,8 @@ pub struct Chosen<'a> {
     arguments: Vec<Option<&'a Expr>>,
     /// Further expressions for the last argument, if it accepts several.
     rest: Vec<&'a Expr>,
+    /// Number of arguments without a name.
+    pub unnamed: usize,
 }
 
 impl<'a> Checker<'a> {
@@ -101,6 +103,10 @@ impl<'a> Checker<'a> {
             variant,
             arguments: assigned,
             rest,
+            unnamed: arguments
+                .iter()
+                .filter(|argument| argument.name.is_none())
+                .count(),
         })
     }
 

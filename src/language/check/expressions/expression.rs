@@ -279,6 +279,7 @@ impl<'a> Checker<'a> {
                     span: written.span,
                     number,
                     unit,
+                    value: typed.constant(),
                 },
                 typed.dimension,
                 dimension,

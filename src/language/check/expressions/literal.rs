@@ -70,7 +70,14 @@ impl<'a> Checker<'a> {
                 ))
             }
             Err(UnitError::Unknown { name, start }) => {
-                self.fail(names::unknown_unit(&name, at(start, name.len())))
+                let alone = name == token.node && number.start <= token.span.start;
+                let before = Span {
+                    end: token.span.start,
+                    ..number
+                };
+                let value = self.text(before).trim().parse().ok();
+                let value = value.filter(|_| alone);
+                self.fail(names::unknown_unit(&name, value, at(start, name.len())))
             }
             Err(UnitError::Exponent { text, start }) => {
                 self.fail(message::unit_exponent(&text, at(start, text.len())))

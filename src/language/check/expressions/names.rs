@@ -4,11 +4,12 @@
 use crate::language::check::checker::{Checker, Context, Node, Reads, Shape, Typed};
 use crate::language::check::declarations::specimen::{self, frame};
 use crate::language::check::declarations::striker;
-use crate::language::check::messages::{frames, names as message, types, values};
+use crate::language::check::messages::{frames, names as message, studies, types, values};
 use crate::language::check::scope::Meaning;
 use crate::language::syntax::ast::{Expr, ExprKind, Ident};
 use crate::plan::ProcedureBlock;
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
+use crate::schema::study::PROBABILITY;
 use crate::schema::{self, BlockKind, Kind};
 use crate::text::source::Span;
 use crate::units::Dimension;
@@ -323,7 +324,12 @@ impl<'a> Checker<'a> {
                 ..name.span
             };
             self.explained.push(whole);
-            return self.fail(message::minus_in_name(&text[..end], &joined, whole));
+            // The same however it is laid out.
+            let written: String = text[..end].split_whitespace().collect();
+            return self.fail(message::minus_in_name(&written, &joined, whole));
+        }
+        if kind.kind == Kind::Study && name.node == PROBABILITY.name {
+            return self.fail(studies::event_wanted(name.span));
         }
         let diagnostic = message::unknown_result(kind, owner, &name.node, name.span);
         self.fail(diagnostic)
@@ -398,11 +404,13 @@ fn with_minus_signs(text: &str) -> (usize, String) {
             .find(|c: char| !c.is_ascii_alphanumeric() && c != '_')
             .unwrap_or(rest.len())
     };
-    let blanks =
-        |from: usize| from + text[from..].len() - text[from..].trim_start_matches(' ').len();
+    let blanks = |from: usize, blank: &[char]| {
+        from + text[from..].len() - text[from..].trim_start_matches(blank).len()
+    };
     let (mut end, mut joined) = (word(0), text[..word(0)].to_owned());
-    while text[blanks(end)..].starts_with('-') {
-        let begin = blanks(blanks(end) + 1);
+    while text[blanks(end, &[' ', '\t'])..].starts_with('-') {
+        // An expression goes on after an operator at the end of its line.
+        let begin = blanks(blanks(end, &[' ', '\t']) + 1, &[' ', '\t', '\r', '\n']);
         if word(begin) == begin {
             break;
         }
@@ -422,6 +430,8 @@ mod tests {
             "max-displacement < 1 mm",
             "max - displacement < 1 mm",
             "max- displacement",
+            "max\t-\tdisplacement",
+            "max -\n    displacement",
         ] {
             let (end, joined) = with_minus_signs(text);
             assert!(

@@ -211,7 +211,7 @@ pub fn record_drawn(name: &str, span: Span) -> Diagnostic {
     )
     .at(span, "gives numbers between records")
     .help(format!(
-        "write `{name} ~ any`: each record is as probable as the others"
+        "write `{name} ~ any`: each record has the same probability"
     ))
 }
 

@@ -2,7 +2,7 @@
 
 use super::shown;
 use crate::language::syntax::ast::Ident;
-use crate::plan::{Dialect, PortPlan, PretestCheck};
+use crate::plan::{Dialect, Interval, PortPlan, PretestCheck};
 use crate::schema::Field;
 use crate::schema::{limits, rig as schema};
 use crate::text::diagnostic::{Code, Diagnostic};
@@ -309,6 +309,15 @@ pub fn not_issuable(rig: &str, head: Span, reference: bool, due: bool) -> Diagno
     .help(format!("add to the rig\n{lines}"))
 }
 
+pub fn calibration_overdue(rig: &str, due: &str, today: &str, at: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::CalibrationWithoutDay,
+        format!("test reports of rig `{rig}` cannot be issued: its calibration was due on {due} (today: {today})"),
+    )
+    .at(at, "overdue")
+    .help("calibrate the rig before the test, then write the new due date")
+}
+
 /// `of`: ` of axis 2`, if it belongs to one axis.
 pub fn device_not_pinned(field: &str, of: &str, port: &PortPlan, span: Span) -> Diagnostic {
     Diagnostic::new(
@@ -388,6 +397,58 @@ pub fn check_within_noise(pretest_check: &PretestCheck, noise: f64, at: Span) ->
     .help(format!(
         "write at least {}: ten times the noise",
         shown(least, Dimension::LENGTH)
+    ))
+}
+
+/// A pre-test check that refuses the stiffness \[N/m\] that the plan states.
+pub fn window_excludes(window: Interval, stiffness: f64, at: Span) -> Diagnostic {
+    let show = |value| shown(value, Dimension::STIFFNESS);
+    let (low, high) = (show(window.low), show(window.high));
+    // A unit that is a thousand times too small or too large.
+    let meant = [1e3, 1e-3].into_iter().find(|factor| {
+        let window = Interval {
+            low: window.low * factor,
+            high: window.high * factor,
+        };
+        window.contains(stiffness)
+    });
+    let help = match meant {
+        Some(factor) => format!(
+            "write `{} .. {}`: the unit of the window is not that of the specimen",
+            show(window.low * factor),
+            show(window.high * factor)
+        ),
+        None => format!(
+            "write a window around {}, or correct the `behaviour`",
+            show(stiffness)
+        ),
+    };
+    Diagnostic::new(
+        Code::WindowExcludesStiffness,
+        format!(
+            "pre-test check will refuse the specimen: its stiffness {} is outside {low} .. {high}",
+            show(stiffness)
+        ),
+    )
+    .at(at, "excludes the stated stiffness")
+    .help(help)
+}
+
+/// A settling band \[m\] that readings of this resolution \[m\] may never show.
+pub fn band_within_resolution(band: f64, resolution: f64, at: Span) -> Diagnostic {
+    let show = |value| shown(value, Dimension::LENGTH);
+    Diagnostic::new(
+        Code::BandWithinResolution,
+        format!(
+            "a move may never settle: band {} is below the resolution of {}",
+            show(band),
+            show(resolution)
+        ),
+    )
+    .at(at, "band within the resolution")
+    .help(format!(
+        "write a band of at least {}",
+        show(2.0 * resolution)
     ))
 }
 

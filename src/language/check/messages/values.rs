@@ -333,13 +333,13 @@ pub fn too_many(what: &str, found: f64, most: f64, span: Span, help: &str) -> Di
 }
 
 /// A limit on the speed that allows none.
-pub fn no_speed(span: Span) -> Diagnostic {
+pub fn no_motion(field: &str, help: &str, span: Span) -> Diagnostic {
     Diagnostic::new(
         Code::OutOfRange,
-        "the bound on `speed` must be greater than 0",
+        format!("the bound on `{field}` must be greater than 0"),
     )
     .at(span, "no motion possible")
-    .help("write the largest speed of the actuator, as in `10 mm/s`")
+    .help(help)
 }
 
 /// Values that depend on one another too deeply.
@@ -478,8 +478,14 @@ pub fn final_is_not_residual(read: &str, row: bool, required: Span, head: Span) 
     ))
 }
 
-/// `step` and `duration` in \[s\].
-pub fn step_beyond_duration(at: Span, step: f64, duration_at: Span, duration: f64) -> Diagnostic {
+/// `step` and `duration` in \[s\]. `written`: whether the plan states the time step, which otherwise follows from the period.
+pub fn step_beyond_duration(
+    at: Span,
+    written: bool,
+    step: f64,
+    duration_at: Span,
+    duration: f64,
+) -> Diagnostic {
     let stated = |time| display::stated(time, Dimension::TIME);
     let message = format!(
         "time step {} is longer than the run, {}",
@@ -489,7 +495,11 @@ pub fn step_beyond_duration(at: Span, step: f64, duration_at: Span, duration: f6
     Diagnostic::new(Code::OutOfRange, message)
         .at(at, "less than one step")
         .at(duration_at, "length of the run")
-        .help("write `time_step = critical / 20`")
+        .help(if written {
+            "write a shorter `time_step`, or a longer `duration`"
+        } else {
+            "check mass and stiffness: the time step is a fraction of the period; or write a longer `duration`"
+        })
 }
 
 /// An entry that has no effect here: the reason, and the remedy.

@@ -238,3 +238,91 @@ pub fn unused(keyword: &str, name: &str, span: Span) -> Diagnostic {
         .at(span, "not used")
         .help("remove it, or use it")
 }
+
+/// A requirement on numbers of the plan alone. `met`: whether they meet it.
+pub fn without_result(condition: &str, met: bool, span: Span) -> Diagnostic {
+    let (code, always) = if met {
+        (Code::AlwaysMet, "always")
+    } else {
+        (Code::NeverMet, "never")
+    };
+    Diagnostic::new(
+        code,
+        format!("`{condition}` is {always} met: it reads no result"),
+    )
+    .at(span, "decided before the run")
+    .help("compare a result with a limit, as in `hit.max_displacement < 45 mm`")
+}
+
+pub fn never_negative(condition: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::NeverMet,
+        format!("no run meets `{condition}`: this result is never below 0"),
+    )
+    .at(span, "never met")
+    .help("write a limit that a run can meet")
+}
+
+/// `limit`: the largest displacement \[m\] that the limits allow.
+pub fn beyond_the_limit(condition: &str, limit: f64, span: Span) -> Diagnostic {
+    let limit = shown(limit, Dimension::LENGTH);
+    Diagnostic::new(
+        Code::NeverMet,
+        format!("no run meets `{condition}`: a run that exceeds {limit} is stopped"),
+    )
+    .at(span, "never met")
+    .help(format!(
+        "write a value below {limit}, or widen `displacement` in `limits` if the rig and the specimen allow it"
+    ))
+}
+
+/// `other`: the requirement that excludes the one at `span`.
+pub fn contradictory(span: Span, other: Span) -> Diagnostic {
+    let diagnostic = Diagnostic::new(
+        Code::NeverMet,
+        "no run meets these conditions together: no value is within both",
+    )
+    .at(span, "excludes the other condition");
+    let diagnostic = if other == span {
+        diagnostic
+    } else {
+        diagnostic.at(other, "the other condition")
+    };
+    diagnostic.help("change one of the limits, or remove one of the conditions")
+}
+
+pub fn always_met(condition: &str, span: Span) -> Diagnostic {
+    Diagnostic::new(
+        Code::AlwaysMet,
+        format!("every run meets `{condition}`: this result is never below 0"),
+    )
+    .at(span, "always met")
+    .help("write a limit that a run can miss, or remove the requirement")
+}
+
+/// Targets \[m\] at which a specimen with a constant stiffness has a force beyond the limits.
+pub fn force_beyond_limits(
+    field: &str,
+    target: f64,
+    force: f64,
+    span: Span,
+    limit: Interval,
+    limit_at: Span,
+) -> Diagnostic {
+    let newtons = |value| shown(value, Dimension::FORCE);
+    let (low, high) = (newtons(limit.low), newtons(limit.high));
+    let target = shown(target, Dimension::LENGTH);
+    Diagnostic::new(
+        Code::BeyondLimits,
+        format!(
+            "`{field}` leads to {} at {target}, outside the limits {low} .. {high}",
+            newtons(force)
+        ),
+    )
+    .at(
+        span,
+        format!("{} by the specimen's stiffness", newtons(force)),
+    )
+    .at(limit_at, "limit")
+    .help("stay within the limits, or widen them if the rig and the specimen allow it")
+}

@@ -5,12 +5,17 @@ use super::CheckedRig;
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::rigs as message;
 use crate::language::syntax::ast::{Expr, ExprKind};
-use crate::plan::{Calibration, DeviceLink, Dialect};
+use crate::plan::{Calibration, DeviceLink, Dialect, PretestCheck, Specimen};
 use crate::schema::rig as schema;
 use crate::text::source::Span;
 
-/// Warnings for the real rig of a run whose results would not be reliable.
-pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
+/// Warnings for the real rig of a run whose results would not be reliable. Due dates are compared with `today`, if it is known.
+pub fn warn(
+    checker: &mut Checker,
+    rig: &CheckedRig,
+    specimens: &[Option<Specimen>],
+    today: Option<&str>,
+) {
     let (Some(block), Some(link)) = (rig.block, rig.plan.link.as_real()) else {
         return;
     };
@@ -34,6 +39,16 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
             .diagnostics
             .push(message::not_issuable(&rig.plan.name, head, reference, due));
     }
+    let dues = calibrations
+        .iter()
+        .flat_map(|calibration| [calibration.due.as_ref(), displacement_due(calibration)]);
+    let due = dues.flatten().min();
+    if let Some((due, today)) = due.zip(today).filter(|(due, today)| due.as_str() < *today) {
+        let at = checker.value_or_head(block, schema::CALIBRATION_DUE.name);
+        checker
+            .diagnostics
+            .push(message::calibration_overdue(&rig.plan.name, due, today, at));
+    }
     let no_day = |calibration: &Calibration| matches!(calibration.displacement, Some((_, None)));
     let of_rig = checker
         .field(block, schema::DISPLACEMENT_CALIBRATION.name)
@@ -53,8 +68,24 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
             .diagnostics
             .push(message::resolution_unknown(&rig.plan.name, at));
     }
+    let coarsest = axes
+        .clone()
+        .map(|axis| link.readings_of(axis).resolution)
+        .fold(0.0, f64::max);
+    let band = rig.plan.settle.band;
+    if let (true, Some((_, entry))) = (
+        band < coarsest * (1.0 - 1e-9),
+        checker.field(block, schema::SETTLE.name),
+    ) {
+        let at = entry.value.span;
+        checker
+            .diagnostics
+            .push(message::band_within_resolution(band, coarsest, at));
+    }
+    let excluded = excluded(specimens, &link.pretest_check_of(0));
     let drowned = axes
         .clone()
+        .filter(|_| excluded.is_none())
         .map(|axis| (link.pretest_check_of(axis), link.readings_of(axis).noise))
         .find(|(pretest_check, noise)| {
             // A value that is ten times as large in the plan must be ten times as large here.
@@ -64,6 +95,14 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
     let given = checker
         .field(block, schema::PRETEST_CHECK.name)
         .or_else(|| checker.field(block, schema::AXES.name));
+    if let (Some(stiffness), Some((_, entry))) = (excluded, given) {
+        let window = link.pretest_check_of(0).stiffness;
+        checker.diagnostics.push(message::window_excludes(
+            window,
+            stiffness,
+            entry.value.span,
+        ));
+    }
     if let (Some((pretest_check, noise)), Some((_, entry))) = (drowned, given) {
         checker.diagnostics.push(message::check_within_noise(
             &pretest_check,
@@ -112,6 +151,23 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
             }
         }
     }
+}
+
+/// The stated stiffness \[N/m\] of the one specimen of the plan, of one degree of freedom, if the window of the pre-test check excludes it.
+fn excluded(specimens: &[Option<Specimen>], check: &PretestCheck) -> Option<f64> {
+    let [Some(specimen)] = specimens else {
+        return None;
+    };
+    let behaviour = specimen
+        .behaviour
+        .as_ref()
+        .filter(|_| specimen.frame.is_none())?;
+    let stiffness = behaviour.initial_stiffness();
+    (stiffness.is_finite() && !check.stiffness.contains(stiffness)).then_some(stiffness)
+}
+
+fn displacement_due(calibration: &Calibration) -> Option<&String> {
+    calibration.displacement.as_ref()?.1.as_ref()
 }
 
 /// The span of a separate device of an axis; the span of the list of axes, if that is unclear.

@@ -57,3 +57,41 @@ fn a_recorded_plan_is_read_as_it_was_run() {
         "final_displacement"
     );
 }
+
+/// A run that a limit stopped, or that met no requirement, has been recorded all the same.
+#[test]
+fn what_the_plan_alone_proves_is_no_error_of_a_recorded_plan() {
+    let plan = r#"limits {
+  displacement = 20 mm
+  force        = 50 N
+}
+
+specimen bar {
+  mass      = 1 kg
+  behaviour = elastic(stiffness: 10 kN/m)
+}
+
+stiffness ramp k0 {
+  displacements = 1 mm .. 10 mm step 1 mm
+}
+
+require "far" k0.max_displacement > 30 mm
+"#;
+    let without_force = plan.replace("50 N", "0 N");
+    let codes = |text: &str, recorded| {
+        let options = Options {
+            recorded,
+            ..Options::default()
+        };
+        let checked = check("plan.psd", text, &no_files, &options);
+        let found = checked.diagnostics.iter();
+        found.map(|one| one.code.id()).collect::<Vec<_>>()
+    };
+    assert_eq!(codes(plan, false), ["E602"]);
+    let softer = plan.replace("10 kN/m", "1 kN/m");
+    assert_eq!(codes(&softer, false), ["E667"]);
+    assert_eq!(codes(&without_force, false), ["E401"]);
+    for text in [plan, &softer, &without_force] {
+        assert!(codes(text, true).is_empty(), "{:?}", codes(text, true));
+    }
+}

@@ -1,6 +1,7 @@
 //! Warnings: plans that can run but give poor results. In: the checked plan. Out: diagnostics with
 //! the numbers. They change nothing in the plan.
 
+pub(crate) mod decided;
 pub(crate) mod guarded;
 pub(crate) mod left;
 pub(crate) mod recorded_steps;

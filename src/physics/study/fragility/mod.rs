@@ -53,6 +53,11 @@ pub enum NoFit {
         "no run exceeds the limit up to {below}, every run from {above}: intensities between them are missing"
     )]
     Step { below: f64, above: f64 },
+    /// The neighbours of the one intensity: 0 and infinity where it is the first or the last one.
+    #[error(
+        "only one intensity ({mixed}) has both outcomes: intensities between {below} and {above} are missing"
+    )]
+    OneMixed { mixed: f64, below: f64, above: f64 },
     #[error("the limit is not exceeded more often at larger intensities")]
     NotRising,
 }
@@ -213,7 +218,18 @@ fn possible(stripes: &[&Stripe]) -> Result<(), NoFit> {
     {
         return Err(NoFit::OneIntensity);
     }
-    if not_exceeded[1] <= exceeded[0] {
+    if not_exceeded[1] == exceeded[0] {
+        let mixed = exceeded[0];
+        let intensities = || stripes.iter().map(|stripe| stripe.intensity);
+        return Err(NoFit::OneMixed {
+            mixed,
+            below: intensities().filter(|it| *it < mixed).fold(0.0, f64::max),
+            above: intensities()
+                .filter(|it| *it > mixed)
+                .fold(f64::INFINITY, f64::min),
+        });
+    }
+    if not_exceeded[1] < exceeded[0] {
         return Err(NoFit::Step {
             below: not_exceeded[1],
             above: exceeded[0],

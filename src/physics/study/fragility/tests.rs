@@ -122,9 +122,26 @@ fn a_study_that_no_curve_fits_gives_the_reason() {
     );
     assert_eq!(
         why(&[stripe(1.0, 0, 9), stripe(1.5, 4, 5), stripe(2.0, 9, 0)]),
-        Some(NoFit::Step {
-            below: 1.5,
-            above: 1.5
+        Some(NoFit::OneMixed {
+            mixed: 1.5,
+            below: 1.0,
+            above: 2.0
+        })
+    );
+    assert_eq!(
+        why(&[stripe(1.5, 4, 5), stripe(2.0, 9, 0)]),
+        Some(NoFit::OneMixed {
+            mixed: 1.5,
+            below: 0.0,
+            above: 2.0
+        })
+    );
+    assert_eq!(
+        why(&[stripe(1.0, 0, 9), stripe(1.5, 4, 5)]),
+        Some(NoFit::OneMixed {
+            mixed: 1.5,
+            below: 1.0,
+            above: f64::INFINITY
         })
     );
     assert_eq!(

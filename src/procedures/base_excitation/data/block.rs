@@ -2,7 +2,7 @@
 
 use crate::plan::ProcedureBlock;
 use crate::schema::procedures::{SPECIMEN, tracking};
-use crate::schema::{BlockKind, Field, Kind, Naming, ResultKind};
+use crate::schema::{BlockKind, Field, Kind, Naming, Possible, ResultKind};
 use crate::schema::{frames, methods};
 use crate::units::Dimension;
 
@@ -10,13 +10,15 @@ pub(crate) const MAX_DISPLACEMENT: ResultKind = ResultKind::measured_list(
     "max_displacement",
     Dimension::LENGTH,
     "peak absolute displacement of each floor, relative to the ground",
-);
+)
+.within(Possible::PeakDisplacement);
 
 pub(crate) const MAX_DRIFT: ResultKind = ResultKind::measured_list(
     "max_drift",
     Dimension::LENGTH,
     "peak absolute drift of each storey",
-);
+)
+.within(Possible::NotNegative);
 
 pub(crate) const FINAL_DRIFT: ResultKind = ResultKind::measured_list(
     "final_drift",
@@ -25,7 +27,8 @@ pub(crate) const FINAL_DRIFT: ResultKind = ResultKind::measured_list(
 );
 
 pub(crate) const PERIODS: ResultKind =
-    ResultKind::measured_list("periods", Dimension::TIME, "natural periods, longest first");
+    ResultKind::measured_list("periods", Dimension::TIME, "natural periods, longest first")
+        .within(Possible::NotNegative);
 
 pub(crate) const MAX_BASE_SHEAR: ResultKind = ResultKind::measured(
     "max_base_shear",

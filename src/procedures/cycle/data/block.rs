@@ -231,7 +231,7 @@ pub(crate) const INSPECT: Field = Field::choices(
         Variant::with(
             "every",
             &[AMPLITUDES_BETWEEN],
-            "after every so many amplitudes",
+            "after a fixed number of amplitudes",
         ),
         Variant::with(
             "force_drop",

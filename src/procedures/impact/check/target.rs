@@ -12,6 +12,7 @@ use crate::language::check::messages::frames as fault;
 use crate::plan::formula::Formula;
 use crate::plan::{Frame, ImpactTarget, PointTarget, StoreyTarget};
 use crate::procedures::base_excitation;
+use crate::units::{Dimension, display};
 
 /// One degree of freedom, of the specimen at the block `tested`.
 pub(crate) fn point(
@@ -20,7 +21,6 @@ pub(crate) fn point(
     tested: Option<usize>,
 ) -> Option<ImpactTarget> {
     let head = checker.scope.blocks[block].block.head;
-    let fields_of_a_frame = no_frame(checker, block, tested);
     let mass = match checker.field(block, impact::MASS.name) {
         Some(_) => checker.quantity(block, impact::MASS.name),
         None => tested
@@ -33,7 +33,8 @@ pub(crate) fn point(
     };
     let stiffness = checker.stiffness_or_specimens(block, tested);
     let damping = checker.quantity(block, impact::DAMPING.name);
-    fields_of_a_frame?;
+    let coefficient = coefficient(checker, block, mass.as_ref(), stiffness.as_ref());
+    no_frame(checker, block, tested, coefficient.as_deref())?;
     Some(ImpactTarget::Point(PointTarget {
         mass: mass?,
         mass_uncertainty: mass_uncertainty?,
@@ -118,11 +119,43 @@ fn struck_storey(
     storey.checked_sub(1)
 }
 
-/// Refuses the fields of a frame in an impact on one degree of freedom.
-fn no_frame(checker: &mut Checker, block: usize, specimen: Option<usize>) -> Option<()> {
+/// What to write instead of a damping ratio ζ: the coefficient 2 ζ √(k m) of one degree of freedom, as far as mass \[kg\] and stiffness
+/// \[N/m\] are known before the run. None without a ratio.
+fn coefficient(
+    checker: &mut Checker,
+    block: usize,
+    mass: Option<&Formula>,
+    stiffness: Option<&Formula>,
+) -> Option<String> {
+    let (entry, written) = checker.field(block, frames::DAMPING_RATIO.name)?;
+    let (text, span) = (checker.text(written.value.span), written.value.span);
+    let ratio = checker.entry(block, entry, span)?;
+    let known = |formula: Option<&Formula>| formula.and_then(Formula::constant);
+    Some(match (ratio.constant(), known(mass), known(stiffness)) {
+        (Some(ratio), Some(mass), Some(stiffness)) => {
+            let damping = 2.0 * ratio * (stiffness * mass).sqrt();
+            let damping = display::plain(damping, Dimension::DAMPING, 4);
+            format!("write `damping = {damping}`, which is a damping ratio of {text}")
+        }
+        _ => format!(
+            "write `damping = 2 * {text} * sqrt(k * m)`, with the stiffness k and the mass m"
+        ),
+    })
+}
+
+/// Refuses the fields of a frame in an impact on one degree of freedom. `coefficient`: what to write instead of a damping ratio.
+fn no_frame(
+    checker: &mut Checker,
+    block: usize,
+    specimen: Option<usize>,
+    coefficient: Option<&str>,
+) -> Option<()> {
     let mut sound = Some(());
     let hints = [
-        (frames::DAMPING_RATIO.name, "write `damping = 50 N*s/m`"),
+        (
+            frames::DAMPING_RATIO.name,
+            coefficient.unwrap_or("write `damping`, a coefficient"),
+        ),
         (
             frames::DAMPING_UNCERTAINTY.name,
             "remove it: the modes of a frame have damping ratios",

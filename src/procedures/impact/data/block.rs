@@ -3,7 +3,7 @@
 use crate::physics::contact::argument;
 use crate::plan::ProcedureBlock;
 use crate::schema::procedures::{SPECIMEN, STIFFNESS, tracking};
-use crate::schema::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
+use crate::schema::{BlockKind, Field, Kind, Naming, Possible, ResultKind, Variant};
 use crate::schema::{frames, methods};
 use crate::units::Dimension;
 
@@ -82,19 +82,22 @@ pub(crate) const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
     "max_displacement",
     Dimension::LENGTH,
     "largest displacement of the structure",
-);
+)
+.within(Possible::LargestDisplacement);
 
 pub(crate) const TIME_OF_MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
     "time_of_max_displacement",
     Dimension::TIME,
     "simulated time of the largest displacement",
-);
+)
+.within(Possible::NotNegative);
 
 pub(crate) const STOP_TIME: ResultKind = ResultKind::measured(
     "stop_time",
     Dimension::TIME,
     "simulated time at which the striker first stops",
-);
+)
+.within(Possible::NotNegative);
 
 pub(crate) const FINAL_DISPLACEMENT: ResultKind = ResultKind::measured(
     "final_displacement",
@@ -106,13 +109,15 @@ pub(crate) const MAX_VELOCITY: ResultKind = ResultKind::measured(
     "max_velocity",
     Dimension::VELOCITY,
     "peak absolute velocity of the structure",
-);
+)
+.within(Possible::NotNegative);
 
 pub(crate) const MAX_CONTACT_FORCE: ResultKind = ResultKind::measured(
     "max_contact_force",
     Dimension::FORCE,
     "largest step-mean contact force; grows as 1/Δt under `rigid`, `restitution` and an unreached `limit`",
-);
+)
+.within(Possible::NotNegative);
 
 pub(crate) const IMPULSE: ResultKind = ResultKind::measured(
     "impulse",
@@ -135,7 +140,8 @@ pub(crate) const INDENTATION: ResultKind = ResultKind::measured(
     "indentation",
     Dimension::LENGTH,
     "permanent indentation of the contact surface",
-);
+)
+.within(Possible::NotNegative);
 
 pub(crate) const INDENTATION_ENERGY: ResultKind = ResultKind::measured(
     "indentation_energy",
@@ -165,7 +171,8 @@ pub(crate) const STRIKER_ENERGY: ResultKind = ResultKind::measured(
     "striker_energy",
     Dimension::ENERGY,
     "kinetic energy of the striker at the start",
-);
+)
+.within(Possible::NotNegative);
 
 pub(crate) const ENERGY_ERROR: ResultKind = ResultKind::new(
     "energy_error",
@@ -190,6 +197,7 @@ pub(crate) const CONTACT_DURATION: ResultKind = ResultKind::measured(
     Dimension::TIME,
     "simulated time of the first contact, in whole steps",
 )
+.within(Possible::NotNegative)
 .of_storey();
 
 pub(crate) const REBOUND_VELOCITY: ResultKind = ResultKind::measured(
@@ -204,6 +212,7 @@ pub(crate) const FLOOR_DISPLACEMENT: ResultKind = ResultKind::measured_list(
     Dimension::LENGTH,
     "peak absolute displacement of each floor",
 )
+.within(Possible::PeakDisplacement)
 .of_storey();
 
 pub(crate) const MAX_DRIFT: ResultKind = ResultKind::measured_list(
@@ -211,6 +220,7 @@ pub(crate) const MAX_DRIFT: ResultKind = ResultKind::measured_list(
     Dimension::LENGTH,
     "peak absolute drift of each storey",
 )
+.within(Possible::NotNegative)
 .of_storey();
 
 pub(crate) const FINAL_DRIFT: ResultKind = ResultKind::measured_list(

@@ -12,7 +12,7 @@ use crate::record::{ImpactHistory, ProcedureRecord};
 use crate::report::document::Block;
 use crate::report::sections::results::actuators;
 use crate::report::{Run, number};
-use crate::schema::procedures::{damping_sweep, impact as schema};
+use crate::schema::procedures::{damping_sweep, impact as schema, tracking as tracking_schema};
 use crate::units::Dimension;
 
 /// Results that have a budget even if no requirement reads any.
@@ -65,7 +65,7 @@ pub(crate) fn report(
     body: &mut Vec<Block>,
 ) {
     force_note(run, index, procedure, history, body);
-    method_note(run, index, history, body);
+    method_note(run, index, procedure, history, body);
     energy_balance(contact_work(run, index), history, body);
     contact_log::table(history, procedure.number(schema::CONTACTS.name), body);
 }
@@ -166,7 +166,13 @@ fn implied_restitution(
 }
 
 /// The integration and the tracking.
-fn method_note(run: &Run<'_>, index: usize, history: &ImpactHistory, body: &mut Vec<Block>) {
+fn method_note(
+    run: &Run<'_>,
+    index: usize,
+    procedure: &ProcedureRecord,
+    history: &ImpactHistory,
+    body: &mut Vec<Block>,
+) {
     let Some(ProcedureKind::Impact(impact)) =
         run.plan.procedures.get(index).map(|planned| &planned.kind)
     else {
@@ -177,7 +183,7 @@ fn method_note(run: &Run<'_>, index: usize, history: &ImpactHistory, body: &mut 
         impact.stepping.i_modification,
         impact.stepping.mode,
     ));
-    sentences.extend(tracking(history));
+    sentences.extend(tracking(history, procedure));
     body.push(Block::paragraph(sentences.join(" ")));
 }
 
@@ -202,11 +208,12 @@ fn integrator(impact: &Impact) -> String {
     format!("Integrator: {named}.{unstable}")
 }
 
-fn tracking(history: &ImpactHistory) -> Option<String> {
-    let (first, last) = (history.steps.first()?, history.steps.last()?);
+/// The tracking errors; the energy is the result of that name, the largest over the impact.
+fn tracking(history: &ImpactHistory, procedure: &ProcedureRecord) -> Option<String> {
+    let last = history.steps.last()?;
     Some(actuators::tracking_error(
         last.tracking,
-        last.tracking.share_of(first.energies.striker),
+        procedure.number(tracking_schema::TRACKING_ENERGY_ERROR.name),
         "The actuator",
     ))
 }

@@ -63,6 +63,7 @@ pub(crate) fn report(
         frame,
         schema::FLOOR_DISPLACEMENT,
     ));
+    body.extend(base_excitation::report::noise_note(run));
     body.push(storey_energies(procedure));
     body.extend(tracking::table(procedure));
     energy_balance(contact_work(run, index), history, body);

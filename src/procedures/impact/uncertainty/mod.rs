@@ -13,27 +13,34 @@ use crate::physics::impact::summary::ImpactSummary;
 use crate::physics::reintegration::hysteresis_replay::{ContinuousMotion, Reading, RecordedPath};
 use crate::physics::reintegration::impact::{ImpactValues, Outcome, predicted_velocities, rerun};
 use crate::physics::reintegration::perturbation::Perturbation;
-use crate::plan::formula::{Formula, ProcedureId};
+use crate::plan::formula::Formula;
 use crate::plan::{Impact, Mode, Plan, PointTarget, Striker};
 use crate::procedures::common::perturbed_inputs::{
     LEADS_ELSEWHERE, UncertainRun, uncertain_inputs,
 };
-use crate::procedures::common::results::{Evaluated, flat, give, index_of, layout_of, values};
+use crate::procedures::common::results::{Evaluated, flat, give, layout_of, values};
 use crate::record::{ImpactStep, NamedResult};
 use crate::run::stop::Stop;
 use crate::schema::ResultKind;
 use crate::schema::procedures::impact as schema;
-use crate::uncertainty::Source;
 use crate::uncertainty::engine::{
     CLOSE, Contributions, Evaluate, Evaluation, Progress, Shifts, Unknown,
 };
+use crate::uncertainty::{Contribution, Refinement, Source};
 
 /// The numbers of an impact on one degree of freedom.
 fn numbers(values: &ImpactValues, setting: &Setting) -> Evaluated {
     let critical = vec![setting.steps().critical_time_step];
     let mut numbers = re_integrated(values);
     numbers.push((schema::CRITICAL_TIME_STEP, critical));
+    numbers.push(counted(values));
     numbers
+}
+
+/// The number of contacts. It is exact; only its change in finer steps is read.
+#[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
+pub(crate) fn counted(values: &ImpactValues) -> (ResultKind, Vec<f64>) {
+    (schema::CONTACTS, vec![values.summary.contacts as f64])
 }
 
 /// The uncertain inputs of an impact.
@@ -72,7 +79,7 @@ impl ImpactUncertainty<'_> {
         let layout = layout_of(&numbers(&unperturbed.values, setting));
         evaluate.length = layout.len();
         let reported = values(&layout, results);
-        let mut contributions = self.run.contributions(
+        let contributions = self.run.contributions(
             &evaluate,
             1,
             self.sources()?,
@@ -80,16 +87,7 @@ impl ImpactUncertainty<'_> {
             reported,
             progress,
         )?;
-        for (kind, quantum) in whole_steps(setting.input.time_step) {
-            at_least(
-                quantum,
-                self.run.procedure,
-                index_of(&layout, kind),
-                &mut contributions,
-            );
-        }
-        give(&layout, contributions, results);
-        no_known_force(setting.input.law, recorded, results);
+        give_resolved(setting.input.law, recorded, &layout, contributions, results);
         Ok(())
     }
 
@@ -217,43 +215,62 @@ impl Evaluate for RecordedImpact<'_, '_> {
     }
 }
 
-/// The results that are times at the end of a step, with the standard uncertainty of a step Δt, Δt/√12 \[s\].
-pub(crate) fn whole_steps(time_step: f64) -> [(ResultKind, f64); 2] {
-    [schema::STOP_TIME, schema::TIME_OF_MAX_DISPLACEMENT]
-        .map(|kind| (kind, time_step / 12.0_f64.sqrt()))
-}
-
-/// Raises the contribution of the time step to the number at an index to at least this amount.
-pub(crate) fn at_least(
-    most: f64,
-    procedure: ProcedureId,
-    index: Option<usize>,
-    contributions: &mut Contributions,
-) {
-    let source = Source::TimeStep { procedure };
-    let parts = index
-        .and_then(|index| contributions.get_mut(index))
-        .into_iter()
-        .flatten();
-    for part in parts.filter(|part| part.source == source && part.amount.abs() < most) {
-        part.amount = most;
-    }
-}
-
-/// A peak contact force that depends on the time step has no known value: the effects of inputs on it are not its uncertainty.
-pub(crate) fn no_known_force(
+/// Gives results their contributions; the last of the layout are the contacts, which are exact. Results whose size or whose change with
+/// the time step is not known have their uncertainty withheld.
+pub(crate) fn give_resolved(
     law: ContactLaw,
     recorded: &ImpactSummary,
+    layout: &[(&'static str, usize)],
+    mut contributions: Contributions,
     results: &mut [NamedResult],
 ) {
-    if law.force_follows_the_step(recorded.max_contact_force) {
-        let force = results
-            .iter_mut()
-            .find(|result| result.name == schema::MAX_CONTACT_FORCE.name);
-        force
-            .into_iter()
-            .for_each(|force| force.withhold("it grows without bound as the time step shrinks"));
+    let largest = recorded.max_contact_force;
+    let contacts = contributions.pop().unwrap_or_default();
+    let other_contacts = contacts
+        .iter()
+        .any(|part| !part.source.is_of_uncertainty() && part.amount != 0.0);
+    let mut withheld = Vec::new();
+    let mut first = 0;
+    for (name, count) in &layout[..layout.len() - 1] {
+        let parts = &contributions[first..first + count];
+        first += count;
+        if *name == schema::MAX_CONTACT_FORCE.name && law.force_follows_the_step(largest) {
+            withheld.push((*name, GROWS));
+        } else if law.blows_follow_the_step(largest)
+            && parts
+                .iter()
+                .any(|parts| is_unresolved(parts, other_contacts))
+        {
+            withheld.push((*name, UNRESOLVED));
+        }
     }
+    give(&layout[..layout.len() - 1], contributions, results);
+    for (name, reason) in withheld {
+        let result = results.iter_mut().find(|result| result.name == name);
+        result
+            .into_iter()
+            .for_each(|result| result.withhold(reason));
+    }
+}
+
+/// Why a peak contact force has no uncertainty.
+const GROWS: &str = "it grows without bound as the time step shrinks";
+/// Why the effect of the time step is not known.
+const UNRESOLVED: &str = "its contacts follow the time step, and finer steps change them. Use a smaller time step, or a contact law that \
+    converges, such as `restitution(…)`";
+
+/// Whether the differences in finer steps do not show where they lead: there are other contacts, or the two halvings change the number in
+/// opposite directions.
+fn is_unresolved(parts: &[Contribution], other_contacts: bool) -> bool {
+    let of = |steps| {
+        let part = parts
+            .iter()
+            .find(|part| part.source == Source::TimeStep(steps));
+        part.map_or(0.0, |part| part.amount)
+    };
+    let [own, half, quarter] = Refinement::ALL.map(of);
+    let (first, second) = (half - own, quarter - half);
+    (first != 0.0 || second != 0.0) && (other_contacts || first * second <= 0.0)
 }
 
 /// Whether two runs have the same results.

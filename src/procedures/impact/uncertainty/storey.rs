@@ -4,7 +4,7 @@
 use super::super::contact;
 use super::super::results::re_integrated;
 use super::super::setting::Setting;
-use super::{at_least, no_known_force, same, striker_sources, whole_steps};
+use super::{counted, give_resolved, same, striker_sources};
 use crate::physics::impact::ImpactInput;
 use crate::physics::impact::summary::ImpactSummary;
 use crate::physics::reintegration::frame::{FloorImpact, Floors, FrameRun, StrikerOutcome};
@@ -13,15 +13,15 @@ use crate::physics::reintegration::impact::ImpactValues;
 use crate::physics::reintegration::perturbation::Perturbation;
 use crate::plan::{Impact, StoreyTarget, Striker};
 use crate::procedures::common::perturbed_inputs::LEADS_ELSEWHERE;
-use crate::procedures::common::results::{Evaluated, flat, give, index_of, layout_of, values};
+use crate::procedures::common::results::{Evaluated, flat, index_of, layout_of, values};
 use crate::procedures::stepping;
 use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there};
 use crate::procedures::stepping::run::FrameSteps;
 use crate::record::{FloorStep, NamedResult};
 use crate::run::stop::Stop;
 use crate::schema::procedures::impact as schema;
-use crate::uncertainty::Source;
 use crate::uncertainty::engine::{Evaluate, Evaluation, Progress, Shifts, Unknown};
+use crate::uncertainty::{Contribution, Source};
 
 /// An impact on a storey as it was recorded.
 #[derive(Clone, Copy)]
@@ -91,19 +91,15 @@ pub(crate) fn propagate(
         reported,
         progress,
     )?;
-    let time_step = frame.steps.time_step;
-    // From the beginning of a step to the end of one: two times.
-    let duration = (schema::CONTACT_DURATION, time_step / 6.0_f64.sqrt());
-    for (kind, quantum) in whole_steps(time_step).into_iter().chain([duration]) {
-        at_least(
-            quantum,
-            uncertainty.run.procedure,
-            index_of(&layout, kind),
-            &mut contributions,
-        );
+    if let Some(duration) = index_of(&layout, schema::CONTACT_DURATION) {
+        // From the beginning of a step to the end of one: two times, each rectangular over a step.
+        let source = Source::WholeSteps {
+            procedure: uncertainty.run.procedure,
+        };
+        let quantum = frame.steps.time_step / 6.0_f64.sqrt();
+        contributions[duration].push(Contribution::new(source, quantum));
     }
-    give(&layout, contributions, results);
-    no_known_force(setting.input.law, summary, results);
+    give_resolved(setting.input.law, summary, &layout, contributions, results);
     Ok(())
 }
 
@@ -163,6 +159,7 @@ impl Inputs {
             (schema::FINAL_DRIFT, floors.final_drift.clone()),
             (schema::STOREY_ENERGY, storey_energy.clone()),
             (schema::PERIODS, self.periods.clone()),
+            counted(values),
         ]);
         numbers
     }

@@ -3,7 +3,7 @@
 use crate::plan::ProcedureBlock;
 use crate::schema::methods::TRUTH;
 use crate::schema::procedures::impact;
-use crate::schema::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
+use crate::schema::{BlockKind, Field, Kind, Naming, Possible, ResultKind, Variant};
 use crate::units::Dimension;
 
 pub(crate) const SPEEDS: Field = Field::quantities(
@@ -101,7 +101,8 @@ pub(crate) const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
     "max_displacement",
     Dimension::LENGTH,
     "largest displacement in all impacts",
-);
+)
+.within(Possible::LargestDisplacement);
 
 pub(crate) const RESIDUAL_DISPLACEMENT: ResultKind = ResultKind::measured(
     "residual_displacement",
@@ -172,6 +173,7 @@ pub(crate) const MAX_DRIFT: ResultKind = ResultKind::measured_list(
     Dimension::LENGTH,
     "peak absolute drift of each storey in all impacts",
 )
+.within(Possible::NotNegative)
 .of_storey();
 
 pub(crate) const RESIDUAL_DRIFT: ResultKind = ResultKind::measured_list(

@@ -82,8 +82,10 @@ pub(crate) fn beyond_duration(
         return;
     };
     let at = |field| checker.value_or_head(block, field);
+    let written = checker.field(block, methods::TIME_STEP.name).is_some();
     checker.diagnostics.push(values::step_beyond_duration(
         at(methods::TIME_STEP.name),
+        written,
         step,
         at(methods::DURATION.name),
         duration,

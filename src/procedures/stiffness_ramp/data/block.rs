@@ -5,7 +5,7 @@ use crate::plan::declaration::{fields, names};
 use crate::plan::procedure::identification::stiffness_ramp_fields;
 use crate::schema::curves;
 use crate::schema::methods::TRUTH;
-use crate::schema::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
+use crate::schema::{BlockKind, Field, Kind, Naming, Possible, ResultKind, Variant};
 use crate::units::Dimension;
 
 pub(crate) const ACCURACY: Field = Field::quantity(
@@ -104,7 +104,8 @@ pub(crate) const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
     "max_displacement",
     Dimension::LENGTH,
     "peak absolute measured displacement",
-);
+)
+.within(Possible::PeakDisplacement);
 
 pub(crate) const LOOP_ENERGY: ResultKind = ResultKind::measured(
     "loop_energy",
@@ -199,7 +200,7 @@ pub(crate) const RELAXATION_RATE: ResultKind = ResultKind::measured(
 pub(crate) const BIC_MARGIN: ResultKind = ResultKind::new(
     "bic_margin",
     Dimension::NUMBER,
-    "BIC of the exponential minus that of the logarithm, with `either`; positive: the logarithm fits better",
+    "BIC of the exponential minus BIC of the logarithm, with `either`; positive: the logarithm fits better",
 );
 
 /// What it leaves, in the order of the tables and of `summary.json`.

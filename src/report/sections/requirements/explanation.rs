@@ -1,6 +1,7 @@
 //! Why a requirement is not met or not decided: the distance of its value to the limit, and the input with the largest part of its
 //! uncertainty. In: a condition. Out: lines of its row.
 
+use super::super::results;
 use super::super::results::budget_table::is_printed;
 use super::super::results::read::read_by;
 use super::{Scope, wording};
@@ -38,6 +39,12 @@ pub(super) fn distance(run: &Run<'_>, condition: &ConditionOutcome) -> Option<St
             wording::inside(text)
         }
     })
+}
+
+/// `an impact passes while max displacement < 15 mm`, for a result that a series of impacts decides.
+pub(super) fn criterion(run: &Run<'_>, planned: &Condition) -> Option<String> {
+    let read = read_by(planned);
+    results::criterion(run, read.first()?.reference.procedure.0).map(wording::impact_passes_while)
 }
 
 /// `largest part of U: time step (56 % of u²)`; None for the scatter of a fit alone.

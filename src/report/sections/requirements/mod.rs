@@ -10,6 +10,7 @@ use crate::report::budget::coverage_factor;
 use crate::report::document::{Block, Column, Style, Table, Text};
 use crate::report::number;
 use crate::report::run::Run;
+use crate::report::status::ReportStatus;
 use crate::report::wording::{common, headline, requirements as wording};
 use crate::verdict::{ConditionOutcome, RequirementOutcome, Verdict};
 
@@ -165,6 +166,9 @@ fn row(
         Some(quantity) => label.soft(quantity),
         None => label.code(&condition.text),
     };
+    if let Some(line) = explanation::criterion(run, planned) {
+        name = name.line().soft(line);
+    }
     if let Some(line) = explanation::distance(run, condition) {
         name = name.line().soft(line);
     }
@@ -228,11 +232,13 @@ fn quantity(run: &Run<'_>, condition: &Condition) -> Option<String> {
     Some(wording::quantity(name, entry, &procedure.name))
 }
 
-/// In a simulation, a met requirement has no colour: nothing passed a test.
+/// In a simulation, or a report that is not issuable, a met requirement has no colour: nothing passed a test.
 fn verdict(run: &Run<'_>, verdict: Verdict) -> Text {
+    let is_test = !run.record.rig.simulated
+        && !matches!(ReportStatus::of(run), ReportStatus::NotIssuable { .. });
     let style = match verdict {
         Verdict::Completed => Style::Plain,
-        Verdict::Pass if run.record.rig.simulated => Style::Strong,
+        Verdict::Pass if !is_test => Style::Strong,
         Verdict::Pass => Style::Pass,
         Verdict::Inconclusive => Style::Inconclusive,
         Verdict::Fail | Verdict::Aborted | Verdict::Error => Style::Fail,

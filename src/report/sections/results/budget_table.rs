@@ -13,7 +13,7 @@ use crate::report::number::{self, percent};
 use crate::report::run::Run;
 use crate::report::wording::budget as wording;
 use crate::schema::procedures::{impact, unload};
-use crate::uncertainty::MOST_DRAWS;
+use crate::uncertainty::{Contribution, MOST_DRAWS, StepInterval};
 use crate::units::Dimension;
 use crate::units::display::{is_rounding, minus, significant, typeset, unit};
 
@@ -30,8 +30,11 @@ pub(super) fn section(run: &Run<'_>, body: &mut Vec<Block>) {
         let mut budgets = budgets(run, index, procedure);
         let requested = requested(run, index, &procedure.history);
         budgets.retain(|budget| {
+            let effect = budget
+                .time_step
+                .map_or(0.0, |step| step.ends[1] - step.ends[0]);
             is_printed(budget, &requested)
-                && !is_rounding(budget.uncertainty, budget.result.dimension)
+                && !is_rounding(budget.uncertainty.max(effect), budget.result.dimension)
         });
         if budgets.is_empty() {
             continue;
@@ -93,10 +96,10 @@ pub(crate) fn is_reliable(result: &NamedResult, entry: usize) -> bool {
             .iter()
             .filter(|part| part.entry == entry)
     };
-    let all: f64 = contributions().map(|part| part.amount.powi(2)).sum();
+    let all: f64 = contributions().map(Contribution::variance).sum();
     let estimated: f64 = contributions()
         .filter(|part| !part.smooth)
-        .map(|part| part.amount.powi(2))
+        .map(Contribution::variance)
         .sum();
     estimated <= SMALL * all
 }
@@ -187,6 +190,7 @@ fn rows(budget: &Budget<'_>, procedure: &ProcedureRecord, scope: Scope) -> Vec<V
         uncertainty,
         known,
         lines,
+        time_step,
         ..
     } = budget;
     let amount =
@@ -253,14 +257,39 @@ fn rows(budget: &Budget<'_>, procedure: &ProcedureRecord, scope: Scope) -> Vec<V
             degrees,
         )
     };
-    rows.push(vec![
-        combined.into(),
-        "".into(),
-        "".into(),
-        amount(*uncertainty),
-        "100\u{a0}%".into(),
-    ]);
+    if *uncertainty > 0.0 {
+        rows.push(vec![
+            combined.into(),
+            "".into(),
+            "".into(),
+            amount(*uncertainty),
+            "100\u{a0}%".into(),
+        ]);
+    }
+    rows.extend(time_step.map(|step| finer_steps(step, result.dimension)));
     rows
+}
+
+/// The effect of the time step in a row of its own: it has a sign, and is not in U.
+fn finer_steps(step: StepInterval, dimension: Dimension) -> Vec<Text> {
+    let [low, high] = step.ends;
+    let size = high.max(-low);
+    let signed = |amount: f64| {
+        let text = number::part_of(amount, size, 2, dimension);
+        if amount > 0.0 {
+            format!("+{text}")
+        } else {
+            text
+        }
+    };
+    let ends = format!("{} … {}", signed(low), signed(high));
+    let text = Text::from(wording::finer_steps(
+        ends,
+        signed(step.half),
+        signed(step.quarter),
+    ));
+    let text = if step.smooth { text } else { text.and(MARK) };
+    vec![text, "".into(), "".into(), "".into(), "".into()]
 }
 
 /// The input name of the result's own fit.

@@ -32,7 +32,7 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
         body.push(Block::part(
             Text::from(procedure.name.as_str()).soft(format!(" · {}{state}", procedure.kind)),
         ));
-        inputs(procedure, body);
+        inputs(run, index, procedure, body);
         results(run, index, procedure, body);
         procedures::report(run, index, procedure, body);
     }
@@ -43,8 +43,19 @@ pub(super) fn budgets(source: &Source<'_>, body: &mut Vec<Block>) {
     budget_table::section(source.run, body);
 }
 
+/// The condition under which the series of impacts of a procedure goes on, in words; None for any other procedure.
+pub(super) fn criterion(run: &Run<'_>, index: usize) -> Option<String> {
+    let planned = run.plan.procedures.get(index)?;
+    let conditions = procedures::facts_of(&planned.kind).conditions?;
+    let texts: Vec<String> = conditions
+        .iter()
+        .map(|condition| with_spaces(&condition.text))
+        .collect();
+    Some(texts.join(" and "))
+}
+
 /// A note with the input values of the procedure.
-fn inputs(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
+fn inputs(run: &Run<'_>, index: usize, procedure: &ProcedureRecord, body: &mut Vec<Block>) {
     let text = |(name, estimate, dimension): &(&'static str, Estimate, Dimension)| {
         let value = match estimate.uncertainty {
             Some(_) => number::with_uncertainty(estimate.value, estimate.uncertainty, *dimension),
@@ -52,7 +63,8 @@ fn inputs(procedure: &ProcedureRecord, body: &mut Vec<Block>) {
         };
         format!("{} {value}", with_spaces(name))
     };
-    let texts: Vec<String> = procedure.inputs.iter().map(text).collect();
+    let criterion = criterion(run, index).map(wording::next_impact_while);
+    let texts: Vec<String> = procedure.inputs.iter().map(text).chain(criterion).collect();
     if !texts.is_empty() {
         let uncertain = procedure
             .inputs

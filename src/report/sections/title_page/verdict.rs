@@ -6,13 +6,14 @@ use crate::record::Outcome;
 use crate::report::document::{Text, Tone, Verdict as Stated};
 use crate::report::run::Run;
 use crate::report::sections::reproductions::not_reproduced;
+use crate::report::status::ReportStatus;
 use crate::report::wording::{reproductions, verdict as wording};
 use crate::rig::IS_OUTSIDE;
 use crate::run::check_run;
 use crate::verdict::Verdict;
 
 /// The statement, and the reason if the run was not completed. A simulation is headed as such, and so is a check run: neither is
-/// the test of the plan.
+/// the test of the plan. The report of a test that is not issuable says so before the outcome.
 pub(in super::super) fn verdict(run: &Run<'_>) -> Stated {
     let reason = match &run.record.outcome {
         Outcome::Completed => String::new(),
@@ -25,6 +26,7 @@ pub(in super::super) fn verdict(run: &Run<'_>) -> Stated {
         run.record.rig.simulated,
         check_run::performed_part(run.plan).is_some(),
     );
+    let not_issuable = matches!(ReportStatus::of(run), ReportStatus::NotIssuable { .. });
     let name = run.assessment.verdict.name().to_uppercase();
     let (heading, sentence) = match (simulated, checked) {
         (true, _) => (
@@ -40,10 +42,11 @@ pub(in super::super) fn verdict(run: &Run<'_>) -> Stated {
             wording::check_run(outcome(run)),
             wording::CHECK_RUN.to_owned(),
         ),
+        (false, false) if not_issuable => (wording::not_issuable(outcome(run)), sentence(run)),
         (false, false) => (name, sentence(run)),
     };
     Stated {
-        tone: tone(run, simulated || checked),
+        tone: tone(run, simulated || checked || not_issuable),
         heading,
         text: match unmet(run) {
             names if names.is_empty() => (sentence + &reason).into(),
@@ -96,7 +99,7 @@ fn unmet(run: &Run<'_>) -> String {
     found.join(" ")
 }
 
-/// Only the test of a specimen is green.
+/// Only a test of a specimen whose report can be issued is green.
 fn tone(run: &Run<'_>, not_the_test: bool) -> Tone {
     match run.assessment.verdict {
         Verdict::Completed => Tone::Neutral,

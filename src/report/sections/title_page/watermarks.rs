@@ -3,22 +3,19 @@
 
 use crate::report::document::Notice;
 use crate::report::run::Run;
-use crate::report::status::ReportStatus;
+use crate::report::status::{ReportStatus, report_status};
 use crate::report::wording::status as wording;
 
 /// The boxes, one for each reason that the heading does not state.
 pub(in super::super) fn notices(run: &Run<'_>) -> Vec<Notice> {
     let notice = |reason| match reason {
-        ReportStatus::Issuable
-        | ReportStatus::Simulation
-        | ReportStatus::CheckRun
-        | ReportStatus::Incomplete => None,
+        ReportStatus::Issued | ReportStatus::Simulation | ReportStatus::CheckRun => None,
         ReportStatus::NotIssuable { missing } => Some((
             vec![wording::NOT_ISSUABLE],
             wording::lacks(missing.join("; ")),
         )),
-        ReportStatus::ParticularsMissing { missing } => Some((
-            vec![wording::PARTICULARS_MISSING],
+        ReportStatus::Draft { missing } => Some((
+            vec![wording::DRAFT],
             wording::lacks_particulars(missing.join("; ")),
         )),
     };
@@ -32,29 +29,25 @@ pub(in super::super) fn notices(run: &Run<'_>) -> Vec<Notice> {
         .collect()
 }
 
-/// The watermarks, on every page: any page may be passed on alone.
+/// The watermarks, on every page: any page may be passed on alone. A test that was stopped is marked, too.
 pub(in super::super) fn watermarks(run: &Run<'_>) -> Vec<&'static str> {
     let words = reasons(run).into_iter().filter_map(|reason| match reason {
         ReportStatus::Simulation => Some(wording::SIMULATION),
         ReportStatus::CheckRun => Some(wording::CHECK_RUN),
-        ReportStatus::Incomplete => Some(wording::INCOMPLETE),
         ReportStatus::NotIssuable { .. } => Some(wording::NOT_ISSUABLE),
-        ReportStatus::ParticularsMissing { .. } => Some(wording::PARTICULARS_MISSING),
-        ReportStatus::Issuable => None,
+        ReportStatus::Draft { .. } => Some(wording::DRAFT),
+        ReportStatus::Issued => None,
     });
-    words.collect()
+    let stopped = report_status::is_incomplete(run).then_some(wording::INCOMPLETE);
+    words.chain(stopped).collect()
 }
 
 /// A simulation has neither operator nor calibration: none is missing.
 fn reasons(run: &Run<'_>) -> Vec<ReportStatus> {
     let mut reasons = ReportStatus::reasons(run);
     if run.record.rig.simulated {
-        reasons.retain(|reason| {
-            matches!(
-                reason,
-                ReportStatus::Simulation | ReportStatus::CheckRun | ReportStatus::Incomplete
-            )
-        });
+        reasons
+            .retain(|reason| matches!(reason, ReportStatus::Simulation | ReportStatus::CheckRun));
     }
     reasons
 }

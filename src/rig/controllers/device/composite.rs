@@ -155,6 +155,12 @@ impl Device for Several {
         })
     }
 
+    fn rounds_first_target(&self) -> bool {
+        self.members
+            .iter()
+            .any(|member| member.device.rounds_first_target())
+    }
+
     fn start(&mut self, going: &DeviceMove) -> Result<(), DeviceFault> {
         let moves = std::mem::take(&mut self.proposed);
         let ours = moves

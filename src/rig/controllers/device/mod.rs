@@ -158,6 +158,12 @@ pub trait Device: Send {
     /// The device cannot move, has a different number of axes, or cannot encode this move.
     fn encode(&mut self, targets: &[f64], speed: f64) -> Result<DeviceMove, DeviceFault>;
 
+    /// Whether the target of the last `encode` may be rounded by more than the resolution, because no reading has confirmed yet how
+    /// the device reads a number.
+    fn rounds_first_target(&self) -> bool {
+        false
+    }
+
     /// Sends a move and returns when it is accepted, not when it is done.
     ///
     /// # Errors

@@ -206,6 +206,28 @@ pub fn without_low_word(value: f64) -> f64 {
     f64::from(f32::from_bits(short.to_bits() & 0xFFFF_0000))
 }
 
+/// The short float nearest to a value among those whose low word is 0; at most 0.4 % from the value.
+#[must_use]
+pub fn nearest_without_low_word(value: f64) -> f64 {
+    #[expect(clippy::cast_possible_truncation, reason = "what it becomes is judged")]
+    let bits = (value as f32).to_bits();
+    f64::from(f32::from_bits(bits.saturating_add(0x8000) & 0xFFFF_0000))
+}
+
+/// The same number with its two words in the other order. None: it has one word.
+#[must_use]
+pub const fn other_order(number: ModbusNumber) -> Option<ModbusNumber> {
+    match number {
+        ModbusNumber::Int16 => None,
+        ModbusNumber::Int32 { high_word_first } => Some(ModbusNumber::Int32 {
+            high_word_first: !high_word_first,
+        }),
+        ModbusNumber::Float32 { high_word_first } => Some(ModbusNumber::Float32 {
+            high_word_first: !high_word_first,
+        }),
+    }
+}
+
 fn sealed(mut frame: Vec<u8>) -> Vec<u8> {
     let check = crc(&frame);
     frame.extend(check.to_le_bytes());

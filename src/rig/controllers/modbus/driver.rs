@@ -3,7 +3,8 @@
 //! RTU bytes are sent. A stop can also be a frame without an awaited answer; sent into the middle of another frame it may
 //! not be received, so it does not replace a wired emergency stop.
 
-use crate::plan::{ModbusMap, ModbusNumber};
+use super::word_order::{IMPLAUSIBLY_SMALL, Measured, Registers, WordOrder};
+use crate::plan::{Limits, ModbusMap, ModbusNumber};
 use crate::rig::LineStatistics;
 use crate::rig::controllers::modbus;
 use crate::rig::controllers::modbus::codec::{Fault, Table};
@@ -19,8 +20,6 @@ const GAP_BITS: f64 = 3.5 * 11.0;
 const IMPLAUSIBLE_POSITION: f64 = 1e3;
 /// More than the range of any load cell \[N\].
 const IMPLAUSIBLE_FORCE: f64 = 1e12;
-/// Smaller than any non-zero reading: the value of a float whose words are swapped.
-const IMPLAUSIBLY_SMALL: f64 = 1e-30;
 
 /// The drive, or the transmitter, at the other end of a line.
 pub struct Modbus {
@@ -31,6 +30,7 @@ pub struct Modbus {
     position: Option<Register>,
     force: Option<Register>,
     status: Option<Register>,
+    order: WordOrder,
 }
 
 /// A register to read, and the table that contains it.
@@ -72,6 +72,7 @@ impl Modbus {
             position,
             force,
             status,
+            order: WordOrder::of(map.number),
         }
     }
 
@@ -93,7 +94,11 @@ impl Modbus {
         Ok(Some(Register { address, table }))
     }
 
-    fn read(&mut self, register: Register, unit: f64, bound: f64) -> Result<Value, DeviceFault> {
+    fn read(&mut self, measured: Measured, register: Register) -> Result<Value, DeviceFault> {
+        let (unit, bound) = match measured {
+            Measured::Position => (self.map.length_unit, IMPLAUSIBLE_POSITION),
+            Measured::Force => (self.map.force_unit, IMPLAUSIBLE_FORCE),
+        };
         let question = modbus::codec::read(
             self.map.unit,
             register.table,
@@ -102,7 +107,15 @@ impl Modbus {
         );
         let (words, raw) = self.words(&question)?;
         match value_of(self.map.number, &words, unit, bound) {
-            Some(value) => Ok(Value { value, raw }),
+            Some(value) => {
+                let words = Registers {
+                    words: &words,
+                    unit,
+                };
+                self.order
+                    .read(measured, words, |other| plausible(other, bound));
+                Ok(Value { value, raw })
+            }
             None => Err(DeviceFault::Impossible {
                 raw,
                 reason: no_number(self.map.number).to_owned(),
@@ -149,7 +162,21 @@ impl Device for Modbus {
     }
 
     fn encode(&mut self, targets: &[f64], speed: f64) -> Result<DeviceMove, DeviceFault> {
-        frames(&self.map, one_axis(targets)?, speed)
+        let (map, target) = (&self.map, one_axis(targets)?);
+        let registers = |target| encode_quantity(map.number, target, map.length_unit, f64::round);
+        let target = self.order.target(target, map.length_unit, registers)?;
+        frames(map, target, speed)
+    }
+
+    fn rounds_first_target(&self) -> bool {
+        self.order.is_open()
+    }
+
+    fn narrow_limits(&mut self, limits: &[Limits]) -> Result<(), DeviceFault> {
+        if let [limits] = limits {
+            self.order.limited(*limits);
+        }
+        Ok(())
     }
 
     fn start(&mut self, going: &DeviceMove) -> Result<(), DeviceFault> {
@@ -159,14 +186,12 @@ impl Device for Modbus {
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
         let (mut sample, mut axis) = (Sample::default(), Channel::default());
         if let Some(register) = self.position {
-            let Value { value, raw } =
-                self.read(register, self.map.length_unit, IMPLAUSIBLE_POSITION)?;
+            let Value { value, raw } = self.read(Measured::Position, register)?;
             axis.displacement = Some(value);
             sample.raw.push(raw);
         }
         if let Some(register) = self.force {
-            let Value { value, raw } =
-                self.read(register, self.map.force_unit, IMPLAUSIBLE_FORCE)?;
+            let Value { value, raw } = self.read(Measured::Force, register)?;
             axis.force = Some(Force::Newtons(value));
             sample.raw.push(raw);
         }
@@ -192,9 +217,7 @@ impl Device for Modbus {
             let register = self
                 .position
                 .ok_or_else(|| unfit("its map has no register to stop it"))?;
-            let here = self
-                .read(register, self.map.length_unit, IMPLAUSIBLE_POSITION)?
-                .value;
+            let here = self.read(Measured::Position, register)?.value;
             target_frame(&self.map, here)?.0
         };
         self.write(&frame)
@@ -228,7 +251,7 @@ pub(crate) fn introduced(map: &ModbusMap) -> DeviceIdentity {
 }
 
 /// The frames of a move to `target` \[m\] at a speed not above `speed` \[m/s\], and their decoded values. A drive with
-/// swapped words reads a speed of almost zero, so that it does not move: the second word of the speed is 0.
+/// swapped words reads a speed of almost zero: the second word of the speed is 0.
 fn frames(map: &ModbusMap, target: f64, speed: f64) -> Result<DeviceMove, DeviceFault> {
     let slower = if is_float(map.number) {
         modbus::codec::without_low_word(speed / map.speed_unit) * map.speed_unit

@@ -1,4 +1,6 @@
-//! Modbus RTU drives: `codec` turns bytes into registers, `driver` leads the conversation.
+//! Modbus RTU drives: `codec` turns bytes into registers, `driver` leads the conversation, `word_order` allows a
+//! target.
 
 pub mod codec;
 pub(crate) mod driver;
+mod word_order;

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use crate::emulator::firmware::testing::spring;
 use crate::emulator::{EmulatedRig, Firmware, firmware};
-use crate::plan::{ModbusMap, ModbusNumber};
+use crate::plan::{Interval, Limits, ModbusMap, ModbusNumber};
 use crate::rig::StopRequest;
 use crate::rig::controllers::instron::driver::Instron;
 use crate::rig::controllers::mark10::driver::Mark10;
@@ -124,6 +124,7 @@ fn read(device: &mut dyn Device) -> (f64, f64, Option<bool>) {
 
 /// Moves to 2.5 mm and back to −1 mm at 1 mm/s.
 fn goes_there_and_back(device: &mut dyn Device, controller: &Controller, resolution: f64) {
+    let before = controller.targets().len();
     device.identify().unwrap();
     for target in [0.002_5, -0.001] {
         let going = device.encode(&[target], 0.001).unwrap();
@@ -146,7 +147,7 @@ fn goes_there_and_back(device: &mut dyn Device, controller: &Controller, resolut
         assert!((force - STIFFNESS * target).abs() <= 0.02, "{force}");
         assert!((controller.targets().last().unwrap() - going.targets[0]).abs() < 1e-12);
     }
-    assert_eq!(controller.targets().len(), 2);
+    assert_eq!(controller.targets().len(), before + 2);
     assert_eq!(
         (
             device.line_statistics().ignored,
@@ -229,9 +230,21 @@ fn modbus_drives_of_every_kind_of_number() {
     let mut maps = vec![map(ModbusNumber::Int16, 1e-6)];
     maps.extend(orders.map(|high_word_first| map(ModbusNumber::Int32 { high_word_first }, 1e-8)));
     maps.extend(orders.map(|high_word_first| map(ModbusNumber::Float32 { high_word_first }, 1e-3)));
+    let displacement = Interval {
+        low: -0.001,
+        high: 0.01,
+    };
+    let limits = Limits {
+        displacement,
+        ..Limits::NONE
+    };
     for map in maps {
         let controller = Controller::new(Box::new(firmware::Modbus::new(map)));
+        // At exactly 0 no reading shows the order of the words.
+        controller.shared.lock().unwrap().rig.go(1e-4, 0.01);
+        controller.clock.advance(1.0);
         let mut device = Modbus::new(controller.client(), map, Some(19_200));
+        device.narrow_limits(&[limits]).unwrap();
         goes_there_and_back(&mut device, &controller, 1e-9);
         stays_where_it_is_stopped(&mut device, &controller);
     }

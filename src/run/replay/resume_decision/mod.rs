@@ -16,7 +16,7 @@ use crate::rig::Reading;
 use crate::run::{Inspection, UNLOADING};
 
 pub use position::Bands;
-use position::{FoundPosition, InterruptedMotion, Place, may_move, mostly_lost};
+use position::{FoundPosition, InterruptedMotion, Measured, Place, may_move, mostly_lost};
 pub use refusal::ResumeRefusal;
 pub use same_rig::{no_faster, not_restarted, same_measure, same_resolution, same_rig};
 
@@ -301,9 +301,6 @@ pub(super) fn undecided(lines: &[Line]) -> Result<Option<Undecided>, UnreadableL
         .is_some_and(|samples| mostly_lost(samples, readings_done));
     Ok((is_cut && lost).then_some(Undecided::Stroke(seq)))
 }
-
-/// \[m\] and \[N\], one entry per degree of freedom.
-type Measured = (Vec<f64>, Vec<f64>);
 
 fn last_reading(lines: &[Line]) -> Result<Option<Measured>, UnreadableLog> {
     let last = lines

@@ -1,6 +1,5 @@
 //! The position and force of a rig that is found when a run is resumed, compared with those of its run log.
 
-use super::Measured;
 use super::refusal::ResumeRefusal;
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::{Interval, RealLink, RigPlan};
@@ -16,6 +15,9 @@ const LONGEST_OVERRUN: f64 = 1.0;
 
 /// Readings before the last one in which its motion is looked for.
 const RECENT: usize = 64;
+
+/// \[m\] and \[N\], one entry per degree of freedom.
+pub(super) type Measured = (Vec<f64>, Vec<f64>);
 
 /// Largest distance of the rig from its logged position and force, one entry per axis.
 #[derive(Clone, Debug, PartialEq)]

@@ -51,7 +51,7 @@ pub(crate) const UNIT: Field = Field::of_type(
     FieldType::OfInput,
     "unit of the values, if the name of the column does not end in it, such as `mass_kg`, `speed_m_per_s`",
 )
-.default_in_words("that of the column")
+.default_in_words("the unit of the column")
 .above_zero();
 
 /// The word of the distribution of ground-motion records.
@@ -86,11 +86,11 @@ pub(crate) const DISTRIBUTIONS: &[Variant] = &[
     Variant::with(
         "from",
         &[FILE, COLUMN, UNIT],
-        "measured values, each row as probable as the others",
+        "measured values, each row with equal probability",
     ),
     Variant::word(
         ANY,
-        "each ground-motion record of a list as probable as the others: of `record_number`",
+        "one ground-motion record of a list, each with equal probability; for `record_number`",
     ),
     Variant::word(
         "measured",

@@ -72,6 +72,8 @@ pub(super) fn curve(metadata: &Metadata, fragility: &FragilityAnswer) -> Option<
         }
     }
     drawn.push(whole_range(fragility.stripes.first()?.intensity));
+    let curve = fragility.fits.iter().any(|fit| fit.no_fit.is_none());
+    let extrapolated = if curve { wording::EXTRAPOLATED } else { "" };
     Some(StudyFigure {
         name: format!("{}_fragility", metadata.study),
         chart: Chart {
@@ -84,7 +86,7 @@ pub(super) fn curve(metadata: &Metadata, fragility: &FragilityAnswer) -> Option<
             series: drawn,
             references: Vec::new(),
         },
-        caption: wording::fragility(&fragility.exceeds, &column.name),
+        caption: wording::fragility(&fragility.exceeds, &column.name) + extrapolated,
         result: None,
         kind: FigureKind::Fragility,
     })

@@ -9,7 +9,7 @@ use crate::tests::fault_table::stage::{device_link, link, plan, run, run_without
 pub(crate) fn modbus() -> Plan {
     let map = ModbusMap {
         unit: 1,
-        number: ModbusNumber::Int32 {
+        number: ModbusNumber::Float32 {
             high_word_first: true,
         },
         target: Some(0),

@@ -4,8 +4,8 @@ use crate::plan::formula::Formula;
 use crate::plan::formula::Formula::Constant;
 use crate::plan::formula::{Part, ProcedureId, ResultReference};
 use crate::plan::{
-    Behaviour, Between, Comparison, Condition, Escalate, Impact, Plan, ProcedureKind, Requirement,
-    Test, Unload, Until,
+    Behaviour, Between, Comparison, Condition, Contact, Escalate, Impact, Plan, ProcedureKind,
+    Requirement, Test, Unload, Until,
 };
 use crate::record::{EscalateHistory, EventKind, History, Outcome, Record};
 use crate::rig::VirtualRig;
@@ -25,7 +25,7 @@ fn below(limit: f64) -> Condition {
         limit: Constant(limit),
     };
     Condition {
-        text: String::new(),
+        text: format!("max_displacement < {} mm", 1e3 * limit),
         value,
         test,
         dimension: Dimension::LENGTH,
@@ -191,7 +191,7 @@ fn it_ends_with_the_first_impact_that_fails() {
         record
             .events
             .iter()
-            .any(|event| event.text == "impact 4 of 3.200 J: the condition is false")
+            .any(|event| event.text == "impact 4 of 3.200 J ends the series: max_displacement < 15 mm is false, the value is 17.06 mm")
     );
 }
 
@@ -213,12 +213,8 @@ fn the_list_bounds_it() {
         ),
         (Some(2.0), Some(2.0))
     );
-    assert!(
-        record
-            .events
-            .iter()
-            .any(|event| event.text == "the condition was true after every impact of the series")
-    );
+    assert!(record.events.iter().any(|event| event.text
+        == "max_displacement < 1000 mm was true after every impact of the series"));
     assert!(number(&record, 0, "final_displacement").0.unwrap().abs() < 1e-15);
     assert!(
         record.procedures[0]
@@ -296,6 +292,9 @@ fn no_more_steps_come_than_were_predicted() {
     ] {
         let mut rising = rising(&[0.1, 0.2, 0.3], 1.0, between);
         rising.impact = Impact {
+            contact: Contact::Restitution {
+                coefficient: Constant(0.5),
+            },
             until: Until::Duration,
             duration: Constant(0.1),
             ..given_impact()

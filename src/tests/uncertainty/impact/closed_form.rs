@@ -1,12 +1,10 @@
 //! Contributions to the results of an impact, compared with its closed form.
 
-use super::{
-    MASS, STIFFNESS, STRIKER, all_uncertain, constant, contributions, from, plan, sticking,
-};
+use super::{MASS, STIFFNESS, STRIKER, all_uncertain, contributions, from, plan, sticking};
 use crate::plan::formula::ProcedureId;
 use crate::plan::{Impact, Link, ProcedureKind, VirtualLink};
 use crate::tests::testing::{elastic_plan, impact, number, ramp, result_of, run_unwatched};
-use crate::uncertainty::{Contribution, Source, combined};
+use crate::uncertainty::{Contribution, Source, StepInterval, combined};
 
 /// X = `Ms·V0/√(K(M + Ms))`, t = π/2·√((M + Ms)/K), ½KX². K is proportional to the factor of the force over that of the displacement. A
 /// force F₀ that was read too low changes X by −F₀/K.
@@ -127,12 +125,12 @@ fn the_critical_time_step_has_the_uncertainty_of_the_ramp() {
     );
 }
 
-/// Without uncertain inputs, only the uncertainty of the time step is reported.
+/// Without uncertain inputs, the time step alone has an effect, and u is 0.
 #[test]
-fn an_exact_impact_has_the_uncertainty_of_its_time_step() {
-    let record = run_unwatched(&plan(impact(constant(STIFFNESS))));
+fn an_exact_impact_has_the_effect_of_its_time_step() {
+    let record = run_unwatched(&plan(sticking(1e-3)));
     for result in &record.procedures[0].results {
-        let of_step = |part: &Contribution| matches!(part.source, Source::TimeStep { .. });
+        let of_step = |part: &Contribution| !part.source.is_of_uncertainty();
         assert!(result.contributions.iter().all(of_step), "{result:?}");
         assert_eq!(
             number(&record, 0, result.name).1,
@@ -140,7 +138,9 @@ fn an_exact_impact_has_the_uncertainty_of_its_time_step() {
         );
     }
     assert_eq!(number(&record, 0, "striker_energy").1, Some(0.0));
-    assert!(number(&record, 0, "max_displacement").1 > Some(0.0));
+    assert_eq!(number(&record, 0, "max_displacement").1, Some(0.0));
+    let effect = StepInterval::of(contributions(&record, 0, "max_displacement")).unwrap();
+    assert!(effect.ends[1] - effect.ends[0] > 0.0, "{effect:?}");
 }
 
 /// The same results without their uncertainties, of a run that does not ask for them.

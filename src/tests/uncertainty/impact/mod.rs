@@ -48,7 +48,7 @@ pub(super) fn contributions<'a>(
 pub(super) fn without_the_time_step(parts: &[Contribution]) -> Vec<Contribution> {
     parts
         .iter()
-        .filter(|part| !matches!(part.source, Source::TimeStep { .. }))
+        .filter(|part| part.source.is_of_uncertainty())
         .copied()
         .collect()
 }

@@ -2,11 +2,10 @@
 //! header with NPTS and DT). In: the text. Out: times and numbers as they are in the file, with the scale factor of the numbers;
 //! or the line of an error, and the reason. It knows no plan.
 
+use crate::units::unit::STANDARD_GRAVITY;
+
 /// Most samples of one record.
 pub const MOST_SAMPLES: usize = 100_000;
-
-/// Standard gravity \[m/s²\].
-const STANDARD_GRAVITY: f64 = 9.806_65;
 
 /// Header lines of an AT2 file, one of which contains NPTS and DT.
 const AT2_HEAD: usize = 6;

@@ -13,6 +13,7 @@ use crate::physics::study::distribution::{Distribution, DistributionError, Sprea
 use crate::plan::Interval;
 use crate::schema::study as schema;
 use crate::schema::{Field, Kind, ground, specimen, striker};
+use crate::text::diagnostic::Diagnostic;
 use crate::text::source::Span;
 
 /// The word of the distribution by the stated uncertainty.
@@ -50,7 +51,17 @@ pub(super) fn law<'a>(
     if chosen.variant.argument(schema::FILE.name).is_some() {
         return samples::column(checker, chosen, target);
     }
+    if let Some(diagnostic) = mean_first(checker, chosen, span) {
+        return checker.fail(diagnostic);
+    }
     let stated = stated(checker, chosen, target, context)?;
+    if let (Some(Spread::Cv(cv)), Some(at)) = (stated.spread, given(chosen, schema::CV.name))
+        && cv > 1.0
+        && !checker.text(at).contains('%')
+    {
+        let diagnostic = message::scatter::cv_without_percent(checker.text(at), cv, at);
+        checker.diagnostics.push(diagnostic);
+    }
     let has_mean = !target.nominal.is_nan()
         || [schema::LIMITS, schema::MEAN]
             .iter()
@@ -102,6 +113,22 @@ pub(super) fn law<'a>(
         (made, _) => made,
     };
     refused(checker, made, target, span).map(|made| Law::Distribution(made, reach))
+}
+
+/// `normal(0.8 m/s, 0.05 m/s)`, as other programs read it: mean and standard deviation.
+fn mean_first(checker: &Checker, chosen: &Chosen, span: Span) -> Option<Diagnostic> {
+    let arguments = chosen.variant.arguments;
+    let order = [schema::SD.name, schema::CV.name];
+    if chosen.unnamed < 2 || !arguments.iter().map(|field| field.name).take(2).eq(order) {
+        return None;
+    }
+    let [mean, sd] = order.map(|name| given(chosen, name).map(|at| checker.text(at)));
+    Some(message::scatter::mean_first(
+        chosen.variant.name,
+        mean?,
+        sd?,
+        span,
+    ))
 }
 
 const fn around(mean: f64, half: f64) -> Interval {

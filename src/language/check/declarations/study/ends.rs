@@ -4,6 +4,8 @@
 use super::target::Target;
 use super::varied::{Law, Varied};
 use crate::language::check::checker::{Checker, End};
+use crate::language::check::messages::studies::intensity::INSIDE;
+use crate::physics::study::distribution::Tails;
 use crate::text::source::Span;
 use crate::units::Quantity;
 
@@ -11,12 +13,17 @@ use crate::units::Quantity;
 pub(super) fn note(checker: &mut Checker, varied: &[Varied]) {
     for one in varied {
         let ends = match &one.law {
-            Law::Distribution(_, reach) => reach.map(|reach| [reach.low, reach.high]),
+            Law::Distribution(_, Some(reach)) => Some([reach.low, reach.high]),
+            Law::Distribution(distribution, None) => {
+                let ends = [-RARE, RARE].map(|score| distribution.quantile(Tails::of_score(score)));
+                note_tails(checker, &one.target, ends, one.span);
+                None
+            }
             Law::Measured(_) => None,
             Law::Column { values, .. } if one.target.is_record() => {
                 // Every record is read once.
                 for value in values {
-                    note_ends(checker, &one.target, [*value; 2], one.span);
+                    note_ends(checker, &one.target, [*value; 2], one.span, INSIDE);
                 }
                 None
             }
@@ -27,13 +34,32 @@ pub(super) fn note(checker: &mut Checker, varied: &[Varied]) {
             }
         };
         if let Some(ends) = ends {
-            note_ends(checker, &one.target, ends, one.span);
+            note_ends(checker, &one.target, ends, one.span, INSIDE);
         }
     }
 }
 
-/// Notes two values of an input.
-pub(super) fn note_ends(checker: &mut Checker, target: &Target, ends: [f64; 2], span: Span) {
+/// The standard normal number that one draw in 1000 exceeds.
+const RARE: f64 = 3.090;
+
+/// Notes two values of an input beyond which one draw in 1000 is.
+fn note_tails(checker: &mut Checker, target: &Target, ends: [f64; 2], span: Span) {
+    checker.tails.extend(ends.iter().map(|value| End {
+        name: target.name.clone(),
+        value: Quantity::new(*value, target.dimension),
+        span,
+        help: INSIDE,
+    }));
+}
+
+/// Notes two values of an input; `help` for a plan that is invalid there.
+pub(super) fn note_ends(
+    checker: &mut Checker,
+    target: &Target,
+    ends: [f64; 2],
+    span: Span,
+    help: &'static str,
+) {
     let ends = if ends[0].to_bits() == ends[1].to_bits() {
         &ends[..1]
     } else {
@@ -43,5 +69,6 @@ pub(super) fn note_ends(checker: &mut Checker, target: &Target, ends: [f64; 2], 
         name: target.name.clone(),
         value: Quantity::new(*value, target.dimension),
         span,
+        help,
     }));
 }

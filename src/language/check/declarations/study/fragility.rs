@@ -4,6 +4,7 @@ use super::target::{self, Target};
 use super::{confidence, ends, inputs, known, reads_a_result, whole};
 use crate::language::check::checker::{Checker, Context, Reads};
 use crate::language::check::messages::studies as message;
+use crate::language::check::messages::studies::intensity;
 use crate::language::syntax::ast::{Expr, ExprKind};
 use crate::plan::Condition;
 use crate::plan::study::Fragility;
@@ -49,10 +50,13 @@ fn stepped<'a>(checker: &mut Checker<'a>, block: usize) -> Option<(Target<'a>, V
         ExprKind::Faulty => return None,
         _ => {
             let span = written.value.span;
-            return checker.fail(message::intensity_wanted(checker.text(span), span));
+            return checker.fail(intensity::intensity_wanted(checker.text(span), span));
         }
     };
     let target = target::target(checker, input);
+    if let Some(rising) = rising(checker, values, context) {
+        return checker.fail(intensity::stripes_fall(&rising, values.span));
+    }
     let typed = checker.value(values, context);
     let (target, typed) = (target?, typed?);
     let typed = checker.expect(typed, target.dimension, &target.name, values)?;
@@ -64,14 +68,38 @@ fn stepped<'a>(checker: &mut Checker<'a>, block: usize) -> Option<(Target<'a>, V
         };
         let value = known(checker, part.constant(), span)?;
         if value <= stripes.last().copied().unwrap_or(0.0) {
-            return checker.fail(message::stripes_do_not_rise(checker.text(span), span));
+            return checker.fail(intensity::stripes_do_not_rise(checker.text(span), span));
         }
         stripes.push(value);
     }
     if let (Some(first), Some(last)) = (stripes.first(), stripes.last()) {
-        ends::note_ends(checker, &target, [*first, *last], written.value.span);
+        let (ends, span) = ([*first, *last], written.value.span);
+        ends::note_ends(checker, &target, ends, span, intensity::ENDS);
     }
     Some((target, stripes))
+}
+
+/// `0.4 .. 1.2 step 0.1 m/s` for `1.2 .. 0.4 step 0.1 m/s`. None for any other values.
+fn rising<'a>(checker: &mut Checker<'a>, values: &'a Expr, context: Context) -> Option<String> {
+    let ExprKind::Range {
+        start,
+        end,
+        step: Some(step),
+    } = &values.kind
+    else {
+        return None;
+    };
+    // Its errors are those of the values.
+    let before = checker.diagnostics.len();
+    let parts = checker.range_parts(values, None, context);
+    checker.diagnostics.truncate(before);
+    let parts = parts?;
+    if parts.start.constant()? <= parts.end.constant()? {
+        return None;
+    }
+    let [start, end, step] = [start, end, step].map(|part| checker.text(part.span));
+    let step = step.trim_start_matches(['-', ' ']);
+    Some(format!("{end} .. {start} step {step}"))
 }
 
 /// The one condition, which reads a result.

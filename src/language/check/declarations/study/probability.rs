@@ -3,7 +3,7 @@
 
 use super::{known, spaced};
 use crate::language::check::checker::{Checker, Context, Reads};
-use crate::language::check::messages::{names, studies as message};
+use crate::language::check::messages::{names, studies as message, types};
 use crate::language::check::scope::Meaning;
 use crate::language::syntax::ast::{BinaryOperator, Expr, ExprKind};
 use crate::physics::study::Confidence;
@@ -157,6 +157,12 @@ fn event<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option<(usize, Stu
     }
     let chosen = checker.arguments_of(&schema::PROBABILITY, arguments, written.span)?;
     let mut label = |field: Field| {
+        if let Some((_, Some(written))) = chosen.find(field.name)
+            && let Some(required) = required(checker, field, written)
+        {
+            let span = written.span;
+            return checker.fail(types::requirement_wanted(field.name, span, &required));
+        }
         let (text, span) = checker.text_argument(&chosen, field.name)??;
         run_requirement(checker, &text, span).map(Some)
     };
@@ -172,6 +178,33 @@ fn event<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option<(usize, Stu
         }
         _ => checker.fail(message::event_wanted(written.span)),
     }
+}
+
+/// The requirement that a comparison stands for which is written in place of its name: `hit.max_displacement <= 11 mm` for
+/// `fails: hit.max_displacement > 11 mm`. None for anything else.
+fn required(checker: &Checker, field: Field, written: &Expr) -> Option<String> {
+    use BinaryOperator::{Equal, Greater, GreaterEqual, Less, LessEqual, NotEqual};
+    let ExprKind::Binary {
+        operator,
+        left,
+        right,
+    } = &written.kind
+    else {
+        return None;
+    };
+    let opposite = match operator.node {
+        Less => GreaterEqual,
+        LessEqual => Greater,
+        Greater => LessEqual,
+        GreaterEqual => Less,
+        Equal => NotEqual,
+        NotEqual => Equal,
+        _ => return None,
+    };
+    let holds = field.name == schema::HOLDS.name;
+    let operator = if holds { operator.node } else { opposite };
+    let (left, right) = (checker.text(left.span), checker.text(right.span));
+    Some(format!("{left} {} {right}", operator.symbol()))
 }
 
 /// The study of this name, as an index.

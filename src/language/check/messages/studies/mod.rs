@@ -1,6 +1,8 @@
 //! Errors of `study` and `fragility`, and of requirements on their probabilities.
 
+pub mod intensity;
 pub mod rare;
+pub mod scatter;
 
 use super::{shown, suggestion};
 use crate::physics::study::distribution::DistributionError;
@@ -34,24 +36,6 @@ pub fn steps_misplaced(span: Span) -> Diagnostic {
     Diagnostic::new(Code::WrongType, "`in` gives the values of an intensity, which only a fragility has")
         .at(span, "not an intensity")
         .help("write the bounds of a parameter after `between`, two comparisons with `and`, or a tolerance with `within`")
-}
-
-pub fn intensity_wanted(text: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(
-        Code::WrongType,
-        format!("`{text}` gives no values of an intensity"),
-    )
-    .at(span, "not `INPUT in VALUES`")
-    .help("write it as in `intensity = impact_speed in 0.5 .. 1.5 step 0.1 m/s`")
-}
-
-pub fn stripes_do_not_rise(text: &str, span: Span) -> Diagnostic {
-    Diagnostic::new(
-        Code::BadRange,
-        "the values of an intensity must increase from above 0",
-    )
-    .at(span, format!("`{text}` is not above the value before"))
-    .help("write each value once, in increasing order, all above 0")
 }
 
 /// `name`: the input.
@@ -461,20 +445,4 @@ pub fn of_a_real_rig(name: &str, span: Span) -> Diagnostic {
     )
     .at(span, "no effect in a study")
     .help("remove it, or vary a field of a virtual rig")
-}
-
-/// `value`: an end of the distribution of `name`, at which the plan has the error `reason`.
-pub fn invalid_end(name: &str, value: &str, reason: &Diagnostic, span: Span) -> Diagnostic {
-    let message = format!(
-        "the plan has an error where `{name}` is {value}: {}",
-        reason.message
-    );
-    let diagnostic = Diagnostic::new(Code::InvalidEnd, message).at(span, "reaches this value");
-    let cause = reason.labels.iter().filter(|label| label.span != span);
-    cause
-        .take(1)
-        .fold(diagnostic, |diagnostic, label| {
-            diagnostic.at(label.span, "invalid there")
-        })
-        .help("write limits inside the valid range: `uniform(a .. b)`, or `between: a .. b` of another distribution")
 }

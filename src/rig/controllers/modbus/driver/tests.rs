@@ -1,6 +1,7 @@
 //! Transcripts of a drive and of a transmitter: exceptions, noise, silence, late answers, swapped words.
 
 use super::*;
+use crate::plan::Interval;
 use crate::rig::safety::failpoint::{Guarding, without};
 use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
 use crate::rig::transport::Clock as _;
@@ -41,6 +42,16 @@ fn device(map: ModbusMap) -> (Modbus, ScriptedPort, VirtualClock) {
     let port = ScriptedPort::new(&clock);
     let client = LineClient::new(Box::new(port.clone()), Box::new(clock.clone()), T);
     (Modbus::new(client, map, Some(19_200)), port, clock)
+}
+
+/// The same after it has read this position \[mm\], no force and no motion: three questions.
+fn standing_at(position: f32, map: ModbusMap) -> (Modbus, ScriptedPort, VirtualClock) {
+    let (mut device, port, clock) = device(map);
+    for reply in [float(position), float(0.0), sealed(&[1, 3, 2, 0, 0])] {
+        port.reply(&at_once(reply));
+    }
+    device.sample().unwrap();
+    (device, port, clock)
 }
 
 fn sealed(body: &[u8]) -> Vec<u8> {
@@ -114,7 +125,7 @@ fn three_and_a_half_characters_of_silence_come_before_every_question() {
 
 #[test]
 fn a_move_is_speed_target_start_and_its_numbers_are_those_of_its_registers() {
-    let (mut device, port, _) = device(MAP);
+    let (mut device, port, _) = standing_at(12.5, MAP);
     let going = device.encode(&[0.001_3], 0.003).unwrap();
     let short = |value: f32| value.to_bits().to_be_bytes();
     assert_eq!(going.frames[0][7..11], short(3.0));
@@ -135,7 +146,7 @@ fn a_move_is_speed_target_start_and_its_numbers_are_those_of_its_registers() {
         port.reply(&at_once(echo));
     }
     device.start(&going).unwrap();
-    assert_eq!(frames(&port), going.frames);
+    assert_eq!(frames(&port)[3..], going.frames);
 }
 
 #[test]
@@ -173,7 +184,7 @@ fn no_speed_is_rounded_up_and_no_number_is_clamped() {
             "{target} {speed}"
         );
     }
-    let (mut device, ..) = self::device(MAP);
+    let (mut device, ..) = standing_at(12.5, MAP);
     for step in 1..2000 {
         let asked = f64::from(step) * 1.7e-6;
         let encoded = device.encode(&[0.0], asked).unwrap().speed;
@@ -186,14 +197,14 @@ fn no_speed_is_rounded_up_and_no_number_is_clamped() {
 
 #[test]
 fn an_exception_is_a_refusal_in_words() {
-    let (mut device, port, _) = device(MAP);
+    let (mut device, port, _) = standing_at(12.5, MAP);
     let going = device.encode(&[0.001], 0.001).unwrap();
     port.reply(&at_once(sealed(&[1, 0x90, 3])));
     let refused = DeviceFault::Refused {
         reason: "the value is not allowed (exception 3)".to_owned(),
     };
     assert_eq!(device.start(&going), Err(refused));
-    assert_eq!(port.sent().len(), 1, "neither target nor start follow");
+    assert_eq!(port.sent().len(), 4, "neither target nor start follow");
 }
 
 #[test]
@@ -294,31 +305,105 @@ fn swapped_words_are_noticed_when_it_is_opened() {
     }
 }
 
-/// If every reading is exactly 0, the word order cannot be determined: the first move must be refused.
+/// Words of the number in this frame: unit, function, address, number of words and bytes come before them.
+fn words_of(frame: &[u8]) -> Vec<u16> {
+    let words = frame[7..11].chunks_exact(2);
+    words
+        .map(|word| u16::from_be_bytes([word[0], word[1]]))
+        .collect()
+}
+
+const TURNED: ModbusNumber = ModbusNumber::Float32 {
+    high_word_first: false,
+};
+
+/// If every reading is exactly 0, the word order cannot be determined.
 #[test]
-fn a_drive_with_swapped_words_is_sent_no_speed() {
+fn a_drive_with_swapped_words_is_sent_no_speed_and_no_target() {
     for speed in [1e-3, 1.1e-3, 0.7e-3, 0.05] {
-        let (mut device, ..) = device(MAP);
+        let (mut device, ..) = standing_at(0.0, MAP);
         let going = device.encode(&[1e-4], speed).unwrap();
+        assert!(device.rounds_first_target());
+        // 0.1 mm is 3DCC CCCD: the nearest number without a low word is 3DCD 0000.
+        assert_eq!(words_of(&going.frames[1]), [0x3DCD, 0]);
+        assert!((going.targets[0] - 1e-4).abs() < 0.004 * 1e-4, "{going:?}");
+        let turned = modbus::codec::from_words(TURNED, &words_of(&going.frames[1])).unwrap();
+        assert!(turned.abs() < 1e-38, "the target is {turned} mm to it");
         assert!(
             going.speed <= speed && going.speed > 0.99 * speed,
             "{}",
             going.speed
         );
-        // Unit, function, address, number of words and bytes come before the words.
-        let words = going.frames[0][7..11].chunks_exact(2);
-        let words: Vec<u16> = words
-            .map(|word| u16::from_be_bytes([word[0], word[1]]))
-            .collect();
-        let turned = modbus::codec::from_words(
-            ModbusNumber::Float32 {
-                high_word_first: false,
-            },
-            &words,
-        )
-        .unwrap();
+        let turned = modbus::codec::from_words(TURNED, &words_of(&going.frames[0])).unwrap();
         assert!(turned.abs() < 1e-38, "{speed} m/s is {turned} mm/s to it");
     }
+}
+
+#[test]
+fn a_target_is_exact_once_a_reading_shows_the_order() {
+    for (position, rounded) in [(0.0, true), (0.1, false), (-12.5, false)] {
+        let (mut device, ..) = standing_at(position, MAP);
+        let going = device.encode(&[1e-4], 1e-3).unwrap();
+        assert_eq!(device.rounds_first_target(), rounded, "{position}");
+        let exact = (going.targets[0] - 1e-4).abs() < 1e-11;
+        assert_eq!(exact, !rounded, "{position}: {going:?}");
+    }
+    // 5.0005 mm is 40A0 0419. In the other order it is 0419 40A0, 1.8e-36 mm: no reading. 40A0 2419 would be 3.4e-17 mm, which is one.
+    let ambiguous = f32::from_bits(0x40A0_2419);
+    let (mut device, ..) = standing_at(ambiguous, MAP);
+    assert!(device.rounds_first_target());
+    // 6 mm is 40C0 0000: 2.3e-41 mm in the other order, where the drive would stay. 0.1 mm would be −1.1e8 mm.
+    let going = device.encode(&[6e-3], 1e-3).unwrap();
+    assert_eq!(words_of(&going.frames[1]), [0x40C0, 0]);
+}
+
+/// A whole number has no first target that is small in both orders.
+#[test]
+fn a_drive_with_whole_numbers_at_zero_is_sent_nothing() {
+    let map = ModbusMap {
+        number: ModbusNumber::Int32 {
+            high_word_first: true,
+        },
+        length_unit: 1e-6,
+        ..MAP
+    };
+    let standing = |counts: i32| {
+        let (mut device, port, _) = device(map);
+        let counts = sealed(&[&[1, 3, 4][..], &counts.to_be_bytes()].concat());
+        for reply in [counts, float(0.0), sealed(&[1, 3, 2, 0, 0])] {
+            port.reply(&at_once(reply));
+        }
+        let millimetres = |millimetres: f64| 1e-3 * millimetres;
+        let displacement = Interval {
+            low: millimetres(-2.0),
+            high: millimetres(25.0),
+        };
+        let limits = Limits {
+            displacement,
+            ..Limits::NONE
+        };
+        device.narrow_limits(&[limits]).unwrap();
+        device.sample().unwrap();
+        device
+    };
+    let refused = standing(0).encode(&[1e-4], 1e-3).unwrap_err();
+    assert!(
+        refused
+            .to_string()
+            .contains("in the other order the target 0.1 mm is 6.55 m"),
+        "{refused}"
+    );
+    // −1 is the same number in both orders.
+    assert!(standing(-1).encode(&[1e-4], 1e-3).is_err());
+    // 4 counts would be 262 mm in the other order, beyond ten times the limits.
+    for counts in [4, -5, 100] {
+        let going = standing(counts).encode(&[1e-4], 1e-3).unwrap();
+        assert_eq!(words_of(&going.frames[1]), [0, 100], "{counts}");
+    }
+    let (zero, same) = (standing(0).encode(&[0.0], 1e-3), standing(0));
+    assert!(zero.is_ok() && same.order.is_open(), "it stays where it is");
+    let unguarded = without(Guarding::WordOrder, || standing(0).encode(&[1e-4], 1e-3));
+    assert!(unguarded.is_ok(), "nothing else sees it");
 }
 
 #[test]

@@ -1,0 +1,291 @@
+//! Requirements that the plan alone decides: those that no run can meet (E667), and those that every run meets (W732). In: the
+//! requirements, the procedures, the limits. Out: diagnostics. It knows no run.
+
+use std::collections::BTreeMap;
+
+use crate::language::check::checker::Checker;
+use crate::language::check::messages::whole as message;
+use crate::language::syntax::ast::{Expr, ExprKind};
+use crate::plan::formula::{Formula, Function, Part, ProcedureId, ResultReference};
+use crate::plan::{Comparison, Condition, Limits, Procedure, ProcedureKind, Requirement, Test};
+use crate::schema::Possible;
+use crate::text::diagnostic::Diagnostic;
+use crate::text::source::Span;
+
+/// One end of an interval: the value, and whether it is excluded.
+type End = (f64, bool);
+
+/// An interval of values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Values {
+    low: End,
+    high: End,
+}
+
+impl Values {
+    const ALL: Self = Self {
+        low: (f64::NEG_INFINITY, true),
+        high: (f64::INFINITY, true),
+    };
+
+    const fn closed(low: f64, high: f64) -> Self {
+        Self {
+            low: (low, false),
+            high: (high, false),
+        }
+    }
+
+    fn is_empty(self) -> bool {
+        let (low, high) = (self.low, self.high);
+        low.0 > high.0 || (low.0 >= high.0 && (low.1 || high.1))
+    }
+
+    /// Whether `low` is the narrower one of two lower ends.
+    fn narrows_low(low: End, other: End) -> bool {
+        low.0 > other.0 || (low.0 >= other.0 && low.1 && !other.1)
+    }
+
+    /// Whether `high` is the narrower one of two upper ends.
+    fn narrows_high(high: End, other: End) -> bool {
+        high.0 < other.0 || (high.0 <= other.0 && high.1 && !other.1)
+    }
+
+    fn and(self, other: Self) -> Self {
+        let low = Self::narrows_low(other.low, self.low);
+        let high = Self::narrows_high(other.high, self.high);
+        Self {
+            low: if low { other.low } else { self.low },
+            high: if high { other.high } else { self.high },
+        }
+    }
+
+    fn contains(self, other: Self) -> bool {
+        self.and(other) == other
+    }
+}
+
+/// The values of the left side that meet a condition whose limit is known before the run. None if they are no interval.
+fn allowed(test: &Test) -> Option<Values> {
+    match test {
+        Test::Compare { comparison, limit } => {
+            let limit = limit.constant()?;
+            let all = Values::ALL;
+            Some(match comparison {
+                Comparison::Less => Values {
+                    high: (limit, true),
+                    ..all
+                },
+                Comparison::LessEqual => Values {
+                    high: (limit, false),
+                    ..all
+                },
+                Comparison::Greater => Values {
+                    low: (limit, true),
+                    ..all
+                },
+                Comparison::GreaterEqual => Values {
+                    low: (limit, false),
+                    ..all
+                },
+                Comparison::Equal => Values::closed(limit, limit),
+                Comparison::NotEqual => return None,
+            })
+        }
+        Test::Within {
+            target,
+            tolerance,
+            relative,
+        } => {
+            let (target, tolerance) = (target.constant()?, tolerance.constant()?);
+            let width = if *relative {
+                tolerance * target.abs()
+            } else {
+                tolerance
+            };
+            Some(Values::closed(target - width, target + width))
+        }
+    }
+}
+
+/// The result whose values a formula has: the result itself, an entry of a list, or the largest, smallest or mean one.
+fn read(formula: &Formula) -> Option<ResultReference> {
+    match formula {
+        Formula::Result(reference) if reference.part == Part::Value => Some(*reference),
+        Formula::Index(list, _) => read(list),
+        Formula::Call(Function::Max | Function::Min | Function::Mean, parts) => match &parts[..] {
+            [list] => read(list),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// Whether an expression names anything: a name may have another value in another run.
+fn names_something(expr: &Expr) -> bool {
+    match &expr.kind {
+        ExprKind::Number { .. } | ExprKind::Text(_) | ExprKind::Faulty => false,
+        ExprKind::Parenthesised(inner) | ExprKind::Negate(inner) => names_something(inner),
+        ExprKind::Binary { left, right, .. } => names_something(left) || names_something(right),
+        ExprKind::Within {
+            value,
+            tolerance,
+            target,
+        } => [value, tolerance, target]
+            .into_iter()
+            .any(|part| names_something(part)),
+        _ => true,
+    }
+}
+
+/// The conditions on one result so far: the values that meet all of them, and the conditions that give its ends.
+struct Together {
+    values: Values,
+    low: Span,
+    high: Span,
+}
+
+/// Reports requirements that are decided before the run. A plan from a run log has been run. `stays_positive`: whether a procedure
+/// certainly moves the specimen to no negative displacement.
+pub fn check(
+    checker: &mut Checker,
+    procedures: &[(usize, Option<Procedure>)],
+    requirements: &[Requirement],
+    limits: &Limits,
+    stays_positive: fn(&ProcedureKind) -> bool,
+) {
+    if checker.recorded {
+        return;
+    }
+    let mut together: BTreeMap<(ProcedureId, &str), Together> = BTreeMap::new();
+    for (index, requirement) in requirements.iter().enumerate() {
+        let written = checker.scope.requirements[index].condition;
+        let span = written.span;
+        for condition in &requirement.conditions {
+            let Some(allowed) = allowed(&condition.test) else {
+                continue;
+            };
+            if let Some(value) = condition.value.constant() {
+                if !names_something(written) {
+                    let met = allowed.contains(Values::closed(value, value));
+                    checker
+                        .diagnostics
+                        .push(message::without_result(&condition.text, met, span));
+                }
+                continue;
+            }
+            let Some(found) = possible(checker, procedures, condition, limits, stays_positive)
+            else {
+                continue;
+            };
+            if let Some(diagnostic) = alone(condition, allowed, found, span) {
+                checker.diagnostics.push(diagnostic);
+                continue;
+            }
+            let Some(result) = condition
+                .value
+                .as_result()
+                .filter(|it| it.part == Part::Value)
+            else {
+                continue;
+            };
+            let all = Together {
+                values: Values::ALL,
+                low: span,
+                high: span,
+            };
+            let before = together
+                .entry((result.procedure, result.name))
+                .or_insert(all);
+            let both = before.values.and(allowed);
+            if both.is_empty() {
+                let against_low = allowed
+                    .and(Values {
+                        low: before.values.low,
+                        ..Values::ALL
+                    })
+                    .is_empty();
+                let other = if against_low { before.low } else { before.high };
+                checker
+                    .diagnostics
+                    .push(message::contradictory(span, other));
+                continue;
+            }
+            if both.low != before.values.low {
+                before.low = span;
+            }
+            if both.high != before.values.high {
+                before.high = span;
+            }
+            before.values = both;
+        }
+    }
+}
+
+/// The values that the left side of a condition can have: at least 0, and at most by the limits. None if it is not one result.
+fn possible(
+    checker: &Checker,
+    procedures: &[(usize, Option<Procedure>)],
+    condition: &Condition,
+    limits: &Limits,
+    stays_positive: fn(&ProcedureKind) -> bool,
+) -> Option<Found> {
+    let reference = read(&condition.value)?;
+    let (block, _) = procedures.get(reference.procedure.0)?;
+    let result = checker.scope.blocks[*block].kind.result(reference.name)?;
+    let zero = Values {
+        low: (0.0, false),
+        ..Values::ALL
+    };
+    let displacement = limits.displacement;
+    let before = &procedures[..reference.procedure.0];
+    let starts_positive = || {
+        before.iter().all(|(_, procedure)| {
+            let kind = procedure.as_ref().map(|procedure| &procedure.kind);
+            kind.is_some_and(stays_positive)
+        })
+    };
+    Some(match result.possible {
+        Possible::Any => Found {
+            by_nature: Values::ALL,
+            limit: f64::INFINITY,
+        },
+        Possible::NotNegative => Found {
+            by_nature: zero,
+            limit: f64::INFINITY,
+        },
+        Possible::PeakDisplacement => Found {
+            by_nature: zero,
+            limit: displacement.low.abs().max(displacement.high.abs()),
+        },
+        Possible::LargestDisplacement => Found {
+            by_nature: if starts_positive() { zero } else { Values::ALL },
+            limit: displacement.high,
+        },
+    })
+}
+
+/// The values that a result can have.
+#[derive(Clone, Copy)]
+struct Found {
+    /// Whatever the limits.
+    by_nature: Values,
+    /// A run that exceeds this displacement \[m\] is stopped.
+    limit: f64,
+}
+
+/// A condition that no run, or every run, meets. A run that a limit stops meets none.
+fn alone(condition: &Condition, allowed: Values, found: Found, span: Span) -> Option<Diagnostic> {
+    let limited = Values {
+        high: (found.limit, false),
+        ..Values::ALL
+    };
+    if allowed.and(found.by_nature).is_empty() {
+        return Some(message::never_negative(&condition.text, span));
+    }
+    if allowed.and(limited).is_empty() {
+        let limit = found.limit;
+        return Some(message::beyond_the_limit(&condition.text, limit, span));
+    }
+    let some = found.by_nature != Values::ALL;
+    (some && allowed.contains(found.by_nature)).then(|| message::always_met(&condition.text, span))
+}
