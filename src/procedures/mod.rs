@@ -33,6 +33,7 @@ use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::schema::{Column, Kind};
 use crate::uncertainty::Source;
+use common::calibrated_range;
 use facts::{Delay, Facts, Leaves, Recorded, Tests};
 
 /// Check: the procedure that a block specifies; None after an error, and for a block that does not declare a procedure.
@@ -235,6 +236,16 @@ pub(crate) fn attribute(
         | History::Inspect => return,
     }
     common::fit_uncertainty::combine(results);
+}
+
+/// Run: withholds the uncertainty of results from readings outside of a calibrated range; returns the observations on them.
+pub(crate) fn withhold_outside_calibration(
+    plan: &Plan,
+    history: &History,
+    results: &mut [NamedResult],
+) -> Vec<String> {
+    let given: calibrated_range::Readings<'_> = &|give| readings(history, give);
+    calibrated_range::withhold(&plan.rig, plan.degrees_of_freedom(), given, results)
 }
 
 /// Run: an upper bound of a procedure's steps, if the plan alone gives one.

@@ -93,7 +93,7 @@ pub(crate) fn propagate(
     let sources = uncertainty.sources(
         &[&plan.scale],
         &[(Source::GroundScale(plan.ground), ground.scale_uncertainty)],
-    );
+    )?;
     give(
         &layout,
         uncertainty.run.contributions(

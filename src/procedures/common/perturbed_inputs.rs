@@ -1,7 +1,7 @@
 //! A run whose inputs are perturbed, for every procedure that is re-integrated. In: formulas, results, perturbed sources. Out: the
 //! uncertain sources of the formulas, inputs with those sources perturbed, contributions.
 
-use crate::plan::formula::{Formula, ProcedureId, Results};
+use crate::plan::formula::{Formula, ProcedureId, Results, UncertaintyStatus};
 use crate::plan::{DeclaredNoise, Plan};
 use crate::run::inputs::Inputs;
 use crate::run::stop::Stop;
@@ -86,14 +86,22 @@ impl<'run> UncertainRun<'run> {
 }
 
 /// Sources of the results and statements that `formulas` read, followed by the `stated` ones with their uncertainties.
+///
+/// # Errors
+/// The uncertainty of a result that they read is withheld.
 pub(crate) fn uncertain_inputs(
     formulas: &[&Formula],
     stated: impl Iterator<Item = (Source, f64)>,
     results: &dyn Results,
-) -> Vec<Source> {
+) -> Result<Vec<Source>, String> {
     let mut references = Vec::new();
     for formula in formulas {
         formula.collect_references(&mut references);
+    }
+    for reference in &references {
+        if let UncertaintyStatus::Withheld(why) = results.uncertainty_status(*reference) {
+            return Err(why);
+        }
     }
     let mut sources = sources_of(&references, results);
     for formula in formulas {
@@ -104,7 +112,7 @@ pub(crate) fn uncertain_inputs(
             .filter(|(_, uncertainty)| *uncertainty > 0.0)
             .map(|(source, _)| source),
     );
-    sources
+    Ok(sources)
 }
 
 pub(crate) fn out_of_bounds(stop: &Stop) -> String {

@@ -6,7 +6,9 @@ use super::results::{Left, results};
 use crate::physics::structure::Unloading;
 use crate::plan::formula::{ProcedureId, ResultReference, ResultValue, Results, UncertaintyStatus};
 use crate::plan::{Between, Escalate, Plan};
+use crate::procedures::common::calibrated_range;
 use crate::procedures::common::perturbed_inputs::UncertainRun;
+use crate::procedures::common::reached::of_impact;
 use crate::procedures::impact::run::ImpactRun;
 use crate::procedures::stepping::run::above_critical;
 use crate::procedures::unload::run::{MOST_TARGETS, to_rest, withhold_position};
@@ -64,10 +66,13 @@ fn run(
             .and_then(|energies| energies.get(index).copied());
         let energy = given.unwrap_or_else(|| impact.energy(velocity));
         let ImpactRun {
-            results,
+            mut results,
             history: steps,
             stop,
         } = impact.strike(index, velocity, done, session);
+        // The condition of the series reads these results; the series itself remarks on them.
+        let given: calibrated_range::Readings<'_> = &|give| of_impact(&steps, give);
+        calibrated_range::withhold(&whole.rig, home.len(), given, &mut results);
         done += steps.steps.last().map_or(0, |last| last.step);
         history.impacts.push(SeriesImpact {
             velocity,

@@ -55,7 +55,14 @@ impl<'run> FrameUncertainty<'run> {
 
     /// Every uncertain input of the frame and of the `formulas` that the procedure reads; `stated` adds further sources with their
     /// uncertainties.
-    pub fn sources(&self, formulas: &[&Formula], stated: &[(Source, f64)]) -> Vec<Source> {
+    ///
+    /// # Errors
+    /// The uncertainty of a result that they read is withheld.
+    pub fn sources(
+        &self,
+        formulas: &[&Formula],
+        stated: &[(Source, f64)],
+    ) -> Result<Vec<Source>, String> {
         let ratios = self.ratios();
         let formulas: Vec<&Formula> = formulas.iter().copied().chain(ratios).collect();
         let specimen = self.specimen;

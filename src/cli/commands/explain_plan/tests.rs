@@ -174,27 +174,32 @@ fn a_rig_without_declared_calibrations_is_predicted_inconclusive() {
 /// the prediction.
 #[test]
 fn an_uncertainty_that_the_noise_of_the_rig_lets_grow_is_predicted_withheld() {
-    use crate::plan::Until;
     use crate::plan::formula::Formula::Constant;
+    use crate::plan::{Contact, Until};
     let with_duration = |seconds: f64, until: Until| {
         let mut plan = required(DecisionRule::Guarded);
+        plan.limits = Limits::NONE;
         let ProcedureKind::Impact(impact) = &mut plan.procedures[0].kind else {
             panic!()
         };
         impact.duration = Constant(seconds);
         impact.until = until;
+        // Its contacts do not follow the time step.
+        impact.contact = Contact::Restitution {
+            coefficient: Constant(0.5),
+        };
         impact.stepping = crate::tests::testing::every(0.001);
         let Link::Virtual(link) = &mut plan.rig.link else {
             panic!()
         };
-        (link.noise, link.lag, link.seed) = (2.0, 0.0, 3);
+        (link.noise, link.lag, link.seed) = (4.0, 0.0, 3);
         let predicted = predicted(&plan);
         let record = crate::tests::testing::run_unwatched(&plan);
         (predicted, verdict::assess(&plan, &record).verdict)
     };
     let ((verdict, why), run) = with_duration(1.0, Until::StrikerStop);
     assert_eq!((verdict.as_str(), run), ("pass", Verdict::Pass), "{why}");
-    let ((verdict, why), run) = with_duration(80.0, Until::Duration);
+    let ((verdict, why), run) = with_duration(120.0, Until::Duration);
     assert_eq!(
         (verdict.as_str(), run),
         ("inconclusive", Verdict::Inconclusive)

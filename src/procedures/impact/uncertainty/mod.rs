@@ -82,7 +82,7 @@ impl ImpactUncertainty<'_> {
         let contributions = self.run.contributions(
             &evaluate,
             1,
-            self.sources(),
+            self.sources()?,
             steps.len(),
             reported,
             progress,
@@ -110,7 +110,7 @@ impl ImpactUncertainty<'_> {
     }
 
     /// The uncertain inputs, each once.
-    fn sources(&self) -> Vec<Source> {
+    fn sources(&self) -> Result<Vec<Source>, String> {
         let Impact {
             striker,
             specimen,

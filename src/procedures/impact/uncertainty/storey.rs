@@ -82,7 +82,7 @@ pub(crate) fn propagate(
         reported[shear] = found.floors.between.max_base_shear;
     }
     let stated = striker_sources(uncertainty.run.whole, plan.striker);
-    let sources = uncertainty.sources(&contact::formulas(&plan.contact), &stated);
+    let sources = uncertainty.sources(&contact::formulas(&plan.contact), &stated)?;
     let mut contributions = uncertainty.run.contributions(
         &evaluate,
         floors,
