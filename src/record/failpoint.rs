@@ -47,6 +47,8 @@ pub enum Guarding {
     IntentDurable,
     SampleDurable,
     FailedSync,
+    /// A run log that another program moved, replaced, lengthened or shortened.
+    SameFile,
     Lock,
     /// A panic in any thread holds the rig.
     PanicHook,

@@ -15,7 +15,7 @@ use crate::units::display::{readable, stated};
 const FINEST: f64 = 1024.0;
 
 /// The outcome of a condition: decided with these results, and with those in finer steps. All results of a procedure are those of one
-/// re-integration. An equality compares the numbers of the run itself.
+/// re-integration. An equality, and a published number, are compared with the number of the run itself.
 pub(crate) fn assess_condition(
     condition: &Condition,
     rule: DecisionRule,
@@ -27,7 +27,8 @@ pub(crate) fn assess_condition(
     let follows = sources_of(&references, results)
         .into_iter()
         .any(|source| !source.is_of_uncertainty());
-    if !follows || own.value.is_none() || is_equality(condition) {
+    let in_own_steps = rule == DecisionRule::ValueAlone || is_equality(condition);
+    if !follows || own.value.is_none() || in_own_steps {
         return own;
     }
     let finer = FINER.map(|weights| {

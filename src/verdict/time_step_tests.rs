@@ -36,7 +36,7 @@ fn decided(value: Formula, test: Test, rule: DecisionRule, size: f64) -> Conditi
 #[test]
 fn a_decision_that_finer_steps_change_is_none() {
     use Comparison::{Equal, GreaterEqual, LessEqual};
-    use DecisionRule::{Guarded, Simple};
+    use DecisionRule::{Guarded, Simple, ValueAlone};
     use Verdict::{Fail, Inconclusive, Pass};
     let cases = [
         // (comparison, limit, rule, size of the effect, verdict, recommended step)
@@ -87,9 +87,10 @@ fn a_decision_that_finer_steps_change_is_none() {
         // In the other direction.
         (LessEqual, 8.25, Simple, -1.0, Inconclusive, Some("0.5 ms")),
         (LessEqual, 9.75, Simple, -1.0, Pass, None),
-        // No effect, and an equality of the numbers of the run.
+        // No effect, an equality of the numbers of the run, and a published number.
         (GreaterEqual, 7.75, Simple, 0.0, Pass, None),
         (Equal, 8.0, Simple, 1.0, Pass, None),
+        (GreaterEqual, 7.75, ValueAlone, 1.0, Pass, None),
     ];
     for (comparison, limit, rule, size, verdict, step) in cases {
         let outcome = decided(

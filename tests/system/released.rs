@@ -209,3 +209,27 @@ fn reports_of_records_that_differ_have_numbers_that_differ() {
     assert_ne!(stopped, ended, "the same run, and another record of it");
     assert_eq!(stopped.split('-').next(), ended.split('-').next());
 }
+
+/// The limits that the rig itself reports are −5 mm .. 10 mm, and the plan moves to 0.8 mm.
+#[test]
+fn a_zero_near_the_limits_of_the_rig_is_refused_before_the_release() {
+    let here = |plan: &str| {
+        plan.replace(
+            "safe_state = hold",
+            "safe_state = hold\n  datum      = here",
+        )
+    };
+    let stage = Stage::of(str::to_owned, "stands at 9.5 mm");
+    let plan = stage.path("plan.psd");
+    fs::write(&plan, here(&fs::read_to_string(&plan).unwrap())).unwrap();
+    let refused = wait(&mut stage.run_with(&["--yes"]));
+    assert!(
+        refused.code == Some(3)
+            && refused
+                .output
+                .contains("from the plan's zero the rig itself allows -14.5 mm .. 0.5 mm"),
+        "{}",
+        refused.output
+    );
+    assert!(stage.moves().is_empty() && !stage.path("run").exists());
+}

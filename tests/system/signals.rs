@@ -11,7 +11,13 @@ use crate::served::Served;
 use crate::stage::{Ended, PSD, Stage, code, finish, signal, start, until};
 use crate::terminal::{GO_ON, LEAVE, MOVE, RELEASE, Terminal};
 
-const SIGNALS: [Signal; 4] = [Signal::INT, Signal::TERM, Signal::HUP, Signal::QUIT];
+const SIGNALS: [Signal; 5] = [
+    Signal::INT,
+    Signal::TERM,
+    Signal::HUP,
+    Signal::QUIT,
+    Signal::POWER,
+];
 
 /// Sends each signal at the same moment of a separate run. The run of the first one is resumed, if it is `quick`.
 fn each(
@@ -157,8 +163,19 @@ fn in_the_middle_of_a_move_all_but_one_ctrl_c_hold_at_once() {
 fn signals_of_other_programs_do_nothing() {
     let stage = Stage::new();
     let run = start(&mut stage.run_with(&["--yes"]));
-    for (moves, sent) in [(1, Signal::USR1), (5, Signal::USR2), (20, Signal::ALARM)] {
-        stage.after_moves(moves);
+    let ignored = [
+        Signal::USR1,
+        Signal::USR2,
+        Signal::ALARM,
+        Signal::VTALARM,
+        Signal::PROF,
+        Signal::XCPU,
+        Signal::IO,
+        Signal::SYS,
+        Signal::STKFLT,
+    ];
+    for (moves, sent) in (1..).zip(ignored) {
+        stage.after_moves(2 * moves);
         signal(&run, sent);
     }
     let ended = finish(run);

@@ -155,7 +155,8 @@ fn as_recorded(
         return Ok(numbered(began.clone(), plan, recorded));
     }
     let read = record_file::read(folder);
-    if recorded.fault.is_some() {
+    let failed = recorded.fault.as_ref();
+    if failed.is_some_and(|fault| !fault.is_foreign()) {
         return Ok(read.map_or_else(
             |_| numbered(began.clone(), plan, recorded),
             |read| read.provenance,

@@ -3,7 +3,11 @@
 
 use crate::cli::commands::explain_plan::dry_rig::{Reach, Watched};
 use crate::plan::{Interval, Link, Plan, VirtualLink};
+use crate::rig::RigFault;
+use crate::rig::real::RealRig;
 use crate::run::Extent;
+use crate::units::Dimension;
+use crate::units::display::plain;
 
 /// The extent of the whole plan, and its number of steps. Both are unknown if only the real rig has the specimen.
 pub fn of(plan: &Plan) -> (Extent, u64) {
@@ -20,6 +24,45 @@ pub fn of(plan: &Plan) -> (Extent, u64) {
         over(&reaches),
         reaches.iter().map(|reach| reach.steps).sum(),
     )
+}
+
+/// Whether the rig itself allows the expected travel and the pre-test check. With several axes, only a travel that no axis allows is
+/// refused.
+///
+/// # Errors
+/// It does not; nothing has moved.
+pub fn within_reach(plan: &Plan, expected: Extent, rig: &RealRig) -> Result<(), RigFault> {
+    let (Some(link), Some(ranges)) = (plan.rig.link.as_real(), rig.reported_range()) else {
+        return Ok(());
+    };
+    let probes = (0..ranges.len()).map(|axis| link.pretest_check_of(axis).probe);
+    let travels = probes.map(|probe| Interval {
+        low: probe.min(0.0),
+        high: probe.max(0.0),
+    });
+    let both = |one: Interval, other: Interval| Interval {
+        low: one.low.min(other.low),
+        high: one.high.max(other.high),
+    };
+    let (Some(travel), Some(allowed)) = (
+        travels.chain(expected.travel).reduce(both),
+        ranges.into_iter().reduce(both),
+    ) else {
+        return Ok(());
+    };
+    if allowed.contains(travel.low) && allowed.contains(travel.high) {
+        return Ok(());
+    }
+    let span = |Interval { low, high }| {
+        let [low, high] = [low, high].map(|end| plain(end, Dimension::LENGTH, 6));
+        format!("{low} .. {high}")
+    };
+    Err(RigFault::Device(format!(
+        "the run would move over {}, but from the plan's zero the rig itself allows {}: begin at another position, or choose smaller \
+         displacements. Nothing moved",
+        span(travel),
+        span(allowed)
+    )))
 }
 
 /// The remaining extent after `done` steps.

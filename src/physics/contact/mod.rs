@@ -187,6 +187,12 @@ impl<N> ContactLaw<N> {
         }
     }
 
+    /// Whether it can leave a permanent indentation: above its largest force.
+    #[must_use]
+    pub const fn indents(&self) -> bool {
+        self.force_limit().is_some()
+    }
+
     /// Whether it follows the contact inside a step, by the tangent's prediction of the restoring force. No other integrator has one.
     #[must_use]
     pub const fn needs_tangent(&self) -> bool {

@@ -21,8 +21,10 @@ const ROUNDING: f64 = 1e-9;
 /// An outward and a return reading near the same position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutAndBack {
-    /// Velocity of the pass in which the position was read \[m/s\].
+    /// Half of (outward − return) of the velocities \[m/s\].
     pub velocity: f64,
+    /// Mean of the two velocities \[m/s\]: 0 at the same speed out and back.
+    pub unmatched_velocity: f64,
     /// Mean of the two positions \[m\].
     pub displacement: f64,
     /// Half of (outward − return) of the positions \[m\].
@@ -38,6 +40,16 @@ impl OutAndBack {
     #[must_use]
     pub fn damping_force(&self, stiffness: f64) -> f64 {
         self.half_difference - stiffness * self.half_apart
+    }
+
+    /// The pair without the force of a `damping` \[N·s/m\] at different speeds out and back, which is no force of a stiffness.
+    #[must_use]
+    pub fn at_one_speed(self, damping: f64) -> Self {
+        Self {
+            mean: self.mean - damping * self.unmatched_velocity,
+            unmatched_velocity: 0.0,
+            ..self
+        }
     }
 }
 
@@ -105,6 +117,7 @@ mod tests {
             let displacement = 0.02 + 2e-5 * f64::from(index);
             OutAndBack {
                 velocity: 1e-3,
+                unmatched_velocity: 0.0,
                 displacement,
                 half_apart: 0.0,
                 half_difference: half(displacement),
@@ -156,6 +169,7 @@ mod tests {
             let (out_force, back_force) = (force(out, 3.0), force(back, -3.0));
             OutAndBack {
                 velocity: 1e-3,
+                unmatched_velocity: 0.0,
                 displacement,
                 half_apart: 0.5 * (out - back),
                 half_difference: 0.5 * (out_force - back_force),

@@ -27,46 +27,89 @@ const ROUNDING: f64 = 1e-9;
 
 /// The largest difference \[J\] between the area under `points` (m and N) and its trapezoids; `noise` is the standard deviation of a
 /// force \[N\].
+///
+/// A corner near one end of a step bends the curve little there and much at the other end. If noise hides the small bend, the corner is in
+/// one of the two steps beside the large bend. The small bend counts with the most that noise hides, in the step of the larger area.
 #[must_use]
 pub fn left_open(points: &[(f64, f64)], noise: f64) -> f64 {
     let largest = points
         .iter()
         .fold(0.0, |largest: f64, (_, force)| largest.max(force.abs()));
     // The noise of the second difference of three forces.
-    let least = (SURE * 6.0_f64.sqrt() * noise).max(ROUNDING * largest);
-    let slope = |from: (f64, f64), to: (f64, f64), travel: f64| {
+    let hides = SURE * 6.0_f64.sqrt() * noise;
+    let least = hides.max(ROUNDING * largest);
+    let bent = |by: f64| by.abs() > least;
+    let mut open = 0.0;
+    // For each point with a bend: the energy of a corner beside it that noise hides, and whether another step shows the corner.
+    let (mut hidden, mut is_shown) = (vec![0.0_f64; points.len()], vec![false; points.len()]);
+    for index in 0..points.len().saturating_sub(1) {
+        let (begin, end) = (index, index + 1);
+        let half = 0.5 * (points[end].0 - points[begin].0).abs();
+        match bends(points, index) {
+            (Some(before), Some(after)) => match (bent(before), bent(after)) {
+                (true, true) => {
+                    open += half * between(before, after);
+                    (is_shown[begin], is_shown[end]) = (true, true);
+                }
+                (true, false) => {
+                    let energy = half * between(before, hides.copysign(before));
+                    hidden[begin] = hidden[begin].max(energy);
+                }
+                (false, true) => {
+                    let energy = half * between(after, hides.copysign(after));
+                    hidden[end] = hidden[end].max(energy);
+                }
+                (false, false) => {}
+            },
+            (Some(one), None) if bent(one) => {
+                open += half * one.abs();
+                is_shown[begin] = true;
+            }
+            (None, Some(one)) if bent(one) => {
+                open += half * one.abs();
+                is_shown[end] = true;
+            }
+            (None, None) => {
+                let rise = points[end].1 - points[begin].1;
+                open += if bent(rise) { half * rise.abs() } else { 0.0 };
+            }
+            _ => {}
+        }
+    }
+    let hidden = hidden.iter().zip(is_shown);
+    open + hidden
+        .filter(|(_, is_shown)| !is_shown)
+        .map(|(energy, _)| energy)
+        .sum::<f64>()
+}
+
+/// The overshoot \[N\] of the line before past the end of a step, and of the line after past its begin, on the other side of the chord. None
+/// next to a reversal.
+fn bends(points: &[(f64, f64)], index: usize) -> (Option<f64>, Option<f64>) {
+    let (from, to) = (points[index], points[index + 1]);
+    let (travel, rise) = (to.0 - from.0, to.1 - from.1);
+    let slope = |from: (f64, f64), to: (f64, f64)| {
         let moved = to.0 - from.0;
         (moved * travel > 0.0).then(|| (to.1 - from.1) / moved)
     };
-    let of_step = |index: usize| {
-        let (from, to) = (points[index], points[index + 1]);
-        let (travel, rise) = (to.0 - from.0, to.1 - from.1);
-        let bend = |by: f64| if by.abs() > least { by } else { 0.0 };
-        let before = index
-            .checked_sub(1)
-            .and_then(|before| slope(points[before], from, travel));
-        let after = points
-            .get(index + 2)
-            .and_then(|after| slope(to, *after, travel));
-        // The overshoot of the line before past the end of the step, and of the line after past its begin, on the other side of the
-        // chord.
-        let (before, after) = (
-            before.map(|slope| bend(slope * travel - rise)),
-            after.map(|slope| bend(rise - slope * travel)),
-        );
-        0.5 * travel.abs()
-            * match (before, after) {
-                (Some(before), Some(after)) if before * after > 0.0 => {
-                    before * after / (before + after)
-                }
-                // The curve bends in both directions: one after the other, or by a jump.
-                (Some(before), Some(after)) => before.abs().min(after.abs()),
-                (Some(one), None) | (None, Some(one)) => one,
-                (None, None) => bend(rise),
-            }
-            .abs()
-    };
-    (0..points.len().saturating_sub(1)).map(of_step).sum()
+    let before = index
+        .checked_sub(1)
+        .and_then(|before| slope(points[before], from));
+    let after = points.get(index + 2).and_then(|after| slope(to, *after));
+    (
+        before.map(|slope| slope * travel - rise),
+        after.map(|slope| rise - slope * travel),
+    )
+}
+
+/// Distance of the point where the two lines meet from the chord \[N\].
+fn between(before: f64, after: f64) -> f64 {
+    if before * after > 0.0 {
+        (before * after / (before + after)).abs()
+    } else {
+        // The curve bends in both directions: one after the other, or by a jump.
+        before.abs().min(after.abs())
+    }
 }
 
 #[cfg(test)]

@@ -59,7 +59,7 @@ impl Behaviour {
 
     /// Largest slope dR/dX on any path \[N/m\], which determines stability. Most behaviours are stiffest at first; a joint that bears
     /// before its faces slip is twice as stiff, a Bouc–Wen spring unloads at up to 2β of its hysteretic part, and measured points have the
-    /// slope of their steepest segment.
+    /// slope of their steepest segment. Infinite for a slope without a bound, which states no stability limit.
     #[must_use]
     pub fn largest_stiffness(&self) -> f64 {
         match self {

@@ -129,7 +129,14 @@ impl FrameProperties {
             let behaves: Vec<f64> = frame
                 .storeys
                 .iter()
-                .map(|storey| storey.behaviour.largest_stiffness())
+                .map(|storey| {
+                    let largest = storey.behaviour.largest_stiffness();
+                    if largest.is_finite() {
+                        largest
+                    } else {
+                        storey.stiffness
+                    }
+                })
                 .collect();
             met.highest = own.max(self.highest(&storey_stiffness(&behaves)));
             let storeys = || frame.storeys.iter().zip(&behaves);

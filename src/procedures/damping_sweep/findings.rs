@@ -40,6 +40,18 @@ pub(super) enum RatioOf {
     Nothing,
 }
 
+impl Findings {
+    /// The strokes that count.
+    pub(super) fn kept<'a, 'b>(
+        &'a self,
+        strokes: &'a [Paired<'b>],
+    ) -> impl Iterator<Item = &'a Paired<'b>> + Clone {
+        strokes
+            .iter()
+            .filter(|(stroke, _)| !self.left_out.contains(&stroke.out.start))
+    }
+}
+
 impl Sweep {
     /// Observations on readings that make c doubtful.
     pub(super) fn observations(&self, paired: &[Paired<'_>]) -> Vec<String> {

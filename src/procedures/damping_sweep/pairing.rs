@@ -10,19 +10,45 @@ use crate::record::{LineFit, SweepStep};
 pub(super) type Paired<'a> = (&'a Stroke, Vec<OutAndBack>);
 
 /// Pairs of readings at the same position by their times: the last reading of a pass is where the next one starts, and has no partner.
-pub(super) fn paired_by_time(out: &[SweepStep], back: &[SweepStep]) -> Vec<OutAndBack> {
+/// An actuator with a `lag` \[s\] still approaches the commanded velocity v on the steady part. After the time t of a pass it moves at
+/// v·(1 − e^(−t/lag)) if it began at rest, and at v·(1 − (2 − e^(−T/lag))·e^(−t/lag)) after the pass of T in the other direction.
+pub(super) fn paired_by_time(
+    out: &[SweepStep],
+    back: &[SweepStep],
+    seconds: f64,
+    lag: f64,
+) -> Vec<OutAndBack> {
+    let reversal = 2.0 - faded(seconds, lag);
+    #[expect(clippy::cast_precision_loss, reason = "far fewer samples than 2^53")]
+    let time = |index: usize| seconds * (index + 1) as f64 / out.len() as f64;
+    let last = out.len().saturating_sub(2);
     let steady = out
         .iter()
         .zip(back.iter().rev().skip(1))
-        .filter(|(out, back)| out.steady && back.steady);
-    let pair = |(out, back): (&SweepStep, &SweepStep)| OutAndBack {
-        velocity: out.velocity,
-        displacement: 0.5 * (out.displacement + back.displacement),
-        half_apart: 0.5 * (out.displacement - back.displacement),
-        half_difference: 0.5 * (out.restoring_force - back.restoring_force),
-        mean: 0.5 * (out.restoring_force + back.restoring_force),
+        .enumerate()
+        .filter(|(_, (out, back))| out.steady && back.steady);
+    let pair = |(index, (out, back)): (usize, (&SweepStep, &SweepStep))| {
+        let velocity = out.velocity * (1.0 - faded(time(index), lag));
+        let returning = back.velocity * (1.0 - reversal * faded(time(last - index), lag));
+        OutAndBack {
+            velocity: 0.5 * (velocity - returning),
+            unmatched_velocity: 0.5 * (velocity + returning),
+            displacement: 0.5 * (out.displacement + back.displacement),
+            half_apart: 0.5 * (out.displacement - back.displacement),
+            half_difference: 0.5 * (out.restoring_force - back.restoring_force),
+            mean: 0.5 * (out.restoring_force + back.restoring_force),
+        }
     };
     steady.map(pair).collect()
+}
+
+/// What a first-order lag \[s\] leaves of a change of velocity after so many seconds.
+fn faded(seconds: f64, lag: f64) -> f64 {
+    if lag > 0.0 {
+        (-seconds / lag).exp()
+    } else {
+        0.0
+    }
 }
 
 /// Pairs at the positions of the pass with fewer readings; the force of the other pass is interpolated there.
@@ -42,6 +68,7 @@ pub(super) fn paired_by_position(out: &[SweepStep], back: &[SweepStep]) -> Vec<O
         let other = interpolated(&dense, step.displacement)?;
         Some(OutAndBack {
             velocity: step.velocity,
+            unmatched_velocity: 0.0,
             displacement: step.displacement,
             half_apart: 0.0,
             half_difference: 0.5 * (step.restoring_force - other),

@@ -5,7 +5,7 @@
 //! The fit uses half the difference between a reading and the one at the same position on the return. The offset therefore does not
 //! affect c, `F_c` or their standard errors. The K of the plan does not affect them either. A lagging actuator is behind in both
 //! directions: the distance between the two positions of a pair is corrected with the stiffness of the strokes themselves, whose error
-//! contributes to c. Yielding of the specimen does not affect them: with `about`, one unread stroke precedes the first that is read, and
+//! contributes to c. The velocity of a pair is that of the lagging actuator. Yielding of the specimen does not affect them: with `about`, one unread stroke precedes the first that is read, and
 //! a stroke with plastic deformation is left out.
 //!
 //! A rig that reads at the requested times has nearly the same positions out and back. For a rig that reads at its own times, the
@@ -14,7 +14,7 @@
 
 use std::ops::Range;
 
-use super::findings::RatioOf;
+use super::findings::{Findings, RatioOf};
 use super::pairing::{Paired, paired_by_position, paired_by_time};
 use super::sweep::{Stroke, Sweep};
 use crate::physics::identification::damping_strokes::OutAndBack;
@@ -65,20 +65,19 @@ pub(crate) fn perform(
         exact: link.is_some(),
     };
     let stop = sweep.run(plan, inputs, session).err();
-    let paired = sweep.paired();
+    let mut paired = sweep.paired();
+    if sweep.lag > 0.0
+        && let Some(fit) = sweep.line(&paired).1
+    {
+        // The stiffness of the strokes is read at different speeds out and back. Its effect on c is thereby of second order.
+        for pair in paired.iter_mut().flat_map(|(_, pairs)| pairs) {
+            *pair = pair.at_one_speed(fit.slope);
+        }
+    }
     let findings = sweep.findings(&paired);
-    let kept = || {
-        paired
-            .iter()
-            .filter(|(stroke, _)| !findings.left_out.contains(&stroke.out.start))
-    };
-    let stiffness = findings
-        .stiffness
-        .map_or_else(|| sweep.planned(), |(stiffness, _)| stiffness);
-    let of_history = |pair: &OutAndBack| (pair.velocity, pair.damping_force(stiffness));
-    let pairs: Vec<(f64, f64)> = kept()
-        .flat_map(|(_, pairs)| pairs.iter().map(of_history))
-        .collect();
+    let kept = || findings.kept(&paired);
+    let stiffness = sweep.stiffness_of(&findings);
+    let (pairs, fit) = sweep.line(&paired);
     let together = BroughtTogether {
         stiffness,
         error: findings.stiffness.map(|(_, error)| error),
@@ -94,7 +93,7 @@ pub(crate) fn perform(
         displacement: 0.0,
         ..of_reading
     };
-    let fit = fit_of(&pairs, stated);
+    let fit = fit.map(|fit| of_readings(fit, &pairs, stated));
     if fit.is_none() && stop.is_none() {
         let text =
             "damping not evaluated: too few steady readings, or too few velocities, to fit a line"
@@ -160,14 +159,13 @@ pub(crate) fn wanted(seconds: f64, lag: f64, rate: Option<f64>) -> f64 {
 }
 
 /// `stated`: the variance of half the difference of two readings.
-fn fit_of(pairs: &[(f64, f64)], stated: StatedVariance) -> Option<LineFit> {
-    let (velocities, forces): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
-    let speeds: Vec<f64> = velocities
+fn of_readings(fit: LineFit, pairs: &[(f64, f64)], stated: StatedVariance) -> LineFit {
+    let speeds: Vec<f64> = pairs
         .iter()
-        .map(|velocity| velocity.abs())
+        .map(|(velocity, _)| velocity.abs())
         .filter(|speed| *speed != 0.0)
         .collect();
-    fit_damping(&velocities, &forces).map(|fit| fit.stated(&speeds, stated, 0.0))
+    fit.stated(&speeds, stated, 0.0)
 }
 
 /// ∂c/∂K \[s\] and ∂F_c/∂K \[m\], with K the stiffness that corrects the readings of each pair to one position.
@@ -268,6 +266,7 @@ impl Sweep {
                 out,
                 back,
                 speed: speed.abs(),
+                seconds,
                 on_grid,
             });
             // A pass ends in motion: the piston stops at home before the next reading or command.
@@ -349,7 +348,7 @@ impl Sweep {
                 &self.steps[stroke.back.clone()],
             );
             if stroke.on_grid {
-                paired_by_time(out, back)
+                paired_by_time(out, back, stroke.seconds, self.lag)
             } else {
                 paired_by_position(out, back)
             }
@@ -358,6 +357,26 @@ impl Sweep {
             .iter()
             .map(|stroke| (stroke, pairs(stroke)))
             .collect()
+    }
+
+    /// K that brings the readings of a pair to one position \[N/m\].
+    fn stiffness_of(&self, findings: &Findings) -> f64 {
+        findings
+            .stiffness
+            .map_or_else(|| self.planned(), |(stiffness, _)| stiffness)
+    }
+
+    /// Velocity \[m/s\] and damping force \[N\] of every pair that counts, and their line.
+    fn line(&self, paired: &[Paired<'_>]) -> (Vec<(f64, f64)>, Option<LineFit>) {
+        let findings = self.findings(paired);
+        let stiffness = self.stiffness_of(&findings);
+        let of_history = |pair: &OutAndBack| (pair.velocity, pair.damping_force(stiffness));
+        let pairs: Vec<(f64, f64)> = findings
+            .kept(paired)
+            .flat_map(|(_, pairs)| pairs.iter().map(of_history))
+            .collect();
+        let (velocities, forces): (Vec<f64>, Vec<f64>) = pairs.iter().copied().unzip();
+        (pairs, fit_damping(&velocities, &forces))
     }
 
     fn results(

@@ -11,6 +11,8 @@ pub(super) struct Stroke {
     pub back: Range<usize>,
     /// Commanded \[m/s\].
     pub speed: f64,
+    /// Duration of a pass \[s\].
+    pub seconds: f64,
     /// Whether every reading was made at the requested time.
     pub on_grid: bool,
 }

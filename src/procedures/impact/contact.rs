@@ -66,10 +66,10 @@ pub(crate) fn spring(law: ContactLaw) -> Option<ContactSpring> {
 }
 
 /// The results of the law that a reader looks for first: its largest contact force where it does not depend on the time step, and the
-/// indentation of a spring.
+/// permanent indentation where it can occur.
 pub(crate) fn headline(contact: &Contact) -> Vec<&'static str> {
     let force = (!contact.is_impulsive()).then_some(schema::MAX_CONTACT_FORCE.name);
-    let indentation = contact.spring().map(|_| schema::INDENTATION.name);
+    let indentation = contact.indents().then_some(schema::INDENTATION.name);
     force.into_iter().chain(indentation).collect()
 }
 
@@ -79,9 +79,10 @@ pub(crate) fn unprinted(contact: &Contact) -> Vec<&'static str> {
     let force = contact
         .is_impulsive()
         .then_some(schema::MAX_CONTACT_FORCE.name);
-    let indentation = match contact.spring() {
-        Some(_) => &[][..],
-        None => &[schema::INDENTATION.name, schema::INDENTATION_ENERGY.name],
+    let indentation = if contact.indents() {
+        &[][..]
+    } else {
+        &[schema::INDENTATION.name, schema::INDENTATION_ENERGY.name]
     };
     let restitution = contact
         .states_restitution()
@@ -101,5 +102,34 @@ pub(crate) fn energy(contact: &Contact) -> &'static str {
         "stored in the contact"
     } else {
         "stored and lost in the contact"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A surface is indented above the largest force of its law. A spring without such a force has an indentation of 0 by definition.
+    #[test]
+    fn an_indentation_is_printed_where_it_can_occur() {
+        let number = Formula::Constant;
+        let hertz = |force_limit: Option<f64>| Contact::Hertz {
+            stiffness: number(1e9),
+            loss: number(0.0),
+            force_limit: force_limit.map(number),
+        };
+        let limit = Contact::Limit {
+            force: number(1500.0),
+        };
+        for (law, indents) in [
+            (hertz(None), false),
+            (hertz(Some(900.0)), true),
+            (limit, true),
+            (Contact::Rigid, false),
+        ] {
+            let name = schema::INDENTATION.name;
+            assert_eq!(headline(&law).contains(&name), indents, "{law:?}");
+            assert_eq!(unprinted(&law).contains(&name), !indents, "{law:?}");
+        }
     }
 }

@@ -1,11 +1,12 @@
 //! Dwells with readings while a force relaxes, and their evaluation. In: a pause and the number of readings. Out: the dwell; for all
 //! dwells the fit, its results and observations. It fits nothing itself.
 
+use super::points::{Point, secant};
 use crate::physics::identification::StatedVariance;
 use crate::physics::relaxation::hold::{Hold, Unrelaxed};
 use crate::physics::relaxation::law::RelaxationLaw;
 use crate::physics::relaxation::superposition::{SuperpositionFit, fit_superposition};
-use crate::physics::relaxation::time_constant::{RelaxationFit, fit_relaxation};
+use crate::physics::relaxation::time_constant::{RelaxationFit, RelaxationModel, fit_relaxation};
 use crate::plan::WatchedModel;
 use crate::record::NamedResult;
 use crate::rig::Reading;
@@ -16,26 +17,87 @@ use crate::schema::procedures::stiffness_ramp as schema;
 use crate::units::Dimension;
 use crate::units::display::readable;
 
-/// Time since the first reading \[s\] and force \[N\] of each reading of a pause: `settled`, then the others, closer together at first,
-/// when more is lost. Also the laboratory time of the last reading \[s\].
+/// The readings of a pause.
+pub(crate) struct Watched {
+    /// Time since the first reading \[s\] and force \[N\].
+    pub readings: Vec<(f64, f64)>,
+    /// Displacement at each \[m\].
+    displacements: Vec<f64>,
+    /// Laboratory time of the last one \[s\].
+    pub last: f64,
+}
+
+/// Readings of a pause: `settled`, then the others, closer together at first, when more is lost.
 pub(crate) fn watched(
     settled: &Reading,
     pause: f64,
     readings: u32,
     session: &mut Session<'_>,
-) -> Result<(Vec<(f64, f64)>, f64), Stop> {
-    let mut force_history = vec![(0.0, first(settled).1)];
-    let mut last = settled.time;
+) -> Result<Watched, Stop> {
+    let (displacement, force) = first(settled);
+    let mut watched = Watched {
+        readings: vec![(0.0, force)],
+        displacements: vec![displacement],
+        last: settled.time,
+    };
     let share = |index: u32| (f64::from(index) / f64::from(readings)).powi(2);
     for index in 1..=readings {
         session
             .guard
             .pause(pause * (share(index) - share(index - 1)))?;
         let reading = session.guard.read()?;
-        force_history.push((reading.time - settled.time, first(&reading).1));
-        last = reading.time;
+        let (displacement, force) = first(&reading);
+        watched.readings.push((reading.time - settled.time, force));
+        watched.displacements.push(displacement);
+        watched.last = reading.time;
     }
-    Ok((force_history, last))
+    Ok(watched)
+}
+
+/// A dwell with the distances at which its readings found the actuator: it can still arrive during the first ones.
+pub(crate) struct Arriving {
+    pub hold: Hold,
+    /// Missing to the displacement of the dwell at each reading \[m\]; 0 if the rig does not resolve it.
+    missing: Vec<f64>,
+    /// Secant stiffness of the move to it \[N/m\].
+    secant: f64,
+}
+
+impl Arriving {
+    /// `before`: the point where the move began; `resolution` of the displacement \[m\].
+    pub(crate) fn new(hold: Hold, watched: &Watched, before: Point, resolution: f64) -> Self {
+        let began = (watched.displacements[0], watched.readings[0].1);
+        let missing = |displacement: &f64| hold.displacement - displacement;
+        let resolved = |missing: f64| {
+            if missing.abs() > resolution {
+                missing
+            } else {
+                0.0
+            }
+        };
+        Self {
+            missing: watched
+                .displacements
+                .iter()
+                .map(missing)
+                .map(resolved)
+                .collect(),
+            secant: secant(before, began).unwrap_or(0.0),
+            hold,
+        }
+    }
+
+    /// The dwell with the force of every reading at its displacement, by this stiffness \[N/m\] or by that of the move.
+    fn arrived(&self, stiffness: Option<f64>) -> Hold {
+        let stiffness = stiffness.unwrap_or(self.secant);
+        let readings = self.hold.readings.iter().zip(&self.missing);
+        Hold {
+            readings: readings
+                .map(|((time, force), missing)| (*time, force + stiffness * missing))
+                .collect(),
+            ..self.hold.clone()
+        }
+    }
 }
 
 /// Seconds during which a rig waited, moved and settled between a reading before a move and one after it; `moved` is the observed
@@ -56,16 +118,42 @@ pub(crate) struct DwellEvaluation {
     pub remarks: Vec<String>,
 }
 
+/// The fit of a decay. A solid shows its instantaneous stiffness, which brings the readings of an arriving actuator to the displacement of
+/// their dwell better than the secant of a move during which the specimen relaxes.
+fn decay(
+    dwells: &[Arriving],
+    start: f64,
+    model: RelaxationModel,
+    stated: StatedVariance,
+) -> Result<RelaxationFit, Unrelaxed> {
+    let fit = |stiffness| {
+        let holds: Vec<Hold> = dwells
+            .iter()
+            .map(|dwell| dwell.arrived(stiffness))
+            .collect();
+        fit_relaxation(&holds, start, model, stated)
+    };
+    let by_secants = fit(None)?;
+    let late = || dwells.iter().flat_map(|dwell| &dwell.missing);
+    match (by_secants.relaxed_stiffness, by_secants.branch_stiffness) {
+        (Some((relaxed, _)), Some((branch, _))) if late().any(|missing| *missing != 0.0) => {
+            fit(Some(relaxed + branch))
+        }
+        _ => Ok(by_secants),
+    }
+}
+
 /// `start`: displacement \[m\] and force \[N\] before the first move; `noise`: the declared noise of the cell \[N\]; `stated`: the
 /// variance of a single reading.
 pub(crate) fn evaluate_dwells(
-    holds: &[Hold],
+    dwells: &[Arriving],
     start: (f64, f64),
     asked: Option<WatchedModel>,
     noise: Option<f64>,
     stated: StatedVariance,
 ) -> DwellEvaluation {
     let mut evaluation = DwellEvaluation::default();
+    let holds: Vec<Hold> = dwells.iter().map(|dwell| dwell.arrived(None)).collect();
     let mut accuracy = noise;
     match asked {
         Some(WatchedModel::Decay {
@@ -73,18 +161,18 @@ pub(crate) fn evaluate_dwells(
             accuracy: asked,
         }) => {
             accuracy = asked.or(noise);
-            match fit_relaxation(holds, start.0, model, stated) {
+            match decay(dwells, start.0, model, stated) {
                 Ok(fit) => {
-                    evaluation.remarks = remarks(&fit, holds, accuracy);
+                    evaluation.remarks = remarks(&fit, &holds, accuracy);
                     evaluation.relaxation = Some(fit);
                 }
                 Err(reason) => evaluation.remarks.push(unrelaxed(reason).to_owned()),
             }
         }
         Some(WatchedModel::Reached { law, rate }) => {
-            match fit_superposition(holds, start.1, law, rate, stated) {
+            match fit_superposition(&holds, start.1, law, rate, stated) {
                 Ok(fit) => {
-                    evaluation.remarks = reached_remarks(&fit, holds, rate, noise);
+                    evaluation.remarks = reached_remarks(&fit, &holds, rate, noise);
                     evaluation.reached = Some(fit);
                 }
                 Err(reason) => evaluation.remarks.push(unrelaxed(reason).to_owned()),

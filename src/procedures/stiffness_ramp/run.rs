@@ -2,6 +2,7 @@
 //! readings. In: the displacements. Out: K by least squares over the outward steps, the secant of the first increment, the tangent at
 //! every one, relaxation and, with an unloading branch, the energy of the loop.
 
+use super::hold::Arriving;
 use super::points::{Point, point, secant};
 use super::uncertainty::{Direct, Readings};
 use super::{curve, hold};
@@ -32,6 +33,7 @@ pub(crate) fn perform(
         starts: Vec::new(),
         before: Vec::new(),
         holds: Vec::new(),
+        arriving: Vec::new(),
         last_reading: 0.0,
     };
     let stop = ramp.run(plan, inputs, session).err();
@@ -45,7 +47,7 @@ pub(crate) fn perform(
     let asked = plan.relaxation.map(|asked| asked.model);
     let start = ramp.starts.first().copied().unwrap_or_default();
     let evaluation = hold::evaluate_dwells(
-        &ramp.holds,
+        &ramp.arriving,
         start,
         asked,
         noise,
@@ -118,6 +120,8 @@ struct Ramp {
     before: Vec<RampStep>,
     /// Dwells of the first repeat, if they are recorded.
     holds: Vec<Hold>,
+    /// The same with the arrival of the actuator.
+    arriving: Vec<Arriving>,
     /// Laboratory time of the last reading before a move \[s\].
     last_reading: f64,
 }
@@ -227,18 +231,23 @@ impl Ramp {
             broken,
         } = DwellReadings::take(&settled, broken, pause, manner.samples, session)?;
         let step = self.steps.len() as u64 + 1;
-        if let Some((readings, last)) = watched {
+        if let Some(watched) = watched {
             let [waited_for, moved_for, settled_for] =
                 hold::parts(self.last_reading, moved, settled.time);
-            self.holds.push(Hold {
+            let dwell = Hold {
                 step,
                 displacement,
                 waited_for,
                 moved_for,
                 settled_for,
-                readings,
-            });
-            self.last_reading = last;
+                readings: watched.readings.clone(),
+            };
+            let from = before.or(self.starts.last().copied()).unwrap_or_default();
+            let resolution = session.guard.declared_noise().resolution;
+            self.holds.push(dwell.clone());
+            self.arriving
+                .push(Arriving::new(dwell, &watched, from, resolution));
+            self.last_reading = watched.last;
         }
         self.steps.push(RampStep {
             step,

@@ -178,17 +178,27 @@ pub(crate) fn to_rest(
     let noise = session.guard.declared_noise();
     let rounding = ROUNDING * f64::EPSILON * largest(&at.displacement);
     let detectable = (NOISE * noise.force).max(unloading.force_of(noise.resolution.max(rounding)));
-    let mut left = largest(&at.force);
-    let within = within.unwrap_or_else(|| detectable.max(SMALL * left).max(f64::MIN_POSITIVE));
+    let by_readings = within.is_none();
+    let within = within.unwrap_or_else(|| {
+        detectable
+            .max(SMALL * largest(&at.force))
+            .max(f64::MIN_POSITIVE)
+    });
     let mut path = UnloadingPath::new(unloading, noise, loaded(&at));
     if session.unloads_at_once {
         path = path.at_once();
     }
     for step in before + 1..=before + MOST_TARGETS {
-        if left <= within {
+        if largest(&at.force) <= within {
             return Ok(rest(at));
         }
-        let increments = path.moves(&at.force);
+        // Another reading has another error.
+        let waits = by_readings && path.passed_by_noise(&at.force);
+        let increments = if waits {
+            vec![0.0; at.force.len()]
+        } else {
+            path.moves(&at.force)
+        };
         let target: Vec<f64> = session
             .guard
             .commanded()
@@ -208,12 +218,12 @@ pub(crate) fn to_rest(
         session.measured_all(step, wall_time, &reached)?;
         let nearer = path.left(&reached.force) < path.left(&at.force);
         let passed = path.passed(&reached.force);
-        (left, at) = (largest(&reached.force), reached);
-        if !nearer || passed {
+        at = reached;
+        if !waits && (!nearer || passed) {
             break;
         }
     }
-    if left > within {
+    if largest(&at.force) > within {
         let (force, wanted) = (
             rest(at.clone()).largest().1,
             readable(within, Dimension::FORCE),

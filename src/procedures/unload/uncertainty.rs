@@ -146,9 +146,9 @@ fn some<const COUNT: usize>(parts: [(Source, f64); COUNT]) -> Vec<Contribution> 
         .collect()
 }
 
-/// The measured unloading stiffness: for each storey by eq. (6) over the last move that shows it, otherwise the expected one.
+/// The measured unloading stiffness: for each storey by eq. (6) over the last move that shows it, otherwise the expected one. An
+/// unloading branch that is softer than expected shows it by a longer move.
 fn shown(expected: &Unloading, steps: &[UnloadStep], errors: &Errors) -> Unloading {
-    let mut unloading = expected.clone();
     let moves = || {
         steps
             .windows(2)
@@ -173,12 +173,15 @@ fn shown(expected: &Unloading, steps: &[UnloadStep], errors: &Errors) -> Unloadi
         let below = storey.checked_sub(1).map_or(0.0, |below| errors[below].1);
         (force, errors[storey].1.hypot(below))
     };
+    let least = SIGNIFICANT_FRACTION * farthest;
+    let readings = steps.iter().map(loaded);
+    let mut unloading = expected
+        .clone()
+        .expecting_the_branch(readings, &of_storey, least);
     for (from, to) in moves() {
         unloading.learn_where(from, to, &|storey, stiffness, moved| {
             let (force, rest_displacement) = of_storey(storey);
-            moved.abs()
-                > (SIGNIFICANT_FRACTION * farthest)
-                    .max(NOISE_MULTIPLE * rest_displacement.max(force / stiffness))
+            moved.abs() > least.max(NOISE_MULTIPLE * rest_displacement.max(force / stiffness))
         });
     }
     unloading

@@ -24,6 +24,18 @@ pub enum JournalFault {
 }
 
 impl JournalFault {
+    /// Whether another program changed the run log.
+    #[must_use]
+    pub const fn is_foreign(&self) -> bool {
+        matches!(
+            self,
+            Self::Storage {
+                doing: Doing::Compare,
+                ..
+            }
+        )
+    }
+
     pub(super) fn storage(doing: Doing, error: &io::Error) -> Self {
         Self::Storage {
             doing,
@@ -38,6 +50,8 @@ impl JournalFault {
 pub enum Doing {
     Append,
     Sync,
+    /// Comparison with the file that was opened.
+    Compare,
     /// Removal of an incomplete line.
     Cut,
 }
@@ -47,6 +61,7 @@ impl std::fmt::Display for Doing {
         f.write_str(match self {
             Self::Append => "written",
             Self::Sync => "made durable",
+            Self::Compare => "trusted",
             Self::Cut => "truncated",
         })
     }

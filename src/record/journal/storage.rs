@@ -17,6 +17,14 @@ pub trait Storage: Send {
     /// Durability cannot be guaranteed; it is never requested again.
     fn sync(&mut self) -> io::Result<()>;
 
+    /// Whether it has exactly the bytes that were appended here, as far as their number and place show. Called after every `sync`.
+    ///
+    /// # Errors
+    /// Another program changed it.
+    fn is_unchanged(&self) -> io::Result<()> {
+        Ok(())
+    }
+
     /// Truncates to the first `length` bytes. A failed append may leave an incomplete line, which must not corrupt the final entries.
     ///
     /// # Errors

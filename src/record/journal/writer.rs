@@ -110,7 +110,9 @@ impl Journal {
         self.healthy()?;
         self.flush()?;
         let synced = self.storage.sync();
-        self.record_fault(Doing::Sync, synced)
+        self.record_fault(Doing::Sync, synced)?;
+        let unchanged = self.storage.is_unchanged();
+        self.record_fault(Doing::Compare, unchanged)
     }
 
     /// Writes the last entry, with the count of entries and the chain before it, and makes all of them durable.

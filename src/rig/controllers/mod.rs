@@ -25,7 +25,7 @@ use crate::rig::transport::{Clock, Port};
 use device::one_axis;
 pub use device::{
     Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Flags, Force, LoadCell, Member,
-    NOT_TRUSTED, Sample, together,
+    NOT_TRUSTED, Sample, metres, together,
 };
 pub use line::client::{Answer, LONGEST_LINE, LineClient, Missed, SLICE};
 pub use line::number;

@@ -16,7 +16,7 @@ mod validity;
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::{Calibration, Interval, Limits, ReadingRules, RealLink, Settle};
 
-use super::controllers::{Device, DeviceFault, DeviceMove};
+use super::controllers::{Device, DeviceFault, DeviceMove, metres};
 use super::motion::from_positions;
 use super::safety::failpoint::{Guarding, on};
 use super::transport::Clock;
@@ -109,6 +109,20 @@ impl RealRig {
         self.live.clone()
     }
 
+    /// The displacements that the rig itself allows, in the plan's coordinate \[m\], one per axis. None: it does not report them.
+    #[must_use]
+    pub fn reported_range(&self) -> Option<Vec<Interval>> {
+        let ranges = self.actuator.reported_range()?;
+        let turned = |(axis, range): (&Axis, &Interval)| {
+            let ends = [range.low, range.high].map(|end| axis.coordinate.in_plan(end));
+            Interval {
+                low: ends[0].min(ends[1]),
+                high: ends[0].max(ends[1]),
+            }
+        };
+        Some(self.axes.iter().zip(&ranges).map(turned).collect())
+    }
+
     /// Positions of the devices \[m\], one per axis, in the plan's coordinate.
     fn in_plan(&self, positions: &[f64]) -> Vec<f64> {
         self.axes
@@ -160,15 +174,6 @@ fn degrees_of_freedom(count: usize) -> String {
     } else {
         format!("{count} degrees of freedom")
     }
-}
-
-/// Positions \[m\], as a list.
-fn millimetres(positions: &[f64]) -> String {
-    positions
-        .iter()
-        .map(f64::to_string)
-        .collect::<Vec<_>>()
-        .join(", ")
 }
 
 /// The device.
@@ -244,9 +249,9 @@ impl Rig for RealRig {
             && encoded.len() == targets.len()
             && self.axes.iter().zip(encoded.iter().zip(targets)).all(apt);
         if on(Guarding::WireNumber) && !apt {
-            let [asked, encoded] = [targets, &encoded].map(millimetres);
+            let [asked, encoded] = [targets, &encoded].map(metres);
             let reason = format!(
-                "requested: {asked} m; encoded: {encoded} m at {} m/s; not sent",
+                "requested: {asked}; encoded: {encoded} at {} m/s; not sent",
                 going.speed
             );
             return Err(RigFault::Device(reason));

@@ -5,7 +5,7 @@ use super::coordinate::Coordinate;
 use super::validity::ReadingValidator;
 use super::{Axis, Part, RealRig, degrees_of_freedom};
 use crate::plan::{Behind, Datum, DeviceLink, Limits, RealLink, RigPlan};
-use crate::rig::controllers::{Device, DeviceFault, DeviceIdentity};
+use crate::rig::controllers::{Device, DeviceFault, DeviceIdentity, metres};
 use crate::rig::transport::Clock;
 use crate::rig::{Identity, Live, Rig as _, RigFault, StopRequest, named_axis};
 
@@ -90,7 +90,8 @@ impl RealRig {
             || !positions.iter().all(|position| position.is_finite())
         {
             return Err(RigFault::Device(format!(
-                "{positions:?} m is not a datum of a rig with {}",
+                "{} is not a datum of a rig with {}",
+                metres(positions),
                 degrees_of_freedom(self.axes.len())
             )));
         }

@@ -6,6 +6,7 @@
 use super::RealRig;
 use super::{Part, WIRE_ROUNDING};
 use crate::physics::tracking::trajectory::Path;
+use crate::rig::controllers::metres;
 use crate::rig::safety::failpoint::{Guarding, on};
 use crate::rig::{EachReading, Reading, Rig as _, RigFault, named_axis};
 
@@ -104,9 +105,10 @@ impl RealRig {
         if on(Guarding::WireNumber)
             && (going.targets.len() != paths.len() || !self.axes.iter().zip(ends).all(apt))
         {
+            let ends: Vec<f64> = turned.iter().map(|path| path.to).collect();
+            let [asked, encoded] = [&ends, &going.targets].map(|ends| metres(ends));
             return Err(RigFault::Device(format!(
-                "requested: {turned:?}; encoded: {:?} m; not sent",
-                going.targets
+                "requested: {asked}; encoded: {encoded}; not sent"
             )));
         }
         self.moved = true;

@@ -14,6 +14,7 @@ use crate::plan::{Datum, Plan};
 use crate::record::Event;
 use crate::record::journal::{EntryKind, Line, Recovered, is_written_as};
 use crate::rig::LineStatistics;
+use crate::rig::controllers::metres;
 
 /// In a resumed run the time is a sum of two clocks.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -63,11 +64,12 @@ fn is_of_the_plans_rig(
             let datum = rig.datum.unwrap_or_else(|| vec![0.0; rig.axes]);
             let at_zero = datum.iter().all(|position| *position == 0.0);
             if datum.len() != rig.axes || link.datum == Datum::Machine && !at_zero {
-                return Err(format!("a datum at {datum:?} m is not the plan's"));
+                return Err(format!("a datum at {} is not the plan's", metres(&datum)));
             }
             if first_datum.get_or_insert_with(|| datum.clone()) != &datum {
                 return Err(format!(
-                    "a datum at {datum:?} m differs from the datum at the start of the run"
+                    "a datum at {} differs from the datum at the start of the run",
+                    metres(&datum)
                 ));
             }
             Ok(())

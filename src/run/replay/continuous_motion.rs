@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use super::continuous_move::ContinuousMove;
 use super::entry::{Call, IntentBody, StrokeBody, TargetStatus};
-use super::entry_of::{append_sample, bits, in_log_time, intent};
+use super::entry_of::{append_sample, bits, in_log_time, intent, target_text};
 use super::recorded_rig::RecordedRig;
 use super::state::ended;
 use crate::physics::tracking::trajectory::Path;
@@ -118,10 +118,10 @@ impl RecordedRig<'_> {
                 .borrow_mut()
                 .peek(EntryKind::Intent, "a target")?;
             if !same(&recorded, &intent) {
-                return Err(self.state.borrow_mut().report_mismatch(format!(
-                    "a path to {:?} m at {:?} m/s",
-                    intent.to, intent.speed
-                )));
+                return Err(self
+                    .state
+                    .borrow_mut()
+                    .report_mismatch(format!("a path {}", target_text(&intent.to, intent.speed))));
             }
             self.state.borrow_mut().consume();
             let Some(done) = self.logged_stroke(samples, each)? else {

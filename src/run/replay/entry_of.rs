@@ -3,6 +3,7 @@
 use super::entry::{IntentBody, RigBody, SampleBody, escaped};
 use super::state::State;
 use crate::record::journal::EntryKind;
+use crate::rig::controllers::metres;
 use crate::rig::{DeclaredNoise, EncodedMove, Identity, Reading, Rig, RigFault};
 
 impl RigBody {
@@ -114,9 +115,10 @@ fn finite(reading: Reading) -> Result<Reading, RigFault> {
         return Ok(reading);
     }
     let numbers = reading.displacement.iter().chain(&reading.force);
+    let numbers: Vec<String> = numbers.map(f64::to_string).collect();
     Err(RigFault::Device(format!(
-        "a reading is not a number: {:?}",
-        numbers.collect::<Vec<_>>()
+        "a reading is not a number: {}",
+        numbers.join(", ")
     )))
 }
 
@@ -136,4 +138,10 @@ pub(super) fn same_bits(one: &[f64], other: &[f64]) -> bool {
 
 pub(super) fn bits(values: &[f64]) -> Vec<u64> {
     values.iter().map(|value| value.to_bits()).collect()
+}
+
+/// The end of a motion \[m\] and its speed \[m/s\], for a sentence.
+pub(super) fn target_text(targets: &[f64], speed: Option<f64>) -> String {
+    let speed = speed.map_or_else(String::new, |speed| format!(" at {speed} m/s"));
+    format!("to {}{speed}", metres(targets))
 }

@@ -38,7 +38,7 @@ pub struct LoggedRun {
 /// The file is complete, but is not the run log of a run.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UnreadableLog {
-    #[error("this version cannot read entry {seq} ({kind:?}): {reason}")]
+    #[error("this version cannot read entry {seq} ({}): {reason}", .kind.word())]
     Body {
         seq: u64,
         kind: EntryKind,

@@ -118,7 +118,8 @@ impl Observer for RecordedObserver<'_, '_> {
                     state.consume();
                 }
                 Ok(_) => {
-                    state.report_mismatch(format!("{request:?}"));
+                    let asked = serde_json::to_string(request).unwrap_or_default();
+                    state.report_mismatch(format!("the request {asked}"));
                 }
                 Err(_) => {}
             }

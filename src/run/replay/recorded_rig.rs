@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use super::continuous_move::ContinuousMove;
 use super::entry::{Call, FaultBody, HeldBody, IntentBody, RigBody, SampleBody, StrokeBody};
-use super::entry_of::{append_sample, in_log_time, intent, same_bits, unknown_rig};
+use super::entry_of::{append_sample, in_log_time, intent, same_bits, target_text, unknown_rig};
 use super::state::{State, ended};
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::{Interval, Limits};
@@ -148,7 +148,7 @@ impl<'rig> RecordedRig<'rig> {
         if same {
             return Ok(intent);
         }
-        Err(state.report_mismatch(format!("a target of {targets:?} m at {speed:?} m/s")))
+        Err(state.report_mismatch(format!("a move {}", target_text(targets, speed))))
     }
 
     fn logged_reading(&self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {

@@ -364,7 +364,7 @@ impl<'rig> State<'rig> {
     pub(super) fn report_mismatch(&mut self, called: String) -> RigFault {
         let front = self.lines.front();
         let (seq, found) = front.map_or((0, "its end".to_owned()), |line| {
-            (line.seq, format!("{:?} {}", line.kind, line.body()))
+            (line.seq, format!("{} {}", line.kind.word(), line.body()))
         });
         self.differs(Mismatch { seq, called, found })
     }

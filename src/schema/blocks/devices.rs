@@ -3,6 +3,9 @@
 use crate::schema::types::{Field, Variant};
 use crate::units::Dimension;
 
+/// Shortest time-out of a reply \[s\]: a serial line at the default rate carries about ten characters meanwhile.
+const SHORTEST_REPLY: f64 = 1e-3;
+
 /// Longest time-out or wait \[s\].
 pub(crate) const LONGEST_WAIT: f64 = 3600.0;
 
@@ -149,7 +152,7 @@ pub(crate) const REPLY_TIMEOUT: Field = Field::quantity(
     "time-out of the first attempt; later attempts wait twice and four times as long",
 )
 .or(0.4, "s")
-.above_zero_up_to(LONGEST_WAIT)
+.within(SHORTEST_REPLY, LONGEST_WAIT)
 .advanced();
 
 pub(crate) const SERIAL_NUMBER: Field =

@@ -161,6 +161,47 @@ fn noise_does_not_move_it() {
     }
 }
 
+/// A soft spring k beside a stiff one that yields at 60 N, from 20 mm: 120 N back over 0.3 mm, then along k to zero at 60 N/k. With the cell's
+/// noise of 0.5 N the path ends there, without reversing the friction: less than six standard deviations past zero. The stated u holds.
+#[test]
+fn a_soft_unloading_branch_is_followed_to_its_end() {
+    let (mut inside, mut runs) = (0, 0);
+    for stiffness in [1e4, 2e4, 4e4, 1e5, 2e5, 4e5] {
+        let stiff = Behaviour::Bilinear {
+            stiffness: 4e5,
+            yield_force: 60.0,
+            post_yield_ratio: 0.0,
+        };
+        let behaviour = Behaviour::Parallel(vec![Behaviour::Elastic { stiffness }, stiff]);
+        for seed in 1..=8 {
+            let link = VirtualLink {
+                noise: 0.5,
+                resolution: 1e-6,
+                seed,
+                ..VirtualLink::default()
+            };
+            let record = unloaded(&behaviour, 0.0, 0.02, stiffness + 4e5, link);
+            let (found, u) = number(&record, 1, "residual_displacement");
+            let (off, u) = ((found.unwrap() - 60.0 / stiffness).abs(), u.unwrap());
+            assert!(
+                record.events.is_empty() && off < 3.5 * u,
+                "{stiffness} N/m, seed {seed}: off by {off} m, u {u} m: {:?}",
+                record.events
+            );
+            assert!(
+                moves(&record)
+                    .iter()
+                    .all(|step| step.restoring_force > -3.0),
+                "{stiffness} N/m, seed {seed}: {:?}",
+                moves(&record)
+            );
+            (inside, runs) = (inside + usize::from(off < 2.0 * u), runs + 1);
+        }
+    }
+    // 95 % of 48 are 45.6, with a standard deviation of 1.5.
+    assert!(inside >= runs - 7, "{inside} of {runs}");
+}
+
 /// A specimen at rest within its friction is not moved: one short move shows it, and an observation states the remaining load.
 #[test]
 fn a_load_within_the_friction_is_reported_as_remaining() {

@@ -163,6 +163,7 @@ fn on_a_real_rig(
     let (expected, _) = expected::of(plan);
     let mut opened = real_rig::open(plan, attendance, &StopRequest::default(), settings, true)?;
     opened.watcher.expect(expected);
+    expected::within_reach(plan, expected, &opened.connected.rig)?;
     let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
     let circumstances = real_rig::circumstances(plan, attendance);
     print_message(&provenance::reported_another_day(

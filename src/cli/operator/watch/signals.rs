@@ -1,16 +1,36 @@
-//! Signals → the stop request. In: SIGINT, SIGQUIT, SIGTERM, SIGHUP. Out: one Ctrl-C stops the run at the end of its step, a second one
+//! Signals → the stop request. In: SIGINT, SIGQUIT, SIGTERM, SIGHUP, SIGPWR. Out: one Ctrl-C stops the run at the end of its step, a second one
 //! puts the rig on hold now. Each other signal puts it on hold now, and so does Ctrl-C in a manual move, which has no steps. Without a
 //! screen, a line reports it immediately. Signals that other programs use for counting or waking are caught and have no effect. The same
-//! applies to the signal for a file that is too large. Their senders do not intend to leave a rig uncontrolled.
+//! applies to the signals of timers, of limits and of files that are too large. Their senders do not intend to leave a rig uncontrolled.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use signal_hook::consts::{SIGALRM, SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGUSR1, SIGUSR2, SIGXFSZ};
+use rustix::process::Signal;
+use signal_hook::consts::{
+    SIGALRM, SIGHUP, SIGINT, SIGIO, SIGPROF, SIGQUIT, SIGSYS, SIGTERM, SIGUSR1, SIGUSR2, SIGVTALRM,
+    SIGXCPU, SIGXFSZ,
+};
 use signal_hook::iterator;
 
 use crate::cli::output::print_message;
 use crate::rig::StopRequest;
+
+/// Signals that end the motion. The last one is the power failure that an uninterruptible power supply reports.
+const WISHES: [i32; 5] = [SIGINT, SIGQUIT, SIGTERM, SIGHUP, Signal::POWER.as_raw()];
+
+/// Signals without an effect.
+const IGNORED: [i32; 9] = [
+    SIGUSR1,
+    SIGUSR2,
+    SIGALRM,
+    SIGVTALRM,
+    SIGPROF,
+    SIGXCPU,
+    SIGIO,
+    SIGSYS,
+    Signal::STKFLT.as_raw(),
+];
 
 /// Signals are caught as long as this exists. Afterwards they have no effect, because the results are still being written. There is one
 /// for the whole run: a signal between two of them would be lost.
@@ -46,8 +66,7 @@ impl Signals {
         stop_request: &StopRequest,
         forward: fn(&StopRequest, i32),
     ) -> std::io::Result<Self> {
-        let mut signals =
-            iterator::Signals::new([SIGINT, SIGQUIT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGALRM])?;
+        let mut signals = iterator::Signals::new(WISHES.iter().chain(&IGNORED))?;
         let handle = signals.handle();
         let (stop_request, theirs) = (stop_request.clone(), stop_request.clone());
         let output = Arc::new(AtomicU8::new(SILENT));
@@ -55,7 +74,7 @@ impl Signals {
         std::thread::spawn(move || {
             for signal in signals.forever() {
                 match signal {
-                    SIGUSR1 | SIGUSR2 | SIGALRM => continue,
+                    ignored if IGNORED.contains(&ignored) => continue,
                     // These two come from the keyboard.
                     SIGINT | SIGQUIT => {}
                     _ => theirs.suppress_prompts(),

@@ -5,7 +5,7 @@ use crate::plan::Integrator;
 use crate::text::diagnostic::{Code, Diagnostic};
 use crate::text::source::Span;
 use crate::units::Dimension;
-use crate::units::display::{minus, significant};
+use crate::units::display::{self, minus, significant};
 
 pub fn law_needs_the_tangent(integrator: &str, named: Span, law: &str, struck: Span) -> Diagnostic {
     let message = format!(
@@ -181,4 +181,28 @@ pub fn tracking_is_late(late: &Late, head: Span, link: Span) -> Diagnostic {
         .at(head, "integrated with this delay")
         .at(link, amounts)
         .help(help)
+}
+
+/// `step` and `duration` in \[s\]. `written`: whether the plan states the time step, which otherwise follows from the period.
+pub fn step_beyond_duration(
+    at: Span,
+    written: bool,
+    step: f64,
+    duration_at: Span,
+    duration: f64,
+) -> Diagnostic {
+    let stated = |time| display::stated(time, Dimension::TIME);
+    let message = format!(
+        "time step {} is longer than the run, {}",
+        stated(step),
+        stated(duration)
+    );
+    Diagnostic::new(Code::OutOfRange, message)
+        .at(at, "less than one step")
+        .at(duration_at, "length of the run")
+        .help(if written {
+            "write a shorter `time_step`, or a longer `duration`"
+        } else {
+            "check mass and stiffness: the time step is a fraction of the period; or write a longer `duration`"
+        })
 }

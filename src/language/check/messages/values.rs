@@ -478,30 +478,6 @@ pub fn final_is_not_residual(read: &str, row: bool, required: Span, head: Span) 
     ))
 }
 
-/// `step` and `duration` in \[s\]. `written`: whether the plan states the time step, which otherwise follows from the period.
-pub fn step_beyond_duration(
-    at: Span,
-    written: bool,
-    step: f64,
-    duration_at: Span,
-    duration: f64,
-) -> Diagnostic {
-    let stated = |time| display::stated(time, Dimension::TIME);
-    let message = format!(
-        "time step {} is longer than the run, {}",
-        stated(step),
-        stated(duration)
-    );
-    Diagnostic::new(Code::OutOfRange, message)
-        .at(at, "less than one step")
-        .at(duration_at, "length of the run")
-        .help(if written {
-            "write a shorter `time_step`, or a longer `duration`"
-        } else {
-            "check mass and stiffness: the time step is a fraction of the period; or write a longer `duration`"
-        })
-}
-
 /// An entry that has no effect here: the reason, and the remedy.
 pub fn no_effect(message: String, span: Span, label: &str, help: &str) -> Diagnostic {
     Diagnostic::new(Code::NoEffect, message)

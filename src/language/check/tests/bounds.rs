@@ -124,3 +124,20 @@ fn the_first_of_many_unknown_names_have_a_suggestion() {
     });
     assert!((50..60).contains(&helped.count()));
 }
+
+/// Two springs whose stiffnesses add to more than the largest number: a slope without a bound states no stability limit, least of all
+/// one of 0 s.
+#[test]
+fn a_stiffness_without_a_bound_states_no_limit() {
+    let spring = "elastic(stiffness: 1.7e308 N/m)";
+    let plan = IMPACT.replace(
+        "behaviour = elastic(stiffness: 300 N/m)",
+        &format!("behaviour = parallel({spring}, {spring})"),
+    );
+    let plan = plan.replace(
+        "  duration = 1 s\n",
+        "  duration = 1 s\n  stiffness = 300 N/m\n  integrator = explicit\n  time_step = 1 ms\n",
+    );
+    let (_, reported) = checked(&plan, &no_files, &[]);
+    assert!(!reported.contains("E643"), "{reported}");
+}

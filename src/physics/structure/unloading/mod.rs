@@ -4,10 +4,12 @@
 //! In a shear building each storey's shear is a function of its own storey drift, so that the system is uncoupled. Storey j is off by
 //! −Vⱼ/kⱼ, and kⱼ is the secant that a move showed. Any other frame uses K⁻¹ of the initial stiffness throughout.
 
+mod line;
 mod path;
 
 pub use path::UnloadingPath;
 
+use self::line::Line;
 use super::matrix::{BandFactor, NotPositiveDefinite, SymmetricBand};
 use super::shear_building::{drifts, shears, storeys_of};
 
@@ -111,6 +113,38 @@ impl Unloading {
         }
     }
 
+    /// Expects the slope that the last moves agree on, where that is softer: `points` are the readings of the branch, `noise` gives the
+    /// standard deviations of the shear \[N\] and of the storey drift \[m\] of a storey, `least` \[m\] is the least significant travel.
+    #[must_use]
+    pub fn expecting_the_branch<'a>(
+        mut self,
+        points: impl IntoIterator<Item = Loaded<'a>>,
+        noise: &dyn Fn(usize) -> (f64, f64),
+        least: f64,
+    ) -> Self {
+        let Slopes::Storeys { expected, shown } = &mut self.slopes else {
+            return self;
+        };
+        let mut lines: Vec<Line> = Vec::new();
+        for at in points {
+            let read = of_storeys(at);
+            if lines.is_empty() {
+                lines = read.into_iter().map(Line::new).collect();
+            } else {
+                for (storey, (line, at)) in lines.iter_mut().zip(read).enumerate() {
+                    line.learn(at, noise(storey));
+                }
+            }
+        }
+        for (storey, line) in lines.iter().enumerate() {
+            if let Some(slope) = line.slope(noise(storey), least) {
+                expected[storey] = slope.min(expected[storey]);
+                shown[storey] = expected[storey];
+            }
+        }
+        self
+    }
+
     /// The secant of each storey \[N/m\] if a move changed its storey drift, and none if there are no storeys.
     #[must_use]
     pub fn secants(&self, from: Loaded<'_>, to: Loaded<'_>) -> Vec<Option<f64>> {
@@ -164,6 +198,21 @@ fn between(from: Loaded<'_>, to: Loaded<'_>) -> [Vec<f64>; 2] {
     drifts(&less(to.displacement, from.displacement), &mut moved);
     shears(&less(to.force, from.force), &mut changed);
     [moved, changed]
+}
+
+/// Storey drift \[m\] and shear \[N\] of each storey.
+fn of_storeys(at: Loaded<'_>) -> Vec<(f64, f64)> {
+    let (mut drift, mut shear) = (vec![0.0; at.force.len()], vec![0.0; at.force.len()]);
+    drifts(at.displacement, &mut drift);
+    shears(at.force, &mut shear);
+    drift.into_iter().zip(shear).collect()
+}
+
+/// Peak absolute value.
+fn largest(values: &[f64]) -> f64 {
+    values
+        .iter()
+        .fold(0.0, |largest, value| largest.max(value.abs()))
 }
 
 #[cfg(test)]

@@ -5,9 +5,14 @@
 //! the slope. Each further move then removes most of the remaining load, with the larger of the measured and the expected slope. Once
 //! little load remains and the slope is not stiffer than the one before it, one move removes the rest. If the unloading branch softens,
 //! as that of specimens does, no move passes the unloaded position.
+//!
+//! An unloading branch that is much softer than expected would need hundreds of such moves. Once two moves agree, the moves grow with the
+//! length over which the slope is known. A branch that then stiffens to the expected slope is loaded in the opposite direction by less
+//! than `LITTLE` of the load at the start.
 
-use super::super::shear_building::{drifts, shears};
-use super::{BELIEVED, Loaded, Unloading};
+use super::super::shear_building::shears;
+use super::line::Line;
+use super::{BELIEVED, Loaded, Unloading, largest, of_storeys};
 use crate::integrator::tangent::NOISE_MULTIPLE;
 use crate::statistics::DeclaredNoise;
 
@@ -23,6 +28,10 @@ const OF_OLDER: f64 = 4.0;
 const LITTLE: f64 = 0.3;
 /// As `LITTLE`, with the measured slope, even if a stiffer one was expected.
 const LEAST: f64 = 0.1;
+/// A move is at most this part of the length over which the slope is known, if it is longer than the expected slope allows.
+const GROWTH: f64 = 0.25;
+/// Standard deviations of a load that are no load.
+const NOISE: f64 = 3.0;
 
 /// State of the unloading, storey by storey; of all floors as one for a frame that is not a shear building.
 #[derive(Clone, Debug)]
@@ -46,6 +55,7 @@ struct Part {
     start: f64,
     /// Storey drift \[m\] and load \[N\] from which the slope is determined.
     last_significant: (f64, f64),
+    line: Line,
     /// Noise of the load \[N\] and of the storey drift \[m\].
     noise: (f64, f64),
 }
@@ -65,6 +75,7 @@ impl UnloadingPath {
             moved: false,
             start: last_significant.1,
             last_significant,
+            line: Line::new(last_significant),
             noise,
         };
         let parts = match unloading.storeys() {
@@ -162,6 +173,21 @@ impl UnloadingPath {
                 .any(|(part, load)| load * part.start < 0.0 && load.abs() > most)
     }
 
+    /// Whether every part is unloaded as far as readings show, and some part is past its unloaded position: a move back would turn the
+    /// friction. A target is as uncertain as the reading before it, so the load there has the noise of two readings.
+    #[must_use]
+    pub fn passed_by_noise(&self, force: &[f64]) -> bool {
+        let loads = self.loads(force);
+        let parts = || self.parts.iter().zip(&loads);
+        let is_past = |(part, load): (&Part, &f64)| load * part.start < 0.0;
+        !self.at_once
+            && parts().any(is_past)
+            && parts().all(|(part, load)| {
+                let readings = if is_past((part, load)) { 2.0_f64 } else { 1.0 };
+                load.abs() <= NOISE * readings.sqrt() * part.noise.0
+            })
+    }
+
     fn loads(&self, force: &[f64]) -> Vec<f64> {
         if self.unloading.storeys().is_none() {
             return vec![largest(force)];
@@ -181,7 +207,7 @@ impl UnloadingPath {
             let [before, after] = [from, to].map(|at| largest(at.force));
             let travel = self.parts[0].moves(before);
             let part = &mut self.parts[0];
-            part.learn(part.last_significant.0 + travel, after);
+            part.learn(part.line.last().0 + travel, after);
         } else {
             for (part, (drift, shear)) in self.parts.iter_mut().zip(of_storeys(to)) {
                 part.learn(drift, shear);
@@ -201,16 +227,29 @@ impl Part {
             (false, true) => FURTHER,
             (false, false) => FIRST,
         };
-        let slope = if known_to(LEAST) {
-            self.slope
-        } else {
-            self.slope.max(self.expected)
+        let Some(straight) = self.line.slope(self.noise, 0.0) else {
+            let slope = if known_to(LEAST) {
+                self.slope
+            } else {
+                self.slope.max(self.expected)
+            };
+            return -share * load / slope;
         };
-        -share * load / slope
+        let most = if load.abs() <= LEAST * self.start.abs() {
+            f64::INFINITY
+        } else {
+            (load.abs() + LITTLE * self.start.abs()) / self.expected
+        };
+        let safe = share * load.abs() / straight.max(self.expected);
+        let far = (share * load.abs() / straight)
+            .min(GROWTH * self.line.length())
+            .min(most);
+        -safe.max(far).copysign(load)
     }
 
     fn learn(&mut self, drift: f64, load: f64) {
         self.moved = true;
+        self.line.learn((drift, load), self.noise);
         let (from, loaded) = self.last_significant;
         let travel = drift - from;
         if travel == 0.0
@@ -223,21 +262,6 @@ impl Part {
         (self.falls, self.slope) = (slope <= STIFFER * self.slope, slope);
         self.last_significant = (drift, load);
     }
-}
-
-/// Storey drift \[m\] and shear \[N\] of each storey.
-fn of_storeys(at: Loaded<'_>) -> Vec<(f64, f64)> {
-    let (mut drift, mut shear) = (vec![0.0; at.force.len()], vec![0.0; at.force.len()]);
-    drifts(at.displacement, &mut drift);
-    shears(at.force, &mut shear);
-    drift.into_iter().zip(shear).collect()
-}
-
-/// Peak absolute value.
-fn largest(values: &[f64]) -> f64 {
-    values
-        .iter()
-        .fold(0.0, |largest, value| largest.max(value.abs()))
 }
 
 #[cfg(test)]
@@ -325,6 +349,27 @@ mod tests {
             path.iter().all(|(_, force)| *force > -1e-9) && path[path.len() - 1].1 <= 2.0,
             "{path:?}"
         );
+    }
+
+    /// A branch twenty times softer than expected, to its end at zero load, and a plateau that ends in the expected stiffness far from zero: that one
+    /// is loaded in the opposite direction by less than the stated part of the load at the start.
+    #[test]
+    fn a_soft_branch_is_gone_to_its_end_and_a_plateau_not_far_beyond() {
+        let soft = |x: f64| 2e4 * (x - 6e-3);
+        let path = followed(4.1e5, 0.02, soft);
+        assert!(
+            path.len() < 40 && (path[path.len() - 1].0 - 6e-3).abs() < 2e-5,
+            "{path:?}"
+        );
+        assert!(path.iter().all(|(_, force)| *force > -1e-9), "{path:?}");
+        let ends = |x: f64| (4.1e5 * x).min(123.0 + 1e4 * (x - 3e-4));
+        for start in [2e-3, 5e-3, 0.02, 0.1] {
+            let path = followed(4.1e5, start, ends);
+            assert!(
+                path.iter().all(|(_, force)| *force > -LITTLE * path[0].1),
+                "{path:?}"
+            );
+        }
     }
 
     /// Each storey by its own slope; all floors of a different frame by the stiffest one.

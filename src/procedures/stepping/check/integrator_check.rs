@@ -78,7 +78,10 @@ pub fn stable(
     let specimen = specimen
         .filter(|_| virtual_rig)
         .and_then(|specimen| specimen.behaviour.as_ref());
-    let behaves = specimen.map_or(0.0, Behaviour::largest_stiffness);
+    let behaves = specimen
+        .map(Behaviour::largest_stiffness)
+        .filter(|stiffness| stiffness.is_finite())
+        .unwrap_or(0.0);
     let assumed = point.stiffness.constant();
     let stiffest = assumed.unwrap_or(0.0).max(behaves);
     let met = Met::one(

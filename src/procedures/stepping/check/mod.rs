@@ -7,7 +7,7 @@ pub(crate) mod mode_check;
 use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::expressions::fields::whole as whole_number;
-use crate::language::check::messages::values;
+use crate::language::check::messages::{methods as fault, values};
 use crate::plan::formula::{Formula, Operator};
 use crate::plan::{Contact, InspectTrigger, Integrator, Mode, Stepping};
 use crate::schema::methods;
@@ -83,7 +83,7 @@ pub(crate) fn beyond_duration(
     };
     let at = |field| checker.value_or_head(block, field);
     let written = checker.field(block, methods::TIME_STEP.name).is_some();
-    checker.diagnostics.push(values::step_beyond_duration(
+    checker.diagnostics.push(fault::step_beyond_duration(
         at(methods::TIME_STEP.name),
         written,
         step,

@@ -28,6 +28,8 @@ const MODE: u32 = 0o600;
 pub struct FileStorage {
     file: File,
     path: PathBuf,
+    /// Number of its bytes, if no other program has written it.
+    length: u64,
 }
 
 /// A run log that is not written during its lifetime.
@@ -157,9 +159,14 @@ impl FileStorage {
                 TryLockError::Error(error) => FileFault::of("locked", path)(error),
             })?;
         }
+        let length = file
+            .metadata()
+            .map_err(FileFault::of("opened", path))?
+            .len();
         Ok(Self {
             file,
             path: path.to_owned(),
+            length,
         })
     }
 
@@ -174,19 +181,35 @@ impl FileStorage {
 
 impl Storage for FileStorage {
     fn append(&mut self, bytes: &[u8]) -> io::Result<()> {
-        write_whole(&mut self.file, bytes)
+        write_whole(&mut self.file, bytes)?;
+        self.length += bytes.len() as u64;
+        Ok(())
     }
 
     fn sync(&mut self) -> io::Result<()> {
-        self.file.sync_data()?;
-        // A file without a name would be lost when it is closed.
-        if self.file.metadata()?.nlink() == 0 {
-            return Err(io::Error::new(
-                io::ErrorKind::NotFound,
-                "its file was deleted",
-            ));
+        self.file.sync_data()
+    }
+
+    /// Whether the path still leads to this file, and the file has exactly the bytes that were appended. Only `psd verify` finds bytes that
+    /// were replaced.
+    fn is_unchanged(&self) -> io::Result<()> {
+        if !on(Guarding::SameFile) {
+            return Ok(());
         }
-        Ok(())
+        let open = self.file.metadata()?;
+        let there = self.path.symlink_metadata();
+        let same = there.is_ok_and(|there| (there.dev(), there.ino()) == (open.dev(), open.ino()));
+        let changed = |reason| Err(io::Error::new(io::ErrorKind::InvalidData, reason));
+        // A file without a name would be lost when it is closed.
+        if open.nlink() == 0 {
+            changed("its file was deleted")
+        } else if !same {
+            changed("its file was moved or replaced")
+        } else if open.len() != self.length {
+            changed("another program changed the length of its file")
+        } else {
+            Ok(())
+        }
     }
 
     fn cut(&mut self, length: u64) -> io::Result<()> {
@@ -196,7 +219,9 @@ impl Storage for FileStorage {
                 "bytes that were written are missing",
             ));
         }
-        self.file.set_len(length)
+        self.file.set_len(length)?;
+        self.length = length;
+        Ok(())
     }
 
     fn release_reserve(&mut self) {

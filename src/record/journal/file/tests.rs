@@ -272,3 +272,55 @@ fn short_and_interrupted_writes_lose_and_double_nothing() {
     );
     assert_eq!(full.written, bytes[..500]);
 }
+
+#[test]
+fn a_run_log_that_another_program_changed_is_not_continued() {
+    type Change = fn(&Path);
+    let changes: [(Change, &str); 4] = [
+        (
+            |path| fs::rename(path, path.with_extension("moved")).unwrap(),
+            "its file was moved or replaced",
+        ),
+        (
+            |path| {
+                let text = fs::read(path).unwrap();
+                fs::rename(path, path.with_extension("moved")).unwrap();
+                fs::write(path, text).unwrap();
+            },
+            "its file was moved or replaced",
+        ),
+        (
+            |path| {
+                let mut file = fs::OpenOptions::new().append(true).open(path).unwrap();
+                file.write_all(b"more").unwrap();
+            },
+            "another program changed the length of its file",
+        ),
+        (
+            |path| {
+                let file = fs::OpenOptions::new().write(true).open(path).unwrap();
+                file.set_len(10).unwrap();
+            },
+            "another program changed the length of its file",
+        ),
+    ];
+    for (change, reason) in changes {
+        let goes_on = || {
+            let (_folder, path) = new_journal();
+            let mut journal = begun(&path);
+            journal.sync_point().unwrap();
+            change(&path);
+            journal.append(EntryKind::Event, &json!({})).unwrap();
+            journal.sync_point()
+        };
+        let fault = goes_on().unwrap_err();
+        assert_eq!(
+            fault.to_string(),
+            format!("the run log cannot be trusted: {reason}")
+        );
+        assert!(
+            without(Guarding::SameFile, goes_on).is_ok(),
+            "nothing else sees it"
+        );
+    }
+}

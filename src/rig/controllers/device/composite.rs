@@ -3,7 +3,7 @@
 //! none begins. It knows no protocol.
 
 use super::{Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Sample};
-use crate::plan::Limits;
+use crate::plan::{Interval, Limits};
 use crate::rig::{LineStatistics, NO_POWER_UP};
 
 /// One of these devices.
@@ -228,6 +228,17 @@ impl Device for Several {
         };
         self.each(|_, member| member.device.narrow_limits(&own(&member.axes)))
             .map(drop)
+    }
+
+    /// None if one of the devices does not report its own.
+    fn reported_range(&self) -> Option<Vec<Interval>> {
+        let mut ranges = vec![Interval::ALL; self.axes];
+        for member in &self.members {
+            for (axis, range) in member.axes.iter().zip(member.device.reported_range()?) {
+                ranges[*axis] = range;
+            }
+        }
+        Some(ranges)
     }
 
     fn faulty_member(&self) -> Option<usize> {

@@ -5,7 +5,7 @@ mod composite;
 mod load_cell;
 
 use crate::physics::tracking::trajectory::Path;
-use crate::plan::Limits;
+use crate::plan::{Interval, Limits};
 use crate::rig::{LastMove, LineStatistics};
 
 pub use composite::{Member, together};
@@ -250,6 +250,12 @@ pub trait Device: Send {
         Ok(())
     }
 
+    /// The displacements that the device itself allows, in its own coordinate \[m\], one per axis, from `identify`. None: it does not
+    /// report them.
+    fn reported_range(&self) -> Option<Vec<Interval>> {
+        None
+    }
+
     /// The last move it remembers, from `identify`.
     fn last_move(&self) -> Option<LastMove> {
         None
@@ -257,6 +263,12 @@ pub trait Device: Send {
 
     /// Communication errors recovered so far.
     fn line_statistics(&self) -> LineStatistics;
+}
+
+/// Positions \[m\] with every digit, as a list for a fault.
+pub fn metres(positions: &[f64]) -> String {
+    let each = positions.iter().map(|position| format!("{position} m"));
+    each.collect::<Vec<_>>().join(", ")
 }
 
 /// The target of a device that moves one axis.

@@ -69,6 +69,24 @@ pub enum State {
     Sleep,
 }
 
+impl std::fmt::Display for State {
+    /// The words of the status report.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Idle => "Idle",
+            Self::Run => "Run",
+            Self::Jog => "Jog",
+            Self::Held => "Hold:0",
+            Self::Holding => "Hold:1",
+            Self::Alarm => "Alarm",
+            Self::Door => "Door",
+            Self::Check => "Check",
+            Self::Home => "Home",
+            Self::Sleep => "Sleep",
+        })
+    }
+}
+
 impl State {
     #[must_use]
     pub const fn is_moving(self) -> bool {

@@ -132,7 +132,7 @@ impl GrblDevice {
             }
             if self.client.now() >= give_up {
                 return Err(DeviceFault::Unfit(format!(
-                    "it stays in the state {:?}",
+                    "it stays in the state {}",
                     status.state
                 )));
             }
@@ -327,7 +327,7 @@ impl Device for GrblDevice {
             }
             state => {
                 return Err(DeviceFault::Unfit(format!(
-                    "it is in the state {state:?}, and not ready to move"
+                    "it is in the state {state}, and not ready to move"
                 )));
             }
         }
@@ -401,7 +401,7 @@ impl Device for GrblDevice {
         self.unanswered = true;
         Err(DeviceFault::Refused {
             reason: format!(
-                "it answered `ok` and did not move: it is in the state {:?}",
+                "it answered `ok` and did not move: it is in the state {}",
                 status.state
             ),
         })

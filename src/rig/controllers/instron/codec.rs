@@ -37,6 +37,15 @@ pub enum Channel {
     Load,
 }
 
+impl std::fmt::Display for Channel {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Position => "position",
+            Self::Load => "load",
+        })
+    }
+}
+
 /// The motion of the actuator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Movement {

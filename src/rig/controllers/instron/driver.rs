@@ -221,7 +221,7 @@ impl Device for Instron {
             raw.drain(index..raw.len() - 1);
             if !(0.0 < full_scale && full_scale.is_finite()) {
                 return Err(DeviceFault::Unfit(format!(
-                    "the full scale of its {channel:?} channel is {full_scale}"
+                    "the full scale of its {channel} channel is {full_scale}"
                 )));
             }
             self.reader(channel).full_scale = full_scale;

@@ -5,6 +5,7 @@
 //! They are proposed, executed and refused together in one transaction, and read one after the other.
 
 use crate::rig::LineStatistics;
+use crate::rig::controllers::metres;
 use crate::rig::controllers::nees;
 use crate::rig::controllers::nees::codec::Reply;
 use crate::rig::controllers::{
@@ -214,7 +215,7 @@ impl Device for Nees {
             .zip(targets.iter().copied())
             .collect();
         let (proposal, targets) = nees::codec::propose(&transaction, &points)
-            .ok_or_else(|| DeviceFault::Unfit(format!("invalid targets: {targets:?} m")))?;
+            .ok_or_else(|| DeviceFault::Unfit(format!("invalid targets: {}", metres(targets))))?;
         Ok(DeviceMove {
             frames: vec![proposal, nees::codec::execute(&transaction)],
             targets,

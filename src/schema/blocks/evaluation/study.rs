@@ -241,7 +241,7 @@ pub(crate) const OTHER: Field =
 pub(crate) const CORRELATION: Field = Field::quantity(
     "correlation",
     Dimension::NUMBER,
-    "rank correlation (Spearman's ρ) of the two, between -1 and 1",
+    "rank correlation (Spearman's ρ) of the two, above -1 and below 1: both ends are refused",
 )
 .required("0.6")
 .within(-1.0, 1.0);

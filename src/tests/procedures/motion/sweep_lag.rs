@@ -52,11 +52,13 @@ fn damping(record: &Record, procedure: usize) -> (f64, f64) {
     )
 }
 
-/// The measured positions of the two directions differ by 2vτ. A K that is wrong by 5 kN/m made c wrong by 5 kN/m·τ = 75 N·s/m. The
-/// remaining error is the decay of the lag on the steady part. Its speed is required to within 2e⁻⁵.
+/// The measured positions of the two directions differ by 2vτ. A K that is wrong by 5 kN/m made c wrong by 5 kN/m·τ = 75 N·s/m. On the
+/// steady part the piston is within 2e⁻⁵ of the commanded velocity: taken as that velocity, it made c up to 0.5 % too small. The velocity
+/// of a first-order lag is exact. What remains is the band of 5 µm within which a stroke may begin: of a lag of 5 mm/s·0.04 s it is 1/40,
+/// which decays by e⁻² while the rig settles and by e⁻⁵ until the steady part, to 2 of 100,000.
 #[test]
 fn a_wrong_stiffness_reaches_no_damping_on_a_rig_that_lags() {
-    for lag in [0.0, 2e-3, 15e-3] {
+    for lag in [0.0, 2e-3, 5e-3, 15e-3, 40e-3] {
         for stiffness in [60e3, 80e3, 85e3, 110e3] {
             let record = run_unwatched(&plan(
                 Formula::Constant(stiffness),
@@ -68,12 +70,12 @@ fn a_wrong_stiffness_reaches_no_damping_on_a_rig_that_lags() {
             ));
             let (found, _) = damping(&record, 0);
             assert!(
-                (found / DAMPING - 1.0).abs() < 4e-3,
+                (found / DAMPING - 1.0).abs() < 2e-5,
                 "lag {lag} s, K {stiffness} N/m: {found} N·s/m"
             );
             let coulomb = number(&record, 0, "coulomb_force").0.unwrap();
             assert!(
-                (coulomb - COULOMB).abs() < 0.02,
+                (coulomb - COULOMB).abs() < 1e-4,
                 "lag {lag} s, K {stiffness} N/m: {coulomb} N"
             );
         }

@@ -71,7 +71,8 @@ impl<'b> Written<'b> {
             self.write_option(text, block, variant, depth);
         }
         for (of, names) in known {
-            let named = if names.len() == variants.len() {
+            let there = self.options.iter().filter(|it| it.origin(block) == of);
+            let named = if names.len() == variants.len() && names.len() == there.count() {
                 "all".to_owned()
             } else {
                 names.join(", ")

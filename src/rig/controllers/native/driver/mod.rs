@@ -2,15 +2,15 @@
 //! power-up. `codec` knows the bytes. It does not validate a reading.
 
 use crate::physics::tracking::trajectory::Path;
-use crate::plan::Limits;
+use crate::plan::{Interval, Limits};
 use crate::rig::controllers::native;
 use crate::rig::controllers::native::codec::{
     AxisBounds, Bounds, Hello, Kind, Reply, Request, State,
 };
-use crate::rig::controllers::number;
 use crate::rig::controllers::{
     Answer, Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Force, LineClient, Sample,
 };
+use crate::rig::controllers::{metres, number};
 use crate::rig::safety::failpoint::{Guarding, on};
 use crate::rig::{LastMove, LineStatistics};
 
@@ -174,8 +174,9 @@ impl NativeDevice {
 }
 
 fn framed(sequence: u32, request: &Request<'_>) -> Result<Vec<u8>, DeviceFault> {
-    native::codec::frame(sequence, request)
-        .ok_or_else(|| DeviceFault::Unfit(format!("{request:?} cannot be expressed in a frame")))
+    native::codec::frame(sequence, request).ok_or_else(|| {
+        DeviceFault::Unfit("a number of the request cannot be expressed in a frame".to_owned())
+    })
 }
 
 /// The identity of a rig from its reply to HELLO.
@@ -310,7 +311,8 @@ impl Device for NativeDevice {
         }
         let unsaid = || {
             DeviceFault::Unfit(format!(
-                "a move to {targets:?} m at {speed} m/s cannot be expressed"
+                "a move to {} at {speed} m/s cannot be expressed in a frame",
+                metres(targets)
             ))
         };
         let (written, rate) = native::codec::lengths(targets)
@@ -394,12 +396,14 @@ impl Device for NativeDevice {
     fn hold(&mut self) -> Result<(), DeviceFault> {
         self.client.send(&self.emergency())?;
         self.held = true;
-        match self.command(&Request::Stop)? {
-            State::Held => Ok(()),
-            other => Err(DeviceFault::Unfit(format!(
-                "after the hold command the rig reports {other:?}"
-            ))),
-        }
+        let reported = match self.command(&Request::Stop)? {
+            State::Held => return Ok(()),
+            State::Moving => "that it moves",
+            State::Idle => "no hold",
+        };
+        Err(DeviceFault::Unfit(format!(
+            "after the hold command the rig reports {reported}"
+        )))
     }
 
     fn emergency(&self) -> Vec<u8> {
@@ -434,6 +438,11 @@ impl Device for NativeDevice {
         self.command(&Request::Limits(&bounds))?;
         self.narrowed = Some(bounds);
         Ok(())
+    }
+
+    fn reported_range(&self) -> Option<Vec<Interval>> {
+        let axes = &self.hello.as_ref()?.bounds.axes;
+        Some(axes.iter().map(|axis| axis.displacement).collect())
     }
 
     fn last_move(&self) -> Option<LastMove> {

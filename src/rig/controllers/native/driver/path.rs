@@ -6,7 +6,7 @@ use crate::physics::tracking::trajectory::Path;
 use crate::rig::controllers::DeviceFault;
 use crate::rig::controllers::native;
 use crate::rig::controllers::native::codec::{End, Request};
-use crate::rig::controllers::number;
+use crate::rig::controllers::{metres, number};
 
 impl NativeDevice {
     pub(super) fn glide_move(&mut self, paths: &[Path]) -> Result<DeviceMove, DeviceFault> {
@@ -36,7 +36,8 @@ impl NativeDevice {
             .and_then(|written| number::read_back(&written, 1e3, seconds));
         let unsaid = || {
             DeviceFault::Unfit(format!(
-                "a path of {seconds} s to {paths:?} cannot be expressed"
+                "a path of {seconds} s to {} cannot be expressed in a frame",
+                metres(&paths.iter().map(|path| path.to).collect::<Vec<_>>())
             ))
         };
         let (ends, seconds) = ends
