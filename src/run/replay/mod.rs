@@ -226,11 +226,18 @@ fn perform<'rig>(
     if record.outcome == Outcome::Completed
         && state.mismatch().is_none()
         && state.next_kind().is_some()
-        && state.final_entry().is_none()
     {
-        // Entries beyond the end of the plan belong to a different plan.
-        let reason = state.report_mismatch("its end".to_owned()).to_string();
-        record.outcome = Outcome::Faulted { reason };
+        if let Some(fault) = state.final_entry() {
+            // A run that the failure of its run log stopped has logged its final hold.
+            if state.logged_final_hold().is_some() {
+                let reason = fault.to_string();
+                record.outcome = Outcome::Faulted { reason };
+            }
+        } else {
+            // Entries beyond the end of the plan belong to a different plan.
+            let reason = state.report_mismatch("its end".to_owned()).to_string();
+            record.outcome = Outcome::Faulted { reason };
+        }
     }
     add_interruptions(&mut record, state.take_interruptions());
     if state.mismatch().is_none() && record.outcome == Outcome::Completed {

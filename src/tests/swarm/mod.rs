@@ -145,8 +145,6 @@ fn a_defect_that_is_brought_back_is_found() {
         (Guarding::ForceFound, Law::SameSpecimen),
         (Guarding::IntentDurable, Law::TargetDurable),
         (Guarding::SampleDurable, Law::ReadingDurable),
-        (Guarding::PowerUp, Law::SameSpecimen),
-        (Guarding::Sequence, Law::Released),
     ] {
         let search = Search {
             seeds: 0..SEEDS,
