@@ -4,6 +4,7 @@
 use std::io::{Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
 use std::thread::JoinHandle;
+use std::time::Instant;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
@@ -49,7 +50,9 @@ fn connected() -> (TcpStream, JoinHandle<()>) {
             stiffness: vec![STIFFNESS],
         };
         let mut nobody = Unwatched;
-        let mut specimen = Specimen::new(&mut guard, &mut nobody, None);
+        let start = Instant::now();
+        let now = || start.elapsed().as_secs_f64();
+        let mut specimen = Specimen::new(&mut guard, &mut nobody, None, &now);
         serve(
             &listener,
             &protocol,

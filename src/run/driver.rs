@@ -95,9 +95,9 @@ pub fn run_with(
             session.guard.declared_noise(),
             &mut results,
         );
-        procedures::withhold_outside_calibration(plan, &history, &mut results)
-            .into_iter()
-            .for_each(|text| session.event(EventKind::Remark, text));
+        for text in procedures::withhold_outside_calibration(plan, &history, &mut results) {
+            session.event(EventKind::Remark, text);
+        }
         let inputs = inputs.into_recorded();
         record.procedures.push(ProcedureRecord {
             name: procedure.name.clone(),

@@ -291,9 +291,9 @@ impl<'run> Session<'run> {
             Ok(()) => None,
             Err(Unknown::Ended(stop)) => Some(stop),
             Err(Unknown::Reason(reason)) => {
-                results
-                    .iter_mut()
-                    .for_each(|result| result.withhold(&reason));
+                for result in results.iter_mut() {
+                    result.withhold(&reason);
+                }
                 self.event(
                     EventKind::Remark,
                     format!("the uncertainty of the results is withheld: {reason}"),

@@ -71,7 +71,9 @@ fn is_path(quoted: &str) -> bool {
     let is_name = |letter: char| letter.is_ascii_alphanumeric() || "._-/".contains(letter);
     quoted.chars().all(is_name)
         && !quoted.split(['/', '.', '_']).any(is_placeholder)
-        && (quoted.ends_with(".rs")
+        && (Path::new(quoted)
+            .extension()
+            .is_some_and(|ending| ending == "rs")
             || ["src/", "tests/", "grammar/", "docs/"]
                 .iter()
                 .any(|root| quoted.starts_with(root)))
@@ -92,10 +94,8 @@ fn paths_in_pages_and_comments_exist() {
     for folder in ["src", "tests"] {
         for file in rust_files(folder) {
             let comments = file.text.lines().filter_map(|line| line.split_once("//"));
-            let text = comments
-                .map(|(_, comment)| format!("{comment}\n"))
-                .collect();
-            texts.push((format!("{folder}/{}", file.path), text));
+            let comments: Vec<_> = comments.map(|(_, comment)| comment).collect();
+            texts.push((format!("{folder}/{}", file.path), comments.join("\n")));
         }
     }
     let mut shown = 0;

@@ -24,7 +24,9 @@ const STEPS: [f64; 17] = [
 ];
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=12;
 
-const RESULTS: [(&str, fn(&ImpactValues) -> f64); 3] = [
+type Read = fn(&ImpactValues) -> f64;
+
+const RESULTS: [(&str, Read); 3] = [
     ("stop_time", |values| values.stop_time),
     ("max_displacement", |values| values.max_displacement),
     ("absorbed_energy", |values| values.absorbed_energy),

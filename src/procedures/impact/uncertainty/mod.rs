@@ -246,10 +246,9 @@ pub(crate) fn give_resolved(
     }
     give(&layout[..layout.len() - 1], contributions, results);
     for (name, reason) in withheld {
-        let result = results.iter_mut().find(|result| result.name == name);
-        result
-            .into_iter()
-            .for_each(|result| result.withhold(reason));
+        if let Some(result) = results.iter_mut().find(|result| result.name == name) {
+            result.withhold(reason);
+        }
     }
 }
 

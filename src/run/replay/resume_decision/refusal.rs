@@ -66,7 +66,7 @@ pub enum ResumeRefusal {
         high: f64,
         axis: Option<usize>,
     },
-    #[error("{}", faster(*.what, *.was, *.is))]
+    #[error("{}", faster(.what, *.was, *.is))]
     Faster {
         what: &'static str,
         was: f64,
