@@ -1,7 +1,7 @@
 //! Protocol drivers, one folder per controller. A [`Device`] turns SI into bytes and back. It knows no settling, limit,
 //! median or run log: those are in `rig/real` and `rig/guard`.
 //!
-//! A new controller is a folder here, a line of the list below, and an arm of [`open`].
+//! A new controller is a folder here, a line of the list below, an arm of [`open`], and its arms in `replies`.
 
 pub mod grbl;
 pub mod hx711;
@@ -17,6 +17,7 @@ mod tests;
 
 mod device;
 mod line;
+mod replies;
 
 use crate::plan::{DeviceLink, Dialect, PortPlan};
 use crate::rig::StopRequest;
@@ -31,6 +32,7 @@ pub use line::client::{Answer, LONGEST_LINE, LineClient, Missed, SLICE};
 pub use line::number;
 use line::{request_reply, stream, unsequenced};
 pub use native::driver::{NativeDevice, SIMULATED};
+pub use replies::{decoded, replies_to_reading};
 
 /// The device at a port. Its waits end when `stop_request` demands a hold. `settling` \[s\] is the longest settling time of a rig that
 /// answers only after it has settled.

@@ -9,6 +9,7 @@ mod motion;
 mod open;
 mod path;
 mod poll;
+mod replies;
 mod settle;
 mod stroke;
 mod validity;
@@ -26,6 +27,7 @@ use super::{
 };
 use coordinate::Coordinate;
 pub use open::commands_only;
+pub use replies::{LoggedReading, check_replies};
 use validity::ReadingValidator;
 
 /// The rounding of six decimals of a millimetre \[m\].

@@ -1,5 +1,5 @@
 //! The internal consistency of a run log. Each entry is exactly one that psd writes, times increase, and targets are numbered without
-//! gaps. The datum is that of the plan, and a virtual rig has no raw bytes. In: the lines of a run log, those that count, the plan. Out:
+//! gaps. The datum is that of the plan. The replies of a real rig give its readings, and a virtual rig has none. In: the lines of a run log, those that count, the plan. Out:
 //! the first entry that contradicts another. Replay finds the other differences.
 
 use serde::Serialize;
@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 
 use super::entry::{
     AmendBody, EndBody, FaultBody, Header, HeldBody, IntentBody, OperatorEntry, PlanBody,
-    RecoverBody, ResumeBody, RigBody, SampleBody, StepBody, StrokeBody,
+    RecoverBody, ResumeBody, RigBody, SampleBody, StepBody, StrokeBody, unescaped,
 };
 use super::logged_run::{LoggedRun, body};
 use crate::plan::{Datum, Plan};
@@ -15,6 +15,7 @@ use crate::record::Event;
 use crate::record::journal::{EntryKind, Line, Recovered, is_written_as};
 use crate::rig::LineStatistics;
 use crate::rig::controllers::metres;
+use crate::rig::real::{LoggedReading, check_replies};
 
 /// In a resumed run the time is a sum of two clocks.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
@@ -42,52 +43,98 @@ pub fn check_consistency(
         .into_iter()
         .try_for_each(|part| runs_on(part.iter()))?;
     counts_on(logged)?;
-    let mut datum = None;
-    recovered.lines.iter().try_for_each(|line| {
-        is_of_the_plans_rig(line, plan, &mut datum).map_err(|reason| at(line, reason))
-    })
+    let mut rig = PlansRig {
+        plan,
+        first_datum: None,
+        in_motion: false,
+    };
+    recovered
+        .lines
+        .iter()
+        .try_for_each(|line| rig.take(line).map_err(|reason| at(line, reason)))
 }
 
-/// Whether an entry can belong to the plan's rig: one datum throughout, which is zero if the plan specifies this, and no raw bytes for a
-/// virtual rig. `first_datum`: that of the first RIG entry \[m\], one per axis.
-fn is_of_the_plans_rig(
-    line: &Line,
-    plan: &Plan,
-    first_datum: &mut Option<Vec<f64>>,
-) -> Result<(), String> {
-    let unread = |fault: super::UnreadableLog| fault.to_string();
-    let link = plan.rig.link.as_real();
-    match (line.kind, link) {
-        (EntryKind::Rig, Some(link)) => {
-            let rig: RigBody = body(line).map_err(unread)?;
-            // Run logs of older versions do not have it: their datum is the zero of the rig.
-            let datum = rig.datum.unwrap_or_else(|| vec![0.0; rig.axes]);
-            let at_zero = datum.iter().all(|position| *position == 0.0);
-            if datum.len() != rig.axes || link.datum == Datum::Machine && !at_zero {
-                return Err(format!("a datum at {} is not the plan's", metres(&datum)));
+/// The plan's rig, as far as the entries before one show it.
+struct PlansRig<'a> {
+    plan: &'a Plan,
+    /// The datum of the first RIG entry \[m\], one per axis.
+    first_datum: Option<Vec<f64>>,
+    /// Each reading is a single one, made during a motion.
+    in_motion: bool,
+}
+
+impl PlansRig<'_> {
+    /// Whether an entry can belong to it: one datum throughout, which is zero if the plan specifies this, and readings that their replies
+    /// give. A virtual rig has no raw bytes.
+    fn take(&mut self, line: &Line) -> Result<(), String> {
+        let unread = |fault: super::UnreadableLog| fault.to_string();
+        let is_real = self.plan.rig.link.as_real().is_some();
+        match line.kind {
+            EntryKind::Rig => self.answered(body(line).map_err(unread)?),
+            EntryKind::Intent => {
+                let intent: IntentBody = body(line).map_err(unread)?;
+                self.in_motion = intent.samples.is_some();
+                without_bytes(
+                    is_real || intent.wire.is_none(),
+                    "nothing is sent to a virtual rig",
+                )
             }
-            if first_datum.get_or_insert_with(|| datum.clone()) != &datum {
-                return Err(format!(
-                    "a datum at {} differs from the datum at the start of the run",
-                    metres(&datum)
-                ));
+            EntryKind::Stroke => {
+                self.in_motion = false;
+                Ok(())
             }
-            Ok(())
+            EntryKind::Sample => self.read(&body(line).map_err(unread)?),
+            EntryKind::Fault => {
+                // A motion ends here, and its last reading was a single one.
+                self.in_motion = true;
+                let fault: FaultBody = body(line).map_err(unread)?;
+                let read = fault.reading.map_or(Ok(()), |reading| self.read(&reading));
+                self.in_motion = false;
+                read
+            }
+            EntryKind::Held if !is_real => Err("a virtual rig has no final hold".to_owned()),
+            _ => Ok(()),
         }
-        (EntryKind::Rig, None) => {
-            let rig: RigBody = body(line).map_err(unread)?;
-            without_bytes(rig.replies.is_empty(), "a virtual rig sends no bytes")
+    }
+
+    fn answered(&mut self, rig: RigBody) -> Result<(), String> {
+        let Some(link) = self.plan.rig.link.as_real() else {
+            return without_bytes(rig.replies.is_empty(), "a virtual rig sends no bytes");
+        };
+        // Run logs of older versions do not have it: their datum is the zero of the rig.
+        let datum = rig.datum.unwrap_or_else(|| vec![0.0; rig.axes]);
+        let at_zero = datum.iter().all(|position| *position == 0.0);
+        if datum.len() != rig.axes || link.datum == Datum::Machine && !at_zero {
+            return Err(format!("a datum at {} is not the plan's", metres(&datum)));
         }
-        (EntryKind::Intent, None) => {
-            let intent: IntentBody = body(line).map_err(unread)?;
-            without_bytes(intent.wire.is_none(), "nothing is sent to a virtual rig")
+        if self.first_datum.get_or_insert_with(|| datum.clone()) != &datum {
+            return Err(format!(
+                "a datum at {} differs from the datum at the start of the run",
+                metres(&datum)
+            ));
         }
-        (EntryKind::Sample, None) => {
-            let sample: SampleBody = body(line).map_err(unread)?;
-            without_bytes(sample.raw.is_empty(), "a virtual rig answers without bytes")
-        }
-        (EntryKind::Held, None) => Err("a virtual rig has no final hold".to_owned()),
-        _ => Ok(()),
+        Ok(())
+    }
+
+    fn read(&self, sample: &SampleBody) -> Result<(), String> {
+        let Some(link) = self.plan.rig.link.as_real() else {
+            return without_bytes(sample.raw.is_empty(), "a virtual rig answers without bytes");
+        };
+        let replies: Option<Vec<Vec<u8>>> = sample.raw.iter().map(|raw| unescaped(raw)).collect();
+        let replies = replies.ok_or_else(|| "psd never writes this `raw`".to_owned())?;
+        let median_of = if self.in_motion {
+            1
+        } else {
+            link.readings.samples.max(1) as usize
+        };
+        let logged = LoggedReading {
+            displacement: &sample.x,
+            force: &sample.r,
+            replies: &replies,
+            median_of,
+        };
+        let datum = self.first_datum.as_deref().unwrap_or_default();
+        check_replies(&self.plan.rig, datum, &logged)
     }
 }
 

@@ -464,13 +464,35 @@ pub fn escaped(bytes: &[u8]) -> String {
     text
 }
 
+/// The bytes of which [`escaped`] makes this text. None: of none.
+pub fn unescaped(text: &str) -> Option<Vec<u8>> {
+    let (mut bytes, mut rest) = (Vec::with_capacity(text.len()), text.as_bytes());
+    while let [first, after @ ..] = rest {
+        let (byte, after) = match (first, after) {
+            (b'\\', [b'n', after @ ..]) => (b'\n', after),
+            (b'\\', [b'r', after @ ..]) => (b'\r', after),
+            (b'\\', [b't', after @ ..]) => (b'\t', after),
+            (b'\\', [b'x', high, low, after @ ..]) => (
+                u8::from_str_radix(str::from_utf8(&[*high, *low]).ok()?, 16).ok()?,
+                after,
+            ),
+            (b'\\', [own, after @ ..]) | (own, after) => (*own, after),
+        };
+        bytes.push(byte);
+        rest = after;
+    }
+    (escaped(&bytes) == text).then_some(bytes)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::escaped;
+    use super::{escaped, unescaped};
 
     #[test]
     fn every_byte_is_escaped_as_rust_does() {
         let all: Vec<u8> = (0..=255).collect();
         assert_eq!(escaped(&all), all.escape_ascii().to_string());
+        assert_eq!(unescaped(&escaped(&all)), Some(all));
+        assert!(["\\", "\\x4", "\\x41", "\\q", "\""].map(unescaped) == [const { None }; 5]);
     }
 }

@@ -1,5 +1,5 @@
 //! Changes that a forger who knows the format makes in the run log of a real rig. Each is detected by a check. Times and numbers of
-//! targets are compared with the earlier ones. Readings are compared with the replay, and END with the end of the replay.
+//! targets are compared with the earlier ones. Readings are compared with their replies, and END with the end of the replay.
 
 use serde_json::{Value, json};
 
@@ -52,14 +52,14 @@ fn a_contradictory_record_is_found() {
                 3,
                 "/x/0",
                 json!(0.123),
-                "the run requires",
+                "the replies in its `raw`",
             ),
             (
                 EntryKind::Sample,
                 3,
                 "/r/0",
                 json!(0.123),
-                "the run requires",
+                "the replies in its `raw`",
             ),
             (EntryKind::Sample, 9, "/t", json!(0.001), "the entry before"),
             (EntryKind::End, 0, "/outcome", json!("aborted"), "aborted"),

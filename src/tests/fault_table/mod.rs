@@ -30,7 +30,7 @@
 //! | 10, 12, 16, 20–22 | the same with one device per axis, a meter with several channels, several sites | `several::*` |
 //! | 28 | signals, a closed terminal | `tests/system/signals.rs`, in separate processes |
 //! | 29 | panic, abort | `tests/system/ended.rs`, in separate processes |
-//! | 30 | a run log that contradicts itself | `forged::*` |
+//! | 30 | a run log that contradicts itself | `forged::*`, `axes::forged_replies::*` |
 //! | 31 | the wall clock jumps | `long::a_wall_clock_that_jumps_changes_no_duration`, `tests/system/clock.rs` |
 //! | 32 | very many steps, random faults | `long::very_many_steps_with_faults_by_chance_lose_no_sample_and_hold_on_to_nothing` |
 

@@ -238,6 +238,16 @@ pub(crate) fn introduced(welcome: &[u8]) -> Option<DeviceIdentity> {
     })
 }
 
+/// The position in a line with a status report.
+pub(crate) fn decoded(line: Vec<u8>) -> Option<Sample> {
+    let mut words = grbl::codec::words(&line).into_iter();
+    let status = words.find_map(|word| match word {
+        Word::Status(status) => Some(status),
+        _ => None,
+    })?;
+    Some(sample_of(status, line))
+}
+
 fn sample_of(status: Status, raw: Vec<u8>) -> Sample {
     let axis = Channel {
         displacement: Some(status.position),

@@ -224,17 +224,9 @@ impl Device for Mark10 {
         }
         let force_bytes = self.ask(mark10::codec::ASK_FORCE_THROUGH_STAND)?;
         let force = newtons(&force_bytes)?;
-        let axis = Channel {
-            displacement: Some(travel),
-            force: Some(force),
-            // Its limits are its targets: a reached limit means that it has arrived.
-            flags: Flags::default(),
-        };
         Ok(Sample {
-            time: None,
-            moving: Some(status.moving),
-            channels: vec![axis],
             raw: vec![status_bytes, travel_bytes, force_bytes],
+            ..sample_of(status, travel, force)
         })
     }
 
@@ -248,6 +240,33 @@ impl Device for Mark10 {
 
     fn line_statistics(&self) -> LineStatistics {
         self.client.line_statistics()
+    }
+}
+
+/// The reading of a status, a travel and a force.
+pub(crate) fn decoded(replies: &[Vec<u8>]) -> Option<Sample> {
+    let [status, travel, force] = replies else {
+        return None;
+    };
+    Some(sample_of(
+        mark10::codec::status(status)?,
+        mark10::codec::travel(travel)?,
+        newtons(force).ok()?,
+    ))
+}
+
+fn sample_of(status: Status, travel: f64, force: Force) -> Sample {
+    let axis = Channel {
+        displacement: Some(travel),
+        force: Some(force),
+        // Its limits are its targets: a reached limit means that it has arrived.
+        flags: Flags::default(),
+    };
+    Sample {
+        time: None,
+        moving: Some(status.moving),
+        channels: vec![axis],
+        raw: Vec::new(),
     }
 }
 

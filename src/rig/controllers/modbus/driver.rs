@@ -95,10 +95,7 @@ impl Modbus {
     }
 
     fn read(&mut self, measured: Measured, register: Register) -> Result<Value, DeviceFault> {
-        let (unit, bound) = match measured {
-            Measured::Position => (self.map.length_unit, IMPLAUSIBLE_POSITION),
-            Measured::Force => (self.map.force_unit, IMPLAUSIBLE_FORCE),
-        };
+        let (unit, bound) = unit_and_bound(&self.map, measured);
         let question = modbus::codec::read(
             self.map.unit,
             register.table,
@@ -348,6 +345,41 @@ fn value_of(number: ModbusNumber, words: &[u16], unit: f64, bound: f64) -> Optio
     modbus::codec::from_words(number, words)
         .map(|value| value * unit)
         .filter(|value| plausible(*value, bound))
+}
+
+/// The unit of a quantity, and the bound of its plausible values \[m\] or \[N\].
+const fn unit_and_bound(map: &ModbusMap, measured: Measured) -> (f64, f64) {
+    match measured {
+        Measured::Position => (map.length_unit, IMPLAUSIBLE_POSITION),
+        Measured::Force => (map.force_unit, IMPLAUSIBLE_FORCE),
+    }
+}
+
+/// The reading of one answer for each register of the map: position, force, status.
+pub(crate) fn decoded(map: &ModbusMap, answers: &[Vec<u8>]) -> Option<Sample> {
+    let mut answers = answers.iter();
+    let mut next = |register: Option<u16>, measured: Measured| -> Option<Option<f64>> {
+        let Some(address) = register else {
+            return Some(None);
+        };
+        let answer = answers.next()?;
+        let width = modbus::codec::width(map.number);
+        let (unit, bound) = unit_and_bound(map, measured);
+        let tables = [Table::Holding, Table::Input].into_iter();
+        let mut questions =
+            tables.map(|table| modbus::codec::read(map.unit, table, address, width));
+        let words = questions.find_map(|question| modbus::codec::answer(&question, answer).ok())?;
+        value_of(map.number, &words, unit, bound).map(Some)
+    };
+    let axis = Channel {
+        displacement: next(map.position, Measured::Position)?,
+        force: next(map.force, Measured::Force)?.map(Force::Newtons),
+        ..Channel::default()
+    };
+    Some(Sample {
+        channels: vec![axis],
+        ..Sample::default()
+    })
 }
 
 /// One question or command and its answer, after the silence that ends earlier traffic.

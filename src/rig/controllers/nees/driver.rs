@@ -320,6 +320,20 @@ pub(crate) fn introduced(control_points: &[String], welcome: &[u8]) -> Option<De
     })
 }
 
+/// The reading of one reply for each control point.
+pub(crate) fn decoded(control_points: &[String], replies: &[Vec<u8>]) -> Option<Sample> {
+    let point = |(reply, control_point): (&Vec<u8>, &String)| match nees::codec::reply(reply) {
+        Reply::Done(fields) => measured(&fields, control_point),
+        Reply::Refused { .. } => None,
+    };
+    let points: Vec<(f64, f64)> = replies
+        .iter()
+        .zip(control_points)
+        .map(point)
+        .collect::<Option<_>>()?;
+    Some(sample_of(&points, Vec::new()))
+}
+
 /// Displacement \[m\] and force \[N\] of a control point, from the fields of a reply.
 fn measured(fields: &[String], control_point: &str) -> Option<(f64, f64)> {
     let at = nees::codec::measured(fields.get(1..)?, control_point)?;
@@ -327,7 +341,7 @@ fn measured(fields: &[String], control_point: &str) -> Option<(f64, f64)> {
 }
 
 /// The reading of all control points, from displacement \[m\] and force \[N\] of each.
-pub(crate) fn sample_of(points: &[(f64, f64)], raw: Vec<Vec<u8>>) -> Sample {
+fn sample_of(points: &[(f64, f64)], raw: Vec<Vec<u8>>) -> Sample {
     let channels = points.iter().map(|(displacement, force)| Channel {
         displacement: Some(*displacement),
         force: Some(Force::Newtons(*force)),

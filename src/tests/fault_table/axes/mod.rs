@@ -3,6 +3,7 @@
 
 mod continuous;
 mod control_points;
+mod forged_replies;
 mod several;
 pub(super) mod two_axes;
 
