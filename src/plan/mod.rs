@@ -60,9 +60,9 @@ pub(crate) use rig::axis_names::{named_axis, of_axis, who};
 pub use rig::devices::Behind;
 pub use rig::limits::{Interval, Limits};
 pub use rig::{
-    Abilities, Calibration, Datum, DeviceLink, Dialect, DriftCheck, Link, ModbusMap, ModbusNumber,
-    PortPlan, PretestCheck, ReadingErrors, ReadingRules, RealLink, RigPlan, SafeState, Settle,
-    VIRTUAL_SPEED, VirtualLink, ZeroAfter,
+    Abilities, BelowRange, Calibration, Datum, DeviceLink, Dialect, DriftCheck, Link, ModbusMap,
+    ModbusNumber, PortPlan, PretestCheck, ReadingErrors, ReadingRules, RealLink, RigPlan,
+    SafeState, Settle, VIRTUAL_SPEED, VirtualLink, ZeroAfter,
 };
 pub use specimen::frame::{Ground, MOST_STOREYS, ShakeDamping, rayleigh};
 pub use study::{Collected, Fragility, Studies, Study, StudyEvent, StudyRequirement};

@@ -52,6 +52,10 @@ pub enum Source {
     DisplacementScale(usize),
     /// The zero offset of the load cell of an axis, by the index of the axis.
     ForceZero(usize),
+    /// The forces of an axis below the lower end of its calibrated range, by the index of the axis.
+    ForceBelowRange(usize),
+    /// The displacements of an axis below the lower end of its calibrated range, by the index of the axis.
+    DisplacementBelowRange(usize),
     /// Noise and resolution of the readings of a procedure: one Monte Carlo trial.
     Readings {
         procedure: ProcedureId,
@@ -131,5 +135,14 @@ impl Source {
     #[must_use]
     pub const fn is_of_uncertainty(self) -> bool {
         !matches!(self, Self::TimeStep(_))
+    }
+
+    /// Whether it is the error of readings below the lower end of a calibrated range.
+    #[must_use]
+    pub const fn is_below_range(self) -> bool {
+        matches!(
+            self,
+            Self::ForceBelowRange(_) | Self::DisplacementBelowRange(_)
+        )
     }
 }

@@ -32,8 +32,9 @@ use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::schema::{Column, Kind};
-use crate::uncertainty::Source;
+use crate::uncertainty::{InstrumentUncertainty, Source};
 use common::calibrated_range;
+use common::fit_uncertainty::Fits;
 use facts::{Delay, Facts, Leaves, Recorded, Tests};
 
 /// Check: the procedure that a block specifies; None after an error, and for a block that does not declare a procedure.
@@ -214,10 +215,16 @@ pub(crate) fn attribute(
     results: &mut [NamedResult],
 ) {
     let procedure = inputs.procedure();
+    let instruments = InstrumentUncertainty::of(plan, declared, 1);
+    let attribute = &mut |fits: &Fits<'_>| {
+        common::fit_uncertainty::attribute(fits, plan, procedure, &instruments, results);
+    };
     match history {
-        History::Ramp(ramp) => stiffness_ramp::fits::with_fits(ramp, &mut |fits| {
-            common::fit_uncertainty::attribute(fits, plan, procedure, declared, results);
-        }),
+        History::Ramp(found) => {
+            if let ProcedureKind::StiffnessRamp(ramp) = kind {
+                stiffness_ramp::fits::with_fits(found, ramp, &instruments, attribute);
+            }
+        }
         History::Sweep(found) => {
             if let ProcedureKind::DampingSweep(sweep) = kind {
                 damping_sweep::uncertainty::propagate(
@@ -225,9 +232,11 @@ pub(crate) fn attribute(
                 );
             }
         }
-        History::Cycle(cycle) => cycle::uncertainty::with_fits(cycle, &mut |fits| {
-            common::fit_uncertainty::attribute(fits, plan, procedure, declared, results);
-        }),
+        History::Cycle(found) => {
+            if let ProcedureKind::Cycle(cycle) = kind {
+                cycle::uncertainty::with_fits(found, cycle, &instruments, attribute);
+            }
+        }
         History::Impact(_)
         | History::Shake(_)
         | History::Escalate(_)

@@ -247,6 +247,7 @@ impl ResultKind {
             list: false,
             fraction: false,
             of_storey: false,
+            decided_by_condition: false,
             possible: Possible::Any,
             doc,
         }
@@ -269,6 +270,14 @@ impl ResultKind {
     pub(crate) const fn of_storey(self) -> Self {
         Self {
             of_storey: true,
+            ..self
+        }
+    }
+
+    /// The condition of a series of impacts decides it.
+    pub(crate) const fn decided_by_condition(self) -> Self {
+        Self {
+            decided_by_condition: true,
             ..self
         }
     }

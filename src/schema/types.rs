@@ -219,6 +219,8 @@ pub struct ResultKind {
     pub fraction: bool,
     /// Whether an impact has it only on a storey of a frame.
     pub of_storey: bool,
+    /// Whether the condition decides it under which the next impact of a series follows.
+    pub decided_by_condition: bool,
     /// The values that it can have.
     pub possible: Possible,
     pub doc: &'static str,

@@ -66,6 +66,8 @@ const fn is_alike(source: Source) -> bool {
             | Source::ForceScale(_)
             | Source::DisplacementScale(_)
             | Source::ForceZero(_)
+            | Source::ForceBelowRange(_)
+            | Source::DisplacementBelowRange(_)
     )
 }
 

@@ -5,7 +5,10 @@ use super::Source;
 use crate::physics::identification::StatedVariance;
 use crate::physics::reintegration::perturbation::{Instruments, Perturbation, ReadingErrors};
 use crate::plan::DeclaredNoise;
-use crate::plan::{Calibration, Link, Plan, ReadingRules, VirtualLink};
+use crate::plan::{BelowRange, Calibration, Link, Plan, ReadingRules, VirtualLink};
+
+/// A reading up to this many standard deviations of its errors cannot be distinguished from zero.
+pub const NOISE: f64 = 3.0;
 
 /// Sources, each with the number of standard uncertainties by which it is perturbed.
 pub type Shifts<'a> = &'a [(Source, f64)];
@@ -50,6 +53,20 @@ impl InstrumentUncertainty {
             .unwrap_or_default()
     }
 
+    /// Forces and displacements of an axis below their calibrated ranges, with readings that their own errors cannot distinguish from
+    /// zero.
+    #[must_use]
+    pub fn below(&self, axis: usize) -> [BelowRange; 2] {
+        let Some((calibration, errors)) = self.axes.get(axis) else {
+            return [BelowRange::default(); 2];
+        };
+        let [of_force, of_displacement] = errors.quantization();
+        let zeros = [errors.noise.hypot(of_force), of_displacement].map(|error| NOISE * error);
+        let [force, displacement] = [calibration.force_below(), calibration.displacement_below()];
+        [(force, zeros[0]), (displacement, zeros[1])]
+            .map(|(below, zero)| BelowRange { zero, ..below })
+    }
+
     /// Whether a reading of any axis has errors.
     #[must_use]
     pub fn has_reading_errors(&self) -> bool {
@@ -74,7 +91,7 @@ impl InstrumentUncertainty {
         }
     }
 
-    /// Uncertain scale factors and zero offsets.
+    /// Uncertain scale factors, zero offsets and readings below a calibrated range.
     pub fn sources(&self) -> impl Iterator<Item = Source> {
         self.axes
             .iter()
@@ -87,6 +104,14 @@ impl InstrumentUncertainty {
                         calibration.displacement_uncertainty,
                     ),
                     (Source::ForceZero(axis), calibration.zero()),
+                    (
+                        Source::ForceBelowRange(axis),
+                        calibration.force_below().of_end(),
+                    ),
+                    (
+                        Source::DisplacementBelowRange(axis),
+                        calibration.displacement_below().of_end(),
+                    ),
                 ];
                 stated
                     .into_iter()
@@ -117,6 +142,12 @@ impl InstrumentUncertainty {
                 }
                 Source::ForceZero(axis) => {
                     readings.axes[axis].zero_offset += by * self.axes[axis].0.zero();
+                }
+                Source::ForceBelowRange(axis) => {
+                    readings.axes[axis].force_below = self.below(axis)[0].times(*by);
+                }
+                Source::DisplacementBelowRange(axis) => {
+                    readings.axes[axis].displacement_below = self.below(axis)[1].times(*by);
                 }
                 // All other sources are inputs.
                 _ => {}

@@ -15,4 +15,4 @@ pub use crate::plan::time_step::StepInterval;
 pub use degrees::{
     FEW, MOST_DRAWS, MeasurementUncertainty, measurement_uncertainties, measurement_uncertainty,
 };
-pub use instruments::InstrumentUncertainty;
+pub use instruments::{InstrumentUncertainty, NOISE};

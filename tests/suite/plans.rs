@@ -288,6 +288,8 @@ fn the_report_of_a_series_states_its_criterion() {
     ] {
         assert!(page.contains(expected), "{expected}");
     }
+    // Of its five requirements, one reads `last_passed_energy`, and one reads `passed`.
+    assert_eq!(page.matches("an impact passes while").count(), 2);
     let figures = fs::read_dir(folder.join("figures")).expect("figures");
     let lines = figures
         .map(|entry| entry.expect("readable").path())

@@ -82,6 +82,10 @@ fn a_limit_on_the_size_of_files_is_a_full_disk_and_no_signal_ends_the_program() 
         stage.moves().is_empty(),
         "nothing moves where the reserve cannot be laid"
     );
+    assert!(
+        !stage.path("run").exists(),
+        "a run that did not begin leaves no folder"
+    );
 }
 
 #[test]

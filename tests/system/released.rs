@@ -210,6 +210,38 @@ fn reports_of_records_that_differ_have_numbers_that_differ() {
     assert_eq!(stopped.split('-').next(), ended.split('-').next());
 }
 
+#[test]
+fn the_release_prompt_names_an_overdue_calibration() {
+    for (due, line) in [
+        (
+            "2020-03-01",
+            Some("report    NOT ISSUABLE: the calibration was due on 2020-03-01"),
+        ),
+        ("2999-12-31", None),
+    ] {
+        let calibrated = |plan: &str| {
+            plan.replace(
+                "safe_state = hold",
+                &format!("safe_state = hold\n  calibration_due = \"{due}\""),
+            )
+        };
+        let stage = Stage::of(calibrated, "");
+        let mut terminal = Terminal::start(&mut stage.run_with(&[]));
+        terminal.answer(RELEASE, "n\n");
+        assert_eq!(terminal.code(), Some(4), "{}", terminal.shown());
+        let shown = terminal.shown();
+        let (_, prompt) = shown.split_once("rig       bench (").expect("the prompt");
+        let (prompt, _) = prompt.split_once(RELEASE).expect("its question");
+        assert!(
+            match line {
+                Some(line) => prompt.contains(line),
+                None => !prompt.contains("NOT ISSUABLE"),
+            },
+            "{due}: {shown}"
+        );
+    }
+}
+
 /// The limits that the rig itself reports are −5 mm .. 10 mm, and the plan moves to 0.8 mm.
 #[test]
 fn a_zero_near_the_limits_of_the_rig_is_refused_before_the_release() {

@@ -155,7 +155,7 @@ impl FramePath {
             .target
             .iter()
             .zip(&readings.axes)
-            .map(|(position, axis)| position * axis.displacement_scale);
+            .map(|(position, axis)| axis.displaced(*position));
         let mut retrace = FrameRetrace {
             path: self,
             readings,
@@ -229,13 +229,12 @@ impl FrameRetrace<'_> {
     pub fn move_to(&mut self, targets: &[f64], velocities: &[f64]) {
         self.own_step += 1;
         self.step = nearest(self.own_step, self.readings.finer);
-        let of_record = |to: &mut [f64], from: &[f64]| {
-            for (axis, (to, from)) in to.iter_mut().zip(from).enumerate() {
-                *to = self.readings.recorded(axis, *from);
-            }
-        };
-        of_record(&mut self.position, targets);
-        of_record(&mut self.velocity, velocities);
+        for (axis, (to, from)) in self.position.iter_mut().zip(targets).enumerate() {
+            *to = self.readings.recorded_position(axis, *from);
+        }
+        for (axis, (to, from)) in self.velocity.iter_mut().zip(velocities).enumerate() {
+            *to = self.readings.recorded(axis, *from);
+        }
         let recorded = &self.path.readings[self.step.min(self.path.readings.len() - 1)];
         self.displacement.copy_from_slice(&recorded.displacement);
         self.force.copy_from_slice(&recorded.force);

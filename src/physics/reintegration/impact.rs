@@ -62,7 +62,7 @@ pub fn rerun(
     let recorded = retrace.start();
     let (displacement, force) = readings.read(0, 0, 1, (recorded.displacement, recorded.force));
     let start = Reading {
-        target: recorded.target * readings.axes[0].displacement_scale,
+        target: readings.axes[0].displaced(recorded.target),
         displacement,
         force,
     };
@@ -74,7 +74,10 @@ pub fn rerun(
         start,
         |target, velocity| {
             reading += 1;
-            let read = retrace.pass(readings.recorded(0, target), readings.recorded(0, velocity));
+            let read = retrace.pass(
+                readings.recorded_position(0, target),
+                readings.recorded(0, velocity),
+            );
             (readings.read(reading, 0, 1, read), retrace.departed())
         },
     )

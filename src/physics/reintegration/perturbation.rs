@@ -10,7 +10,62 @@ pub struct Instruments {
     pub displacement_scale: f64,
     /// Added to every force \[N\].
     pub zero_offset: f64,
+    pub force_below: BelowRange,
+    pub displacement_below: BelowRange,
     pub errors: ReadingErrors,
+}
+
+impl Instruments {
+    /// The reading of a displacement of the record \[m\].
+    #[must_use]
+    pub fn displaced(&self, position: f64) -> f64 {
+        self.displacement_scale * position + self.displacement_below.error_of(position)
+    }
+
+    /// The reading of a force of the record \[N\].
+    #[must_use]
+    pub fn loaded(&self, force: f64) -> f64 {
+        self.force_scale * force + self.force_below.error_of(force) + self.zero_offset
+    }
+}
+
+/// Error of the readings below the lower end of a calibrated range, beside the scale factor. An absolute error that holds at the end
+/// holds for them as well, so that the error of a reading grows with its distance from the end.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BelowRange {
+    /// Lower end of the range \[N\] or \[m\].
+    pub end: f64,
+    /// Readings up to this size cannot be distinguished from zero \[N\] or \[m\].
+    pub zero: f64,
+    /// Error of a reading as a fraction of its distance from the end.
+    pub error: f64,
+}
+
+impl BelowRange {
+    /// The error of a reading just above zero \[N\] or \[m\].
+    #[must_use]
+    pub const fn of_end(self) -> f64 {
+        self.error * self.end
+    }
+
+    /// The same end with a multiple of the error.
+    #[must_use]
+    pub const fn times(self, by: f64) -> Self {
+        Self {
+            error: by * self.error,
+            ..self
+        }
+    }
+
+    /// The error of a reading, for a positive fraction away from zero. A reading of zero has no direction and no error:
+    /// otherwise its noise would decide the sign.
+    #[must_use]
+    pub fn error_of(self, reading: f64) -> f64 {
+        if reading.abs() <= self.zero {
+            return 0.0;
+        }
+        self.error * (self.end - reading.abs()).max(0.0) * reading.signum()
+    }
 }
 
 /// Errors of a reading.
@@ -57,6 +112,8 @@ impl Perturbation {
             force_scale: 1.0,
             displacement_scale: 1.0,
             zero_offset: 0.0,
+            force_below: BelowRange::default(),
+            displacement_below: BelowRange::default(),
             errors: ReadingErrors::default(),
         };
         Self {
@@ -66,10 +123,24 @@ impl Perturbation {
         }
     }
 
-    /// A displacement or velocity of the re-run, in metres of the record.
+    /// A velocity or a small motion of the re-run, in metres of the record.
     #[must_use]
     pub fn recorded(&self, axis: usize, value: f64) -> f64 {
         value / self.axes[axis].displacement_scale
+    }
+
+    /// The position of the record that these instruments read as this displacement \[m\].
+    #[must_use]
+    pub fn recorded_position(&self, axis: usize, reading: f64) -> f64 {
+        let Instruments {
+            displacement_scale: scale,
+            displacement_below: BelowRange { end, zero, error },
+            ..
+        } = self.axes[axis];
+        if error == 0.0 || reading.abs() <= scale * zero || reading.abs() >= scale * end {
+            return self.recorded(axis, reading);
+        }
+        ((reading.abs() - error * end) / (scale - error)).max(0.0) * reading.signum()
     }
 
     /// Displacement \[m\] and force \[N\] of an axis as these instruments read them. `reading` numbers the readings of the run; each is
@@ -78,19 +149,15 @@ impl Perturbation {
     #[must_use]
     pub fn read(&self, reading: u64, axis: usize, samples: u32, read: (f64, f64)) -> (f64, f64) {
         let (displacement, force) = read;
-        let Instruments {
-            force_scale,
-            displacement_scale,
-            zero_offset,
-            errors,
-        } = self.axes[axis];
+        let instruments = &self.axes[axis];
         let (displacement, force) = (
-            displacement_scale * displacement,
-            force_scale * force + zero_offset,
+            instruments.displaced(displacement),
+            instruments.loaded(force),
         );
         let Some(trial) = self.trial else {
             return (displacement, force);
         };
+        let errors = instruments.errors;
         let [of_force, of_displacement] = errors.quantization();
         let own = (errors.noise / f64::from(samples.max(1)).sqrt()).hypot(of_force);
         let [force_sign, displacement_sign] = signs(trial, reading, axis);
@@ -156,6 +223,29 @@ mod tests {
             .map(|reading| signs(3, reading, 0)[0] * signs(4, reading, 0)[0])
             .sum();
         assert!(both.abs() < 110.0, "{both}");
+    }
+
+    /// 1 % at 10 mm is 0.1 mm at every smaller displacement: 0.01·4 mm + 0.01·(10 − 4) mm. The path is passed where the transducer then
+    /// shows the target. Beyond the end the factor alone is left.
+    #[test]
+    fn below_its_range_a_reading_has_the_absolute_error_of_the_end() {
+        for sign in [1.0, -1.0] {
+            let mut readings = Perturbation::none(1);
+            readings.axes[0].displacement_scale = 1.0 + sign * 0.01;
+            readings.axes[0].displacement_below = BelowRange {
+                end: 10.0,
+                zero: 0.5,
+                error: sign * 0.01,
+            };
+            for (position, by_hand) in [(4.0, 0.1), (-4.0, -0.1), (9.999, 0.1), (20.0, 0.2)] {
+                let (read, _) = readings.read(0, 0, 1, (position, 0.0));
+                assert!((read - position - sign * by_hand).abs() < 1e-12, "{read}");
+                assert!((readings.recorded_position(0, read) - position).abs() < 1e-12);
+            }
+            let (zero, _) = readings.read(0, 0, 1, (0.4, 0.0));
+            assert_eq!(zero, 0.4 * (1.0 + sign * 0.01));
+            assert!((readings.recorded_position(0, zero) - 0.4).abs() < 1e-12);
+        }
     }
 
     /// Over many trials: σ²/n + q²/12 of each reading, and q²/12 of two readings together.

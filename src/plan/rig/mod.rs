@@ -8,7 +8,7 @@ mod dialect;
 pub(crate) mod limits;
 
 use super::{AxisPlan, Interval};
-pub use crate::physics::reintegration::perturbation::ReadingErrors;
+pub use crate::physics::reintegration::perturbation::{BelowRange, ReadingErrors};
 pub use dialect::{Abilities, Dialect, ModbusMap, ModbusNumber};
 
 /// The rig of a run, as the plan specifies it.
@@ -229,6 +229,27 @@ impl Calibration {
     pub fn zero(&self) -> f64 {
         self.zero_uncertainty.hypot(self.zero_drift)
     }
+
+    /// Standard uncertainty of the forces below their calibrated range.
+    #[must_use]
+    pub fn force_below(&self) -> BelowRange {
+        below(self.force_calibrated, self.force_uncertainty)
+    }
+
+    /// Standard uncertainty of the displacements below their calibrated range.
+    #[must_use]
+    pub fn displacement_below(&self) -> BelowRange {
+        below(self.displacement_calibrated, self.displacement_uncertainty)
+    }
+}
+
+/// None without a range, or with one that begins at zero.
+fn below(calibrated: Option<Interval>, error: f64) -> BelowRange {
+    calibrated.map_or_else(BelowRange::default, |range| BelowRange {
+        end: range.low,
+        error,
+        ..BelowRange::default()
+    })
 }
 
 /// A rig that moves a real specimen.

@@ -4,9 +4,10 @@
 
 use crate::physics::identification::bilinear_fit::BilinearShares;
 use crate::physics::identification::multilinear_fit::{CurveShares, MultilinearFit};
-use crate::physics::reintegration::perturbation::ReadingErrors;
+use crate::physics::reintegration::perturbation::{Perturbation, ReadingErrors};
 use crate::plan::formula::{ProcedureId, ResultValue};
-use crate::plan::{Calibration, DeclaredNoise, Plan};
+use crate::plan::{Calibration, Plan};
+use crate::procedures::common::results::{VANISHES, values};
 use crate::record::{BilinearFit, LineFit, NamedResult};
 use crate::schema::procedures::{damping_sweep as sweep, stiffness_ramp as ramp};
 use crate::schema::{ResultKind, curves};
@@ -49,8 +50,13 @@ const INDEPENDENT: [ResultKind; 4] = [
     ramp::YIELD_DISPLACEMENT,
 ];
 
+/// The results of a fit to the readings of perturbed instruments.
+pub(crate) type Refit<'a> = &'a dyn Fn(&Perturbation) -> Vec<NamedResult>;
+
 /// The fits of a procedure, and the fraction of their standard errors that their scatter shows.
 pub(crate) struct Fits<'a> {
+    /// Gives the results of the same fit to perturbed readings; None if they are not its readings alone.
+    pub refit: Option<Refit<'a>>,
     pub line: Option<LineFit>,
     pub bilinear: Option<&'a BilinearFit>,
     pub curve: Option<&'a MultilinearFit>,
@@ -65,7 +71,7 @@ pub(crate) fn attribute(
     fits: &Fits<'_>,
     plan: &Plan,
     procedure: ProcedureId,
-    declared: DeclaredNoise,
+    instruments: &InstrumentUncertainty,
     results: &mut [NamedResult],
 ) {
     let calibration = &plan.rig.calibration_of(0);
@@ -101,8 +107,10 @@ pub(crate) fn attribute(
         split(&mut result.contributions, procedure, shown);
     }
     if fits.common_resolution {
-        let errors = InstrumentUncertainty::of(plan, declared, 1).errors(0);
-        in_common(errors, procedure, results);
+        in_common(instruments.errors(0), procedure, results);
+    }
+    if let Some(refit) = fits.refit {
+        below_range(refit, instruments, results);
     }
 }
 
@@ -177,6 +185,48 @@ fn in_common(errors: ReadingErrors, procedure: ProcedureId, results: &mut [Named
             ..Contribution::new(source, amount)
         };
         result.contributions.extend((0..entries).map(part));
+    }
+}
+
+/// The readings below the lower end of a calibrated range: half the difference between the fits to readings with either error. A result
+/// that one of these fits does not have has its uncertainty withheld.
+fn below_range(refit: Refit<'_>, instruments: &InstrumentUncertainty, results: &mut [NamedResult]) {
+    for source in instruments
+        .sources()
+        .filter(|source| source.is_below_range())
+    {
+        let [nominal, up, down] =
+            [0.0, 1.0, -1.0].map(|by| refit(&instruments.perturbed(&[(source, by)], None)));
+        for NamedResult { name, value, .. } in &nominal {
+            let count = value.values().len();
+            let Some(result) = results
+                .iter_mut()
+                .find(|result| result.name == *name && !result.contributions.is_empty())
+            else {
+                continue;
+            };
+            let layout = [(*name, count)];
+            let [up, down] = [&up, &down].map(|moved| values(&layout, moved));
+            let amounts: Vec<f64> = up
+                .iter()
+                .zip(&down)
+                .map(|(up, down)| 0.5 * (up - down))
+                .collect();
+            if amounts.iter().any(|amount| amount.is_nan()) {
+                result.withhold(VANISHES);
+                continue;
+            }
+            let parts = amounts
+                .into_iter()
+                .enumerate()
+                .filter(|(_, amount)| *amount != 0.0);
+            result
+                .contributions
+                .extend(parts.map(|(entry, amount)| Contribution {
+                    entry,
+                    ..Contribution::new(source, amount)
+                }));
+        }
     }
 }
 

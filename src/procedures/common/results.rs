@@ -134,7 +134,7 @@ pub(crate) fn values(layout: &[(&'static str, usize)], results: &[NamedResult]) 
 /// Why a fitted result has no standard error.
 const NOT_DETERMINED: &str = "its readings do not determine its standard error";
 /// Why a result has no uncertainty although its contributions were evaluated: one of them is not finite.
-const VANISHES: &str =
+pub(crate) const VANISHES: &str =
     "the run has no such result once its inputs or readings are moved by their uncertainty";
 
 /// Gives results the contributions to their values. A result with one that is not finite has its uncertainty withheld.

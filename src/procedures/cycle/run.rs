@@ -3,7 +3,7 @@
 //! actuator moves from end to end without stopping.
 
 use super::results::results;
-use super::uncertainty::RecordedLoops;
+use super::uncertainty::{ENDS, RecordedLoops};
 use crate::physics::identification::cyclic::{LoopPoint, loop_of, work};
 use crate::physics::identification::loop_sampling::spaced;
 use crate::plan::{Cycle, CycleInspection, MOST_TARGETS, Plan};
@@ -42,12 +42,8 @@ pub(crate) fn perform(
     let instruments = InstrumentUncertainty::of(whole, declared, 1);
     if let Some(count) = plan.fit {
         let stated = instruments.stated_variance(0, samples);
-        let (backbone, remarks) = curve::fitted(
-            &cycling.history.backbone_points(),
-            count,
-            "ends of first cycles",
-            stated,
-        );
+        let (backbone, remarks) =
+            curve::fitted(&cycling.history.backbone_points(), count, ENDS, stated);
         cycling.history.backbone = backbone;
         for text in remarks.into_iter().filter(|_| stop.is_none()) {
             session.event(EventKind::Remark, text);

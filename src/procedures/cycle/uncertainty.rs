@@ -7,10 +7,12 @@ use std::convert::Infallible;
 use super::results::results;
 use crate::physics::identification::cyclic::{LoopPoint, loop_of};
 use crate::physics::reintegration::perturbation::{Perturbation, ReadingErrors};
+use crate::plan::Cycle;
 use crate::plan::formula::ProcedureId;
 use crate::procedures::common::fit_uncertainty::Fits;
 use crate::procedures::common::loop_sampling::{left_open_by, of_open};
 use crate::procedures::common::results::{Layout, give, index_of, values};
+use crate::procedures::stiffness_ramp::curve;
 use crate::record::{CycleHistory, CycleStep, NamedResult, WholeCycle};
 use crate::schema::procedures::cycle as schema;
 use crate::uncertainty::engine::{Evaluate, Evaluation, Propagation, Shifts};
@@ -33,6 +35,9 @@ const OF_LOOPS: [&str; 6] = [
     schema::STIFFNESS.name,
     schema::LAST_STIFFNESS.name,
 ];
+
+/// The points of a backbone, in words.
+pub(crate) const ENDS: &str = "ends of first cycles";
 
 /// The recorded loops.
 pub(crate) struct RecordedLoops<'a> {
@@ -67,15 +72,7 @@ impl Evaluate for RecordedLoops<'_> {
     }
 
     fn evaluate(&self, readings: &Perturbation, (): &()) -> Evaluation {
-        let mut perturbed = CycleHistory {
-            backbone: None,
-            ..self.history.clone()
-        };
-        for step in &mut perturbed.steps {
-            let exact = (step.displacement, step.restoring_force);
-            (step.displacement, step.restoring_force) =
-                readings.read(step.step, 0, self.samples, exact);
-        }
+        let mut perturbed = perturbed(self.history, readings, self.samples);
         for cycle in &mut perturbed.cycles {
             let points: Vec<LoopPoint> = points_of(&perturbed.steps, cycle)
                 .map(CycleStep::point)
@@ -94,10 +91,39 @@ impl Evaluate for RecordedLoops<'_> {
     }
 }
 
+/// The readings of perturbed instruments, with means of so many samples; without a fit.
+fn perturbed(history: &CycleHistory, by: &Perturbation, samples: u32) -> CycleHistory {
+    let mut other = CycleHistory {
+        backbone: None,
+        ..history.clone()
+    };
+    for step in &mut other.steps {
+        let exact = (step.displacement, step.restoring_force);
+        (step.displacement, step.restoring_force) = by.read(step.step, 0, samples, exact);
+    }
+    other
+}
+
 /// Calls with the fit of the backbone; the loops have their contributions already.
-pub(crate) fn with_fits(history: &CycleHistory, give: &mut dyn FnMut(&Fits<'_>)) {
+pub(crate) fn with_fits(
+    history: &CycleHistory,
+    plan: &Cycle,
+    instruments: &InstrumentUncertainty,
+    give: &mut dyn FnMut(&Fits<'_>),
+) {
     let shown = history.backbone.as_ref().map_or(1.0, |fit| fit.shown);
+    let stated = instruments.stated_variance(0, plan.samples);
+    let refit = |by: &Perturbation| {
+        let points = perturbed(history, by, plan.samples).backbone_points();
+        let fit = plan
+            .fit
+            .and_then(|count| curve::fitted(&points, count, ENDS, stated).0);
+        let mut results = curve::yielding(fit.as_ref()).to_vec();
+        results.extend(curve::lists(fit.as_ref()));
+        results
+    };
     give(&Fits {
+        refit: Some(&refit),
         line: None,
         bilinear: None,
         curve: history.backbone.as_ref(),

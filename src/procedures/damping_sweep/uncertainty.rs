@@ -7,7 +7,7 @@ use crate::procedures::common::fit_uncertainty::{Fits, attribute};
 use crate::record::{BroughtTogether, NamedResult, SweepHistory};
 use crate::run::inputs::Inputs;
 use crate::schema::procedures::damping_sweep as schema;
-use crate::uncertainty::{Contribution, Source, share};
+use crate::uncertainty::{Contribution, InstrumentUncertainty, Source, share};
 
 /// Gives the results their contributions.
 pub(crate) fn propagate(
@@ -20,13 +20,15 @@ pub(crate) fn propagate(
 ) {
     let shown = found.fit.map_or(1.0, |fit| fit.shown);
     let fits = Fits {
+        refit: None,
         line: found.fit,
         bilinear: None,
         curve: None,
         shown: &|_| shown,
         common_resolution: false,
     };
-    attribute(&fits, plan, inputs.procedure(), declared, results);
+    let instruments = InstrumentUncertainty::of(plan, declared, 1);
+    attribute(&fits, plan, inputs.procedure(), &instruments, results);
     of_stroke_stiffness(&found.together, &sweep.stiffness, inputs, results);
     let specimen = plan.specimens.get(sweep.specimen);
     let uncertain = specimen.map_or(0.0, |specimen| specimen.mass_uncertainty / specimen.mass);

@@ -1,8 +1,12 @@
 //! The fits of a stiffness ramp, for the uncertainty of its results.
 
+use super::run::fitted;
+use super::uncertainty::Readings;
+use crate::plan::StiffnessRamp;
 use crate::procedures::common::fit_uncertainty::Fits;
 use crate::record::RampHistory;
 use crate::schema::procedures::stiffness_ramp as schema;
+use crate::uncertainty::InstrumentUncertainty;
 
 /// Results of a ramp that are fitted to its holds.
 const OF_HOLDS: [&str; 8] = [
@@ -17,8 +21,19 @@ const OF_HOLDS: [&str; 8] = [
 ];
 
 /// Calls with the fits of a ramp.
-pub(crate) fn with_fits(ramp: &RampHistory, give: &mut dyn FnMut(&Fits<'_>)) {
+pub(crate) fn with_fits(
+    ramp: &RampHistory,
+    plan: &StiffnessRamp,
+    instruments: &InstrumentUncertainty,
+    give: &mut dyn FnMut(&Fits<'_>),
+) {
+    let readings = Readings {
+        starts: Vec::new(),
+        steps: ramp.steps.clone(),
+    };
+    let stated = instruments.stated_variance(0, plan.samples);
     give(&Fits {
+        refit: Some(&|by| fitted(&readings.perturbed(by, plan.samples).steps, plan, stated)),
         line: ramp.fit,
         bilinear: ramp.bilinear.as_ref(),
         curve: ramp.multilinear.as_deref(),

@@ -39,7 +39,11 @@ pub(crate) fn perform(
     let stop = ramp.run(plan, inputs, session).err();
     let declared = session.guard.declared_noise();
     let instruments = InstrumentUncertainty::of(whole, declared, 1);
-    let fits = ramp.fits(plan, instruments.stated_variance(0, plan.samples));
+    let fits = fits(
+        &ramp.steps,
+        plan,
+        instruments.stated_variance(0, plan.samples),
+    );
     for text in fits.remarks.iter().filter(|_| stop.is_none()) {
         session.event(EventKind::Remark, text.clone());
     }
@@ -101,6 +105,15 @@ pub(crate) fn perform(
         results,
         stop,
     }
+}
+
+/// The results of a fit to these steps; the others do not exist.
+pub(super) fn fitted(
+    steps: &[RampStep],
+    plan: &StiffnessRamp,
+    stated: StatedVariance,
+) -> Vec<NamedResult> {
+    results(&Direct::default(), &fits(steps, plan, stated))
 }
 
 /// The fits, one at most, and the observations on them.
@@ -267,57 +280,56 @@ impl Ramp {
         session.measured(step, wall_time, (displacement, restoring_force))?;
         Ok((displacement, restoring_force))
     }
+}
 
-    /// One line R = intercept + K·X over the outward steps of all repeats. Two or more lines through those of the first repeat only:
-    /// after yielding the curve no longer has the same bend.
-    fn fits(&self, plan: &StiffnessRamp, stated: StatedVariance) -> Fits {
-        let first = || self.steps.iter().take(plan.displacements.len()).map(point);
-        match plan.fit {
-            RampFit::Linear => {
-                let (x, r): (Vec<f64>, Vec<f64>) = self
-                    .steps
-                    .iter()
-                    .filter(|step| !step.returning)
-                    .map(point)
-                    .unzip();
-                let line = fit_line(&x, &r).map(|fit| fit.stated(&x, stated, fit.slope));
-                let remarks = line
-                    .as_ref()
-                    .and_then(|line| curve::bends(&first().collect::<Vec<Point>>(), line));
-                Fits {
-                    line,
-                    remarks: remarks.into_iter().collect(),
-                    ..Fits::default()
-                }
+/// One line R = intercept + K·X over the outward steps of all repeats. Two or more lines through those of the first repeat only:
+/// after yielding the curve no longer has the same bend.
+fn fits(steps: &[RampStep], plan: &StiffnessRamp, stated: StatedVariance) -> Fits {
+    let first = || steps.iter().take(plan.displacements.len()).map(point);
+    match plan.fit {
+        RampFit::Linear => {
+            let (x, r): (Vec<f64>, Vec<f64>) = steps
+                .iter()
+                .filter(|step| !step.returning)
+                .map(point)
+                .unzip();
+            let line = fit_line(&x, &r).map(|fit| fit.stated(&x, stated, fit.slope));
+            let remarks = line
+                .as_ref()
+                .and_then(|line| curve::bends(&first().collect::<Vec<Point>>(), line));
+            Fits {
+                line,
+                remarks: remarks.into_iter().collect(),
+                ..Fits::default()
             }
-            RampFit::Bilinear => {
-                let (x, r): (Vec<f64>, Vec<f64>) = first().unzip();
-                let bilinear = fit_bilinear(&x, &r, stated);
-                let none =
-                    "no bilinear fit: the outward steps are fewer than six, or show no yield point";
-                let remarks = if bilinear.is_none() {
-                    vec![none.to_owned()]
-                } else {
-                    Vec::new()
-                };
-                Fits {
-                    bilinear,
-                    remarks,
-                    ..Fits::default()
-                }
+        }
+        RampFit::Bilinear => {
+            let (x, r): (Vec<f64>, Vec<f64>) = first().unzip();
+            let bilinear = fit_bilinear(&x, &r, stated);
+            let none =
+                "no bilinear fit: the outward steps are fewer than six, or show no yield point";
+            let remarks = if bilinear.is_none() {
+                vec![none.to_owned()]
+            } else {
+                Vec::new()
+            };
+            Fits {
+                bilinear,
+                remarks,
+                ..Fits::default()
             }
-            RampFit::Multilinear(count) => {
-                let (multilinear, remarks) = curve::fitted(
-                    &first().collect::<Vec<Point>>(),
-                    count,
-                    "outward steps",
-                    stated,
-                );
-                Fits {
-                    multilinear,
-                    remarks,
-                    ..Fits::default()
-                }
+        }
+        RampFit::Multilinear(count) => {
+            let (multilinear, remarks) = curve::fitted(
+                &first().collect::<Vec<Point>>(),
+                count,
+                "outward steps",
+                stated,
+            );
+            Fits {
+                multilinear,
+                remarks,
+                ..Fits::default()
             }
         }
     }

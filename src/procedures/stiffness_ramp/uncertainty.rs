@@ -20,6 +20,7 @@ use crate::uncertainty::engine::{Evaluate, Evaluation, Propagation, Shifts};
 use crate::uncertainty::{Contribution, InstrumentUncertainty, Source};
 
 /// The results that are read directly, SI; None for a result that does not exist.
+#[derive(Default)]
 pub(crate) struct Direct {
     pub secant_stiffness: Option<f64>,
     pub max_force: Option<f64>,
@@ -120,14 +121,16 @@ impl Readings {
     }
 
     /// The readings of perturbed instruments, with means of so many samples.
-    fn perturbed(&self, by: &Perturbation, samples: u32) -> Self {
+    pub(super) fn perturbed(&self, by: &Perturbation, samples: u32) -> Self {
         let mut other = self.clone();
         for (repeat, start) in (0..).zip(&mut other.starts) {
             *start = by.read(4 * repeat, 0, 1, *start);
         }
         for step in &mut other.steps {
             let (settled, averaged) = (4 * step.step + 1, 4 * step.step + 2);
-            let exact = by.axes[0].force_scale * step.relaxation;
+            let below = |force| by.axes[0].force_below.error_of(force);
+            let exact = by.axes[0].force_scale * step.relaxation
+                + (below(step.restoring_force + step.relaxation) - below(step.restoring_force));
             step.relaxation = exact
                 + (by.read(settled, 0, 1, (0.0, 0.0)).1
                     - by.read(averaged, 0, samples, (0.0, 0.0)).1);

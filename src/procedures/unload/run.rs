@@ -2,7 +2,6 @@
 //! forces are expected to fall. Out: the unloading path, and the unloaded position. Each target is before the position of zero force, by
 //! the slopes of the moves before it (`physics/structure/unloading/path.rs`); the guard compares every one with the limits.
 
-use super::uncertainty::NOISE;
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
 use crate::plan::{Frame, Plan, Unload};
@@ -18,7 +17,7 @@ use crate::schema::ResultKind;
 use crate::schema::procedures::SPECIMEN;
 use crate::schema::procedures::STIFFNESS;
 use crate::schema::procedures::unload as schema;
-use crate::uncertainty::Contribution;
+use crate::uncertainty::{Contribution, NOISE};
 use crate::units::Dimension;
 use crate::units::display::readable;
 

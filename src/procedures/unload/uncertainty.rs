@@ -10,10 +10,8 @@ use crate::physics::integrator::tangent::NOISE_MULTIPLE;
 use crate::physics::structure::{Loaded, Unloading};
 use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::record::{Rest, UnloadStep};
-use crate::uncertainty::{Contribution, Source};
+use crate::uncertainty::{Contribution, NOISE, Source};
 
-/// A reading up to this many standard deviations of the cell's noise is not a load.
-pub(crate) const NOISE: f64 = 3.0;
 /// A storey shows a stiffness if its storey drift changes by more than this fraction of the largest change on the path; less is rounding.
 const SIGNIFICANT_FRACTION: f64 = 1e-6;
 
@@ -32,13 +30,21 @@ impl UncertainRun<'_> {
             .iter()
             .chain(&rest.of_force)
             .all(Vec::is_empty);
+        let instruments = self.instruments(floors);
         for (axis, (force_error, _)) in errors.iter().enumerate() {
-            let zero = self.whole.rig.calibration_of(axis).zero();
+            let calibration = self.whole.rig.calibration_of(axis);
             moves(
                 rest,
                 &unloading,
                 Source::ForceZero(axis),
-                &alone(axis, zero, floors),
+                &alone(axis, calibration.zero(), floors),
+            );
+            let below = instruments.below(axis)[0].error_of(rest.force[axis]);
+            moves(
+                rest,
+                &unloading,
+                Source::ForceBelowRange(axis),
+                &alone(axis, below, floors),
             );
             moves(
                 rest,
@@ -101,13 +107,19 @@ impl UncertainRun<'_> {
     fn read(&self, rest: &mut Rest, errors: &Errors) {
         let floors = errors.len();
         let (mut of_displacement, mut of_force) = (Vec::new(), Vec::new());
+        let instruments = self.instruments(floors);
         for (axis, (force_error, displacement_error)) in errors.iter().enumerate() {
             let calibration = self.whole.rig.calibration_of(axis);
             let (displacement, force) = (rest.displacement[axis], rest.force[axis]);
+            let [force_below, displacement_below] = instruments.below(axis);
             of_displacement.push(some([
                 (
                     Source::DisplacementScale(axis),
                     displacement * calibration.displacement_uncertainty,
+                ),
+                (
+                    Source::DisplacementBelowRange(axis),
+                    displacement_below.error_of(displacement),
                 ),
                 (self.reading(axis), *displacement_error),
             ]));
@@ -116,6 +128,7 @@ impl UncertainRun<'_> {
                     Source::ForceScale(axis),
                     force * calibration.force_uncertainty,
                 ),
+                (Source::ForceBelowRange(axis), force_below.error_of(force)),
                 (Source::ForceZero(axis), calibration.zero()),
                 (self.reading(floors + axis), *force_error),
             ]));

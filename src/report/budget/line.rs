@@ -1,7 +1,7 @@
 //! One line of an uncertainty budget: its input with value, uncertainty and origin. In: a run and a contribution. Out: a line.
 
 use crate::plan::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
-use crate::plan::{Plan, ShakeDamping, Specimen, Storey, Striker};
+use crate::plan::{BelowRange, Plan, ShakeDamping, Specimen, Storey, Striker};
 use crate::procedures;
 use crate::record::ProcedureRecord;
 use crate::report::run::Run;
@@ -10,6 +10,7 @@ use crate::rig::named_axis;
 use crate::schema::frames::{DAMPING_RATIO, MASS_MATRIX, STIFFNESS_MATRIX};
 use crate::uncertainty::{Contribution, Source};
 use crate::units::Dimension;
+use crate::units::display::stated;
 
 /// One input of a budget.
 #[derive(Clone, Debug)]
@@ -143,6 +144,16 @@ impl Input {
                     Some(plan.rig.calibration_of(axis).zero()),
                 )
             },
+            Source::ForceBelowRange(axis) => Self::below_range(
+                &of_axis(wording::FORCE_CALIBRATION, plan, axis),
+                plan.rig.calibration_of(axis).force_below(),
+                Dimension::FORCE,
+            ),
+            Source::DisplacementBelowRange(axis) => Self::below_range(
+                &of_axis(wording::DISPLACEMENT_CALIBRATION, plan, axis),
+                plan.rig.calibration_of(axis).displacement_below(),
+                Dimension::LENGTH,
+            ),
             Source::MassMatrix(index) => Self::matrix(plan, index, MASS_MATRIX.name, 0),
             Source::StiffnessMatrix(index) => Self::matrix(plan, index, STIFFNESS_MATRIX.name, 1),
             Source::RestLoad { .. } => {
@@ -215,6 +226,15 @@ impl Input {
         let name = format!("{}.{field}", specimen_name(plan, specimen));
         let uncertainty = frame.map(|frame| frame.matrix_uncertainty[index]);
         Self::factor(wording::factor_on(name), uncertainty)
+    }
+
+    /// The readings below the lower end of a calibrated range, with the uncertainty at that end.
+    fn below_range(calibration: &str, below: BelowRange, dimension: Dimension) -> Self {
+        let end = stated(below.end, dimension);
+        Self {
+            uncertainty: Some(below.of_end()),
+            ..Self::unnamed(wording::below(calibration, end), Origin::Rig, dimension)
+        }
     }
 
     /// A source without a value and an uncertainty of an input.

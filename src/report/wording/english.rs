@@ -192,6 +192,7 @@ wording! {
         fn finer_steps(ends, half, quarter) = "time step, not in U: {ends} in finer steps ({half} at Δt/2, {quarter} at Δt/4)";
         FORCE_CALIBRATION = "force calibration";
         DISPLACEMENT_CALIBRATION = "displacement calibration";
+        fn below(calibration, end) = "{calibration} below {end}";
         LOAD_CELL_ZERO = "zero offset of the load cell";
         fn factor_on(name) = "factor on {name}";
         fn resolution_of(procedure) = "resolution of the readings of {procedure}";

@@ -1,5 +1,6 @@
 //! Uncertainties compared with closed forms, Monte Carlo trials and repeated virtual runs.
 
+pub(crate) mod below_range;
 pub(crate) mod continuous;
 pub(crate) mod cycle_quantization;
 pub(crate) mod degrees;

@@ -83,19 +83,22 @@ pub(crate) const IMPACTS: ResultKind = ResultKind::count(
 pub(crate) const PASSED: ResultKind = ResultKind::count(
     "passed",
     "number of impacts after which the condition was true",
-);
+)
+.decided_by_condition();
 
 pub(crate) const LAST_PASSED_ENERGY: ResultKind = ResultKind::measured(
     "last_passed_energy",
     Dimension::ENERGY,
     "energy of the last impact after which the condition was true; 0 if false after the first",
-);
+)
+.decided_by_condition();
 
 pub(crate) const FIRST_FAILED_ENERGY: ResultKind = ResultKind::measured(
     "first_failed_energy",
     Dimension::ENERGY,
     "energy of the first impact after which the condition was false",
-);
+)
+.decided_by_condition();
 
 pub(crate) const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
     "max_displacement",

@@ -173,7 +173,8 @@ pub(crate) fn damping_fit(history: &SweepHistory) -> Chart {
         points: cloud,
         style: Style::marker(palette::CLOUD, Marker::Disc(1.8)),
     }];
-    let means = means(&history.pairs);
+    let commanded = steady.iter().map(|step| step.velocity.abs());
+    let means = means(&history.pairs, commanded);
     if let Some(fit) = history.fit {
         let c = number::with_uncertainty(fit.slope, Some(fit.slope_error), Dimension::DAMPING);
         let friction =
@@ -221,9 +222,9 @@ fn along(velocity: f64, force: f64) -> (f64, f64) {
     (velocity.abs(), force * velocity.signum())
 }
 
-/// The mean of the pairs of one velocity.
+/// The mean of the pairs of one commanded velocity.
 struct Mean {
-    /// \[m/s\]
+    /// Mean, which a lagging actuator keeps below the commanded one \[m/s\].
     velocity: f64,
     /// \[N\]
     force: f64,
@@ -231,16 +232,28 @@ struct Mean {
     standard_error: f64,
 }
 
-/// One mean per velocity, in order.
-fn means(pairs: &[(f64, f64)]) -> Vec<Mean> {
-    let mut sorted: Vec<(f64, f64)> = pairs
-        .iter()
-        .map(|(velocity, force)| along(*velocity, *force))
-        .collect();
-    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mean = |group: &[(f64, f64)]| {
+/// One mean per commanded velocity, in order. A pair belongs to the nearest one.
+fn means(pairs: &[(f64, f64)], commanded: impl Iterator<Item = f64>) -> Vec<Mean> {
+    let mut speeds: Vec<f64> = commanded.collect();
+    speeds.sort_by(f64::total_cmp);
+    speeds.dedup();
+    let mut groups = vec![Vec::new(); speeds.len()];
+    for (velocity, force) in pairs {
+        let (speed, force) = along(*velocity, *force);
+        let above = speeds.partition_point(|commanded| *commanded < speed);
+        let nearest = (above.saturating_sub(1)..speeds.len().min(above + 1)).min_by(|a, b| {
+            (speeds[*a] - speed)
+                .abs()
+                .total_cmp(&(speeds[*b] - speed).abs())
+        });
+        if let Some(nearest) = nearest {
+            groups[nearest].push((speed, force));
+        }
+    }
+    let mean = |group: &Vec<(f64, f64)>| {
         #[expect(clippy::cast_precision_loss, reason = "far below 2^52 readings")]
         let count = group.len() as f64;
+        let velocity = group.iter().map(|(velocity, _)| velocity).sum::<f64>() / count;
         let force = group.iter().map(|(_, force)| force).sum::<f64>() / count;
         let spread: f64 = group.iter().map(|(_, other)| (other - force).powi(2)).sum();
         let standard_error = if count > 1.0 {
@@ -249,12 +262,13 @@ fn means(pairs: &[(f64, f64)]) -> Vec<Mean> {
             0.0
         };
         Mean {
-            velocity: group[0].0,
+            velocity,
             force,
             standard_error,
         }
     };
-    sorted.chunk_by(|a, b| a.0 == b.0).map(mean).collect()
+    let read = groups.iter().filter(|group| !group.is_empty());
+    read.map(mean).collect()
 }
 
 fn point(step: &RampStep) -> (f64, f64) {
@@ -275,14 +289,16 @@ mod tests {
 
     #[test]
     fn the_bar_of_a_velocity_is_the_standard_error_of_its_mean() {
-        // 1, 2, 3: standard deviation 1, of the mean 1/√3. The return pass has its own sign.
-        let means = means(&[(0.1, 1.0), (0.02, 5.0), (-0.1, -2.0), (0.1, 3.0)]);
+        // 1, 2, 3: standard deviation 1, of the mean 1/√3. The return pass has its own sign. A lagging actuator is slower.
+        let pairs = [(0.1, 1.0), (0.02, 5.0), (-0.098, -2.0), (0.099, 3.0)];
+        let means = means(&pairs, [0.02, 0.1, 0.1].into_iter());
         assert_eq!(
             (means.len(), means[0].force, means[0].standard_error),
             (2, 5.0, 0.0)
         );
         assert!(
-            (means[1].force - 2.0).abs() < 1e-12
+            (means[1].velocity - 0.099).abs() < 1e-12
+                && (means[1].force - 2.0).abs() < 1e-12
                 && (means[1].standard_error - 3_f64.sqrt().recip()).abs() < 1e-12
         );
     }

@@ -6,10 +6,12 @@ use super::super::results::budget_table::is_printed;
 use super::super::results::read::read_by;
 use super::{Scope, wording};
 use crate::plan::Condition;
+use crate::plan::formula::ResultReference;
 use crate::record::Outcome;
 use crate::report::budget::budgets;
 use crate::report::number;
 use crate::report::run::Run;
+use crate::schema::block_of_words;
 use crate::verdict::{ConditionOutcome, Verdict};
 
 /// Whether the value of a complete run decides the condition to the disadvantage of the item, or is too near to its
@@ -41,10 +43,18 @@ pub(super) fn distance(run: &Run<'_>, condition: &ConditionOutcome) -> Option<St
     })
 }
 
-/// `an impact passes while max displacement < 15 mm`, for a result that a series of impacts decides.
+/// `an impact passes while max displacement < 15 mm`, for a condition that reads a result decided by it.
 pub(super) fn criterion(run: &Run<'_>, planned: &Condition) -> Option<String> {
-    let read = read_by(planned);
-    results::criterion(run, read.first()?.reference.procedure.0).map(wording::impact_passes_while)
+    let decided = |reference: &ResultReference| {
+        let procedure = run.plan.procedures.get(reference.procedure.0);
+        let words: Vec<&str> = procedure?.kind.keyword().split(' ').collect();
+        let result = block_of_words(&words)?.result(reference.name)?;
+        result.decided_by_condition.then_some(reference.procedure.0)
+    };
+    let index = read_by(planned)
+        .iter()
+        .find_map(|read| decided(&read.reference))?;
+    results::criterion(run, index).map(wording::impact_passes_while)
 }
 
 /// `largest part of U: time step (56 % of u²)`; None for the scatter of a fit alone.
