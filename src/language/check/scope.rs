@@ -338,20 +338,14 @@ impl<'a> Scope<'a> {
 
 /// Whether a condition reads a member with arguments, which only a study has.
 fn reads_a_study(condition: &Expr) -> bool {
-    match &condition.kind {
+    let own = || match &condition.kind {
         ExprKind::Member { .. } => true,
-        ExprKind::Parenthesised(inner) | ExprKind::Negate(inner) => reads_a_study(inner),
-        ExprKind::Binary { left, right, .. } => reads_a_study(left) || reads_a_study(right),
-        ExprKind::Within {
-            value,
-            tolerance,
-            target,
-        } => [value, tolerance, target]
-            .into_iter()
-            .any(|part| reads_a_study(part)),
         ExprKind::Call { arguments, .. } => arguments
             .iter()
             .any(|argument| reads_a_study(&argument.value)),
         _ => false,
-    }
+    };
+    condition
+        .operands()
+        .map_or_else(own, |operands| operands.into_iter().any(reads_a_study))
 }

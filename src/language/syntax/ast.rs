@@ -145,6 +145,22 @@ pub enum ExprKind {
     Faulty,
 }
 
+impl Expr {
+    /// The operands of an operator, of a comparison or of parentheses; None for every other expression.
+    pub fn operands(&self) -> Option<Vec<&Self>> {
+        match &self.kind {
+            ExprKind::Parenthesised(inner) | ExprKind::Negate(inner) => Some(vec![inner]),
+            ExprKind::Binary { left, right, .. } => Some(vec![left, right]),
+            ExprKind::Within {
+                value,
+                tolerance,
+                target,
+            } => Some(vec![value, tolerance, target]),
+            _ => None,
+        }
+    }
+}
+
 /// An argument of a variant or function.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Argument {

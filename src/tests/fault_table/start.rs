@@ -218,6 +218,15 @@ fn a_grbl_as_it_comes_is_run_from_where_it_was_homed() {
     refused(&own, "", "is at 1.000 mm, but the plan starts at 0");
 }
 
+/// The map of the plan's drive.
+fn modbus_map() -> ModbusMap {
+    let plan = modbus();
+    match &plan.rig.link.as_real().unwrap().actuator.dialect {
+        Dialect::Modbus(map) => *map,
+        other => panic!("{other:?}"),
+    }
+}
+
 fn swapped(number: ModbusNumber) -> ModbusNumber {
     match number {
         ModbusNumber::Int16 => number,
@@ -236,17 +245,7 @@ fn a_drive_in_the_other_word_order_is_not_moved() {
     let float = ModbusNumber::Float32 {
         high_word_first: true,
     };
-    let Dialect::Modbus(whole) = modbus()
-        .rig
-        .link
-        .as_real()
-        .unwrap()
-        .actuator
-        .dialect
-        .clone()
-    else {
-        panic!()
-    };
+    let whole = modbus_map();
     let shorts = ModbusMap {
         number: float,
         length_unit: 1e-3,
@@ -305,17 +304,7 @@ fn a_drive_in_the_other_word_order_is_not_moved() {
 /// The largest target of a drive whose word order is not that of the plan, while all its readings are exactly 0 \[m\], and why the run
 /// ended.
 fn moved_at_zero(number: ModbusNumber) -> (f64, String) {
-    let Dialect::Modbus(map) = modbus()
-        .rig
-        .link
-        .as_real()
-        .unwrap()
-        .actuator
-        .dialect
-        .clone()
-    else {
-        panic!()
-    };
+    let map = modbus_map();
     // 0.05 of the first unit, 50 of the second.
     let length_unit = match number {
         ModbusNumber::Float32 { .. } => 1e-3,

@@ -139,7 +139,7 @@ impl Case {
         }
     }
 
-    /// Whether the rig tells its serial number and its power-up.
+    /// Whether the rig reports its serial number and its power-up.
     pub(super) const fn tells_identity(&self) -> bool {
         matches!(self.devices, Devices::Native)
     }

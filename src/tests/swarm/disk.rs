@@ -1,5 +1,5 @@
 //! The disk of a life: it can be full, tear a write, fail a flush or only pretend one, and psd can be killed at any of its calls. In: the
-//! bytes of a run log. Out: the bytes that remain, and what psd was told about them. It knows of an entry only its kind and its target.
+//! bytes of a run log. Out: the bytes that remain, and what the disk reported to psd about them. It knows of an entry only its kind and its target.
 
 use std::io::{self, ErrorKind};
 use std::panic::resume_unwind;
@@ -21,7 +21,7 @@ struct State {
     written: Vec<u8>,
     /// Bytes that survive a loss of power.
     durable: usize,
-    /// Bytes of which psd was told that they survive it.
+    /// Bytes that the disk reported as durable.
     promised: usize,
     calls: u32,
     faults: Vec<(u32, DiskFault)>,
@@ -46,7 +46,7 @@ pub(super) struct Logged {
     pub(super) number: u64,
     /// Targets of the last one \[m\].
     pub(super) targets: Vec<f64>,
-    /// Whether psd was told that it is durable.
+    /// Whether the disk reported it as durable.
     pub(super) durable: bool,
 }
 

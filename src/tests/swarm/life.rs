@@ -250,12 +250,12 @@ impl<'a> Life<'a> {
         if self.bytes.is_empty() {
             return false;
         }
-        // A loss of power may leave later bytes without earlier ones. Damage is then told, behind all that was flushed.
+        // A loss of power may leave later bytes without earlier ones. Damage is then reported, behind all that was flushed.
         if let Err(damage) = recover(&self.bytes)
             && damage.offset >= self.disk.durable()
         {
             self.tally
-                .path("damage told after a loss of power".to_owned());
+                .path("damage reported after a loss of power".to_owned());
             return false;
         }
         let (recovered, logged) = match read(&self.bytes) {

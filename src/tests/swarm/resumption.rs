@@ -7,7 +7,7 @@ use super::bench;
 use super::case::Session;
 use super::laws::{Law, Released};
 use super::life::{Ended, Life, open, read};
-use super::operator::Operator;
+use crate::cli::operator::watch::Shared;
 use crate::plan::Plan;
 use crate::record::journal::{Durability, EntryKind, Journal, Storage as _};
 use crate::rig::{Reading, Rig as _, RigFault, StopRequest};
@@ -15,7 +15,7 @@ use crate::run::replay::{
     self, AmendBody, Assurance, Bands, Continuation, HeldBody, IntentBody, LoggedRun, RecoverBody,
     ResumeBody, ResumeDecision, ResumeRefusal, RigBody, SampleBody,
 };
-use crate::run::{Inspection, Motion, Next, Observer};
+use crate::run::{Inspection, Motion, Observer};
 
 impl Life<'_> {
     /// The same steps in the same order as `psd resume`.
@@ -176,7 +176,7 @@ fn assured(session: &Session) -> Vec<Assurance> {
     .collect()
 }
 
-/// Why a rig that tells its identity must not go on.
+/// Why a rig that reports its identity must not go on.
 fn other_rig(life: &Life<'_>, session: &Session) -> Option<String> {
     if !life.case.tells_identity() {
         return None;
@@ -246,24 +246,4 @@ fn other_specimen(
     let (low, high) = (ends[0].min(ends[1]) - slack, ends[0].max(ends[1]) + slack);
     let other = !(low..=high).contains(&force) && !session.operator.accept_relaxation;
     other.then(|| format!("it went on with {force} N at {at} m, expected {low} .. {high} N"))
-}
-
-struct Shared<'a>(&'a RefCell<Operator>);
-
-impl Observer for Shared<'_> {
-    fn stop_requested(&self) -> bool {
-        self.0.borrow().stop_requested()
-    }
-    fn inspect(&mut self, note: &str) -> Inspection {
-        self.0.borrow_mut().inspect(note)
-    }
-    fn release(&mut self, note: &str, motion: &Motion) -> Inspection {
-        self.0.borrow_mut().release(note, motion)
-    }
-    fn may_unload(&mut self, question: &str, motion: &Motion) -> Option<Inspection> {
-        self.0.borrow_mut().may_unload(question, motion)
-    }
-    fn next(&mut self) -> Next {
-        self.0.borrow_mut().next()
-    }
 }

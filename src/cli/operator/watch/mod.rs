@@ -348,9 +348,9 @@ impl Watcher {
 }
 
 /// An observer that is also asked while no run is active: before a replayed run is resumed.
-pub struct Shared<'a>(pub &'a RefCell<Watcher>);
+pub struct Shared<'a, O = Watcher>(pub &'a RefCell<O>);
 
-impl Observer for Shared<'_> {
+impl<O: Observer> Observer for Shared<'_, O> {
     fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
         self.0.borrow_mut().procedure_started(name, keyword, steps);
     }

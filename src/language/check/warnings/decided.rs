@@ -122,19 +122,14 @@ fn read(formula: &Formula) -> Option<ResultReference> {
 
 /// Whether an expression names anything: a name may have another value in another run.
 fn names_something(expr: &Expr) -> bool {
-    match &expr.kind {
-        ExprKind::Number { .. } | ExprKind::Text(_) | ExprKind::Faulty => false,
-        ExprKind::Parenthesised(inner) | ExprKind::Negate(inner) => names_something(inner),
-        ExprKind::Binary { left, right, .. } => names_something(left) || names_something(right),
-        ExprKind::Within {
-            value,
-            tolerance,
-            target,
-        } => [value, tolerance, target]
-            .into_iter()
-            .any(|part| names_something(part)),
-        _ => true,
-    }
+    let own = || {
+        !matches!(
+            expr.kind,
+            ExprKind::Number { .. } | ExprKind::Text(_) | ExprKind::Faulty
+        )
+    };
+    expr.operands()
+        .map_or_else(own, |operands| operands.into_iter().any(names_something))
 }
 
 /// The conditions on one result so far: the values that meet all of them, and the conditions that give its ends.

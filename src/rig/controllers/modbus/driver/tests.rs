@@ -251,7 +251,7 @@ fn a_late_answer_is_never_accepted_and_only_the_guard_stops_it() {
 }
 
 /// The drive holds by its present position. The last question for the force, before it, is answered after 1.2 T, when it was given up.
-/// Gives the numbers that the drive is told to move to.
+/// Gives the numbers that the drive is commanded to.
 fn holds_after_a_late_force() -> Vec<Vec<u8>> {
     let (mut device, port, _) = device(ModbusMap {
         command: None,
