@@ -49,6 +49,8 @@ const KNOWS: &[(&[&str], &[&str])] = &[
     (
         &[
             "plotters",
+            "plotters_backend",
+            "resvg",
             "maud",
             "typst",
             "typst_layout",
