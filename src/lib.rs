@@ -8,15 +8,11 @@
 //! everything that concerns one procedure only is in its folder of `procedures`.
 
 pub use psd_physics as physics;
+pub use psd_plan::{self as plan, record, schema, uncertainty};
 pub use psd_text::{self as text, units};
-
-pub mod plan;
-pub mod schema;
-pub mod uncertainty;
 
 pub mod language;
 
-pub mod record;
 pub mod rig;
 
 pub mod run;

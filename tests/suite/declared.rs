@@ -10,7 +10,7 @@ use super::import_graph::{is_of_tests, without_comments_and_tests};
 use super::source_text::{SourceText, none, rust_files};
 
 /// Where names are declared, beside the data of each procedure. The numbers of contact laws and of models have their names in the physics, which the schema takes.
-const DECLARATIONS: &[&str] = &["schema", "physics/contact/mod.rs", "physics/specimen"];
+const DECLARATIONS: &[&str] = &["plan/schema", "physics/contact/mod.rs", "physics/specimen"];
 
 /// Files that have such a name as a string with another meaning, and why.
 const OTHER_MEANINGS: &[(&str, &str, &str)] = &[

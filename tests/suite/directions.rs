@@ -7,10 +7,10 @@ use super::source_text::{none, rust_files};
 
 /// The folders of `src`, lowest level first. A folder may use the folders of earlier lines. In its own line it may use only itself.
 const ORDER: &[&[&str]] = &[
-    &["text", "units"],
+    &["text"],
     &["physics"],
     &["plan"],
-    &["language", "journal"],
+    &["language"],
     &["rig"],
     &["run"],
     &["verdict"],
@@ -65,14 +65,9 @@ fn position_in_order(folder: &str) -> Option<usize> {
     ORDER.iter().position(|line| line.contains(&folder))
 }
 
-/// The folder of `src` whose place in the order a file has. The vocabulary, the uncertainties and the record belong to the plan.
+/// The folder of `src` whose place in the order a file has.
 fn folder_of(file: &str) -> &str {
-    let folder = file.split('/').next().unwrap_or_default();
-    match folder {
-        "record" if file.starts_with("record/journal") => "journal",
-        "schema" | "uncertainty" | "record" => "plan",
-        _ => folder,
-    }
+    file.split('/').next().unwrap_or_default()
 }
 
 #[test]

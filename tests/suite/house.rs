@@ -10,10 +10,8 @@ use super::source_text::{SourceText, none, rust_files};
 /// Code that converts text into a verdict and its outputs: a function of its input only, on every machine.
 const PURE: &[&str] = &[
     "text",
-    "units",
     "physics",
     "plan",
-    "schema",
     "language",
     "procedures",
     "verdict",
@@ -28,7 +26,7 @@ const IMPURE: &[&str] = &[
     "File::",
     "std::env",
     "env::var",
-    "std::time",
+    "std::time::Instant",
     "Instant::now",
     "SystemTime",
     "Zoned::now",
@@ -173,6 +171,24 @@ fn emulator_and_drivers_share_no_parsing_code() {
         &found,
         "the emulator and the driver must not know each other",
     );
+}
+
+/// A failpoint switches a guard off in the tests of any crate. The program has no such call.
+#[test]
+fn nothing_but_tests_switches_a_guard_off() {
+    let mut found = Vec::new();
+    for file in rust_files("src") {
+        if is_of_tests(&file.path) || file.path == "plan/record/failpoint.rs" {
+            continue;
+        }
+        let code = without_comments_and_tests(&file.text);
+        let calls = code.split(';').filter(|item| {
+            item.contains("failpoint::without")
+                || item.contains("failpoint::{") && item.contains("without")
+        });
+        found.extend(calls.map(|item| format!("{}: {}", file.path, item.trim())));
+    }
+    none(&found, "a guard is switched off outside of tests");
 }
 
 /// The program version is a digest of its sources, without the files whose names mark them as tests (`build.rs`). No such file may become

@@ -6,10 +6,10 @@ use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::expressions::fields::whole;
 use crate::language::check::expressions::read_field::ReadField;
 use crate::language::check::messages::{specimens, values};
-use crate::plan::declaration::reader;
 use crate::plan::procedures::stiffness_ramp::block as schema;
 use crate::plan::procedures::stiffness_ramp::block::NAMES;
-use crate::plan::procedures::stiffness_ramp::parameters::stiffness_ramp_fields;
+use crate::plan::reader;
+use crate::plan::stiffness_ramp_fields;
 use crate::plan::{
     ProcedureKind, RampFit, RelaxationLaw, RelaxationModel, StiffnessRamp, WatchedHold,
     WatchedModel,

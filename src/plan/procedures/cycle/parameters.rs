@@ -1,7 +1,7 @@
 //! A checked `cycle`: reversed or one-sided cycles of displacement, amplitude by amplitude.
 
-use crate::plan::BreakCount;
-use crate::plan::formula::Formula;
+use crate::BreakCount;
+use crate::formula::Formula;
 
 /// Repeated displacement cycles of a specimen about one position.
 #[derive(Clone, Debug)]
