@@ -35,11 +35,14 @@ const fn rgb((red, green, blue): Colour) -> RGBColor {
     RGBColor(red, green, blue)
 }
 
-impl Canvas {
-    pub fn on(drawing: Drawing) -> Self {
-        Self(drawing.into_drawing_area())
-    }
+/// Draws on `width × height` reference pixels.
+pub(super) fn svg(width: u32, height: u32, paint: impl FnOnce(&Canvas)) -> String {
+    let drawing = Drawing::new(width, height);
+    paint(&Canvas(drawing.clone().into_drawing_area()));
+    drawing.svg()
+}
 
+impl Canvas {
     fn draw<E: Drawable<Drawing>>(&self, element: &E)
     where
         for<'b> &'b E: PointCollection<'b, BackendCoord>,
@@ -145,5 +148,32 @@ impl Lettering {
             color: rgb(self.colour).to_backend_color(),
             pos: Pos::new(self.anchor.horizontal, self.anchor.vertical),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_label_is_never_markup() {
+        let anchor = Anchor {
+            horizontal: HPos::Left,
+            vertical: VPos::Top,
+        };
+        let style = Lettering {
+            size: 13.0,
+            bold: false,
+            colour: (0, 0, 0),
+            anchor,
+            upright: false,
+        };
+        let drawn = svg(10, 10, |canvas| {
+            canvas.text("</text><script>&\u{1b}", (1.0, 2.0), &style);
+        });
+        assert!(
+            drawn.contains(">&lt;/text&gt;&lt;script&gt;&amp;\u{fffd}</text>"),
+            "{drawn}"
+        );
     }
 }

@@ -73,9 +73,8 @@ fn encoded(sheet: &Pixmap) -> Result<Vec<u8>, png::EncodingError> {
 mod tests {
     use plotters::style::text_anchor::{HPos, VPos};
 
-    use super::super::canvas::{Anchor, Canvas, Lettering};
+    use super::super::canvas::{Anchor, Canvas, Lettering, svg};
     use super::super::chart::{Colour, Line};
-    use super::super::vector::svg;
     use super::*;
 
     const INK: Colour = (0, 0, 0);

@@ -14,7 +14,6 @@ use plotters_backend::{
 };
 
 use super::super::document::fonts::FIGURE_FAMILIES;
-use super::canvas::Canvas;
 use super::chart::{Colour, Line};
 
 /// Units of a shape per reference pixel: the coordinates of plotters are integers.
@@ -23,7 +22,8 @@ pub(super) const UNITS: f64 = 100.0;
 /// The line height of DejaVu Sans, ascent and descent, over its em: (1901 + 483)/2048, from its `hhea` table.
 const LINE_OVER_EM: f64 = 2384.0 / 2048.0;
 
-/// A sheet that plotters draws on.
+/// A sheet that plotters draws on; a clone is the same sheet.
+#[derive(Clone)]
 pub(super) struct Drawing {
     /// Reference pixels.
     width: u32,
@@ -31,20 +31,26 @@ pub(super) struct Drawing {
     shapes: Rc<RefCell<String>>,
 }
 
-/// Draws on `width × height` reference pixels. The background is white in a browser and transparent in the PDF.
-pub(super) fn svg(width: u32, height: u32, paint: impl FnOnce(&Canvas)) -> String {
-    let shapes = Rc::default();
-    paint(&Canvas::on(Drawing {
-        width,
-        height,
-        shapes: Rc::clone(&shapes),
-    }));
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
-         font-family=\"{FIGURE_FAMILIES}\" fill=\"none\" stroke-linejoin=\"round\" style=\"background:#ffffff\">\n\
-         {}</svg>\n",
-        shapes.take()
-    )
+impl Drawing {
+    /// An empty sheet of `width × height` reference pixels.
+    pub fn new(width: u32, height: u32) -> Self {
+        Self {
+            width,
+            height,
+            shapes: Rc::default(),
+        }
+    }
+
+    /// What is drawn so far. The background is white in a browser and transparent in the PDF.
+    pub fn svg(&self) -> String {
+        let (width, height) = (self.width, self.height);
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+             font-family=\"{FIGURE_FAMILIES}\" fill=\"none\" stroke-linejoin=\"round\" style=\"background:#ffffff\">\n\
+             {}</svg>\n",
+            self.shapes.borrow()
+        )
+    }
 }
 
 type Drawn = Result<(), DrawingErrorKind<Infallible>>;
@@ -72,24 +78,19 @@ impl Drawable<Drawing> for Polyline {
         drawing: &mut Drawing,
         _: (u32, u32),
     ) -> Drawn {
-        drawing.line(points, self.line, self.colour)
+        drawing.line(points, self.line, self.colour);
+        Ok(())
     }
 }
 
 impl Drawing {
-    fn add(&self, shape: &str) -> Drawn {
+    fn add(&self, shape: &str) {
         let mut shapes = self.shapes.borrow_mut();
         shapes.push_str(shape);
         shapes.push('\n');
-        Ok(())
     }
 
-    fn line(
-        &self,
-        points: impl IntoIterator<Item = BackendCoord>,
-        line: Line,
-        colour: Colour,
-    ) -> Drawn {
+    fn line(&self, points: impl IntoIterator<Item = BackendCoord>, line: Line, colour: Colour) {
         let mut path = String::new();
         for (index, (x, y)) in points.into_iter().enumerate() {
             let start = if index == 0 { "M" } else { " L" };
@@ -104,7 +105,7 @@ impl Drawing {
         let (stroke, width) = (hex(colour), number(line.width));
         self.add(&format!(
             "<path d=\"{path}\" stroke=\"{stroke}\" stroke-width=\"{width}\"{dash}/>"
-        ))
+        ));
     }
 }
 
@@ -162,7 +163,8 @@ impl DrawingBackend for Drawing {
             width: f64::from(style.stroke_width()) / UNITS,
             dash: &[],
         };
-        self.line(points, line, style.color().rgb)
+        self.line(points, line, style.color().rgb);
+        Ok(())
     }
 
     fn draw_rect<S: BackendStyle>(
@@ -179,7 +181,8 @@ impl DrawingBackend for Drawing {
             pixels(right - left),
             pixels(bottom - top),
             ink(style, fill)
-        ))
+        ));
+        Ok(())
     }
 
     fn draw_circle<S: BackendStyle>(
@@ -195,7 +198,8 @@ impl DrawingBackend for Drawing {
             pixels(y),
             number(f64::from(radius) / UNITS),
             ink(style, fill)
-        ))
+        ));
+        Ok(())
     }
 
     fn fill_polygon<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(
@@ -211,7 +215,8 @@ impl DrawingBackend for Drawing {
             "<polygon points=\"{}\" {}/>",
             corners.join(" "),
             ink(style, true)
-        ))
+        ));
+        Ok(())
     }
 
     fn draw_text<T: BackendTextStyle>(
@@ -258,7 +263,8 @@ impl DrawingBackend for Drawing {
             number(size / LINE_OVER_EM),
             hex(style.color().rgb),
             escaped(text)
-        ))
+        ));
+        Ok(())
     }
 }
 
@@ -299,30 +305,7 @@ fn escaped(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::canvas::{Anchor, Lettering};
     use super::*;
-
-    #[test]
-    fn a_label_is_never_markup() {
-        let anchor = Anchor {
-            horizontal: HPos::Left,
-            vertical: VPos::Top,
-        };
-        let style = Lettering {
-            size: 13.0,
-            bold: false,
-            colour: (0, 0, 0),
-            anchor,
-            upright: false,
-        };
-        let drawn = svg(10, 10, |canvas| {
-            canvas.text("</text><script>&\u{1b}", (1.0, 2.0), &style);
-        });
-        assert!(
-            drawn.contains(">&lt;/text&gt;&lt;script&gt;&amp;\u{fffd}</text>"),
-            "{drawn}"
-        );
-    }
 
     #[test]
     fn numbers_are_short() {

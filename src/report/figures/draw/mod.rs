@@ -8,9 +8,8 @@ mod thinning;
 use plotters::style::text_anchor::{HPos, VPos};
 
 use super::axis::Axis;
-use super::canvas::{Anchor, Canvas, Lettering, Point};
+use super::canvas::{self, Anchor, Canvas, Lettering, Point};
 use super::chart::{Chart, Colour, Marker};
-use super::vector;
 use sheet::Sheet;
 
 const WIDTH: u32 = 720;
@@ -31,7 +30,7 @@ const THINNEST: f64 = 0.5;
 
 /// The chart as an SVG.
 pub(crate) fn svg(chart: &Chart) -> String {
-    vector::svg(WIDTH, HEIGHT, |canvas| paint(chart, canvas))
+    canvas::svg(WIDTH, HEIGHT, |canvas| paint(chart, canvas))
 }
 
 fn paint(chart: &Chart, canvas: &Canvas) {
