@@ -49,7 +49,7 @@ enum FirstContact {
     ToCome {
         closing: f64,
     },
-    ContinuousReadings {
+    UnderWay {
         closing: f64,
     },
     Over {
@@ -139,13 +139,11 @@ impl SummaryBuilder {
     fn follow_first_contact(&mut self, state: &ImpactState, touching: bool) {
         let closing_now = state.striker_velocity - state.velocity;
         self.first_contact = match self.first_contact {
-            FirstContact::ToCome { closing } if touching => {
-                FirstContact::ContinuousReadings { closing }
-            }
+            FirstContact::ToCome { closing } if touching => FirstContact::UnderWay { closing },
             FirstContact::ToCome { .. } => FirstContact::ToCome {
                 closing: closing_now,
             },
-            FirstContact::ContinuousReadings { closing } if !touching => FirstContact::Over {
+            FirstContact::UnderWay { closing } if !touching => FirstContact::Over {
                 restitution: (closing > 0.0).then(|| -closing_now / closing),
             },
             unchanged => unchanged,
