@@ -8,18 +8,13 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-/// Files of one kind, and the command of cargo that writes or compares them.
+/// Files of one kind, and the command of cargo that compares them.
 struct Part {
     name: &'static str,
     files: &'static str,
-    arguments: &'static [&'static str],
-    writing: Writing,
-}
-
-/// What makes the command write instead of compare.
-enum Writing {
-    Variable(&'static str, &'static str),
-    Arguments(&'static [&'static str]),
+    command: &'static [&'static str],
+    /// What the command needs to write, beside the variables.
+    accept: &'static [&'static str],
 }
 
 /// In this order: console blocks of the book show accepted results.
@@ -28,55 +23,60 @@ const PARTS: &[Part] = &[
     Part {
         name: "results",
         files: "accepted results that moved, reports/",
-        arguments: &["run", "-p", "psd", "--", "test", "plans"],
-        writing: Writing::Arguments(&["--accept"]),
+        command: &["run", "-p", "psd", "--", "test", "plans"],
+        accept: &["--accept"],
     },
     Part {
         name: "reference",
         files: "grammar/LANGUAGE.md, docs/reference/, arguments of options",
-        arguments: &["test", "-p", "psd", "--test", "suite", "reference::"],
-        writing: Writing::Variable("PSD_BLESS", "1"),
+        command: &["test", "-p", "psd", "--test", "suite", "reference::"],
+        accept: &[],
     },
     Part {
         name: "specimens",
         files: "loops of the specimen models, docs/specimens/",
-        arguments: &["test", "-p", "psd", "--test", "suite", "specimens_page::"],
-        writing: Writing::Variable("PSD_BLESS", "1"),
+        command: &["test", "-p", "psd", "--test", "suite", "specimens_page::"],
+        accept: &[],
     },
     Part {
         name: "book",
         files: "console blocks, figures and tables of docs/",
-        arguments: &["test", "-p", "psd", "--test", "suite", "book::"],
-        writing: Writing::Variable("PSD_BLESS", "1"),
+        command: &["test", "-p", "psd", "--test", "suite", "book::"],
+        accept: &[],
     },
     Part {
         name: "emulator",
         files: "docs/tutorial/emulator.md",
-        arguments: &["test", "-p", "psd", "--test", "system", "book::emulator::"],
-        writing: Writing::Variable("PSD_BLESS", "1"),
+        command: &["test", "-p", "psd", "--test", "system", "book::emulator::"],
+        accept: &[],
     },
     Part {
         name: "schema",
         files: "grammar/summary.schema.json",
-        arguments: &["test", "-p", "psd", "--test", "suite", "outputs::"],
-        writing: Writing::Variable("SNAPSHOTS", "overwrite"),
+        command: &["test", "-p", "psd", "--test", "suite", "outputs::"],
+        accept: &[],
     },
     Part {
         name: "language",
-        files: "snapshots of the language cases, tests/suite/snapshots/",
-        arguments: &["test", "-p", "psd", "--test", "suite", "lang::"],
-        writing: Writing::Variable("INSTA_UPDATE", "always"),
+        files: "cases and snapshots of the language",
+        command: &["test", "-p", "psd", "--test", "suite", "lang::"],
+        accept: &[],
     },
     Part {
         name: "screen",
         files: "snapshots of the live screen, src/cli/operator/screen/",
-        arguments: &["test", "-p", "psd", "--lib", "screen::"],
-        writing: Writing::Variable("INSTA_UPDATE", "always"),
+        command: &["test", "-p", "psd", "--lib", "screen::"],
+        accept: &[],
     },
 ];
 
-/// Every variable that makes a test write.
-const VARIABLES: [&str; 3] = ["PSD_BLESS", "SNAPSHOTS", "INSTA_UPDATE"];
+/// The variables that make a test write, and what they are while it does and while it does not. Without a value for insta a
+/// comparison would leave a file beside a snapshot that differs.
+const VARIABLES: [(&str, &str, Option<&str>); 3] = [
+    ("PSD_BLESS", "1", None),
+    ("SNAPSHOTS", "overwrite", None),
+    ("INSTA_UPDATE", "always", Some("no")),
+];
 
 /// The folders that have generated files.
 const FOLDERS: [&str; 5] = ["docs", "grammar", "reports", "src", "tests"];
@@ -145,20 +145,15 @@ fn generate(parts: &[&Part], check: bool) -> io::Result<bool> {
 
 fn command(part: &Part, check: bool) -> Command {
     let mut command = Command::new(env!("CARGO"));
-    command.args(part.arguments);
-    for variable in VARIABLES {
-        command.env_remove(variable);
+    command.args(part.command);
+    if !check {
+        command.args(part.accept);
     }
-    // A comparison leaves no file beside a snapshot that differs.
-    command.env("INSTA_UPDATE", "no");
-    match part.writing {
-        Writing::Variable(name, value) if !check => {
-            command.env(name, value);
-        }
-        Writing::Arguments(arguments) if !check => {
-            command.args(arguments);
-        }
-        _ => {}
+    for (name, writes, compares) in VARIABLES {
+        match if check { compares } else { Some(writes) } {
+            Some(value) => command.env(name, value),
+            None => command.env_remove(name),
+        };
     }
     command
 }

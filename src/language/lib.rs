@@ -1,0 +1,6 @@
+//! The language: text to syntax tree (`syntax`), syntax tree to checked plan (`check`). Its
+//! keywords and fields are in `schema`. It runs nothing.
+
+pub mod check;
+pub mod renamed;
+pub mod syntax;
