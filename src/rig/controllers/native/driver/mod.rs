@@ -197,6 +197,9 @@ pub fn native_identity(hello: &Hello, boot: Option<String>) -> DeviceIdentity {
 }
 
 /// The reading of a `DATA` reply with this number of axes.
+///
+/// # Errors
+/// The reply is no reading of this device, or its status forbids one.
 pub fn decoded(reply: Reply, axes: usize) -> Result<Sample, DeviceFault> {
     let words = reply.words();
     let Some(data) = native::codec::data(&words).filter(|data| data.axes.len() == axes) else {
