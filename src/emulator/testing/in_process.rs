@@ -205,7 +205,7 @@ fn native(script: &str, log: Log) -> InProcess {
         ..NativeSettings::default()
     };
     let firmware = Native::new(settings, &rig);
-    InProcess::new(RigEmulator::of(
+    InProcess::new(RigEmulator::with_controllers(
         rig,
         log,
         &script,

@@ -20,7 +20,7 @@ pub(crate) struct Course {
 }
 
 impl Course {
-    pub(crate) fn of(path: Path, sign: f64, actuator: &Actuator) -> Self {
+    pub(crate) fn along(path: Path, sign: f64, actuator: &Actuator) -> Self {
         let missed = sign * path.from - actuator.reference();
         let misses = sign * path.to - actuator.aim(sign * path.to);
         Self {
@@ -40,7 +40,7 @@ impl Course {
     ) -> Self {
         interrupted
             .filter(|course| course.path == path)
-            .unwrap_or_else(|| Self::of(path, sign, actuator))
+            .unwrap_or_else(|| Self::along(path, sign, actuator))
     }
 
     /// The actuator moves from one time on the path to another \[s\]. Gives the motion of the piston.
