@@ -10,8 +10,8 @@ pub mod state;
 
 pub use followed::Followed;
 pub use hertz::HertzForce;
-pub(super) use impulse::Decided;
-pub use impulse::ImpulseContact;
+pub(crate) use impulse::{Decided, StrikerEnd};
+pub use impulse::{ImpulseContact, Touching};
 pub use restitution::RestitutionContact;
 
 use thiserror::Error;
@@ -20,6 +20,7 @@ use super::contact::state::StepState;
 use crate::integrator::Integrator;
 use crate::integrator::step_form::Motion;
 use crate::integrator::substep::{Scratch, Striker, Substep};
+use crate::number::numbers;
 use crate::self_test::Part;
 use crate::structure::matrix::Vector;
 
@@ -237,19 +238,18 @@ impl ContactLaw {
     }
 }
 
-/// Striker and struck degree of freedom at the start of a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Start {
-    pub displacement: f64,
-    pub velocity: f64,
-    pub striker_displacement: f64,
-    pub striker_velocity: f64,
-    /// F of the step before \[N\].
-    pub contact_force: f64,
-    /// Whether the step before was one in contact.
-    pub touching: bool,
-    /// δp \[m\]
-    pub indentation: f64,
+numbers! {
+    /// Striker and struck degree of freedom at the start of a step.
+    pub struct Start {
+        displacement,
+        velocity,
+        striker_displacement,
+        striker_velocity,
+        /// F of the step before \[N\].
+        contact_force,
+        /// δp \[m\]
+        indentation,
+    }
 }
 
 /// The striker and its contact at the end of a step.
@@ -320,13 +320,14 @@ impl AnyContact {
         law: ContactLaw,
         integrator: Integrator,
         impact: Approaching,
+        striker: &Striker,
     ) -> Result<Self, NeedsTangent> {
         if law.needs_tangent() && integrator != Integrator::Tangent {
             return Err(NeedsTangent(law.name()));
         }
         match law {
-            ContactLaw::Rigid => Ok(Self::Impulse(ImpulseContact::rigid())),
-            ContactLaw::Limit { force } => Ok(Self::Impulse(ImpulseContact::limited(force))),
+            ContactLaw::Rigid => Ok(Self::Impulse(ImpulseContact::new(f64::INFINITY, striker))),
+            ContactLaw::Limit { force } => Ok(Self::Impulse(ImpulseContact::new(force, striker))),
             ContactLaw::Restitution { coefficient } => Ok(Self::Divided(
                 DividingContact::Restitution(RestitutionContact::new(coefficient)),
             )),

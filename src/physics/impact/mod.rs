@@ -24,6 +24,7 @@ use crate::integrator::state::State;
 use crate::specimen::RestoringForce;
 use crate::structure::Matrices;
 use energy::Energies;
+use summary::StepEnd;
 
 /// Initial state and parameters of an impact on one degree of freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -153,6 +154,21 @@ pub struct ImpactState {
     pub input: f64,
     /// Contacts that began so far.
     pub contacts: u64,
+}
+
+impl ImpactState {
+    /// As far as the results follow it.
+    #[inline]
+    pub(crate) const fn step_end(&self) -> StepEnd {
+        StepEnd {
+            instant: self.time,
+            displacement: self.displacement,
+            velocity: self.velocity,
+            restoring_force: self.restoring_force,
+            contact_force: self.contact_force,
+            restoring_energy: self.energies.restoring,
+        }
+    }
 }
 
 /// The setup of an impact: a striker, its contact law and the struck degree of freedom.
