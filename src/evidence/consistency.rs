@@ -4,7 +4,7 @@
 use crate::files::provenance::{BUILD, recorded_id};
 use crate::files::recorded_run::{ReadRecord, plan_of};
 use crate::plan::Plan;
-use crate::record::journal::{EntryKind, OLDEST_FORMAT, Recovered};
+use crate::rig::journal::{EntryKind, OLDEST_FORMAT, Recovered};
 use crate::run::replay::{self, Header, LoggedRun};
 
 /// Compares the entries of a run log with each other.

@@ -13,7 +13,7 @@ use sha2::{Digest as _, Sha256};
 use crate::files::failure::Failure;
 use crate::files::failure::plain;
 use crate::files::recorded_run::JOURNAL;
-use crate::record::journal::{LogText, MOST_BYTES, is_part_of_a_reserve};
+use crate::rig::journal::{LogText, MOST_BYTES, is_part_of_a_reserve};
 use crate::text::digest::{hex, sha256};
 
 use super::names::{ISSUE, MANIFEST, OLDER_ISSUE, is_paper, is_sidecar, is_signature};

@@ -11,13 +11,13 @@ use crate::files::recorded_run;
 use crate::files::recorded_run::{JOURNAL, ReadRecord};
 use crate::files::results::put_results;
 use crate::plan::Plan;
-use crate::record::journal::EntryKind;
 use crate::record::remote::DrivenStep;
 use crate::record::{Outcome, Record};
 use crate::report::{
     FileDigest, Issue, IssueKind, NullSink, OutputError, OutputSink, Prediction, Provenance,
     ReportStatus, Run,
 };
+use crate::rig::journal::EntryKind;
 use crate::run::replay;
 use crate::run::replay::{CUT_OFF, Mismatch, Replayed};
 use crate::schema::plan_block::ISSUED;

@@ -5,6 +5,7 @@
 mod connect;
 pub mod controllers;
 mod guard;
+pub mod journal;
 mod motion;
 pub mod real;
 pub mod safety;

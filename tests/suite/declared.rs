@@ -10,7 +10,7 @@ use super::import_graph::{is_of_tests, without_comments_and_tests};
 use super::source_text::{SourceText, none, rust_files};
 
 /// Where names are declared, beside the data of each procedure. The numbers of contact laws and of models have their names in the physics, which the schema takes.
-const DECLARATIONS: &[&str] = &["schema", "physics/contact/mod.rs", "physics/specimen"];
+const DECLARATIONS: &[&str] = &["plan/schema", "physics/contact/mod.rs", "physics/specimen"];
 
 /// Files that have such a name as a string with another meaning, and why.
 const OTHER_MEANINGS: &[(&str, &str, &str)] = &[
@@ -77,9 +77,10 @@ fn users() -> Vec<SourceText> {
     let declares = |file: &SourceText| {
         file.is_in(DECLARATIONS)
             || DECLARATIONS.contains(&file.path.as_str())
-            || ["/data/block.rs", "/data/parameters.rs"]
-                .iter()
-                .any(|name| file.path.ends_with(name))
+            || file.is_in(&["plan/procedures"])
+                && ["/block.rs", "/parameters.rs"]
+                    .iter()
+                    .any(|name| file.path.ends_with(name))
     };
     let product = |file: &SourceText| !is_of_tests(&file.path) && !declares(file);
     rust_files("src").into_iter().filter(product).collect()

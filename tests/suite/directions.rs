@@ -7,11 +7,10 @@ use super::source_text::{none, rust_files};
 
 /// The folders of `src`, lowest level first. A folder may use the folders of earlier lines. In its own line it may use only itself.
 const ORDER: &[&[&str]] = &[
-    &["text", "units"],
+    &["text"],
     &["physics"],
     &["plan"],
-    &["schema", "uncertainty"],
-    &["language", "record"],
+    &["language"],
     &["rig"],
     &["run"],
     &["verdict"],
@@ -22,13 +21,6 @@ const ORDER: &[&[&str]] = &[
     &["emulator", "evidence"],
     &["study"],
     &["cli"],
-];
-
-/// The data of a procedure are files of its own folder, and each belongs to an earlier stage.
-const DATA_OF_PROCEDURES: &[(&str, &str)] = &[
-    ("parameters.rs", "plan"),
-    ("block.rs", "schema"),
-    ("history.rs", "record"),
 ];
 
 /// The one file that lists the procedures.
@@ -75,13 +67,7 @@ fn position_in_order(folder: &str) -> Option<usize> {
 
 /// The folder of `src` whose place in the order a file has.
 fn folder_of(file: &str) -> &str {
-    let folder = file.split('/').next().unwrap_or_default();
-    let data = file.split_once("/data/").filter(|_| folder == "procedures");
-    let stage = data.and_then(|(_, name)| {
-        let mut listed = DATA_OF_PROCEDURES.iter();
-        listed.find(|(data, _)| *data == name)
-    });
-    stage.map_or(folder, |(_, stage)| stage)
+    file.split('/').next().unwrap_or_default()
 }
 
 #[test]
@@ -128,7 +114,7 @@ fn no_files_use_each_other_in_a_circle() {
     none(&found, "files use each other in a circle");
 }
 
-/// Whether code names a variant of an enum, such as `History::Ramp`, and not a function of it.
+/// Whether code names a variant of an enum, such as `History::StiffnessRamp`, and not a function of it.
 fn names_a_variant(code: &str, of: &str) -> bool {
     code.match_indices(of).any(|(at, _)| {
         let before = code[..at].chars().next_back();

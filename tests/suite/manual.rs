@@ -7,9 +7,9 @@ use std::path::Path;
 use psd::language::check::{LoadError, Options, check};
 use psd::language::syntax::{format, parse};
 use psd::plan::Interval;
-use psd::record::journal::EntryKind;
 use psd::rig::controllers::native;
 use psd::rig::controllers::native::codec::{AxisBounds, Bounds, End, Kind, LONGEST_FRAME, Request};
+use psd::rig::journal::EntryKind;
 use psd::text::diagnostic::render::{Appearance, render_all};
 use psd::text::source::Sources;
 

@@ -26,7 +26,7 @@ mod tests {
     use super::*;
     use crate::files::failure::amount;
     use crate::plan::ProcedureKind;
-    use crate::record::journal::{Durability, Journal, Storage};
+    use crate::rig::journal::{Durability, Journal, Storage};
     use crate::rig::safety::failpoint::without;
     use crate::rig::virtual_rig;
     use crate::run::{Unwatched, replay};

@@ -11,9 +11,9 @@ use crate::evidence::rebuilt::{Rebuilt, ReplayedRun};
 use crate::files::provenance::{BUILD, TOOLCHAIN};
 use crate::files::recorded_run;
 use crate::files::recorded_run::JOURNAL;
-use crate::record::journal::testing::recover;
-use crate::record::journal::{Durability, EntryKind, FileStorage, Journal};
 use crate::report::OutputFile;
+use crate::rig::journal::testing::recover;
+use crate::rig::journal::{Durability, EntryKind, FileStorage, Journal};
 
 /// The run log as a different program would have begun it.
 fn of_another_build(journal: &[u8]) -> Vec<u8> {

@@ -12,10 +12,10 @@ use crate::evidence::names::MANIFEST;
 use crate::evidence::rebuilt::{Rebuilt, ReplayedRun};
 use crate::files::recorded_run::JOURNAL;
 use crate::plan::formula::ResultValue;
-use crate::record::journal::testing::forged;
-use crate::record::journal::testing::recover;
-use crate::record::journal::{EntryKind, OLDEST_FORMAT};
 use crate::report::manifest_with;
+use crate::rig::journal::testing::forged;
+use crate::rig::journal::testing::recover;
+use crate::rig::journal::{EntryKind, OLDEST_FORMAT};
 use crate::text::digest::sha256;
 use crate::verdict::Verdict;
 

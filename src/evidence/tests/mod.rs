@@ -178,7 +178,7 @@ pub(super) fn faults(findings: &[Finding]) -> Vec<&'static str> {
 fn judged(folder: &Folder, signed: &Signed) -> Vec<&'static str> {
     let (own, bytes) = (run_log(&signed.folder), run_log(folder));
     let head = |bytes: &[u8]| {
-        crate::record::journal::testing::recover(bytes)
+        crate::rig::journal::testing::recover(bytes)
             .ok()
             .map(|found| found.head().to_owned())
     };

@@ -1,6 +1,6 @@
 //! Figures of a report: their kinds, and those that one report requests.
 
-use crate::plan::formula::ProcedureId;
+use crate::formula::ProcedureId;
 
 /// Most procedures on one chart: more curves cannot be distinguished.
 pub const MOST_TOGETHER: usize = 6;
@@ -54,7 +54,7 @@ pub enum FigureKind {
     /// Remaining relaxation of the force against the dwell time.
     Relaxation,
     /// Results of each impact of a series, against its energy.
-    ImpactSeries,
+    Escalate,
 }
 
 impl FigureKind {
@@ -77,7 +77,7 @@ impl FigureKind {
         Self::CycleEnergy,
         Self::StiffnessDegradation,
         Self::Relaxation,
-        Self::ImpactSeries,
+        Self::Escalate,
     ];
 
     /// Name in `figures = [...]` and in file names.
@@ -101,7 +101,7 @@ impl FigureKind {
             Self::CycleEnergy => "cycle_energy",
             Self::StiffnessDegradation => "stiffness_degradation",
             Self::Relaxation => "relaxation",
-            Self::ImpactSeries => "impacts",
+            Self::Escalate => "impacts",
         }
     }
 }

@@ -7,7 +7,7 @@ use super::entry::OperatorBody;
 use super::logged_run::{LoggedRun, body};
 use crate::plan::{Plan, ProcedureKind};
 use crate::record::Event;
-use crate::record::journal::{EntryKind, Line};
+use crate::rig::journal::{EntryKind, Line};
 use crate::run::zero_drift::READINGS;
 
 /// The rules of this version, as stated in the header of a run log. 1: an `unload` may pass the unloaded position, and a `cycle` without

@@ -12,9 +12,9 @@ use super::entry::{
 use super::logged_run::{LoggedRun, body};
 use crate::plan::{Datum, Plan};
 use crate::record::Event;
-use crate::record::journal::{EntryKind, Line, Recovered, is_written_as};
 use crate::rig::LineStatistics;
 use crate::rig::controllers::metres;
+use crate::rig::journal::{EntryKind, Line, Recovered, is_written_as};
 use crate::rig::real::{LoggedReading, check_replies};
 
 /// In a resumed run the time is a sum of two clocks.

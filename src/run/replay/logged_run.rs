@@ -7,8 +7,8 @@ use serde::de::DeserializeOwned;
 
 use super::entry::{AmendBody, Header, PlanBody, ResumeBody, RigBody, TargetStatus};
 use super::in_force::Rigs;
-use crate::record::journal::{EntryKind, Line, Recovered};
 use crate::record::{Event, EventKind};
+use crate::rig::journal::{EntryKind, Line, Recovered};
 use crate::rig::{LineStatistics, position_and_force};
 
 /// The content of a run log.

@@ -43,9 +43,9 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use crate::plan::Plan;
-use crate::record::journal::{EntryKind, Journal, JournalFault};
 use crate::record::{Event, Outcome, Record};
 use crate::rig::Rig;
+use crate::rig::journal::{EntryKind, Journal, JournalFault};
 use entry::PlanBody;
 use state::{Begin, State};
 

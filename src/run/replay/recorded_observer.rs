@@ -8,7 +8,7 @@ use super::compatibility::is_recorded;
 use super::entry::{AxisBody, OperatorBody, OperatorEntry, StepBody};
 use super::state::State;
 use crate::record::Event;
-use crate::record::journal::EntryKind;
+use crate::rig::journal::EntryKind;
 use crate::run::{AxisReport, Inspection, Motion, Next, Observer, Request, StepReport, UNLOADING};
 
 /// An observer of a run whose answers are all logged.

@@ -10,7 +10,7 @@ use super::entry_of::{append_sample, in_log_time, intent, same_bits, target_text
 use super::state::{State, ended};
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::{Interval, Limits};
-use crate::record::journal::EntryKind;
+use crate::rig::journal::EntryKind;
 use crate::rig::safety::failpoint;
 use crate::rig::safety::failpoint::Guarding;
 use crate::rig::{

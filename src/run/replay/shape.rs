@@ -8,7 +8,7 @@ use super::entry::{
     Call, FaultBody, HeldBody, IntentBody, ResumeBody, RigBody, SampleBody, StepBody, TargetStatus,
 };
 use crate::plan::Plan;
-use crate::record::journal::{EntryKind, Line, Recovered};
+use crate::rig::journal::{EntryKind, Line, Recovered};
 
 /// An entry that no run of its plan can have written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -15,7 +15,7 @@ use super::entry::{
 use super::in_force::{InForce, Rigs};
 use super::logged_run::{LoggedRun, Mismatch, body};
 use crate::record::Event;
-use crate::record::journal::{EntryKind, Journal, JournalFault, Line};
+use crate::rig::journal::{EntryKind, Journal, JournalFault, Line};
 use crate::rig::{LineStatistics, Reading, Rig, RigFault};
 use crate::run::Request;
 

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::axes::two_axes::base_excited_plan;
 use super::stage::{Ended, link, plan, run};
 use crate::plan::Plan;
-use crate::record::journal::{EntryKind, Recovered};
+use crate::rig::journal::{EntryKind, Recovered};
 use crate::run::replay;
 use crate::run::replay::LoggedRun;
 

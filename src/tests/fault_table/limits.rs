@@ -6,10 +6,10 @@ use super::motion::impact_plan;
 use super::stage::{Ended, STIFFNESS, emulator, header, link, open, plan_of, run, run_watched, to};
 use crate::emulator::Log;
 use crate::plan::{Limits, Plan, ProcedureKind, SafeState};
-use crate::record::journal::testing::PowerLoss;
-use crate::record::journal::testing::recover;
-use crate::record::journal::{Durability, EntryKind, Journal};
 use crate::record::{EventKind, History, Outcome, Record};
+use crate::rig::journal::testing::PowerLoss;
+use crate::rig::journal::testing::recover;
+use crate::rig::journal::{Durability, EntryKind, Journal};
 use crate::rig::real::RealRig;
 use crate::rig::testing::forwarded;
 use crate::rig::{Rig, RigFault};
@@ -31,7 +31,7 @@ fn limited(mut plan: Plan) -> Plan {
 fn last_row(ended: &Ended) -> (f64, f64) {
     let history = &ended.record.procedures.last().unwrap().history;
     let row = match history {
-        History::Ramp(ramp) => ramp
+        History::StiffnessRamp(ramp) => ramp
             .steps
             .last()
             .map(|step| (step.displacement, step.restoring_force)),

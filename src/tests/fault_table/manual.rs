@@ -5,8 +5,8 @@ use crate::emulator::Log;
 use crate::language::check::{LoadError, Options, check};
 use crate::plan::Plan;
 use crate::record::Outcome;
-use crate::record::journal::testing::PowerLoss;
-use crate::record::journal::{Durability, Journal};
+use crate::rig::journal::testing::PowerLoss;
+use crate::rig::journal::{Durability, Journal};
 use crate::run::{Unwatched, replay};
 
 /// The plans of the manual use no file but a ground motion.

@@ -8,10 +8,10 @@ use crate::plan::{
     Behind, Datum, DeviceLink, Dialect, Interval, Limits, Link, Move, Plan, PortPlan, PretestCheck,
     ProcedureKind, ReadingRules, RealLink, SafeState, Settle,
 };
-use crate::record::journal::testing::PowerLoss;
-use crate::record::journal::testing::recover;
-use crate::record::journal::{Durability, EntryKind, Journal, Line, Recovered};
 use crate::record::{EventKind, History, Outcome, Record};
+use crate::rig::journal::testing::PowerLoss;
+use crate::rig::journal::testing::recover;
+use crate::rig::journal::{Durability, EntryKind, Journal, Line, Recovered};
 use crate::rig::real::RealRig;
 use crate::rig::safety::failpoint::{Guarding, without};
 use crate::rig::transport::Port;
@@ -316,7 +316,7 @@ impl Ended {
             .procedures
             .iter()
             .flat_map(|procedure| match &procedure.history {
-                History::Ramp(history) => history.steps.clone(),
+                History::StiffnessRamp(history) => history.steps.clone(),
                 History::Move(steps) => steps.clone(),
                 _ => Vec::new(),
             });

@@ -10,10 +10,10 @@ use super::stage::{
 };
 use crate::emulator::Log;
 use crate::plan::{Datum, Dialect, ModbusMap, ModbusNumber, Plan};
-use crate::record::journal::EntryKind;
-use crate::record::journal::testing::PowerLoss;
 use crate::record::{EventKind, Outcome};
 use crate::rig::Rig as _;
+use crate::rig::journal::EntryKind;
+use crate::rig::journal::testing::PowerLoss;
 use crate::rig::safety::failpoint::{Guarding, without};
 
 const AT_3_MM: &str = "stands at 3 mm";

@@ -10,6 +10,7 @@ use crate::plan::{Contact, Impact, Link, Plan, ProcedureKind, VirtualLink};
 use crate::record::{NamedResult, Record};
 use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched};
 use crate::uncertainty::StepInterval;
+use psd_testing::plans::ChangeTarget as _;
 
 /// The beam of `plans/beam.psd`.
 const STIFFNESS: f64 = 3e5;

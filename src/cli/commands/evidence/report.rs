@@ -17,7 +17,7 @@ use crate::cli::files::run_folder::{RunFolder, copy};
 use crate::cli::output::print_result;
 use crate::cli::settings::Settings;
 use crate::evidence::{Folder, IssueFile, MANIFEST, ReplayedRun, check_consistency, held_issue};
-use crate::record::journal::FileStorage;
+use crate::rig::journal::FileStorage;
 
 #[derive(Debug, Args)]
 #[command(

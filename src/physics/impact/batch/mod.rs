@@ -3,7 +3,8 @@
 //!
 //! The tangent form under the rigid and the limit law, with elastic and bilinear specimens and exact readings, runs in lanes: one loop steps
 //! thirty-two impacts with the vectors of the processor. The equations of contact, motion, specimen and results are those of a single
-//! impact, written for any [`crate::number::Number`]: branches are selections, and no product and sum are fused. An impact that ends gives its lane to the next one. All other impacts run one by one.
+//! impact, written for any [`crate::number::Number`]: branches are selections, and no product and sum are fused. An impact that ends
+//! gives its lane to the next one. All other impacts run one by one.
 
 mod lanes;
 mod reach;

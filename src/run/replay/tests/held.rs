@@ -8,8 +8,8 @@ use super::{RestingRig, Witness, logged};
 use crate::plan::formula::Formula;
 use crate::plan::{Interval, Move, Plan, ProcedureKind};
 use crate::record::EventKind;
-use crate::record::journal::Durability;
-use crate::record::journal::testing::PowerLoss;
+use crate::rig::journal::Durability;
+use crate::rig::journal::testing::PowerLoss;
 use crate::rig::testing::forwarded;
 use crate::rig::{EncodedMove, FinalHold, Identity, RigFault};
 use crate::run::session::Session;
@@ -364,7 +364,7 @@ fn a_record_without_the_held_position_replays_as_before() {
     );
 }
 
-fn without_events(logged: &LoggedRun) -> std::collections::VecDeque<crate::record::journal::Line> {
+fn without_events(logged: &LoggedRun) -> std::collections::VecDeque<crate::rig::journal::Line> {
     logged
         .lines
         .iter()

@@ -21,8 +21,8 @@ use super::*;
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::{DampingSweep, InspectTrigger, Move, Plan, ProcedureKind, StiffnessRamp};
 use crate::record::EventKind;
-use crate::record::journal::testing::{Killed, PowerLoss, SickDisk, Sickness, recover};
-use crate::record::journal::{Durability, Recovered, Storage};
+use crate::rig::journal::testing::{Killed, PowerLoss, SickDisk, Sickness, recover};
+use crate::rig::journal::{Durability, Recovered, Storage};
 use crate::rig::safety::failpoint::{Guarding, without};
 use crate::rig::{
     CutOff, DeclaredNoise, EachReading, EncodedMove, Identity, LastMove, LineStatistics, Reading,

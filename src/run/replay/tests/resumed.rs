@@ -8,12 +8,13 @@ use crate::plan::formula::Formula::Constant;
 use crate::plan::formula::ResultValue;
 use crate::plan::{Cycle, Impact, Mode, ProcedureKind, StiffnessRamp};
 use crate::record::History;
-use crate::record::journal::Durability;
-use crate::record::journal::testing::PowerLoss;
 use crate::rig::controllers::DeviceFault;
+use crate::rig::journal::Durability;
+use crate::rig::journal::testing::PowerLoss;
 use crate::rig::safety::failpoint::{Guarding, without};
 use crate::rig::{Identity, JUST_STARTED, RigFault};
 use crate::tests::testing::{elastic_plan, header, ramp, result_of};
+use psd_testing::plans::ChangeTarget as _;
 
 /// A run log of an older version with equally spaced targets is replayed with them; this version does not write such run logs.
 #[test]
@@ -96,7 +97,7 @@ fn a_sweep_about_a_position_past_yield() {
     let (_, whole, _) = recorded(&swept_past_yield());
     let (damping, _) = crate::tests::testing::number(&whole.record, 0, "damping");
     assert!(damping.unwrap().abs() < 1e-9, "{damping:?}");
-    let History::Sweep(sweep) = &whole.record.procedures[0].history else {
+    let History::DampingSweep(sweep) = &whole.record.procedures[0].history else {
         panic!()
     };
     assert!(

@@ -10,8 +10,8 @@ use super::super::entry::{
     RecoverBody, ResumeBody, RigBody, SampleBody, StepBody, StrokeBody,
 };
 use crate::record::Event;
-use crate::record::journal::EntryKind;
 use crate::rig::LineStatistics;
+use crate::rig::journal::EntryKind;
 
 /// Whether these bodies are read, and written with the same keys and values.
 fn stable<Body: Serialize + DeserializeOwned>(bodies: &[Value]) {

@@ -11,9 +11,9 @@ use super::interrupted::cut_off::{Resumed, killed, resumed};
 use super::stage::{Ended, emulator, link, open, run, run_watched, run_without};
 use crate::emulator::Log;
 use crate::plan::{Interval, Plan};
-use crate::record::journal::testing::PowerLoss;
-use crate::record::journal::testing::recover;
 use crate::record::{EventKind, Outcome};
+use crate::rig::journal::testing::PowerLoss;
+use crate::rig::journal::testing::recover;
 use crate::rig::safety::failpoint::Guarding;
 use crate::rig::{LineStatistics, Reading, Rig as _, RigFault};
 use crate::run::Unwatched;
@@ -381,7 +381,7 @@ fn each_axis_is_held_to_its_own_bands_when_it_goes_on() {
     );
 }
 
-pub(super) fn logged_run(disk: &PowerLoss) -> (crate::record::journal::Recovered, LoggedRun) {
+pub(super) fn logged_run(disk: &PowerLoss) -> (crate::rig::journal::Recovered, LoggedRun) {
     let recovered = recover(&disk.written()).unwrap();
     let logged_run = LoggedRun::of(&recovered).unwrap();
     (recovered, logged_run)

@@ -3,9 +3,9 @@
 
 use crate::emulator::Log;
 use crate::plan::Plan;
-use crate::record::journal::testing::{SickDisk, Sickness, recover};
-use crate::record::journal::{Durability, Journal};
 use crate::record::{Event, EventKind, Outcome, Record};
+use crate::rig::journal::testing::{SickDisk, Sickness, recover};
+use crate::rig::journal::{Durability, Journal};
 use crate::run::Unwatched;
 use crate::run::replay::{self, LoggedRun};
 use crate::tests::fault_table::stage::{emulator, header, open, plan_of, to};

@@ -182,10 +182,10 @@ fn after_an_impact_the_damper_acts_at_the_velocity_of_the_structure() {
 /// trend.
 #[test]
 fn an_impact_is_not_extrapolated_as_a_trend() {
-    use crate::record::journal::testing::PowerLoss;
-    use crate::record::journal::testing::recover;
-    use crate::record::journal::{Durability, EntryKind, Journal};
     use crate::rig::VirtualRig;
+    use crate::rig::journal::testing::PowerLoss;
+    use crate::rig::journal::testing::recover;
+    use crate::rig::journal::{Durability, EntryKind, Journal};
     use crate::run::Unwatched;
     use crate::run::replay::{begin, record};
 
@@ -300,10 +300,10 @@ fn a_continuous_run_is_stopped_by_a_reading_during_the_motion() {
 /// The recorded continuous run is replayed bit-identically. With one bit of a path changed, the replay differs.
 #[test]
 fn a_continuous_run_is_played_back_from_its_record() {
-    use crate::record::journal::testing::PowerLoss;
-    use crate::record::journal::testing::recover;
-    use crate::record::journal::{Durability, EntryKind, Journal};
     use crate::rig::VirtualRig;
+    use crate::rig::journal::testing::PowerLoss;
+    use crate::rig::journal::testing::recover;
+    use crate::rig::journal::{Durability, EntryKind, Journal};
     use crate::run::Unwatched;
     use crate::run::replay::{LoggedRun, begin, record, replay};
 

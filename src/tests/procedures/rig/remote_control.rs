@@ -4,11 +4,11 @@
 use std::cell::Cell;
 
 use crate::plan::{DriftCheck, Plan, VirtualLink, ZeroAfter};
-use crate::record::journal::testing::PowerLoss;
-use crate::record::journal::testing::recover;
-use crate::record::journal::{Durability, Journal};
 use crate::record::remote::DrivenStep;
 use crate::record::{Outcome, Record};
+use crate::rig::journal::testing::PowerLoss;
+use crate::rig::journal::testing::recover;
+use crate::rig::journal::{Durability, Journal};
 use crate::rig::{RigFault, virtual_rig};
 use crate::run::client_run::{Driver, Requests};
 use crate::run::remote_control::Specimen;

@@ -1,0 +1,72 @@
+//! `unload`: its block and results.
+
+use crate::ProcedureBlock;
+use crate::schema::procedures::{SPECIMEN, SPEED, STIFFNESS};
+use crate::schema::{BlockKind, Field, Kind, Naming, ResultKind};
+use psd_text::units::Dimension;
+
+pub const RESIDUAL_DISPLACEMENT: ResultKind = ResultKind::measured(
+    "residual_displacement",
+    Dimension::LENGTH,
+    "unloaded position; of a frame, the largest of all floors",
+);
+
+pub const RESIDUAL_FORCE: ResultKind = ResultKind::measured(
+    "residual_force",
+    Dimension::FORCE,
+    "remaining force there; of a frame, the largest of a floor",
+);
+
+pub const FLOOR_DISPLACEMENT: ResultKind = ResultKind::measured_list(
+    "floor_displacement",
+    Dimension::LENGTH,
+    "unloaded position of each floor",
+)
+.of_storey();
+
+pub const RESIDUAL_DRIFT: ResultKind = ResultKind::measured_list(
+    "residual_drift",
+    Dimension::LENGTH,
+    "drift of each unloaded storey",
+)
+.of_storey();
+
+pub const RESIDUAL_SHEAR: ResultKind = ResultKind::measured_list(
+    "residual_shear",
+    Dimension::FORCE,
+    "remaining shear of each storey",
+)
+.of_storey();
+
+/// What it leaves, in the order of the tables and of `summary.json`.
+pub const RESULTS: &[ResultKind] = &[
+    RESIDUAL_DISPLACEMENT,
+    RESIDUAL_FORCE,
+    FLOOR_DISPLACEMENT,
+    RESIDUAL_DRIFT,
+    RESIDUAL_SHEAR,
+];
+
+pub const WITHIN: Field = Field::quantity(
+    "within",
+    Dimension::FORCE,
+    "largest force that counts as zero; of a frame, on a floor",
+)
+.above_zero()
+.default_in_words("0.1 % of the initial force, or the smallest detectable force if larger");
+
+pub const BLOCK: BlockKind = BlockKind {
+    kind: Kind::Procedure(ProcedureBlock::Unload),
+    keyword: &["unload"],
+    naming: Naming::Named,
+    fields: &[
+        SPECIMEN.described("specimen to unload"),
+        STIFFNESS.described("expected unloading stiffness; the storeys of a frame have their own"),
+        WITHIN,
+        SPEED,
+    ],
+    exports: &[],
+    results: RESULTS,
+    example: "unload rest { }",
+    doc: "Move to zero restoring force; of a frame, all floors together",
+};
