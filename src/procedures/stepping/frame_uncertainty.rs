@@ -5,7 +5,7 @@
 use super::run::FrameSteps;
 use crate::physics::reintegration::frame::{Floors, FrameRun};
 use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
-use crate::physics::reintegration::hysteresis_replay::ContinuousMotion;
+use crate::physics::reintegration::recorded_path::ContinuousMotion;
 use crate::plan::formula::{Formula, Operator};
 use crate::plan::procedures::shake::block as schema;
 use crate::plan::{Frame, Mode, ShakeDamping, Stepping};
