@@ -2,17 +2,17 @@
 //! the contact force of the step. They know no rig and no procedure.
 
 pub mod contact_time_step;
-mod followed;
 mod hertz;
 mod impulse;
 mod restitution;
+mod spring;
 pub mod state;
 
-pub use followed::Followed;
 pub use hertz::HertzForce;
 pub(crate) use impulse::{Decided, StrikerEnd};
 pub use impulse::{ImpulseContact, Touching};
 pub use restitution::RestitutionContact;
+pub use spring::SpringContact;
 
 use thiserror::Error;
 
@@ -21,7 +21,7 @@ use crate::integrator::Integrator;
 use crate::integrator::step_form::Motion;
 use crate::integrator::substep::{Scratch, Striker, Substep};
 use crate::number::numbers;
-use crate::self_test::Part;
+use crate::self_test::SelfTestPart;
 use crate::structure::matrix::Vector;
 
 /// The contact law between striker and structure, with its numbers: f64 in SI here, formulas in a plan.
@@ -169,12 +169,12 @@ impl<N> ContactLaw<N> {
 
     /// The parts of the self-test that cover it, on one degree of freedom and on a storey.
     #[must_use]
-    pub const fn self_tested(&self) -> [Part; 2] {
+    pub const fn self_tested(&self) -> [SelfTestPart; 2] {
         match self {
-            Self::Rigid => [Part::Rigid, Part::FrameRigid],
-            Self::Limit { .. } => [Part::Limit, Part::FrameLimit],
-            Self::Restitution { .. } => [Part::Restitution, Part::FrameRestitution],
-            Self::Hertz { .. } => [Part::Hertz, Part::FrameHertz],
+            Self::Rigid => [SelfTestPart::Rigid, SelfTestPart::FrameRigid],
+            Self::Limit { .. } => [SelfTestPart::Limit, SelfTestPart::FrameLimit],
+            Self::Restitution { .. } => [SelfTestPart::Restitution, SelfTestPart::FrameRestitution],
+            Self::Hertz { .. } => [SelfTestPart::Hertz, SelfTestPart::FrameHertz],
         }
     }
 
@@ -289,7 +289,7 @@ pub enum AnyContact {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DividingContact {
     Restitution(RestitutionContact),
-    Hertz(Followed<HertzForce>),
+    Hertz(SpringContact<HertzForce>),
 }
 
 impl DividingContact {
@@ -337,8 +337,8 @@ impl AnyContact {
                 force_limit,
             } => {
                 let law = HertzForce::new(stiffness, loss, force_limit);
-                let followed = Followed::new(law, impact);
-                Ok(Self::Divided(DividingContact::Hertz(followed)))
+                let contact = SpringContact::new(law, impact);
+                Ok(Self::Divided(DividingContact::Hertz(contact)))
             }
         }
     }

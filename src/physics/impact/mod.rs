@@ -211,7 +211,7 @@ impl<V> Sink<V> for () {
 
 /// The end of a step in a table \[SI\].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct StepRow {
     pub time: f64,
     pub displacement: f64,
     pub velocity: f64,
@@ -223,10 +223,10 @@ pub struct Row {
 }
 
 /// Memory that was touched before costs a quarter: a vector is to be reused.
-impl Sink for Vec<Row> {
+impl Sink for Vec<StepRow> {
     #[inline]
     fn push(&mut self, _: &State<f64>, state: &ImpactState, _: bool) {
-        self.push(Row {
+        self.push(StepRow {
             time: state.time,
             displacement: state.displacement,
             velocity: state.velocity,

@@ -8,9 +8,10 @@
 
 use fearless_simd::Simd;
 
-use super::rows::{LANES, Part, Row};
+use super::rows::{LANES, LanePart, LaneRow};
 use super::step::{
-    self, Also, Inputs, Marks, State, StrikerInput, Structure, end_step, needed, without_contact,
+    self, Also, BetweenSteps, Marks, StepInputs, StrikerInput, Structure, end_step, needed,
+    without_contact,
 };
 use super::{Batched, Impact, LaneSpecimen};
 use crate::contact::{ContactLaw, ImpulseContact};
@@ -40,10 +41,10 @@ struct Course {
 /// The impacts of all lanes.
 #[derive(Clone, Debug)]
 pub struct Lanes {
-    inputs: Inputs<Row>,
+    inputs: StepInputs<LaneRow>,
     /// A step reads one of them and writes the other, each at its own address. A number that is selected and written where it was read would
     /// become a masked store, which is slow on some processors. What a step leaves as it is, is the same in both.
-    states: [State<Row>; 2],
+    states: [BetweenSteps<LaneRow>; 2],
     /// Index of the state after the last step.
     now: usize,
     /// Steps so far.
@@ -60,7 +61,7 @@ pub struct Lanes {
 }
 
 /// The inputs of an impact, its striker and K0, which its first tangent is.
-fn inputs_of(input: &ImpactInput, specimen: LaneSpecimen) -> Inputs {
+fn inputs_of(input: &ImpactInput, specimen: LaneSpecimen) -> StepInputs {
     let force_limit = match input.law {
         ContactLaw::Limit { force } => force,
         _ => f64::INFINITY,
@@ -71,7 +72,7 @@ fn inputs_of(input: &ImpactInput, specimen: LaneSpecimen) -> Inputs {
         gravity: input.gravity,
         time_step: input.time_step,
     };
-    Inputs {
+    StepInputs {
         structure: Structure {
             mass: input.mass,
             damping: input.damping,
@@ -95,8 +96,8 @@ fn inputs_of(input: &ImpactInput, specimen: LaneSpecimen) -> Inputs {
 }
 
 /// A mass at rest, and a striker that is apart for ever and moves: nothing ever happens.
-fn resting() -> (Inputs, [f64; 2]) {
-    let inputs = Inputs {
+fn resting() -> (StepInputs, [f64; 2]) {
+    let inputs = StepInputs {
         structure: Structure {
             mass: 1.0,
             damping: 0.0,
@@ -126,10 +127,10 @@ impl Lanes {
     /// All at rest.
     pub fn new() -> Self {
         let (inputs, striker) = resting();
-        let state = State::at_rest(&inputs, striker, 0.0, 0.0);
+        let state = BetweenSteps::at_rest(&inputs, striker, 0.0, 0.0);
         Self {
-            inputs: inputs.map(|_| Row::ZERO),
-            states: [state.map(|_| Row::ZERO), state.map(|_| Row::ZERO)],
+            inputs: inputs.map(|_| LaneRow::ZERO),
+            states: [state.map(|_| LaneRow::ZERO), state.map(|_| LaneRow::ZERO)],
             now: 0,
             clock: 0,
             next_end: 0,
@@ -142,8 +143,8 @@ impl Lanes {
         }
     }
 
-    fn set(&mut self, lane: usize, inputs: Inputs, state: State, last: u64) {
-        let set = |row: &mut Row, number: f64| row.set_lane(lane, number);
+    fn set(&mut self, lane: usize, inputs: StepInputs, state: BetweenSteps, last: u64) {
+        let set = |row: &mut LaneRow, number: f64| row.set_lane(lane, number);
         self.inputs.each(inputs, set);
         for states in &mut self.states {
             states.each(state, set);
@@ -168,14 +169,14 @@ impl Lanes {
         let input = &impact.input;
         let inputs = inputs_of(input, impact.lane_specimen(None).expect("batched"));
         let striker = [0.0 - input.gap, input.striker_velocity];
-        let state = State::at_rest(&inputs, striker, input.stiffness, self.instant());
+        let state = BetweenSteps::at_rest(&inputs, striker, input.stiffness, self.instant());
         self.set(lane, inputs, state, self.clock.saturating_add(steps));
     }
 
     /// A lane without an impact.
     pub fn rest(&mut self, lane: usize) {
         let (inputs, striker) = resting();
-        let state = State::at_rest(&inputs, striker, 0.0, self.instant());
+        let state = BetweenSteps::at_rest(&inputs, striker, 0.0, self.instant());
         self.set(lane, inputs, state, u64::MAX);
     }
 
@@ -197,9 +198,9 @@ impl Lanes {
         };
         let (inputs, also) = (&self.inputs, self.also);
         let mut bits = Bits::default();
-        for part in Part::all(simd) {
-            let get = |row: &Row| part.get(row);
-            let set = |row: &mut Row, numbers| part.set(row, numbers);
+        for part in LanePart::all(simd) {
+            let get = |row: &LaneRow| part.get(row);
+            let set = |row: &mut LaneRow, numbers| part.set(row, numbers);
             let (
                 state,
                 Marks {
@@ -232,19 +233,19 @@ impl Lanes {
                 bits.over |= part.bits(over);
             }
         }
-        for part in Part::all(simd) {
-            let get = |row: &Row| part.get(row);
+        for part in LanePart::all(simd) {
+            let get = |row: &LaneRow| part.get(row);
             let tangent = step::tangent(&inputs.map(get), &from.map(get), &to.map(get));
             part.set(&mut to.ahead.tangent, tangent);
         }
-        for part in Part::all(simd) {
-            let get = |row: &Row| part.get(row);
+        for part in LanePart::all(simd) {
+            let get = |row: &LaneRow| part.get(row);
             let [acceleration, response] = without_contact(&inputs.map(get), &to.map(get));
             part.set(&mut to.ahead.free_acceleration, acceleration);
             part.set(&mut to.ahead.response, response);
         }
-        for part in Part::all(simd) {
-            let get = |row: &Row| part.get(row);
+        for part in LanePart::all(simd) {
+            let get = |row: &LaneRow| part.get(row);
             let needed = needed(&inputs.map(get), &to.map(get));
             part.set(&mut to.ahead.needed, needed);
         }
@@ -261,7 +262,7 @@ impl Lanes {
         let instant = self.instant();
         for (lane, Course { events, .. }) in self.courses.iter_mut().enumerate() {
             let is_set = |bits: u64| bits >> lane & 1 == 1;
-            let closing = |state: &State<Row>| {
+            let closing = |state: &BetweenSteps<LaneRow>| {
                 state.motion.striker_velocity.lane(lane) - state.motion.velocity.lane(lane)
             };
             if is_set(changed & self.bits.touching) {
@@ -287,7 +288,7 @@ impl Lanes {
     pub fn look_ahead(&mut self, ends_at_stop: bool) {
         let lasts = self.courses.iter().map(|course| course.last);
         self.next_end = lasts.min().unwrap_or_default();
-        let some = |row: &Row| row.any(|number| number != 0.0);
+        let some = |row: &LaneRow| row.any(|number| number != 0.0);
         self.also = Also {
             damped: some(&self.inputs.structure.damping),
             falls: some(&self.inputs.contact.fall),
@@ -302,8 +303,8 @@ impl Lanes {
         } = self.courses[lane];
         #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]
         let time = |step: f64| (step - begun as f64) * input.time_step;
-        let number = |row: &Row| row.lane(lane);
-        let State {
+        let number = |row: &LaneRow| row.lane(lane);
+        let BetweenSteps {
             motion,
             work,
             indented,

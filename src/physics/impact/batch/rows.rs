@@ -20,9 +20,9 @@ pub const LANES: usize = 32;
 /// A number of every lane.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))] // No vector lies in two lines of the cache.
-pub(super) struct Row([f64; LANES]);
+pub(super) struct LaneRow([f64; LANES]);
 
-impl Row {
+impl LaneRow {
     pub const ZERO: Self = Self([0.0; LANES]);
 
     pub const fn lane(&self, lane: usize) -> f64 {
@@ -40,12 +40,12 @@ impl Row {
 
 /// Some lanes, as many as a vector of the processor has.
 #[derive(Clone, Copy)]
-pub(super) struct Part<S> {
+pub(super) struct LanePart<S> {
     simd: S,
     first: usize,
 }
 
-impl<S: Simd> Part<S> {
+impl<S: Simd> LanePart<S> {
     #[inline(always)]
     pub fn all(simd: S) -> impl Iterator<Item = Self> {
         (0..LANES)
@@ -54,7 +54,7 @@ impl<S: Simd> Part<S> {
     }
 
     #[inline(always)]
-    pub fn get(self, row: &Row) -> Side<S> {
+    pub fn get(self, row: &LaneRow) -> Side<S> {
         Side(S::f64s::from_slice(
             self.simd,
             &row.0[self.first..self.first + S::f64s::LEN],
@@ -62,7 +62,7 @@ impl<S: Simd> Part<S> {
     }
 
     #[inline(always)]
-    pub fn set(self, row: &mut Row, numbers: Side<S>) {
+    pub fn set(self, row: &mut LaneRow, numbers: Side<S>) {
         numbers
             .0
             .store_slice(&mut row.0[self.first..self.first + S::f64s::LEN]);

@@ -123,7 +123,7 @@ macro_rules! groups {
 
 groups! {
     /// What does not change.
-    Inputs {
+    StepInputs {
         structure: Structure,
         specimen: BilinearLines,
         contact: ImpulseContact,
@@ -133,7 +133,7 @@ groups! {
 
 groups! {
     /// The end of a step, where the next one begins.
-    State {
+    BetweenSteps {
         motion: Motion,
         ahead: Ahead,
         work: Work,
@@ -164,9 +164,9 @@ pub(super) struct Marks<N: Touching> {
     pub over: N::Answer,
 }
 
-impl State {
+impl BetweenSteps {
     /// From rest at X = 0, with the striker at `striker_displacement`; `instant` is the start.
-    pub fn at_rest(inputs: &Inputs, [xs, vs]: [f64; 2], tangent: f64, instant: f64) -> Self {
+    pub fn at_rest(inputs: &StepInputs, [xs, vs]: [f64; 2], tangent: f64, instant: f64) -> Self {
         let end = StepEnd {
             instant,
             displacement: 0.0,
@@ -218,12 +218,12 @@ impl State {
 /// The contact; eqs. (2c) and (2d), and the force there; the striker; the work of all forces, and the results so far.
 #[inline(always)]
 pub(super) fn end_step<N: Touching, const YIELDS: bool, const LIMITED: bool>(
-    inputs: &Inputs<N>,
-    from: &State<N>,
+    inputs: &StepInputs<N>,
+    from: &BetweenSteps<N>,
     also: Also,
     instant: N,
-) -> (State<N>, Marks<N>) {
-    let Inputs {
+) -> (BetweenSteps<N>, Marks<N>) {
+    let StepInputs {
         structure,
         specimen,
         contact,
@@ -257,7 +257,7 @@ pub(super) fn end_step<N: Touching, const YIELDS: bool, const LIMITED: bool>(
     };
     let end = contact.advance(time_step, &start, &decided, [x1, v1]);
 
-    let State {
+    let BetweenSteps {
         mut work,
         mut indented,
         mut damped,
@@ -297,7 +297,7 @@ pub(super) fn end_step<N: Touching, const YIELDS: bool, const LIMITED: bool>(
         stopped,
         over: stopped & v1.le(zero),
     };
-    let state = State {
+    let state = BetweenSteps {
         motion: Motion {
             displacement: x1,
             velocity: v1,
@@ -320,7 +320,11 @@ pub(super) fn end_step<N: Touching, const YIELDS: bool, const LIMITED: bool>(
 
 /// K_t of the next step, eq. (6).
 #[inline(always)]
-pub(super) fn tangent<N: Number>(inputs: &Inputs<N>, from: &State<N>, to: &State<N>) -> N {
+pub(super) fn tangent<N: Number>(
+    inputs: &StepInputs<N>,
+    from: &BetweenSteps<N>,
+    to: &BetweenSteps<N>,
+) -> N {
     let change = to.motion.displacement - from.motion.displacement;
     let secant = || {
         secant(
@@ -338,7 +342,7 @@ pub(super) fn tangent<N: Number>(inputs: &Inputs<N>, from: &State<N>, to: &State
 
 /// Eqs. (4) and (5) of the next step without its contact: Ẍ₁, and 1/M̂.
 #[inline(always)]
-pub(super) fn without_contact<N: Number>(inputs: &Inputs<N>, to: &State<N>) -> [N; 2] {
+pub(super) fn without_contact<N: Number>(inputs: &StepInputs<N>, to: &BetweenSteps<N>) -> [N; 2] {
     let Structure {
         mass,
         damping,
@@ -360,7 +364,7 @@ pub(super) fn without_contact<N: Number>(inputs: &Inputs<N>, to: &State<N>) -> [
 
 /// The contact force that stops the closing in the next step.
 #[inline(always)]
-pub(super) fn needed<N: Touching>(inputs: &Inputs<N>, to: &State<N>) -> N {
+pub(super) fn needed<N: Touching>(inputs: &StepInputs<N>, to: &BetweenSteps<N>) -> N {
     let half = inputs.structure.time_step * 0.5;
     let accelerations = to.motion.acceleration + to.ahead.free_acceleration;
     let free = to.motion.velocity + half * accelerations;

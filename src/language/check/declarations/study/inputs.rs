@@ -8,7 +8,7 @@ use crate::language::check::checker::{Checker, Context};
 use crate::language::check::messages::{inputs as names, studies as message};
 use crate::language::syntax::ast::{BinaryOperator, Expr, ExprKind};
 use crate::physics::study::distribution::{Distribution, Spread};
-use crate::physics::study::inputs::{InputError, Inputs, Source};
+use crate::physics::study::inputs::{InputError, Source, StudyInputs};
 use crate::physics::study::sampling::sobol::MOST_INPUTS;
 use crate::physics::study::sampling::{Design, DesignError};
 use crate::plan::study::{Measured, REPLICATES, Sampling, Variation};
@@ -52,7 +52,7 @@ pub(super) fn variation(
     let correlations = correlation::correlations(checker, block, &varied)?;
     let (sampling, seed) = (sampling?, seed?);
     let pairs: Vec<_> = correlations.iter().map(|pair| pair.node).collect();
-    match Inputs::new(sources.clone(), &pairs, design(sampling), seed) {
+    match StudyInputs::new(sources.clone(), &pairs, design(sampling), seed) {
         Ok(_) => {}
         Err(InputError::Correlation(reason)) => {
             return correlation::refused(checker, reason, &correlations, &varied);
