@@ -9,11 +9,10 @@
 
 pub use psd_physics as physics;
 pub use psd_plan::{self as plan, record, schema, uncertainty};
+pub use psd_rig::{self as rig, emulator};
 pub use psd_text::{self as text, units};
 
 pub mod language;
-
-pub mod rig;
 
 pub mod run;
 
@@ -23,7 +22,6 @@ pub mod verdict;
 
 pub mod report;
 
-pub mod emulator;
 pub mod remote;
 
 pub(crate) mod evidence;

@@ -18,7 +18,7 @@ const ORDER: &[&[&str]] = &[
     &["procedures"],
     &["golden", "remote"],
     &["files"],
-    &["emulator", "evidence"],
+    &["evidence"],
     &["study"],
     &["cli"],
 ];

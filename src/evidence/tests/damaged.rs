@@ -14,10 +14,10 @@ use crate::files::recorded_run::JOURNAL;
 use crate::report;
 use crate::rig::Reading;
 use crate::rig::journal::EntryKind;
-use crate::rig::journal::testing::{Vandal, records, written};
 use crate::run::Unwatched;
 use crate::run::replay;
 use crate::run::replay::Bands;
+use psd_testing::journal::{Vandal, records, written};
 
 /// A change to the entries of a run log.
 type Damage<'a> = &'a dyn Fn(&mut Vec<(EntryKind, Value)>);

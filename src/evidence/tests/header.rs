@@ -13,11 +13,11 @@ use crate::evidence::rebuilt::{Rebuilt, ReplayedRun};
 use crate::files::recorded_run::JOURNAL;
 use crate::plan::formula::ResultValue;
 use crate::report::manifest_with;
-use crate::rig::journal::testing::forged;
-use crate::rig::journal::testing::recover;
 use crate::rig::journal::{EntryKind, OLDEST_FORMAT};
 use crate::text::digest::sha256;
 use crate::verdict::Verdict;
+use psd_testing::journal::forged;
+use psd_testing::journal::recover;
 
 /// The folder of the run with a different first line. All check values and the manifest are consistent with it.
 fn retold(mut alter: impl FnMut(&mut Value)) -> Folder {

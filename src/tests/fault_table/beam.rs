@@ -9,11 +9,11 @@ use crate::language::check::{Checked, LoadError, Options, check};
 use crate::plan::Plan;
 use crate::plan::formula::ResultValue;
 use crate::record::{Outcome, Record};
-use crate::rig::journal::testing::PowerLoss;
 use crate::rig::journal::{Durability, Journal};
 use crate::rig::virtual_rig;
 use crate::run::{Unwatched, replay, run};
 use crate::text::diagnostic::Code;
+use psd_testing::journal::PowerLoss;
 
 /// Stiffness of the beam \[N/m\].
 const STIFFNESS: f64 = 3e5;

@@ -5,9 +5,9 @@ use crate::emulator::Log;
 use crate::language::check::{LoadError, Options, check};
 use crate::plan::Plan;
 use crate::record::Outcome;
-use crate::rig::journal::testing::PowerLoss;
 use crate::rig::journal::{Durability, Journal};
 use crate::run::{Unwatched, replay};
+use psd_testing::journal::PowerLoss;
 
 /// The plans of the manual use no file but a ground motion.
 fn ground(path: &str) -> Result<String, LoadError> {
