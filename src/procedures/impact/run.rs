@@ -12,10 +12,8 @@ use crate::physics::structure::frame_properties::FrameProperties;
 use crate::physics::tracking::monitor::Tracking;
 use crate::plan::{Impact, ImpactTarget, Plan, StoreyTarget, Until};
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
-use crate::procedures::stepping::setting::{FrameSteps, above_critical};
-use crate::procedures::stepping::step_loop::{
-    self, AxesState, Balance, Start, Stepped, not_stepped,
-};
+use crate::procedures::stepping::setting::{FrameSteps, Start, above_critical, not_stepped};
+use crate::procedures::stepping::step_loop::{self, AxesState, Balance, Stepped};
 use crate::procedures::stepping::tracking::TrackingSummary;
 use crate::record::{
     FloorMotion, FloorStep, History, ImpactHistory, ImpactStep, NamedResult, StruckFrame,

@@ -8,9 +8,8 @@ use crate::physics::structure::ground::acceleration_at;
 use crate::physics::tracking::monitor::Tracking;
 use crate::plan::{Ground, Shake};
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
-use crate::procedures::stepping::step_loop::{
-    self, AxesState, Balance, Start, Stepped, not_stepped,
-};
+use crate::procedures::stepping::setting::{Start, not_stepped};
+use crate::procedures::stepping::step_loop::{self, AxesState, Balance, Stepped};
 use crate::procedures::stepping::tracking::TrackingSummary;
 use crate::record::{FloorMotion, ShakeHistory, ShakeStep};
 use crate::rig::Reading;

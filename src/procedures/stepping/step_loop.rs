@@ -7,23 +7,18 @@
 //! r* = `r_m` − `K_I`(`d_m` − d̃). The force of a damper of the specimen is in the reading, at the actuator's velocity:
 //! c·v/`time_scale`.
 
-use std::fmt::Display;
-
 use super::continuous_motion::{ContinuousMotion, Waypoint};
 use super::operator_stability_watch::StifferSprings;
-use super::setting::{FrameSteps, Steps};
+use super::setting::{Start, Steps};
 use super::tracking::{Monitors, TrackingSummary};
-use crate::physics::integrator::input::FrameInput;
 use crate::physics::integrator::state::State;
 use crate::physics::structure::matrix::Vector;
 use crate::physics::tracking::monitor::Tracking;
 use crate::plan::{InspectTrigger, Mode, Stepping};
-use crate::rig::{DeclaredNoise, Reading};
+use crate::rig::Reading;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::run::{AxisReport, StepReport};
-use crate::schema::methods;
-use crate::units::Dimension;
 
 /// The energy of a test at the end of a step \[J\].
 pub(crate) struct Balance {
@@ -170,45 +165,6 @@ fn waypoints(stepped: &mut impl Stepped) -> Vec<Waypoint> {
             struck,
         })
         .collect()
-}
-
-/// The state when the first step begins.
-pub(crate) struct Start {
-    /// Commanded positions of the actuators \[m\]: X starts there.
-    pub commanded: Vec<f64>,
-    /// One reading there: it contains R₀.
-    pub reading: Reading,
-    pub noise: DeclaredNoise,
-}
-
-impl Start {
-    /// The initial state of a frame, with these loads on its floors \[N\].
-    pub(crate) fn input<'a>(
-        &'a self,
-        frame: &'a FrameSteps,
-        plan: &Stepping,
-        load: &'a [f64],
-    ) -> FrameInput<'a> {
-        let matrices = &frame.properties.matrices;
-        FrameInput {
-            matrices,
-            operator_stiffness: &matrices.stiffness,
-            integrator: plan.integrator,
-            i_modification: plan.i_modification,
-            tangents: frame.tangents,
-            time_step: frame.steps.time_step,
-            initial_displacement: &self.commanded,
-            initial_restoring_force: &self.reading.force,
-            initial_load: load,
-            noise: self.noise,
-        }
-    }
-}
-
-/// The input error of a structure that cannot be integrated with `time_step` \[s\].
-pub(crate) fn not_stepped(time_step: f64, error: &impl Display) -> Stop {
-    let wanted = format!("one that can be stepped: {error}");
-    Stop::bad_input(methods::TIME_STEP.name, time_step, Dimension::TIME, wanted)
 }
 
 /// The end of a step, one entry per axis.

@@ -5,8 +5,8 @@
 //! loop is closed and erased (Masing's rule; the return-point memory of Iwan's and Preisach's models). One branch may therefore have
 //! pieces of several curves, and one curve pieces on several branches.
 
-use super::Reading;
 use super::rate_correction::ContinuousReadings;
+use super::{Reading, branches_of};
 
 /// A loop thinner than this fraction of its force range is not a loop: unloading follows the loading branch.
 const THIN: f64 = 1e-3;
@@ -316,24 +316,6 @@ fn slope(points: &[(f64, f64)]) -> Option<f64> {
 pub(super) fn monotonic_branches(readings: &[Reading]) -> Vec<(usize, usize, f64)> {
     let moved = readings.windows(2).map(|two| two[1].target - two[0].target);
     branches_of(std::iter::once(0.0).chain(moved))
-}
-
-/// The same from the move to each reading: a displacement change, or a velocity.
-pub(super) fn branches_of(travel: impl Iterator<Item = f64>) -> Vec<(usize, usize, f64)> {
-    let mut found = Vec::new();
-    let (mut begin, mut last, mut direction) = (0, 0, 0.0);
-    for (step, moved) in travel.enumerate() {
-        last = step;
-        if moved * direction < 0.0 {
-            found.push((begin, step - 1, direction));
-            begin = step - 1;
-        }
-        if moved != 0.0 {
-            direction = moved.signum();
-        }
-    }
-    found.push((begin, last, direction));
-    found
 }
 
 /// Displacement \[m\] and force \[N\] from the begin of a curve, both positive in its direction.

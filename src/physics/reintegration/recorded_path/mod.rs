@@ -43,6 +43,25 @@ pub struct ContinuousMotion<V> {
     pub time_step: f64,
 }
 
+/// Readings at the ends of each segment without a reversal, and its direction, from the move to each reading: a displacement change, or a
+/// velocity.
+fn branches_of(travel: impl Iterator<Item = f64>) -> Vec<(usize, usize, f64)> {
+    let mut found = Vec::new();
+    let (mut begin, mut last, mut direction) = (0, 0, 0.0);
+    for (step, moved) in travel.enumerate() {
+        last = step;
+        if moved * direction < 0.0 {
+            found.push((begin, step - 1, direction));
+            begin = step - 1;
+        }
+        if moved != 0.0 {
+            direction = moved.signum();
+        }
+    }
+    found.push((begin, last, direction));
+    found
+}
+
 /// A re-run that reverses where nothing is recorded departs from the record beyond this fraction of the farthest recorded position.
 const UNSEEN: f64 = 1e-3;
 /// Curves nearer to their record than this fraction of it lie on it.
