@@ -3,11 +3,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::language::check::messages::names as message;
-use crate::language::syntax::ast::{Argument, Ast, Block, Expr, ExprKind, Ident, ItemKind};
-use crate::schema::{self, Kind, NameRole, Renamed};
-use crate::text::diagnostic::Diagnostic;
-use crate::text::source::Span;
+use crate::check::messages::names as message;
+use crate::syntax::ast::{Argument, Ast, Block, Expr, ExprKind, Ident, ItemKind};
+use psd_plan::schema::{self, Kind, NameRole, Renamed};
+use psd_text::diagnostic::Diagnostic;
+use psd_text::source::Span;
 
 /// Replaces every old name. If the plan is not `recorded`, reports each of them, except aliases.
 pub fn restate(trees: &mut [Ast], recorded: bool, diagnostics: &mut Vec<Diagnostic>) {

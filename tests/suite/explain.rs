@@ -3,7 +3,7 @@
 //! The first word after `psd` gives the kind of a plan: `wrong`, `right`, or `file="lib/a.psd"`. Such a file can be used by both plans
 //! (`*` matches any digits). `name="a.md"` is the name of a plan that is not `plan.psd`. The other options: `explain_pages.rs`.
 
-use psd::language::check::{Checked, LoadError, check};
+use psd::check::{Checked, LoadError, check};
 use psd::language::syntax::{format, format_document, parse};
 use psd::text::diagnostic::page::{Page, PagePlan};
 use psd::text::diagnostic::{Code, Severity};

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use psd::language::check::Options;
+use psd::check::Options;
 use psd::text::diagnostic::Code;
 use psd::text::diagnostic::page::{Page, PagePlan};
 

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use super::source_text::files_in;
 use page_cases::PAGE_CASES;
-use psd::language::check::{Checked, Options, check};
+use psd::check::{Checked, Options, check};
 use psd::record::{Outcome, Record};
 use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};

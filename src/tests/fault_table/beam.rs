@@ -4,8 +4,8 @@
 //! and force at one instant. For every other driver the sweep is refused, and its result is supplied instead.
 
 use super::stage::{emulator, header, open};
+use crate::check::{Checked, LoadError, Options, check};
 use crate::emulator::Log;
-use crate::language::check::{Checked, LoadError, Options, check};
 use crate::plan::Plan;
 use crate::plan::formula::ResultValue;
 use crate::record::{Outcome, Record};

@@ -1,8 +1,8 @@
 //! The rigs of the manual, each with its own emulator and the noise that it declares. Every rig passes its pre-test check for every seed.
 
 use super::stage::{emulator, header, open};
+use crate::check::{LoadError, Options, check};
 use crate::emulator::Log;
-use crate::language::check::{LoadError, Options, check};
 use crate::plan::Plan;
 use crate::record::Outcome;
 use crate::rig::journal::{Durability, Journal};

@@ -5,7 +5,7 @@ use std::fs;
 use std::ops::Range;
 use std::sync::LazyLock;
 
-use psd::language::check::{Checked, check, no_files};
+use psd::check::{Checked, check, no_files};
 use psd::text::diagnostic::page::{Page, PagePlan};
 use psd::text::diagnostic::{Code, Severity};
 use similar::TextDiff;

@@ -1,11 +1,11 @@
 //! The wording of the diagnostics of the check, one file per subject. In: names, values and spans.
 //! Out: diagnostics. They make no decision.
 
-use crate::language::syntax::ast::Ident;
-use crate::language::syntax::limits::ERRORS;
-use crate::schema::BlockKind;
-use crate::text::diagnostic::{Code, Diagnostic, Severity};
-use crate::units::{Dimension, display};
+use crate::syntax::ast::Ident;
+use crate::syntax::limits::ERRORS;
+use psd_plan::schema::BlockKind;
+use psd_text::diagnostic::{Code, Diagnostic, Severity};
+use psd_text::units::{Dimension, display};
 
 pub mod axes;
 pub mod cyclic;
@@ -113,7 +113,7 @@ fn joined<'a>(words: impl IntoIterator<Item = &'a str>, by: &str) -> String {
 /// "did you mean `x`?", or a list of the known names.
 pub fn suggestion<'a>(written: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.into_iter().collect();
-    match crate::text::suggest::nearest(written, known.iter().copied()) {
+    match psd_text::suggest::nearest(written, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
         None if known.is_empty() => "remove it".to_owned(),
         None => format!("known here: {}", one_of(known)),

@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use super::{checked, files};
-use crate::language::check::{Options, ParsedPlan};
+use crate::check::{Options, ParsedPlan};
 use crate::plan::Plan;
 use crate::text::diagnostic::Code;
 use crate::units::{Dimension, Quantity};

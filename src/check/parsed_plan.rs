@@ -3,13 +3,15 @@
 
 use std::collections::BTreeMap;
 
-use super::checker::{Checker, End};
 use super::driver::{self, Findings, PlanText};
-use super::expressions::data_file::DataFile;
-use super::expressions::parameters::{names_of_parameters, read_settings};
-use super::messages::{self, names};
-use super::scope::{Scope, Setting};
-use super::{Checked, Loader, Options, imports, no_files, rig};
+use super::{Checked, Options};
+use super::{Loader, no_files};
+use crate::language::check::checker::{Checker, End};
+use crate::language::check::expressions::data_file::DataFile;
+use crate::language::check::expressions::parameters::{names_of_parameters, read_settings};
+use crate::language::check::messages::{self, names};
+use crate::language::check::scope::{Scope, Setting};
+use crate::language::check::{imports, rig};
 use crate::language::renamed;
 use crate::language::syntax::ast::Ast;
 use crate::plan::{Plan, PlanFile};

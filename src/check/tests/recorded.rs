@@ -2,7 +2,7 @@
 //! run log.
 
 use super::{check, no_files};
-use crate::language::check::Options;
+use crate::check::Options;
 
 const OLDER: &str = r#"specimen bar {
   length    = 1.2 m

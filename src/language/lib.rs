@@ -2,5 +2,5 @@
 //! keywords and fields are in `schema`. It runs nothing.
 
 pub mod check;
-mod renamed;
+pub mod renamed;
 pub mod syntax;

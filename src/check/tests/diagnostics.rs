@@ -130,11 +130,11 @@ fn the_plan_as_a_whole_and_the_command_line() {
         only(&format!("{BODY}let a = 1\nmove m {{ to = 1 mm }}"), &[]),
         "W706 a\nW704 move m"
     );
-    let rig = crate::language::check::Options {
+    let rig = crate::check::Options {
         rig: Some("x".to_owned()),
         ..Default::default()
     };
-    let found = crate::language::check::check("p.psd", BODY, &no_files, &rig).diagnostics;
+    let found = crate::check::check("p.psd", BODY, &no_files, &rig).diagnostics;
     assert_eq!(
         found
             .iter()

@@ -1,13 +1,13 @@
 //! Names of version 0.1: each is an error that gives the present name, and the plan of a run log is read with them.
 
 use super::{check, files};
-use crate::language::check::{Checked, Options};
+use crate::check::{Checked, Options};
 use crate::plan::{Condition, Plan};
 use crate::schema::RENAMED;
 use crate::text::diagnostic::{Code, Diagnostic};
 
 /// The page of the error, with the same table.
-const OLD_NAMES: &str = include_str!("../../../text/diagnostic/explain/E215.md");
+const OLD_NAMES: &str = include_str!("../../text/diagnostic/explain/E215.md");
 
 /// Every name of the table at a place where it was allowed, as `old → present`.
 const PLAN: &str = r#"specimen bar {

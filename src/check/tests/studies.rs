@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{checked, files};
-use crate::language::check::{Options, ParsedPlan};
+use crate::check::{Options, ParsedPlan};
 use crate::physics::study::distribution::{Distribution, Spread};
 use crate::physics::study::inputs::{Source, StudyInputs};
 use crate::physics::study::sampling::Design;

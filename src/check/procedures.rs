@@ -1,9 +1,9 @@
 //! The procedures in the order of the plan, and the specimen that they test.
 
-use super::checker::Checker;
-use super::messages::{axes as axis_faults, frames, whole as message};
-use super::rig::CheckedRig;
-use super::rig::axes;
+use crate::language::check::checker::Checker;
+use crate::language::check::messages::{axes as axis_faults, frames, whole as message};
+use crate::language::check::rig::CheckedRig;
+use crate::language::check::rig::axes;
 use crate::plan::{Procedure, Specimen};
 use crate::procedures;
 use crate::procedures::facts::Tests;

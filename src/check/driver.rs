@@ -1,9 +1,10 @@
 //! The order of a check: every block in turn, then conditions on several of them, then the warnings. In: the syntax trees and a loader of
 //! data files. Out: the plan, or diagnostics with the reasons why it is missing. It does not depend on any particular procedure.
 
-use super::checker::Checker;
-use super::declared::Declared;
-use super::{Options, declarations, procedures, rig, warnings};
+use super::{Options, golden, procedures, report, warnings};
+use crate::language::check::checker::Checker;
+use crate::language::check::declared::Declared;
+use crate::language::check::{declarations, rig, warnings as of_the_language};
 use crate::plan::{Plan, PlanFile, Procedure, Studies};
 use crate::procedures as slices;
 use crate::schema::Kind;
@@ -169,8 +170,8 @@ pub fn plan(
         .iter()
         .map(|(_, procedure)| procedure.clone())
         .collect();
-    let report = declarations::report::report(checker, &in_plan_order);
-    let golden = declarations::golden::golden(checker);
+    let report = report::report(checker, &in_plan_order);
+    let golden = golden::golden(checker);
     if !has_error(checker) {
         let warns = findings == Findings::WarningsToo;
         if warns {
@@ -199,9 +200,15 @@ pub fn plan(
             warnings::left::warn(checker, &procedures, requirements);
             if let Some(limits) = &limits {
                 let (limits, positive) = (&limits.limits, slices::stays_positive);
-                warnings::decided::check(checker, &procedures, requirements, limits, positive);
+                of_the_language::decided::check(
+                    checker,
+                    &procedures,
+                    requirements,
+                    limits,
+                    positive,
+                );
             }
-            warnings::guarded::warn(checker, &procedures, requirements, rule);
+            of_the_language::guarded::warn(checker, &procedures, requirements, rule);
             let reproductions = reproductions.as_deref().unwrap_or(&[]);
             let stated = warnings::Stated {
                 requirements,
@@ -236,7 +243,7 @@ pub fn plan(
         let blocks: Vec<usize> = procedures.iter().map(|(block, _)| *block).collect();
         if findings == Findings::WarningsToo {
             warnings::tracking::warn(checker, &plan, &blocks, rig_block);
-            warnings::guarded::warn_of_partial(checker, &plan, rig_block);
+            of_the_language::guarded::warn_of_partial(checker, &plan, rig_block);
         }
         warnings::recorded_steps::check(checker, &plan, &blocks);
     }

@@ -2,6 +2,7 @@
 //! the absolute value of the number, as in `require … within`.
 
 use crate::language::check::checker::{Checker, Context, Reads};
+use crate::language::check::declarations::tolerance::tolerance;
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::messages::{golden as message, names};
 use crate::language::check::scope::Meaning;
@@ -17,11 +18,6 @@ use crate::units::Dimension;
 /// A tolerance of 0.1 or more has little effect.
 const WIDE: f64 = 0.1;
 
-const CONSTANT: Context = Context {
-    entry: None,
-    reads: Reads::Nothing("a tolerance"),
-    critical: false,
-};
 const RESULTS: Context = Context {
     entry: None,
     reads: Reads::All,
@@ -212,30 +208,4 @@ fn narrow<'a>(
         checker.diagnostics.push(message::wide(value, written.span));
     }
     Some(tolerance)
-}
-
-/// `1 us` is absolute, `0.1 %` is relative to the absolute value of the number.
-pub(super) fn tolerance<'a>(
-    checker: &mut Checker<'a>,
-    field: &str,
-    written: &'a Expr,
-    dimension: Dimension,
-) -> Option<Tolerance> {
-    let typed = checker.single(written, CONSTANT)?;
-    let relative = typed.percent
-        || (typed.dimension == Dimension::NUMBER && dimension != Dimension::NUMBER && !typed.bare);
-    let typed = if relative {
-        typed
-    } else {
-        checker.expect(typed, dimension, field, written)?
-    };
-    let value = typed.constant()?;
-    if value < 0.0 {
-        return checker.fail(message::negative(written.span, checker.text(written.span)));
-    }
-    Some(if relative {
-        Tolerance::Relative(value)
-    } else {
-        Tolerance::Absolute(value)
-    })
 }
