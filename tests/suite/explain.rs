@@ -87,7 +87,6 @@ fn checked(code: Code, kind: &str) -> Checked {
             .collect(),
         date: None,
         unattended: plan.option("unattended").is_some(),
-        recorded: false,
         for_studies: false,
     };
     check(
