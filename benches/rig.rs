@@ -10,9 +10,9 @@ use std::time::{Duration, Instant};
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
+use psd::check::{Options, check, no_files};
 use psd::emulator::lines::real_time::Carrier as _;
 use psd::emulator::{Log, PseudoTerminal, RigEmulator, Script, of_plan};
-use psd::language::check::{Options, check, no_files};
 use psd::plan::{Plan, RealLink};
 use psd::record::{History, Outcome, Record};
 use psd::rig::StopRequest;

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use super::failure::{Failure, plain};
-use crate::language::check::{LoadError, Options, check};
+use crate::check::{LoadError, Options, check};
 use crate::plan::Plan;
 use crate::record::equipment::{Device, Equipment};
 use crate::report::{Build, Provenance, RealRun};

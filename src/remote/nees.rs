@@ -8,8 +8,8 @@
 
 use super::Ended;
 use super::connection::Connection;
-use super::nees_message::{self, Refusal, Request, Why};
 use crate::rig::RigFault;
+use crate::rig::protocols::nees_message::{self, Refusal, Request, Why};
 use crate::run::remote_control::Specimen;
 
 /// Longest line accepted, bytes.

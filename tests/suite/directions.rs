@@ -10,15 +10,14 @@ const ORDER: &[&[&str]] = &[
     &["text"],
     &["physics"],
     &["plan"],
-    &["language"],
-    &["rig"],
+    &["language", "rig"],
     &["run"],
     &["verdict"],
     &["report"],
     &["procedures"],
-    &["golden", "remote"],
+    &["check", "golden", "remote"],
     &["files"],
-    &["emulator", "evidence"],
+    &["evidence"],
     &["study"],
     &["cli"],
 ];
@@ -32,14 +31,6 @@ const FACTS: &str = "procedures/facts.rs";
 /// The drivers of check, run and report. Only they query the procedures, and only through the dispatch file. All other files in their
 /// folders are engines, which the procedures use.
 const DRIVERS: &[&str] = &[
-    "language/check/declarations/golden.rs",
-    "language/check/declarations/report.rs",
-    "language/check/driver.rs",
-    "language/check/procedures.rs",
-    "language/check/warnings/left.rs",
-    "language/check/warnings/mod.rs",
-    "language/check/warnings/recorded_steps.rs",
-    "language/check/warnings/tracking.rs",
     "report/budget/line.rs",
     "report/figures/mod.rs",
     "report/sections/conditions/mod.rs",

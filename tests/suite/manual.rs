@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use psd::language::check::{LoadError, Options, check};
+use psd::check::{LoadError, Options, check};
 use psd::language::syntax::{format, parse};
 use psd::plan::Interval;
 use psd::rig::controllers::native;

@@ -7,8 +7,8 @@ use crate::files::provenance::{BUILD, TOOLCHAIN};
 use crate::files::recorded_run;
 use crate::files::recorded_run::JOURNAL;
 use crate::report::OutputFile;
-use crate::rig::journal::testing::recover;
 use crate::rig::journal::{Durability, EntryKind, FileStorage, Journal};
+use psd_testing::journal::recover;
 
 /// The run log as a different program would have begun it.
 fn of_another_build(journal: &[u8]) -> Vec<u8> {

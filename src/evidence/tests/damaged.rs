@@ -19,12 +19,12 @@ use crate::language::check::{LoadError, Options, check};
 use crate::record::Outcome;
 use crate::report;
 use crate::rig::Reading;
-use crate::rig::journal::testing::{PowerLoss, Vandal, records, written};
 use crate::rig::journal::{Durability, EntryKind, Journal};
 use crate::run::Unwatched;
 use crate::run::replay;
 use crate::run::replay::Bands;
 use crate::tests::fault_table::stage;
+use psd_testing::journal::{PowerLoss, Vandal, records, written};
 
 /// A change to the entries of a run log.
 type Damage<'a> = &'a dyn Fn(&mut Vec<(EntryKind, Value)>);

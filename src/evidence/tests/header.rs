@@ -11,10 +11,9 @@ use crate::evidence::names::MANIFEST;
 use crate::evidence::rebuilt::Rebuilt;
 use crate::files::recorded_run::JOURNAL;
 use crate::report::manifest_with;
-use crate::rig::journal::testing::forged;
-use crate::rig::journal::testing::recover;
 use crate::rig::journal::{EntryKind, FORMAT};
 use crate::run::replay::RULES;
+use psd_testing::journal::{forged, recover};
 
 /// The folder of the run with a different first line. All check values and the manifest are consistent with it.
 fn retold(mut alter: impl FnMut(&mut Value)) -> Folder {

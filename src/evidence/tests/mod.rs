@@ -178,7 +178,7 @@ pub(super) fn faults(findings: &[Finding]) -> Vec<&'static str> {
 fn judged(folder: &Folder, signed: &Signed) -> Vec<&'static str> {
     let (own, bytes) = (run_log(&signed.folder), run_log(folder));
     let head = |bytes: &[u8]| {
-        crate::rig::journal::testing::recover(bytes)
+        psd_testing::journal::recover(bytes)
             .ok()
             .map(|found| found.head().to_owned())
     };

@@ -7,12 +7,12 @@ use super::Loader;
 use super::expressions::data_file::DataFile;
 use super::messages::{names as message, values};
 use super::scope::{Overrides, Scope};
-use crate::language::syntax::ast::Expr;
-use crate::plan::Frame;
-use crate::plan::formula::{Formula, ProcedureId, ResultReference};
-use crate::text::diagnostic::Diagnostic;
-use crate::text::source::{Sources, Span};
-use crate::units::{Dimension, Quantity};
+use crate::syntax::ast::Expr;
+use psd_plan::Frame;
+use psd_plan::formula::{Formula, ProcedureId, ResultReference};
+use psd_text::diagnostic::Diagnostic;
+use psd_text::source::{Sources, Span};
+use psd_text::units::{Dimension, Quantity};
 
 /// A value that is evaluated once: a `let` or `param`, or an entry of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -319,7 +319,7 @@ impl Typed {
 
 /// The literal without its sign and parentheses: `3 mm`, `-3 mm` and `(3 mm)` are literals.
 pub fn literal(expr: &Expr) -> Option<&Expr> {
-    use crate::language::syntax::ast::ExprKind;
+    use crate::syntax::ast::ExprKind;
     match &expr.kind {
         ExprKind::Number { .. } => Some(expr),
         ExprKind::Negate(inner) | ExprKind::Parenthesised(inner) => literal(inner),

@@ -40,6 +40,13 @@ impl PartialEq for Line {
 }
 
 impl Line {
+    /// An entry with `body`, an object, outside a run log.
+    #[must_use]
+    pub fn new(seq: u64, kind: EntryKind, body: &Value) -> Self {
+        let json = LogText::from(body.to_string().into_bytes());
+        Self::written(seq, kind, body, 0..json.length(), json)
+    }
+
     /// The entry whose body is at this place in `text`.
     pub(super) fn written(
         seq: u64,

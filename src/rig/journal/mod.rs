@@ -3,18 +3,16 @@
 //! the part of a damaged file that can be trusted. It does not know what an entry means. The format is
 //! in `docs/record.md`.
 
-mod body;
-mod chain;
+pub mod body;
+pub mod chain;
 mod damage;
 mod fault;
 mod file;
 mod finite;
 mod kind;
-mod line;
+pub mod line;
 mod recovery;
 mod storage;
-#[cfg(test)]
-pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
 mod text;

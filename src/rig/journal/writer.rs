@@ -7,7 +7,7 @@ use serde_json::json;
 use super::chain::Chain;
 use super::line::{self, LINE_BYTES};
 use super::{Doing, EntryKind, FORMAT, JournalFault, Recovered, Refusal, Storage, body};
-use crate::record::failpoint::{Guarding, on};
+use psd_plan::record::failpoint::{Guarding, on};
 
 /// When entries are passed to the storage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,9 +2,9 @@
 //! the command, and where. Every wait is bounded. The reason of the hold is not known here.
 
 use super::{Part, RealRig};
-use crate::rig::controllers::{DeviceFault, SLICE};
-use crate::rig::safety;
-use crate::rig::{FinalHold, RigFault};
+use crate::controllers::{DeviceFault, SLICE};
+use crate::safety;
+use crate::{FinalHold, RigFault};
 
 /// Longest wait for a rig that still moves after the command to hold \[s\].
 const COMES_TO_REST: f64 = 5.0;

@@ -14,8 +14,8 @@ mod settle;
 mod stroke;
 mod validity;
 
-use crate::physics::tracking::trajectory::Path;
-use crate::plan::{Calibration, Interval, Limits, ReadingRules, RealLink, Settle};
+use psd_physics::tracking::trajectory::Path;
+use psd_plan::{Calibration, Interval, Limits, ReadingRules, RealLink, Settle};
 
 use super::controllers::{Device, DeviceFault, DeviceMove, metres};
 use super::motion::from_positions;
@@ -105,6 +105,12 @@ struct Proposed {
 }
 
 impl RealRig {
+    /// Whether its position and readings can be trusted: no device restarted or lost its reference.
+    #[must_use]
+    pub const fn trusted(&self) -> bool {
+        self.untrusted.is_none()
+    }
+
     /// Publishes its readings as they are made, also during a motion.
     #[must_use]
     pub fn live(&self) -> Live {

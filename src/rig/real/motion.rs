@@ -4,11 +4,11 @@
 use super::poll::Point;
 use super::settle::{Disturbed, Settling, SettlingReading};
 use super::{Axis, Part, Proposed, RealRig};
-use crate::plan::Interval;
-use crate::rig::controllers::SLICE;
-use crate::rig::safety::failpoint::{Guarding, on};
-use crate::rig::{LimitedQuantity, Reading, RigFault, named_axis, who};
-use crate::units::{Dimension, display};
+use crate::controllers::SLICE;
+use crate::safety::failpoint::{Guarding, on};
+use crate::{LimitedQuantity, Reading, RigFault, named_axis, who};
+use psd_plan::Interval;
+use psd_text::units::{Dimension, display};
 
 /// Largest deviation of an axis from its path before it is held: a number of settling bands, and a fraction of the longest
 /// travel. The overshoot of a servo is smaller, and so is the motion that a moving neighbour causes.

@@ -4,10 +4,10 @@
 use super::coordinate::Coordinate;
 use super::validity::ReadingValidator;
 use super::{Axis, Part, RealRig, degrees_of_freedom};
-use crate::plan::{Behind, Datum, DeviceLink, Limits, RealLink, RigPlan};
-use crate::rig::controllers::{Device, DeviceFault, DeviceIdentity, metres};
-use crate::rig::transport::Clock;
-use crate::rig::{Identity, Live, Rig as _, RigFault, StopRequest, named_axis};
+use crate::controllers::{Device, DeviceFault, DeviceIdentity, metres};
+use crate::transport::Clock;
+use crate::{Identity, Live, Rig as _, RigFault, StopRequest, named_axis};
+use psd_plan::{Behind, Datum, DeviceLink, Limits, RealLink, RigPlan};
 
 impl RealRig {
     /// Requests the identity of both devices, sends them the limits and reads once. If the plan's zero is the present

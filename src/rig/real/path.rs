@@ -5,10 +5,10 @@
 
 use super::RealRig;
 use super::{Part, WIRE_ROUNDING};
-use crate::physics::tracking::trajectory::Path;
-use crate::rig::controllers::metres;
-use crate::rig::safety::failpoint::{Guarding, on};
-use crate::rig::{EachReading, Reading, Rig as _, RigFault, named_axis};
+use crate::controllers::metres;
+use crate::safety::failpoint::{Guarding, on};
+use crate::{EachReading, Reading, Rig as _, RigFault, named_axis};
+use psd_physics::tracking::trajectory::Path;
 
 impl RealRig {
     /// Follows `paths` and reads at up to `samples` equally spaced times, the last at their end. A time that passed during an earlier

@@ -6,10 +6,10 @@ use super::median::representative;
 use super::settle::Disturbed;
 use super::validity::{Invalid, RawSample};
 use super::{Part, RealRig};
-use crate::plan::Calibration;
-use crate::rig::controllers::{DeviceFault, Flags, Force, Sample};
-use crate::rig::safety::failpoint::{Guarding, on};
-use crate::rig::{Reading, RigFault, safety};
+use crate::controllers::{DeviceFault, Flags, Force, Sample};
+use crate::safety::failpoint::{Guarding, on};
+use crate::{Reading, RigFault, safety};
+use psd_plan::Calibration;
 
 /// Number of times an invalid reading is requested again.
 pub(super) const REREADS: u32 = 3;

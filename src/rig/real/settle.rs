@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 
 use super::median::representative;
-use crate::plan::Settle;
+use psd_plan::Settle;
 
 /// One axis of a rig after its motion.
 pub(super) struct SettlingReading {

@@ -5,8 +5,8 @@
 use super::motion::first_astray;
 use super::settle::Settling;
 use super::{Proposed, RealRig};
-use crate::rig::safety::failpoint::{Guarding, on};
-use crate::rig::{CutOff, EachReading, Rig as _, RigFault};
+use crate::safety::failpoint::{Guarding, on};
+use crate::{CutOff, EachReading, Rig as _, RigFault};
 
 /// Readings that a stroke must give at least, if more than one are requested.
 const LEAST: usize = 2;

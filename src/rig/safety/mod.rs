@@ -2,11 +2,11 @@
 //! send, and a heartbeat of the driving thread. Out: hold commands, after a panic or when the heartbeat stops. It waits for no reply and
 //! knows no protocol. A killed program sends nothing: the rig's own watchdog and the wired stop protect against this.
 
-pub(crate) mod final_hold;
-pub(crate) mod live;
-pub(crate) mod stop_request;
+pub mod final_hold;
+pub mod live;
+pub mod stop_request;
 
-pub use crate::record::failpoint;
+pub use psd_plan::record::failpoint;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
@@ -165,7 +165,7 @@ impl Pulse {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::safety::failpoint::without;
+    use crate::safety::failpoint::without;
     use std::sync::Arc;
     use std::thread::{ThreadId, current, spawn};
 

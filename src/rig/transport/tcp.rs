@@ -84,7 +84,7 @@ impl Port for TcpPort {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::safety::failpoint::{Guarding, without};
+    use crate::safety::failpoint::{Guarding, without};
     use std::io::{Read as _, Write as _};
     use std::net::TcpListener;
 

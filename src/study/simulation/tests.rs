@@ -1,7 +1,7 @@
 //! Runs of studies made by hand: alone and in batches, invalid, stopped, and taken again by `--set`.
 
 use super::*;
-use crate::language::check::{LoadError, Options, check};
+use crate::check::{LoadError, Options, check};
 use crate::physics::study::distribution::{Distribution, Spread};
 use crate::physics::study::inputs::Source;
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};

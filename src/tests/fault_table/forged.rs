@@ -9,6 +9,7 @@ use crate::plan::Plan;
 use crate::rig::journal::{EntryKind, Recovered};
 use crate::run::replay;
 use crate::run::replay::LoggedRun;
+use psd_testing::journal::AlterEntry as _;
 
 /// Alters the `nth` entry of a kind in the run log, and returns the first finding of `psd verify`.
 pub(super) fn found(

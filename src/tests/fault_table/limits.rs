@@ -7,15 +7,15 @@ use super::stage::{Ended, STIFFNESS, emulator, header, link, open, plan_of, run,
 use crate::emulator::Log;
 use crate::plan::{Limits, Plan, ProcedureKind, SafeState};
 use crate::record::{EventKind, History, Outcome, Record};
-use crate::rig::journal::testing::PowerLoss;
-use crate::rig::journal::testing::recover;
 use crate::rig::journal::{Durability, EntryKind, Journal};
 use crate::rig::real::RealRig;
-use crate::rig::testing::forwarded;
 use crate::rig::{Rig, RigFault};
 use crate::run::replay::LoggedRun;
 use crate::run::{Inspection, Motion, Observer, UNLOADING, Unwatched, replay};
 use crate::tests::testing::{number, ramp};
+use psd_testing::forwarded;
+use psd_testing::journal::PowerLoss;
+use psd_testing::journal::recover;
 
 /// Force limit \[N\]: exceeded between the positions of two readings, and far from every target.
 const LIMIT: f64 = 125.0;

@@ -1,13 +1,13 @@
 //! The rigs of the manual, each with its own emulator and the noise that it declares. Every rig passes its pre-test check for every seed.
 
 use super::stage::{emulator, header, open};
+use crate::check::{LoadError, Options, check};
 use crate::emulator::Log;
-use crate::language::check::{LoadError, Options, check};
 use crate::plan::Plan;
 use crate::record::Outcome;
-use crate::rig::journal::testing::PowerLoss;
 use crate::rig::journal::{Durability, Journal};
 use crate::run::{Unwatched, replay};
+use psd_testing::journal::PowerLoss;
 
 /// The plans of the manual use no file but a ground motion.
 fn ground(path: &str) -> Result<String, LoadError> {

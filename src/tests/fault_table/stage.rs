@@ -1,7 +1,6 @@
 //! A whole run on a rig emulator. In: a plan and a script of faults. Out: the outputs of the run, with the checks that the fault tests
 //! make on them.
 
-use crate::emulator::testing::{InProcess, SharedText, SimulatedPort};
 use crate::emulator::{Log, Script, of_plan};
 use crate::plan::formula::Formula;
 use crate::plan::{
@@ -9,8 +8,6 @@ use crate::plan::{
     ProcedureKind, ReadingRules, RealLink, SafeState, Settle,
 };
 use crate::record::{EventKind, History, Outcome, Record};
-use crate::rig::journal::testing::PowerLoss;
-use crate::rig::journal::testing::recover;
 use crate::rig::journal::{Durability, EntryKind, Journal, Line, Recovered};
 use crate::rig::real::RealRig;
 use crate::rig::safety::failpoint::{Guarding, without};
@@ -21,6 +18,9 @@ use crate::run::replay::LoggedRun;
 use crate::run::{Observer, Unwatched};
 pub(super) use crate::tests::testing::header;
 use crate::tests::testing::{elastic_plan, ramp};
+use psd_testing::emulator::{InProcess, SharedText, SimulatedPort};
+use psd_testing::journal::PowerLoss;
+use psd_testing::journal::recover;
 
 /// Stiffness of the specimen \[N/m\].
 pub(super) const STIFFNESS: f64 = 1e5;

@@ -13,8 +13,8 @@ use crate::plan::{Datum, Dialect, ModbusMap, ModbusNumber, Plan};
 use crate::record::{EventKind, Outcome};
 use crate::rig::Rig as _;
 use crate::rig::journal::EntryKind;
-use crate::rig::journal::testing::PowerLoss;
 use crate::rig::safety::failpoint::{Guarding, without};
+use psd_testing::journal::PowerLoss;
 
 const AT_3_MM: &str = "stands at 3 mm";
 

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::fault::{DiskFault, Fault, Kill};
 use crate::rig::journal::Storage;
-use crate::rig::journal::testing::PowerLoss;
+use psd_testing::journal::PowerLoss;
 
 /// psd was killed: the panic of a kill, which is no fault.
 pub(super) struct Killed;

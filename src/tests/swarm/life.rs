@@ -15,12 +15,12 @@ use crate::emulator::Log;
 use crate::emulator::script::LineFault;
 use crate::plan::{Behind, Plan};
 use crate::record::{Outcome, Record};
-use crate::rig::journal::testing::recover;
 use crate::rig::journal::{Durability, EntryKind, Journal, Recovered};
 use crate::rig::real::RealRig;
 use crate::rig::{RigFault, StopRequest, controllers};
 use crate::run::replay::{self, LoggedRun, Recorded, ResumeBody, TargetStatus};
 use crate::tests::testing::header;
+use psd_testing::journal::recover;
 
 /// What a life left behind.
 pub(super) struct Lived {

@@ -1,22 +1,22 @@
 //! `limits`: ranges and bounds, the intersection of the plan's and the rig's limits, and targets that are known before the run.
 
-use crate::language::check::checker::{Checker, Context, Typed};
-use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::expressions::read_field::ReadField;
-use crate::language::check::messages::{types, values, whole};
-use crate::language::syntax::ast::{Expr, ExprKind};
-use crate::plan::formula::Formula;
-use crate::plan::limits_fields;
-use crate::plan::procedures::damping_sweep::block as damping_sweep;
-use crate::plan::procedures::move_to::block as move_to;
-use crate::plan::procedures::stiffness_ramp::block as stiffness_ramp;
-use crate::plan::reader;
-use crate::plan::{Interval, Limits, Specimen};
-use crate::schema::limits::NAMES;
-use crate::schema::procedures::SPEED;
-use crate::schema::{Field, FieldType, Kind};
-use crate::text::source::Span;
-use crate::units::Dimension;
+use crate::check::checker::{Checker, Context, Typed};
+use crate::check::expressions::choice::Chosen;
+use crate::check::expressions::read_field::ReadField;
+use crate::check::messages::{types, values, whole};
+use crate::syntax::ast::{Expr, ExprKind};
+use psd_plan::formula::Formula;
+use psd_plan::limits_fields;
+use psd_plan::procedures::damping_sweep::block as damping_sweep;
+use psd_plan::procedures::move_to::block as move_to;
+use psd_plan::procedures::stiffness_ramp::block as stiffness_ramp;
+use psd_plan::reader;
+use psd_plan::schema::limits::NAMES;
+use psd_plan::schema::procedures::SPEED;
+use psd_plan::schema::{Field, FieldType, Kind};
+use psd_plan::{Interval, Limits, Specimen};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 /// The limits of a run, with the span of the bound on each quantity.
 pub struct CheckedLimits {

@@ -1,15 +1,15 @@
 //! Words and variants: `rigid`, `limit(1500 N)`, `[every(20), force_drop(10 %)]`. In: an expression and the variants of a
 //! field. Out: a [`Chosen`], with its arguments in SI.
 
-use crate::language::check::checker::{Checker, Context, Typed};
-use crate::language::check::messages::values;
-use crate::language::check::messages::{names as message, types};
-use crate::language::syntax::ast::{Argument, Expr, ExprKind};
-use crate::plan::Interval;
-use crate::plan::formula::Formula;
-use crate::schema::{Field, FieldType, Presence, Variant};
-use crate::text::source::Span;
-use crate::units::Dimension;
+use crate::check::checker::{Checker, Context, Typed};
+use crate::check::messages::values;
+use crate::check::messages::{names as message, types};
+use crate::syntax::ast::{Argument, Expr, ExprKind};
+use psd_plan::Interval;
+use psd_plan::formula::Formula;
+use psd_plan::schema::{Field, FieldType, Presence, Variant};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 /// A variant as it is written.
 pub struct Chosen<'a> {

@@ -1,18 +1,18 @@
 //! The meaning of a name in its context: a sibling field, then a `let`, a `param`, a block; and members of a block,
 //! `pendulum.energy`, or of a procedure, `k0.stiffness.u`.
 
-use crate::language::check::checker::{Checker, Context, Node, Reads, Shape, Typed};
-use crate::language::check::declarations::specimen::{self, frame};
-use crate::language::check::declarations::striker;
-use crate::language::check::messages::{frames, names as message, studies, types, values};
-use crate::language::check::scope::Meaning;
-use crate::language::syntax::ast::{Expr, ExprKind, Ident};
-use crate::plan::ProcedureBlock;
-use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
-use crate::schema::study::PROBABILITY;
-use crate::schema::{self, BlockKind, Kind};
-use crate::text::source::Span;
-use crate::units::Dimension;
+use crate::check::checker::{Checker, Context, Node, Reads, Shape, Typed};
+use crate::check::declarations::specimen::{self, frame};
+use crate::check::declarations::striker;
+use crate::check::messages::{frames, names as message, studies, types, values};
+use crate::check::scope::Meaning;
+use crate::syntax::ast::{Expr, ExprKind, Ident};
+use psd_plan::ProcedureBlock;
+use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference};
+use psd_plan::schema::study::PROBABILITY;
+use psd_plan::schema::{self, BlockKind, Kind};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 impl<'a> Checker<'a> {
     /// The value of a bare name.

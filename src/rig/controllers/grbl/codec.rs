@@ -2,7 +2,7 @@
 //! bytes of a jog; the meaning of the line. It keeps no conversation. `ok` means that a line was parsed, never that the
 //! axis has arrived; the position is counted steps, not a measurement.
 
-use crate::rig::controllers::number;
+use crate::controllers::number;
 
 pub const ASK: &[u8] = b"?";
 pub const HOLD: &[u8] = b"!";

@@ -3,13 +3,13 @@
 
 use std::collections::BTreeMap;
 
-use crate::rig::controllers::grbl;
-use crate::rig::controllers::grbl::codec::{State, Status, Word};
-use crate::rig::controllers::request_reply::RequestReply;
-use crate::rig::controllers::{
+use crate::controllers::grbl;
+use crate::controllers::grbl::codec::{State, Status, Word};
+use crate::controllers::request_reply::RequestReply;
+use crate::controllers::{
     Answer, Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, LineClient, Sample, one_axis,
 };
-use crate::rig::{JUST_STARTED, LineStatistics};
+use crate::{JUST_STARTED, LineStatistics};
 
 /// Settings that are required for the safety of the specimen: number, value, reason.
 const REQUIRED: [(u64, &str, &str); 6] = [
@@ -214,7 +214,7 @@ impl GrblDevice {
 }
 
 /// The identity of a controller from the line with its version; the line before it, if there is one, is its start banner.
-pub(crate) fn introduced(welcome: &[u8]) -> Option<DeviceIdentity> {
+pub fn introduced(welcome: &[u8]) -> Option<DeviceIdentity> {
     let words: Vec<Word> = welcome
         .split(|byte| *byte == b'\n')
         .flat_map(grbl::codec::words)
@@ -227,7 +227,7 @@ pub(crate) fn introduced(welcome: &[u8]) -> Option<DeviceIdentity> {
         .iter()
         .any(|word| matches!(word, Word::Banner(_)))
         .then(|| JUST_STARTED.to_owned());
-    let simulated = serial.starts_with(crate::rig::controllers::SIMULATED);
+    let simulated = serial.starts_with(crate::controllers::SIMULATED);
     Some(DeviceIdentity {
         model: "Grbl".to_owned(),
         serial,
@@ -239,7 +239,7 @@ pub(crate) fn introduced(welcome: &[u8]) -> Option<DeviceIdentity> {
 }
 
 /// The position in a line with a status report.
-pub(crate) fn decoded(line: Vec<u8>) -> Option<Sample> {
+pub fn decoded(line: Vec<u8>) -> Option<Sample> {
     let mut words = grbl::codec::words(&line).into_iter();
     let status = words.find_map(|word| match word {
         Word::Status(status) => Some(status),

@@ -2,7 +2,7 @@
 //! length of an answer follows from its question, so no answer is cut or merged with another. It knows no units and no
 //! device.
 
-use crate::plan::ModbusNumber;
+use psd_plan::ModbusNumber;
 
 /// Length of an exception answer: unit, function, code, CRC.
 const EXCEPTION_LENGTH: usize = 5;

@@ -4,14 +4,14 @@
 //! not be received, so it does not replace a wired emergency stop.
 
 use super::word_order::{IMPLAUSIBLY_SMALL, Measured, Registers, WordOrder};
-use crate::plan::{Limits, ModbusMap, ModbusNumber};
-use crate::rig::LineStatistics;
-use crate::rig::controllers::modbus;
-use crate::rig::controllers::modbus::codec::{Fault, Table};
-use crate::rig::controllers::unsequenced::{clear, fault, fresh, order};
-use crate::rig::controllers::{
+use crate::LineStatistics;
+use crate::controllers::modbus;
+use crate::controllers::modbus::codec::{Fault, Table};
+use crate::controllers::unsequenced::{clear, fault, fresh, order};
+use crate::controllers::{
     Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Force, LineClient, Sample, one_axis,
 };
+use psd_plan::{Limits, ModbusMap, ModbusNumber};
 
 /// Silence before a question: 3.5 characters of 11 bits, and never less than this \[s\].
 const SHORTEST_GAP: f64 = 0.001_75;
@@ -240,7 +240,7 @@ const fn no_number(number: ModbusNumber) -> &'static str {
 }
 
 /// The identity of this unit.
-pub(crate) fn introduced(map: &ModbusMap) -> DeviceIdentity {
+pub fn introduced(map: &ModbusMap) -> DeviceIdentity {
     DeviceIdentity {
         model: format!("Modbus unit {}", map.unit),
         ..DeviceIdentity::default()
@@ -356,7 +356,7 @@ const fn unit_and_bound(map: &ModbusMap, measured: Measured) -> (f64, f64) {
 }
 
 /// The reading of one answer for each register of the map: position, force, status.
-pub(crate) fn decoded(map: &ModbusMap, answers: &[Vec<u8>]) -> Option<Sample> {
+pub fn decoded(map: &ModbusMap, answers: &[Vec<u8>]) -> Option<Sample> {
     let mut answers = answers.iter();
     let mut next = |register: Option<u16>, measured: Measured| -> Option<Option<f64>> {
         let Some(address) = register else {

@@ -43,17 +43,17 @@
 mod checksum;
 mod request;
 
-use crate::plan::Interval;
-use crate::rig::LastMove;
-use crate::rig::controllers::Flags;
-use crate::rig::controllers::number;
-use crate::rig::safety::failpoint::{Guarding, on};
+use crate::LastMove;
+use crate::controllers::Flags;
+use crate::controllers::number;
+use crate::safety::failpoint::{Guarding, on};
+use psd_plan::Interval;
 
 pub use checksum::checksum;
 pub use request::{
     End, LONGEST_FRAME, LONGEST_FRAME_OF_SEVERAL, Request, frame, length, lengths, sequence,
 };
-pub(crate) use request::{in_turn, time};
+pub use request::{in_turn, time};
 
 /// Largest number of axes of a rig: the reply to HELLO has a maximum length.
 pub const MOST_AXES: usize = 6;

@@ -13,9 +13,9 @@ use std::path::{Path, PathBuf};
 use rustix::fs::OFlags;
 
 use super::{LogText, Storage};
-use crate::record::failpoint::{Guarding, on};
 pub use ballast::is_part_of_one as is_part_of_a_reserve;
 pub use fault::FileFault;
+use psd_plan::record::failpoint::{Guarding, on};
 
 /// Largest run log that is read back \[bytes\].
 pub const MOST_BYTES: u64 = 4 << 30;

@@ -10,8 +10,8 @@ use tempfile::TempDir;
 
 use super::super::{Durability, EntryKind, Journal, Storage};
 use super::{FileFault, FileStorage, MOST_BYTES, ballast, write_whole};
-use crate::record::failpoint::{Guarding, without};
-use crate::rig::journal::testing::recover;
+use crate::testing::journal::recover;
+use psd_plan::record::failpoint::{Guarding, without};
 
 fn new_journal() -> (TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();

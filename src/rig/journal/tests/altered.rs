@@ -3,7 +3,7 @@
 use super::super::chain::Chain;
 use super::super::{Damage, EntryKind, Wrong, line};
 use super::{is_clean, lines, small};
-use crate::rig::journal::testing::recover;
+use crate::testing::journal::recover;
 
 /// A run log of these entries, each with the correct check values.
 fn written(records: &[(u64, EntryKind, &str)]) -> Vec<u8> {

@@ -8,9 +8,9 @@ mod writing;
 
 use serde_json::{Value, json};
 
-use super::testing::PowerLoss;
 use super::{Durability, EntryKind, Journal, Recovered};
-use crate::rig::journal::testing::recover;
+use crate::testing::journal::PowerLoss;
+use crate::testing::journal::recover;
 
 /// A run log that was begun on a disk in memory.
 fn begun(durability: Durability) -> (PowerLoss, Journal) {

@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::super::{Durability, EntryKind};
 use super::{begun, records};
-use crate::rig::journal::testing::recover;
+use crate::testing::journal::recover;
 
 proptest! {
     #[test]

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::super::{Durability, EntryKind, LogText, Recovered};
 use super::{begun, records, small};
-use crate::rig::journal::testing::recover;
+use crate::testing::journal::recover;
 
 /// JSON of every shape, with text of any characters and floats with any bits except NaN and infinity.
 fn json() -> impl Strategy<Value = Value> {

@@ -2,10 +2,10 @@
 
 use serde_json::json;
 
-use super::super::testing::PowerLoss;
 use super::super::{Durability, EntryKind, Journal, LINE_BYTES, Wrong};
 use super::{lines, records, small};
-use crate::rig::journal::testing::recover;
+use crate::testing::journal::PowerLoss;
+use crate::testing::journal::recover;
 
 #[test]
 fn every_length_keeps_exactly_the_whole_records() {

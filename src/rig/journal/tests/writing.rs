@@ -2,13 +2,13 @@
 
 use serde_json::json;
 
-use super::super::testing::{PowerLoss, SickDisk, Sickness};
 use super::super::{
     Doing, Durability, EntryKind, Journal, JournalFault, LINE_BYTES, Refusal, Storage,
 };
 use super::{begun, records};
-use crate::record::failpoint::{Guarding, without};
-use crate::rig::journal::testing::recover;
+use crate::testing::journal::recover;
+use crate::testing::journal::{PowerLoss, SickDisk, Sickness};
+use psd_plan::record::failpoint::{Guarding, without};
 
 fn on(disk: &(impl Storage + Clone + 'static)) -> Journal {
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);

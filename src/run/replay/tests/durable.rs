@@ -1,7 +1,7 @@
 //! No target is sent and no reading is used before it is durable, and a disk that fails holds the rig.
 
 use super::*;
-use crate::rig::testing::forwarded;
+use psd_testing::forwarded;
 
 /// A rig that checks at every call which entries of the run log would survive a loss of power.
 struct Suspicious {

@@ -9,12 +9,13 @@ use crate::plan::formula::Formula;
 use crate::plan::{Interval, Move, Plan, ProcedureKind};
 use crate::record::EventKind;
 use crate::rig::journal::Durability;
-use crate::rig::journal::testing::PowerLoss;
-use crate::rig::testing::forwarded;
 use crate::rig::{EncodedMove, FinalHold, Identity, RigFault};
 use crate::run::session::Session;
 use crate::run::{Inspection, Motion};
 use crate::tests::testing::{elastic_plan, header, ramp};
+use psd_testing::forwarded;
+use psd_testing::journal::AlterEntry as _;
+use psd_testing::journal::PowerLoss;
 
 /// The operator stops the rig on the path to a target, at 40 % of the path.
 struct HeldDuringMotion {

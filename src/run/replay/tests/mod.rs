@@ -21,7 +21,6 @@ use super::*;
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::{DampingSweep, InspectTrigger, Move, Plan, ProcedureKind, StiffnessRamp};
 use crate::record::EventKind;
-use crate::rig::journal::testing::{Killed, PowerLoss, SickDisk, Sickness, recover};
 use crate::rig::journal::{Durability, Recovered, Storage};
 use crate::rig::safety::failpoint::{Guarding, without};
 use crate::rig::{
@@ -30,6 +29,8 @@ use crate::rig::{
 };
 use crate::run::{Inspection, StepReport};
 use crate::tests::testing::{elastic_plan, header, impact, ramp, result_of, struck_frame};
+use psd_testing::journal::AlterEntry as _;
+use psd_testing::journal::{Killed, PowerLoss, SickDisk, Sickness, recover};
 
 /// The same rig for one program after another: it remembers its moves, as a real rig does. The recovered communication errors are counted
 /// for each program.

@@ -10,10 +10,10 @@ use crate::plan::{Impact, Mode, ProcedureKind, StiffnessRamp};
 use crate::record::History;
 use crate::rig::controllers::DeviceFault;
 use crate::rig::journal::Durability;
-use crate::rig::journal::testing::PowerLoss;
 use crate::rig::safety::failpoint::{Guarding, without};
 use crate::rig::{Identity, JUST_STARTED, RigFault};
 use crate::tests::testing::{elastic_plan, header, ramp, result_of};
+use psd_testing::journal::PowerLoss;
 use psd_testing::plans::ChangeTarget as _;
 
 fn killed(name: &str) {

@@ -12,13 +12,13 @@ use super::stage::{Ended, emulator, link, open, run, run_watched, run_without};
 use crate::emulator::Log;
 use crate::plan::{Interval, Plan};
 use crate::record::{EventKind, Outcome};
-use crate::rig::journal::testing::PowerLoss;
-use crate::rig::journal::testing::recover;
 use crate::rig::safety::failpoint::Guarding;
 use crate::rig::{LineStatistics, Reading, Rig as _, RigFault};
 use crate::run::Unwatched;
 use crate::run::replay;
 use crate::run::replay::{Bands, LoggedRun, RigBody};
+use psd_testing::journal::PowerLoss;
+use psd_testing::journal::recover;
 use two_axes::{base_excited_plan, checked, ideal, results, same, upper};
 
 const SINE: &str = include_str!("../../../../plans/two_storeys_sine.psd");
@@ -258,7 +258,7 @@ fn a_controller_of_another_number_of_axes_is_refused_before_anything_is_asked_of
 }
 
 /// Target of every move, by its number.
-fn moves(emulator: &crate::emulator::testing::InProcess) -> Vec<(Option<u64>, Vec<f64>)> {
+fn moves(emulator: &psd_testing::emulator::InProcess) -> Vec<(Option<u64>, Vec<f64>)> {
     emulator
         .lock()
         .rig()

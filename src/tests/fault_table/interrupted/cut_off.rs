@@ -4,17 +4,17 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::emulator::Log;
-use crate::emulator::testing::InProcess;
 use crate::plan::Plan;
 use crate::record::{Outcome, Record};
 use crate::rig::Rig as _;
-use crate::rig::journal::testing::{Killed, PowerLoss};
 use crate::rig::journal::{Durability, EntryKind, Journal};
 use crate::run::Unwatched;
 use crate::run::replay;
 use crate::run::replay::{Bands, RigBody};
 use crate::tests::fault_table::axes::logged_run;
 use crate::tests::fault_table::stage::{emulator, header, open};
+use psd_testing::emulator::InProcess;
+use psd_testing::journal::{Killed, PowerLoss};
 
 /// Runs the plan until the given write or sync of its run log. psd is killed there, before the write or `after` it. Returns whether psd
 /// was killed.

@@ -4,11 +4,11 @@
 use crate::emulator::Log;
 use crate::plan::Plan;
 use crate::record::{Event, EventKind, Outcome, Record};
-use crate::rig::journal::testing::{SickDisk, Sickness, recover};
 use crate::rig::journal::{Durability, Journal};
 use crate::run::Unwatched;
 use crate::run::replay::{self, LoggedRun};
 use crate::tests::fault_table::stage::{emulator, header, open, plan_of, to};
+use psd_testing::journal::{SickDisk, Sickness, recover};
 
 /// Runs the plan on this disk. Returns whether the disk failed.
 fn fails(plan: &Plan, sickness: Sickness) -> bool {

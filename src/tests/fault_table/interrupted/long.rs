@@ -202,12 +202,12 @@ fn a_wall_clock_that_jumps_changes_no_duration() {
         let plan = long_plan(20);
         let emulator = emulator(&plan, "", Log::none(), 1);
         let mut rig = open(&plan, &emulator).unwrap();
-        let disk = crate::rig::journal::testing::PowerLoss::new();
+        let disk = psd_testing::journal::PowerLoss::new();
         let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
         replay::begin(&mut journal, &header(&plan), &["text".to_owned()]).unwrap();
         let record = replay::record(&plan, &mut rig, &mut Unwatched, journal, wall).record;
         assert_eq!(record.outcome, Outcome::Completed);
-        let lines = crate::rig::journal::testing::recover(&disk.written())
+        let lines = psd_testing::journal::recover(&disk.written())
             .unwrap()
             .lines;
         let stamps = lines

@@ -9,14 +9,14 @@ use std::time::Duration;
 
 use super::cut_off::{Resumed, resumed};
 use crate::emulator::Log;
-use crate::emulator::testing::{InProcess, SimulatedPort};
 use crate::plan::{Plan, ProcedureKind, StiffnessRamp};
-use crate::rig::journal::testing::PowerLoss;
 use crate::rig::journal::{Durability, Journal};
 use crate::rig::transport::{Emergency, Port};
 use crate::run::{Unwatched, replay};
 use crate::tests::fault_table::stage::{emulator, header, open_through, plan_of, run};
 use crate::tests::testing::ramp;
+use psd_testing::emulator::{InProcess, SimulatedPort};
+use psd_testing::journal::PowerLoss;
 
 /// A line on which psd is killed at one command.
 struct Dying {

@@ -6,8 +6,6 @@ use std::cell::Cell;
 use crate::plan::{DriftCheck, Plan, VirtualLink, ZeroAfter};
 use crate::record::remote::DrivenStep;
 use crate::record::{Outcome, Record};
-use crate::rig::journal::testing::PowerLoss;
-use crate::rig::journal::testing::recover;
 use crate::rig::journal::{Durability, Journal};
 use crate::rig::{RigFault, virtual_rig};
 use crate::run::client_run::{Driver, Requests};
@@ -16,6 +14,8 @@ use crate::run::replay;
 use crate::run::replay::{Header, LoggedRun};
 use crate::run::{Disconnect, Inspection, Observer};
 use crate::tests::testing::elastic_plan;
+use psd_testing::journal::PowerLoss;
+use psd_testing::journal::recover;
 
 /// 0.1 N/s on a cell that may drift by this amount \[N\].
 fn plan(force: f64, after: ZeroAfter) -> Plan {

@@ -2,7 +2,7 @@
 //! header with NPTS and DT). In: the text. Out: times and numbers as they are in the file, with the scale factor of the numbers;
 //! or the line of an error, and the reason. It knows no plan.
 
-use crate::units::unit::STANDARD_GRAVITY;
+use psd_text::units::unit::STANDARD_GRAVITY;
 
 /// Most samples of one record.
 pub const MOST_SAMPLES: usize = 100_000;

@@ -10,16 +10,16 @@ mod table_file;
 
 use super::limits::CheckedLimits;
 use super::striker::uncertainty;
-use crate::language::check::checker::Checker;
-use crate::language::check::messages::{frames, names as message, specimens};
-use crate::language::syntax::ast::{Expr, ExprKind};
-use crate::physics::structure::portal::limit::mechanism_limit;
-use crate::plan::formula::{Formula, Function, Stated};
-use crate::plan::{Behaviour, Interval, Mechanism, Specimen, Storey};
-use crate::schema::{FieldType, Kind, specimen as fields};
-use crate::text::source::Span;
-use crate::uncertainty::Source;
+use crate::check::checker::Checker;
+use crate::check::messages::{frames, names as message, specimens};
+use crate::syntax::ast::{Expr, ExprKind};
 use behaviour::{Material, Written};
+use psd_physics::structure::portal::limit::mechanism_limit;
+use psd_plan::formula::{Formula, Function, Stated};
+use psd_plan::schema::{FieldType, Kind, specimen as fields};
+use psd_plan::uncertainty::Source;
+use psd_plan::{Behaviour, Interval, Mechanism, Specimen, Storey};
+use psd_text::source::Span;
 
 /// Standard uncertainty of the mass that an impact takes from its specimen \[kg\].
 pub fn mass_uncertainty(checker: &mut Checker, block: usize) -> Option<f64> {

@@ -1,7 +1,7 @@
 //! The native protocol against the vectors of its specification, and against every single fault of a line.
 
 use super::*;
-use crate::rig::safety::failpoint::without;
+use crate::safety::failpoint::without;
 
 const DATA: &[u8] = b"<DATA 42 7F3A 118203 1.249871 512.375 812344 0x0000 IDLE*788B";
 const ACK: &[u8] = b"<ACK 41 7F3A MOVING*1F01";

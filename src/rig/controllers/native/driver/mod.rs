@@ -1,18 +1,16 @@
 //! Driver for psd's own protocol. In: moves and requests in SI. Out: replies that are complete, in order and from the same
 //! power-up. `codec` knows the bytes. It does not validate a reading.
 
-use crate::physics::tracking::trajectory::Path;
-use crate::plan::{Interval, Limits};
-use crate::rig::controllers::native;
-use crate::rig::controllers::native::codec::{
-    AxisBounds, Bounds, Hello, Kind, Reply, Request, State,
-};
-use crate::rig::controllers::{
+use crate::controllers::native;
+use crate::controllers::native::codec::{AxisBounds, Bounds, Hello, Kind, Reply, Request, State};
+use crate::controllers::{
     Answer, Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Force, LineClient, Sample,
 };
-use crate::rig::controllers::{metres, number};
-use crate::rig::safety::failpoint::{Guarding, on};
-use crate::rig::{LastMove, LineStatistics};
+use crate::controllers::{metres, number};
+use crate::safety::failpoint::{Guarding, on};
+use crate::{LastMove, LineStatistics};
+use psd_physics::tracking::trajectory::Path;
+use psd_plan::{Interval, Limits};
 
 mod path;
 
@@ -199,7 +197,7 @@ pub fn native_identity(hello: &Hello, boot: Option<String>) -> DeviceIdentity {
 }
 
 /// The reading of a `DATA` reply with this number of axes.
-pub(crate) fn decoded(reply: Reply, axes: usize) -> Result<Sample, DeviceFault> {
+pub fn decoded(reply: Reply, axes: usize) -> Result<Sample, DeviceFault> {
     let words = reply.words();
     let Some(data) = native::codec::data(&words).filter(|data| data.axes.len() == axes) else {
         let reason = match native::codec::axis_without_number(&words) {
