@@ -184,9 +184,6 @@ pub(crate) fn to_rest(
             .max(f64::MIN_POSITIVE)
     });
     let mut path = UnloadingPath::new(unloading, noise, loaded(&at));
-    if session.unloads_at_once {
-        path = path.at_once();
-    }
     for step in before + 1..=before + MOST_TARGETS {
         if largest(&at.force) <= within {
             return Ok(rest(at));

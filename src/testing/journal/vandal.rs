@@ -173,7 +173,7 @@ fn resume(records: &mut Records, at: usize) {
         |(_, body)| json!([body["x"], body["r"]]),
     );
     let resumed = json!({
-        "from": at + 1, "by": "R. T", "reason": "no power", "doubt": {"target": "none"}, "found": found, "recorded": found, "t": rig["t"],
+        "from": at + 1, "by": "R. T", "reason": "no power", "target_status": {"target": "none"}, "found": found, "recorded": found, "t": rig["t"],
     });
     records.insert(at, (EntryKind::Resume, resumed));
     records.insert(at, (EntryKind::Rig, rig));

@@ -216,7 +216,7 @@ impl<'a> Checker<'a> {
             Some(outside) => outside?,
             None => (self.expect(own?, dimension, field.name, written)?, written),
         };
-        if field.angle && !self.recorded && self.is_plain(&typed, written) {
+        if field.angle && self.is_plain(&typed, written) {
             return self.fail(types::angle_without_unit(
                 self.text(written.span),
                 written.span,

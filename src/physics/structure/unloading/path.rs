@@ -22,8 +22,6 @@ const FIRST: f64 = 1.0 / BELIEVED;
 const FURTHER: f64 = 0.9;
 /// A slope is not stiffer unless it exceeds the one before it by this factor.
 const STIFFER: f64 = 1.1;
-/// The factor within which older versions accepted a stiffness.
-const OF_OLDER: f64 = 4.0;
 /// Fraction of the load at the start: one move removes so small a load if the slope is known.
 const LITTLE: f64 = 0.3;
 /// As `LITTLE`, with the measured slope, even if a stiffer one was expected.
@@ -38,7 +36,6 @@ const NOISE: f64 = 3.0;
 pub struct UnloadingPath {
     unloading: Unloading,
     parts: Vec<PathPart>,
-    at_once: bool,
 }
 
 /// A storey. For all floors as one, the load is the largest force and the move is counted in loads: their expected slope is 1.
@@ -104,29 +101,12 @@ impl UnloadingPath {
                 (force, unloading.force_of(displacement)),
             )],
         };
-        Self {
-            unloading,
-            parts,
-            at_once: false,
-        }
-    }
-
-    /// The moves of older versions, for the replay of their records: every move leads to the expected position of zero load, by the last
-    /// secant.
-    #[must_use]
-    pub fn at_once(self) -> Self {
-        Self {
-            at_once: true,
-            ..self
-        }
+        Self { unloading, parts }
     }
 
     /// The next move of each floor \[m\] under these forces \[N\].
     #[must_use]
     pub fn moves(&self, force: &[f64]) -> Vec<f64> {
-        if self.at_once {
-            return self.unloading.moves(force);
-        }
         if self.unloading.storeys().is_none() {
             let share = self.parts[0].moves(largest(force)).abs() / largest(force);
             return self
@@ -149,11 +129,7 @@ impl UnloadingPath {
     /// Largest load of a part \[N\]: it falls with every effective move.
     #[must_use]
     pub fn left(&self, force: &[f64]) -> f64 {
-        if self.at_once {
-            largest(force)
-        } else {
-            largest(&self.loads(force))
-        }
+        largest(&self.loads(force))
     }
 
     /// Whether a part is loaded in the opposite direction by more than a little: a part held by friction is not moved to and fro.
@@ -165,12 +141,10 @@ impl UnloadingPath {
                 .iter()
                 .fold(0.0, |most: f64, part| most.max(part.start.abs()));
         let loads = self.loads(force);
-        !self.at_once
-            && self
-                .parts
-                .iter()
-                .zip(loads)
-                .any(|(part, load)| load * part.start < 0.0 && load.abs() > most)
+        self.parts
+            .iter()
+            .zip(loads)
+            .any(|(part, load)| load * part.start < 0.0 && load.abs() > most)
     }
 
     /// Whether every part is unloaded as far as readings show, and some part is past its unloaded position: a move back would turn the
@@ -180,8 +154,7 @@ impl UnloadingPath {
         let loads = self.loads(force);
         let parts = || self.parts.iter().zip(&loads);
         let is_past = |(part, load): (&PathPart, &f64)| load * part.start < 0.0;
-        !self.at_once
-            && parts().any(is_past)
+        parts().any(is_past)
             && parts().all(|(part, load)| {
                 let readings = if is_past((part, load)) { 2.0_f64 } else { 1.0 };
                 load.abs() <= NOISE * readings.sqrt() * part.noise.0
@@ -200,10 +173,7 @@ impl UnloadingPath {
     /// Learns from a move between two positions. Returns the secant of each storey \[N/m\] with a change of storey drift, and none
     /// without storeys.
     pub fn learn(&mut self, from: Loaded<'_>, to: Loaded<'_>) -> Vec<Option<f64>> {
-        if self.at_once {
-            self.unloading
-                .learn_within(OF_OLDER, from, to, &|_, _, _| true);
-        } else if self.unloading.storeys().is_none() {
+        if self.unloading.storeys().is_none() {
             let [before, after] = [from, to].map(|at| largest(at.force));
             let travel = self.parts[0].moves(before);
             let part = &mut self.parts[0];
