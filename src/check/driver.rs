@@ -102,7 +102,6 @@ pub fn plan(
     options: &Options,
     findings: Findings,
 ) -> Option<Plan> {
-    checker.recorded = options.recorded;
     checker.for_studies = options.for_studies;
     checker.real_rig = rig::real_rig_of_run(checker, options.rig.as_deref());
     for block in 0..checker.scope.blocks.len() {
@@ -235,7 +234,6 @@ pub fn plan(
         golden: golden?,
         check_run_of: None,
         studies: studies?,
-        unloads_at_once: false,
         files: [text.files, checker.data_files()].concat(),
         settings: text.settings,
     };

@@ -30,8 +30,6 @@ pub struct Options {
     pub today: Option<String>,
     /// A run is about to begin, the command line names no operator, and no operator can be asked.
     pub unattended: bool,
-    /// The plan comes from a run log: names of older versions are read too.
-    pub recorded: bool,
     /// The studies of the plan are about to be run, which a real rig cannot do.
     pub for_studies: bool,
 }

@@ -12,7 +12,6 @@ use crate::language::check::expressions::parameters::{names_of_parameters, read_
 use crate::language::check::messages::{self, names};
 use crate::language::check::scope::{Scope, Setting};
 use crate::language::check::{imports, rig};
-use crate::language::renamed;
 use crate::language::syntax::ast::Ast;
 use crate::plan::{Plan, PlanFile};
 use crate::text::diagnostic::Diagnostic;
@@ -63,9 +62,8 @@ impl ParsedPlan {
     pub fn parse(name: &str, text: &str, loader: &Loader<'_>, options: &Options) -> Self {
         let mut sources = Sources::default();
         let mut errors = Vec::new();
-        let mut imports = imports::load(name, text, loader, &mut sources, &mut errors);
+        let imports = imports::load(name, text, loader, &mut sources, &mut errors);
         let unread = driver::unread_lines(&sources, &errors);
-        renamed::restate(&mut imports.asts, options.recorded, &mut errors);
         let files = sources
             .iter()
             .map(|(_, file)| PlanFile {
@@ -107,7 +105,7 @@ impl ParsedPlan {
     /// Whether the plan is valid at the ends of the inputs of its studies, and at values that one draw in 1000 exceeds. Not where a value is set: a run of a study is one point, and the
     /// ends of the other inputs do not matter there.
     fn try_ends(&self, outcome: &mut Outcome) {
-        if outcome.plan.is_none() || !self.settings.is_empty() || self.options.recorded {
+        if outcome.plan.is_none() || !self.settings.is_empty() {
             return;
         }
         let mut reported = Vec::new();

@@ -2,5 +2,4 @@
 //! keywords and fields are in `schema`. It runs nothing.
 
 pub mod check;
-pub mod renamed;
 pub mod syntax;

@@ -103,8 +103,6 @@ pub struct Plan {
     pub studies: Studies,
     /// For the part that a low-level check run measures: the plan that it belongs to.
     pub check_run_of: Option<Box<Plan>>,
-    /// As in run logs of older versions: an `unload` moves to the estimated position of zero load, move after move.
-    pub unloads_at_once: bool,
     /// The plan first, then every file that it uses, by the name under which it is used.
     pub files: Vec<PlanFile>,
     /// `--set` values as given, in order of their names.

@@ -389,7 +389,7 @@ pub trait Rig {
     fn declared_noise(&self) -> DeclaredNoise;
 
     /// The position of the plan's zero in the rig's own coordinate \[m\], one per axis. None: the rig has no other
-    /// coordinate than the plan's, or a run log of an older version does not state it.
+    /// coordinate than the plan's.
     fn datum(&self) -> Option<Vec<f64>> {
         None
     }

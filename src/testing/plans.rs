@@ -51,7 +51,6 @@ pub fn empty_plan() -> Plan {
         golden: psd_plan::Golden::default(),
         check_run_of: None,
         studies: Studies::default(),
-        unloads_at_once: false,
         files: Vec::new(),
         settings: Vec::new(),
     }

@@ -4,6 +4,7 @@ pub(crate) use psd_testing::plans::*;
 
 use crate::plan::Plan;
 use crate::record::Record;
+use crate::record::equipment::{Device, Equipment};
 use crate::rig::virtual_rig;
 use crate::run::replay::{Header, HeaderFile, RULES};
 
@@ -12,7 +13,8 @@ pub(crate) fn run_unwatched(plan: &Plan) -> Record {
 }
 
 /// Start of a record that the test does not check.
-pub(crate) fn header() -> Header {
+pub(crate) fn header(plan: &Plan) -> Header {
+    let rig = virtual_rig(plan);
     Header {
         run_id: "0123456789abcdef".to_owned(),
         psd: "0".to_owned(),
@@ -25,7 +27,7 @@ pub(crate) fn header() -> Header {
         }],
         settings: Vec::new(),
         rig: None,
-        equipment: None,
+        equipment: Equipment::of(plan, Device::of(&rig.identity(), rig.declared_noise())),
         check_run: false,
         served: None,
         date: None,

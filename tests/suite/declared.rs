@@ -20,7 +20,6 @@ const OTHER_MEANINGS: &[(&str, &str, &str)] = &[
         "a key of JSON: the number of a USB device",
     ),
     ("golden/print/json.rs", "time_s", "a key of JSON"),
-    ("golden/older.rs", "zero_drift", "a key of JSON"),
     ("report/tables/mod.rs", "zero_drift", "the name of a table"),
     (
         "language/check/declarations/specimen/table_file.rs",

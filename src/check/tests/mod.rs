@@ -6,8 +6,6 @@ mod bounds;
 mod diagnostics;
 mod plan;
 mod real_rig;
-mod recorded;
-mod renamed;
 mod studies;
 
 use super::{Checked, LoadError, Loader, Options, check, no_files};

@@ -62,7 +62,7 @@ mod tests {
         let mut journal = Journal::create(Box::new(disk), Durability::EverySyncPoint);
         replay::begin(
             &mut journal,
-            &crate::tests::testing::header(),
+            &crate::tests::testing::header(&plan),
             &["text".to_owned()],
         )
         .unwrap();

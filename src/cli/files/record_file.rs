@@ -45,7 +45,7 @@ pub fn header(
         files: plan.files.iter().map(file).collect(),
         settings: settings.set.clone(),
         rig: settings.rig.clone(),
-        equipment: Some(Equipment::of(plan, device)),
+        equipment: Equipment::of(plan, device),
         check_run: check_run::performed_part(plan).is_some(),
         served,
         date: settings.date.clone(),

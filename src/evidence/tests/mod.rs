@@ -125,7 +125,7 @@ fn statement(rebuilt: &Rebuilt, role: &str) -> Statement {
     Statement {
         run,
         report,
-        status: Some("simulation".to_owned()),
+        status: "simulation".to_owned(),
         issued: None,
         role: Some(role.to_owned()),
         name: Some("A. Engineer".to_owned()),

@@ -75,10 +75,6 @@ pub struct Context {
     pub critical: bool,
 }
 
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "each states a fact of its own about the check"
-)]
 pub struct Checker<'a> {
     pub sources: &'a Sources,
     pub scope: &'a Scope<'a>,
@@ -104,8 +100,6 @@ pub struct Checker<'a> {
     pub read: Vec<(ResultReference, Span)>,
     /// Entries that are read from lists of results, by their index from 0, with their spans.
     pub list_entries_read: Vec<(ResultReference, usize, Span)>,
-    /// Whether the plan comes from a run log, so that names of older versions are valid.
-    pub recorded: bool,
     /// The rig of the run, if it moves a real specimen.
     pub real_rig: Option<usize>,
     /// Values of fields that are given from outside the plan.
@@ -165,7 +159,6 @@ impl<'a> Checker<'a> {
             used,
             read: Vec::new(),
             list_entries_read: Vec::new(),
-            recorded: false,
             real_rig: None,
             overrides: Overrides::new(),
             results: Vec::new(),

@@ -83,7 +83,6 @@ pub struct Channel {
     /// The number at zero of the quantity.
     pub zero: f64,
     /// Resolution of a displacement \[m\], standard deviation of one force reading \[N\], as declared.
-    #[serde(rename = "doubt")]
     pub declared_scatter: f64,
     /// Relative standard uncertainty of the factor, if it is stated.
     pub uncertainty: f64,

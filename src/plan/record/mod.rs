@@ -101,9 +101,7 @@ pub enum EventKind {
     /// The hold is not confirmed.
     NotHeld,
     Fault,
-    /// Communication errors that were recovered: frames sent again, replies ignored, readings repeated. `mended` in a run
-    /// log.
-    #[serde(rename = "mended")]
+    /// Communication errors that were recovered: frames sent again, replies ignored, readings repeated.
     Recovered,
     /// A numerical observation: the contact was still active at the last step, a maximum was not reached, …
     Remark,
@@ -328,7 +326,7 @@ mod tests {
             (EventKind::Held, "held"),
             (EventKind::NotHeld, "not_held"),
             (EventKind::Fault, "fault"),
-            (EventKind::Recovered, "mended"),
+            (EventKind::Recovered, "recovered"),
             (EventKind::Remark, "remark"),
             (EventKind::Resume, "resume"),
             (EventKind::Amendment, "amendment"),

@@ -41,8 +41,6 @@ pub enum Request {
     },
     /// The client has disconnected, or was disconnected.
     Leave {
-        /// `parting` in the run log.
-        #[serde(rename = "parting")]
         disconnect: Disconnect,
         reason: String,
     },

@@ -6,7 +6,6 @@ pub mod blocks;
 pub mod columns;
 mod constructors;
 mod functions;
-mod renamed;
 mod types;
 
 pub use blocks::evaluation::{golden, report, reproduces, study};
@@ -16,7 +15,6 @@ pub use blocks::{
 };
 pub use columns::Column;
 pub use functions::{FUNCTIONS, FunctionKind};
-pub use renamed::{NameRole, RENAMED, Renamed, renamed_at, renamed_result};
 pub use types::{
     BlockKind, Field, FieldType, Kind, Naming, Possible, Presence, Range, ResultKind, RigKind,
     Variant,

@@ -1,6 +1,6 @@
 //! Damage of a run log that cannot be trusted. In: nothing. Out: the position and the reason, for the reader. It cannot be repaired.
 
-use super::{FORMAT, LINE_BYTES, OLDEST_FORMAT};
+use super::{FORMAT, LINE_BYTES};
 
 /// The run log was altered, or is not one: it must not be continued.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -38,7 +38,7 @@ pub enum Wrong {
     NoHeader,
     #[error("a second HEADER")]
     SecondHeader,
-    #[error("its format is version {found}; this psd reads versions {OLDEST_FORMAT} to {FORMAT}")]
+    #[error("its format is version {found}; this psd reads version {FORMAT}")]
     Format { found: String },
     #[error("END states {count} entries with head {head}, but the entries before it differ")]
     EndOfAnother { count: String, head: String },

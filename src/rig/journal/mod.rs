@@ -29,8 +29,5 @@ pub use storage::Storage;
 pub use text::LogText;
 pub use writer::{Durability, Journal};
 
-/// The version of the format that is written. Version 1, which is read too, does not state the equipment in its first line.
+/// The version of the format.
 pub const FORMAT: u64 = 2;
-
-/// The oldest version that is read.
-pub const OLDEST_FORMAT: u64 = 1;

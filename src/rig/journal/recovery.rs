@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::chain::Chain;
 use super::line::{self, LINE_BYTES, Unsound};
-use super::{Damage, EntryKind, FORMAT, Line, LogText, OLDEST_FORMAT, Wrong};
+use super::{Damage, EntryKind, FORMAT, Line, LogText, Wrong};
 
 /// The part of a run log that can be trusted.
 #[derive(Clone, Debug)]
@@ -28,15 +28,6 @@ impl Recovered {
     #[must_use]
     pub fn head(&self) -> &str {
         self.chain.as_str()
-    }
-
-    /// The version of the format, from the first entry; 0 if there is none.
-    #[must_use]
-    pub fn format(&self) -> u64 {
-        self.lines
-            .first()
-            .and_then(|line| line.body()["format"].as_u64())
-            .unwrap_or(0)
     }
 
     /// The last field `step` of an entry.
@@ -194,15 +185,9 @@ fn check_position(kind: EntryKind, body: &Value, found: &Recovered) -> Result<()
     match kind {
         _ if found.ended => Err(Wrong::AfterEnd),
         EntryKind::Header if !found.lines.is_empty() => Err(Wrong::SecondHeader),
-        EntryKind::Header
-            if !body["format"]
-                .as_u64()
-                .is_some_and(|format| (OLDEST_FORMAT..=FORMAT).contains(&format)) =>
-        {
-            Err(Wrong::Format {
-                found: string_of("format"),
-            })
-        }
+        EntryKind::Header if body["format"] != FORMAT => Err(Wrong::Format {
+            found: string_of("format"),
+        }),
         EntryKind::Header => Ok(()),
         _ if found.lines.is_empty() => Err(Wrong::NoHeader),
         EntryKind::End

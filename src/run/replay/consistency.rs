@@ -101,8 +101,7 @@ impl PlansRig<'_> {
         let Some(link) = self.plan.rig.link.as_real() else {
             return without_bytes(rig.replies.is_empty(), "a virtual rig sends no bytes");
         };
-        // Run logs of older versions do not have it: their datum is the zero of the rig.
-        let datum = rig.datum.unwrap_or_else(|| vec![0.0; rig.axes]);
+        let datum = rig.datum.ok_or("a real rig states its datum")?;
         let at_zero = datum.iter().all(|position| *position == 0.0);
         if datum.len() != rig.axes || link.datum == Datum::Machine && !at_zero {
             return Err(format!("a datum at {} is not the plan's", metres(&datum)));

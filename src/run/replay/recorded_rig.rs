@@ -447,7 +447,7 @@ impl Rig for RecordedRig<'_> {
     fn logged_speed_limit(&self) -> Option<Interval> {
         let state = self.state.borrow();
         let logged = state.rig_in_force().filter(|_| state.next_kind().is_some());
-        logged.and_then(|in_force| in_force.speed_limit)
+        logged.map(|in_force| in_force.speed_limit)
     }
 
     fn take_broken(&mut self) -> Option<Reading> {

@@ -132,7 +132,7 @@ impl Shape<'_> {
     fn sent(&self, intent: &IntentBody) -> Result<(), String> {
         self.moves(&[
             ("to", &intent.to),
-            ("said", intent.encoded.as_ref().unwrap_or(&intent.to)),
+            ("encoded", intent.encoded.as_ref().unwrap_or(&intent.to)),
         ])?;
         let paths = intent.path.as_ref().map_or(intent.to.len(), Vec::len);
         if paths == intent.to.len() {

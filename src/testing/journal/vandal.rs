@@ -129,7 +129,7 @@ impl Vandal {
             Value::String(text) => match self.below(4) {
                 0 => text.clear(),
                 1 => text.push_str(" \u{1b}[31m\u{0}"),
-                2 => *text = "unloading".to_owned(),
+                2 => "unloading".clone_into(text),
                 _ => *text = other[self.below(other.len())].0.word().to_lowercase(),
             },
             Value::Object(_) | Value::Null => *value = other[self.below(other.len())].1.clone(),
@@ -173,7 +173,7 @@ fn resume(records: &mut Records, at: usize) {
         |(_, body)| json!([body["x"], body["r"]]),
     );
     let resumed = json!({
-        "from": at + 1, "by": "R. T", "reason": "no power", "doubt": {"target": "none"}, "found": found, "recorded": found, "t": rig["t"],
+        "from": at + 1, "by": "R. T", "reason": "no power", "target_status": {"target": "none"}, "found": found, "recorded": found, "t": rig["t"],
     });
     records.insert(at, (EntryKind::Resume, resumed));
     records.insert(at, (EntryKind::Rig, rig));

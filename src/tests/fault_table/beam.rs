@@ -151,7 +151,7 @@ impl Case {
         let mut rig =
             open(&plan, &emulator).unwrap_or_else(|fault| panic!("{}: {fault}", self.devices));
         let mut journal = Journal::create(Box::new(PowerLoss::new()), Durability::EverySyncPoint);
-        replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+        replay::begin(&mut journal, &header(&plan), &["text".to_owned()]).unwrap();
         let record =
             replay::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None)).record;
         assert!(

@@ -148,7 +148,7 @@ fn limits_that_do_not_reach_the_rig_leave_it_on_hold_and_the_run_replays() {
     let mut rig = Refusing(open(&plan, &emulator).unwrap());
     let disk = PowerLoss::new();
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
-    replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    replay::begin(&mut journal, &header(&plan), &["text".to_owned()]).unwrap();
     let recorded = replay::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None));
     let reported = |record: &Record| {
         let mut texts = record.events.iter().map(|event| event.text.as_str());

@@ -63,7 +63,7 @@ fn every_rig_of_the_manual_passes_its_pretest_check() {
             let mut rig = open(&plan, &emulator).unwrap_or_else(|fault| panic!("{name}: {fault}"));
             let mut journal =
                 Journal::create(Box::new(PowerLoss::new()), Durability::EverySyncPoint);
-            replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+            replay::begin(&mut journal, &header(&plan), &["text".to_owned()]).unwrap();
             let recorded =
                 replay::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None));
             assert_eq!(

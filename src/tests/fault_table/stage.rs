@@ -143,7 +143,7 @@ pub(super) fn run_watched(
     let mut rig = open(plan, &emulator)?;
     let disk = PowerLoss::new();
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
-    replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    replay::begin(&mut journal, &header(plan), &["text".to_owned()]).unwrap();
     let recorded = replay::record(plan, &mut rig, observer, journal, Box::new(|| None));
     assert!(recorded.mismatch.is_none() && recorded.fault.is_none());
     let recovered = recover(&disk.written()).unwrap();

@@ -190,12 +190,12 @@ fn a_run_goes_on_from_the_zero_on_record() {
     }
 }
 
-/// A run log of an older version, which did not ask for the start position, is replayed unchanged.
 #[test]
-fn a_record_without_a_datum_replays_unchanged() {
+fn a_record_without_a_datum_is_found() {
     let sent = run_without(Guarding::PretestStart, &plan(), AT_3_MM);
     let alter = |body: &mut serde_json::Value| drop(body.as_object_mut().unwrap().remove("datum"));
-    assert_eq!(found(&plan(), &sent, EntryKind::Rig, 0, alter), Ok(()));
+    let fault = found(&plan(), &sent, EntryKind::Rig, 0, alter).unwrap_err();
+    assert!(fault.contains("a real rig states its datum"), "{fault}");
 }
 
 #[test]

@@ -194,7 +194,7 @@ impl<'a> Life<'a> {
             Err(fault) => return Ended::Refused(fault.to_string()),
         };
         let mut journal = Journal::create(Box::new(self.disk.clone()), Durability::EverySyncPoint);
-        if let Err(fault) = replay::begin(&mut journal, &header(), &["text".to_owned()]) {
+        if let Err(fault) = replay::begin(&mut journal, &header(&self.plan), &["text".to_owned()]) {
             return Ended::Refused(fault.to_string());
         }
         let mut operator = self.operator(session, &self.plan, stop_request);

@@ -50,7 +50,6 @@ codes! {
     E212 BlockName Error;
     E213 BadArgument Error;
     E214 UnknownParameter Error;
-    E215 OldName Error;
     // 3: dimensions and types
     E301 WrongDimension Error;
     E302 MissingUnit Error;

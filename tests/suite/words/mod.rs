@@ -47,8 +47,6 @@ const EXCEPTIONS: &[(&str, &str)] = &[
         "mark 10 stand",
         "the maker's name of the machine: a Mark-10 test stand",
     ),
-    ("not certifiable", "a name in summaries of older versions"),
-    ("both were rehearsal", "a name in reports of older versions"),
     ("says more", "the pointer to a page of `psd explain`"),
     ("place of the test", "ISO/IEC 17025, 7.8.2.1 c"),
     (

@@ -71,10 +71,6 @@ impl<'a> Checker<'a> {
     }
 
     /// The same for an argument; `Some(None)` if it is omitted, None if it has an error.
-    #[expect(
-        clippy::option_option,
-        reason = "left out and faulty are different things here"
-    )]
     pub fn bounds_argument(
         &mut self,
         chosen: &Chosen<'a>,
@@ -132,7 +128,7 @@ impl<'a> Checker<'a> {
     fn moves_at_all(&mut self, field: &str, interval: Interval, span: Span) -> Option<Interval> {
         let nothing = interval.low >= 0.0 && interval.high <= 0.0;
         let help = match field {
-            _ if !nothing || self.recorded => return Some(interval),
+            _ if !nothing => return Some(interval),
             _ if field == NAMES.speed => "write the largest speed of the actuator, as in `10 mm/s`",
             _ if field == NAMES.displacement => "write the travel, as in `-5 mm .. 60 mm`",
             _ if field == NAMES.force => "write the largest force, as in `12 kN`",
@@ -263,9 +259,9 @@ pub fn check_start(checker: &mut Checker, limits: &CheckedLimits) {
 }
 
 /// Compares the forces of an elastic specimen on a virtual rig at the targets that are known before the run with the limits: they follow
-/// from its stiffness. A real specimen has the force that it has, and a recorded run has ended.
+/// from its stiffness. A real specimen has the force that it has.
 pub fn check_forces(checker: &mut Checker, limits: &CheckedLimits, specimens: &[Option<Specimen>]) {
-    let (Some(at), None, false) = (limits.force_at, checker.real_rig, checker.recorded) else {
+    let (Some(at), None) = (limits.force_at, checker.real_rig) else {
         return;
     };
     let interval = limits.limits.force;

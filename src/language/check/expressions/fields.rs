@@ -216,7 +216,7 @@ impl<'a> Checker<'a> {
             Some(outside) => outside?,
             None => (self.expect(own?, dimension, field.name, written)?, written),
         };
-        if field.angle && !self.recorded && self.is_plain(&typed, written) {
+        if field.angle && self.is_plain(&typed, written) {
             return self.fail(types::angle_without_unit(
                 self.text(written.span),
                 written.span,
@@ -295,10 +295,6 @@ impl<'a> Checker<'a> {
     }
 
     /// Some(None) if the field is omitted, None if it has an error.
-    #[expect(
-        clippy::option_option,
-        reason = "left out and faulty are different things here"
-    )]
     pub fn optional(&mut self, block: usize, field: &str) -> Option<Option<Formula>> {
         match self.field(block, field) {
             Some(_) => self.quantity(block, field).map(Some),

@@ -19,13 +19,13 @@ impl<'a> Checker<'a> {
     pub fn name(&mut self, name: &str, span: Span, context: Context) -> Option<Typed> {
         if let Reads::Impact(procedure) = context.reads
             && let Some(block) = self.procedure(procedure)
-            && let renamed = self
+            && let other = self
                 .left_under_another_name(block, name)
                 .filter(|last| self.result_of_impact(block, last.name).is_some())
-            && let Some(result) = self.result_of_impact(block, name).or(renamed)
+            && let Some(result) = self.result_of_impact(block, name).or(other)
             && (!result.of_storey || self.strikes_a_storey(procedure))
         {
-            if result.name != name && !self.recorded {
+            if result.name != name {
                 return self.fail(message::left_under_another_name(
                     self.scope.blocks[block].kind,
                     name,
@@ -232,8 +232,7 @@ impl<'a> Checker<'a> {
         context: Context,
     ) -> Option<Typed> {
         let declared = &self.scope.blocks[block];
-        let renamed = self.left_under_another_name(block, &name.node);
-        if let Some(now) = renamed.filter(|_| !self.recorded) {
+        if let Some(now) = self.left_under_another_name(block, &name.node) {
             return self.fail(message::left_under_another_name(
                 declared.kind,
                 &name.node,
@@ -241,7 +240,7 @@ impl<'a> Checker<'a> {
                 name.span,
             ));
         }
-        let known = renamed.or_else(|| declared.kind.result(&name.node));
+        let known = declared.kind.result(&name.node);
         if let (Some(result), Some(procedure)) = (known, declared.procedure) {
             let unloads = declared.kind.kind == Kind::Procedure(ProcedureBlock::Unload);
             if result.of_storey && !unloads && frame::struck_frame(self, block).is_none() {

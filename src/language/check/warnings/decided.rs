@@ -139,7 +139,7 @@ struct Together {
     high: Span,
 }
 
-/// Reports requirements that are decided before the run. A plan from a run log has been run. `stays_positive`: whether a procedure
+/// Reports requirements that are decided before the run. `stays_positive`: whether a procedure
 /// certainly moves the specimen to no negative displacement.
 pub fn check(
     checker: &mut Checker,
@@ -148,9 +148,6 @@ pub fn check(
     limits: &Limits,
     stays_positive: fn(&ProcedureKind) -> bool,
 ) {
-    if checker.recorded {
-        return;
-    }
     let mut together: BTreeMap<(ProcedureId, &str), Together> = BTreeMap::new();
     for (index, requirement) in requirements.iter().enumerate() {
         let written = checker.scope.requirements[index].condition;

@@ -22,8 +22,7 @@ pub const LEFT: [(&str, &str); 3] = [
 ];
 
 impl Checker<'_> {
-    /// The correct name of a result, if the plan reads it under the name that applies to a run with or without unloading. Plans of older
-    /// run logs use the other name.
+    /// The correct name of a result, if the plan reads it under the name that applies to a run with or without unloading.
     pub fn left_under_another_name(&self, block: usize, name: &str) -> Option<&'static ResultKind> {
         let unloads = self.unloads(block);
         let other = |(residual, last): &(&'static str, &'static str)| match unloads {

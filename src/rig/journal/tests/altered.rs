@@ -17,7 +17,7 @@ fn written(records: &[(u64, EntryKind, &str)]) -> Vec<u8> {
     out
 }
 
-const HEADER: (u64, EntryKind, &str) = (1, EntryKind::Header, r#"{"format":1}"#);
+const HEADER: (u64, EntryKind, &str) = (1, EntryKind::Header, r#"{"format":2}"#);
 
 fn damage(records: &[(u64, EntryKind, &str)]) -> Damage {
     recover(&written(records)).expect_err("it is damaged")
@@ -96,7 +96,7 @@ fn a_sequence_has_no_gaps_also_when_the_check_words_are_right() {
 #[test]
 fn a_record_of_another_run_is_refused() {
     let other = written(&[
-        (1, EntryKind::Header, r#"{"format":1,"run":"other"}"#),
+        (1, EntryKind::Header, r#"{"format":2,"run":"other"}"#),
         (2, EntryKind::Event, "{}"),
     ]);
     let spliced = [
@@ -161,7 +161,7 @@ fn another_format_is_refused_by_its_number() {
     assert!(
         of(r#"{"format":999}"#)
             .to_string()
-            .contains("its format is version 999; this psd reads versions 1 to 2")
+            .contains("its format is version 999; this psd reads version 2")
     );
     assert_eq!(
         of("{}").reason,
@@ -179,7 +179,7 @@ fn another_format_is_refused_by_its_number() {
 #[test]
 fn sequence_is_checked_also_with_correct_checksums() {
     let event = (2, EntryKind::Event, r#"{"step":7}"#);
-    let second = damage(&[HEADER, event, (3, EntryKind::Header, r#"{"format":1}"#)]);
+    let second = damage(&[HEADER, event, (3, EntryKind::Header, r#"{"format":2}"#)]);
     assert_eq!(
         (second.line, second.step, &second.reason),
         (3, Some(7), &Wrong::SecondHeader)

@@ -286,7 +286,7 @@ fn journal(storage: impl Storage + 'static) -> Journal {
 pub(super) fn recorded(plan: &Plan) -> (RestingRig, Recorded, Vec<u8>) {
     let (mut rig, disk) = (RestingRig::new(plan), PowerLoss::new());
     let mut journal = journal(disk.clone());
-    begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    begin(&mut journal, &header(plan), &["text".to_owned()]).unwrap();
     let recorded = record(plan, &mut rig, &mut Witness, journal, no_wall());
     (rig, recorded, disk.written())
 }
@@ -380,7 +380,7 @@ fn what_the_run_would_not_have_done_is_found_out() {
 fn an_answer_of_the_operator_has_its_time_of_day_and_replays_without_a_clock() {
     let (plan, disk) = (plan(), PowerLoss::new());
     let mut journal = journal(disk.clone());
-    begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    begin(&mut journal, &header(&plan), &["text".to_owned()]).unwrap();
     let wall: Wall = Box::new(|| Some("2026-05-31T10:00:00.000Z".to_owned()));
     let whole = record(
         &plan,

@@ -30,7 +30,7 @@ pub(crate) fn killed(
             Box::new(Killed::at(disk, call, after)),
             Durability::EverySyncPoint,
         );
-        replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+        replay::begin(&mut journal, &header(plan), &["text".to_owned()]).unwrap();
         replay::record(plan, &mut rig, &mut Unwatched, journal, Box::new(|| None))
     }));
     ended.is_err()

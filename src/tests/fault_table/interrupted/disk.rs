@@ -16,7 +16,7 @@ fn fails(plan: &Plan, sickness: Sickness) -> bool {
     let mut rig = open(plan, &emulator).unwrap();
     let disk = SickDisk::new(sickness);
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
-    if replay::begin(&mut journal, &header(), &["text".to_owned()]).is_err() {
+    if replay::begin(&mut journal, &header(plan), &["text".to_owned()]).is_err() {
         return true;
     }
     let recorded = replay::record(plan, &mut rig, &mut Unwatched, journal, Box::new(|| None));

@@ -138,7 +138,7 @@ fn very_many_steps_with_faults_by_chance_lose_no_sample_and_hold_on_to_nothing()
     let mut rig = open(&plan, &emulator).unwrap_or_else(|fault| panic!("seed {seed}: {fault}"));
     let counted = Counted::default();
     let mut journal = Journal::create(Box::new(counted.clone()), Durability::EverySyncPoint);
-    replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    replay::begin(&mut journal, &header(&plan), &["text".to_owned()]).unwrap();
     let recorded = replay::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None));
     let record = recorded.record;
     assert_eq!(record.outcome, Outcome::Completed, "seed {seed}");
@@ -204,7 +204,7 @@ fn a_wall_clock_that_jumps_changes_no_duration() {
         let mut rig = open(&plan, &emulator).unwrap();
         let disk = psd_testing::journal::PowerLoss::new();
         let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
-        replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+        replay::begin(&mut journal, &header(&plan), &["text".to_owned()]).unwrap();
         let record = replay::record(&plan, &mut rig, &mut Unwatched, journal, wall).record;
         assert_eq!(record.outcome, Outcome::Completed);
         let lines = psd_testing::journal::recover(&disk.written())

@@ -62,7 +62,7 @@ fn killed(plan: &Plan, emulator: &InProcess, disk: &PowerLoss, word: usize, afte
     let ended = catch_unwind(AssertUnwindSafe(|| {
         let mut rig = open_through(plan, emulator, &through).unwrap();
         let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
-        replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+        replay::begin(&mut journal, &header(plan), &["text".to_owned()]).unwrap();
         replay::record(plan, &mut rig, &mut Unwatched, journal, Box::new(|| None))
     }));
     ended.is_err()

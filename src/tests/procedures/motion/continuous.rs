@@ -200,7 +200,7 @@ fn an_impact_is_not_extrapolated_as_a_trend() {
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
     begin(
         &mut journal,
-        &crate::tests::testing::header(),
+        &crate::tests::testing::header(&plan),
         &["text".to_owned()],
     )
     .unwrap();
@@ -319,7 +319,7 @@ fn a_continuous_run_is_played_back_from_its_record() {
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
     begin(
         &mut journal,
-        &crate::tests::testing::header(),
+        &crate::tests::testing::header(&plan),
         &["text".to_owned()],
     )
     .unwrap();

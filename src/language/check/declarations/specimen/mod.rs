@@ -109,16 +109,14 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     })
 }
 
-/// A `beam` has ends, and q·A·L/2 applies to two supports: the plan must state which of its masses applies. Plans of older run logs used
-/// q·A·L/2.
+/// A `beam` has ends, and q·A·L/2 applies to two supports: the plan must state which of its masses applies.
 fn beam_has_mass(checker: &mut Checker, block: usize, half: Option<f64>) {
     let declared = &checker.scope.blocks[block];
     let beam = |written: &Expr| behaviour::names(written, "beam");
     let named = checker
         .field(block, fields::BEHAVIOUR.name)
         .is_some_and(|(_, entry)| beam(&entry.value));
-    let (Some(half), Some(name)) = (half.filter(|_| named && !checker.recorded), declared.name)
-    else {
+    let (Some(half), Some(name)) = (half.filter(|_| named), declared.name) else {
         return;
     };
     if checker.field(block, fields::MASS.name).is_some() {

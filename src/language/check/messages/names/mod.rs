@@ -13,7 +13,7 @@ pub use units::*;
 use super::{one_of, owner, suggestion};
 use crate::syntax::ast::{Block, Ident};
 use crate::syntax::control;
-use psd_plan::schema::{BLOCKS, BlockKind, Field, ITEM_WORDS, Kind, Naming, Renamed, RigKind};
+use psd_plan::schema::{BLOCKS, BlockKind, Field, ITEM_WORDS, Kind, Naming, RigKind};
 use psd_text::diagnostic::{Code, Diagnostic};
 use psd_text::source::{FileId, Span};
 
@@ -152,16 +152,6 @@ pub fn velocity_twice(again: &str, span: Span, first_field: &str, first: Span) -
     .at(span, "given again")
     .at(first, "first given here")
     .help("remove one of them")
-}
-
-/// A name of an older version.
-pub fn renamed(row: &Renamed, span: Span) -> Diagnostic {
-    Diagnostic::new(
-        Code::OldName,
-        format!("`{}` is now called `{}`", row.old, row.new),
-    )
-    .at(span, "old name")
-    .help(format!("write `{}`", row.new))
 }
 
 pub fn unknown_field(kind: &BlockKind, key: &Ident) -> Diagnostic {
