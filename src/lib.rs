@@ -7,10 +7,8 @@
 //! Each arrow is one public function. No stage calls back, and no stage after `check` reads text. The stages are engines:
 //! everything that concerns one procedure only is in its folder of `procedures`.
 
-pub mod text;
-pub mod units;
-
 pub use psd_physics as physics;
+pub use psd_text::{self as text, units};
 
 pub mod plan;
 pub mod schema;

@@ -1,20 +1,17 @@
 //! Summaries of older versions. In: the text of a `summary.json`. Out: the same with the present names.
 
 use crate::plan::ProcedureBlock;
-use crate::schema::procedures::impact_series;
+use crate::plan::procedures::escalate::block as escalate;
 use crate::schema::{self, Kind, NameRole, RENAMED};
 use serde_json::{Map, Value};
 
 /// Results of runs without unloading: old and present names. A plan has them under either name, by the kind of its procedure.
 const AT_THE_LAST_STEP: [(&str, &str); 2] = [
     (
-        impact_series::RESIDUAL_DISPLACEMENT.name,
-        impact_series::FINAL_DISPLACEMENT.name,
+        escalate::RESIDUAL_DISPLACEMENT.name,
+        escalate::FINAL_DISPLACEMENT.name,
     ),
-    (
-        impact_series::RESIDUAL_DRIFT.name,
-        impact_series::FINAL_DRIFT.name,
-    ),
+    (escalate::RESIDUAL_DRIFT.name, escalate::FINAL_DRIFT.name),
 ];
 
 /// Keys of the summary itself.

@@ -4,7 +4,7 @@
 pub mod contribution;
 pub(crate) mod declaration;
 pub mod formula;
-pub mod procedure;
+pub mod procedures;
 pub mod report;
 pub mod reproduction;
 pub mod results;
@@ -36,19 +36,21 @@ pub use crate::physics::structure::portal::{
 };
 
 pub use crate::physics::statistics::DeclaredNoise;
-pub use procedure::base_excitation::Shake;
-pub use procedure::cycle::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
-pub use procedure::damping_sweep::DampingSweep;
-pub use procedure::identification::{
+pub use procedures::cycle::parameters::{Cycle, CycleInspection, Level, MOST_TARGETS, Sides};
+pub use procedures::damping_sweep::parameters::DampingSweep;
+pub use procedures::escalate::parameters::{Between, Escalate, MOST_IMPACTS};
+pub use procedures::impact::parameters::{
+    Contact, Impact, ImpactTarget, PointTarget, StoreyTarget,
+};
+pub use procedures::mode::Mode;
+pub use procedures::move_to::parameters::Move;
+pub use procedures::shake::parameters::Shake;
+pub use procedures::stepping::{MOST_RECORDED_STEPS, MOST_STEPS, Stepping, step_count, steps_in};
+pub use procedures::stiffness_ramp::parameters::{
     BreakCount, RampFit, RelaxationLaw, RelaxationModel, StiffnessRamp, WatchedHold, WatchedModel,
 };
-pub use procedure::impact::{Contact, Impact, ImpactTarget, PointTarget, StoreyTarget};
-pub use procedure::impact_series::{Between, Escalate, MOST_IMPACTS};
-pub use procedure::mode::Mode;
-pub use procedure::move_to::Move;
-pub use procedure::stepping::{MOST_RECORDED_STEPS, MOST_STEPS, Stepping, step_count, steps_in};
-pub use procedure::unload::Unload;
-pub use procedure::{ProcedureBlock, ProcedureKind};
+pub use procedures::unload::parameters::Unload;
+pub use procedures::{ProcedureBlock, ProcedureKind};
 pub use report::annex::Annex;
 pub use report::figure::{Figure, FigureKind, MOST_TOGETHER};
 pub use report::golden::{ColumnTolerance, Golden, ResultTolerance, Tolerance};

@@ -1,15 +1,15 @@
 //! The procedures, one folder each: check, run, tables, figures and report. In: a block of the plan, then a rig behind the guard. Out:
 //! histories and results. Only this file lists the procedures: one function per stage, each with one exhaustive match.
 
-pub mod base_excitation;
 pub(crate) mod common;
 pub mod cycle;
 pub mod damping_sweep;
+pub mod escalate;
 pub(crate) mod facts;
 pub mod impact;
-pub mod impact_series;
 pub mod inspect;
 pub mod move_to;
+pub mod shake;
 pub mod stepping;
 pub mod stiffness_ramp;
 pub mod unload;
@@ -23,7 +23,9 @@ use crate::plan::{
     DeclaredNoise, Figure, FigureKind, Ground, Impact, Plan, Procedure, ProcedureBlock,
     ProcedureKind,
 };
-use crate::record::{CycleStep, History, NamedResult, ProcedureRecord, RampHistory, SweepStep};
+use crate::record::{
+    CycleStep, History, NamedResult, ProcedureRecord, StiffnessRampHistory, SweepStep,
+};
 use crate::report::Run;
 use crate::report::document::Block;
 use crate::report::figures::chart::{Chart, SharedCurve};
@@ -46,9 +48,9 @@ pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<ProcedureKind
         ProcedureBlock::StiffnessRamp => stiffness_ramp::check::stiffness_ramp(checker, block),
         ProcedureBlock::DampingSweep => damping_sweep::check::damping_sweep(checker, block),
         ProcedureBlock::Impact => impact::check::impact(checker, block),
-        ProcedureBlock::Shake => base_excitation::check::shake(checker, block),
+        ProcedureBlock::Shake => shake::check::shake(checker, block),
         ProcedureBlock::Cycle => cycle::check::cycle(checker, block),
-        ProcedureBlock::Escalate => impact_series::check::escalate(checker, block),
+        ProcedureBlock::Escalate => escalate::check::escalate(checker, block),
         ProcedureBlock::Unload => unload::check::unload(checker, block),
         ProcedureBlock::Move => move_to::check::move_block(checker, block),
         ProcedureBlock::Inspect => inspect::check::inspect(checker, block),
@@ -67,10 +69,10 @@ pub(crate) fn check_declared(
             impact::check::declared::with_its_striker(checker, block, impact, declared);
         }
         ProcedureKind::Escalate(escalate) => {
-            impact_series::declared::check_declared(checker, block, escalate, declared);
+            escalate::declared::check_declared(checker, block, escalate, declared);
         }
         ProcedureKind::Shake(shake) => {
-            base_excitation::check::check_declared(checker, block, shake, declared);
+            shake::check::check_declared(checker, block, shake, declared);
         }
         ProcedureKind::StiffnessRamp(_)
         | ProcedureKind::DampingSweep(_)
@@ -116,8 +118,8 @@ pub(crate) fn stays_positive(kind: &ProcedureKind) -> bool {
 pub(crate) fn leaves(kind: &ProcedureKind, grounds: &[Option<Ground>]) -> Leaves<'static> {
     match kind {
         ProcedureKind::Impact(impact) => Leaves::Moving(impact::facts::motion(impact)),
-        ProcedureKind::Shake(shake) => Leaves::Moving(base_excitation::left::left(shake, grounds)),
-        ProcedureKind::Escalate(series) => Leaves::Moving(impact_series::declared::motion(series)),
+        ProcedureKind::Shake(shake) => Leaves::Moving(shake::left::left(shake, grounds)),
+        ProcedureKind::Escalate(series) => Leaves::Moving(escalate::declared::motion(series)),
         ProcedureKind::Inspect { .. } => Leaves::AsFound,
         ProcedureKind::StiffnessRamp(_)
         | ProcedureKind::DampingSweep(_)
@@ -153,10 +155,10 @@ pub(crate) fn facts_of(kind: &ProcedureKind) -> Facts<'_> {
         ProcedureKind::StiffnessRamp(_) => stiffness_ramp::facts::facts(),
         ProcedureKind::DampingSweep(_) => damping_sweep::facts::facts(),
         ProcedureKind::Impact(impact) => impact::facts::facts(impact),
-        ProcedureKind::Shake(shake) => base_excitation::facts::facts(shake),
+        ProcedureKind::Shake(shake) => shake::facts::facts(shake),
         ProcedureKind::Cycle(_) => cycle::facts::facts(),
         ProcedureKind::Unload(unload) => unload::facts::facts(unload),
-        ProcedureKind::Escalate(series) => impact_series::facts::facts(series),
+        ProcedureKind::Escalate(series) => escalate::facts::facts(series),
         ProcedureKind::Move(_) => Facts::default(),
         ProcedureKind::Inspect { .. } => Facts {
             tests: Tests::Nothing,
@@ -168,12 +170,12 @@ pub(crate) fn facts_of(kind: &ProcedureKind) -> Facts<'_> {
 /// Report: the observations on the record of a procedure.
 pub(crate) fn recorded(history: &History) -> Recorded {
     match history {
-        History::Ramp(history) => stiffness_ramp::facts::recorded(history),
-        History::Sweep(history) => damping_sweep::facts::recorded(history),
+        History::StiffnessRamp(history) => stiffness_ramp::facts::recorded(history),
+        History::DampingSweep(history) => damping_sweep::facts::recorded(history),
         History::Impact(history) => impact::facts::recorded(history),
-        History::Shake(history) => base_excitation::facts::recorded(history),
+        History::Shake(history) => shake::facts::recorded(history),
         History::Cycle(_) => cycle::facts::recorded(),
-        History::Escalate(_) => impact_series::facts::recorded(),
+        History::Escalate(_) => escalate::facts::recorded(),
         History::FrameUnload(_) => unload::facts::recorded_frame(),
         History::Move(_) | History::Inspect => Recorded::default(),
     }
@@ -194,11 +196,9 @@ pub(crate) fn run(
             damping_sweep::run::perform(sweep, plan, inputs, session)
         }
         ProcedureKind::Impact(impact) => impact::run::perform(impact, plan, inputs, session),
-        ProcedureKind::Shake(shake) => base_excitation::run::perform(shake, plan, inputs, session),
+        ProcedureKind::Shake(shake) => shake::run::perform(shake, plan, inputs, session),
         ProcedureKind::Cycle(cycles) => cycle::run::perform(cycles, plan, inputs, session),
-        ProcedureKind::Escalate(series) => {
-            impact_series::run::perform(series, plan, inputs, session)
-        }
+        ProcedureKind::Escalate(series) => escalate::run::perform(series, plan, inputs, session),
         ProcedureKind::Unload(unload) => unload::run::perform(unload, plan, inputs, session),
         ProcedureKind::Move(target) => move_to::run::perform(target, inputs, session),
         ProcedureKind::Inspect { note } => inspect::run::perform(note, session),
@@ -220,12 +220,12 @@ pub(crate) fn attribute(
         common::fit_uncertainty::attribute(fits, plan, procedure, &instruments, results);
     };
     match history {
-        History::Ramp(found) => {
+        History::StiffnessRamp(found) => {
             if let ProcedureKind::StiffnessRamp(ramp) = kind {
                 stiffness_ramp::fits::with_fits(found, ramp, &instruments, attribute);
             }
         }
-        History::Sweep(found) => {
+        History::DampingSweep(found) => {
             if let ProcedureKind::DampingSweep(sweep) = kind {
                 damping_sweep::uncertainty::propagate(
                     sweep, found, plan, inputs, declared, results,
@@ -263,7 +263,7 @@ pub(crate) fn most_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
         ProcedureKind::StiffnessRamp(ramp) => Some(ramp.targets()),
         ProcedureKind::Impact(_) | ProcedureKind::Shake(_) => known_steps(kind, plan),
         ProcedureKind::Cycle(cycle) => cycle.rate.is_none().then(|| cycle.targets() + 1),
-        ProcedureKind::Escalate(series) => impact_series::run::most_steps(series, plan),
+        ProcedureKind::Escalate(series) => escalate::run::most_steps(series, plan),
         ProcedureKind::Move(_) => Some(1),
         ProcedureKind::Inspect { .. } => Some(0),
         ProcedureKind::DampingSweep(_) | ProcedureKind::Unload(_) => None,
@@ -295,7 +295,7 @@ pub(crate) fn delay(kind: &ProcedureKind, plan: &Plan) -> Option<Delay> {
     match kind {
         ProcedureKind::Impact(impact) => impact::delay::of_impact(plan, impact),
         ProcedureKind::Escalate(series) => impact::delay::of_series(plan, series),
-        ProcedureKind::Shake(shake) => base_excitation::facts::delay(plan, shake),
+        ProcedureKind::Shake(shake) => shake::facts::delay(plan, shake),
         ProcedureKind::StiffnessRamp(_)
         | ProcedureKind::DampingSweep(_)
         | ProcedureKind::Cycle(_)
@@ -313,13 +313,13 @@ pub(crate) fn chart(
 ) -> Option<(Chart, String)> {
     let (name, kind) = (&procedure.name, figure.kind);
     match &procedure.history {
-        History::Ramp(history) => stiffness_ramp::figures::chart(name, history, kind),
-        History::Sweep(history) => damping_sweep::figures::chart(name, history, kind),
+        History::StiffnessRamp(history) => stiffness_ramp::figures::chart(name, history, kind),
+        History::DampingSweep(history) => damping_sweep::figures::chart(name, history, kind),
         History::Impact(history) => impact::figures::chart(run, name, history, figure),
-        History::Shake(history) => base_excitation::figures::chart(run, name, history, figure),
+        History::Shake(history) => shake::figures::chart(run, name, history, figure),
         History::Cycle(history) => cycle::figures::chart(name, history, kind),
-        History::Escalate(history) => impact_series::figures::chart(run, name, history, figure),
-        History::FrameUnload(steps) => base_excitation::figures::unloading_chart(name, steps, kind),
+        History::Escalate(history) => escalate::figures::chart(run, name, history, figure),
+        History::FrameUnload(steps) => shake::figures::unloading_chart(name, steps, kind),
         History::Move(_) | History::Inspect => None,
     }
 }
@@ -328,9 +328,9 @@ pub(crate) fn chart(
 pub(crate) fn shared_curve(kind: FigureKind, history: &History) -> Option<SharedCurve> {
     match history {
         History::Impact(history) => impact::figures::shared(kind, history),
-        History::Shake(history) => base_excitation::figures::shared(kind, history),
-        History::Ramp(_)
-        | History::Sweep(_)
+        History::Shake(history) => shake::figures::shared(kind, history),
+        History::StiffnessRamp(_)
+        | History::DampingSweep(_)
         | History::Cycle(_)
         | History::Escalate(_)
         | History::Move(_)
@@ -343,12 +343,12 @@ pub(crate) fn shared_curve(kind: FigureKind, history: &History) -> Option<Shared
 pub(crate) fn tables(procedure: &ProcedureRecord) -> Vec<Table<'_>> {
     let name = procedure.name.clone();
     match &procedure.history {
-        History::Ramp(history) => stiffness_ramp::tables::tables(name, history),
-        History::Sweep(history) => vec![damping_sweep::tables::table(name, history)],
+        History::StiffnessRamp(history) => stiffness_ramp::tables::tables(name, history),
+        History::DampingSweep(history) => vec![damping_sweep::tables::table(name, history)],
         History::Impact(history) => vec![impact::tables::table(name, history)],
-        History::Shake(history) => vec![base_excitation::tables::table(name, history)],
+        History::Shake(history) => vec![shake::tables::table(name, history)],
         History::Cycle(history) => cycle::tables::tables(name, history),
-        History::Escalate(history) => impact_series::tables::tables(name, history),
+        History::Escalate(history) => escalate::tables::tables(name, history),
         History::Move(steps) => vec![stiffness_ramp::tables::of_moves(name, steps)],
         History::FrameUnload(steps) => vec![unload::tables::of_floors(name, steps)],
         History::Inspect => Vec::new(),
@@ -367,8 +367,8 @@ pub fn columns(kind: Kind) -> impl Iterator<Item = Column> {
         ProcedureBlock::DampingSweep => numeric(damping_sweep::tables::STEPS),
         ProcedureBlock::Impact => impact::tables::columns(),
         ProcedureBlock::Cycle => cycle::tables::columns(),
-        ProcedureBlock::Shake => numeric(&base_excitation::tables::shake()),
-        ProcedureBlock::Escalate => impact_series::tables::columns(),
+        ProcedureBlock::Shake => numeric(&shake::tables::shake()),
+        ProcedureBlock::Escalate => escalate::tables::columns(),
         ProcedureBlock::Inspect => Vec::new(),
     };
     each_once(all).into_iter()
@@ -382,8 +382,8 @@ pub(crate) fn report(
     body: &mut Vec<Block>,
 ) {
     match &procedure.history {
-        History::Ramp(history) => stiffness_ramp::report::report(history, body),
-        History::Sweep(history) => damping_sweep::report::report(history, body),
+        History::StiffnessRamp(history) => stiffness_ramp::report::report(history, body),
+        History::DampingSweep(history) => damping_sweep::report::report(history, body),
         History::Impact(history) => match &history.frame {
             Some(struck) => {
                 impact::report::storey::report(run, index, procedure, history, struck, body);
@@ -392,13 +392,13 @@ pub(crate) fn report(
         },
         History::Cycle(history) => cycle::report::table(history, body),
         History::Shake(history) => {
-            base_excitation::report::shaken(run, index, procedure, history, body);
+            shake::report::shaken(run, index, procedure, history, body);
         }
         History::Escalate(history) => {
-            impact_series::report::table(run, index, procedure, history, body);
+            escalate::report::table(run, index, procedure, history, body);
         }
         History::FrameUnload(steps) => {
-            base_excitation::report::unloaded(run, index, procedure, steps, body);
+            shake::report::unloaded(run, index, procedure, steps, body);
         }
         History::Move(_) | History::Inspect => {}
     }
@@ -421,14 +421,14 @@ pub(crate) fn self_tested(kind: &ProcedureKind) -> Vec<Vec<Part>> {
 /// Report: gives displacement \[m\] and force \[N\] of every axis, row by row of a procedure's table.
 pub(crate) fn readings(history: &History, give: &mut dyn FnMut(&[f64], &[f64])) {
     match history {
-        History::Ramp(RampHistory { steps, .. }) | History::Move(steps) => {
+        History::StiffnessRamp(StiffnessRampHistory { steps, .. }) | History::Move(steps) => {
             common::reached::of_axis(
                 steps,
                 |step| (step.displacement, step.restoring_force),
                 give,
             );
         }
-        History::Sweep(sweep) => {
+        History::DampingSweep(sweep) => {
             let read = |step: &SweepStep| (step.displacement, step.restoring_force);
             common::reached::of_axis(&sweep.steps, read, give);
         }

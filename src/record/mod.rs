@@ -22,19 +22,21 @@ pub use crate::physics::relaxation::superposition::{LawFit, SuperpositionFit};
 pub use crate::physics::relaxation::time_constant::RelaxationFit;
 pub use crate::physics::structure::{FrameEnergies, Modes};
 use crate::plan::formula::{Estimate, ResultReference, ResultValue, Results, UncertaintyStatus};
+pub use crate::plan::procedures::cycle::history::{CycleHistory, CycleStep, WholeCycle};
+pub use crate::plan::procedures::damping_sweep::history::{
+    BroughtTogether, DampingSweepHistory, SweepStep,
+};
+pub use crate::plan::procedures::escalate::history::{EscalateHistory, SeriesImpact};
+pub use crate::plan::procedures::impact::history::{ImpactHistory, ImpactStep};
+pub use crate::plan::procedures::shake::history::{ShakeHistory, ShakeStep};
+pub use crate::plan::procedures::stiffness_ramp::history::{RampStep, StiffnessRampHistory};
+pub use crate::plan::procedures::unload::history::{Rest, UnloadStep};
 use crate::schema::block_of_words;
 use crate::uncertainty::{Contribution, Source, combined_entries};
 use crate::units::Dimension;
 pub use held::Held;
 pub use history::History;
-pub use history::base_excitation::{ShakeHistory, ShakeStep};
-pub use history::cycle::{CycleHistory, CycleStep, WholeCycle};
 pub use history::floors::{FloorMotion, FloorStep, Floors, FloorsAt, StruckFrame};
-pub use history::impact::{ImpactHistory, ImpactStep};
-pub use history::impact_series::{EscalateHistory, SeriesImpact};
-pub use history::ramp::{RampHistory, RampStep};
-pub use history::sweep::{BroughtTogether, SweepHistory, SweepStep};
-pub use history::unload::{Rest, UnloadStep};
 pub use identity::Identity;
 pub use zero_drift::{AxisDrift, Beyond, Drift, Zero};
 

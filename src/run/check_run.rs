@@ -2,10 +2,10 @@
 //! record of its pre-test check and leading stiffness ramps. Out: the plan of those alone, and the whole plan on a virtual specimen with
 //! the measured stiffness. It moves nothing.
 
+use crate::plan::procedures::stiffness_ramp::block::STIFFNESS;
 use crate::plan::{Behaviour, Link, Plan, ProcedureKind, Specimen, VirtualLink};
-use crate::record::{History, RampHistory, Record};
+use crate::record::{History, Record, StiffnessRampHistory};
 use crate::rig::VirtualRig;
-use crate::schema::procedures::stiffness_ramp::STIFFNESS;
 
 /// The administrative field of a plan that marks it as a check run.
 const FIELD: &str = "check_run";
@@ -140,7 +140,7 @@ pub fn prediction(plan: &Plan, measured: &Record) -> Result<Plan, NoCheckRun> {
 /// The specimen that a ramp beyond yield measured, if its fitted curve is a valid model. It has the measured yield point, not the
 /// expected one.
 fn curve_of(history: &History) -> Option<Behaviour> {
-    let History::Ramp(RampHistory {
+    let History::StiffnessRamp(StiffnessRampHistory {
         steps,
         multilinear: Some(fit),
         ..
@@ -188,7 +188,7 @@ fn scatter(measured: &Record) -> f64 {
         .procedures
         .iter()
         .flat_map(|procedure| match &procedure.history {
-            History::Ramp(history) => history.steps.as_slice(),
+            History::StiffnessRamp(history) => history.steps.as_slice(),
             _ => &[],
         });
     let (count, sum) = steps.fold((0.0, 0.0), |(count, sum), step| {

@@ -4,9 +4,9 @@
 use super::condition::{decide, is_equality};
 use super::{ConditionOutcome, Verdict};
 use crate::plan::formula::{Part, ResultReference, Results};
+use crate::plan::procedures::impact::block::TIME_STEP;
 use crate::plan::time_step::{FINER, in_finer_steps};
 use crate::plan::{Condition, DecisionRule};
-use crate::schema::procedures::impact::TIME_STEP;
 use crate::uncertainty::sources_of;
 use crate::units::Dimension;
 use crate::units::display::{readable, stated};

@@ -5,12 +5,15 @@
 use super::{ConditionOutcome, unfinished_peaks};
 use crate::physics::impact::energy::WORTHLESS;
 use crate::plan::formula::{ResultReference, ResultValue, Results};
+use crate::plan::procedures::damping_sweep::block as damping_sweep;
+use crate::plan::procedures::escalate::block as escalate;
+use crate::plan::procedures::impact::block as impact;
+use crate::plan::procedures::stiffness_ramp::block as stiffness_ramp;
 use crate::plan::{Condition, DecisionRule};
 use crate::record::{Beyond, ProcedureRecord, Record};
 use crate::rig::safety::failpoint;
 use crate::rig::safety::failpoint::Guarding;
 use crate::schema::ResultKind;
-use crate::schema::procedures::{damping_sweep, impact, impact_series, stiffness_ramp};
 use crate::units::Dimension;
 use crate::units::display::stated;
 
@@ -70,7 +73,7 @@ fn cut_short(read: &[Read<'_>]) -> Option<String> {
 /// Results that do not depend on the energy balance or on the length of the time steps.
 const BESIDE_THE_BALANCE: [&str; 6] = [
     impact::ENERGY_ERROR.name,
-    impact_series::ENERGY_ERRORS.name,
+    escalate::ENERGY_ERRORS.name,
     impact::TIME_STEP.name,
     impact::CRITICAL_TIME_STEP.name,
     impact::STEPS.name,
@@ -113,7 +116,7 @@ pub(super) fn longer_than_critical(name: &str, step: f64, critical: f64) -> Stri
 fn off(procedure: &ProcedureRecord) -> bool {
     let found = |kind: ResultKind| procedure.result(kind.name).map(|result| &result.value);
     let beyond = |error: &f64| error.is_nan() || error.abs() > WORTHLESS;
-    match found(impact::ENERGY_ERROR).or_else(|| found(impact_series::ENERGY_ERRORS)) {
+    match found(impact::ENERGY_ERROR).or_else(|| found(escalate::ENERGY_ERRORS)) {
         Some(ResultValue::Number { value, .. }) => value.as_ref().is_none_or(beyond),
         Some(ResultValue::List(errors)) => errors.iter().any(beyond),
         None => false,

@@ -7,10 +7,11 @@ use super::assess_condition;
 use crate::plan::formula::{
     Part, ProcedureId, ResultReference, ResultValue, Results, UncertaintyStatus,
 };
+use crate::plan::procedures::escalate::block as series;
+use crate::plan::procedures::impact::block as schema;
 use crate::plan::{Condition, DecisionRule};
 use crate::record::{EscalateHistory, FloorStep, Floors, History, ImpactHistory, SeriesImpact};
 use crate::schema::ResultKind;
-use crate::schema::procedures::{impact as schema, impact_series as series};
 use crate::uncertainty::{Contribution, Source};
 
 /// The part of one result that may have grown further, and the reason.

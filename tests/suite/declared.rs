@@ -77,9 +77,10 @@ fn users() -> Vec<SourceText> {
     let declares = |file: &SourceText| {
         file.is_in(DECLARATIONS)
             || DECLARATIONS.contains(&file.path.as_str())
-            || ["/data/block.rs", "/data/parameters.rs"]
-                .iter()
-                .any(|name| file.path.ends_with(name))
+            || file.is_in(&["plan/procedures"])
+                && ["/block.rs", "/parameters.rs"]
+                    .iter()
+                    .any(|name| file.path.ends_with(name))
     };
     let product = |file: &SourceText| !is_of_tests(&file.path) && !declares(file);
     rust_files("src").into_iter().filter(product).collect()

@@ -201,34 +201,14 @@ fn what_is_named_a_test_is_built_for_tests_alone() {
     none(&found, "not of tests alone");
 }
 
-/// Files that are longer than the limit. The list may only shrink.
-const LONG: &[&str] = &[];
-
 #[test]
-fn every_file_has_a_header_and_is_short() {
+fn every_file_begins_with_what_it_is() {
     let files = rust_files("src");
-    let missing = LONG
+    let found: Vec<String> = files
         .iter()
-        .filter(|listed| files.iter().all(|file| file.path != **listed));
-    let mut found: Vec<String> = missing
-        .map(|listed| format!("{listed}: no such file, remove it from the list"))
+        .filter(|file| !file.text.starts_with("//! "))
+        .map(|file| format!("{}: no `//!` header", file.path))
         .collect();
-    for file in files {
-        if !file.text.starts_with("//! ") {
-            found.push(format!("{}: no `//!` header", file.path));
-        }
-        let lines = file.text.lines().count();
-        let listed = LONG.contains(&file.path.as_str());
-        if lines > 500 && !listed {
-            found.push(format!("{}: {lines} lines, the wall is 500", file.path));
-        }
-        if lines <= 500 && listed {
-            found.push(format!(
-                "{}: no longer long, remove it from the list",
-                file.path
-            ));
-        }
-    }
     none(&found, "a file breaks the house rules");
 }
 
@@ -263,55 +243,6 @@ fn the_arguments_of_a_function_are_few_and_have_names() {
     }
     assert!(count > 4000, "{count} functions");
     none(&found, "give the arguments to a struct with named fields");
-}
-
-/// Entries of a folder, at most. A reader sees about a dozen at a glance.
-const MOST_ENTRIES: usize = 15;
-
-/// Folders with more entries, and why. The list may only shrink.
-const LARGE_FOLDERS: &[(&str, &str)] = &[
-    ("", "the stages, in the order of the arrows"),
-    (
-        "text/diagnostic/explain",
-        "one page a diagnostic, found by its code and never by its neighbours",
-    ),
-];
-
-#[test]
-fn a_folder_is_seen_at_a_glance() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut open = vec![root.clone()];
-    let mut found = Vec::new();
-    let mut large = BTreeSet::new();
-    while let Some(folder) = open.pop() {
-        let mut entries = 0;
-        for entry in std::fs::read_dir(&folder).unwrap() {
-            let path = entry.unwrap().path();
-            let hidden = path
-                .file_name()
-                .is_some_and(|name| name.to_string_lossy().starts_with('.'));
-            entries += usize::from(!hidden);
-            if path.is_dir() {
-                open.push(path);
-            }
-        }
-        let name = folder.strip_prefix(&root).unwrap().to_string_lossy();
-        if entries <= MOST_ENTRIES {
-            continue;
-        }
-        large.insert(name.to_string());
-        if LARGE_FOLDERS.iter().all(|(listed, _)| *listed != name) {
-            found.push(format!(
-                "src/{name} has {entries} entries: group them by concept"
-            ));
-        }
-    }
-    let idle = LARGE_FOLDERS
-        .iter()
-        .filter(|(listed, _)| !large.contains(*listed))
-        .map(|(listed, _)| format!("src/{listed} is no longer large: remove it from the list"));
-    found.extend(idle);
-    none(&found, "a folder holds about a dozen entries");
 }
 
 #[test]

@@ -11,7 +11,7 @@ use std::sync::LazyLock;
 use fixture::{Finished, finished};
 use polars::prelude::{ParquetReader, SerReader as _};
 use psd::plan::{Comparison, Format};
-use psd::record::{History, ImpactStep, Outcome, RampHistory};
+use psd::record::{History, ImpactStep, Outcome, StiffnessRampHistory};
 use psd::report::summary::Summary;
 use psd::report::{OutputFile, console, manifest_with, put_everything};
 use psd::verdict::{Bound, Verdict};
@@ -385,7 +385,7 @@ fn a_run_stopped_early_still_leaves_a_whole_folder() {
     history.steps.truncate(1);
     finished.record.procedures[2].complete = false;
     finished.record.procedures[2].results.clear();
-    finished.record.procedures[0].history = History::Ramp(RampHistory {
+    finished.record.procedures[0].history = History::StiffnessRamp(StiffnessRampHistory {
         before: Vec::new(),
         steps: Vec::new(),
         fit: None,

@@ -54,7 +54,7 @@ pub enum FigureKind {
     /// Remaining relaxation of the force against the dwell time.
     Relaxation,
     /// Results of each impact of a series, against its energy.
-    ImpactSeries,
+    Escalate,
 }
 
 impl FigureKind {
@@ -77,7 +77,7 @@ impl FigureKind {
         Self::CycleEnergy,
         Self::StiffnessDegradation,
         Self::Relaxation,
-        Self::ImpactSeries,
+        Self::Escalate,
     ];
 
     /// Name in `figures = [...]` and in file names.
@@ -101,7 +101,7 @@ impl FigureKind {
             Self::CycleEnergy => "cycle_energy",
             Self::StiffnessDegradation => "stiffness_degradation",
             Self::Relaxation => "relaxation",
-            Self::ImpactSeries => "impacts",
+            Self::Escalate => "impacts",
         }
     }
 }

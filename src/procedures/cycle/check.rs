@@ -5,8 +5,9 @@ use crate::language::check::declarations::curve;
 use crate::language::check::expressions::fields::whole;
 use crate::language::check::messages::{cyclic as fault, names, values};
 use crate::plan::formula::{Formula, Operator};
+use crate::plan::procedures::cycle::block as schema;
 use crate::plan::{BreakCount, Cycle, CycleInspection, Level, MOST_TARGETS, ProcedureKind, Sides};
-use crate::schema::procedures::{SPEED, cycle as schema};
+use crate::schema::procedures::SPEED;
 
 pub fn cycle(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let head = checker.scope.blocks[block].block.head;

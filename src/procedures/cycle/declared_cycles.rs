@@ -4,8 +4,8 @@
 use crate::language::check::checker::Checker;
 use crate::language::check::declarations::limits::CheckedLimits;
 use crate::language::check::messages::{values as fault, whole};
+use crate::plan::procedures::cycle::block as schema;
 use crate::plan::{Procedure, ProcedureKind};
-use crate::schema::procedures::cycle as schema;
 use crate::units::Dimension;
 
 /// Lists of a `cycle` with one entry for each of its cycles.

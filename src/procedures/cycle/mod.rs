@@ -2,7 +2,6 @@
 //! Out: parameters, history, energies and stiffnesses of the cycles, tables, figures, report text.
 
 pub(crate) mod check;
-pub(crate) mod data;
 pub(crate) mod declared_cycles;
 pub(crate) mod facts;
 pub(crate) mod figures;

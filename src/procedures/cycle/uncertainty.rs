@@ -9,12 +9,12 @@ use crate::physics::identification::cyclic::{LoopPoint, loop_of};
 use crate::physics::reintegration::perturbation::{Perturbation, ReadingErrors};
 use crate::plan::Cycle;
 use crate::plan::formula::ProcedureId;
+use crate::plan::procedures::cycle::block as schema;
 use crate::procedures::common::fit_uncertainty::Fits;
 use crate::procedures::common::loop_sampling::{left_open_by, of_open};
 use crate::procedures::common::results::{Layout, give, index_of, values};
 use crate::procedures::stiffness_ramp::curve;
 use crate::record::{CycleHistory, CycleStep, NamedResult, WholeCycle};
-use crate::schema::procedures::cycle as schema;
 use crate::uncertainty::engine::{Evaluate, Evaluation, Propagation, Shifts};
 use crate::uncertainty::{Contribution, InstrumentUncertainty, Source};
 

@@ -4,10 +4,10 @@ use crate::language::check::checker::Checker;
 use crate::language::check::expressions::read_field::ReadField;
 use crate::language::check::messages::methods as fault;
 use crate::plan::declaration::reader;
-use crate::plan::procedure::damping_sweep::damping_sweep_fields;
+use crate::plan::procedures::damping_sweep::block::NAMES;
+use crate::plan::procedures::damping_sweep::parameters::damping_sweep_fields;
 use crate::plan::{DampingSweep, ProcedureKind};
 use crate::procedures::stepping::check::mode_check::stops_at_targets;
-use crate::schema::procedures::damping_sweep::NAMES;
 use crate::schema::rig;
 
 pub fn damping_sweep(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {

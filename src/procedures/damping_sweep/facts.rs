@@ -1,10 +1,10 @@
 //! The facts about a damping sweep that check and report need without running it. In: the sweep. Out: facts.
 
 use super::figures;
+use crate::plan::procedures::damping_sweep::block as schema;
 use crate::procedures::facts::{Facts, Recorded};
 use crate::procedures::stiffness_ramp;
-use crate::record::SweepHistory;
-use crate::schema::procedures::damping_sweep as schema;
+use crate::record::DampingSweepHistory;
 
 pub(crate) fn facts() -> Facts<'static> {
     Facts {
@@ -18,7 +18,7 @@ pub(crate) fn facts() -> Facts<'static> {
     }
 }
 
-pub(crate) fn recorded(history: &SweepHistory) -> Recorded {
+pub(crate) fn recorded(history: &DampingSweepHistory) -> Recorded {
     Recorded {
         strokes: Some(history.together),
         distinct_from_zero: Some(schema::DAMPING.name),

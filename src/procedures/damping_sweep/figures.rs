@@ -2,7 +2,7 @@
 
 use crate::plan::FigureKind;
 use crate::procedures::stiffness_ramp;
-use crate::record::SweepHistory;
+use crate::record::DampingSweepHistory;
 use crate::report::figures::chart::Chart;
 
 /// In the order of a report.
@@ -11,7 +11,7 @@ pub(crate) const FIGURES: &[FigureKind] = &[FigureKind::DampingFit];
 /// A figure and its caption; None if nothing was recorded for it, or if a sweep does not have this figure.
 pub(crate) fn chart(
     name: &str,
-    history: &SweepHistory,
+    history: &DampingSweepHistory,
     kind: FigureKind,
 ) -> Option<(Chart, String)> {
     Some(match kind {

@@ -2,7 +2,6 @@
 //! the guard. Out: parameters, history, the damping with its standard uncertainty.
 
 pub(crate) mod check;
-pub(crate) mod data;
 pub(crate) mod facts;
 pub(crate) mod figures;
 mod findings;

@@ -1,12 +1,12 @@
 //! A damping sweep as a report gives it: the line through its pairs. In: a history. Out: a block.
 
-use crate::record::SweepHistory;
+use crate::record::DampingSweepHistory;
 use crate::report::document::Block;
 use crate::report::sections::results::line_fit::{Coefficient, fitted};
 use crate::units::Dimension;
 
 /// The block below its results.
-pub(crate) fn report(history: &SweepHistory, body: &mut Vec<Block>) {
+pub(crate) fn report(history: &DampingSweepHistory, body: &mut Vec<Block>) {
     if let Some(fit) = history.fit {
         body.push(fitted(
             "F = c·v + F₀·sign v",

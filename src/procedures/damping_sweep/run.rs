@@ -21,16 +21,16 @@ use crate::physics::identification::damping_strokes::OutAndBack;
 use crate::physics::identification::{StatedVariance, damping_ratio, fit_damping, fit_line};
 use crate::physics::structure::Matrices;
 use crate::plan::formula::Estimate;
+use crate::plan::procedures::damping_sweep::block as schema;
 use crate::plan::{DampingSweep, Plan};
 use crate::procedures::common::results::largest;
 use crate::record::{
-    BroughtTogether, EventKind, History, LineFit, NamedResult, SweepHistory, SweepStep,
+    BroughtTogether, DampingSweepHistory, EventKind, History, LineFit, NamedResult, SweepStep,
 };
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::{Session, first};
 use crate::run::stop::Stop;
-use crate::schema::procedures::damping_sweep as schema;
 use crate::uncertainty::InstrumentUncertainty;
 use crate::units::Dimension;
 use crate::units::display::readable;
@@ -121,7 +121,7 @@ pub(crate) fn perform(
     } else {
         None
     };
-    let history = SweepHistory {
+    let history = DampingSweepHistory {
         steps: sweep.steps,
         pairs,
         together,
@@ -129,7 +129,7 @@ pub(crate) fn perform(
         fit,
     };
     Performed {
-        history: History::Sweep(history),
+        history: History::DampingSweep(history),
         results,
         stop,
     }

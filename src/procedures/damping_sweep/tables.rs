@@ -1,6 +1,6 @@
 //! The table of a damping sweep, a row a reading. In: its steps. Out: columns.
 
-use crate::record::{SweepHistory, SweepStep};
+use crate::record::{DampingSweepHistory, SweepStep};
 use crate::report::tables::TableColumn::{self, Flag, Integer, Number};
 use crate::report::tables::{Table, written};
 use crate::schema::columns::{self, column};
@@ -19,6 +19,6 @@ pub(crate) const STEPS: &[TableColumn<SweepStep>] = &[
 ];
 
 /// The table under this name.
-pub(crate) fn table(name: String, history: &SweepHistory) -> Table<'_> {
+pub(crate) fn table(name: String, history: &DampingSweepHistory) -> Table<'_> {
     Table::of(name, &history.steps, |steps| written(STEPS, steps))
 }

@@ -2,17 +2,17 @@
 //! contributions to the damping, the friction and the damping ratio.
 
 use crate::plan::formula::Formula;
+use crate::plan::procedures::damping_sweep::block as schema;
 use crate::plan::{DampingSweep, DeclaredNoise, Plan};
 use crate::procedures::common::fit_uncertainty::{Fits, attribute};
-use crate::record::{BroughtTogether, NamedResult, SweepHistory};
+use crate::record::{BroughtTogether, DampingSweepHistory, NamedResult};
 use crate::run::inputs::Inputs;
-use crate::schema::procedures::damping_sweep as schema;
 use crate::uncertainty::{Contribution, InstrumentUncertainty, Source, share};
 
 /// Gives the results their contributions.
 pub(crate) fn propagate(
     sweep: &DampingSweep,
-    found: &SweepHistory,
+    found: &DampingSweepHistory,
     plan: &Plan,
     inputs: &Inputs<'_>,
     declared: DeclaredNoise,

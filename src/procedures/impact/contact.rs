@@ -1,14 +1,14 @@
 //! The contact law of an impact, in a plan and in a report. In: the field `contact` of an impact. Out: the law with formulas, then with
-//! numbers, and the part of a report that depends on it. It knows no law: the words are in `schema::procedures::impact`, the laws in
+//! numbers, and the part of a report that depends on it. It knows no law: the words are in `plan::procedures::impact::block`, the laws in
 //! `physics::contact`.
 
 use crate::language::check::checker::Checker;
 use crate::physics::contact::{ContactLaw, ContactSpring};
 use crate::plan::Contact;
 use crate::plan::formula::Formula;
+use crate::plan::procedures::impact::block as schema;
 use crate::run::inputs::Inputs;
 use crate::run::stop::Stop;
-use crate::schema::procedures::impact as schema;
 
 /// The contact law that a block specifies.
 pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<Contact> {

@@ -3,7 +3,6 @@
 
 pub(crate) mod check;
 pub(crate) mod contact;
-pub(crate) mod data;
 pub(crate) mod delay;
 pub(crate) mod facts;
 pub(crate) mod figures;

@@ -7,13 +7,13 @@ use crate::physics::impact::energy::Energies;
 use crate::physics::impact::summary::ImpactSummary;
 use crate::physics::reintegration::impact::ImpactValues;
 use crate::plan::Until;
+use crate::plan::procedures::impact::block as schema;
 use crate::procedures::common::results::Evaluated;
 use crate::procedures::stepping::energy;
 use crate::procedures::stepping::tracking::tracking_summary::{Followed, tracking_results};
 use crate::record::{EventKind, ImpactHistory, NamedResult, StruckFrame};
 use crate::run::session::Session;
 use crate::schema::ResultKind;
-use crate::schema::procedures::impact as schema;
 use crate::units::Dimension;
 use crate::units::display::readable;
 

@@ -8,6 +8,7 @@ use crate::physics::impact::ImpactInput;
 use crate::physics::integrator::stability::{Met, longest_stable_step};
 use crate::physics::structure::Matrices;
 use crate::plan::formula::Estimate;
+use crate::plan::procedures::impact::block as schema;
 use crate::plan::{
     Frame, Impact, ImpactTarget, Plan, PointTarget, Stepping, StoreyTarget, Striker,
 };
@@ -18,7 +19,7 @@ use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::schema::methods;
-use crate::schema::procedures::{STIFFNESS, impact as schema};
+use crate::schema::procedures::STIFFNESS;
 use crate::units::Dimension;
 
 /// Everything known before the first step.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::procedures::base_excitation;
+use crate::procedures::shake;
 use crate::record::{ImpactHistory, ImpactStep, StruckFrame};
 use crate::report::tables::TableColumn::{self, Integer, Number, Text};
 use crate::report::tables::{Table, numeric, written};
@@ -45,7 +45,7 @@ pub(crate) const STEPS: &[TableColumn<ImpactStep>] = &[
 
 /// The numeric columns of both tables.
 pub(crate) fn columns() -> Vec<Column> {
-    [numeric(STEPS), numeric(&base_excitation::tables::struck())].concat()
+    [numeric(STEPS), numeric(&shake::tables::struck())].concat()
 }
 
 /// The table under this name.
@@ -57,7 +57,7 @@ pub(crate) fn table(name: String, history: &ImpactHistory) -> Table<'_> {
         .first()
         .map_or(1, |floors| floors.floors.computed.len());
     let columns = |range: Range<usize>| {
-        base_excitation::tables::storey_impact(&history.steps[range.clone()], &floors[range])
+        shake::tables::storey_impact(&history.steps[range.clone()], &floors[range])
     };
     Table::of_steps(name, floors.len(), storeys, columns)
 }

@@ -2,7 +2,7 @@
 
 use crate::language::check::checker::Checker;
 use crate::plan::ProcedureKind;
-use crate::schema::procedures::inspect::NOTE;
+use crate::plan::procedures::inspect::block::NOTE;
 
 pub fn inspect(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     checker

@@ -2,5 +2,4 @@
 //! Out: an event with the operator's answer. It commands no motion.
 
 pub(crate) mod check;
-pub(crate) mod data;
 pub(crate) mod run;

@@ -3,9 +3,9 @@
 use crate::language::check::checker::Checker;
 use crate::language::check::expressions::read_field::ReadField;
 use crate::plan::declaration::reader;
-use crate::plan::procedure::move_to::move_fields;
+use crate::plan::procedures::move_to::block::NAMES;
+use crate::plan::procedures::move_to::parameters::move_fields;
 use crate::plan::{Move, ProcedureKind};
-use crate::schema::procedures::move_to::NAMES;
 
 pub fn move_block(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     checker.specimen_needed(block);

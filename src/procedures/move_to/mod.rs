@@ -2,5 +2,4 @@
 //! readings.
 
 pub(crate) mod check;
-pub(crate) mod data;
 pub(crate) mod run;

@@ -7,12 +7,12 @@ use crate::physics::reintegration::frame::{Floors, FrameRun};
 use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
 use crate::physics::reintegration::hysteresis_replay::ContinuousMotion;
 use crate::plan::formula::{Formula, Operator};
+use crate::plan::procedures::shake::block as schema;
 use crate::plan::{Frame, Mode, ShakeDamping, Stepping};
 use crate::procedures::common::perturbed_inputs::{UncertainRun, out_of_bounds, uncertain_inputs};
 use crate::record::{FloorMotion, NamedResult};
 use crate::run::stop::Stop;
 use crate::schema::ResultKind;
-use crate::schema::procedures::base_excitation as schema;
 use crate::uncertainty::Source;
 use crate::uncertainty::engine::{CLOSE, Shifts};
 

@@ -1,6 +1,7 @@
 //! Constants that the reports of all procedures that integrate share.
 
-use crate::schema::procedures::{base_excitation as schema, tracking};
+use crate::plan::procedures::shake::block as schema;
+use crate::schema::procedures::tracking;
 
 /// The method by which the contributions to the uncertainty were found.
 pub(crate) const UNCERTAINTY: &str = "Each input was perturbed by ± its standard uncertainty, one at a time, and the \

@@ -7,12 +7,13 @@ use crate::language::check::expressions::fields::whole;
 use crate::language::check::expressions::read_field::ReadField;
 use crate::language::check::messages::{specimens, values};
 use crate::plan::declaration::reader;
-use crate::plan::procedure::identification::stiffness_ramp_fields;
+use crate::plan::procedures::stiffness_ramp::block as schema;
+use crate::plan::procedures::stiffness_ramp::block::NAMES;
+use crate::plan::procedures::stiffness_ramp::parameters::stiffness_ramp_fields;
 use crate::plan::{
     ProcedureKind, RampFit, RelaxationLaw, RelaxationModel, StiffnessRamp, WatchedHold,
     WatchedModel,
 };
-use crate::schema::procedures::stiffness_ramp::{self as schema, NAMES};
 use crate::text::source::Span;
 
 /// Readings of a pause that span two decades of time: the first comes after one hundredth of it.

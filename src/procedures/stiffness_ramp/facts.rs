@@ -2,10 +2,10 @@
 
 use super::{figures, report};
 use crate::physics::self_test::Part;
+use crate::plan::procedures::stiffness_ramp::block as schema;
 use crate::plan::{RampFit, StiffnessRamp};
 use crate::procedures::facts::{Facts, Recorded};
-use crate::record::RampHistory;
-use crate::schema::procedures::stiffness_ramp as schema;
+use crate::record::StiffnessRampHistory;
 
 pub(crate) fn facts() -> Facts<'static> {
     Facts {
@@ -21,7 +21,7 @@ pub(crate) fn facts() -> Facts<'static> {
     }
 }
 
-pub(crate) fn recorded(history: &RampHistory) -> Recorded {
+pub(crate) fn recorded(history: &StiffnessRampHistory) -> Recorded {
     Recorded {
         lists_are_tabled: history.multilinear.is_some(),
         uncertainty: report::UNCERTAINTY,

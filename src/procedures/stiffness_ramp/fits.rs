@@ -3,9 +3,9 @@
 use super::run::fitted;
 use super::uncertainty::Readings;
 use crate::plan::StiffnessRamp;
+use crate::plan::procedures::stiffness_ramp::block as schema;
 use crate::procedures::common::fit_uncertainty::Fits;
-use crate::record::RampHistory;
-use crate::schema::procedures::stiffness_ramp as schema;
+use crate::record::StiffnessRampHistory;
 use crate::uncertainty::InstrumentUncertainty;
 
 /// Results of a ramp that are fitted to its holds.
@@ -22,7 +22,7 @@ const OF_HOLDS: [&str; 8] = [
 
 /// Calls with the fits of a ramp.
 pub(crate) fn with_fits(
-    ramp: &RampHistory,
+    ramp: &StiffnessRampHistory,
     plan: &StiffnessRamp,
     instruments: &InstrumentUncertainty,
     give: &mut dyn FnMut(&Fits<'_>),
@@ -43,7 +43,7 @@ pub(crate) fn with_fits(
 }
 
 /// Fraction of the standard errors of a fitted result that its scatter shows.
-fn shown(ramp: &RampHistory, name: &str) -> f64 {
+fn shown(ramp: &StiffnessRampHistory, name: &str) -> f64 {
     let of_holds = ramp
         .relaxation
         .as_ref()

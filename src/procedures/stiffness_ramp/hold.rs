@@ -8,12 +8,12 @@ use crate::physics::relaxation::law::RelaxationLaw;
 use crate::physics::relaxation::superposition::{SuperpositionFit, fit_superposition};
 use crate::physics::relaxation::time_constant::{RelaxationFit, RelaxationModel, fit_relaxation};
 use crate::plan::WatchedModel;
+use crate::plan::procedures::stiffness_ramp::block as schema;
 use crate::record::NamedResult;
 use crate::rig::Reading;
 use crate::run::session::{Session, first};
 use crate::run::stop::Stop;
 use crate::schema::ResultKind;
-use crate::schema::procedures::stiffness_ramp as schema;
 use crate::units::Dimension;
 use crate::units::display::readable;
 

@@ -4,7 +4,6 @@
 
 pub(crate) mod check;
 pub(crate) mod curve;
-pub(crate) mod data;
 pub(crate) mod facts;
 pub(crate) mod figures;
 pub(crate) mod fits;

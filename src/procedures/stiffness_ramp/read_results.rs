@@ -6,8 +6,8 @@ use std::collections::BTreeSet;
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::values as fault;
 use crate::plan::formula::Formula;
+use crate::plan::procedures::stiffness_ramp::block as schema;
 use crate::plan::{BreakCount, Procedure, ProcedureKind, RampFit, StiffnessRamp};
-use crate::schema::procedures::stiffness_ramp as schema;
 use crate::uncertainty::FEW;
 
 /// Results of a ramp that its fit gives.

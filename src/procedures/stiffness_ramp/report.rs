@@ -2,7 +2,7 @@
 
 use super::curve::curve_report;
 use crate::plan::{RelaxationLaw, RelaxationModel};
-use crate::record::{Hold, RampHistory, RelaxationFit, SuperpositionFit};
+use crate::record::{Hold, RelaxationFit, StiffnessRampHistory, SuperpositionFit};
 use crate::report::document::Block;
 use crate::report::number;
 use crate::report::sections::results::line_fit::{Coefficient, fitted};
@@ -13,7 +13,7 @@ pub(crate) const UNCERTAINTY: &str = "Scatter of its readings: covariance of the
  force and displacement in the result; resolution: reported beside the scatter where it is the larger contribution.";
 
 /// The blocks below its results.
-pub(crate) fn report(history: &RampHistory, body: &mut Vec<Block>) {
+pub(crate) fn report(history: &StiffnessRampHistory, body: &mut Vec<Block>) {
     if let Some(fit) = &history.multilinear {
         let reach = history.steps.iter().map(|step| step.displacement);
         curve_report::table(

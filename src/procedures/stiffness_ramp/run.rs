@@ -8,17 +8,17 @@ use super::uncertainty::{Direct, Readings};
 use super::{curve, hold};
 use crate::physics::identification::bilinear_fit::fit_bilinear;
 use crate::physics::identification::{StatedVariance, fit_line};
+use crate::plan::procedures::stiffness_ramp::block as schema;
 use crate::plan::{Plan, RampFit, StiffnessRamp, WatchedHold};
 use crate::procedures::common::dwell_readings::DwellReadings;
 use crate::record::{
-    BilinearFit, EventKind, History, Hold, LineFit, MultilinearFit, NamedResult, RampHistory,
-    RampStep,
+    BilinearFit, EventKind, History, Hold, LineFit, MultilinearFit, NamedResult, RampStep,
+    StiffnessRampHistory,
 };
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use crate::schema::procedures::stiffness_ramp as schema;
 use crate::uncertainty::InstrumentUncertainty;
 use crate::units::Dimension;
 
@@ -90,7 +90,7 @@ pub(crate) fn perform(
         evaluation.relaxation.map(Box::new),
         evaluation.reached.map(Box::new),
     );
-    let history = RampHistory {
+    let history = StiffnessRampHistory {
         before,
         steps: readings.steps,
         fit,
@@ -101,7 +101,7 @@ pub(crate) fn perform(
         reached,
     };
     Performed {
-        history: History::Ramp(history),
+        history: History::StiffnessRamp(history),
         results,
         stop,
     }

@@ -2,7 +2,7 @@
 
 use std::iter::once;
 
-use crate::record::{Hold, RampHistory, RampStep};
+use crate::record::{Hold, RampStep, StiffnessRampHistory};
 use crate::report::tables::TableColumn::{self, Flag, Integer, Number, Optional};
 use crate::report::tables::{Table, numeric, written};
 use crate::schema::{Column, columns};
@@ -42,7 +42,7 @@ pub(crate) fn columns() -> Vec<Column> {
 }
 
 /// Under this name and names that begin with it.
-pub(crate) fn tables(name: String, history: &RampHistory) -> Vec<Table<'_>> {
+pub(crate) fn tables(name: String, history: &StiffnessRampHistory) -> Vec<Table<'_>> {
     let holds = (!history.holds.is_empty()).then(|| {
         Table::of(format!("{name}_holds"), &history.holds, |holds| {
             written(HOLDS, &readings(holds))

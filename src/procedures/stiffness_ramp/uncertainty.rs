@@ -11,11 +11,11 @@ use crate::physics::statistics::noisy_largest::NoisyLargest;
 use crate::physics::statistics::samples::mean;
 use crate::plan::StiffnessRamp;
 use crate::plan::formula::ProcedureId;
+use crate::plan::procedures::stiffness_ramp::block as schema;
 use crate::procedures::common::loop_sampling::{left_open_by, of_open};
 use crate::procedures::common::results::{give, index_of, largest};
 use crate::record::{NamedResult, RampStep};
 use crate::rig::DeclaredNoise;
-use crate::schema::procedures::stiffness_ramp as schema;
 use crate::uncertainty::engine::{Evaluate, Evaluation, Propagation, Shifts};
 use crate::uncertainty::{Contribution, InstrumentUncertainty, Source};
 

@@ -4,8 +4,8 @@ use crate::language::check::checker::Checker;
 use crate::language::check::declarations::specimen::frame;
 use crate::language::check::messages::frames as fault;
 use crate::plan::formula::Formula;
+use crate::plan::procedures::unload::block as schema;
 use crate::plan::{ProcedureKind, Unload};
-use crate::schema::procedures::unload as schema;
 use crate::schema::procedures::{SPEED, STIFFNESS};
 
 pub fn unload(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {

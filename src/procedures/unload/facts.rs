@@ -2,9 +2,9 @@
 //! Out: facts.
 
 use crate::plan::Unload;
-use crate::procedures::base_excitation::figures;
+use crate::plan::procedures::unload::block as schema;
 use crate::procedures::facts::{Facts, Recorded, Tests};
-use crate::schema::procedures::unload as schema;
+use crate::procedures::shake::figures;
 
 pub(crate) fn facts(unload: &Unload) -> Facts<'static> {
     let shared = Facts {

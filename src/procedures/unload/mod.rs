@@ -2,7 +2,6 @@
 //! Out: the readings and the residual displacement or drift.
 
 pub(crate) mod check;
-pub(crate) mod data;
 pub(crate) mod facts;
 pub(crate) mod report;
 pub(crate) mod run;

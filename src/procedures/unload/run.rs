@@ -4,6 +4,7 @@
 
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
+use crate::plan::procedures::unload::block as schema;
 use crate::plan::{Frame, Plan, Unload};
 use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::stepping::run::frame_of;
@@ -16,7 +17,6 @@ use crate::run::stop::Stop;
 use crate::schema::ResultKind;
 use crate::schema::procedures::SPECIMEN;
 use crate::schema::procedures::STIFFNESS;
-use crate::schema::procedures::unload as schema;
 use crate::uncertainty::{Contribution, NOISE};
 use crate::units::Dimension;
 use crate::units::display::readable;

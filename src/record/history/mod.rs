@@ -3,24 +3,17 @@
 
 pub(crate) mod floors;
 
-pub(crate) use crate::procedures::base_excitation::data::history as base_excitation;
-pub(crate) use crate::procedures::cycle::data::history as cycle;
-pub(crate) use crate::procedures::damping_sweep::data::history as sweep;
-pub(crate) use crate::procedures::impact::data::history as impact;
-pub(crate) use crate::procedures::impact_series::data::history as impact_series;
-pub(crate) use crate::procedures::stiffness_ramp::data::history as ramp;
-pub(crate) use crate::procedures::unload::data::history as unload;
+use crate::plan::procedures::stiffness_ramp::block as stiffness_ramp;
 use crate::record::{
-    CycleHistory, EscalateHistory, ImpactHistory, RampHistory, RampStep, ShakeHistory,
-    SweepHistory, UnloadStep,
+    CycleHistory, DampingSweepHistory, EscalateHistory, ImpactHistory, RampStep, ShakeHistory,
+    StiffnessRampHistory, UnloadStep,
 };
-use crate::schema::procedures::stiffness_ramp;
 
 /// The history of a procedure, step by step.
 #[derive(Clone, Debug)]
 pub enum History {
-    Ramp(RampHistory),
-    Sweep(SweepHistory),
+    StiffnessRamp(StiffnessRampHistory),
+    DampingSweep(DampingSweepHistory),
     Impact(ImpactHistory),
     Shake(ShakeHistory),
     Cycle(CycleHistory),
@@ -63,8 +56,8 @@ impl History {
                 .iter()
                 .map(|impact| steps_of(&impact.history))
                 .collect(),
-            Self::Ramp(_)
-            | Self::Sweep(_)
+            Self::StiffnessRamp(_)
+            | Self::DampingSweep(_)
             | Self::Cycle(_)
             | Self::Move(_)
             | Self::FrameUnload(_)
@@ -78,10 +71,10 @@ impl History {
     #[must_use]
     pub fn degrees(&self, result: &str) -> Option<f64> {
         match self {
-            Self::Ramp(RampHistory {
+            Self::StiffnessRamp(StiffnessRampHistory {
                 reached: Some(fit), ..
             }) if OF_SUPERPOSITION.contains(&result) => Some(fit.best().degrees),
-            Self::Ramp(ramp) => match (result, ramp.relaxation.as_deref()) {
+            Self::StiffnessRamp(ramp) => match (result, ramp.relaxation.as_deref()) {
                 (_, Some(fit)) if result == stiffness_ramp::RELAXED_STIFFNESS.name => {
                     Some(fit.degrees_of_stiffness())
                 }
@@ -93,7 +86,7 @@ impl History {
                         .or_else(|| ramp.multilinear.as_ref().map(|fit| fit.degrees))
                 }
             },
-            Self::Sweep(sweep) => sweep.fit.map(|fit| fit.degrees),
+            Self::DampingSweep(sweep) => sweep.fit.map(|fit| fit.degrees),
             Self::Cycle(cycle) => cycle.backbone.as_ref().map(|fit| fit.degrees),
             _ => None,
         }

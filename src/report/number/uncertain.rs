@@ -2,8 +2,8 @@
 //! strings.
 
 use super::{join_typeset, text, without_sign_of_zero};
+use crate::plan::procedures::stiffness_ramp::block::R_SQUARED;
 use crate::schema::printed_unit;
-use crate::schema::procedures::stiffness_ramp::R_SQUARED;
 use crate::uncertainty::MeasurementUncertainty;
 use crate::units::Dimension;
 use crate::units::display::{digits, is_rounding, minus, significant, typeset, unit};

@@ -262,7 +262,7 @@ fn a_fragility_decides_its_condition_at_each_stripe() {
     let mut studied = Studied::of(&usual(), 1);
     let displacement = Formula::Result(ResultReference {
         procedure: ProcedureId(0),
-        name: crate::schema::procedures::impact::MAX_DISPLACEMENT.name,
+        name: crate::plan::procedures::impact::block::MAX_DISPLACEMENT.name,
         part: Part::Value,
     });
     studied.plan.studies.studies[0].collect = vec![Collected {

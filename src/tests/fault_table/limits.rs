@@ -31,7 +31,7 @@ fn limited(mut plan: Plan) -> Plan {
 fn last_row(ended: &Ended) -> (f64, f64) {
     let history = &ended.record.procedures.last().unwrap().history;
     let row = match history {
-        History::Ramp(ramp) => ramp
+        History::StiffnessRamp(ramp) => ramp
             .steps
             .last()
             .map(|step| (step.displacement, step.restoring_force)),

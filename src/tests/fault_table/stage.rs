@@ -316,7 +316,7 @@ impl Ended {
             .procedures
             .iter()
             .flat_map(|procedure| match &procedure.history {
-                History::Ramp(history) => history.steps.clone(),
+                History::StiffnessRamp(history) => history.steps.clone(),
                 History::Move(steps) => steps.clone(),
                 _ => Vec::new(),
             });

@@ -263,7 +263,7 @@ fn the_relaxation_of_dwells_is_predicted() {
         assert_predicted(&decay, noisy, &names, (20, 100.0, 0.05));
         let record = run_unwatched(&decay);
         assert!(
-            matches!(&record.procedures[0].history, History::Ramp(ramp) if ramp.relaxation.is_some())
+            matches!(&record.procedures[0].history, History::StiffnessRamp(ramp) if ramp.relaxation.is_some())
         );
     }
 }

@@ -9,7 +9,7 @@ use crate::plan::{
 use crate::record::Record;
 use crate::rig::virtual_rig;
 use crate::run::Unwatched;
-use crate::tests::procedures::frame::impact_series::rising;
+use crate::tests::procedures::frame::escalate::rising;
 use crate::tests::testing::{every, number, run_unwatched};
 use crate::uncertainty::{Contribution, Source, combined};
 

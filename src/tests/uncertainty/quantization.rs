@@ -184,7 +184,7 @@ fn a_ramp_in_step_with_its_grid_is_not_known_to_the_last_digit() {
     let ideal = run_unwatched(&ramp_plan(10, 0.0, STIFFNESS, VirtualLink::default()));
     assert!(value_and_uncertainty(&ideal, 0, "stiffness").1.standard < 1e-6);
     // Figures and reports use the same uncertainty of the fit.
-    let History::Ramp(ramp) = &record.procedures[0].history else {
+    let History::StiffnessRamp(ramp) = &record.procedures[0].history else {
         panic!()
     };
     assert!((ramp.fit.unwrap().slope_error / known.standard - 1.0).abs() < 1e-9);

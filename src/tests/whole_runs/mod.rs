@@ -44,14 +44,14 @@ pub(super) fn link(plan: &mut Plan, link: VirtualLink) {
 
 pub(super) fn ramp_steps(history: &History) -> &[RampStep] {
     match history {
-        History::Ramp(ramp) => &ramp.steps,
+        History::StiffnessRamp(ramp) => &ramp.steps,
         other => panic!("{other:?}"),
     }
 }
 
 pub(super) fn sweep_steps(history: &History) -> &[SweepStep] {
     match history {
-        History::Sweep(sweep) => &sweep.steps,
+        History::DampingSweep(sweep) => &sweep.steps,
         other => panic!("{other:?}"),
     }
 }

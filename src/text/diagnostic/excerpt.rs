@@ -7,9 +7,9 @@ use std::ops::Range;
 use miette::{LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
 use super::{Diagnostic, Label};
-use crate::text::sanitize::is_control_like;
-pub use crate::text::sanitize::{escape, one_line};
-use crate::text::source::{FileId, Position, SourceFile, Sources, Span};
+use crate::sanitize::is_control_like;
+pub use crate::sanitize::{escape, one_line};
+use crate::source::{FileId, Position, SourceFile, Sources, Span};
 
 /// Characters of a line that are shown, at most.
 const WIDEST_LINE: usize = 120;
@@ -275,7 +275,7 @@ fn push_shown(text: &mut String, character: char) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::text::diagnostic::Code;
+    use crate::diagnostic::Code;
 
     /// An error in the middle of a large file and another at its end: no excerpt joins them.
     #[test]

@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 
 use super::render::severity_name;
 use super::{Code, Diagnostic, Label};
-use crate::text::sanitize;
-use crate::text::source::{Position, Sources, Span};
+use crate::sanitize;
+use crate::source::{Position, Sources, Span};
 
 /// Name of the format, in the document's `schema`.
 pub const SCHEMA: &str = "psd.diagnostics/1";
@@ -96,7 +96,7 @@ fn extend(value: &mut Value, more: Value) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::text::diagnostic::Code;
+    use crate::diagnostic::Code;
 
     #[test]
     fn an_editor_gets_positions_in_characters_and_in_bytes() {

@@ -8,7 +8,7 @@ pub mod render;
 
 pub use code::Code;
 
-use crate::text::source::Span;
+use crate::source::Span;
 
 /// Severity of a diagnostic. No plan runs while there is an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

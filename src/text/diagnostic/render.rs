@@ -10,7 +10,7 @@ use miette::{
 
 use super::excerpt::{Excerpt, escape};
 use super::{Diagnostic, Severity};
-use crate::text::source::Sources;
+use crate::source::Sources;
 
 /// Number of diagnostics that are drawn; of the others only the count is given.
 pub const DRAWN: usize = 20;
@@ -237,8 +237,8 @@ impl miette::Diagnostic for Drawn {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::text::diagnostic::Code;
-    use crate::text::source::Span;
+    use crate::diagnostic::Code;
+    use crate::source::Span;
 
     fn at(sources: &Sources, name: &str, found: &str) -> Span {
         let (id, file) = sources.iter().find(|(_, file)| file.name == name).unwrap();

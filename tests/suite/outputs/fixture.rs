@@ -16,8 +16,8 @@ use psd::plan::{
     VirtualLink,
 };
 use psd::record::{
-    BroughtTogether, Event, EventKind, History, ImpactHistory, ImpactStep, NamedResult, Outcome,
-    ProcedureRecord, RampHistory, RampStep, Record, SweepHistory, SweepStep,
+    BroughtTogether, DampingSweepHistory, Event, EventKind, History, ImpactHistory, ImpactStep,
+    NamedResult, Outcome, ProcedureRecord, RampStep, Record, StiffnessRampHistory, SweepStep,
 };
 use psd::report::{Provenance, Run};
 use psd::rig::Identity;
@@ -94,7 +94,7 @@ pub fn finished() -> Finished {
             ),
             number("r_squared", Some(0.999_98), None, Dimension::NUMBER),
         ],
-        history: History::Ramp(RampHistory {
+        history: History::StiffnessRamp(StiffnessRampHistory {
             before: Vec::new(),
             steps: ramp_steps(),
             fit: Some(line(327.72, 0.41, -0.012, 0.035)),
@@ -121,7 +121,7 @@ pub fn finished() -> Finished {
             number("damping", Some(4.02), Some(0.08), Dimension::DAMPING),
             number("coulomb_force", Some(0.31), Some(0.02), Dimension::FORCE),
         ],
-        history: History::Sweep(SweepHistory {
+        history: History::DampingSweep(DampingSweepHistory {
             pairs: sweep_pairs(&sweep_steps()),
             together: BroughtTogether::default(),
             own_stiffness: None,

@@ -1,11 +1,11 @@
 //! `psd check --explain`: the prediction of a run. In: a checked plan. Out: text, from a dry run of the same code on an ideal simulated
 //! rig: same procedures and limits, no noise, lag or zero drift. It moves no real rig.
 
-pub(crate) mod base_excitation;
 mod cells;
 pub(crate) mod dry_rig;
 mod impact;
 mod limits;
+pub(crate) mod shake;
 pub(crate) mod start;
 #[cfg(test)]
 mod tests;
@@ -211,11 +211,11 @@ impl<'a> DryRun<'a> {
                     .as_ref()
                     .filter(|frame| !frame.floors.is_empty())
             {
-                let modes = base_excitation::modes(frame.modes.as_ref(), &frame.damping_ratios);
+                let modes = shake::modes(frame.modes.as_ref(), &frame.damping_ratios);
                 section(&format!("{}, modes", procedure.name), modes);
                 section(
                     &format!("{}, shapes", procedure.name),
-                    base_excitation::shapes(frame.modes.as_ref()),
+                    shake::shapes(frame.modes.as_ref()),
                 );
                 let heading = format!("{}, impact on storey {}", procedure.name, frame.struck + 1);
                 let predicted =
@@ -225,7 +225,7 @@ impl<'a> DryRun<'a> {
                     &heading,
                     [
                         impact::rows(history),
-                        base_excitation::floor_peaks(&frame.floors),
+                        shake::floor_peaks(&frame.floors),
                         predicted,
                         energy,
                     ]
@@ -241,17 +241,17 @@ impl<'a> DryRun<'a> {
             if let (History::Shake(history), ProcedureKind::Shake(shake)) =
                 (&procedure.history, &planned.kind)
             {
-                let modes = base_excitation::modes(history.modes.as_ref(), &history.damping_ratios);
+                let modes = shake::modes(history.modes.as_ref(), &history.damping_ratios);
                 section(&format!("{}, modes", procedure.name), modes);
                 section(
                     &format!("{}, shapes", procedure.name),
-                    base_excitation::shapes(history.modes.as_ref()),
+                    shake::shapes(history.modes.as_ref()),
                 );
                 let predicted = tracking::shake_rows(self.plan, shake, history);
                 let energy = tracking::energy(lagging.as_ref(), index);
                 section(
                     &format!("{}, shake", procedure.name),
-                    [base_excitation::steps(history), predicted, energy].concat(),
+                    [shake::steps(history), predicted, energy].concat(),
                 );
             }
         }

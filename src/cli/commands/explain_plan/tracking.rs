@@ -5,6 +5,7 @@
 //! settling band or the resolution may oppose the motion at every step. The sum of these errors is δ. In the worst case an amplitude A
 //! grows by 4δ in each cycle.
 
+use crate::plan::procedures::impact::block::MASS;
 use crate::plan::{Impact, Link, Mode, Plan, Shake, Stepping, VirtualLink};
 use crate::procedures::stepping::tracking::delay::late;
 use crate::record::{
@@ -12,8 +13,8 @@ use crate::record::{
 };
 use crate::rig::virtual_rig;
 use crate::run::{self, Settings, Unwatched};
+use crate::schema::procedures::STIFFNESS;
 use crate::schema::procedures::tracking::TRACKING_ENERGY_ERROR;
-use crate::schema::procedures::{STIFFNESS, impact::MASS};
 use crate::units::Dimension;
 use crate::units::display::{minus, readable, significant};
 

@@ -4,8 +4,8 @@ use crate::language::check::checker::{Checker, Context, Reads, Typed};
 use crate::language::check::messages::{studies, types as message, values};
 use crate::language::syntax::ast::{BinaryOperator, Expr, ExprKind};
 use crate::plan::formula::Formula;
+use crate::plan::procedures::escalate::block::WHILE;
 use crate::plan::{Comparison, Condition, Requirement, Test};
-use crate::schema::procedures::impact_series::WHILE;
 use crate::units::Dimension;
 
 const REQUIREMENT: Context = Context {

@@ -1,7 +1,8 @@
 //! Requirements to which the guarded rule cannot apply: they read a result that never has an uncertainty (W729), or the rig does not declare
 //! its calibrations (W736). In: procedures, requirements, the rule, the rig. Out: warnings. It knows no run.
 
-use crate::schema::procedures::{impact, impact_series};
+use crate::plan::procedures::escalate::block as escalate;
+use crate::plan::procedures::impact::block as impact;
 use std::collections::BTreeSet;
 
 use crate::language::check::checker::Checker;
@@ -15,7 +16,7 @@ use crate::schema::{block_of_words, rig};
 const EXACT: [&str; 3] = [
     impact::TIME_STEP.name,
     impact::ENERGY_ERROR.name,
-    impact_series::ENERGY_ERRORS.name,
+    escalate::ENERGY_ERRORS.name,
 ];
 
 /// Warns if every requirement on a measured result will be inconclusive, because the real rig of the run declares no calibration.

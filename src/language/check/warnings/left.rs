@@ -1,7 +1,7 @@
 //! The state of a specimen after a run: `final_…` at its last step, `residual_…` after unloading. In: the name that a plan
 //! reads, the procedures, the requirements. Out: the result, E206, or a warning (W730). It knows no run.
 
-use crate::schema::procedures::impact_series as series;
+use crate::plan::procedures::escalate::block as series;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::language::check::checker::Checker;

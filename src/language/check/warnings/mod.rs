@@ -9,11 +9,11 @@ pub mod tracking;
 
 use super::checker::Checker;
 use super::messages::{cyclic, values, whole as message};
+use crate::plan::procedures::escalate::block::WHILE;
+use crate::plan::procedures::impact::block::MAX_CONTACT_FORCE;
 use crate::plan::{Condition, Ground, Procedure, Reproduction, Requirement};
 use crate::procedures::facts::{Leaves, Motion};
 use crate::schema::Kind;
-use crate::schema::procedures::impact::MAX_CONTACT_FORCE;
-use crate::schema::procedures::impact_series::WHILE;
 use crate::schema::reproduces;
 use crate::schema::specimen::MASS_UNCERTAINTY;
 use crate::text::source::{FileId, Span, Spanned};

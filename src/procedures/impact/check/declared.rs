@@ -8,6 +8,7 @@ use crate::language::check::declared::Declared;
 use crate::language::check::messages::values;
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::plan::formula::{Formula, NoResults};
+use crate::plan::procedures::impact::block as schema;
 use crate::plan::{
     Contact, Frame, Impact, ImpactTarget, MOST_STEPS, PointTarget, Specimen, StoreyTarget, Striker,
     Until, steps_in,
@@ -17,7 +18,6 @@ use crate::procedures::stepping::check::frame_check;
 use crate::procedures::stepping::check::frame_check::FrameSteps;
 use crate::procedures::stepping::check::{integrator_check, mode_check};
 use crate::schema::methods;
-use crate::schema::procedures::impact as schema;
 use crate::text::diagnostic::Code;
 
 /// The slowest striker must arrive, the time step must follow the fastest.

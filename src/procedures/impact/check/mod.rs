@@ -8,13 +8,13 @@ pub(crate) mod warnings;
 
 use crate::language::check::checker::Checker;
 use crate::language::check::declarations::specimen::frame;
+use crate::plan::procedures::impact::block as schema;
 use crate::plan::{Impact, ProcedureKind, Until};
 use crate::procedures::impact::contact;
 use crate::procedures::stepping;
 use crate::procedures::stepping::check::integrator_check;
 use crate::schema::Kind;
 use crate::schema::methods;
-use crate::schema::procedures::impact as schema;
 
 /// The time step of an impact that names none: the critical one over this.
 const FINER: f64 = 20.0;

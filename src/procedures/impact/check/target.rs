@@ -1,8 +1,9 @@
 //! The structure that a striker hits: the fields of one degree of freedom, or of one floor of a frame. In: a block. Out: the target, or
 //! errors if a field belongs to the other one.
 
+use crate::plan::procedures::impact::block as impact;
 use crate::schema::frames;
-use crate::schema::procedures::{STIFFNESS, impact};
+use crate::schema::procedures::STIFFNESS;
 use std::rc::Rc;
 
 use crate::language::check::checker::Checker;
@@ -11,7 +12,7 @@ use crate::language::check::expressions::fields::whole;
 use crate::language::check::messages::frames as fault;
 use crate::plan::formula::Formula;
 use crate::plan::{Frame, ImpactTarget, PointTarget, StoreyTarget};
-use crate::procedures::base_excitation;
+use crate::procedures::shake;
 use crate::units::{Dimension, display};
 
 /// One degree of freedom, of the specimen at the block `tested`.
@@ -78,9 +79,8 @@ pub(crate) fn storey(
             foreign = true;
         }
     }
-    let damping = base_excitation::check::damping(checker, block);
-    let damping_uncertainty =
-        base_excitation::check::damping_uncertainty(checker, block, damping.as_ref());
+    let damping = shake::check::damping(checker, block);
+    let damping_uncertainty = shake::check::damping_uncertainty(checker, block, damping.as_ref());
     if foreign {
         return None;
     }

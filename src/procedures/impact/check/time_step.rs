@@ -2,8 +2,9 @@
 
 use crate::language::check::checker::Checker;
 use crate::plan::formula::{Formula, NoResults, Part, ResultReference, ResultValue, Results};
+use crate::plan::procedures::cycle::block as cycle;
+use crate::plan::procedures::stiffness_ramp::block as stiffness_ramp;
 use crate::plan::{Impact, Specimen, Striker};
-use crate::schema::procedures::{cycle, stiffness_ramp};
 
 /// Δtc of an impact of this striker on one degree of freedom, s, where all its quantities are known before the run.
 pub(crate) fn critical_before_the_run(impact: &Impact, striker: &Striker) -> Option<f64> {

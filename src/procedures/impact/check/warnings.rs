@@ -6,9 +6,9 @@ use crate::language::check::checker::Checker;
 use crate::language::check::messages::{specimens, whole as fault};
 use crate::physics::structure::portal::limit::mechanism_limit;
 use crate::plan::formula::{Formula, NoResults};
+use crate::plan::procedures::impact::block as schema;
 use crate::plan::{Behaviour, Contact, Impact, Specimen, Striker};
 use crate::schema::methods;
-use crate::schema::procedures::impact as schema;
 use crate::text::source::Span;
 
 /// Warns of a time step above eq. 7, unless it is beyond the stability limit already, and above the one that a limit force needs.

@@ -2,14 +2,14 @@
 //! storeys, with the contact shaded in all that run over time. In: a history. Out: [`Chart`]s in SI with their captions.
 
 use super::charts;
+use crate::plan::procedures::impact::block as schema;
 use crate::plan::{Figure, FigureKind};
-use crate::procedures::base_excitation;
 use crate::procedures::common::limit_lines::limits_on;
+use crate::procedures::shake;
 use crate::record::{ImpactHistory, StruckFrame};
 use crate::report::Run;
 use crate::report::figures::chart::{Chart, DASHED, Quantity, SOLID, Series, Style, palette};
 use crate::schema::ResultKind;
-use crate::schema::procedures::impact as schema;
 use crate::units::Dimension;
 
 /// A figure and its caption; None before the first step, or for a figure of a different procedure.
@@ -24,7 +24,7 @@ pub(crate) fn chart(
         return None;
     }
     let limits = |result: ResultKind| limits_on(run, figure.procedure, result);
-    let chosen = if base_excitation::figures::charts::is_chosen(&frame.floors) {
+    let chosen = if shake::figures::charts::is_chosen(&frame.floors) {
         "; not all are drawn"
     } else {
         ""
@@ -32,14 +32,11 @@ pub(crate) fn chart(
     let struck = frame.struck + 1;
     Some(match figure.kind {
         FigureKind::Modes => (
-            base_excitation::figures::charts::modes(frame.modes.as_ref()?),
+            shake::figures::charts::modes(frame.modes.as_ref()?),
             format!("{name}: natural mode shapes and periods, floor by floor from the ground up."),
         ),
         FigureKind::Displacement => {
-            let mut chart = shaded(
-                history,
-                base_excitation::figures::charts::displacement(&frame.floors),
-            );
+            let mut chart = shaded(history, shake::figures::charts::displacement(&frame.floors));
             chart.series.push(striker(history, frame));
             chart.references = limits(schema::MAX_DISPLACEMENT);
             let caption = format!(
@@ -50,12 +47,12 @@ pub(crate) fn chart(
         FigureKind::Drift => (
             shaded(
                 history,
-                base_excitation::figures::charts::drift(&frame.floors, &limits(schema::MAX_DRIFT)),
+                shake::figures::charts::drift(&frame.floors, &limits(schema::MAX_DRIFT)),
             ),
             format!("{name}: drift of each storey against simulated time{chosen}."),
         ),
         FigureKind::Hysteresis => (
-            base_excitation::figures::charts::hysteresis(&frame.floors),
+            shake::figures::charts::hysteresis(&frame.floors),
             format!(
                 "{name}: measured storey shear against drift; the area of a loop is the energy absorbed by the storey{chosen}."
             ),
@@ -63,10 +60,7 @@ pub(crate) fn chart(
         FigureKind::BaseShear => (
             shaded(
                 history,
-                base_excitation::figures::charts::base_shear(
-                    &frame.floors,
-                    &limits(schema::MAX_BASE_SHEAR),
-                ),
+                shake::figures::charts::base_shear(&frame.floors, &limits(schema::MAX_BASE_SHEAR)),
             ),
             format!(
                 "{name}: base shear, the sum of the measured restoring forces, against simulated time."
@@ -110,11 +104,8 @@ pub(crate) fn chart(
             ),
         ),
         FigureKind::Tracking => (
-            shaded(
-                history,
-                base_excitation::figures::charts::tracking(&frame.floors),
-            ),
-            base_excitation::figures::followed(name, chosen),
+            shaded(history, shake::figures::charts::tracking(&frame.floors)),
+            shake::figures::followed(name, chosen),
         ),
         _ => return None,
     })

@@ -4,6 +4,8 @@
 pub(crate) mod contact_log;
 pub(crate) mod storey;
 
+use crate::plan::procedures::damping_sweep::block as damping_sweep;
+use crate::plan::procedures::impact::block as schema;
 use crate::plan::{Contact, Impact, Integrator, PointTarget, ProcedureKind};
 use crate::procedures;
 use crate::procedures::impact::contact;
@@ -12,7 +14,7 @@ use crate::record::{ImpactHistory, ProcedureRecord};
 use crate::report::document::Block;
 use crate::report::sections::results::actuators;
 use crate::report::{Run, number};
-use crate::schema::procedures::{damping_sweep, impact as schema, tracking as tracking_schema};
+use crate::schema::procedures::tracking as tracking_schema;
 use crate::units::Dimension;
 
 /// Results that have a budget even if no requirement reads any.

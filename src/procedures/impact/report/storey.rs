@@ -2,14 +2,14 @@
 //! storey, the energy balance, the contact log. In: a plan and a record. Out: blocks.
 
 use super::{contact_log, contact_work, energy_balance};
+use crate::plan::procedures::impact::block as schema;
 use crate::plan::{Contact, Impact, Mode, ProcedureKind, StoreyTarget};
-use crate::procedures::base_excitation;
+use crate::procedures::shake;
 use crate::procedures::stepping::energy;
 use crate::record::{ImpactHistory, ProcedureRecord, StruckFrame};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::sections::results::tracking;
 use crate::report::{Run, number};
-use crate::schema::procedures::impact as schema;
 use crate::units::Dimension;
 
 /// The results that a reader looks for first.
@@ -45,10 +45,7 @@ pub(crate) fn report(
     sentences.extend(struck_mass(run, impact, target));
     sentences.extend(tracking::sentence(procedure));
     body.push(Block::paragraph(sentences.join(" ")));
-    body.push(base_excitation::report::mode_table(
-        modes,
-        &struck.damping_ratios,
-    ));
+    body.push(shake::report::mode_table(modes, &struck.damping_ratios));
     if struck.floors.is_empty() {
         return;
     }
@@ -57,13 +54,13 @@ pub(crate) fn report(
         .specimens
         .get(impact.specimen)
         .and_then(|specimen| specimen.frame.as_ref());
-    body.push(base_excitation::report::storey_table(
+    body.push(shake::report::storey_table(
         procedure,
         &struck.floors,
         frame,
         schema::FLOOR_DISPLACEMENT,
     ));
-    body.extend(base_excitation::report::noise_note(run));
+    body.extend(shake::report::noise_note(run));
     body.push(storey_energies(procedure));
     body.extend(tracking::table(procedure));
     energy_balance(contact_work(run, index), history, body);
@@ -91,8 +88,8 @@ fn method(
             struck.struck + 1,
             impact.contact.title()
         ),
-        base_excitation::report::integrated(
-            base_excitation::report::frame_of(run, impact.specimen),
+        shake::report::integrated(
+            shake::report::frame_of(run, impact.specimen),
             impact.stepping.integrator,
             &target.damping,
             &struck.damping_ratios,
@@ -168,7 +165,7 @@ fn storey_energies(procedure: &ProcedureRecord) -> Block {
     let row = |(storey, energy): (usize, &f64)| -> Vec<Text> {
         vec![
             format!("storey {}", storey + 1).into(),
-            base_excitation::report::entry(result, storey),
+            shake::report::entry(result, storey),
             energy::fraction(*energy, input).into(),
         ]
     };

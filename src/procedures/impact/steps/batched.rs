@@ -7,13 +7,13 @@
 use crate::physics::impact::batch::{self, Batched, Reach};
 use crate::physics::specimen::SpecimenModel;
 use crate::plan::formula::{NoResults, ProcedureId};
+use crate::plan::procedures::impact::block as schema;
 use crate::plan::{Impact, Interval, Limits, Mode, Plan, Procedure, Until};
 use crate::procedures::impact::results::{of_impact, of_steps};
 use crate::procedures::impact::setting::Setting;
 use crate::record::{History, ImpactHistory, ProcedureRecord};
 use crate::rig::DeclaredNoise;
 use crate::run::inputs::Inputs;
-use crate::schema::procedures::impact as schema;
 
 /// An impact that can run in a batch.
 #[derive(Clone, Debug)]

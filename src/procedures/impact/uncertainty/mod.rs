@@ -14,6 +14,7 @@ use crate::physics::reintegration::hysteresis_replay::{ContinuousMotion, Reading
 use crate::physics::reintegration::impact::{ImpactValues, Outcome, predicted_velocities, rerun};
 use crate::physics::reintegration::perturbation::Perturbation;
 use crate::plan::formula::Formula;
+use crate::plan::procedures::impact::block as schema;
 use crate::plan::{Impact, Mode, Plan, PointTarget, Striker};
 use crate::procedures::common::perturbed_inputs::{
     LEADS_ELSEWHERE, UncertainRun, uncertain_inputs,
@@ -22,7 +23,6 @@ use crate::procedures::common::results::{Evaluated, flat, give, layout_of, value
 use crate::record::{ImpactStep, NamedResult};
 use crate::run::stop::Stop;
 use crate::schema::ResultKind;
-use crate::schema::procedures::impact as schema;
 use crate::uncertainty::engine::{
     CLOSE, Contributions, Evaluate, Evaluation, Progress, Shifts, Unknown,
 };

@@ -11,6 +11,7 @@ use crate::physics::reintegration::frame::{FloorImpact, Floors, FrameRun, Strike
 use crate::physics::reintegration::frame_path::FramePath;
 use crate::physics::reintegration::impact::ImpactValues;
 use crate::physics::reintegration::perturbation::Perturbation;
+use crate::plan::procedures::impact::block as schema;
 use crate::plan::{Impact, StoreyTarget, Striker};
 use crate::procedures::common::perturbed_inputs::LEADS_ELSEWHERE;
 use crate::procedures::common::results::{Evaluated, flat, index_of, layout_of, values};
@@ -19,7 +20,6 @@ use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_the
 use crate::procedures::stepping::run::FrameSteps;
 use crate::record::{FloorStep, NamedResult};
 use crate::run::stop::Stop;
-use crate::schema::procedures::impact as schema;
 use crate::uncertainty::engine::{Evaluate, Evaluation, Progress, Shifts, Unknown};
 use crate::uncertainty::{Contribution, Source};
 

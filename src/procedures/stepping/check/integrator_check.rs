@@ -4,10 +4,11 @@ use crate::language::check::checker::Checker;
 use crate::language::check::messages::{frames, methods as fault};
 use crate::physics::integrator::stability::{Met, longest_stable_step};
 use crate::physics::structure::Matrices;
+use crate::plan::procedures::impact::block as impact;
 use crate::plan::{Behaviour, Contact, Impact, Integrator, Mode, PointTarget, Specimen, Striker};
 use crate::procedures::impact::check::time_step::time_step_before_the_run;
 use crate::schema::methods;
-use crate::schema::procedures::{STIFFNESS, impact};
+use crate::schema::procedures::STIFFNESS;
 
 /// The integrator that a block names, else the tangent form. In continuous mode the secant of two readings would include the force of a
 /// damper: there the default is explicit Newmark, if the contact law does not need the tangent.

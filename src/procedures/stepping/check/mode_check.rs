@@ -4,11 +4,11 @@
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::methods as fault;
 use crate::language::syntax::ast::{Argument, ExprKind};
+use crate::plan::procedures::impact::block as impact;
 use crate::plan::{Dialect, Impact, Mode, PointTarget, Specimen};
 use crate::schema::Kind;
 use crate::schema::devices::DIALECT;
 use crate::schema::methods;
-use crate::schema::procedures::impact;
 use crate::schema::{rig, specimen};
 
 /// The mode that a block names, otherwise `ramp_and_hold`.

@@ -7,8 +7,8 @@ use crate::physics::identification::StatedVariance;
 use crate::physics::identification::multilinear_fit::{
     BreakCount, MultilinearFit, fit_multilinear,
 };
+use crate::plan::procedures::stiffness_ramp::block as schema;
 use crate::record::{LineFit, NamedResult};
-use crate::schema::procedures::stiffness_ramp as schema;
 use crate::schema::{ResultKind, curves};
 use crate::units::Dimension;
 use crate::units::display::readable;

@@ -4,7 +4,9 @@
 pub(crate) mod relaxation_figures;
 
 use crate::plan::FigureKind;
-use crate::record::{MultilinearFit, RampHistory, RampStep, SweepHistory, SweepStep};
+use crate::record::{
+    DampingSweepHistory, MultilinearFit, RampStep, StiffnessRampHistory, SweepStep,
+};
 use crate::report::figures::chart::{
     Chart, DASHED, Marker, Quantity, SOLID, Series, Style, palette,
 };
@@ -18,7 +20,7 @@ pub(crate) const FIGURES: &[FigureKind] = &[FigureKind::ForceDisplacement, Figur
 /// A figure and its caption; None if nothing was recorded for it, or if a ramp does not have this figure.
 pub(crate) fn chart(
     name: &str,
-    history: &RampHistory,
+    history: &StiffnessRampHistory,
     kind: FigureKind,
 ) -> Option<(Chart, String)> {
     Some(match (kind, &history.reached) {
@@ -45,7 +47,7 @@ pub(crate) fn chart(
 }
 
 /// Measured points, with the unloading branch separate, and the line K·X + intercept.
-pub(crate) fn force_displacement(history: &RampHistory) -> Chart {
+pub(crate) fn force_displacement(history: &StiffnessRampHistory) -> Chart {
     let points = |wanted: bool| -> Points {
         history
             .steps
@@ -118,7 +120,7 @@ pub(crate) fn force_displacement(history: &RampHistory) -> Chart {
 }
 
 /// The segments of the curve, between the ends of the readings and through the breakpoints.
-fn curve(fit: &MultilinearFit, history: &RampHistory) -> Series {
+fn curve(fit: &MultilinearFit, history: &StiffnessRampHistory) -> Series {
     let [low, high] = ends(
         history
             .steps
@@ -160,7 +162,7 @@ const CLOUD_POINTS: usize = 3000;
 
 /// Steady readings in a light tone, the fitted means with their standard error at each velocity, and `F_d = c·v + F_c`. The readings of
 /// both directions are drawn on one side, each with the sign of its motion.
-pub(crate) fn damping_fit(history: &SweepHistory) -> Chart {
+pub(crate) fn damping_fit(history: &DampingSweepHistory) -> Chart {
     let steady: Vec<&SweepStep> = history.steps.iter().filter(|step| step.steady).collect();
     let every = steady.len().div_ceil(CLOUD_POINTS).max(1);
     let cloud = steady

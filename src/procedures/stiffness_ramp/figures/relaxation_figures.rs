@@ -3,7 +3,7 @@
 
 use crate::physics::relaxation::law::RelaxationLaw;
 use crate::physics::relaxation::time_constant::RelaxationFit;
-use crate::record::{Hold, LawFit, RampHistory, SuperpositionFit};
+use crate::record::{Hold, LawFit, StiffnessRampHistory, SuperpositionFit};
 use crate::report::figures::chart::{
     Chart, Colour, DASHED, Marker, Quantity, SOLID, Series, Style, palette,
 };
@@ -86,7 +86,7 @@ fn law_words(fit: &LawFit) -> String {
 }
 
 /// R − R∞ of some dwells and the exponential of each.
-pub(crate) fn left(history: &RampHistory, fit: &RelaxationFit) -> Chart {
+pub(crate) fn left(history: &StiffnessRampHistory, fit: &RelaxationFit) -> Chart {
     let chosen = drawn_of(history.holds.len());
     let tau = number::with_uncertainty(
         fit.time_constant.0,

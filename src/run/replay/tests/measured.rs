@@ -10,7 +10,7 @@ pub(super) fn measured(record: &Record) -> String {
     for procedure in &record.procedures {
         writeln!(text, "{} {:?}", procedure.name, procedure.results).unwrap();
         match &procedure.history {
-            History::Ramp(history) => {
+            History::StiffnessRamp(history) => {
                 for step in &history.steps {
                     writeln!(
                         text,
@@ -44,7 +44,7 @@ pub(super) fn measured(record: &Record) -> String {
                     .unwrap();
                 }
             }
-            History::Sweep(history) => {
+            History::DampingSweep(history) => {
                 for step in &history.steps {
                     writeln!(text, "{:?} {:?}", step.displacement, step.restoring_force).unwrap();
                 }

@@ -201,8 +201,7 @@ pub(super) fn drifting() -> Plan {
 
 /// Two impacts on the upper of two floors, each followed by unloading of both floors; then the same again.
 pub(super) fn frame_row() -> Plan {
-    let mut plan =
-        crate::tests::procedures::frame::impact_series::rising(&[0.4, 0.8], Between::Unload);
+    let mut plan = crate::tests::procedures::frame::escalate::rising(&[0.4, 0.8], Between::Unload);
     let ProcedureKind::Escalate(escalate) = &mut plan.procedures[0].kind else {
         panic!()
     };

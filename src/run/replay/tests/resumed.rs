@@ -96,7 +96,7 @@ fn a_sweep_about_a_position_past_yield() {
     let (_, whole, _) = recorded(&swept_past_yield());
     let (damping, _) = crate::tests::testing::number(&whole.record, 0, "damping");
     assert!(damping.unwrap().abs() < 1e-9, "{damping:?}");
-    let History::Sweep(sweep) = &whole.record.procedures[0].history else {
+    let History::DampingSweep(sweep) = &whole.record.procedures[0].history else {
         panic!()
     };
     assert!(

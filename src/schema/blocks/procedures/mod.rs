@@ -1,29 +1,23 @@
-//! The procedures of the language, one file in the folder of each: its block and its results. The list of them is here.
+//! The list of the procedures of the language. The block and the results of each are in its folder of `plan::procedures`.
 
 mod common;
 pub(crate) mod tracking;
 
-pub(crate) use crate::procedures::base_excitation::data::block as base_excitation;
-pub(crate) use crate::procedures::cycle::data::block as cycle;
-pub(crate) use crate::procedures::damping_sweep::data::block as damping_sweep;
-pub(crate) use crate::procedures::impact::data::block as impact;
-pub(crate) use crate::procedures::impact_series::data::block as impact_series;
-pub(crate) use crate::procedures::inspect::data::block as inspect;
-pub(crate) use crate::procedures::move_to::data::block as move_to;
-pub(crate) use crate::procedures::stiffness_ramp::data::block as stiffness_ramp;
-pub(crate) use crate::procedures::unload::data::block as unload;
+use crate::plan::procedures::{
+    cycle, damping_sweep, escalate, impact, inspect, move_to, shake, stiffness_ramp, unload,
+};
 use crate::schema::types::BlockKind;
 pub(crate) use common::{SPECIMEN, SPEED, STIFFNESS};
 
 /// The blocks of the procedures, in the order of the reference.
 pub(crate) const BLOCKS: &[&BlockKind] = &[
-    &stiffness_ramp::BLOCK,
-    &damping_sweep::BLOCK,
-    &impact::BLOCK,
-    &cycle::BLOCK,
-    &base_excitation::BLOCK,
-    &impact_series::BLOCK,
-    &unload::BLOCK,
-    &move_to::BLOCK,
-    &inspect::BLOCK,
+    &stiffness_ramp::block::BLOCK,
+    &damping_sweep::block::BLOCK,
+    &impact::block::BLOCK,
+    &cycle::block::BLOCK,
+    &shake::block::BLOCK,
+    &escalate::block::BLOCK,
+    &unload::block::BLOCK,
+    &move_to::block::BLOCK,
+    &inspect::block::BLOCK,
 ];

@@ -142,7 +142,7 @@ fn very_many_steps_with_faults_by_chance_lose_no_sample_and_hold_on_to_nothing()
     let recorded = replay::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None));
     let record = recorded.record;
     assert_eq!(record.outcome, Outcome::Completed, "seed {seed}");
-    let History::Ramp(history) = &record.procedures[0].history else {
+    let History::StiffnessRamp(history) = &record.procedures[0].history else {
         panic!("a ramp")
     };
     assert_eq!(history.steps.len(), 2 * STEPS as usize, "seed {seed}");

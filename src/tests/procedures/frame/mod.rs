@@ -1,6 +1,6 @@
 //! Frames: unloading, and impact series on a storey.
 
-pub(crate) mod impact_series;
+pub(crate) mod escalate;
 mod unloading;
 
 use crate::plan::formula::Formula::Constant;

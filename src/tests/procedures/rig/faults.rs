@@ -80,7 +80,7 @@ fn a_reading_that_is_no_number_aborts_and_keeps_what_came_before() {
         "{:?}",
         record.outcome
     );
-    let History::Ramp(history) = &record.procedures[0].history else {
+    let History::StiffnessRamp(history) = &record.procedures[0].history else {
         panic!("a ramp")
     };
     assert_eq!((record.procedures.len(), history.steps.len()), (1, 4));

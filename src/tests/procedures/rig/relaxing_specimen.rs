@@ -43,7 +43,7 @@ fn a_real_rig_reports_when_it_moved() {
     let ramp = &record.procedures[0];
     let (branch, _) = uncertain(ramp, "branch_stiffness");
     assert!((branch / 120e3 - 1.0).abs() < 0.02, "{branch} N/m");
-    let History::Ramp(history) = &ramp.history else {
+    let History::StiffnessRamp(history) = &ramp.history else {
         panic!("no ramp")
     };
     for hold in &history.holds {

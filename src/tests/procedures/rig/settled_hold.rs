@@ -200,7 +200,7 @@ fn noisy_holds_of_a_rig_that_settles_are_held() {
 #[test]
 fn a_dwell_records_when_the_rig_moved() {
     let record = run_unwatched(&solid(0.5, VirtualLink::default()));
-    let History::Ramp(ramp) = &record.procedures[0].history else {
+    let History::StiffnessRamp(ramp) = &record.procedures[0].history else {
         panic!()
     };
     for hold in &ramp.holds {

@@ -46,7 +46,7 @@ damping sweep c {
 
 /// Readings of each pass of the sweep, and the least time between two of them \[s\].
 fn readings(record: &Record) -> (Vec<usize>, f64) {
-    let History::Sweep(sweep) = &record.procedures[1].history else {
+    let History::DampingSweep(sweep) = &record.procedures[1].history else {
         panic!("a sweep")
     };
     let strokes = sweep

@@ -1,11 +1,11 @@
 //! One storey compared with one degree of freedom, two elastic storeys with their modes.
 
 use super::{base_excited_plan, constant, entry, from, rebuilt, storey, storeys};
+use crate::plan::procedures::impact::block::RESULTS;
 use crate::plan::{
     Calibration, Contact, Impact, Link, Plan, ProcedureKind, ShakeDamping, Storey, Until,
     VirtualLink,
 };
-use crate::schema::procedures::impact::RESULTS;
 use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched, struck_frame};
 use crate::uncertainty::{Contribution, Source, combined};
 

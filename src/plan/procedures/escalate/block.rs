@@ -1,0 +1,236 @@
+//! `escalate`: its block and its results.
+
+use crate::plan::ProcedureBlock;
+use crate::plan::procedures::impact::block as impact;
+use crate::schema::methods::TRUTH;
+use crate::schema::{BlockKind, Field, Kind, Naming, Possible, ResultKind, Variant};
+use crate::units::Dimension;
+
+pub(crate) const SPEEDS: Field = Field::quantities(
+    "speeds",
+    Dimension::VELOCITY,
+    "striker velocity of each impact; or `drop_heights`, or `energies`",
+)
+.above_zero()
+.default_in_words("from heights or energies");
+
+pub(crate) const DROP_HEIGHTS: Field = Field::quantities(
+    "drop_heights",
+    Dimension::LENGTH,
+    "drop height of each impact",
+)
+.above_zero();
+
+pub(crate) const ENERGIES: Field =
+    Field::quantities("energies", Dimension::ENERGY, "energy of each impact").above_zero();
+
+pub(crate) const WHILE: Field = Field::condition(
+    "while",
+    "the next impact follows while this condition on the results of the last one is met",
+)
+.required("while = max_displacement < 20 mm");
+
+pub(crate) const BETWEEN: Field = Field::choice(
+    "between",
+    &[
+        Variant::word("unload", "to zero restoring force"),
+        Variant::word("home", "back to the start of the first impact"),
+        Variant::word(
+            "stay",
+            "no repositioning; the next impact starts from the loaded position",
+        ),
+    ],
+    "position of the specimen between impacts, and after the last",
+)
+.default_in_words("unload");
+
+pub(crate) const INSPECT_BETWEEN: Field = Field::choice(
+    "inspect_between",
+    TRUTH,
+    "asks the operator to inspect the specimen between impacts",
+)
+.default_in_words("false");
+
+/// What an `escalate` has besides the fields of an impact.
+const OWN: [Field; 6] = [
+    SPEEDS,
+    DROP_HEIGHTS,
+    ENERGIES,
+    WHILE,
+    BETWEEN,
+    INSPECT_BETWEEN,
+];
+
+const FIELDS: [Field; OWN.len() + impact::BLOCK.fields.len()] = {
+    let mut all = [OWN[0]; OWN.len() + impact::BLOCK.fields.len()];
+    let mut at = 0;
+    while at < all.len() {
+        all[at] = if at < OWN.len() {
+            OWN[at]
+        } else {
+            impact::BLOCK.fields[at - OWN.len()]
+        };
+        at += 1;
+    }
+    all
+};
+
+pub(crate) const IMPACTS: ResultKind = ResultKind::count(
+    "impacts",
+    "number of impacts, including one that failed or was inconclusive",
+);
+
+pub(crate) const PASSED: ResultKind = ResultKind::count(
+    "passed",
+    "number of impacts after which the condition was true",
+)
+.decided_by_condition();
+
+pub(crate) const LAST_PASSED_ENERGY: ResultKind = ResultKind::measured(
+    "last_passed_energy",
+    Dimension::ENERGY,
+    "energy of the last impact after which the condition was true; 0 if false after the first",
+)
+.decided_by_condition();
+
+pub(crate) const FIRST_FAILED_ENERGY: ResultKind = ResultKind::measured(
+    "first_failed_energy",
+    Dimension::ENERGY,
+    "energy of the first impact after which the condition was false",
+)
+.decided_by_condition();
+
+pub(crate) const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
+    "max_displacement",
+    Dimension::LENGTH,
+    "largest displacement in all impacts",
+)
+.within(Possible::LargestDisplacement);
+
+pub(crate) const RESIDUAL_DISPLACEMENT: ResultKind = ResultKind::measured(
+    "residual_displacement",
+    Dimension::LENGTH,
+    "unloaded position after the last impact, with `between = unload`",
+);
+
+pub(crate) const FINAL_DISPLACEMENT: ResultKind = ResultKind::measured(
+    "final_displacement",
+    Dimension::LENGTH,
+    "position after the last impact, with `between = home` or `stay`",
+);
+
+pub(crate) const ABSORBED_ENERGY: ResultKind = ResultKind::measured(
+    "absorbed_energy",
+    Dimension::ENERGY,
+    "sum of the energies absorbed up to the largest displacement of each impact",
+);
+
+pub(crate) const VELOCITIES: ResultKind = ResultKind::measured_list(
+    "velocities",
+    Dimension::VELOCITY,
+    "striker velocity of each impact",
+);
+
+pub(crate) const IMPACT_ENERGIES: ResultKind = ResultKind::measured_list(
+    "blow_energies",
+    Dimension::ENERGY,
+    "striker energy of each impact",
+);
+
+pub(crate) const MAX_DISPLACEMENTS: ResultKind = ResultKind::measured_list(
+    "max_displacements",
+    Dimension::LENGTH,
+    "largest displacement of each impact",
+);
+
+pub(crate) const RESIDUAL_DISPLACEMENTS: ResultKind = ResultKind::measured_list(
+    "residual_displacements",
+    Dimension::LENGTH,
+    "unloaded position after each impact, with `between = unload`",
+);
+
+pub(crate) const FINAL_DISPLACEMENTS: ResultKind = ResultKind::measured_list(
+    "final_displacements",
+    Dimension::LENGTH,
+    "position after each impact, with `between = home` or `stay`",
+);
+
+pub(crate) const ABSORBED_ENERGIES: ResultKind = ResultKind::measured_list(
+    "absorbed_energies",
+    Dimension::ENERGY,
+    "energy absorbed in each impact up to its largest displacement",
+);
+
+pub(crate) const IMPULSES: ResultKind =
+    ResultKind::measured_list("impulses", Dimension::IMPULSE, "impulse of each impact");
+
+pub(crate) const ENERGY_ERRORS: ResultKind = ResultKind::list(
+    "energy_errors",
+    Dimension::NUMBER,
+    "residual of the energy balance of each impact relative to its input energy",
+)
+.in_percent();
+
+pub(crate) const MAX_DRIFT: ResultKind = ResultKind::measured_list(
+    "max_drift",
+    Dimension::LENGTH,
+    "peak absolute drift of each storey in all impacts",
+)
+.within(Possible::NotNegative)
+.of_storey();
+
+pub(crate) const RESIDUAL_DRIFT: ResultKind = ResultKind::measured_list(
+    "residual_drift",
+    Dimension::LENGTH,
+    "drift of each unloaded storey after the last impact, with `between = unload`",
+)
+.of_storey();
+
+pub(crate) const FINAL_DRIFT: ResultKind = ResultKind::measured_list(
+    "final_drift",
+    Dimension::LENGTH,
+    "drift of each storey after the last impact, with `between = home` or `stay`",
+)
+.of_storey();
+
+pub(crate) const STOREY_ENERGY: ResultKind = ResultKind::measured_list(
+    "storey_energy",
+    Dimension::ENERGY,
+    "energy absorbed by each storey in all impacts",
+)
+.of_storey();
+
+/// What it leaves, in the order of the tables and of `summary.json`.
+pub(crate) const RESULTS: &[ResultKind] = &[
+    IMPACTS,
+    PASSED,
+    LAST_PASSED_ENERGY,
+    FIRST_FAILED_ENERGY,
+    MAX_DISPLACEMENT,
+    RESIDUAL_DISPLACEMENT,
+    FINAL_DISPLACEMENT,
+    ABSORBED_ENERGY,
+    VELOCITIES,
+    IMPACT_ENERGIES,
+    MAX_DISPLACEMENTS,
+    RESIDUAL_DISPLACEMENTS,
+    FINAL_DISPLACEMENTS,
+    ABSORBED_ENERGIES,
+    IMPULSES,
+    ENERGY_ERRORS,
+    MAX_DRIFT,
+    RESIDUAL_DRIFT,
+    FINAL_DRIFT,
+    STOREY_ENERGY,
+];
+
+pub(crate) const BLOCK: BlockKind = BlockKind {
+    kind: Kind::Procedure(ProcedureBlock::Escalate),
+    keyword: &["escalate"],
+    naming: Naming::Named,
+    fields: &FIELDS,
+    exports: &[],
+    results: RESULTS,
+    example: "escalate rising {\n  striker  = pendulum\n  speeds   = [0.5, 1, 1.5] m/s\n  while    = max_displacement < 20 mm\n  duration = 50 ms\n}",
+    doc: "Impacts of increasing energy on one specimen or one storey of a frame, until `while` is false or the list ends",
+};

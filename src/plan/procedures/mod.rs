@@ -1,0 +1,81 @@
+//! The procedures of a plan, and what the stages before the run know of each: in its folder its block (schema), its parameters in SI
+//! (plan) and its history (record). They are data: they check nothing and run nothing.
+
+pub(crate) mod cycle;
+pub(crate) mod damping_sweep;
+pub(crate) mod escalate;
+pub(crate) mod impact;
+pub(crate) mod inspect;
+pub(crate) mod known_steps;
+pub(crate) mod mode;
+pub(crate) mod move_to;
+pub(crate) mod shake;
+pub(crate) mod stepping;
+pub(crate) mod stiffness_ramp;
+pub(crate) mod unload;
+
+use crate::plan::{Cycle, DampingSweep, Escalate, Impact, Move, Shake, StiffnessRamp, Unload};
+
+/// The blocks of the procedures: a plan writes each by its keyword.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProcedureBlock {
+    StiffnessRamp,
+    DampingSweep,
+    Impact,
+    Shake,
+    Cycle,
+    Unload,
+    Escalate,
+    Move,
+    Inspect,
+}
+
+/// The parameters of a procedure.
+#[derive(Clone, Debug)]
+pub enum ProcedureKind {
+    StiffnessRamp(StiffnessRamp),
+    DampingSweep(DampingSweep),
+    Impact(Impact),
+    Shake(Shake),
+    Cycle(Cycle),
+    Unload(Unload),
+    Escalate(Escalate),
+    Move(Move),
+    /// The operator inspects the specimen.
+    Inspect {
+        note: String,
+    },
+}
+
+impl ProcedureKind {
+    /// The block's keyword, as in `summary.json`.
+    #[must_use]
+    pub const fn keyword(&self) -> &'static str {
+        match self {
+            Self::StiffnessRamp(_) => "stiffness ramp",
+            Self::DampingSweep(_) => "damping sweep",
+            Self::Impact(_) => "impact",
+            Self::Shake(_) => "shake",
+            Self::Cycle(_) => "cycle",
+            Self::Unload(_) => "unload",
+            Self::Escalate(_) => "escalate",
+            Self::Move(_) => "move",
+            Self::Inspect { .. } => "inspect",
+        }
+    }
+
+    /// The tested specimen, as an index into `Plan::specimens`; None of a procedure that only moves or inspects.
+    #[must_use]
+    pub const fn specimen(&self) -> Option<usize> {
+        match self {
+            Self::StiffnessRamp(ramp) => Some(ramp.specimen),
+            Self::DampingSweep(sweep) => Some(sweep.specimen),
+            Self::Impact(impact) => Some(impact.specimen),
+            Self::Shake(shake) => Some(shake.specimen),
+            Self::Cycle(cycle) => Some(cycle.specimen),
+            Self::Unload(unload) => Some(unload.specimen),
+            Self::Escalate(series) => Some(series.impact.specimen),
+            Self::Move(_) | Self::Inspect { .. } => None,
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! `escalate NAME { … }`: the fields of an impact, its levels, and the condition for the next impact.
+
+use crate::language::check::checker::{Checker, Context, Reads};
+use crate::language::check::messages::{cyclic as fault, names, values};
+use crate::plan::formula::{Formula, Function, Operator};
+use crate::plan::procedures::escalate::block as schema;
+use crate::plan::procedures::impact::block::STRIKER;
+use crate::plan::{Between, Condition, Escalate, MOST_IMPACTS, ProcedureKind};
+use crate::procedures::impact;
+use crate::schema::Kind;
+use crate::schema::striker;
+use crate::text::source::Span;
+use crate::units::unit::STANDARD_GRAVITY;
+
+/// The fields that give the levels; exactly one of them is given.
+const LEVELS: [&str; 3] = [
+    schema::SPEEDS.name,
+    schema::DROP_HEIGHTS.name,
+    schema::ENERGIES.name,
+];
+
+pub fn escalate(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
+    let own = checker.scope.blocks[block].procedure?;
+    let levels = levels(checker, block);
+    let condition = condition(checker, block);
+    let between = checker.word(block, schema::BETWEEN.name, "unload");
+    let inspect_between = checker
+        .word(block, schema::INSPECT_BETWEEN.name, "false")
+        .map(|word| word == "true");
+    let impact = impact::check::fields(checker, block);
+    let (velocities, energies) = levels?;
+    Some(ProcedureKind::Escalate(Escalate {
+        own,
+        impact: impact?,
+        velocities,
+        energies,
+        condition: condition?,
+        between: match between? {
+            "home" => Between::Home,
+            "stay" => Between::Stay,
+            _ => Between::Unload,
+        },
+        inspect_between: inspect_between?,
+    }))
+}
+
+/// The velocity of the striker in each impact: v, √(2·gn·h) or √(2E/Ms), and its energy where the plan gives energies.
+fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<Vec<Formula>>)> {
+    let declared = &checker.scope.blocks[block];
+    let (kind, name, head) = (declared.kind, declared.name, declared.block.head);
+    let given: Vec<(&str, Span, Span)> = LEVELS
+        .into_iter()
+        .filter_map(|field| {
+            checker
+                .field(block, field)
+                .map(|(_, entry)| (field, entry.key.span, entry.value.span))
+        })
+        .collect();
+    let (field, span) = match given.as_slice() {
+        [(field, _, span)] => (*field, *span),
+        [] => {
+            if !checker.misspelt(block, &LEVELS) {
+                checker.diagnostics.push(names::missing_field(
+                    kind,
+                    name,
+                    head,
+                    schema::SPEEDS.name,
+                    "speeds = [0.5, 1, 1.5] m/s",
+                ));
+            }
+            return None;
+        }
+        [(first, at, _), rest @ ..] => {
+            for (again, span, _) in rest {
+                checker
+                    .diagnostics
+                    .push(fault::levels_twice(again, *span, first, *at));
+            }
+            return None;
+        }
+    };
+    let levels = checker.quantities(block, field)?;
+    if levels.len() > MOST_IMPACTS {
+        #[expect(
+            clippy::cast_precision_loss,
+            reason = "a list has at most 100,000 entries"
+        )]
+        let (found, most) = (levels.len() as f64, MOST_IMPACTS as f64);
+        return checker.fail(values::too_many(
+            "impacts",
+            found,
+            most,
+            span,
+            "write fewer levels",
+        ));
+    }
+    let known: Vec<f64> = levels.iter().filter_map(Formula::constant).collect();
+    if known.windows(2).any(|pair| pair[1] <= pair[0]) {
+        checker
+            .diagnostics
+            .push(fault::levels_do_not_rise(field, span));
+    }
+    let root = |twice: f64, of: Formula| {
+        let product = Formula::Binary(
+            Operator::Multiply,
+            Box::new(Formula::Constant(twice)),
+            Box::new(of),
+        );
+        let root = Formula::Call(Function::Sqrt, vec![product]);
+        root.constant().map_or(root, Formula::Constant)
+    };
+    Some(match field {
+        _ if field == schema::SPEEDS.name => (levels, None),
+        _ if field == schema::DROP_HEIGHTS.name => (
+            levels
+                .into_iter()
+                .map(|height| root(2.0 * STANDARD_GRAVITY, height))
+                .collect(),
+            None,
+        ),
+        _ => {
+            let hammer = checker.reference(block, STRIKER.name, Kind::Striker)?;
+            let mass = checker.constant(hammer, striker::MASS.name)?;
+            (
+                levels
+                    .iter()
+                    .cloned()
+                    .map(|energy| root(2.0 / mass, energy))
+                    .collect(),
+                Some(levels),
+            )
+        }
+    })
+}
+
+/// `while`: conditions on the results of an impact, by their own names.
+fn condition(checker: &mut Checker, block: usize) -> Option<Vec<Condition>> {
+    let own = checker.scope.blocks[block].procedure?;
+    let (entry, written) = checker.field(block, schema::WHILE.name)?;
+    let context = Context {
+        entry: Some((block, entry)),
+        reads: Reads::Impact(own),
+        critical: false,
+    };
+    let conditions = checker.conditions_at(&written.value, context)?;
+    let mut references = Vec::new();
+    for condition in &conditions {
+        condition.collect_references(&mut references);
+    }
+    if !references
+        .iter()
+        .any(|reference| reference.procedure == own)
+    {
+        let text = checker.text(written.value.span);
+        return checker.fail(fault::condition_without_result(text, written.value.span));
+    }
+    Some(conditions)
+}

@@ -1,0 +1,41 @@
+//! The facts about a series of impacts that the drivers of check and report need without carrying it out. In: the series of the plan.
+//! Out: facts.
+
+use super::figures;
+use crate::plan::procedures::escalate::block as schema;
+use crate::plan::{Escalate, ImpactTarget};
+use crate::procedures::facts::{Facts, Recorded};
+use crate::procedures::{impact, stepping};
+
+pub(crate) fn facts(series: &Escalate) -> Facts<'_> {
+    let figures = match &series.impact.target {
+        ImpactTarget::Point(_) => figures::FIGURES,
+        ImpactTarget::Storey(_) => figures::STOREY_FIGURES,
+    };
+    Facts {
+        conditions: Some(&series.condition),
+        frame_damping: None,
+        figures,
+        shared_figures: &[],
+        headline: vec![
+            schema::LAST_PASSED_ENERGY.name,
+            schema::FIRST_FAILED_ENERGY.name,
+            schema::MAX_DISPLACEMENT.name,
+            schema::RESIDUAL_DISPLACEMENT.name,
+            schema::ABSORBED_ENERGY.name,
+            schema::MAX_DRIFT.name,
+            schema::RESIDUAL_DRIFT.name,
+        ],
+        unprinted: stepping::report::TRACKING.to_vec(),
+        ..impact::facts::facts(&series.impact)
+    }
+}
+
+pub(crate) fn recorded() -> Recorded {
+    Recorded {
+        lists_are_tabled: true,
+        entries: "impact",
+        uncertainty: stepping::report::UNCERTAINTY,
+        ..Recorded::default()
+    }
+}

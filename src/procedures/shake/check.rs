@@ -1,0 +1,133 @@
+//! `shake NAME { … }`: the frame, the ground motion, damping, and a stable time step.
+
+use crate::language::check::checker::{Checker, Shape};
+use crate::language::check::declarations::specimen::frame;
+use crate::language::check::declared::Declared;
+use crate::language::check::messages::{frames as fault, types};
+use crate::plan::formula::Formula;
+use crate::plan::procedures::shake::block as schema;
+use crate::plan::{Contact, ProcedureKind, Shake, ShakeDamping};
+use crate::procedures::stepping;
+use crate::procedures::stepping::check::frame_check;
+use crate::procedures::stepping::check::frame_check::FrameSteps;
+use crate::schema::Kind;
+use crate::schema::frames;
+use crate::schema::methods;
+use crate::schema::procedures::SPECIMEN;
+
+pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
+    let ground = checker.reference(block, schema::GROUND.name, Kind::Ground);
+    let specimen = checker.specimen_block(block);
+    let damping = damping(checker, block);
+    let damping_uncertainty = damping_uncertainty(checker, block, damping.as_ref());
+    let stepping = stepping::check::stepping(checker, block, Some(&Contact::Rigid), 5.0);
+    let scale = checker.quantity(block, schema::SCALE.name);
+    let duration = checker.optional(block, methods::DURATION.name);
+    let specimen = specimen?;
+    if !frame::is_frame(checker, specimen) {
+        let tested = &checker.scope.blocks[specimen];
+        let (name, declared) = (
+            tested.name.map_or("", |name| name.node.as_str()),
+            tested.block.head,
+        );
+        let at = checker.value_or_head(block, SPECIMEN.name);
+        return checker.fail(fault::no_storeys(name, at, declared));
+    }
+    Some(ProcedureKind::Shake(Shake {
+        specimen: checker.scope.index_in_kind(specimen),
+        ground: checker.scope.index_in_kind(ground?),
+        damping: damping?,
+        damping_uncertainty: damping_uncertainty?,
+        stepping: stepping?,
+        scale: scale?,
+        duration: duration?,
+    }))
+}
+
+/// One number is for Rayleigh damping; a list has one ratio for each mode.
+pub fn damping(checker: &mut Checker, block: usize) -> Option<ShakeDamping> {
+    let Some((entry, written)) = checker.field(block, frames::DAMPING_RATIO.name) else {
+        return Some(ShakeDamping::Rayleigh(Formula::Constant(0.0)));
+    };
+    let typed = checker.entry(block, entry, written.value.span)?;
+    Some(match typed.shape {
+        Shape::Number => ShakeDamping::Rayleigh(typed.formula),
+        Shape::List if matches!(typed.formula, Formula::List(_)) => {
+            ShakeDamping::Modal(typed.parts())
+        }
+        Shape::List => return checker.fail(types::list_for_number(written.value.span)),
+    })
+}
+
+/// Standard uncertainty of each ratio: no ratio minus its uncertainty is below 0.
+pub fn damping_uncertainty(
+    checker: &mut Checker,
+    block: usize,
+    damping: Option<&ShakeDamping>,
+) -> Option<f64> {
+    const FIELD: &str = frames::DAMPING_UNCERTAINTY.name;
+    let uncertainty = checker.constant(block, FIELD)?;
+    let ratios = match damping? {
+        ShakeDamping::Rayleigh(ratio) => std::slice::from_ref(ratio),
+        ShakeDamping::Modal(ratios) => ratios,
+    };
+    let least = ratios.iter().filter_map(Formula::constant).reduce(f64::min);
+    match (
+        least.filter(|least| uncertainty > *least),
+        checker.field(block, FIELD),
+    ) {
+        (Some(least), Some((_, entry))) => {
+            let at = entry.value.span;
+            checker.fail(fault::damping_too_uncertain(uncertainty, least, at))
+        }
+        _ => Some(uncertainty),
+    }
+}
+
+/// Checks the time step of a ground-motion test, as far as it is known before the run: against the limits of any frame, and against the
+/// time step of the record.
+pub(crate) fn check_declared(
+    checker: &mut Checker,
+    block: usize,
+    shake: &Shake,
+    declared: &Declared<'_>,
+) {
+    let (Some(frame), Some(ground)) = (
+        declared.frame(shake.specimen),
+        declared.ground(shake.ground),
+    ) else {
+        return;
+    };
+    let duration = shake
+        .duration
+        .as_ref()
+        .map_or(Some(ground.duration()), Formula::constant);
+    let Shake {
+        specimen,
+        damping,
+        stepping,
+        ..
+    } = shake;
+    let steps = FrameSteps {
+        specimen: *specimen,
+        frame,
+        damping,
+        stepping,
+        duration,
+    };
+    let Some((_, step)) = frame_check::check(checker, block, &steps, |properties| {
+        Some(properties.critical_time_step())
+    }) else {
+        return;
+    };
+    let spacing = ground.spacing().0;
+    if step > spacing * (1.0 + 1e-9) {
+        let at = checker.value_or_head(block, methods::TIME_STEP.name);
+        checker.diagnostics.push(fault::record_finer_than_step(
+            at,
+            step,
+            spacing,
+            &ground.name,
+        ));
+    }
+}

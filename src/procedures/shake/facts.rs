@@ -1,0 +1,65 @@
+//! The facts about a ground-motion test that check and report need without running it. In: a test, or its history. Out: facts.
+
+use super::figures;
+use crate::plan::procedures::shake::block as schema;
+use crate::plan::{Dependence, Plan, Shake};
+use crate::procedures::facts::{Delay, Facts, Recorded, Tests};
+use crate::procedures::stepping;
+use crate::procedures::stepping::tracking::delay::of_frame;
+use crate::record::ShakeHistory;
+
+pub(crate) fn facts(shake: &Shake) -> Facts<'_> {
+    Facts {
+        tests: Tests::Frame,
+        stepping: Some(&shake.stepping),
+        frame_damping: Some((&shake.damping, shake.damping_uncertainty)),
+        dependence: Dependence {
+            frame: Some(shake.specimen),
+            ..Dependence::default()
+        },
+        figures: figures::FIGURES,
+        shared_figures: figures::SHARED,
+        headline: vec![
+            schema::MAX_DRIFT.name,
+            schema::MAX_BASE_SHEAR.name,
+            schema::FINAL_DRIFT.name,
+            schema::MAX_DISPLACEMENT.name,
+        ],
+        unprinted: [
+            &[schema::STEPS.name, schema::PERIODS.name][..],
+            stepping::report::TRACKING,
+        ]
+        .concat(),
+        ..Facts::default()
+    }
+}
+
+pub(crate) fn recorded(history: &ShakeHistory) -> Recorded {
+    let ends = history.steps.first().zip(history.steps.last());
+    Recorded {
+        lists_are_tabled: true,
+        time_spans: ends.map(|(first, last)| {
+            (
+                last.floors.time - first.floors.time,
+                last.wall_time - first.wall_time,
+            )
+        }),
+        budgeted: stepping::report::FRAME_BUDGET,
+        entries: "floor",
+        uncertainty: stepping::report::UNCERTAINTY,
+        ..Recorded::default()
+    }
+}
+
+/// The delay of the actuators under the frame.
+pub(crate) fn delay(plan: &Plan, shake: &Shake) -> Option<Delay> {
+    let Shake {
+        specimen,
+        damping,
+        stepping,
+        ..
+    } = shake;
+    of_frame(plan, *specimen, damping, stepping, |properties| {
+        Some(properties.critical_time_step())
+    })
+}

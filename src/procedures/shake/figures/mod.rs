@@ -1,0 +1,181 @@
+//! The figures of a ground-motion test and of an unloaded frame, with their captions, and the curve of a test on a chart of several. In:
+//! a history. Out: [`Chart`]s in SI.
+
+pub(crate) mod charts;
+
+use crate::plan::procedures::shake::block as schema;
+use crate::plan::{Figure, FigureKind};
+use crate::procedures::common::limit_lines::limits_on;
+use crate::record::{Floors as _, ShakeHistory, ShakeStep, UnloadStep};
+use crate::report::Run;
+use crate::report::figures::chart::{Chart, Quantity, SharedCurve};
+use crate::report::figures::points::Points;
+use crate::schema::ResultKind;
+use crate::units::Dimension;
+
+/// Figures of a ground-motion test, in the order of a report.
+pub(crate) const FIGURES: &[FigureKind] = &[
+    FigureKind::Modes,
+    FigureKind::Ground,
+    FigureKind::Displacement,
+    FigureKind::Drift,
+    FigureKind::Hysteresis,
+    FigureKind::BaseShear,
+    FigureKind::Energy,
+    FigureKind::Tracking,
+];
+
+/// Figures of a frame that is unloaded.
+pub(crate) const UNLOADING_FIGURES: &[FigureKind] = &[FigureKind::Hysteresis];
+
+/// Figures that several ground-motion tests share: one curve for each.
+pub(crate) const SHARED: &[FigureKind] = &[
+    FigureKind::Displacement,
+    FigureKind::Drift,
+    FigureKind::Hysteresis,
+    FigureKind::BaseShear,
+];
+
+/// A figure of a ground-motion test and its caption; None before the first step, or for a figure of a different procedure.
+pub(crate) fn chart(
+    run: &Run<'_>,
+    name: &str,
+    history: &ShakeHistory,
+    figure: &Figure,
+) -> Option<(Chart, String)> {
+    if history.steps.is_empty() {
+        return None;
+    }
+    let limits = |result: ResultKind| charts::of_size(limits_on(run, figure.procedure, result));
+    let chosen = if charts::is_chosen(&history.steps) {
+        "; not all are drawn"
+    } else {
+        ""
+    };
+    Some(match figure.kind {
+        FigureKind::Modes => (
+            charts::modes(history.modes.as_ref()?),
+            format!("{name}: natural mode shapes and periods, floor by floor from the ground up."),
+        ),
+        FigureKind::Ground => (
+            charts::ground(history),
+            format!("{name}: applied ground acceleration against simulated time."),
+        ),
+        FigureKind::Displacement => (
+            charts::displacement(&history.steps),
+            format!(
+                "{name}: displacement of each floor relative to the ground against simulated time{chosen}."
+            ),
+        ),
+        FigureKind::Drift => (
+            charts::drift(&history.steps, &limits(schema::MAX_DRIFT)),
+            format!("{name}: drift of each storey against simulated time{chosen}."),
+        ),
+        FigureKind::Hysteresis => (
+            charts::hysteresis(&history.steps),
+            format!(
+                "{name}: measured storey shear against drift; the area of a loop is the energy absorbed by the storey{chosen}."
+            ),
+        ),
+        FigureKind::BaseShear => (
+            charts::base_shear(&history.steps, &limits(schema::MAX_BASE_SHEAR)),
+            format!(
+                "{name}: base shear, the sum of the measured restoring forces, against simulated time."
+            ),
+        ),
+        FigureKind::Energy => (
+            charts::energy(history),
+            format!("{name}: input energy of the ground motion and its parts."),
+        ),
+        FigureKind::Tracking => (charts::tracking(&history.steps), followed(name, chosen)),
+        _ => return None,
+    })
+}
+
+/// The unloading path of a frame to zero restoring force, and its caption.
+pub(crate) fn unloading_chart(
+    name: &str,
+    steps: &[UnloadStep],
+    kind: FigureKind,
+) -> Option<(Chart, String)> {
+    (kind == FigureKind::Hysteresis && !steps.is_empty()).then(|| {
+        (
+            charts::hysteresis(steps),
+            format!(
+                "{name}: measured storey shear against drift, from the start of the unloading to the unloaded position of each storey."
+            ),
+        )
+    })
+}
+
+/// The caption of the tracking of a frame.
+pub(crate) fn followed(name: &str, chosen: &str) -> String {
+    format!(
+        "{name}: tracking error of each floor's actuator{chosen}, and the tracking indicator of all of them over the \
+         largest command; a falling indicator shows that lag adds energy to the test."
+    )
+}
+
+/// The curve of this history on a chart of several; None for a figure that is not shared.
+pub(crate) fn shared(kind: FigureKind, history: &ShakeHistory) -> Option<SharedCurve> {
+    let points = points(kind, history)?;
+    let over_time = |name, dimension| (Quantity::time(), Quantity::of(name, dimension));
+    let (length, force) = (Dimension::LENGTH, Dimension::FORCE);
+    let ((x, y), caption) = match kind {
+        FigureKind::Displacement => (
+            over_time("Displacement of the top floor", length),
+            "displacement of the top floor against simulated time",
+        ),
+        FigureKind::Drift => (
+            over_time("Drift of the lowest storey", length),
+            "drift of the lowest storey against simulated time",
+        ),
+        FigureKind::Hysteresis => (
+            (
+                Quantity::along("Drift of the lowest storey", length),
+                Quantity::of("Base shear", force),
+            ),
+            "measured shear of the lowest storey against its drift",
+        ),
+        FigureKind::BaseShear => (
+            over_time("Base shear", force),
+            "base shear, the sum of the measured restoring forces, against simulated time",
+        ),
+        _ => return None,
+    };
+    Some(SharedCurve {
+        x,
+        y,
+        caption,
+        points,
+    })
+}
+
+fn points(kind: FigureKind, ShakeHistory { steps, .. }: &ShakeHistory) -> Option<Points> {
+    let lowest = |values: Vec<f64>| values.first().copied().unwrap_or(0.0);
+    let base_shear = |step: &ShakeStep| step.floors.restoring_force.iter().sum();
+    Some(match kind {
+        FigureKind::Displacement => steps
+            .iter()
+            .map(|step| {
+                (
+                    step.floors.time,
+                    step.floors.computed.last().copied().unwrap_or(0.0),
+                )
+            })
+            .collect(),
+        FigureKind::Drift => steps
+            .iter()
+            .map(|step| (step.floors.time, lowest(step.drift())))
+            .collect(),
+        FigureKind::Hysteresis => steps
+            .iter()
+            .map(|step| (lowest(step.drift()), base_shear(step)))
+            .collect(),
+        FigureKind::BaseShear => steps
+            .iter()
+            .map(|step| (step.floors.time, base_shear(step)))
+            .collect(),
+        _ => return None,
+    })
+}

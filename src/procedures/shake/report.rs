@@ -1,0 +1,377 @@
+//! A frame on moving ground, as a report states it: its storeys, the ground-motion record, the modes, the response of each storey, the
+//! energy. In: a plan and a record. Out: blocks.
+
+use crate::physics::structure::{SymmetricBand, storeys_of, widen};
+use crate::plan::procedures::shake::block as schema;
+use crate::plan::procedures::unload::block as unload;
+use crate::plan::{Frame, Ground, Integrator, Link, ProcedureKind, Shake, ShakeDamping};
+use crate::procedures::stepping::energy;
+use crate::record::{Floors, Modes, NamedResult, ProcedureRecord, ShakeHistory, UnloadStep};
+use crate::report::document::{Block, Column, Table, Text};
+use crate::report::number::percent;
+use crate::report::sections::results::{actuators, budget_table, tracking};
+use crate::report::{Run, number};
+use crate::schema::ResultKind;
+use crate::units::Dimension;
+use crate::units::display::significant;
+
+/// The blocks below the results of a ground-motion test: its integration, the modes, the storeys, the energy.
+pub(crate) fn shaken(
+    run: &Run<'_>,
+    index: usize,
+    procedure: &ProcedureRecord,
+    history: &ShakeHistory,
+    body: &mut Vec<Block>,
+) {
+    let Some(ProcedureKind::Shake(shake)) =
+        run.plan.procedures.get(index).map(|planned| &planned.kind)
+    else {
+        return;
+    };
+    let Some(modes) = &history.modes else { return };
+    body.push(Block::paragraph(
+        integration(run, shake, procedure, history).join(" "),
+    ));
+    body.push(mode_table(modes, &history.damping_ratios));
+    if !history.steps.is_empty() {
+        let frame = frame_of(run, shake.specimen);
+        body.push(storey_table(
+            procedure,
+            &history.steps,
+            frame,
+            schema::MAX_DISPLACEMENT,
+        ));
+        body.extend(noise_note(run));
+        body.extend(tracking::table(procedure));
+        body.push(energy_balance(history));
+    }
+}
+
+/// Why the result of the base shear is smaller than the largest reading of the table; None without noise.
+pub(crate) fn noise_note(run: &Run<'_>) -> Option<Block> {
+    let noise = match &run.plan.rig.link {
+        Link::Virtual(link) => link.noise,
+        Link::Real(link) => link.readings.noise,
+    };
+    (noise > 0.0)
+        .then(|| Block::note("Max base shear is the largest reading minus its part due to noise."))
+}
+
+/// The integration of the frame, and the ground motion on it.
+fn integration(
+    run: &Run<'_>,
+    shake: &Shake,
+    procedure: &ProcedureRecord,
+    history: &ShakeHistory,
+) -> Vec<String> {
+    let time = |value| number::text(value, Dimension::TIME);
+    let mut sentences = vec![
+        integrated(
+            frame_of(run, shake.specimen),
+            shake.stepping.integrator,
+            &shake.damping,
+            &history.damping_ratios,
+        ),
+        format!(
+            "Time step {}; a tenth of the shortest period is {}.",
+            time(history.time_step),
+            time(history.critical_time_step)
+        ),
+    ];
+    sentences.extend(actuators::motion(
+        shake.stepping.i_modification,
+        shake.stepping.mode,
+    ));
+    sentences.extend(tracking::sentence(procedure));
+    if let Some(ground) = run.plan.grounds.get(shake.ground) {
+        sentences.push(format!(
+            "The record is linear between its samples; each step uses its value at the end of the step: {}.",
+            resampled(ground, history)
+        ));
+    }
+    sentences
+}
+
+/// The frame that a procedure tests.
+pub(crate) fn frame_of<'a>(run: &Run<'a>, specimen: usize) -> Option<&'a Frame> {
+    run.plan.specimens.get(specimen)?.frame.as_ref()
+}
+
+/// Whether the stiffness is that of one storey upon the other, each of which shows its own as it moves.
+fn of_storeys(frame: &Frame) -> bool {
+    SymmetricBand::from_dense(&frame.stiffness)
+        .is_ok_and(|stiffness| storeys_of(&stiffness).is_some())
+}
+
+/// The integration of a frame, and its damping.
+pub(crate) fn integrated(
+    frame: Option<&Frame>,
+    integrator: Integrator,
+    damping: &ShakeDamping,
+    ratios: &[f64],
+) -> String {
+    let integrator = match integrator {
+        Integrator::Tangent if frame.is_some_and(|frame| !of_storeys(frame)) => {
+            "constant average acceleration with the initial stiffness matrix".to_owned()
+        }
+        Integrator::Tangent => {
+            "constant average acceleration with the measured tangent stiffness".to_owned()
+        }
+        Integrator::Explicit => "explicit Newmark".to_owned(),
+        Integrator::AlphaOs { alpha } => {
+            format!(
+                "α-operator splitting with the initial stiffness, α = {}",
+                number::stated(alpha, Dimension::NUMBER)
+            )
+        }
+    };
+    let damping = match (damping, ratios.iter().any(|ratio| *ratio != 0.0)) {
+        (_, false) => "No computed damping.",
+        (ShakeDamping::Rayleigh(_), true) => "Rayleigh damping on the first two modes.",
+        (ShakeDamping::Modal(_), true) => "Each mode has a separate damping ratio.",
+    };
+    format!("Integrated by {integrator}. {damping}")
+}
+
+/// Largest acceleration as applied beside that of the record over the same time and with the same factor.
+fn resampled(ground: &Ground, history: &ShakeHistory) -> String {
+    let applied = history
+        .steps
+        .iter()
+        .map(|step| step.ground_acceleration.abs())
+        .fold(0.0, f64::max);
+    let text = |value| number::text(value, Dimension::ACCELERATION);
+    format!(
+        "peak applied acceleration {}, of the record before scaling {}",
+        text(applied),
+        text(ground.peak())
+    )
+}
+
+pub(crate) fn mode_table(modes: &Modes, ratios: &[f64]) -> Block {
+    let columns = vec![
+        Column::numbers("Mode"),
+        Column::numbers("Period"),
+        Column::numbers("Damping ratio"),
+        Column::numbers("Effective mass"),
+        Column::words("Shape, from the lowest floor up", 1),
+    ];
+    let row = |mode: usize| -> Vec<Text> {
+        let shape: Vec<String> = modes.shapes[mode]
+            .iter()
+            .map(|entry| crate::units::display::minus(&significant(*entry, 4)))
+            .collect();
+        vec![
+            (mode + 1).to_string().into(),
+            number::text(modes.periods[mode], Dimension::TIME).into(),
+            percent(ratios.get(mode).copied().unwrap_or(0.0)).into(),
+            percent(modes.effective_mass[mode]).into(),
+            shape.join("  ").into(),
+        ]
+    };
+    Block::Table(Table {
+        columns,
+        rows: (0..modes.periods.len()).map(row).collect(),
+    })
+}
+
+/// One row a storey, from the ground up; `displacement` names the result with the floors' largest.
+pub(crate) fn storey_table<S: Floors>(
+    procedure: &ProcedureRecord,
+    steps: &[S],
+    frame: Option<&Frame>,
+    displacement: ResultKind,
+) -> Block {
+    let shear = largest(steps, S::shear);
+    let whole = |values: &[f64]| {
+        values
+            .iter()
+            .fold(0.0, |largest: f64, value| largest.max(value.abs()))
+    };
+    let drift = procedure.list(schema::MAX_DRIFT.name).unwrap_or_default();
+    let cell = |kind: ResultKind, storey: usize| {
+        procedure
+            .result(kind.name)
+            .map_or_else(|| "—".into(), |result| entry(result, storey))
+    };
+    let with_u = |title: &str, kind: ResultKind| {
+        let known = procedure
+            .result(kind.name)
+            .is_some_and(|result| !result.contributions.is_empty());
+        Column::numbers(if known {
+            format!("{title} (u)")
+        } else {
+            title.to_owned()
+        })
+    };
+    let columns = vec![
+        Column::words("Storey", 1),
+        with_u("Peak floor displacement", displacement),
+        with_u("Peak drift", schema::MAX_DRIFT),
+        Column::numbers("Over height"),
+        with_u("Final drift", schema::FINAL_DRIFT),
+        Column::numbers("Peak shear as read"),
+    ];
+    let height = |storey: usize| {
+        frame
+            .and_then(|frame| frame.storeys.get(storey))
+            .and_then(|storey| storey.height)
+    };
+    let row = |storey: usize| -> Vec<Text> {
+        let ratio = height(storey)
+            .zip(drift.get(storey))
+            .map(|(height, drift)| percent(drift / height));
+        vec![
+            (storey + 1).to_string().into(),
+            cell(displacement, storey),
+            cell(schema::MAX_DRIFT, storey),
+            ratio.unwrap_or_else(|| "—".to_owned()).into(),
+            cell(schema::FINAL_DRIFT, storey),
+            number::text_beside(shear[storey], whole(&shear), Dimension::FORCE).into(),
+        ]
+    };
+    Block::Table(Table {
+        columns,
+        rows: (0..shear.len()).map(row).collect(),
+    })
+}
+
+/// An entry of a list with its standard uncertainty where it has one, marked where that is not sure; else in the unit of the largest.
+pub(crate) fn entry(result: &NamedResult, index: usize) -> Text {
+    let values = result.value.list().unwrap_or_default();
+    let Some(value) = values.get(index) else {
+        return "—".into();
+    };
+    if let Some(Some(u)) = result.entry_uncertainties().get(index) {
+        let mark = if budget_table::is_reliable(result, index) {
+            ""
+        } else {
+            budget_table::MARK
+        };
+        return (number::with_uncertainty(*value, Some(*u), result.dimension) + mark).into();
+    }
+    let whole = values
+        .iter()
+        .fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    number::text_beside(*value, whole, result.dimension).into()
+}
+
+/// The same where its uncertainty is known.
+pub(crate) fn known_entry(
+    procedure: &ProcedureRecord,
+    kind: ResultKind,
+    index: usize,
+) -> Option<Text> {
+    let result = procedure.result(kind.name)?;
+    result
+        .entry_uncertainties()
+        .get(index)
+        .copied()
+        .flatten()
+        .map(|_| entry(result, index))
+}
+
+/// The blocks below the results of a frame that was unloaded: the storeys at zero restoring force, with their permanent drifts.
+pub(crate) fn unloaded(
+    run: &Run<'_>,
+    index: usize,
+    procedure: &ProcedureRecord,
+    steps: &[UnloadStep],
+    body: &mut Vec<Block>,
+) {
+    let (Some(first), Some(last)) = (steps.first(), steps.last()) else {
+        return;
+    };
+    let specimen = run
+        .plan
+        .procedures
+        .get(index)
+        .and_then(|planned| planned.kind.specimen());
+    let frame = specimen.and_then(|specimen| frame_of(run, specimen));
+    let moves = steps.len() - 1;
+    let by = if frame.is_some_and(|frame| !of_storeys(frame)) {
+        "each with the initial stiffness matrix"
+    } else {
+        "each with the storey stiffnesses last measured"
+    };
+    body.push(Block::paragraph(format!(
+        "All floors moved together to zero restoring force, in {moves} {}, {by}.",
+        if moves == 1 { "move" } else { "moves" }
+    )));
+    let whole = |values: &[f64]| {
+        values
+            .iter()
+            .fold(0.0, |largest: f64, value| largest.max(value.abs()))
+    };
+    let (before, drift) = (first.drift(), last.drift());
+    let (loaded, left) = (first.shear(), last.shear());
+    let travel = whole(&before).max(whole(&drift));
+    let columns = vec![
+        Column::words("Storey", 1),
+        Column::numbers("Unloaded floor position"),
+        Column::numbers("Drift before"),
+        Column::numbers("Residual drift"),
+        Column::numbers("Over height"),
+        Column::numbers("Shear before"),
+        Column::numbers("Remaining shear"),
+    ];
+    let height = |storey: usize| {
+        frame
+            .and_then(|frame| frame.storeys.get(storey))
+            .and_then(|storey| storey.height)
+    };
+    let row = |storey: usize| -> Vec<Text> {
+        let length = |value, beside| number::part_of(value, beside, 4, Dimension::LENGTH);
+        let force = |value| number::part_of(value, whole(&loaded), 4, Dimension::FORCE);
+        let known = |kind: ResultKind, other: String| {
+            known_entry(procedure, kind, storey).unwrap_or_else(|| other.into())
+        };
+        vec![
+            (storey + 1).to_string().into(),
+            known(
+                unload::FLOOR_DISPLACEMENT,
+                length(
+                    last.displacement[storey],
+                    whole(&last.displacement).max(travel),
+                ),
+            ),
+            length(before[storey], travel).into(),
+            known(unload::RESIDUAL_DRIFT, length(drift[storey], travel)),
+            height(storey)
+                .map_or_else(|| "—".to_owned(), |height| percent(drift[storey] / height))
+                .into(),
+            force(loaded[storey]).into(),
+            known(unload::RESIDUAL_SHEAR, force(left[storey])),
+        ]
+    };
+    body.push(Block::Table(Table {
+        columns,
+        rows: (0..drift.len()).map(row).collect(),
+    }));
+}
+
+fn largest<S>(steps: &[S], read: fn(&S) -> Vec<f64>) -> Vec<f64> {
+    let mut largest: Vec<f64> = Vec::new();
+    for step in steps {
+        let values = read(step);
+        largest.resize(values.len(), 0.0);
+        widen(&mut largest, &values);
+    }
+    largest
+}
+
+/// The input energy of the ground motion, and its parts at the end.
+fn energy_balance(history: &ShakeHistory) -> Block {
+    let e = history
+        .steps
+        .last()
+        .map(|step| step.energies)
+        .unwrap_or_default();
+    let parts = [
+        ("kinetic, relative to the ground", e.kinetic),
+        ("restoring forces, ∫R dX", e.restoring),
+        ("damping, ∫CẊ dX", e.damping),
+        ("integration error", e.error),
+    ];
+    energy::balance_table(("input, −∫Mι üg dX", e.input), &parts)
+}

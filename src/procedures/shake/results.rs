@@ -1,0 +1,94 @@
+//! The results of a ground-motion test: peaks of every floor and storey, collected step by step. In: the ends of steps. Out: results in
+//! the schema's order. It moves nothing.
+
+use crate::physics::integrator::state::FrameState;
+use crate::physics::statistics::noisy_largest::NoisyLargest;
+use crate::physics::structure::{Modes, drifts, widen};
+use crate::plan::procedures::shake::block as schema;
+use crate::procedures::stepping::tracking::tracking_summary::Followed;
+use crate::record::NamedResult;
+use crate::schema::ResultKind;
+
+/// Peaks over the computed displacements and the measured forces.
+pub(crate) struct ShakeSummary {
+    max_displacement: Vec<f64>,
+    max_drift: Vec<f64>,
+    drift: Vec<f64>,
+    base_shear: NoisyLargest,
+    /// Largest input or kinetic energy \[J\].
+    largest_energy: f64,
+    energy_error: f64,
+    steps: u64,
+}
+
+impl ShakeSummary {
+    /// `noise`: standard deviation of the measured base shear \[N\].
+    pub(crate) fn new(floors: usize, noise: f64) -> Self {
+        let nothing = vec![0.0; floors];
+        Self {
+            max_displacement: nothing.clone(),
+            max_drift: nothing.clone(),
+            drift: nothing,
+            base_shear: NoisyLargest::new(noise),
+            largest_energy: 0.0,
+            energy_error: 0.0,
+            steps: 0,
+        }
+    }
+
+    /// Adds the end of a step.
+    pub(crate) fn push(&mut self, state: &FrameState) {
+        self.widen(&state.displacement, &state.restoring_force);
+        let e = &state.energies;
+        self.largest_energy = self.largest_energy.max(e.input.abs()).max(e.kinetic);
+        self.energy_error = if e.error == 0.0 {
+            0.0
+        } else {
+            e.error / self.largest_energy
+        };
+        self.steps = state.step;
+    }
+
+    /// Adds displacements \[m\] and forces \[N\] of the floors, at the end of a step or on the way to a target that was not reached.
+    pub(crate) fn widen(&mut self, displacement: &[f64], force: &[f64]) {
+        drifts(displacement, &mut self.drift);
+        widen(&mut self.max_displacement, displacement);
+        widen(&mut self.max_drift, &self.drift);
+        self.base_shear.push(force.iter().sum::<f64>().abs());
+    }
+
+    /// Error of the energy balance, over the largest energy.
+    pub(crate) const fn energy_error(&self) -> f64 {
+        self.energy_error
+    }
+
+    /// \[J\]
+    pub(crate) const fn largest_energy(&self) -> f64 {
+        self.largest_energy
+    }
+}
+
+/// In the order of the reference; a result that was not reached is missing.
+pub(crate) fn results(
+    modes: Option<&Modes>,
+    summary: Option<&ShakeSummary>,
+    followed: &Followed,
+) -> Vec<NamedResult> {
+    let list = |kind: ResultKind, read: fn(&ShakeSummary) -> &[f64]| {
+        kind.found_list(summary.map(|summary| read(summary).to_vec()))
+    };
+    #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
+    let steps = summary.map(|summary| summary.steps as f64);
+    let mut results = vec![
+        list(schema::MAX_DISPLACEMENT, |it| &it.max_displacement),
+        list(schema::MAX_DRIFT, |it| &it.max_drift),
+        list(schema::FINAL_DRIFT, |it| &it.drift),
+        schema::PERIODS.found_list(modes.map(|modes| modes.periods.clone())),
+        schema::MAX_BASE_SHEAR.found(summary.and_then(|summary| summary.base_shear.value())),
+        schema::ENERGY_ERROR.found(summary.map(|summary| summary.energy_error)),
+        schema::STEPS.found(steps),
+    ];
+    results.extend(followed.of_all());
+    results.extend(followed.of_each());
+    results
+}

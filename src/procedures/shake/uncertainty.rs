@@ -1,0 +1,212 @@
+//! The uncertainty of the results of a ground-motion test. In: its inputs with their sources of uncertainty, and the recorded steps. Out:
+//! the contributions of each source to each number. The frame is re-integrated along its recorded path, under the same ground motion.
+
+use super::setting::Setting;
+use crate::physics::integrator::input::FrameError;
+use crate::physics::reintegration::frame::{Floors, FloorsOutcome, FrameRun};
+use crate::physics::reintegration::frame_path::FramePath;
+use crate::physics::reintegration::perturbation::Perturbation;
+use crate::physics::structure::ground::acceleration_at;
+use crate::plan::procedures::shake::block as schema;
+use crate::plan::{Ground, Shake};
+use crate::procedures::common::perturbed_inputs::LEADS_ELSEWHERE;
+use crate::procedures::common::results::{Evaluated, flat, give, index_of, layout_of, values};
+use crate::procedures::stepping;
+use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there};
+use crate::procedures::stepping::run::Steps;
+use crate::record::{NamedResult, ShakeHistory};
+use crate::run::stop::Stop;
+use crate::uncertainty::engine::{Evaluate, Evaluation, Progress, Shifts, Unknown};
+use crate::uncertainty::{Refinement, Source};
+use crate::units::Dimension;
+
+/// Steps of the finest run for each of the record.
+const FINEST: u8 = Refinement::Quarter.finer();
+
+/// The uncertain inputs of a ground-motion test.
+#[derive(Clone, Copy)]
+pub(crate) struct ShakeUncertainty<'a, 'run> {
+    pub uncertainty: &'a FrameUncertainty<'run>,
+    pub plan: &'a Shake,
+    pub ground: &'a Ground,
+    pub setting: &'a Setting,
+}
+
+/// Gives `results` their contributions.
+pub(crate) fn propagate(
+    shake: ShakeUncertainty<'_, '_>,
+    history: &ShakeHistory,
+    results: &mut [NamedResult],
+    progress: Progress<'_, Stop>,
+) -> Result<(), Unknown<Stop>> {
+    let ShakeUncertainty {
+        uncertainty,
+        plan,
+        ground,
+        setting,
+    } = shake;
+    let path = uncertainty.path(
+        &setting.frame,
+        history.steps.iter().map(|step| &step.floors),
+    )?;
+    let Steps {
+        time_step,
+        count: steps,
+        ..
+    } = setting.frame.steps;
+    #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
+    let at = |step: u64| {
+        acceleration_at(
+            &ground.times,
+            &ground.accelerations,
+            step as f64 * time_step / f64::from(FINEST),
+        )
+    };
+    let accelerations = (0..=steps * u64::from(FINEST)).map(at).collect();
+    let mut evaluate = RecordedShake {
+        shake,
+        accelerations,
+        path,
+        length: 0,
+    };
+    let floors = uncertainty.floors();
+    let exact = Perturbation::none(floors);
+    let inputs = evaluate.inputs(&[])?;
+    let mut found = evaluate
+        .run(&inputs, &exact)
+        .map_err(|error| error.to_string())?;
+    if !leads_there(&found.ends, schema::MAX_DISPLACEMENT, results) {
+        return Err(LEADS_ELSEWHERE.to_owned().into());
+    }
+    evaluate.path = uncertainty.with_velocities(
+        &setting.frame,
+        evaluate.path,
+        std::mem::take(&mut found.velocities),
+    )?;
+    let layout = layout_of(&inputs.numbers(&found.between));
+    let mut reported = values(&layout, results);
+    evaluate.length = reported.len();
+    if let Some(shear) = index_of(&layout, schema::MAX_BASE_SHEAR) {
+        // The reported one is without the part of noise; the re-integrated one has it in finer steps as well.
+        reported[shear] = found.between.max_base_shear;
+    }
+    let sources = uncertainty.sources(
+        &[&plan.scale],
+        &[(Source::GroundScale(plan.ground), ground.scale_uncertainty)],
+    )?;
+    give(
+        &layout,
+        uncertainty.run.contributions(
+            &evaluate,
+            floors,
+            sources,
+            history.steps.len(),
+            reported,
+            progress,
+        )?,
+        results,
+    );
+    Ok(())
+}
+
+/// A ground-motion test along its recorded path.
+struct RecordedShake<'a, 'run> {
+    shake: ShakeUncertainty<'a, 'run>,
+    /// Ground acceleration at every finest step \[m/s²\].
+    accelerations: Vec<f64>,
+    path: FramePath,
+    /// Number of values of an evaluation.
+    length: usize,
+}
+
+/// The frame, its periods \[s\] and the factor on the ground.
+struct Inputs {
+    run: FrameRun,
+    periods: Vec<f64>,
+    scale: f64,
+}
+
+impl Inputs {
+    /// The results with their values.
+    fn numbers(&self, floors: &Floors) -> Evaluated {
+        vec![
+            (schema::MAX_DISPLACEMENT, floors.max_displacement.clone()),
+            (schema::MAX_DRIFT, floors.max_drift.clone()),
+            (schema::FINAL_DRIFT, floors.final_drift.clone()),
+            (schema::PERIODS, self.periods.clone()),
+            (schema::MAX_BASE_SHEAR, vec![floors.max_base_shear]),
+        ]
+    }
+}
+
+impl RecordedShake<'_, '_> {
+    fn run(&self, inputs: &Inputs, readings: &Perturbation) -> Result<FloorsOutcome, FrameError> {
+        let accelerations = self
+            .accelerations
+            .iter()
+            .step_by(usize::from(FINEST / readings.finer));
+        let scaled: Vec<f64> = accelerations
+            .map(|acceleration| inputs.scale * acceleration)
+            .collect();
+        inputs
+            .run
+            .under_ground_motion(&scaled, &self.path, readings)
+    }
+}
+
+impl Evaluate for RecordedShake<'_, '_> {
+    type Inputs = Inputs;
+
+    fn inputs(&self, shifts: Shifts<'_>) -> Result<Inputs, String> {
+        let ShakeUncertainty {
+            uncertainty,
+            plan,
+            ground,
+            setting,
+        } = self.shake;
+        let (frame, damping) = (
+            uncertainty.moved_frame(shifts)?,
+            uncertainty.moved_damping(shifts),
+        );
+        let (properties, scale) = uncertainty.run.with_inputs(shifts, &mut |inputs| {
+            let properties = stepping::run::properties(&frame, &damping, inputs)?;
+            Ok((
+                properties,
+                inputs.number(schema::SCALE.name, &plan.scale, Dimension::NUMBER)?,
+            ))
+        })?;
+        let source = Source::GroundScale(plan.ground);
+        let by: f64 = shifts
+            .iter()
+            .filter(|(moved, _)| *moved == source)
+            .map(|(_, by)| by)
+            .sum();
+        let periods = properties.modes.periods.clone();
+        let run = FrameRun {
+            matrices: properties.matrices,
+            ..uncertainty.frame_run(&setting.frame)
+        };
+        Ok(Inputs {
+            run,
+            periods,
+            scale: scale * (1.0 + by * ground.scale_uncertainty),
+        })
+    }
+
+    fn evaluate(&self, readings: &Perturbation, inputs: &Inputs) -> Evaluation {
+        let numbers = |floors: &Floors| flat(inputs.numbers(floors));
+        let Ok(FloorsOutcome {
+            between,
+            before_departure,
+            ..
+        }) = self.run(inputs, readings)
+        else {
+            return Evaluation::none(self.length);
+        };
+        Evaluation {
+            values: numbers(&between),
+            before_departure: before_departure.as_ref().map(numbers),
+            farthest: between.farthest(),
+        }
+    }
+}
