@@ -1,10 +1,10 @@
 //! The identifier of the build, and the addresses that the program is linked to. The identifier is a digest of all sources of the
 //! program and of the tools that built it. With it a log identifies the program that wrote it, and no other program resumes its run. In:
 //! sources, grammar, manifests, the compiler. Out: `PSD_BUILD` (SHA-256) and `PSD_TOOLCHAIN`, which depend on neither a path of this
-//! machine nor a date. The two lines of `docs/record.md` reproduce it.
+//! machine nor a date, and the pages of `psd explain`. The two lines of `docs/record.md` reproduce the digest.
 //!
-//! Files that are not part of the program do not count: `tests.rs`, `testing.rs`, `…_tests.rs`, and those in a folder `tests`,
-//! `testing`, `examples` or `benches`. After a change of a test only the tests are built.
+//! Files that are not part of a run do not count: `tests.rs`, `testing.rs`, `…_tests.rs`, and those in a folder `tests`, `testing`,
+//! `examples`, `benches` or `explain`. After a change of a test only the tests are built.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -33,7 +33,29 @@ fn main() {
     }
     println!("cargo::rustc-env=PSD_BUILD={}", sha256(listed.as_bytes()));
     println!("cargo::rustc-env=PSD_TOOLCHAIN={}", toolchain());
+    pages(&root);
     fixed_addresses();
+}
+
+/// Writes `pages.rs`: an array of every diagnostic code with its page, without the cases of the page.
+fn pages(root: &Path) {
+    const FOLDER: &str = "src/text/diagnostic/explain";
+    println!("cargo::rerun-if-changed={FOLDER}");
+    let mut names: Vec<_> = fs::read_dir(root.join(FOLDER))
+        .expect("the folder of the pages can be read")
+        .map(|entry| entry.expect("the entry can be read").path())
+        .filter(|path| !path.ends_with("README.md"))
+        .collect();
+    names.sort();
+    let mut array = "[\n".to_owned();
+    for name in names {
+        let code = name.file_stem().unwrap_or_default().to_string_lossy();
+        let page = fs::read_to_string(&name).expect("a page is text");
+        let shown = page.split("\n## Cases\n").next().unwrap_or_default();
+        let _ = writeln!(array, "    ({code:?}, {shown:?}),");
+    }
+    let folder = PathBuf::from(env::var_os("OUT_DIR").expect("cargo gives the folder"));
+    fs::write(folder.join("pages.rs"), array + "]\n").expect("the pages can be written");
 }
 
 /// On Linux the program is linked to fixed addresses. Its large libraries have 200,000 addresses in their tables, which the loader would
@@ -82,7 +104,7 @@ fn walk(root: &Path, folder: &str, files: &mut Vec<String>) {
         if entry.path().is_dir() {
             if !matches!(
                 name.rsplit('/').next(),
-                Some("tests" | "testing" | "examples" | "benches")
+                Some("tests" | "testing" | "examples" | "benches" | "explain")
             ) {
                 walk(root, &name, files);
             }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use psd::language::check::{Options, ParsedPlan, check, no_files};
+use psd::check::{Options, ParsedPlan, check, no_files};
 use psd::units::{Dimension, Quantity};
 
 fn main() {

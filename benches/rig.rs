@@ -10,15 +10,15 @@ use std::time::{Duration, Instant};
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
+use psd::check::{Options, check, no_files};
 use psd::emulator::lines::real_time::Carrier as _;
 use psd::emulator::{Log, PseudoTerminal, RigEmulator, Script, of_plan};
-use psd::language::check::{Options, check, no_files};
 use psd::plan::{Plan, RealLink};
-use psd::record::journal::{Durability, EntryKind, Journal, Storage};
 use psd::record::{History, Outcome, Record};
 use psd::rig::StopRequest;
 use psd::rig::controllers;
 use psd::rig::controllers::Device;
+use psd::rig::journal::{Durability, EntryKind, Journal, Storage};
 use psd::rig::real::RealRig;
 use psd::rig::transport::{Clock, Emergency, MonotonicClock, Port, SerialPort, TcpPort};
 use psd::run::{Unwatched, replay};

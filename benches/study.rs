@@ -1,6 +1,6 @@
 //! Runs of a study: bound and simulated, in batches and one by one, and the share of the binding. The goal is runs per second on one core.
 
-use psd::language::check::{Options, ParsedPlan, no_files};
+use psd::check::{Options, ParsedPlan, no_files};
 use psd::plan::Plan;
 use psd::study::definition::Definition;
 use psd::study::simulation::Simulation;

@@ -7,17 +7,13 @@
 //! Each arrow is one public function. No stage calls back, and no stage after `check` reads text. The stages are engines:
 //! everything that concerns one procedure only is in its folder of `procedures`.
 
+pub use psd_language as language;
 pub use psd_physics as physics;
+pub use psd_plan::{self as plan, record, schema, uncertainty};
+pub use psd_rig::{self as rig, emulator};
 pub use psd_text::{self as text, units};
 
-pub mod plan;
-pub mod schema;
-pub mod uncertainty;
-
-pub mod language;
-
-pub mod record;
-pub mod rig;
+pub mod check;
 
 pub mod run;
 
@@ -27,7 +23,6 @@ pub mod verdict;
 
 pub mod report;
 
-pub mod emulator;
 pub mod remote;
 
 pub(crate) mod evidence;

@@ -2,7 +2,7 @@
 //! line. Out: an exit code. It is the only folder that reads the environment and writes to the terminal;
 //! it decides nothing about physics or conformity.
 
-mod args;
+pub(crate) mod args;
 pub mod commands;
 pub(crate) mod exit;
 pub mod files;

@@ -5,9 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::finding::Finding;
 use super::folder::Folder;
-use super::issues;
 use super::keys::KnownKey;
-use super::names::{MANIFEST, present_name};
+use super::names::MANIFEST;
 use super::rebuilt::{Rebuilt, Report};
 use super::sidecar;
 use super::signature;
@@ -71,7 +70,6 @@ const PARTS: &[(&str, &str)] = &[
 ];
 
 fn part_of(path: &str) -> &'static str {
-    let path = present_name(path);
     PARTS
         .iter()
         .find(|(_, prefix)| path.starts_with(prefix))
@@ -97,13 +95,7 @@ fn results(
         faults.entry(part_of(path)).or_default().push(fault);
     }
     let expected: BTreeSet<&String> = report.files.iter().map(|(path, _)| path).collect();
-    let issue = issues::held(folder).map(|(name, _)| name.to_owned());
-    let kept: BTreeSet<String> = folder
-        .kept()
-        .into_iter()
-        .map(|(name, _)| name)
-        .chain(issue)
-        .collect();
+    let kept: BTreeSet<String> = folder.kept().into_iter().map(|(name, _)| name).collect();
     let foreign = |name: &String| {
         !expected.contains(name) && !kept.contains(name) && !sidecars.contains(name.as_str())
     };
@@ -177,15 +169,8 @@ fn manifest(folder: &Folder, report: Option<&Report>, sidecars: &BTreeSet<&str>)
     if faults.is_empty()
         && let Some(report) = report
     {
-        let beside =
-            issues::held(folder).map(|(name, held)| (name.to_owned(), held.digest.clone()));
-        let all: Vec<(String, String)> = report
-            .files
-            .iter()
-            .cloned()
-            .chain(folder.kept())
-            .chain(beside)
-            .collect();
+        let all: Vec<(String, String)> =
+            report.files.iter().cloned().chain(folder.kept()).collect();
         if manifest_with(&[], &all).bytes != bytes {
             faults.push("it differs from the run log".to_owned());
         }

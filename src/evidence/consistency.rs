@@ -1,11 +1,11 @@
 //! Consistency of a run log with itself: repeated entries agree, the run id follows from the plan and its circumstances, and no entry
 //! that this program writes is missing. In: a run log as it was read. Out: the first error. It replays nothing.
 
-use crate::files::provenance::{BUILD, recorded_id};
+use crate::files::provenance::recorded_id;
 use crate::files::recorded_run::{ReadRecord, plan_of};
 use crate::plan::Plan;
-use crate::record::journal::{EntryKind, OLDEST_FORMAT, Recovered};
-use crate::run::replay::{self, Header, LoggedRun};
+use crate::rig::journal::{EntryKind, Recovered};
+use crate::run::replay::{self, LoggedRun};
 
 /// Compares the entries of a run log with each other.
 ///
@@ -20,14 +20,14 @@ pub fn check_consistency(read: &ReadRecord) -> Result<(), String> {
         .iter()
         .position(|line| line.kind == EntryKind::Amend)
     {
-        None => begins(&read.recovered, &read.logged, &read.plan)?,
+        None => begins(&read.logged, &read.plan)?,
         Some(amended) => {
             let mut first = read.recovered.clone();
             first.lines.truncate(amended);
             let logged = LoggedRun::of(&first).map_err(|fault| fault.to_string())?;
             let plan =
                 plan_of(&logged).map_err(|fault| format!("before it was amended: {fault}"))?;
-            begins(&first, &logged, &plan)?;
+            begins(&logged, &plan)?;
             if read.logged.header.run_id != logged.header.run_id {
                 return Err("an amendment makes it a different run".to_owned());
             }
@@ -36,8 +36,8 @@ pub fn check_consistency(read: &ReadRecord) -> Result<(), String> {
     Ok(())
 }
 
-/// The start of the run log: its run id, and the entries that this program would have written.
-fn begins(recovered: &Recovered, logged: &LoggedRun, plan: &Plan) -> Result<(), String> {
+/// The start of the run log: its run id.
+fn begins(logged: &LoggedRun, plan: &Plan) -> Result<(), String> {
     let header = &logged.header;
     let id = recorded_id(header, plan);
     if header.run_id != id {
@@ -45,25 +45,14 @@ fn begins(recovered: &Recovered, logged: &LoggedRun, plan: &Plan) -> Result<(), 
             "its run id is not {id}, which follows from its plan and its circumstances"
         ));
     }
-    let own = header.build == BUILD;
-    if own && recovered.format() == OLDEST_FORMAT {
-        return Err("the program that it names writes no run logs of version 1".to_owned());
-    }
     Ok(())
 }
 
 /// Observations on a consistent run log.
-pub fn remarks(recovered: &Recovered, header: &Header) -> String {
-    let version = if header.equipment.is_none() {
-        ", of version 1: it does not state the measuring equipment"
-    } else {
-        ""
-    };
-    let jumps = crate::files::wall_clock::jumps(&recovered.lines).len();
-    let jumped = match jumps {
+pub fn remarks(recovered: &Recovered) -> String {
+    match crate::files::wall_clock::jumps(&recovered.lines).len() {
         0 => String::new(),
         1 => ", its wall clock jumped once".to_owned(),
-        _ => format!(", its wall clock jumped {jumps} times"),
-    };
-    format!("{version}{jumped}")
+        jumps => format!(", its wall clock jumped {jumps} times"),
+    }
 }

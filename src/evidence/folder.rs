@@ -13,10 +13,10 @@ use sha2::{Digest as _, Sha256};
 use crate::files::failure::Failure;
 use crate::files::failure::plain;
 use crate::files::recorded_run::JOURNAL;
-use crate::record::journal::{LogText, MOST_BYTES, is_part_of_a_reserve};
+use crate::rig::journal::{LogText, MOST_BYTES, is_part_of_a_reserve};
 use crate::text::digest::{hex, sha256};
 
-use super::names::{ISSUE, MANIFEST, OLDER_ISSUE, is_paper, is_sidecar, is_signature};
+use super::names::{ISSUE, MANIFEST, PAPER, is_sidecar, is_signature};
 
 /// The largest file of a run folder that is read \[bytes\]: the run log is the largest.
 const LISTED_BYTES: u64 = MOST_BYTES;
@@ -104,8 +104,8 @@ impl Folder {
         }
     }
 
-    /// The files that psd keeps in a run folder independently of the results: the run log, its incomplete ends, and the results before a
-    /// resumption. Names and digests.
+    /// The files that psd keeps in a run folder independently of the results: the run log, its incomplete ends, the results before a
+    /// resumption, and the file of issues. Names and digests.
     pub fn kept(&self) -> Vec<(String, String)> {
         let kept = self.files.iter().filter(|(name, _)| is_kept(name));
         kept.map(|(name, held)| (name.clone(), held.digest.clone()))
@@ -213,13 +213,12 @@ fn held(path: &PathBuf, name: &str, is_read: bool) -> Result<Held, String> {
 }
 
 fn is_read(name: &str) -> bool {
-    let own =
-        matches!(name, MANIFEST | ISSUE | OLDER_ISSUE) || is_signature(name) || is_reserve(name);
-    own || is_paper(name) || is_sidecar(name)
+    let own = matches!(name, MANIFEST | ISSUE | PAPER) || is_signature(name) || is_reserve(name);
+    own || is_sidecar(name)
 }
 
 fn is_kept(name: &str) -> bool {
-    name == JOURNAL
+    matches!(name, JOURNAL | ISSUE)
         || is_torn_end(name)
         || name
             .split_once('/')

@@ -4,10 +4,9 @@
 
 use crate::schema::plan_block;
 use serde::{Deserialize, Serialize};
-use serde_json::json;
 
-use super::folder::{Folder, Held};
-use super::names::{ISSUE, OLDER_ISSUE};
+use super::folder::Folder;
+use super::names::ISSUE;
 use crate::language::syntax::limits::TEXT_BYTES;
 use crate::plan::Plan;
 use crate::report::status::days::{day, days_after, last_day};
@@ -20,7 +19,6 @@ use crate::text::suggest::nearest;
 
 /// Name and version of the format.
 const SCHEMA: &str = "psd.issue/1";
-const OLDER_SCHEMA: &str = "psd.amendment/1";
 
 /// The day of the test stays as recorded.
 const FIXED: &[&str] = &[plan_block::DATE.name];
@@ -43,9 +41,8 @@ pub struct One {
     pub replaces: String,
     /// SHA-256 of the manifest of that report, hex: it identifies the report exactly.
     pub manifest_sha256: String,
-    /// `YYYY-MM-DD`; missing only if an older version made the amendment.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub date: Option<String>,
+    /// `YYYY-MM-DD`
+    pub date: String,
     pub by: String,
     /// The reason of an amendment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -62,24 +59,6 @@ pub enum OneKind {
     Amendment,
 }
 
-/// The file of an older version.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct OlderFile {
-    schema: String,
-    amendments: Vec<OlderOne>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct OlderOne {
-    replaces: String,
-    manifest_sha256: String,
-    by: String,
-    reason: String,
-    particulars: Vec<(String, String)>,
-}
-
 impl IssueFile {
     /// The earlier issues, and one more.
     pub fn after(before: Option<&Self>, one: One) -> Self {
@@ -92,16 +71,11 @@ impl IssueFile {
 
     /// The file of a folder, if it has one.
     pub fn of(folder: &Folder) -> Result<Option<Self>, String> {
-        let Some((name, held)) = held(folder) else {
+        let Some(held) = folder.files.get(ISSUE) else {
             return Ok(None);
         };
-        let bytes = held.bytes().unwrap_or_default();
-        let read = if name == ISSUE {
-            Self::read(bytes)
-        } else {
-            Self::read_older(bytes)
-        };
-        read.map(Some).map_err(|fault| format!("`{name}` {fault}"))
+        let read = Self::read(held.bytes().unwrap_or_default());
+        read.map(Some).map_err(|fault| format!("`{ISSUE}` {fault}"))
     }
 
     /// Reads the file. Only its canonical form is accepted.
@@ -110,37 +84,6 @@ impl IssueFile {
             serde_json::from_slice(bytes).map_err(|error| format!("cannot be read: {error}"))?;
         if file.schema != SCHEMA || file.issues.is_empty() || file.json().as_bytes() != bytes {
             return Err("was not written by this version of psd".to_owned());
-        }
-        Ok(file)
-    }
-
-    fn read_older(bytes: &[u8]) -> Result<Self, String> {
-        let OlderFile { schema, amendments } =
-            serde_json::from_slice(bytes).map_err(|error| format!("cannot be read: {error}"))?;
-        let one = |OlderOne {
-                       replaces,
-                       manifest_sha256,
-                       by,
-                       reason,
-                       particulars,
-                   }| One {
-            kind: OneKind::Amendment,
-            replaces,
-            manifest_sha256,
-            date: None,
-            by,
-            reason: Some(reason),
-            particulars,
-        };
-        let file = Self {
-            schema: SCHEMA.to_owned(),
-            issues: amendments.into_iter().map(one).collect(),
-        };
-        if schema != OLDER_SCHEMA
-            || file.issues.is_empty()
-            || older_json(&file.issues).as_bytes() != bytes
-        {
-            return Err("was not written by a version of psd".to_owned());
         }
         Ok(file)
     }
@@ -162,37 +105,13 @@ impl IssueFile {
         if count == 0 {
             return own.to_owned();
         }
-        let issues = &self.issues[..count];
-        // An amendment of an older version keeps its id.
-        let text = if issues.iter().all(|one| one.date.is_none()) {
-            older_json(issues)
-        } else {
-            Self {
-                schema: self.schema.clone(),
-                issues: issues.to_vec(),
-            }
-            .json()
+        let first = Self {
+            schema: self.schema.clone(),
+            issues: self.issues[..count].to_vec(),
         };
+        let text = first.json();
         sha256(format!("{own}\n{text}").as_bytes())[..16].to_owned()
     }
-}
-
-/// The file of a folder with the data stated after the test, and its name.
-pub fn held(folder: &Folder) -> Option<(&'static str, &Held)> {
-    [ISSUE, OLDER_ISSUE]
-        .into_iter()
-        .find_map(|name| Some((name, folder.files.get(name)?)))
-}
-
-/// The amendments in the format of an older version.
-fn older_json(issues: &[One]) -> String {
-    let one = |one: &One| {
-        json!({ "replaces": one.replaces, "manifest_sha256": one.manifest_sha256, "by": one.by,
-            "reason": one.reason.as_deref().unwrap_or_default(), "particulars": one.particulars })
-    };
-    let file =
-        json!({ "schema": OLDER_SCHEMA, "amendments": issues.iter().map(one).collect::<Vec<_>>() });
-    sanitize::json_file(&file)
 }
 
 /// The plan's name of a particular that can be stated after the test.
@@ -217,16 +136,7 @@ pub fn may_be_stated(field: &str) -> Result<&'static str, String> {
 /// Applies the stated data of the issues to plan and provenance.
 pub fn apply(plan: &mut Plan, provenance: &mut Provenance, file: &IssueFile) -> Result<(), String> {
     let mut all = Vec::new();
-    // Older versions identified the first report by its run.
-    let by_run = file
-        .issues
-        .first()
-        .is_some_and(|first| first.replaces == provenance.run_id);
-    let own = if by_run {
-        provenance.run_id.clone()
-    } else {
-        provenance.report_id().to_owned()
-    };
+    let own = provenance.report_id().to_owned();
     for (before, one) in file.issues.iter().enumerate() {
         if one.replaces != file.id(&own, before) {
             return Err(format!(
@@ -243,7 +153,7 @@ pub fn apply(plan: &mut Plan, provenance: &mut Provenance, file: &IssueFile) -> 
             ));
         }
         let latest = [issued.as_deref(), last_day(provenance)];
-        in_order(one, latest, before)?;
+        in_order(one, latest)?;
         let mut changes = Vec::new();
         for (field, text) in &one.particulars {
             let field = may_be_stated(field)?;
@@ -290,15 +200,8 @@ pub fn apply(plan: &mut Plan, provenance: &mut Provenance, file: &IssueFile) -> 
 }
 
 /// The day of an issue is a calendar day and the day of issue on the report. It is not before the end of the test or the issue before.
-fn in_order(one: &One, [issued, tested]: [Option<&str>; 2], before: usize) -> Result<(), String> {
-    let Some(date) = &one.date else {
-        let older = one.kind == OneKind::Amendment && one.reason.is_some();
-        return if older {
-            Ok(())
-        } else {
-            Err(format!("issue {} has no date", before + 1))
-        };
-    };
+fn in_order(one: &One, [issued, tested]: [Option<&str>; 2]) -> Result<(), String> {
+    let date = &one.date;
     let as_stated = one
         .particulars
         .iter()

@@ -18,7 +18,7 @@ pub use check::examine;
 pub use consistency::check_consistency;
 pub use finding::Finding;
 pub use folder::Folder;
-pub use issues::{IssueFile, One, OneKind, held as held_issue, may_be_stated};
+pub use issues::{IssueFile, One, OneKind, may_be_stated};
 pub use names::{ISSUE, MANIFEST};
 pub use rebuilt::{Rebuilt, ReplayedRun};
 pub use signature::{Statement, file_name, sign as sign_manifest};

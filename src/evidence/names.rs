@@ -5,8 +5,6 @@ pub const MANIFEST: &str = "manifest.sha256";
 
 /// Name of the file of issues in an issued folder.
 pub const ISSUE: &str = "issue.json";
-/// The same for a folder that an older version made: amendments without a day.
-pub const OLDER_ISSUE: &str = "amendment.json";
 
 /// Ending of the file of a signature.
 pub const SUFFIX: &str = ".minisig";
@@ -29,34 +27,6 @@ pub fn is_signature(name: &str) -> bool {
 /// The PDF report. A second copy with a seal at its end can be in the same folder.
 pub const PAPER: &str = "report.pdf";
 
-/// Files of the results in folders of version 0.1: old and present names.
-const OLDER: [(&str, &str); 5] = [
-    ("certificate.html", "report.html"),
-    ("certificate.pdf", PAPER),
-    ("tables/drift.csv", "tables/zero_drift.csv"),
-    ("tables/drift.parquet", "tables/zero_drift.parquet"),
-    ("rehearsal.json", "check_run.json"),
-];
-
-/// The name of a file of the results in a folder of version 0.1, if it was another.
-pub fn older_name(present: &str) -> Option<&'static str> {
-    let row = OLDER.iter().find(|(_, name)| *name == present)?;
-    Some(row.0)
-}
-
-/// The present name of a file of the results.
-pub fn present_name(name: &str) -> &str {
-    OLDER
-        .iter()
-        .find(|(older, _)| *older == name)
-        .map_or(name, |(_, present)| present)
-}
-
-/// Whether a file is the PDF report, under its present name or its older one.
-pub fn is_paper(name: &str) -> bool {
-    present_name(name) == PAPER
-}
-
 /// Kinds of sidecars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SidecarKind {
@@ -64,7 +34,7 @@ pub enum SidecarKind {
     Token,
     /// `FILE.ots`
     Proof,
-    /// `report….pdf`, formerly `certificate….pdf`
+    /// `report….pdf`
     SealedPaper,
 }
 
@@ -83,12 +53,11 @@ pub fn sidecar(name: &str) -> Option<(SidecarKind, &str)> {
     let of = kinds
         .into_iter()
         .find_map(|(ending, kind)| Some((kind, name.strip_suffix(ending)?)));
-    let sealed = |paper: &'static str| {
+    let sealed = || {
         let own = name
-            .strip_prefix(paper.strip_suffix(".pdf")?)?
+            .strip_prefix(PAPER.strip_suffix(".pdf")?)?
             .strip_suffix(".pdf")?;
-        (!own.is_empty() && !own.contains('/')).then_some((SidecarKind::SealedPaper, paper))
+        (!own.is_empty() && !own.contains('/')).then_some((SidecarKind::SealedPaper, PAPER))
     };
-    of.or_else(|| sealed(PAPER))
-        .or_else(|| sealed(older_name(PAPER)?))
+    of.or_else(sealed)
 }

@@ -5,19 +5,18 @@ use super::consistency;
 use super::finding::Finding;
 use super::folder::Folder;
 use super::issues::{IssueFile, apply};
-use super::names::older_name;
 use crate::files::provenance::BUILD;
 use crate::files::recorded_run;
 use crate::files::recorded_run::{JOURNAL, ReadRecord};
 use crate::files::results::put_results;
 use crate::plan::Plan;
-use crate::record::journal::EntryKind;
 use crate::record::remote::DrivenStep;
 use crate::record::{Outcome, Record};
 use crate::report::{
     FileDigest, Issue, IssueKind, NullSink, OutputError, OutputSink, Prediction, Provenance,
     ReportStatus, Run,
 };
+use crate::rig::journal::EntryKind;
 use crate::run::replay;
 use crate::run::replay::{CUT_OFF, Mismatch, Replayed};
 use crate::schema::plan_block::ISSUED;
@@ -146,21 +145,9 @@ impl Rebuilt {
             Err(failure) => return nothing("record", failure.to_string()),
         };
         match IssueFile::of(folder) {
-            Ok(issues) => Self::replayed(read, issues.as_ref(), predict).named_as_in(folder),
+            Ok(issues) => Self::replayed(read, issues.as_ref(), predict),
             Err(fault) => nothing("issue", fault),
         }
-    }
-
-    /// Files of a folder of version 0.1 keep the names that it gave them.
-    fn named_as_in(mut self, folder: &Folder) -> Self {
-        let files = self.report.iter_mut().flat_map(|report| &mut report.files);
-        for (path, _) in files.filter(|(path, _)| !folder.files.contains_key(path)) {
-            if let Some(older) = older_name(path).filter(|older| folder.files.contains_key(*older))
-            {
-                older.clone_into(path);
-            }
-        }
-        self
     }
 
     fn replayed(read: ReadRecord, issues: Option<&IssueFile>, predict: Predict<'_>) -> Self {
@@ -177,7 +164,7 @@ impl Rebuilt {
             format!(", {} bytes incomplete at its end", torn.end - torn.start)
         });
         let (records, head) = (read.recovered.lines.len(), read.recovered.head());
-        let remarks = consistency::remarks(&read.recovered, &read.logged.header);
+        let remarks = consistency::remarks(&read.recovered);
         let mut findings = vec![match consistency::check_consistency(&read) {
             Ok(()) => Finding::sound(
                 "record",
@@ -286,17 +273,13 @@ impl Rebuilt {
 
 /// The identity of this report, and the report that it was made from.
 fn issue_text(report_id: &str, last: &Issue) -> String {
-    let (by, replaces) = (&last.by, &last.replaces);
-    let date = last
-        .date
-        .as_ref()
-        .map_or_else(String::new, |date| format!(" on {date}"));
+    let (by, replaces, date) = (&last.by, &last.replaces, &last.date);
     match last.kind {
         IssueKind::First => {
-            format!("report {report_id}, issued{date} by {by} from report {replaces}")
+            format!("report {report_id}, issued on {date} by {by} from report {replaces}")
         }
         IssueKind::Amendment => {
-            format!("report {report_id} amends report {replaces},{date} by {by}")
+            format!("report {report_id} amends report {replaces}, on {date} by {by}")
         }
     }
 }

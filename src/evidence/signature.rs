@@ -31,8 +31,8 @@ const SHOWN_CHARACTERS: usize = 200;
 pub struct Statement {
     pub run: String,
     pub report: String,
-    /// Status of the report, such as `issued`; None in signatures of older versions.
-    pub status: Option<String>,
+    /// Status of the report, such as `issued`.
+    pub status: String,
     /// Its day of issue, as stated.
     pub issued: Option<String>,
     pub role: Option<String>,
@@ -55,7 +55,7 @@ impl Statement {
                 "report",
                 Some(self.report.clone()).filter(|report| *report != self.run),
             ),
-            ("status", self.status.clone()),
+            ("status", Some(self.status.clone())),
             ("issued", self.issued.as_ref().map(cut)),
             ("role", self.role.as_ref().map(cut)),
             ("name", self.name.as_ref().map(cut)),
@@ -79,7 +79,7 @@ impl Statement {
         let read = Self {
             run,
             report,
-            status: of("status"),
+            status: of("status")?,
             issued: of("issued"),
             role: of("role"),
             name: of("name"),
@@ -284,12 +284,10 @@ fn check_statement(
         ));
     }
     let issued = report.issued.as_deref().map(one_line);
-    if let Some(status) = &statement.status
-        && (status != report.status || statement.issued != issued)
-    {
+    if statement.status != report.status || statement.issued != issued {
         return Err(format!(
             "it states a report with the status `{}`, but the status is `{}`",
-            one_line(status),
+            one_line(&statement.status),
             report.status
         ));
     }
@@ -358,7 +356,7 @@ mod tests {
         let statement = Statement {
             run: "0123456789abcdef".to_owned(),
             report: "0123456789abcdef".to_owned(),
-            status: Some("issued".to_owned()),
+            status: "issued".to_owned(),
             issued: Some("2026-06-02".to_owned()),
             role: Some("Quality\tkey:x\n\u{202e}".to_owned()),
             name: None,
@@ -371,8 +369,8 @@ mod tests {
         );
         assert_eq!((read.name, read.key.as_deref()), (None, Some("RWQ")));
         assert_eq!(
-            (read.status.as_deref(), read.issued.as_deref()),
-            (Some("issued"), Some("2026-06-02"))
+            (read.status.as_str(), read.issued.as_deref()),
+            ("issued", Some("2026-06-02"))
         );
         assert_eq!(
             Statement::read("timestamp:1\tfile:manifest.sha256\thashed"),

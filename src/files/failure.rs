@@ -30,9 +30,9 @@ pub enum Failure {
     #[error("standard output: {0}")]
     Stdout(std::io::Error),
     #[error(transparent)]
-    Record(#[from] crate::record::journal::FileFault),
+    Record(#[from] crate::rig::journal::FileFault),
     #[error(transparent)]
-    Journal(#[from] crate::record::journal::JournalFault),
+    Journal(#[from] crate::rig::journal::JournalFault),
     #[error("{0}")]
     Rig(#[from] crate::rig::RigFault),
     #[error(transparent)]

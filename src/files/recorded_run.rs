@@ -5,11 +5,11 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use super::failure::{Failure, plain};
-use crate::language::check::{LoadError, Options, check};
+use crate::check::{LoadError, Options, check};
 use crate::plan::Plan;
 use crate::record::equipment::{Device, Equipment};
-use crate::record::journal::{Line, LogText, OLDEST_FORMAT, Recovered, Unreadable, recover};
 use crate::report::{Build, Provenance, RealRun};
+use crate::rig::journal::{Line, LogText, Recovered, Unreadable, recover};
 use crate::run::check_run;
 use crate::run::replay;
 use crate::run::replay::{Header, LoggedRun};
@@ -52,11 +52,6 @@ pub fn of_text(path: &Path, text: &LogText) -> Result<ReadRecord, Failure> {
     }
     let plan = plan_of(&logged).map_err(damaged)?;
     replay::well_formed(&recovered, &plan).map_err(|fault| damaged(fault.to_string()))?;
-    if logged.header.equipment.is_none() && recovered.format() > OLDEST_FORMAT {
-        return Err(damaged(
-            "its header does not state the measuring equipment".to_owned(),
-        ));
-    }
     fits(&logged, &plan).map_err(damaged)?;
     let provenance = provenance_of(&logged.header, &plan, &recovered);
     Ok(ReadRecord {
@@ -97,7 +92,6 @@ pub fn plan_of(logged: &LoggedRun) -> Result<Plan, String> {
         today: None,
         date,
         unattended: false,
-        recorded: true,
     };
     let checked = check(&first.name, text, &files, &options);
     let plan = checked.plan.ok_or_else(|| {
@@ -114,10 +108,10 @@ pub fn plan_of(logged: &LoggedRun) -> Result<Plan, String> {
 
 /// Whether the equipment in the header agrees with plan and rig. This detects a changed calibration.
 fn fits(logged: &LoggedRun, plan: &Plan) -> Result<(), String> {
-    let (Some(equipment), Some(rig)) = (&logged.header.equipment, logged.rigs.first()) else {
+    let Some(rig) = logged.rigs.first() else {
         return Ok(());
     };
-    if *equipment == Equipment::of(plan, Device::of(&rig.identity, rig.noise)) {
+    if logged.header.equipment == Equipment::of(plan, Device::of(&rig.identity, rig.noise)) {
         return Ok(());
     }
     Err("rig, calibration or limits of its header differ from its plan and its rig".to_owned())
@@ -143,7 +137,7 @@ fn provenance_of(header: &Header, plan: &Plan, recovered: &Recovered) -> Provena
             .files
             .first()
             .map_or_else(String::new, |file| file.sha256.clone()),
-        equipment: header.equipment.clone(),
+        equipment: Some(header.equipment.clone()),
         ..super::provenance::of_simulated_run(plan, header.date.as_deref(), header.began.as_deref())
     };
     if plan.rig.link.as_real().is_none() {

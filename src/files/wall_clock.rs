@@ -3,8 +3,8 @@
 
 use jiff::Timestamp;
 
-use crate::record::journal::{EntryKind, Line};
 use crate::report::ClockJump;
+use crate::rig::journal::{EntryKind, Line};
 
 /// A smaller difference is the slow correction of a clock, or the time between the two time stamps of an entry \[s\].
 const SMALL: f64 = 10.0;

@@ -5,7 +5,6 @@ pub mod comparison;
 mod figures;
 mod finding;
 mod number;
-pub mod older;
 pub mod print;
 mod summary;
 mod table;

@@ -26,6 +26,7 @@
 //! ```
 
 /// The parameters as a struct of the plan.
+#[macro_export]
 macro_rules! parameters {
     (
         $(#[$about:meta])*
@@ -48,6 +49,7 @@ macro_rules! parameters {
 }
 
 /// The fields as entries of the schema.
+#[macro_export]
 macro_rules! fields {
     (
         $(#[$about:meta])*
@@ -66,6 +68,7 @@ macro_rules! fields {
 }
 
 /// The names of the fields as the constant `NAMES`.
+#[macro_export]
 macro_rules! names {
     (
         $(#[$about:meta])*
@@ -78,17 +81,18 @@ macro_rules! names {
         }
     ) => {
         /// The names of the fields of this block.
-        pub(crate) struct Names {
-            $(pub(crate) $field: &'static str,)*
+        pub struct Names {
+            $(pub $field: &'static str,)*
         }
 
-        pub(crate) const NAMES: Names = Names {
-            $($field: $crate::plan::declaration::name!($field $(as $written)?),)*
+        pub const NAMES: Names = Names {
+            $($field: $crate::name!($field $(as $written)?),)*
         };
     };
 }
 
 /// The name of one field: that of its parameter, or the one that is written after it.
+#[macro_export]
 macro_rules! name {
     ($field:ident) => {
         stringify!($field)
@@ -100,6 +104,7 @@ macro_rules! name {
 
 /// The reader of a block: it reads every field by the type of its parameter, in the order of the declaration. It reads all fields before
 /// it fails, so that all errors are reported at once.
+#[macro_export]
 macro_rules! reader {
     (
         $(#[$about:meta])*
@@ -117,5 +122,3 @@ macro_rules! reader {
         }
     };
 }
-
-pub(crate) use {fields, name, names, parameters, reader};

@@ -239,8 +239,8 @@ pub fn sources_of(references: &[ResultReference], results: &dyn Results) -> Vec<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::contribution::{combined, combined_entries, share};
-    use crate::plan::formula::{Formula, Operator};
+    use crate::contribution::{combined, combined_entries, share};
+    use crate::formula::{Formula, Operator};
 
     /// Slope and intercept of one line, and a separate number.
     struct OneLine;

@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 
 use super::formula::{Formula, ResultReference};
 use super::{Comparison, Condition};
-use crate::physics::study::Confidence;
-use crate::physics::study::correlation::Pair;
-use crate::physics::study::inputs::Source;
-use crate::physics::study::subset_simulation::SubsetSimulation;
-use crate::units::Dimension;
+use psd_physics::study::Confidence;
+use psd_physics::study::correlation::Pair;
+use psd_physics::study::inputs::Source;
+use psd_physics::study::subset_simulation::SubsetSimulation;
+use psd_text::units::Dimension;
 
 /// Most runs of a study.
 pub const MOST_RUNS: u64 = 10_000_000_000;

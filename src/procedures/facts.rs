@@ -119,3 +119,48 @@ impl Delay {
         -4.0 * std::f64::consts::PI * self.damping_ratio()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::plan::{Plan, ProcedureKind};
+    use psd_testing::plans::ChangeTarget as _;
+
+    /// An impact also names striker and specimen, and a plan that declares everything names nothing.
+    #[test]
+    fn what_is_not_declared_of_striker_and_specimen_is_named() {
+        use crate::plan::formula::Formula;
+        use crate::procedures::facts_of;
+        use crate::tests::testing::{elastic_plan, impact, ramp, struck_frame};
+        let struck = ProcedureKind::Impact(impact(Formula::Constant(300.0)));
+        let mut plan = elastic_plan(
+            300.0,
+            vec![ProcedureKind::StiffnessRamp(ramp(1e-3)), struck],
+        );
+        let undeclared = |plan: &Plan, index: usize| {
+            plan.undeclared(facts_of(&plan.procedures[index].kind).dependence)
+        };
+        assert_eq!(undeclared(&plan, 0).len(), 4);
+        assert_eq!(
+            undeclared(&plan, 1)[..3],
+            ["striker mass", "striker velocity", "specimen mass"]
+        );
+        plan.strikers[0].velocity_uncertainty = 0.01;
+        if let ProcedureKind::Impact(struck) = &mut plan.procedures[1].kind {
+            struck.point_mut().mass_uncertainty = 0.01;
+        }
+        assert_eq!(
+            undeclared(&plan, 1)[..2],
+            ["striker mass", "force calibration"]
+        );
+        let mut frame = struck_frame();
+        assert!(undeclared(&frame, 0).contains(&"specimen mass"));
+        if let Some(frame) = &mut frame.specimens[0].frame {
+            *frame = frame.with(|storeys| {
+                for storey in storeys {
+                    storey.mass_uncertainty = 0.01;
+                }
+            });
+        }
+        assert!(!undeclared(&frame, 0).contains(&"specimen mass"));
+    }
+}

@@ -18,7 +18,7 @@ use std::time::Duration;
 
 use super::Ended;
 use super::connection::{Broken, Connection};
-use super::generic_header::{self, HEADER, Layout};
+use crate::rig::protocols::generic_header::{self, HEADER, Layout};
 use crate::run::remote_control::Specimen;
 
 /// The first word of a message: the requested action.

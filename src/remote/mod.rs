@@ -6,9 +6,7 @@ mod connection;
 #[cfg(test)]
 mod frame_tests;
 mod generic_client;
-mod generic_header;
 mod nees;
-pub mod nees_message;
 #[cfg(test)]
 mod tests;
 

@@ -102,7 +102,7 @@ impl Provenance {
 pub struct Build {
     /// SHA-256 over the digests of its sources, hex.
     pub sources: String,
-    /// Target, profile, compiler; empty in run logs of older versions.
+    /// Target, profile, compiler.
     pub toolchain: String,
 }
 

@@ -7,7 +7,7 @@ use super::real::RealRig;
 use super::safety::{self, Armed};
 use super::transport::{self, Clock, Emergency, MonotonicClock};
 use super::{RigFault, StopRequest};
-use crate::plan::{Behind, DeviceLink, Limits, RigPlan};
+use psd_plan::{Behind, DeviceLink, Limits, RigPlan};
 
 /// An open rig. During its lifetime, a panic or a missing heartbeat of the program holds the rig.
 pub struct Connected {

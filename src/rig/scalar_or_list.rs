@@ -26,7 +26,7 @@ pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<f64
 
 #[cfg(test)]
 mod tests {
-    use crate::rig::LastMove;
+    use crate::LastMove;
 
     #[test]
     fn one_axis_is_a_number_and_several_are_a_list_in_both_directions() {

@@ -10,9 +10,8 @@ use crate::rig::VirtualRig;
 /// The administrative field of a plan that marks it as a check run.
 const FIELD: &str = "check_run";
 
-/// What distinguishes the identifier of a check run from that of the whole plan. It has the word of version 0.1, so that older
-/// identifiers stay valid.
-pub const RUN_ID_MARK: &str = "rehearsal";
+/// What distinguishes the identifier of a check run from that of the whole plan.
+pub const RUN_ID_MARK: &str = "check run";
 
 /// Why a plan cannot be checked.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

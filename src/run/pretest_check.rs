@@ -40,7 +40,7 @@ pub(crate) fn pass(
         format!("each of its {axes} axes in turn, {probes}")
     };
     // No motion enable is requested for a rig at a different position.
-    start::check(plan, link, session, session.guard.found())?;
+    start::check(plan, link, session.guard.found())?;
     let note = format!(
         "release rig {}: it MOVES {by} and back (pre-test check), then {afterwards}",
         plan.rig.name
@@ -59,7 +59,7 @@ pub(crate) fn pass(
     session.guard.pause(REST)?;
     let at_rest = session.guard.read()?;
     for reading in [&first, &at_rest] {
-        start::check(plan, link, session, (&reading.displacement, &reading.force))?;
+        start::check(plan, link, (&reading.displacement, &reading.force))?;
     }
     start::log_datum(link, session);
     for (axis, (pretest_check, force)) in checks.iter().zip(&at_rest.force).enumerate() {

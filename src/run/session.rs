@@ -31,8 +31,6 @@ pub(crate) struct Session<'run> {
     remarks: Vec<(String, usize)>,
     /// The position of the rig when the session began \[m\].
     pub(super) home: Vec<f64>,
-    /// [`Plan::unloads_at_once`]
-    pub(crate) unloads_at_once: bool,
     /// The operator was asked to inspect, or has paused the run: the operator may be at the specimen.
     pub(super) attended: bool,
     pub(crate) settings: Settings,
@@ -82,14 +80,12 @@ impl<'run> Session<'run> {
                     step: None,
                     remarks: Vec::new(),
                     home,
-                    unloads_at_once: plan.unloads_at_once,
                     attended: false,
                     settings: Settings::default(),
                     is_simulated,
                 })
             }
             Err(fault) => {
-                // Run logs of older versions contain only the fault.
                 let stop = match fault {
                     RigFault::LimitBreached { .. } if datum => Stop::AtRest(fault),
                     fault => Stop::Rig(fault),

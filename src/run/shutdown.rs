@@ -82,14 +82,11 @@ impl Session<'_> {
             match self.observer.may_unload(&question, &motion) {
                 None => return false,
                 Some(Inspection::GoOn { note, by }) => {
-                    // Older versions did not ask.
-                    if by.is_some() {
-                        let note = note.map_or_else(String::new, |note| format!(": {note}"));
-                        self.event(
-                            EventKind::Inspection,
-                            format!("{question}: yes{note}{}", signed(by.as_deref())),
-                        );
-                    }
+                    let note = note.map_or_else(String::new, |note| format!(": {note}"));
+                    self.event(
+                        EventKind::Inspection,
+                        format!("{question}: yes{note}{}", signed(by.as_deref())),
+                    );
                     return true;
                 }
                 Some(Inspection::Stop { reason, by }) => {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::language::check::{Options, ParsedPlan, no_files};
+use crate::check::{Options, ParsedPlan, no_files};
 use crate::physics::study::Confidence;
 use crate::physics::study::correlation::Pair;
 use crate::physics::study::distribution::{Distribution, Spread};

@@ -8,7 +8,7 @@ use super::metadata;
 use super::simulation::Simulation;
 use super::stopping::rare::RareRuns;
 use super::testing::bytes;
-use crate::language::check::{LoadError, Options, ParsedPlan};
+use crate::check::{LoadError, Options, ParsedPlan};
 use crate::physics::study::Confidence;
 use crate::physics::study::distribution::normal;
 use crate::plan::Plan;

@@ -422,7 +422,7 @@ fn limits_lists_the_bounds_of_every_stage() {
     );
     assert!(
         has(
-            psd::record::journal::MOST_BYTES.to_string(),
+            psd::rig::journal::MOST_BYTES.to_string(),
             "the run log of one run"
         ),
         "{listed}"

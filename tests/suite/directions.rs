@@ -7,18 +7,17 @@ use super::source_text::{none, rust_files};
 
 /// The folders of `src`, lowest level first. A folder may use the folders of earlier lines. In its own line it may use only itself.
 const ORDER: &[&[&str]] = &[
-    &["text", "units"],
+    &["text"],
     &["physics"],
     &["plan"],
-    &["language", "journal"],
-    &["rig"],
+    &["language", "rig"],
     &["run"],
     &["verdict"],
     &["report"],
     &["procedures"],
-    &["golden", "remote"],
+    &["check", "golden", "remote"],
     &["files"],
-    &["emulator", "evidence"],
+    &["evidence"],
     &["study"],
     &["cli"],
 ];
@@ -32,14 +31,6 @@ const FACTS: &str = "procedures/facts.rs";
 /// The drivers of check, run and report. Only they query the procedures, and only through the dispatch file. All other files in their
 /// folders are engines, which the procedures use.
 const DRIVERS: &[&str] = &[
-    "language/check/declarations/golden.rs",
-    "language/check/declarations/report.rs",
-    "language/check/driver.rs",
-    "language/check/procedures.rs",
-    "language/check/warnings/left.rs",
-    "language/check/warnings/mod.rs",
-    "language/check/warnings/recorded_steps.rs",
-    "language/check/warnings/tracking.rs",
     "report/budget/line.rs",
     "report/figures/mod.rs",
     "report/sections/conditions/mod.rs",
@@ -65,14 +56,9 @@ fn position_in_order(folder: &str) -> Option<usize> {
     ORDER.iter().position(|line| line.contains(&folder))
 }
 
-/// The folder of `src` whose place in the order a file has. The vocabulary, the uncertainties and the record belong to the plan.
+/// The folder of `src` whose place in the order a file has.
 fn folder_of(file: &str) -> &str {
-    let folder = file.split('/').next().unwrap_or_default();
-    match folder {
-        "record" if file.starts_with("record/journal") => "journal",
-        "schema" | "uncertainty" | "record" => "plan",
-        _ => folder,
-    }
+    file.split('/').next().unwrap_or_default()
 }
 
 #[test]

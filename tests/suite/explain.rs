@@ -1,59 +1,27 @@
 //! The pages of `psd explain`: each code has one, and its wrong and right plans behave as the page states.
 //!
-//! A page's plans are its fenced blocks. The first word after `psd` gives the kind: `wrong`, `right`, or `file="lib/a.psd"`. Such a file
-//! can be used by both plans (`*` matches any digits). `name="a.md"` is the name of a plan that is not `plan.psd`. `set="speed=2 m/s"` and `rig="name"` are options of the command line. With
-//! `unattended="yes"` a run begins without an operator.
+//! The first word after `psd` gives the kind of a plan: `wrong`, `right`, or `file="lib/a.psd"`. Such a file can be used by both plans
+//! (`*` matches any digits). `name="a.md"` is the name of a plan that is not `plan.psd`. The other options: `explain_pages.rs`.
 
-use psd::language::check::{Checked, LoadError, Options, check};
+use psd::check::{Checked, LoadError, check};
 use psd::language::syntax::{format, format_document, parse};
+use psd::text::diagnostic::page::{Page, PagePlan};
 use psd::text::diagnostic::{Code, Severity};
 use psd::text::markdown::is_document;
 use psd::text::source::Sources;
 
+use super::explain_pages::{options_of, page_text};
+
 /// Codes that do not depend on the plan alone: they are about the machine that is to run it.
 const OF_THE_MACHINE: &[Code] = &[Code::DiskSpace];
 
-/// One fenced block of a page.
-struct Fence {
-    info: String,
-    text: String,
-}
-
-impl Fence {
-    /// The value of `key="…"` in the info string.
-    fn option(&self, key: &str) -> Option<&str> {
-        let (_, rest) = self.info.split_once(&format!("{key}=\""))?;
-        rest.split_once('"').map(|(value, _)| value)
-    }
-
-    /// The name of the plan's file.
-    fn name(&self) -> &str {
-        self.option("name").unwrap_or("plan.psd")
-    }
-
-    fn is(&self, word: &str) -> bool {
-        self.info.split_whitespace().next() == Some(word)
-    }
-}
-
-/// The fenced `psd` blocks of a page, in order.
-fn fences(page: &str) -> Vec<Fence> {
-    let mut found = Vec::new();
-    let mut rest = page;
-    while let Some((_, after)) = rest.split_once("```psd") {
-        let (info, body) = after.split_once('\n').expect("a fence is a line");
-        let (text, next) = body.split_once("```").expect("the fence is closed");
-        found.push(Fence {
-            info: info.trim().to_owned(),
-            text: text.to_owned(),
-        });
-        rest = next;
-    }
-    found
+/// The name of the plan's file.
+fn name_of<'a>(plan: &PagePlan<'a>) -> &'a str {
+    plan.option("name").unwrap_or("plan.psd")
 }
 
 /// The text of a file of one page.
-fn file_of(page: &[Fence], path: &str) -> Result<String, LoadError> {
+fn file_of(page: &[PagePlan<'_>], path: &str) -> Result<String, LoadError> {
     let holds = |pattern: &str| match pattern.split_once('*') {
         Some((head, tail)) => path
             .strip_prefix(head)
@@ -65,36 +33,21 @@ fn file_of(page: &[Fence], path: &str) -> Result<String, LoadError> {
     };
     page.iter()
         .find(|fence| fence.option("file").is_some_and(holds))
-        .map(|fence| fence.text.clone())
+        .map(|fence| fence.text.to_owned())
         .ok_or(LoadError::NotFound)
 }
 
 fn checked(code: Code, kind: &str) -> Checked {
-    let fences = fences(code.page());
-    let plan = fences
-        .iter()
-        .find(|fence| fence.is(kind))
+    let text = page_text(code);
+    let page = Page::read(&text);
+    let plan = page
+        .plan(kind)
         .unwrap_or_else(|| panic!("the page of {code} has a {kind} plan"));
-    let settings = plan
-        .option("set")
-        .and_then(|setting| setting.split_once('='));
-    let options = Options {
-        today: None,
-        rig: plan.option("rig").map(str::to_owned),
-        settings: settings
-            .into_iter()
-            .map(|(name, value)| (name.to_owned(), value.to_owned()))
-            .collect(),
-        date: None,
-        unattended: plan.option("unattended").is_some(),
-        recorded: false,
-        for_studies: false,
-    };
     check(
-        plan.name(),
-        &plan.text,
-        &|path: &str| file_of(&fences, path),
-        &options,
+        name_of(plan),
+        plan.text,
+        &|path: &str| file_of(&page.plans, path),
+        &options_of(plan),
     )
 }
 
@@ -128,8 +81,8 @@ fn faults_of(kind: &str, holds: impl Fn(Code, &Checked) -> bool) -> Vec<String> 
 #[test]
 fn every_page_starts_with_its_code_and_has_one_wrong_and_one_right_plan_where_a_plan_gives_it() {
     for &code in Code::ALL {
-        let page = code.page();
-        let title = page
+        let text = page_text(code);
+        let title = text
             .lines()
             .next()
             .unwrap_or_default()
@@ -138,7 +91,7 @@ fn every_page_starts_with_its_code_and_has_one_wrong_and_one_right_plan_where_a_
             title.is_some_and(|title| title.len() > 3),
             "the page of {code} has no title"
         );
-        let fences = fences(page);
+        let fences = Page::read(&text).plans;
         let plans = usize::from(!OF_THE_MACHINE.contains(&code));
         for kind in ["wrong", "right"] {
             assert_eq!(
@@ -189,15 +142,15 @@ fn the_right_plan_of_a_page_gives_no_error_and_not_the_code() {
 #[test]
 fn the_plans_of_the_pages_are_written_as_the_formatter_writes_them() {
     for &code in Code::ALL {
-        for fence in fences(code.page()) {
+        for fence in Page::read(&page_text(code)).plans {
             let mut sources = Sources::default();
-            let file = sources.add(fence.name(), fence.text.as_str());
+            let file = sources.add(name_of(&fence), fence.text);
             let (ast, faults) = parse(&sources, file);
             if faults.is_empty() {
-                let formatted = if is_document(fence.name()) {
-                    format_document(&fence.text)
+                let formatted = if is_document(name_of(&fence)) {
+                    format_document(fence.text)
                 } else {
-                    format(&ast, &fence.text)
+                    format(&ast, fence.text)
                 };
                 assert_eq!(
                     formatted, fence.text,

@@ -299,8 +299,7 @@ fn every_kind_of_difference_is_found_and_named_the_same_however_many_run_at_a_ti
 
     // After acceptance it passes, and its output is removed. Plans that did not run stay unchanged.
     workspace
-        // The name of version 0.1.
-        .psd(&["test", "--filter", "column", "--bless"])
+        .psd(&["test", "--filter", "column", "--accept"])
         .with(0)
         .prints(&["accepted  plans/column  1 changed", "hit.restoring_force_n"]);
     workspace.psd(&["test", "--filter", "column"]).with(0);
@@ -423,7 +422,7 @@ fn the_results_of_another_plan_are_neither_compared_nor_replaced() {
     workspace
         .psd(&["test", "b", "--golden", folder.to_str().unwrap()])
         .with(0);
-    // Results of an older version name no plan.
+    // `plan.txt` is deleted after the plan was moved.
     std::fs::remove_file(workspace.path("reports/t/plan.txt")).unwrap();
     workspace.psd(&["test", "a"]).with(0);
     workspace.psd(&["test", "a", "--accept"]).with(0);

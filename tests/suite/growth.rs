@@ -4,7 +4,7 @@
 //! as long takes eight times the work, or sixty-four times if the work grows with the square of the length. Twenty-four, the ratio that
 //! fails, is between the two. Memory cannot grow faster than the work that fills it.
 
-use psd::language::check::{Options, check, no_files};
+use psd::check::{Options, check, no_files};
 use rustix::time::{ClockId, clock_gettime};
 use std::time::Duration;
 

@@ -113,11 +113,14 @@ impl ImportGraph {
     }
 }
 
-/// Dependency cycles, each with more than one file. A `mod.rs` and the files of its own folder count as one unit: its uses of them are
+/// Dependency cycles, each with more than one file. A `mod.rs` or `lib.rs` and the files of its own folder count as one unit: its uses of them are
 /// not counted.
 pub fn cycles<'a>(uses: &BTreeMap<&'a str, BTreeSet<&'a str>>) -> Vec<BTreeSet<&'a str>> {
     let outside = |file: &'a str, used: &BTreeSet<&'a str>| {
-        let folder = file.strip_suffix("mod.rs").map(str::to_owned);
+        let folder = file
+            .strip_suffix("mod.rs")
+            .or_else(|| file.strip_suffix("lib.rs"));
+        let folder = folder.map(str::to_owned);
         let folder = folder.unwrap_or_else(|| file.replace(".rs", "/"));
         used.iter()
             .copied()
@@ -159,7 +162,7 @@ pub fn is_of_tests(path: &str) -> bool {
         .any(|part| part == "tests" || part == "testing" || part.ends_with("_tests"))
 }
 
-/// `plan/mod.rs` is `plan`, `lib.rs` the root and `physics/lib.rs` is `physics`.
+/// `run/mod.rs` is `run`, `lib.rs` the root and `physics/lib.rs` is `physics`.
 fn module_of(path: &str) -> Path {
     let path = path.trim_end_matches(".rs");
     let parts = path

@@ -1,12 +1,17 @@
-//! The language by example. Every plan of `tests/lang/STAGE/` reaches the stage of its folder; the snapshot contains the plan and the
-//! output of psd. A case is one file. `# options: --set "speed=2 m/s"` or `--rig NAME` in its first line is its command line.
+//! The language by example. A case of a check is on the page of its diagnostic (`page_cases`). Every plan of `tests/lang/STAGE/`
+//! reaches the stage of its folder; the snapshot contains the plan and the output of psd. Such a case is one file. `# options: --set
+//! "speed=2 m/s"` or `--rig NAME` in its first line is its command line.
+
+mod annotated;
+mod page_cases;
 
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::source_text::files_in;
-use psd::language::check::{Checked, Options, check};
+use page_cases::PAGE_CASES;
+use psd::check::{Checked, Options, check};
 use psd::record::{Outcome, Record};
 use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
@@ -276,14 +281,15 @@ fn every_code_has_a_case() {
     let cases = cases();
     for &code in Code::ALL {
         let listed = WITHOUT_CASE.iter().any(|(without, _)| *without == code);
-        let found = cases.iter().any(|case| case.code() == Some(code));
+        let found = PAGE_CASES.iter().any(|case| case.code == code)
+            || cases.iter().any(|case| case.code() == Some(code));
         assert!(
             found != listed,
             "{code}: {}",
             if found {
                 "listed as without a case"
             } else {
-                "no case in tests/lang"
+                "no case on its page, and none in tests/lang"
             }
         );
     }
@@ -320,7 +326,15 @@ fn argument_cases(field: &Field) -> Vec<String> {
 
 #[test]
 fn every_required_field_and_argument_has_a_case() {
-    let names: Vec<String> = cases().into_iter().map(|case| case.name).collect();
+    let of_pages = PAGE_CASES.iter().map(|case| {
+        let name = case.name.replace(' ', "_");
+        format!("{}_{name}", case.code.id().to_lowercase())
+    });
+    let names: Vec<String> = cases()
+        .into_iter()
+        .map(|case| case.name)
+        .chain(of_pages)
+        .collect();
     let mut wanted = Vec::new();
     for block in BLOCKS {
         for field in block.fields {
@@ -344,7 +358,7 @@ fn every_required_field_and_argument_has_a_case() {
     wanted.retain(|name| !names.contains(name));
     assert!(
         wanted.is_empty(),
-        "no case in tests/lang/check_error for: {}",
+        "no case, on the page of the code or in tests/lang, for: {}",
         wanted.join(", ")
     );
 }

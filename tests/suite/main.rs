@@ -12,6 +12,7 @@ mod docs;
 mod document;
 mod evidence;
 mod explain;
+mod explain_pages;
 mod golden;
 mod growth;
 mod house;

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use psd::language::check::{Options, check, no_files};
+use psd::check::{Options, check, no_files};
 use psd::procedures::columns;
 use psd::schema;
 

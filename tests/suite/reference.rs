@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use psd::language::check::{Options, check, no_files};
+use psd::check::{Options, check, no_files};
 use psd::language::syntax::{format, parse};
 use psd::schema::BLOCKS;
 use psd::text::diagnostic::Code;

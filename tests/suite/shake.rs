@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use psd::language::check::{LoadError, Options, check};
+use psd::check::{LoadError, Options, check};
 use psd::plan::formula::ResultValue;
 use psd::record::{Outcome, Record};
 use psd::rig::virtual_rig;

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use psd::language::check::{LoadError, Options, check};
+use psd::check::{LoadError, Options, check};
 use psd::plan::Plan;
 use psd::plan::formula::ResultValue;
 use psd::record::{Floors as _, History, Outcome, Record, ShakeStep};

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use psd::language::check::LoadError;
+use psd::check::LoadError;
 
 /// One Rust file.
 pub struct SourceText {

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::source_text::files_in;
-use psd::language::check::{Options, check};
+use psd::check::{Options, check};
 use psd::language::syntax::{format, parse};
 use psd::plan::FigureKind;
 use psd::report::{Provenance, Run, vectors};

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use psd::language::check::{Options, check, no_files};
+use psd::check::{Options, check, no_files};
 use psd::plan::formula::ResultValue;
 use psd::record::{History, ImpactStep, Outcome, Record, StruckFrame};
 use psd::rig::virtual_rig;

@@ -16,7 +16,7 @@ use crate::evidence::{Folder, IssueFile, ReplayedRun};
 use crate::golden::comparison;
 use crate::golden::comparison::page::page;
 use crate::golden::comparison::{Comparison, Side};
-use crate::golden::{FIGURES, SUMMARY, older};
+use crate::golden::{FIGURES, SUMMARY};
 use crate::report::summary::Summary;
 use crate::report::{Figures, OutputError, OutputFile, figures};
 
@@ -119,7 +119,7 @@ fn from_results(name: String, folder: &Path) -> Result<Side, Failure> {
                 .help("name a run folder, such as runs/beam-1, or a folder of accepted results"),
         );
     };
-    let summary = older::summary(summary)
+    let summary = serde_json::from_str(summary)
         .map_err(|error| Failure::file(folder.join(SUMMARY), error.to_string()))?;
     let figures = match truth.text(FIGURES) {
         Some(text) => serde_json::from_str(text)

@@ -10,7 +10,11 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::print_result;
 use crate::cli::settings::Settings;
 use crate::text::diagnostic::Code;
+use crate::text::diagnostic::page::{Page, PagePlan};
 use crate::text::suggest::nearest;
+
+/// Each code with its page, without the cases of the page.
+static PAGES: &[(&str, &str)] = &include!(concat!(env!("OUT_DIR"), "/pages.rs"));
 
 /// Changed lines of a page without `--full`.
 const MOST_LINES: usize = 12;
@@ -54,20 +58,24 @@ fn unknown(written: &str, wanted: &str) -> Failure {
     Failure::command_line(format!("no diagnostic has the code `{written}`")).help(help)
 }
 
+/// The page of a code.
+fn page_of(code: Code) -> Page<'static> {
+    let found = PAGES.iter().find(|(id, _)| *id == code.id());
+    Page::read(found.map_or("", |(_, page)| page))
+}
+
 /// The text of a page, and the lines in which its plans differ.
 fn page(code: Code, settings: Settings) -> String {
-    let (prose, plans) = code
-        .page()
-        .split_once("```psd ")
-        .unwrap_or((code.page(), ""));
+    let page = page_of(code);
+    let prose = page.shown.split("```psd ").next().unwrap_or_default();
     let mut text = String::new();
     for line in prose.trim_end().lines() {
         let heading = line.strip_prefix("# ");
         let shown = heading.map_or_else(|| line.to_owned(), |title| settings.paint_heading(title));
         let _ = writeln!(text, "{shown}");
     }
-    if let (Some(wrong), Some(right)) = (Example::of(plans, "wrong"), Example::of(plans, "right")) {
-        let changed = changed_lines(&wrong, &right);
+    if let (Some(wrong), Some(right)) = (page.plan("wrong"), page.plan("right")) {
+        let changed = changed_lines(wrong, right);
         text.push('\n');
         for line in changed.iter().take(MOST_LINES) {
             let _ = writeln!(text, "  {line}");
@@ -82,44 +90,21 @@ fn page(code: Code, settings: Settings) -> String {
     text
 }
 
-/// One example of a page: its options and its plan.
-struct Example<'a> {
-    options: Vec<&'a str>,
-    plan: &'a str,
-}
-
-impl<'a> Example<'a> {
-    /// The example `kind`, from the part of the page after the first fence.
-    fn of(plans: &'a str, kind: &str) -> Option<Self> {
-        let fence = plans
-            .split("```psd ")
-            .find_map(|fence| fence.strip_prefix(kind))?;
-        let (options, rest) = fence.split_once('\n')?;
-        let (plan, _) = rest.split_once("```")?;
-        let options = options.split('"').collect();
-        Some(Self { options, plan })
-    }
-
-    /// The command that gives the diagnostic, if it needs an option: `psd check plan.psd --set speed="9 m/s"`.
-    fn command(&self) -> Option<String> {
-        let value = |name: &str| {
-            let at = self
-                .options
-                .iter()
-                .position(|option| option.trim() == format!("{name}="))?;
-            self.options.get(at + 1)
-        };
-        let set = value("set").and_then(|set| set.split_once('='));
-        let set = set.map(|(name, value)| format!("psd check plan.psd --set {name}=\"{value}\""));
-        set.or_else(|| value("rig").map(|rig| format!("psd check plan.psd --rig {rig}")))
-    }
+/// The command that gives the diagnostic, if it needs an option: `psd check plan.psd --set speed="9 m/s"`.
+fn command(plan: &PagePlan<'_>) -> Option<String> {
+    let set = plan.option("set").and_then(|set| set.split_once('='));
+    let set = set.map(|(name, value)| format!("psd check plan.psd --set {name}=\"{value}\""));
+    set.or_else(|| {
+        plan.option("rig")
+            .map(|rig| format!("psd check plan.psd --rig {rig}"))
+    })
 }
 
 /// The changed lines, `-` wrong and `+` right. Blanks inside a line are not compared, because fields are aligned.
-fn changed_lines(wrong: &Example<'_>, right: &Example<'_>) -> Vec<String> {
+fn changed_lines(wrong: &PagePlan<'_>, right: &PagePlan<'_>) -> Vec<String> {
     let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
     let lines = |plan: &str| plan.lines().map(words).collect::<Vec<_>>();
-    let (old, new) = (lines(wrong.plan), lines(right.plan));
+    let (old, new) = (lines(wrong.text), lines(right.text));
     let mut changed = Vec::new();
     for operation in capture_diff_slices(Algorithm::Myers, &old, &new) {
         if matches!(operation, DiffOp::Equal { .. }) {
@@ -132,11 +117,8 @@ fn changed_lines(wrong: &Example<'_>, right: &Example<'_>) -> Vec<String> {
         changed.extend(lines.filter(|line| line.len() > 2));
     }
     if changed.is_empty() {
-        let command = |sign: &str, example: &Example<'_>| {
-            example.command().map(|command| format!("{sign} {command}"))
-        };
-        changed.extend(command("-", wrong));
-        changed.extend(command("+", right));
+        changed.extend(command(wrong).map(|command| format!("- {command}")));
+        changed.extend(command(right).map(|command| format!("+ {command}")));
     }
     changed
 }
@@ -144,7 +126,7 @@ fn changed_lines(wrong: &Example<'_>, right: &Example<'_>) -> Vec<String> {
 /// A page with its plans, as code blocks under headings.
 fn full_page(code: Code, settings: Settings) -> String {
     let (mut text, mut in_plan) = (String::new(), false);
-    for line in code.page().trim_end().lines() {
+    for line in page_of(code).shown.trim_end().lines() {
         in_plan = (in_plan || line.starts_with("```")) && line != "```";
         // In a plan, `# ` begins a comment.
         let heading = line.strip_prefix("# ").filter(|_| !in_plan);
@@ -165,23 +147,10 @@ fn list(settings: Settings) -> String {
             text,
             "{}  {}",
             settings.paint_heading(code.id()),
-            title(*code)
+            page_of(*code).title()
         );
         text
     })
-}
-
-/// The page's heading without the code.
-fn title(code: Code) -> &'static str {
-    let heading = code
-        .page()
-        .lines()
-        .next()
-        .unwrap_or_default()
-        .trim_start_matches("# ");
-    heading
-        .trim_start_matches(code.id())
-        .trim_start_matches([':', ' '])
 }
 
 #[cfg(test)]
@@ -189,36 +158,45 @@ mod tests {
     use super::*;
 
     #[test]
+    fn every_code_has_its_page_without_cases() {
+        for &code in Code::ALL {
+            let page = page_of(code);
+            assert!(page.shown.starts_with(&format!("# {code}: ")), "{code}");
+            assert!(!page.shown.contains("## Cases"), "{code}");
+        }
+    }
+
+    #[test]
     fn every_page_with_plans_shows_how_they_differ() {
         for &code in Code::ALL {
-            let (_, plans) = code.page().split_once("```psd ").unwrap_or_default();
-            let examples = Example::of(plans, "wrong").zip(Example::of(plans, "right"));
-            let Some((wrong, right)) = examples else {
+            let page = page_of(code);
+            let Some((wrong, right)) = page.plan("wrong").zip(page.plan("right")) else {
                 continue;
             };
-            let changed = changed_lines(&wrong, &right);
+            let changed = changed_lines(wrong, right);
             assert!(!changed.is_empty(), "{code}: the two plans are the same");
         }
     }
 
     #[test]
     fn a_diff_has_the_wrong_and_the_right_line() {
-        let lines = |code: &str| {
-            let code = Code::ALL.iter().find(|known| known.id() == code);
-            let page = code.map(|code| code.page()).unwrap_or_default();
-            let (_, plans) = page.split_once("```psd ").unwrap_or_default();
-            let examples = Example::of(plans, "wrong").zip(Example::of(plans, "right"));
-            examples.map_or_else(Vec::new, |(wrong, right)| changed_lines(&wrong, &right))
+        let lines = |code: Code| {
+            let page = page_of(code);
+            let examples = page.plan("wrong").zip(page.plan("right"));
+            examples.map_or_else(Vec::new, |(wrong, right)| changed_lines(wrong, right))
         };
-        assert_eq!(lines("E301"), ["- mass = 10 mm", "+ mass = 10 kg"]);
-        assert_eq!(lines("W719"), ["+ i_modification = true"]);
         assert_eq!(
-            lines("E603"),
+            lines(Code::WrongDimension),
+            ["- mass = 10 mm", "+ mass = 10 kg"]
+        );
+        assert_eq!(lines(Code::TrackingStops), ["+ i_modification = true"]);
+        assert_eq!(
+            lines(Code::UnknownRig),
             [
                 "- psd check plan.psd --rig simulted",
                 "+ psd check plan.psd --rig simulated"
             ]
         );
-        assert!(lines("E406")[0].contains("--set speed=\"9 m/s\""));
+        assert!(lines(Code::SettingOutOfRange)[0].contains("--set speed=\"9 m/s\""));
     }
 }

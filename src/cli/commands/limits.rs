@@ -8,7 +8,7 @@ use crate::language::check;
 use crate::language::syntax::limits as syntax;
 use crate::plan;
 use crate::procedures::{damping_sweep, stiffness_ramp};
-use crate::record::journal;
+use crate::rig::journal;
 use crate::text::diagnostic::render;
 
 /// Prints every limit of the language.

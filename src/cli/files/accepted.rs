@@ -4,7 +4,6 @@
 use std::path::{Component, Path, PathBuf};
 
 use super::run_folder::write_new;
-use crate::evidence::names::present_name;
 use crate::files::failure::Failure;
 use crate::files::failure::plain;
 use crate::golden::{Accepted, SUMMARY, Tolerances, Truth, compare};
@@ -275,7 +274,7 @@ pub fn is_page(path: &str) -> bool {
         && Path::new(path)
             .extension()
             .is_some_and(|ending| ending == "png");
-    picture || matches!(present_name(path), "report.html" | "report.pdf")
+    picture || matches!(path, "report.html" | "report.pdf")
 }
 
 #[cfg(test)]

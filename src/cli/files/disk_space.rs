@@ -26,7 +26,7 @@ mod tests {
     use super::*;
     use crate::files::failure::amount;
     use crate::plan::ProcedureKind;
-    use crate::record::journal::{Durability, Journal, Storage};
+    use crate::rig::journal::{Durability, Journal, Storage};
     use crate::rig::safety::failpoint::without;
     use crate::rig::virtual_rig;
     use crate::run::{Unwatched, replay};
@@ -62,7 +62,7 @@ mod tests {
         let mut journal = Journal::create(Box::new(disk), Durability::EverySyncPoint);
         replay::begin(
             &mut journal,
-            &crate::tests::testing::header(),
+            &crate::tests::testing::header(&plan),
             &["text".to_owned()],
         )
         .unwrap();

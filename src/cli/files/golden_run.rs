@@ -72,7 +72,7 @@ pub fn of(path: &Path, extent: Extent) -> Result<Trial, Failure> {
         Circumstances::default(),
     );
     let provenance = Provenance {
-        equipment: header.equipment.clone(),
+        equipment: Some(header.equipment.clone()),
         ..provenance
     };
     let journal = record_file::begin_nowhere(plan, &header)?;

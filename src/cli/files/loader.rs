@@ -8,8 +8,8 @@ use std::path::{Component, Path, PathBuf};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
+use crate::check::LoadError;
 use crate::files::failure::{Failure, plain};
-use crate::language::check::LoadError;
 use crate::language::syntax::limits::FILE_BYTES;
 use crate::plan::{PICTURE_BYTES, PictureKind};
 use crate::text::markdown::{Document, is_document};

@@ -5,11 +5,11 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::loader::{FolderLoader, read_plan};
+use crate::check::{Checked, Options, ParsedPlan};
 use crate::cli::args::PlanSettings;
 use crate::cli::output::print_message;
 use crate::cli::settings::{Settings, folder_of, today};
 use crate::files::failure::Failure;
-use crate::language::check::{Checked, Options, ParsedPlan};
 use crate::text::diagnostic::{json, render};
 use crate::text::source::{Position, Span};
 

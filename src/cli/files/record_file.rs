@@ -7,9 +7,9 @@ use crate::cli::args::PlanSettings;
 use crate::files::failure::Failure;
 use crate::plan::Plan;
 use crate::record::equipment::{Device, Equipment};
-use crate::record::journal::{Durability, FileStorage, Journal, Storage};
 use crate::report::Provenance;
 use crate::rig::Rig;
+use crate::rig::journal::{Durability, FileStorage, Journal, Storage};
 use crate::run::check_run;
 use crate::run::replay;
 use crate::run::replay::{Header, HeaderFile, RULES};
@@ -45,7 +45,7 @@ pub fn header(
         files: plan.files.iter().map(file).collect(),
         settings: settings.set.clone(),
         rig: settings.rig.clone(),
-        equipment: Some(Equipment::of(plan, device)),
+        equipment: Equipment::of(plan, device),
         check_run: check_run::performed_part(plan).is_some(),
         served,
         date: settings.date.clone(),

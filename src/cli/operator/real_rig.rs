@@ -4,13 +4,13 @@ use std::path::Path;
 
 use super::dialogue::typed::throw_away;
 use super::watch::{Attendance, Signals, Watcher};
+use crate::check::Checked;
 use crate::cli::args::{PlanSettings, name};
 use crate::cli::exit::Failure;
 use crate::cli::files::plan_file;
 use crate::cli::files::record_file::Circumstances;
 use crate::cli::output::print_message;
 use crate::cli::settings::Settings;
-use crate::language::check::Checked;
 use crate::plan::Plan;
 use crate::rig::{Connected, Rig as _, StopRequest, connect};
 use crate::run::replay::Wall;

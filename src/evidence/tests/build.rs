@@ -1,19 +1,14 @@
 //! The build of psd that made a run, in its run log and its report.
 
-use std::collections::BTreeMap;
-
-use super::{Bytes, folder, run, with};
+use super::{folder, run, with};
 use crate::cli::commands::prediction::prediction;
-use crate::evidence::check::examine;
-use crate::evidence::folder::Folder;
-use crate::evidence::names::{MANIFEST, older_name};
 use crate::evidence::rebuilt::{Rebuilt, ReplayedRun};
 use crate::files::provenance::{BUILD, TOOLCHAIN};
 use crate::files::recorded_run;
 use crate::files::recorded_run::JOURNAL;
-use crate::record::journal::testing::recover;
-use crate::record::journal::{Durability, EntryKind, FileStorage, Journal};
 use crate::report::OutputFile;
+use crate::rig::journal::{Durability, EntryKind, FileStorage, Journal};
+use psd_testing::journal::recover;
 
 /// The run log as a different program would have begun it.
 fn of_another_build(journal: &[u8]) -> Vec<u8> {
@@ -79,38 +74,4 @@ fn a_report_names_the_build_that_made_the_run_and_not_the_one_that_made_the_repo
         page.contains(BUILD) && page.contains(TOOLCHAIN),
         "a run names the program that makes it"
     );
-}
-
-/// A folder of version 0.1 has other names for some files.
-#[test]
-fn a_folder_with_older_names_is_verified_under_them() {
-    let older = |name: &str| older_name(name).unwrap_or(name).to_owned();
-    let mut files: Bytes = run()
-        .iter()
-        .map(|(name, bytes)| (older(name), bytes.clone()))
-        .collect();
-    let manifest = String::from_utf8(files[MANIFEST].clone()).unwrap();
-    let renamed = |line: &str| {
-        let (digest, name) = line.split_once("  ").unwrap();
-        (older(name), digest.to_owned())
-    };
-    let lines: BTreeMap<String, String> = manifest.lines().map(renamed).collect();
-    let manifest: Vec<String> = lines
-        .iter()
-        .map(|(name, digest)| format!("{digest}  {name}\n"))
-        .collect();
-    let manifest = manifest.concat();
-    files.insert(MANIFEST.to_owned(), manifest.into_bytes());
-    let wrong = |folder: &Folder| -> Vec<&'static str> {
-        examine(folder, &Rebuilt::of(folder, &prediction), &[])
-            .into_iter()
-            .filter(|finding| !finding.sound)
-            .map(|finding| finding.part)
-            .collect()
-    };
-    let whole = folder(&files);
-    assert!(whole.files.contains_key("certificate.html"));
-    assert_eq!(wrong(&whole), [""; 0]);
-    let changed = with(&whole, "certificate.html", Some(b"another page".to_vec()));
-    assert_eq!(wrong(&changed), ["report", "manifest"]);
 }

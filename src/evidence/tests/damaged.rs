@@ -2,22 +2,29 @@
 //! log.
 
 use std::path::Path;
+use std::sync::OnceLock;
 
 use serde_json::{Value, json};
 
-use super::run;
+use super::{psd, run};
+use crate::cli::args::PlanSettings;
 use crate::cli::commands::prediction::prediction;
 use crate::cli::files::record_file;
+use crate::emulator::Log;
 use crate::evidence::consistency;
 use crate::evidence::rebuilt::ReplayedRun;
+use crate::files::provenance;
 use crate::files::recorded_run::JOURNAL;
-use crate::record::journal::EntryKind;
-use crate::record::journal::testing::{Vandal, records, written};
+use crate::language::check::{LoadError, Options, check};
+use crate::record::Outcome;
 use crate::report;
 use crate::rig::Reading;
+use crate::rig::journal::{Durability, EntryKind, Journal};
 use crate::run::Unwatched;
 use crate::run::replay;
 use crate::run::replay::Bands;
+use crate::tests::fault_table::stage;
+use psd_testing::journal::{PowerLoss, Vandal, records, written};
 
 /// A change to the entries of a run log.
 type Damage<'a> = &'a dyn Fn(&mut Vec<(EntryKind, Value)>);
@@ -73,70 +80,122 @@ fn replayed(journal: &[u8]) -> Result<(), String> {
         .map_or(Ok(()), |mismatch| Err(mismatch.to_string()))
 }
 
-/// Run logs that once caused a panic or an endless replay: each gives an error with its position.
-#[test]
-fn known_damage_is_an_error_with_its_position() {
-    let cases: [(&str, &[u8], &str); 10] = [
-        (
-            "schemes_245",
-            include_bytes!("../../../tests/records/schemes_245.psdj"),
-            "entry 15 (SAMPLE)",
-        ),
-        (
-            "session_296_force",
-            include_bytes!("../../../tests/records/session_296_force.psdj"),
-            "entry 5 (SAMPLE)",
-        ),
-        (
-            "session_296_place",
-            include_bytes!("../../../tests/records/session_296_place.psdj"),
-            "entry 16 (SAMPLE)",
-        ),
-        (
-            "solver_249",
-            include_bytes!("../../../tests/records/solver_249.psdj"),
-            "entry 7 (SAMPLE)",
-        ),
-        (
-            "solver_294",
-            include_bytes!("../../../tests/records/solver_294.psdj"),
-            "entry 7 (SAMPLE)",
-        ),
-        (
-            "stiffer_161",
-            include_bytes!("../../../tests/records/stiffer_161.psdj"),
-            "entry 8 (SAMPLE)",
-        ),
-        (
-            "tangents_51",
-            include_bytes!("../../../tests/records/tangents_51.psdj"),
-            "entry 10 (SAMPLE)",
-        ),
-        (
-            "zero_75",
-            include_bytes!("../../../tests/records/zero_75.psdj"),
-            "entry 13 (SAMPLE)",
-        ),
-        (
-            "zero_76",
-            include_bytes!("../../../tests/records/zero_76.psdj"),
-            "entry 14 (SAMPLE)",
-        ),
-        (
-            "waits_for_ever",
-            include_bytes!("../../../tests/records/waits_for_ever.psdj"),
-            "entry 31: the run requires the end of a step",
-        ),
-    ];
-    for (name, journal, reason) in cases {
-        let fault = replayed(journal).expect_err(name);
-        assert!(fault.contains(reason), "{name}: {fault}");
-        assert_eq!(
-            fault.contains("is malformed: its `"),
-            name != "waits_for_ever",
-            "{name}: {fault}"
+/// The run log of the first run of a language case.
+fn of_case(name: &str) -> Vec<u8> {
+    let root = tempfile::tempdir().unwrap();
+    let plan = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/lang/ok")
+        .join(name);
+    let out = root.path().join("run");
+    psd(&[
+        "run",
+        plan.to_str().unwrap(),
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    std::fs::read(out.join(JOURNAL)).unwrap()
+}
+
+/// The run log of a ramp on a real rig, as its emulator answers.
+fn of_a_real_rig() -> &'static [u8] {
+    const PLAN: &str = r#"specimen beam {
+  mass      = 1 kg
+  behaviour = elastic(stiffness: 300 kN/m)
+}
+
+limits {
+  displacement = -2 mm .. 25 mm
+  force        = -2 kN .. 12 kN
+  speed        = 2 mm/s
+}
+
+stiffness ramp k0 {
+  displacements = 0.1 mm .. 0.4 mm step 0.1 mm
+  pause         = 2 s
+}
+
+rig bench {
+  link          = tcp(address: "127.0.0.1:44000", dialect: native)
+  settle        = within(0.01 mm, 50 N/s, for: 0.3 s)
+  safe_state    = hold
+  pretest_check = probe(0.1 mm, stiffness: 250 kN/m .. 350 kN/m, zero: 20 N)
+}
+"#;
+    static LOG: OnceLock<Vec<u8>> = OnceLock::new();
+    LOG.get_or_init(|| {
+        let options = Options {
+            rig: Some("bench".to_owned()),
+            ..Options::default()
+        };
+        let none = |_: &str| Err(LoadError::NotFound);
+        let plan = check("ramp.psd", PLAN, &none, &options).plan.unwrap();
+        let emulator = stage::emulator(&plan, "", Log::none(), 1);
+        let mut rig = stage::open(&plan, &emulator).unwrap();
+        let disk = PowerLoss::new();
+        let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
+        let mut header = record_file::header(
+            &plan,
+            record_file::device(&rig),
+            &PlanSettings::default(),
+            &provenance::of(&plan, None),
+            record_file::Circumstances::default(),
         );
+        header.rig = options.rig;
+        replay::begin(&mut journal, &header, &record_file::texts(&plan)).unwrap();
+        let (mut nobody, wall) = (Unwatched, Box::new(|| None));
+        let recorded = replay::record(&plan, &mut rig, &mut nobody, journal, wall);
+        assert_eq!(recorded.record.outcome, Outcome::Completed);
+        assert_eq!(replayed(&disk.written()), Ok(()));
+        disk.written()
+    })
+}
+
+/// A reading with more or fewer numbers than the rig has axes, at the start, while a zero is read, and between the steps.
+#[test]
+fn a_reading_of_another_rig_is_malformed() {
+    for name in [
+        "impact_storey_rebound.psd",
+        "rig_drift.psd",
+        "specimen_table.psd",
+        "uncertain_matrices.psd",
+        "w709_drift_within_noise.psd",
+    ] {
+        let journal = of_case(name);
+        assert_eq!(replayed(&journal), Ok(()), "{name}");
+        let whole = records(&journal);
+        let samples = whole.iter().enumerate();
+        let samples = samples.filter(|(_, (kind, _))| *kind == EntryKind::Sample);
+        for (at, _) in samples.take(8) {
+            for (field, numbers) in [("x", 0), ("r", 0), ("x", 3), ("r", 3)] {
+                let mut damaged = whole.clone();
+                damaged[at].1[field] = json!(vec![0.0; numbers]);
+                let fault = replayed(&written(damaged)).expect_err(name);
+                let expected = format!(
+                    "entry {} (SAMPLE) is malformed: its `{field}` has {numbers} entries",
+                    at + 1
+                );
+                assert!(fault.contains(&expected), "{name}: {fault}");
+            }
+        }
     }
+}
+
+/// A reading that is there twice, before a pause that was interrupted: the replay does not wait for the pause to end.
+#[test]
+fn a_replay_that_left_its_run_log_does_not_wait() {
+    let mut damaged = records(of_a_real_rig());
+    let intents = damaged.iter().enumerate();
+    let mut intents = intents.filter(|(_, (kind, _))| *kind == EntryKind::Intent);
+    // After the two targets of the pre-test check, and three steps.
+    let read = intents.nth(5).unwrap().0 + 1;
+    damaged.truncate(read + 1);
+    let (kind, sample) = damaged[read].clone();
+    assert_eq!(kind, EntryKind::Sample);
+    let interrupted = json!({"t": sample["t"], "call": "pause", "fault": "interrupted"});
+    damaged.extend([(kind, sample), (EntryKind::Fault, interrupted)]);
+    let fault = replayed(&written(damaged)).unwrap_err();
+    let expected = format!("entry {}: the run requires the end of a step", read + 3);
+    assert!(fault.contains(&expected), "{fault}");
 }
 
 /// Other entries that no run writes: each is reported with its position.
@@ -162,7 +221,7 @@ fn what_no_run_writes_is_malformed() {
         move |records: &mut Vec<(EntryKind, Value)>| {
             let rig = records[position(records, EntryKind::Rig)].clone();
             let resume = json!({
-                "from": from, "by": "R. T", "reason": "no power", "doubt": {"target": "none"}, "found": [[0.0], [0.0]],
+                "from": from, "by": "R. T", "reason": "no power", "target_status": {"target": "none"}, "found": [[0.0], [0.0]],
                 "recorded": null, "t": 0.0,
             });
             records.splice(5..5, [rig, (EntryKind::Resume, resume)]);
@@ -216,7 +275,7 @@ fn position(records: &[(EntryKind, Value)], kind: EntryKind) -> usize {
 fn no_vandal_makes_a_record_that_panics() {
     const ROUNDS: u64 = 150;
     let rounds = std::env::var("PSD_VANDALS").map_or(ROUNDS, |rounds| rounds.parse().unwrap());
-    let real: &[u8] = include_bytes!("../../../tests/records/waits_for_ever.psdj");
+    let real = of_a_real_rig();
     let journal = &run()[JOURNAL];
     for seed in 0..rounds {
         let _ = replayed(&Vandal::new(seed).mangled(journal, real));

@@ -125,7 +125,7 @@ fn statement(rebuilt: &Rebuilt, role: &str) -> Statement {
     Statement {
         run,
         report,
-        status: Some("simulation".to_owned()),
+        status: "simulation".to_owned(),
         issued: None,
         role: Some(role.to_owned()),
         name: Some("A. Engineer".to_owned()),
@@ -178,7 +178,7 @@ pub(super) fn faults(findings: &[Finding]) -> Vec<&'static str> {
 fn judged(folder: &Folder, signed: &Signed) -> Vec<&'static str> {
     let (own, bytes) = (run_log(&signed.folder), run_log(folder));
     let head = |bytes: &[u8]| {
-        crate::record::journal::testing::recover(bytes)
+        psd_testing::journal::recover(bytes)
             .ok()
             .map(|found| found.head().to_owned())
     };

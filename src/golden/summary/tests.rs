@@ -62,35 +62,6 @@ fn what_names_the_run_is_not_compared_and_a_number_within_tolerance_is_the_same(
 }
 
 #[test]
-fn a_pass_of_an_older_version_is_completed_only_where_nothing_was_required() {
-    let compared = |was: &Value, is: &Value| {
-        let mut found = Vec::new();
-        compare(
-            Some(&was.to_string()),
-            Some(&is.to_string()),
-            &Tolerances::default(),
-            &mut found,
-        );
-        found
-            .iter()
-            .map(|finding| finding.name.clone())
-            .collect::<Vec<_>>()
-    };
-    let mut older = summary();
-    older["requirements"] = json!([]);
-    let mut now = older.clone();
-    now["verdict"] = json!("completed");
-    assert_eq!(compared(&older, &now), [""; 0]);
-    assert_eq!(compared(&now, &now), [""; 0]);
-    assert_eq!(compared(&now, &older), ["verdict"]);
-    now["verdict"] = json!("aborted");
-    assert_eq!(compared(&older, &now), ["verdict"]);
-    let mut completed = summary();
-    completed["verdict"] = json!("completed");
-    assert_eq!(compared(&summary(), &completed), ["verdict"]);
-}
-
-#[test]
 fn every_difference_has_its_name() {
     let results = |now: &mut Value, result: &str, value: Value| {
         now["procedures"]["hit"]["results"][result]["value"] = value;

@@ -7,12 +7,12 @@ use super::Loader;
 use super::expressions::data_file::DataFile;
 use super::messages::{names as message, values};
 use super::scope::{Overrides, Scope};
-use crate::language::syntax::ast::Expr;
-use crate::plan::Frame;
-use crate::plan::formula::{Formula, ProcedureId, ResultReference};
-use crate::text::diagnostic::Diagnostic;
-use crate::text::source::{Sources, Span};
-use crate::units::{Dimension, Quantity};
+use crate::syntax::ast::Expr;
+use psd_plan::Frame;
+use psd_plan::formula::{Formula, ProcedureId, ResultReference};
+use psd_text::diagnostic::Diagnostic;
+use psd_text::source::{Sources, Span};
+use psd_text::units::{Dimension, Quantity};
 
 /// A value that is evaluated once: a `let` or `param`, or an entry of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -75,10 +75,6 @@ pub struct Context {
     pub critical: bool,
 }
 
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "each states a fact of its own about the check"
-)]
 pub struct Checker<'a> {
     pub sources: &'a Sources,
     pub scope: &'a Scope<'a>,
@@ -104,8 +100,6 @@ pub struct Checker<'a> {
     pub read: Vec<(ResultReference, Span)>,
     /// Entries that are read from lists of results, by their index from 0, with their spans.
     pub list_entries_read: Vec<(ResultReference, usize, Span)>,
-    /// Whether the plan comes from a run log, so that names of older versions are valid.
-    pub recorded: bool,
     /// The rig of the run, if it moves a real specimen.
     pub real_rig: Option<usize>,
     /// Values of fields that are given from outside the plan.
@@ -165,7 +159,6 @@ impl<'a> Checker<'a> {
             used,
             read: Vec::new(),
             list_entries_read: Vec::new(),
-            recorded: false,
             real_rig: None,
             overrides: Overrides::new(),
             results: Vec::new(),
@@ -326,7 +319,7 @@ impl Typed {
 
 /// The literal without its sign and parentheses: `3 mm`, `-3 mm` and `(3 mm)` are literals.
 pub fn literal(expr: &Expr) -> Option<&Expr> {
-    use crate::language::syntax::ast::ExprKind;
+    use crate::syntax::ast::ExprKind;
     match &expr.kind {
         ExprKind::Number { .. } => Some(expr),
         ExprKind::Negate(inner) | ExprKind::Parenthesised(inner) => literal(inner),

@@ -1,6 +1,6 @@
 //! The declarations of a plan beside its procedures, by index. In: checked blocks, None for each with an error. Out: one of them.
 
-use crate::plan::{Frame, Ground, Specimen, Striker};
+use psd_plan::{Frame, Ground, Specimen, Striker};
 
 /// The declarations that the check of a procedure needs.
 pub struct Declared<'a> {

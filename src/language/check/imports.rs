@@ -3,10 +3,10 @@
 
 use super::messages::files as message;
 use super::{LoadError, Loader};
-use crate::language::syntax;
-use crate::language::syntax::ast::{Ast, ItemKind};
-use crate::text::diagnostic::Diagnostic;
-use crate::text::source::{FileId, Sources, Spanned};
+use crate::syntax;
+use crate::syntax::ast::{Ast, ItemKind};
+use psd_text::diagnostic::Diagnostic;
+use psd_text::source::{FileId, Sources, Spanned};
 
 /// Deepest chain of files that use files.
 pub const DEEPEST: usize = 8;

@@ -4,13 +4,13 @@
 use std::collections::BTreeMap;
 
 use super::messages::names as message;
-use crate::language::syntax::ast::{Ast, Block, Expr, ExprKind, Ident, ItemKind};
-use crate::language::syntax::control;
-use crate::plan::formula::ProcedureId;
-use crate::schema::{self, BlockKind, Kind, Naming};
-use crate::text::diagnostic::Diagnostic;
-use crate::text::source::{FileId, Span, Spanned};
-use crate::units::Quantity;
+use crate::syntax::ast::{Ast, Block, Expr, ExprKind, Ident, ItemKind};
+use crate::syntax::control;
+use psd_plan::formula::ProcedureId;
+use psd_plan::schema::{self, BlockKind, Kind, Naming};
+use psd_text::diagnostic::Diagnostic;
+use psd_text::source::{FileId, Span, Spanned};
+use psd_text::units::Quantity;
 
 /// A block of a kind that this version knows.
 pub struct DeclaredBlock<'a> {

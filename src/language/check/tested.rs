@@ -1,14 +1,33 @@
 //! The specimen that a procedure tests: the one that it names, else the only one declared. In: a block. Out: its specimen, or an error.
 
 use super::checker::Checker;
+use super::declarations::specimen::export as specimen_export;
 use super::messages::{names, whole as message};
 use super::scope::{DeclaredBlock, Meaning};
-use crate::language::syntax::ast::ExprKind;
-use crate::schema::procedures::SPECIMEN;
-use crate::schema::{self, Kind};
-use crate::text::diagnostic::Code;
+use crate::syntax::ast::ExprKind;
+use psd_plan::formula::Formula;
+use psd_plan::schema::procedures::{SPECIMEN, STIFFNESS};
+use psd_plan::schema::{self, Kind};
+use psd_text::diagnostic::Code;
 
 impl Checker<'_> {
+    /// `stiffness`, or on a simulated rig the initial one of the `specimen` block. On a real rig it is required; its absence is an error
+    /// already.
+    pub fn stiffness_or_specimens(
+        &mut self,
+        block: usize,
+        specimen: Option<usize>,
+    ) -> Option<Formula> {
+        if self.field(block, STIFFNESS.name).is_some() {
+            return self.quantity(block, STIFFNESS.name);
+        }
+        if self.real_rig.is_some() {
+            return None;
+        }
+        let head = self.scope.blocks[block].block.head;
+        specimen_export(self, specimen?, STIFFNESS.name, head).map(Formula::Constant)
+    }
+
     /// The specimen of a procedure, as its index in the plan.
     pub fn specimen_of(&mut self, block: usize) -> Option<usize> {
         self.specimen_block(block)

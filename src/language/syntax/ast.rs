@@ -1,7 +1,7 @@
 //! The syntax tree: the content of a plan file, each piece with its span. It has no meaning yet: block kinds, fields, units and
 //! names are strings here, looked up by `check`. Comments are kept beside the items, for the formatter.
 
-use crate::text::source::{FileId, Span, Spanned};
+use psd_text::source::{FileId, Span, Spanned};
 
 /// Words a top-level item starts with, other than a block.
 pub const ITEM_WORDS: [&str; 4] = ["use", "param", "let", "require"];

@@ -15,7 +15,7 @@ use super::{
     lower::{Lowering, unescape},
     messages,
 };
-use crate::text::source::{Span, Spanned};
+use psd_text::source::{Span, Spanned};
 
 static PRATT: LazyLock<PrattParser<Rule>> = LazyLock::new(|| {
     PrattParser::new()

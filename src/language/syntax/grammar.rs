@@ -3,5 +3,5 @@
 use pest_derive::Parser;
 
 #[derive(Parser)]
-#[grammar = "../grammar/psd.pest"]
+#[grammar = "../../grammar/psd.pest"]
 pub struct Grammar;

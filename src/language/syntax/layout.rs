@@ -7,7 +7,7 @@ use super::{
     lexical::tokens::{JOINING_WORDS, Kind, Tokens},
     limits, messages,
 };
-use crate::text::diagnostic::Diagnostic;
+use psd_text::diagnostic::Diagnostic;
 
 /// One statement: tokens `start..end`, the last of which is not a line end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

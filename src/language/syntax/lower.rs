@@ -8,8 +8,8 @@ use super::{
     ast::{Block, Entry, Expr, ExprKind, Ident, Item, ItemKind},
     grammar::Rule,
 };
-use crate::text::diagnostic::Diagnostic;
-use crate::text::source::{FileId, Span, Spanned};
+use psd_text::diagnostic::Diagnostic;
+use psd_text::source::{FileId, Span, Spanned};
 
 /// Lowers the pairs of one piece of text that starts at byte `base` of `file`.
 pub struct Lowering {

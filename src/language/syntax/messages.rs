@@ -7,9 +7,9 @@ use super::{
 };
 use std::ops::Range;
 
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::markdown::{FRAGMENT, FenceError};
-use crate::text::source::{FileId, Span};
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::markdown::{FRAGMENT, FenceError};
+use psd_text::source::{FileId, Span};
 
 /// The replacement for an `or`.
 const EITHER: &str = "all requirements must be met, so there is no `or`; if one of two values is sufficient, require \

@@ -19,9 +19,9 @@ use super::{
     lower::{Lowering, unescape},
     messages, rule_names,
 };
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::markdown::{self, Document};
-use crate::text::source::{FileId, Sources, Span, Spanned};
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::markdown::{self, Document};
+use psd_text::source::{FileId, Sources, Span, Spanned};
 
 /// Parses one file: a text of the language, or the `psd` blocks of a Markdown document. Never panics; the valid parts of a file with
 /// errors are in the tree, with [`ExprKind::Faulty`](super::ast::ExprKind::Faulty) in place of an invalid value.
@@ -478,7 +478,7 @@ impl Pieces<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::language::syntax::tests::{IMPACT, QUAKE};
+    use crate::syntax::tests::{IMPACT, QUAKE};
 
     #[test]
     fn a_sound_file_reads_the_same_whole_and_in_pieces() {

@@ -1,10 +1,10 @@
 //! The number of steps of a procedure that integrates, if the plan alone determines it. In: a procedure, and its plan. Out: an upper
 //! bound of the number of steps, or None if it depends on measured results. It runs nothing.
 
-use crate::physics::structure::Damping;
-use crate::physics::structure::frame_properties::FrameProperties;
-use crate::plan::formula::{Formula, NoResults};
-use crate::plan::{Escalate, Impact, ImpactTarget, Plan, Shake, Stepping, Striker, step_count};
+use crate::formula::{Formula, NoResults};
+use crate::{Escalate, Impact, ImpactTarget, Plan, Shake, Stepping, Striker, step_count};
+use psd_physics::structure::Damping;
+use psd_physics::structure::frame_properties::FrameProperties;
 
 impl Impact {
     /// The steps of one impact of this striker.

@@ -1,20 +1,20 @@
 //! The procedures of a plan, and what the stages before the run know of each: in its folder its block (schema), its parameters in SI
 //! (plan) and its history (record). They are data: they check nothing and run nothing.
 
-pub(crate) mod cycle;
-pub(crate) mod damping_sweep;
-pub(crate) mod escalate;
-pub(crate) mod impact;
-pub(crate) mod inspect;
-pub(crate) mod known_steps;
-pub(crate) mod mode;
-pub(crate) mod move_to;
-pub(crate) mod shake;
-pub(crate) mod stepping;
-pub(crate) mod stiffness_ramp;
-pub(crate) mod unload;
+pub mod cycle;
+pub mod damping_sweep;
+pub mod escalate;
+pub mod impact;
+pub mod inspect;
+pub mod known_steps;
+pub mod mode;
+pub mod move_to;
+pub mod shake;
+pub mod stepping;
+pub mod stiffness_ramp;
+pub mod unload;
 
-use crate::plan::{Cycle, DampingSweep, Escalate, Impact, Move, Shake, StiffnessRamp, Unload};
+use crate::{Cycle, DampingSweep, Escalate, Impact, Move, Shake, StiffnessRamp, Unload};
 
 /// The blocks of the procedures: a plan writes each by its keyword.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! The steps of a procedure that integrates: an impact, an impact on a storey, or a ground motion. In: the SI values of the fields of its
 //! block. It knows neither the structure nor the excitation.
 
-use crate::plan::formula::Formula;
-use crate::plan::{InspectTrigger, Integrator, Mode};
+use crate::formula::Formula;
+use crate::{InspectTrigger, Integrator, Mode};
 
 /// Largest number of steps of one procedure, for a frame multiplied by its storeys. `check` counts them if it can; otherwise `run` does.
 pub const MOST_STEPS: f64 = 1e7;

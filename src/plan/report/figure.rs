@@ -1,6 +1,6 @@
 //! Figures of a report: their kinds, and those that one report requests.
 
-use crate::plan::formula::ProcedureId;
+use crate::formula::ProcedureId;
 
 /// Most procedures on one chart: more curves cannot be distinguished.
 pub const MOST_TOGETHER: usize = 6;

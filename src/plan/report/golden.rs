@@ -1,7 +1,7 @@
 //! Required agreement of a rerun with the accepted results, as the plan specifies it.
 
-use crate::plan::formula::ProcedureId;
-use crate::units::Dimension;
+use crate::formula::ProcedureId;
+use psd_text::units::Dimension;
 
 /// The `golden` block; its default values if the plan has none.
 #[derive(Clone, Debug, PartialEq)]

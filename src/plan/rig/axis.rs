@@ -1,7 +1,7 @@
 //! The axes of a checked rig: the entries of each actuator with its load cell. The rig's entry applies if an axis has none. In: the rig
 //! of a plan, the index of an axis. Out: its polarity, limits, pre-test check, reading rules and calibration.
 
-use crate::plan::{
+use crate::{
     Calibration, DeviceLink, Interval, Limits, PretestCheck, ReadingRules, RealLink, RigPlan,
 };
 

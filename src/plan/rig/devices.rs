@@ -1,7 +1,7 @@
 //! The device that moves each axis of a real rig, and the device that measures its force. In: the links of a rig and of its axes. Out:
 //! every device once, with its axes. It does not depend on the protocol.
 
-use crate::plan::{AxisPlan, DeviceLink, RealLink};
+use crate::{AxisPlan, DeviceLink, RealLink};
 
 /// A device with its axes.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,9 +1,9 @@
 //! The limits of a rig, declared once: the parameters here, the schema in `schema::limits`, the reader in
 //! `language::check::declarations::limits`; and the intervals that express them. It enforces nothing: that is done by the guard.
 
-use crate::physics::tracking::monitor;
-use crate::plan::declaration::{names, parameters};
-use crate::units::Dimension;
+use crate::{names, parameters};
+use psd_physics::tracking::monitor;
+use psd_text::units::Dimension;
 
 /// A closed interval in SI units. An absent bound is infinite, so that `low <= x && x <= high` is the whole test.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +40,7 @@ impl Interval {
     }
 }
 
+#[macro_export]
 macro_rules! limits_fields {
     ($into:ident) => {
         $into! {
@@ -74,7 +75,6 @@ macro_rules! limits_fields {
         }
     };
 }
-pub(crate) use limits_fields;
 
 limits_fields!(parameters);
 limits_fields!(names);

@@ -1,15 +1,15 @@
 //! The rig of a checked plan: connection, declared uncertainties, limits, reading rules. It is
 //! data: no port is opened here.
 
-pub(crate) mod axis;
-pub(crate) mod axis_names;
-pub(crate) mod devices;
+pub mod axis;
+pub mod axis_names;
+pub mod devices;
 mod dialect;
-pub(crate) mod limits;
+pub mod limits;
 
 use super::{AxisPlan, Interval};
-pub use crate::physics::reintegration::perturbation::{BelowRange, ReadingErrors};
 pub use dialect::{Abilities, Dialect, ModbusMap, ModbusNumber};
+pub use psd_physics::reintegration::perturbation::{BelowRange, ReadingErrors};
 
 /// The rig of a run, as the plan specifies it.
 #[derive(Clone, Debug, PartialEq)]

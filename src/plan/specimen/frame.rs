@@ -1,8 +1,8 @@
 //! Frames in a plan: the ground motion under them, their damping.
 //! In: numbers that `check` read from the plan and its data files. Out: SI numbers. It computes no motion.
 
-use crate::physics::structure::Damping;
-use crate::plan::formula::Formula;
+use crate::formula::Formula;
+use psd_physics::structure::Damping;
 
 /// Most degrees of freedom of one frame: each has its own actuator and load cell.
 pub const MOST_STOREYS: usize = 64;

@@ -1,4 +1,4 @@
 //! The specimens of a checked plan: restoring-force models, frames, ground motions and strikers. SI. It is data, with
 //! the properties that follow from it.
 
-pub(crate) mod frame;
+pub mod frame;

@@ -54,7 +54,6 @@ pub fn cycle(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         rate: rate?,
         inspect: inspect?,
         fit: fit?,
-        evenly: false,
     };
     #[expect(
         clippy::cast_precision_loss,

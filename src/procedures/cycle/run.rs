@@ -117,8 +117,6 @@ struct Manner {
     moving: Option<SampledMotion>,
     /// Number of targets of a quarter, from the middle to an end.
     points: u32,
-    /// The targets are evenly spaced.
-    evenly: bool,
 }
 
 /// A motion that is read on the way.
@@ -186,7 +184,7 @@ impl Cycling {
             .as_ref()
             .map(|rate| inputs.positive(schema::RATE.name, rate, Dimension::FREQUENCY))
             .transpose()?;
-        let (samples, points, evenly) = (plan.samples.max(1), plan.points.max(1), plan.evenly);
+        let (samples, points) = (plan.samples.max(1), plan.points.max(1));
         let manner = Manner {
             samples,
             pause,
@@ -195,7 +193,6 @@ impl Cycling {
                 .zip(speed)
                 .map(|(rate, speed)| SampledMotion { rate, speed }),
             points,
-            evenly,
         };
         let moved = session.go_to(about, speed);
         self.target(about, moved, manner, session)?;
@@ -256,11 +253,7 @@ impl Cycling {
         let (first, last) = (spaced(begin), spaced(end));
         for target in 1..=targets {
             let even = f64::from(target) / f64::from(targets);
-            let share = if manner.evenly {
-                even
-            } else {
-                (spaced(begin + (end - begin) * even) - first) / (last - first)
-            };
+            let share = (spaced(begin + (end - begin) * even) - first) / (last - first);
             let commanded = if target == targets {
                 to
             } else {

@@ -3,9 +3,9 @@
 use crate::language::check::checker::Checker;
 use crate::language::check::expressions::read_field::ReadField;
 use crate::language::check::messages::methods as fault;
-use crate::plan::declaration::reader;
+use crate::plan::damping_sweep_fields;
 use crate::plan::procedures::damping_sweep::block::NAMES;
-use crate::plan::procedures::damping_sweep::parameters::damping_sweep_fields;
+use crate::plan::reader;
 use crate::plan::{DampingSweep, ProcedureKind};
 use crate::procedures::stepping::check::mode_check::stops_at_targets;
 use crate::schema::rig;

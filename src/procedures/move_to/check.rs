@@ -2,9 +2,9 @@
 
 use crate::language::check::checker::Checker;
 use crate::language::check::expressions::read_field::ReadField;
-use crate::plan::declaration::reader;
+use crate::plan::move_fields;
 use crate::plan::procedures::move_to::block::NAMES;
-use crate::plan::procedures::move_to::parameters::move_fields;
+use crate::plan::reader;
 use crate::plan::{Move, ProcedureKind};
 
 pub fn move_block(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {

@@ -4,12 +4,9 @@ use crate::language::check::checker::{Checker, Context};
 use crate::language::check::declarations::curve;
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::expressions::fields::whole;
-use crate::language::check::expressions::read_field::ReadField;
 use crate::language::check::messages::{specimens, values};
-use crate::plan::declaration::reader;
 use crate::plan::procedures::stiffness_ramp::block as schema;
 use crate::plan::procedures::stiffness_ramp::block::NAMES;
-use crate::plan::procedures::stiffness_ramp::parameters::stiffness_ramp_fields;
 use crate::plan::{
     ProcedureKind, RampFit, RelaxationLaw, RelaxationModel, StiffnessRamp, WatchedHold,
     WatchedModel,
@@ -46,7 +43,29 @@ pub fn stiffness_ramp(checker: &mut Checker, block: usize) -> Option<ProcedureKi
     Some(ProcedureKind::StiffnessRamp(ramp))
 }
 
-stiffness_ramp_fields!(reader);
+/// Reads every field before it fails, so that all errors are reported at once.
+fn read(checker: &mut Checker<'_>, block: usize) -> Option<StiffnessRamp> {
+    let specimen = checker.specimen_of(block);
+    let displacements = checker.quantities(block, NAMES.displacements);
+    let pause = checker.quantity(block, NAMES.pause);
+    let samples = checker.count(block, NAMES.samples);
+    let repeats = checker.count(block, NAMES.repeats);
+    let return_path = checker.word(block, NAMES.return_path, "false");
+    let fit = fit(checker, block);
+    let relaxation = watched_hold(checker, block);
+    let speed = checker.optional(block, NAMES.speed);
+    Some(StiffnessRamp {
+        specimen: specimen?,
+        displacements: displacements?,
+        pause: pause?,
+        samples: samples?,
+        repeats: repeats?,
+        return_path: return_path? == "true",
+        fit: fit?,
+        relaxation: relaxation?,
+        speed: speed?,
+    })
+}
 
 /// Refuses a relaxation that is fitted to pauses of no duration.
 fn held(checker: &mut Checker, block: usize) -> Option<()> {
@@ -59,32 +78,33 @@ fn held(checker: &mut Checker, block: usize) -> Option<()> {
     }
 }
 
-impl ReadField for RampFit {
-    fn read(checker: &mut Checker<'_>, block: usize, field: &'static str) -> Option<Self> {
-        let Some((entry, _)) = checker.field(block, field) else {
-            return Some(Self::Linear);
-        };
-        let context = checker.context_of(block, entry);
-        let chosen = checker.choice(block, field)?;
-        match chosen.variant.name {
-            "multilinear" => curve::breaks(checker, &chosen, context).map(Self::Multilinear),
-            "bilinear" => Some(Self::Bilinear),
-            _ => Some(Self::Linear),
-        }
+/// The curve that is fitted; a line if nothing is stated.
+fn fit(checker: &mut Checker<'_>, block: usize) -> Option<RampFit> {
+    let Some((entry, _)) = checker.field(block, NAMES.fit) else {
+        return Some(RampFit::Linear);
+    };
+    let context = checker.context_of(block, entry);
+    let chosen = checker.choice(block, NAMES.fit)?;
+    match chosen.variant.name {
+        "multilinear" => curve::breaks(checker, &chosen, context).map(RampFit::Multilinear),
+        "bilinear" => Some(RampFit::Bilinear),
+        _ => Some(RampFit::Linear),
     }
 }
 
-/// The readings during the pauses.
-impl ReadField for Option<WatchedHold> {
-    fn read(checker: &mut Checker<'_>, block: usize, field: &'static str) -> Option<Self> {
-        match checker.field(block, field) {
-            Some((entry, written)) => {
-                let context = checker.context_of(block, entry);
-                let chosen = checker.choice(block, field)?;
-                relaxation(checker, &chosen, context, written.value.span).map(Some)
-            }
-            None => Some(None),
+/// The readings during the pauses: `Some(None)` if the plan states none.
+#[expect(
+    clippy::option_option,
+    reason = "left out and faulty are different things here"
+)]
+fn watched_hold(checker: &mut Checker<'_>, block: usize) -> Option<Option<WatchedHold>> {
+    match checker.field(block, NAMES.relaxation) {
+        Some((entry, written)) => {
+            let context = checker.context_of(block, entry);
+            let chosen = checker.choice(block, NAMES.relaxation)?;
+            relaxation(checker, &chosen, context, written.value.span).map(Some)
         }
+        None => Some(None),
     }
 }
 

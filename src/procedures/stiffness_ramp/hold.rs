@@ -101,7 +101,7 @@ impl Arriving {
 }
 
 /// Seconds during which a rig waited, moved and settled between a reading before a move and one after it; `moved` is the observed
-/// interval of motion. If it was not observed, as in the records of older versions, all the time counts as motion.
+/// interval of motion. If it was not observed, all the time counts as motion.
 pub(crate) fn parts(before: f64, moved: Option<[f64; 2]>, after: f64) -> [f64; 3] {
     let [from, to] = moved.unwrap_or([before, after]);
     let from = from.max(before).min(after);

@@ -3,7 +3,6 @@
 use crate::language::check::checker::Checker;
 use crate::language::check::declarations::specimen::frame;
 use crate::language::check::messages::frames as fault;
-use crate::plan::formula::Formula;
 use crate::plan::procedures::unload::block as schema;
 use crate::plan::{ProcedureKind, Unload};
 use crate::schema::procedures::{SPEED, STIFFNESS};
@@ -36,29 +35,4 @@ pub fn unload(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
         within: within?,
         speed: speed?,
     }))
-}
-
-impl Checker<'_> {
-    /// `stiffness`, or on a simulated rig the initial one of the `specimen` block. On a real rig it is required; its absence is an error
-    /// already.
-    pub fn stiffness_or_specimens(
-        &mut self,
-        block: usize,
-        specimen: Option<usize>,
-    ) -> Option<Formula> {
-        if self.field(block, STIFFNESS.name).is_some() {
-            return self.quantity(block, STIFFNESS.name);
-        }
-        if self.real_rig.is_some() {
-            return None;
-        }
-        let head = self.scope.blocks[block].block.head;
-        crate::language::check::declarations::specimen::export(
-            self,
-            specimen?,
-            STIFFNESS.name,
-            head,
-        )
-        .map(Formula::Constant)
-    }
 }

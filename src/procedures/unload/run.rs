@@ -7,7 +7,7 @@ use crate::physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
 use crate::plan::procedures::unload::block as schema;
 use crate::plan::{Frame, Plan, Unload};
 use crate::procedures::common::perturbed_inputs::UncertainRun;
-use crate::procedures::stepping::run::frame_of;
+use crate::procedures::stepping::setting::frame_of;
 use crate::record::{EventKind, History, NamedResult, RampStep, Rest, UnloadStep};
 use crate::rig::Reading;
 use crate::run::Performed;
@@ -184,9 +184,6 @@ pub(crate) fn to_rest(
             .max(f64::MIN_POSITIVE)
     });
     let mut path = UnloadingPath::new(unloading, noise, loaded(&at));
-    if session.unloads_at_once {
-        path = path.at_once();
-    }
     for step in before + 1..=before + MOST_TARGETS {
         if largest(&at.force) <= within {
             return Ok(rest(at));

@@ -19,8 +19,8 @@ pub struct Issue {
     pub kind: IssueKind,
     /// Id of the report that it replaces.
     pub replaces: String,
-    /// `YYYY-MM-DD`; None for an amendment by an older version.
-    pub date: Option<String>,
+    /// `YYYY-MM-DD`
+    pub date: String,
     /// The person responsible.
     pub by: String,
     /// The reason of an amendment.
@@ -69,13 +69,12 @@ pub(in crate::report) fn amendments(issues: Option<&Issues>) -> Vec<String> {
         } else {
             changes.join(", ")
         };
-        let date = issue.date.as_ref().map_or_else(String::new, wording::on);
         let reason = issue
             .reason
             .as_deref()
             .unwrap_or_default()
             .trim_end_matches('.');
-        wording::amendment(&issue.replaces, &issue.by, date, reason, changes)
+        wording::amendment(&issue.replaces, &issue.by, &issue.date, reason, changes)
     };
     of_kind(issues, IssueKind::Amendment)
         .map(sentence)
@@ -95,9 +94,8 @@ pub(in crate::report) fn first(issues: Option<&Issues>) -> Option<String> {
     } else {
         stated.join(", ")
     };
-    let date = issue.date.as_deref().unwrap_or_default();
     Some(wording::first_issue(
-        date,
+        &issue.date,
         &issue.by,
         &issue.replaces,
         stated,

@@ -87,8 +87,7 @@ pub struct IssueSummary {
     pub kind: &'static str,
     /// Id of the report from which it was made.
     pub replaces: String,
-    /// Null for an amendment by an older version.
-    pub date: Option<String>,
+    pub date: String,
     pub by: String,
     /// Only for an amendment.
     pub reason: Option<String>,

@@ -29,10 +29,8 @@ wording! {
             kept, but no longer valid.";
         NOTHING = "nothing";
         NOTHING_ELSE = "nothing else";
-        /// `date` is empty, or begins with a space.
-        fn amendment(replaced, by, date, reason, changes) = "Amendment to report {replaced} by {by}{date}: {reason}. \
+        fn amendment(replaced, by, date, reason, changes) = "Amendment to report {replaced} by {by} on {date}: {reason}. \
             Changed: {changes}.";
-        fn on(date) = " on {date}";
         fn first_issue(date, by, replaced, stated) = "on {date} by {by}, from the report {replaced}; stated after \
             the test: {stated}";
         fn quoted(text) = "“{text}”";

@@ -19,9 +19,9 @@ mod device;
 mod line;
 mod replies;
 
-use crate::plan::{DeviceLink, Dialect, PortPlan};
-use crate::rig::StopRequest;
-use crate::rig::transport::{Clock, Port};
+use crate::StopRequest;
+use crate::transport::{Clock, Port};
+use psd_plan::{DeviceLink, Dialect, PortPlan};
 
 use device::one_axis;
 pub use device::{

@@ -2,7 +2,7 @@
 //! them. It asks nothing.
 
 use super::{Channel, Sample, grbl, hx711, indicator, mark10, modbus, native, nees, scpi};
-use crate::plan::Dialect;
+use psd_plan::Dialect;
 
 /// Number of replies to one reading of a device. None: its replies are not decoded again.
 #[must_use]

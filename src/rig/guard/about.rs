@@ -1,6 +1,6 @@
 //! Facts that the guard reports about its rig: declared noise, datum, first reading. It moves nothing.
 
-use crate::rig::{DeclaredNoise, Guard, LineStatistics};
+use crate::{DeclaredNoise, Guard, LineStatistics};
 
 impl Guard<'_> {
     #[must_use]

@@ -1,8 +1,8 @@
 //! The guard at the early end of a run. In: a rig that is to hold finally. Out: the result of that hold, and the limits of the motion
 //! that unloads the rig afterwards. It assesses no reading, because the run is over.
 
-use crate::plan::{Interval, Limits, ReadingRules};
-use crate::rig::{FinalHold, Guard, RigFault};
+use crate::{FinalHold, Guard, RigFault};
+use psd_plan::{Interval, Limits, ReadingRules};
 
 /// Number of standard deviations of the noise by which a reading may exceed the value at the hold.
 const NOISE: f64 = 6.0;

@@ -9,7 +9,7 @@
 //! assessed. The same applies to frames, because their storey drifts are not largest when their floor displacements are.
 
 use super::Guard;
-use crate::rig::{Held, Reading};
+use crate::{Held, Reading};
 
 /// The dwells so far.
 #[derive(Debug)]

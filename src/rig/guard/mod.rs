@@ -2,18 +2,18 @@
 //! readings. Out: readings, each inside every limit. It proposes nothing beyond a limit, clamps
 //! nothing, and holds the rig on any fault. It knows no procedure.
 
-pub(crate) mod about;
-pub(crate) mod final_hold;
+pub mod about;
+pub mod final_hold;
 mod holds;
-pub(crate) mod path;
-pub(crate) mod read;
-pub(crate) mod smooth_paths;
-pub(crate) mod speed;
+pub mod path;
+pub mod read;
+pub mod smooth_paths;
+pub mod speed;
 
 use super::safety::failpoint::{Guarding, on};
 use super::{EachReading, LimitedQuantity, Reading, Rig, RigFault, named_axis};
-use crate::plan::{Interval, Limits};
 use holds::Holds;
+use psd_plan::{Interval, Limits};
 
 /// A rig and the limits of its motion.
 pub struct Guard<'rig> {

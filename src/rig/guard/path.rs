@@ -63,9 +63,9 @@ impl Guard<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{Interval, Limits};
-    use crate::rig::{VirtualRig, virtual_rig};
-    use crate::tests::testing::elastic_plan;
+    use crate::testing::plans::elastic_plan;
+    use crate::{VirtualRig, virtual_rig};
+    use psd_plan::{Interval, Limits};
 
     /// Back to 0 from 10 mm in increments of 0.1 mm: rounding of the positions beyond 1 mm exceeds the tolerance of an increment.
     #[test]

@@ -2,8 +2,8 @@
 //! reading, or the rig on hold.
 
 use super::outside;
-use crate::rig::safety::failpoint::{Guarding, on};
-use crate::rig::{Guard, LimitedQuantity, Reading, RigFault};
+use crate::safety::failpoint::{Guarding, on};
+use crate::{Guard, LimitedQuantity, Reading, RigFault};
 
 impl Guard<'_> {
     /// Reads once.

@@ -2,9 +2,9 @@
 //! every limit. A path is checked completely before it begins, at its reversal points too, and must continue the last one
 //! in position and velocity.
 
-use crate::physics::tracking::trajectory::Path;
-use crate::rig::safety::failpoint::{Guarding, on};
-use crate::rig::{Guard, RigFault, Traversed};
+use crate::safety::failpoint::{Guarding, on};
+use crate::{Guard, RigFault, Traversed};
+use psd_physics::tracking::trajectory::Path;
 
 impl Guard<'_> {
     /// Follows `paths`, one per degree of freedom, and reads at up to `samples` times. The last reading is at the end or at the point
@@ -59,10 +59,10 @@ impl Guard<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::tracking::trajectory::ActuatorMotion;
-    use crate::plan::{Interval, Limits, Settle, VirtualLink};
-    use crate::rig::LimitedQuantity;
-    use crate::rig::VirtualRig;
+    use crate::LimitedQuantity;
+    use crate::VirtualRig;
+    use psd_physics::tracking::trajectory::ActuatorMotion;
+    use psd_plan::{Interval, Limits, Settle, VirtualLink};
 
     const AT_ONCE: Settle = Settle {
         band: 0.0,

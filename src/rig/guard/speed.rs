@@ -1,8 +1,8 @@
 //! The speed of a motion: its limit before it begins, and the speed of the last motion for display. In: the requested speed, the speed
 //! decoded from a move, and the observed speed.
 
-use crate::plan::Interval;
-use crate::rig::{Guard, LimitedQuantity, RigFault};
+use crate::{Guard, LimitedQuantity, RigFault};
+use psd_plan::Interval;
 
 /// Fraction of the commanded speed by which the observed speed must exceed it. The rounding of clocks and positions is smaller.
 const BEYOND: f64 = 1e-3;
@@ -34,7 +34,7 @@ impl Guard<'_> {
     }
 
     /// Notes that a move with this commanded speed \[m/s\] is done.
-    pub(crate) fn note_speed(&mut self, commanded_speed: f64) {
+    pub fn note_speed(&mut self, commanded_speed: f64) {
         let seen = self
             .rig
             .seen_speed()
@@ -46,9 +46,9 @@ impl Guard<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::tracking::trajectory::{ActuatorMotion, Path};
-    use crate::plan::{Interval, Limits, Settle, VirtualLink};
-    use crate::rig::VirtualRig;
+    use crate::VirtualRig;
+    use psd_physics::tracking::trajectory::{ActuatorMotion, Path};
+    use psd_plan::{Interval, Limits, Settle, VirtualLink};
 
     const AT_ONCE: Settle = Settle {
         band: 0.0,

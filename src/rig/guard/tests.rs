@@ -1,7 +1,7 @@
 //! The guard on a scripted rig: nothing beyond a limit is proposed, and a reading beyond a limit holds the rig.
 
 use super::*;
-use crate::rig::{DeclaredNoise, EachReading, EncodedMove, Identity};
+use crate::{DeclaredNoise, EachReading, EncodedMove, Identity};
 
 /// Returns scripted readings, and records the calls.
 #[derive(Default)]

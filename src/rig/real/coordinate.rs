@@ -1,7 +1,7 @@
 //! The coordinate of one axis: conversion of positions and forces between its devices and the plan. In: numbers of one
 //! side. Out: those of the other. It knows no device and no run log.
 
-use crate::plan::{Interval, Limits};
+use psd_plan::{Interval, Limits};
 
 /// Direction and zero of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,6 @@
 //! One value for repeated readings of one quantity. In: their values. Out: the representative one. It knows no rig.
 
-use crate::rig::safety::failpoint::{Guarding, on};
+use crate::safety::failpoint::{Guarding, on};
 
 /// The median, which a single spike does not change; for an even count the mean of the middle two.
 pub(super) fn representative(mut values: Vec<f64>) -> f64 {

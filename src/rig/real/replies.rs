@@ -4,8 +4,8 @@
 use super::coordinate::Coordinate;
 use super::median::representative;
 use super::poll::newtons;
-use crate::plan::{Behind, RealLink, RigPlan};
-use crate::rig::controllers::{Channel, decoded, replies_to_reading};
+use crate::controllers::{Channel, decoded, replies_to_reading};
+use psd_plan::{Behind, RealLink, RigPlan};
 
 /// A reading as it is logged, with the replies beside it.
 pub struct LoggedReading<'a> {

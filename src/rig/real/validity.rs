@@ -1,11 +1,11 @@
 //! Validity of one reading. In: the replies of the devices, in SI. Out: valid, "ask again", or the reason why the rig must
 //! hold. It moves nothing and keeps only the history that shows a frozen sensor.
 
-use crate::plan::ReadingRules;
-use crate::rig::controllers::{Flags, Force, NOT_TRUSTED};
-use crate::rig::safety::failpoint::{Guarding, on};
-use crate::units::Dimension;
-use crate::units::display::readable;
+use crate::controllers::{Flags, Force, NOT_TRUSTED};
+use crate::safety::failpoint::{Guarding, on};
+use psd_plan::ReadingRules;
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 
 /// Nearness to an end of the range at which a reading is saturated, as a fraction of that end.
 const SATURATION: f64 = 1e-3;
@@ -239,8 +239,8 @@ fn saturation(sample: &RawSample, rules: &ReadingRules) -> Result<(), Invalid> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::Interval;
-    use crate::rig::safety::failpoint::without;
+    use crate::safety::failpoint::without;
+    use psd_plan::Interval;
 
     const RULES: ReadingRules = ReadingRules {
         samples: 1,

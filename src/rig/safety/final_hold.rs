@@ -1,8 +1,8 @@
 //! The result of the final hold of a rig, at the early end of a run. In: the replies of the rig and its position. Out: a
 //! sentence for the operator. It sends nothing to the rig.
 
-use crate::units::Dimension;
-use crate::units::display::readable;
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 
 /// The state of the rig after a run that ended early.
 #[derive(Clone, Debug, PartialEq)]

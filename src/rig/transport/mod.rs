@@ -10,7 +10,7 @@ mod tcp;
 use std::io;
 use std::time::Duration;
 
-use crate::plan::PortPlan;
+use psd_plan::PortPlan;
 
 pub use clock::MonotonicClock;
 pub use serial::SerialPort;

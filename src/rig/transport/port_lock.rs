@@ -7,7 +7,7 @@ use std::net::SocketAddr;
 #[cfg(target_os = "linux")]
 use std::os::{linux::net::SocketAddrExt as _, unix::net};
 
-use crate::rig::safety::failpoint::{Guarding, on};
+use crate::safety::failpoint::{Guarding, on};
 
 /// The lock on one address.
 #[derive(Debug)]

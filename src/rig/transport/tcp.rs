@@ -77,14 +77,14 @@ impl Port for TcpPort {
     }
 
     fn emergency(&self) -> io::Result<Box<dyn Emergency>> {
-        Sender::of(&self.descriptor)
+        Sender::to_same_line(&self.descriptor)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::safety::failpoint::{Guarding, without};
+    use crate::safety::failpoint::{Guarding, without};
     use std::io::{Read as _, Write as _};
     use std::net::TcpListener;
 

@@ -1,12 +1,12 @@
 //! The virtual actuator. In: reference motion, rig time \[s\]. Out: position and velocity of the piston. In closed form, so that a long
 //! settling time costs no more than a short one. It knows no specimen and no load cell.
 
-use crate::physics::relaxation::maxwell::Motion;
-use crate::physics::tracking::trajectory::Rate;
+use psd_physics::relaxation::maxwell::Motion;
+use psd_physics::tracking::trajectory::Rate;
 
 /// A servo whose piston follows its reference with a first-order lag: ẋ = (reference − x) / lag.
 #[derive(Clone, Debug)]
-pub(crate) struct Actuator {
+pub struct Actuator {
     /// Time constant \[s\]; 0: the piston is at the reference.
     lag: f64,
     /// Fraction of each increment not reached.
@@ -20,7 +20,7 @@ pub(crate) struct Actuator {
 }
 
 impl Actuator {
-    pub(crate) const fn new(lag: f64, tracking: f64) -> Self {
+    pub const fn new(lag: f64, tracking: f64) -> Self {
         Self {
             lag,
             tracking,
@@ -31,12 +31,12 @@ impl Actuator {
     }
 
     /// Position of the piston \[m\].
-    pub(crate) fn position(&self) -> f64 {
+    pub fn position(&self) -> f64 {
         self.reference - self.lagging
     }
 
     /// Velocity of the piston \[m/s\].
-    pub(crate) fn velocity(&self) -> f64 {
+    pub fn velocity(&self) -> f64 {
         if self.lag > 0.0 {
             self.lagging / self.lag
         } else {
@@ -46,27 +46,27 @@ impl Actuator {
 
     /// End of the reference for a `target`: short by the tracking fraction of the increment. An actuator takes the
     /// increment from its present position, so the error does not add up over steps in one direction.
-    pub(crate) fn aim(&self, target: f64) -> f64 {
+    pub fn aim(&self, target: f64) -> f64 {
         target - self.tracking * (target - self.position())
     }
 
     /// Present position of the reference \[m\].
-    pub(crate) const fn reference(&self) -> f64 {
+    pub const fn reference(&self) -> f64 {
         self.reference
     }
 
     /// Distance of the piston behind its reference \[m\], absolute value.
-    pub(crate) const fn lagging(&self) -> f64 {
+    pub const fn lagging(&self) -> f64 {
         self.lagging.abs()
     }
 
-    pub(crate) const fn lag(&self) -> f64 {
+    pub const fn lag(&self) -> f64 {
         self.lag
     }
 
     /// The reference moves uniformly to `to` in `seconds`. With e = reference − x: ė = v − e/lag, so e(t) = v·lag + (e₀ −
     /// v·lag)·exp(−t/lag). The reference continues at this velocity until `stop`. Gives the motion of the piston.
-    pub(crate) fn advance(&mut self, to: f64, seconds: f64) -> Motion {
+    pub fn advance(&mut self, to: f64, seconds: f64) -> Motion {
         if seconds <= 0.0 {
             return Motion::rest(0.0);
         }
@@ -83,14 +83,14 @@ impl Actuator {
     }
 
     /// The reference is at its position and passes it at `velocity` \[m/s\]: an interrupted motion is continued.
-    pub(crate) const fn pass(&mut self, velocity: f64) -> Motion {
+    pub const fn pass(&mut self, velocity: f64) -> Motion {
         self.reference_velocity = velocity;
         Motion::rest(0.0)
     }
 
     /// The reference moves to `to` in `seconds`; its velocity is a parabola in time with these end values. With e = reference − x: ė = q
     /// − e/lag, so e = `e_p` + (e₀ − `e_p0`)·exp(−t/lag) with `e_p` = lag·q − lag²·q' + lag³·q''.
-    pub(crate) fn run(&mut self, to: f64, before: Rate, after: Rate, seconds: f64) -> Motion {
+    pub fn run(&mut self, to: f64, before: Rate, after: Rate, seconds: f64) -> Motion {
         let mut travel = Motion {
             start: before,
             fading: 0.0,
@@ -122,12 +122,12 @@ impl Actuator {
     }
 
     /// The reference stops; the piston continues towards it.
-    pub(crate) const fn stop(&mut self) {
+    pub const fn stop(&mut self) {
         self.reference_velocity = 0.0;
     }
 
     /// `seconds` pass with the reference at rest.
-    pub(crate) fn rest(&mut self, seconds: f64) -> Motion {
+    pub fn rest(&mut self, seconds: f64) -> Motion {
         self.stop();
         let mut travel = Motion::rest(seconds);
         if self.lag > 0.0 && self.lagging != 0.0 {
@@ -138,7 +138,7 @@ impl Actuator {
     }
 
     /// Stays at its position.
-    pub(crate) fn hold(&mut self) {
+    pub fn hold(&mut self) {
         self.reference = self.position();
         self.lagging = 0.0;
         self.stop();

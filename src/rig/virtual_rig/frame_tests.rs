@@ -3,7 +3,7 @@
 
 use super::tests::AT_ONCE;
 use super::*;
-use crate::plan::{Behaviour, Storey};
+use psd_plan::{Behaviour, Storey};
 
 /// Storeys of 3 kN/m and 2 kN/m, the upper one yielding at 4 N.
 fn frame() -> Frame {
@@ -252,7 +252,7 @@ const UPPER: Path = Path {
     seconds: 0.1,
 };
 
-fn readings(link: VirtualLink, samples: usize) -> Vec<crate::rig::Reading> {
+fn readings(link: VirtualLink, samples: usize) -> Vec<crate::Reading> {
     let (mut rig, mut readings) = (damped_rig(link), Vec::new());
     rig.follow_paths_after(&[LOWER, UPPER], samples, 0, &mut |reading| {
         readings.push(reading);

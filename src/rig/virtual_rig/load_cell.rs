@@ -5,10 +5,10 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
-use crate::plan::VirtualLink;
+use psd_plan::VirtualLink;
 
 #[derive(Clone, Debug)]
-pub(crate) struct LoadCell {
+pub struct LoadCell {
     /// Standard deviation of one reading \[N\].
     noise: f64,
     /// \[N\]
@@ -19,7 +19,7 @@ pub(crate) struct LoadCell {
 }
 
 impl LoadCell {
-    pub(crate) fn new(link: &VirtualLink, seed: u64) -> Self {
+    pub fn new(link: &VirtualLink, seed: u64) -> Self {
         Self {
             noise: link.noise,
             resolution: link.force_resolution,
@@ -29,7 +29,7 @@ impl LoadCell {
     }
 
     /// One reading of `force` \[N\] at the rig time `time` \[s\].
-    pub(crate) fn read(&mut self, force: f64, time: f64) -> f64 {
+    pub fn read(&mut self, force: f64, time: f64) -> f64 {
         let deviation: f64 = if self.noise > 0.0 {
             StandardNormal.sample(&mut self.generator)
         } else {
@@ -43,7 +43,7 @@ impl LoadCell {
 }
 
 /// The nearest multiple of the resolution `quantum`; the value itself if the resolution is 0.
-pub(crate) fn to_quantum(value: f64, quantum: f64) -> f64 {
+pub fn to_quantum(value: f64, quantum: f64) -> f64 {
     if quantum > 0.0 {
         (value / quantum).round() * quantum
     } else {

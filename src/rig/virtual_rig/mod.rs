@@ -2,11 +2,11 @@
 //! target per axis. Out: readings. Its time is simulated; it reads no clock and no file. Each load
 //! cell has its own seed.
 
-pub(crate) mod actuator;
+pub mod actuator;
 #[cfg(test)]
 mod frame_tests;
-pub(crate) mod load_cell;
-pub(crate) mod settling;
+pub mod load_cell;
+pub mod settling;
 pub(super) mod smooth_paths;
 mod springs;
 mod stroke;
@@ -21,11 +21,11 @@ use super::virtual_rig::actuator::Actuator;
 use super::virtual_rig::load_cell::{LoadCell, to_quantum};
 use super::virtual_rig::settling::{Unsettled, dying, relaxing_time, settling_time, shared};
 use super::{CutOff, DeclaredNoise, EachReading, EncodedMove, Identity, Reading, Rig, RigFault};
-use crate::physics::relaxation::maxwell::Motion;
-use crate::physics::tracking::trajectory::Path;
-use crate::plan::{Frame, Plan, Settle, Specimen, VirtualLink};
+use psd_physics::relaxation::maxwell::Motion;
+use psd_physics::tracking::trajectory::Path;
+use psd_plan::{Frame, Plan, Settle, Specimen, VirtualLink};
 
-pub use crate::plan::VIRTUAL_SPEED as OWN_SPEED;
+pub use psd_plan::VIRTUAL_SPEED as OWN_SPEED;
 
 /// One degree of freedom, or the floors of a frame from the ground up.
 pub struct VirtualRig {

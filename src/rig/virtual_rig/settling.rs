@@ -1,26 +1,26 @@
 //! The settling time of the virtual rig. In: the plan's criterion and the lag of the piston. Out: the waiting time \[s\].
 
-use crate::physics::relaxation::maxwell::MaxwellBranch;
-use crate::physics::relaxation::relaxation_state::RelaxationState;
-use crate::physics::structure::cell_damping::StrengthRate;
-use crate::plan::Settle;
+use psd_physics::relaxation::maxwell::MaxwellBranch;
+use psd_physics::relaxation::relaxation_state::RelaxationState;
+use psd_physics::structure::cell_damping::StrengthRate;
+use psd_plan::Settle;
 
 /// The motion after the reference has arrived.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Unsettled {
+pub struct Unsettled {
     /// abs(reference − position) \[m\], which decays with `lag`.
-    pub(crate) lagging: f64,
+    pub lagging: f64,
     /// \[s\]
-    pub(crate) lag: f64,
+    pub lag: f64,
     /// abs(target − reference) \[m\], which is constant.
-    pub(crate) miss: f64,
+    pub miss: f64,
     /// Stiffness \[N/m\] and viscous damping \[N·s/m\], which convert motion into a force rate.
-    pub(crate) stiffness: f64,
-    pub(crate) damping: f64,
+    pub stiffness: f64,
+    pub damping: f64,
     /// \[N/s\]
-    pub(crate) drift: f64,
+    pub drift: f64,
     /// Restoring force \[N\] that increases with the speed, and its law.
-    pub(crate) rate: Option<(f64, StrengthRate)>,
+    pub rate: Option<(f64, StrengthRate)>,
 }
 
 impl Unsettled {
@@ -42,7 +42,7 @@ impl Unsettled {
 /// The lag error e decays as e·exp(−t/lag): |target − x| ≤ miss + |e| and |dF/dt| ≤ K·|e|/lag + c·|e|/lag² + |drift|. Both
 /// fall, so the settling time is the time at which a bound on |e| is met: t = lag·ln(|e|/bound). Noise does not count as
 /// force rate: a real rig filters it.
-pub(crate) fn settling_time(settle: &Settle, unsettled: &Unsettled) -> Option<f64> {
+pub fn settling_time(settle: &Settle, unsettled: &Unsettled) -> Option<f64> {
     if settle.band == 0.0 {
         return Some(0.0);
     }
@@ -76,7 +76,7 @@ pub(crate) fn settling_time(settle: &Settle, unsettled: &Unsettled) -> Option<f6
 }
 
 /// The relaxing branches of several specimens.
-pub(crate) fn dying(relaxing: &[&RelaxationState]) -> Vec<MaxwellBranch> {
+pub fn dying(relaxing: &[&RelaxationState]) -> Vec<MaxwellBranch> {
     relaxing
         .iter()
         .flat_map(|relaxing| relaxing.decaying())
@@ -85,7 +85,7 @@ pub(crate) fn dying(relaxing: &[&RelaxationState]) -> Vec<MaxwellBranch> {
 }
 
 /// The criterion with half of its force rate reserved for relaxation. If nothing relaxes, the lag has all of it.
-pub(crate) fn shared(settle: &Settle, unsettled: &Unsettled, relaxes: bool) -> Settle {
+pub fn shared(settle: &Settle, unsettled: &Unsettled, relaxes: bool) -> Settle {
     let left = settle.force_rate - unsettled.drift.abs();
     if !relaxes || settle.force_rate <= 0.0 || left <= 0.0 || unsettled.lag == 0.0 {
         return *settle;
@@ -99,7 +99,7 @@ pub(crate) fn shared(settle: &Settle, unsettled: &Unsettled, relaxes: bool) -> S
 /// Further time \[s\], after the `waited` of the lag, until the force rate of the relaxing branches is within their part of the bound,
 /// for the whole dwell. None if that is not reached within the timeout. The rates decrease, so the first such instant is found by
 /// bisection.
-pub(crate) fn relaxing_time(
+pub fn relaxing_time(
     settle: &Settle,
     unsettled: &Unsettled,
     branches: &[MaxwellBranch],
@@ -156,7 +156,7 @@ fn largest_below(most: f64, met: impl Fn(f64) -> bool) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::relaxation::maxwell::Motion;
+    use psd_physics::relaxation::maxwell::Motion;
 
     const SETTLE: Settle = Settle {
         band: 1e-5,

@@ -2,15 +2,15 @@
 //! the plan's directions. Out: readings. The pistons follow in closed form, so the number of readings does not change them.
 
 use super::{Axis, VirtualRig};
-use crate::physics::relaxation::maxwell::Motion;
-use crate::physics::tracking::trajectory::{Path, Rate};
-use crate::rig::virtual_rig::actuator::Actuator;
-use crate::rig::{EachReading, Rig as _, RigFault};
+use crate::virtual_rig::actuator::Actuator;
+use crate::{EachReading, Rig as _, RigFault};
+use psd_physics::relaxation::maxwell::Motion;
+use psd_physics::tracking::trajectory::{Path, Rate};
 
 /// The reference of one actuator along a path. The undershoot of the actuator changes uniformly from that of the last
 /// increment to that of this one, so its reference has no step.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Course {
+pub struct Course {
     path: Path,
     sign: f64,
     /// The undershoot at the beginning \[m\].
@@ -20,7 +20,7 @@ pub(crate) struct Course {
 }
 
 impl Course {
-    pub(crate) fn of(path: Path, sign: f64, actuator: &Actuator) -> Self {
+    pub fn along(path: Path, sign: f64, actuator: &Actuator) -> Self {
         let missed = sign * path.from - actuator.reference();
         let misses = sign * path.to - actuator.aim(sign * path.to);
         Self {
@@ -32,19 +32,14 @@ impl Course {
     }
 
     /// For the path on which the actuator was stopped before, otherwise for a new path.
-    pub(crate) fn resumed(
-        path: Path,
-        sign: f64,
-        actuator: &Actuator,
-        interrupted: Option<Self>,
-    ) -> Self {
+    pub fn resumed(path: Path, sign: f64, actuator: &Actuator, interrupted: Option<Self>) -> Self {
         interrupted
             .filter(|course| course.path == path)
-            .unwrap_or_else(|| Self::of(path, sign, actuator))
+            .unwrap_or_else(|| Self::along(path, sign, actuator))
     }
 
     /// The actuator moves from one time on the path to another \[s\]. Gives the motion of the piston.
-    pub(crate) fn advance(&self, actuator: &mut Actuator, from: f64, to: f64) -> Motion {
+    pub fn advance(&self, actuator: &mut Actuator, from: f64, to: f64) -> Motion {
         let position = self.sign * self.path.position(to) - (self.missed + self.drifts * to);
         actuator.run(position, self.rate(from), self.rate(to), to - from)
     }
@@ -68,7 +63,7 @@ impl Course {
 ///
 /// # Errors
 /// The paths differ in duration, or contain no motion.
-pub(crate) fn instants(paths: &[Path], samples: usize) -> Result<Vec<f64>, RigFault> {
+pub fn instants(paths: &[Path], samples: usize) -> Result<Vec<f64>, RigFault> {
     let seconds = paths.first().map_or(0.0, |path| path.seconds);
     let numbers = |path: &Path| {
         [
@@ -139,7 +134,7 @@ impl VirtualRig {
 mod tests {
     use super::super::tests::{AT_ONCE, specimen};
     use super::*;
-    use crate::plan::VirtualLink;
+    use psd_plan::VirtualLink;
 
     fn readings(link: VirtualLink, path: &Path, samples: usize) -> Vec<(f64, f64, f64)> {
         let mut rig = VirtualRig::new(link, AT_ONCE, Some(&specimen(50.0, 0.25)), 1.0);

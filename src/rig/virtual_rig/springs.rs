@@ -1,12 +1,12 @@
 //! The source of the axis forces of a virtual rig: a specimen, the storeys of a frame, or a matrix. In: positions of the
 //! pistons and their motion. Out: forces, and the remaining settling. It knows no actuator and no load cell.
 
-use crate::physics::relaxation::maxwell::Motion;
-use crate::physics::relaxation::relaxation_state::{Deformed, RelaxationState};
-use crate::physics::specimen::{RestoringForce as _, SpecimenModel};
-use crate::physics::structure::cell_damping::{CellDamping, StrengthRate};
-use crate::physics::structure::{SymmetricBand, drifts, floor_forces};
-use crate::plan::{Behaviour, Frame, Specimen};
+use psd_physics::relaxation::maxwell::Motion;
+use psd_physics::relaxation::relaxation_state::{Deformed, RelaxationState};
+use psd_physics::specimen::{RestoringForce as _, SpecimenModel};
+use psd_physics::structure::cell_damping::{CellDamping, StrengthRate};
+use psd_physics::structure::{SymmetricBand, drifts, floor_forces};
+use psd_plan::{Behaviour, Frame, Specimen};
 
 /// Springs between the axes and the ground.
 pub(super) enum Springs {

@@ -2,7 +2,7 @@
 //! readings. It knows no plan.
 
 use super::VirtualRig;
-use crate::rig::{EachReading, Rig as _, RigFault};
+use crate::{EachReading, Rig as _, RigFault};
 
 /// A uniform motion between two positions at the rig.
 #[derive(Clone, Copy)]

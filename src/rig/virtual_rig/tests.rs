@@ -2,7 +2,7 @@
 //! calculated by hand.
 
 use super::*;
-use crate::plan::Behaviour;
+use psd_plan::Behaviour;
 
 pub(super) const AT_ONCE: Settle = Settle {
     band: 0.0,

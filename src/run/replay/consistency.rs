@@ -12,9 +12,9 @@ use super::entry::{
 use super::logged_run::{LoggedRun, body};
 use crate::plan::{Datum, Plan};
 use crate::record::Event;
-use crate::record::journal::{EntryKind, Line, Recovered, is_written_as};
 use crate::rig::LineStatistics;
 use crate::rig::controllers::metres;
+use crate::rig::journal::{EntryKind, Line, Recovered, is_written_as};
 use crate::rig::real::{LoggedReading, check_replies};
 
 /// In a resumed run the time is a sum of two clocks.
@@ -101,8 +101,7 @@ impl PlansRig<'_> {
         let Some(link) = self.plan.rig.link.as_real() else {
             return without_bytes(rig.replies.is_empty(), "a virtual rig sends no bytes");
         };
-        // Run logs of older versions do not have it: their datum is the zero of the rig.
-        let datum = rig.datum.unwrap_or_else(|| vec![0.0; rig.axes]);
+        let datum = rig.datum.ok_or("a real rig states its datum")?;
         let at_zero = datum.iter().all(|position| *position == 0.0);
         if datum.len() != rig.axes || link.datum == Datum::Machine && !at_zero {
             return Err(format!("a datum at {} is not the plan's", metres(&datum)));

@@ -9,7 +9,7 @@ use super::entry_of::{append_sample, bits, in_log_time, intent, target_text};
 use super::recorded_rig::RecordedRig;
 use super::state::ended;
 use crate::physics::tracking::trajectory::Path;
-use crate::record::journal::EntryKind;
+use crate::rig::journal::EntryKind;
 use crate::rig::{CutOff, EachReading, EncodedMove, Rig, RigFault};
 
 impl ContinuousMove<'_> {

@@ -11,6 +11,9 @@ use crate::run::{Inspection, Request};
 /// Written instead of a protocol if the operator drives by hand.
 pub const BY_HAND: &str = "by hand";
 
+/// The computation rules of this version. A run log of other rules is refused: its replay would give another run.
+pub const RULES: u32 = 1;
+
 /// HEADER: the initial data of a run. They are sufficient to check the plan again on any machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
@@ -18,11 +21,9 @@ pub struct Header {
     pub psd: String,
     /// SHA-256 of the program's sources, hex.
     pub build: String,
-    /// The computation rules of the run ([`RULES`](super::RULES)). Run logs older than the second rules do not state them.
-    #[serde(default = "first_rules", skip_serializing_if = "is_first")]
+    /// The computation rules of the run ([`RULES`]).
     pub rules: u32,
-    /// Target, profile and compiler of the build; empty if they were not recorded.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
+    /// Target, profile and compiler of the build.
     pub toolchain: String,
     /// The plan first, then the files it uses. Their texts follow in PLAN entries.
     pub files: Vec<HeaderFile>,
@@ -30,15 +31,10 @@ pub struct Header {
     pub settings: Vec<(String, String)>,
     /// Name of the rig, as for `--rig`. None: the default of the plan.
     pub rig: Option<String>,
-    /// Measuring equipment and limits. None in run logs of version 1, which do not state them.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub equipment: Option<Equipment>,
-    /// Whether only the measured part of a check run was to run. The run log has the word of version 0.1.
-    #[serde(
-        default,
-        rename = "rehearsal",
-        skip_serializing_if = "std::ops::Not::not"
-    )]
+    /// Measuring equipment and limits.
+    pub equipment: Equipment,
+    /// Whether only the measured part of a check run was to run.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub check_run: bool,
     /// Protocol of the clients that drive the rig, or that it is driven by hand. None: the plan's procedures drive it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -51,18 +47,9 @@ pub struct Header {
     pub operator: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub host: Option<String>,
-    /// The start, UTC. None in run logs of simulated rigs by older versions.
+    /// The start, UTC. None if the run log is not kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub began: Option<String>,
-}
-
-const fn first_rules() -> u32 {
-    1
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
-const fn is_first(rules: &u32) -> bool {
-    *rules == first_rules()
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -113,12 +100,11 @@ pub struct RigBody {
     pub own_speed: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub last_move: Option<LastMove>,
-    /// For a real rig, the position of the plan's zero in its own coordinate \[m\], one per axis. None in run logs of older
-    /// versions, whose zero is the rig's own.
+    /// For a real rig, the position of the plan's zero in its own coordinate \[m\], one per axis.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub datum: Option<Vec<f64>>,
     /// The replies with its identity, escaped. Empty if the protocol has none.
-    #[serde(default, rename = "said", skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub replies: Vec<String>,
 }
 
@@ -134,7 +120,7 @@ pub struct IntentBody {
     /// As requested \[m/s\]; signed for a stroke.
     pub speed: Option<f64>,
     /// As decoded from the bytes \[m\] and \[m/s\], if different.
-    #[serde(default, rename = "said", skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub encoded: Option<Vec<f64>>,
     pub rate: f64,
     /// The bytes that carry the target, escaped.
@@ -250,7 +236,7 @@ pub enum OperatorBody {
 pub struct OperatorEntry {
     #[serde(flatten)]
     pub statement: OperatorBody,
-    /// Run logs of other builds may have none; a virtual run has none.
+    /// A virtual run has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wall: Option<String>,
 }
@@ -261,20 +247,20 @@ pub struct FaultBody {
     pub t: f64,
     pub call: Call,
     pub fault: RigFault,
-    /// The reading that exceeded a limit during a motion and ended it. Run logs of older versions have none.
+    /// The reading that exceeded a limit during a motion and ended it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reading: Option<SampleBody>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wall: Option<String>,
 }
 
-/// HELD: the result of the final hold. Run logs of older versions have none.
+/// HELD: the result of the final hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeldBody {
     /// Rig time \[s\].
     pub t: f64,
     /// The reason why the hold is not confirmed.
-    #[serde(default, rename = "doubt", skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unconfirmed: Option<String>,
     /// Its position \[m\] and force \[N\]. None if they could not be read.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -344,7 +330,6 @@ pub struct ResumeBody {
     pub from: u64,
     pub by: String,
     pub reason: String,
-    #[serde(rename = "doubt")]
     pub target_status: TargetStatus,
     /// The assurances of the operator who resumes it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -428,11 +413,9 @@ pub enum TargetStatus {
     /// It never arrived: it is sent again.
     NotExecuted,
     /// The rig was held during the motion: the same absolute target is sent again.
-    #[serde(rename = "held_on_the_way")]
     HeldDuringMotion,
     /// A motion with readings during the motion was interrupted. It is continued from the present position: no part of it is travelled
     /// twice. Its start \[m\].
-    #[serde(rename = "rest_of_the_way")]
     RemainingMotion { from: Vec<f64> },
     /// A stroke was interrupted, continued to its end, and most of its readings are missing. The rig moves back to its start (\[m\]; the
     /// axes after the first in `others`), and the stroke is repeated.

@@ -2,8 +2,8 @@
 
 use super::entry::{IntentBody, RigBody, SampleBody, escaped};
 use super::state::State;
-use crate::record::journal::EntryKind;
 use crate::rig::controllers::metres;
+use crate::rig::journal::EntryKind;
 use crate::rig::{DeclaredNoise, EncodedMove, Identity, Reading, Rig, RigFault};
 
 impl RigBody {

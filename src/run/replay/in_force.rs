@@ -4,15 +4,14 @@
 
 use super::entry::{Header, RigBody};
 use crate::plan::Interval;
-use crate::record::equipment::Equipment;
 use crate::rig::safety::failpoint::{Guarding, on};
 
 /// A rig that answered, and the entries to which it applies.
 #[derive(Clone, Debug)]
 pub struct InForce {
     pub rig: RigBody,
-    /// The limit of speed in its header \[m/s\]. None: the header states no limits.
-    pub speed_limit: Option<Interval>,
+    /// The limit of speed in its header \[m/s\].
+    pub speed_limit: Interval,
     /// The first entry to which it applies.
     from: u64,
 }
@@ -60,7 +59,7 @@ impl Rigs {
         let Some(rig) = self.answered.take() else {
             return;
         };
-        let speed_limit = header.equipment.as_ref().map(Equipment::speed_limit);
+        let speed_limit = header.equipment.speed_limit();
         self.in_force.push(InForce {
             rig,
             speed_limit,

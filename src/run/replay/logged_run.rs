@@ -5,10 +5,10 @@ use std::collections::VecDeque;
 
 use serde::de::DeserializeOwned;
 
-use super::entry::{AmendBody, Header, PlanBody, ResumeBody, RigBody, TargetStatus};
+use super::entry::{AmendBody, Header, PlanBody, RULES, ResumeBody, RigBody, TargetStatus};
 use super::in_force::Rigs;
-use crate::record::journal::{EntryKind, Line, Recovered};
 use crate::record::{Event, EventKind};
+use crate::rig::journal::{EntryKind, Line, Recovered};
 use crate::rig::{LineStatistics, position_and_force};
 
 /// The content of a run log.
@@ -46,6 +46,8 @@ pub enum UnreadableLog {
     },
     #[error("it has no header")]
     NoHeader,
+    #[error("its rules are {found}; this psd reads rules {RULES}")]
+    Rules { found: u32 },
 }
 
 /// The replay of the run log gave a different result.
@@ -70,7 +72,7 @@ impl LoggedRun {
             .ok_or(UnreadableLog::NoHeader)?;
         let mut logged = Self {
             texts: Vec::new(),
-            header: body(first)?,
+            header: by_these_rules(body(first)?)?,
             rigs: Rigs::default(),
             lines: VecDeque::with_capacity(recovered.lines.len()),
             interruptions: Vec::new(),
@@ -112,7 +114,13 @@ impl LoggedRun {
                 self.texts.resize(self.header.files.len(), String::new());
                 self.texts[part.file].push_str(&part.text);
             }
-            EntryKind::Amend => self.amended(body(line)?),
+            EntryKind::Amend => {
+                let amend: AmendBody = body(line)?;
+                self.amended(AmendBody {
+                    header: by_these_rules(amend.header)?,
+                    ..amend
+                });
+            }
             EntryKind::Resume => self.resumed(body(line)?),
             EntryKind::Recover => self.recovered(),
             EntryKind::LineStatistics => self.line_statistics = body(line)?,
@@ -186,6 +194,14 @@ impl LoggedRun {
             kind,
             text,
         });
+    }
+}
+
+/// The header, if its run follows the rules of this version.
+fn by_these_rules(header: Header) -> Result<Header, UnreadableLog> {
+    match header.rules {
+        RULES => Ok(header),
+        found => Err(UnreadableLog::Rules { found }),
     }
 }
 

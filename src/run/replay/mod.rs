@@ -6,7 +6,6 @@
 //! Order of a step on a real rig: INTENT durable → target sent → SAMPLE durable → integrated →
 //! STEP.
 
-mod compatibility;
 mod consistency;
 mod continuous_motion;
 mod continuous_move;
@@ -22,11 +21,10 @@ mod state;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub use compatibility::RULES;
 pub use consistency::{Contradiction, check_consistency};
 pub use entry::{
-    AmendBody, Assurance, BY_HAND, Call, Header, HeaderFile, HeldBody, IntentBody, RecoverBody,
-    ResumeBody, RigBody, SampleBody, StrokeBody, TargetStatus,
+    AmendBody, Assurance, BY_HAND, Call, Header, HeaderFile, HeldBody, IntentBody, RULES,
+    RecoverBody, ResumeBody, RigBody, SampleBody, StrokeBody, TargetStatus,
 };
 pub use in_force::{InForce, Rigs};
 pub use logged_run::{LoggedRun, Mismatch, UnreadableLog};
@@ -43,9 +41,9 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use crate::plan::Plan;
-use crate::record::journal::{EntryKind, Journal, JournalFault};
 use crate::record::{Event, Outcome, Record};
 use crate::rig::Rig;
+use crate::rig::journal::{EntryKind, Journal, JournalFault};
 use entry::PlanBody;
 use state::{Begin, State};
 
@@ -112,13 +110,11 @@ pub fn replay(plan: &Plan, logged: LoggedRun) -> Replayed {
             Driver::Client
         }
     });
-    let as_run = compatibility::as_it_was_run(plan, &logged);
     let state = State::replaying(logged);
     let mut steps = None;
     let Recorded {
         record, mismatch, ..
     } = if let Some(driver) = driver {
-        let plan = as_run.as_ref();
         perform(None, &mut Unwatched, state, |rig, observer, state| {
             let requests = Requests {
                 driver,
@@ -131,7 +127,7 @@ pub fn replay(plan: &Plan, logged: LoggedRun) -> Replayed {
         })
     } else {
         perform(None, &mut Unwatched, state, |rig, observer, _| {
-            run(as_run.as_ref(), rig, observer)
+            run(plan, rig, observer)
         })
     };
     Replayed {
@@ -160,7 +156,6 @@ pub fn resume<'rig, E: From<ResumeRefusal> + 'rig>(
     let refusal = Rc::clone(&refused);
     let begin: Begin<'rig> =
         Box::new(move || begin().map_err(|error| refusal.replace(Some(error))).ok());
-    let as_run = compatibility::as_it_was_run(plan, logged);
     let state = State::resuming(
         LoggedRun {
             lines: lines.into(),
@@ -171,7 +166,7 @@ pub fn resume<'rig, E: From<ResumeRefusal> + 'rig>(
         wall,
     );
     let recorded = perform(None, observer, state, |rig, observer, _| {
-        run(as_run.as_ref(), rig, observer)
+        run(plan, rig, observer)
     });
     if let Some(error) = refused.take() {
         return Err(error);

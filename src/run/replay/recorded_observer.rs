@@ -4,12 +4,11 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use super::compatibility::is_recorded;
 use super::entry::{AxisBody, OperatorBody, OperatorEntry, StepBody};
 use super::state::State;
 use crate::record::Event;
-use crate::record::journal::EntryKind;
-use crate::run::{AxisReport, Inspection, Motion, Next, Observer, Request, StepReport, UNLOADING};
+use crate::rig::journal::EntryKind;
+use crate::run::{AxisReport, Inspection, Motion, Next, Observer, Request, StepReport};
 
 /// An observer of a run whose answers are all logged.
 pub struct RecordedObserver<'run, 'rig> {
@@ -98,7 +97,7 @@ impl Observer for RecordedObserver<'_, '_> {
         if self.answers_from_the_log() {
             let mut state = self.state.borrow_mut();
             if let Ok(recorded) = state.peek::<Event>(EntryKind::Event, &event.text) {
-                if is_recorded(event, &recorded, state.present_wording) {
+                if recorded == *event {
                     state.consume();
                 } else {
                     state.report_mismatch(event.text.clone());
@@ -198,15 +197,10 @@ impl Observer for RecordedObserver<'_, '_> {
                     Ok(OperatorBody::AnsweredToUnload {
                         question: asked,
                         answer,
-                    }) if asked == question || !state.present_wording => {
+                    }) if asked == question => {
                         state.consume();
                         Some(answer)
                     }
-                    _ => None,
-                },
-                // Older versions unloaded without a question.
-                Some(EntryKind::Event) => match state.peek::<Event>(EntryKind::Event, UNLOADING) {
-                    Ok(event) if event.text == UNLOADING => Some(Inspection::go_on()),
                     _ => None,
                 },
                 _ => None,
@@ -252,7 +246,7 @@ impl RecordedObserver<'_, '_> {
                 Ok(OperatorBody::Answered {
                     note: asked,
                     answer,
-                }) if asked == note || !state.present_wording => {
+                }) if asked == note => {
                     state.consume();
                     answer
                 }

@@ -10,7 +10,7 @@ use super::entry_of::{append_sample, in_log_time, intent, same_bits, target_text
 use super::state::{State, ended};
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::{Interval, Limits};
-use crate::record::journal::EntryKind;
+use crate::rig::journal::EntryKind;
 use crate::rig::safety::failpoint;
 use crate::rig::safety::failpoint::Guarding;
 use crate::rig::{
@@ -447,7 +447,7 @@ impl Rig for RecordedRig<'_> {
     fn logged_speed_limit(&self) -> Option<Interval> {
         let state = self.state.borrow();
         let logged = state.rig_in_force().filter(|_| state.next_kind().is_some());
-        logged.and_then(|in_force| in_force.speed_limit)
+        logged.map(|in_force| in_force.speed_limit)
     }
 
     fn take_broken(&mut self) -> Option<Reading> {

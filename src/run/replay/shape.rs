@@ -8,7 +8,7 @@ use super::entry::{
     Call, FaultBody, HeldBody, IntentBody, ResumeBody, RigBody, SampleBody, StepBody, TargetStatus,
 };
 use crate::plan::Plan;
-use crate::record::journal::{EntryKind, Line, Recovered};
+use crate::rig::journal::{EntryKind, Line, Recovered};
 
 /// An entry that no run of its plan can have written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -132,7 +132,7 @@ impl Shape<'_> {
     fn sent(&self, intent: &IntentBody) -> Result<(), String> {
         self.moves(&[
             ("to", &intent.to),
-            ("said", intent.encoded.as_ref().unwrap_or(&intent.to)),
+            ("encoded", intent.encoded.as_ref().unwrap_or(&intent.to)),
         ])?;
         let paths = intent.path.as_ref().map_or(intent.to.len(), Vec::len);
         if paths == intent.to.len() {

@@ -7,7 +7,6 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::Wall;
-use super::compatibility::has_present_wording;
 use super::entry::{
     Call, EndBody, EndOutcome, FaultBody, HeldBody, IntentBody, OperatorBody, SampleBody,
     TargetStatus,
@@ -15,7 +14,7 @@ use super::entry::{
 use super::in_force::{InForce, Rigs};
 use super::logged_run::{LoggedRun, Mismatch, body};
 use crate::record::Event;
-use crate::record::journal::{EntryKind, Journal, JournalFault, Line};
+use crate::rig::journal::{EntryKind, Journal, JournalFault, Line};
 use crate::rig::{LineStatistics, Reading, Rig, RigFault};
 use crate::run::Request;
 
@@ -50,8 +49,6 @@ pub(super) struct State<'rig> {
     opened: Option<&'rig mut dyn Rig>,
     /// A client drove the rig: the client's requests are logged between a proposal and its target.
     pub(super) driven: bool,
-    /// Events and questions of the run log have the wording of this version: their texts are compared.
-    pub(super) present_wording: bool,
     pub(super) rigs: Rigs,
     journal: Option<Journal>,
     /// The status of the target at the end of the replay, from the resumption.
@@ -86,7 +83,6 @@ impl<'rig> State<'rig> {
         let time = logged.rigs.first().map_or(0.0, |rig| rig.t);
         Self {
             driven: logged.header.served.is_some(),
-            present_wording: has_present_wording(&logged),
             lines: logged.lines,
             time,
             rigs: logged.rigs,
@@ -119,7 +115,6 @@ impl<'rig> State<'rig> {
             undecided: None,
             opened: None,
             driven: false,
-            present_wording: true,
             rigs: Rigs::default(),
             journal: None,
             target_status: None,
@@ -283,7 +278,7 @@ impl<'rig> State<'rig> {
         }
     }
 
-    /// The result of the final hold, which a run log that failed states after its failure. None: an older version did not log it.
+    /// The result of the final hold, which a run log that failed states after its failure. None: the log was cut off before it.
     pub(super) fn logged_final_hold(&mut self) -> Option<HeldBody> {
         let at = usize::from(self.final_entry().is_some());
         let is_held = |line: &&Line| self.mismatch.is_none() && line.kind == EntryKind::Held;

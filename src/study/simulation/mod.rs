@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use super::data_set::Row;
 use super::definition::Definition;
-use crate::language::check::ParsedPlan;
+use crate::check::ParsedPlan;
 use crate::plan::Plan;
 use crate::text::diagnostic::Diagnostic;
 use crate::units::Quantity;

@@ -1,7 +1,7 @@
 //! Runs of studies made by hand: alone and in batches, invalid, stopped, and taken again by `--set`.
 
 use super::*;
-use crate::language::check::{LoadError, Options, check};
+use crate::check::{LoadError, Options, check};
 use crate::physics::study::distribution::{Distribution, Spread};
 use crate::physics::study::inputs::Source;
 use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
@@ -107,7 +107,7 @@ fn every_example_that_a_batch_takes_has_the_same_results_in_it() {
             .results
             .iter()
             .map(|result| result.name)
-            .filter(|name| crate::procedures::impact::steps::batched::gives(name))
+            .filter(|name| crate::procedures::impact::batched::gives(name))
             .collect();
         for name in names {
             let number = |record: &crate::record::Record| {

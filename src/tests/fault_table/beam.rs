@@ -4,16 +4,16 @@
 //! and force at one instant. For every other driver the sweep is refused, and its result is supplied instead.
 
 use super::stage::{emulator, header, open};
+use crate::check::{Checked, LoadError, Options, check};
 use crate::emulator::Log;
-use crate::language::check::{Checked, LoadError, Options, check};
 use crate::plan::Plan;
 use crate::plan::formula::ResultValue;
-use crate::record::journal::testing::PowerLoss;
-use crate::record::journal::{Durability, Journal};
 use crate::record::{Outcome, Record};
+use crate::rig::journal::{Durability, Journal};
 use crate::rig::virtual_rig;
 use crate::run::{Unwatched, replay, run};
 use crate::text::diagnostic::Code;
+use psd_testing::journal::PowerLoss;
 
 /// Stiffness of the beam \[N/m\].
 const STIFFNESS: f64 = 3e5;
@@ -151,7 +151,7 @@ impl Case {
         let mut rig =
             open(&plan, &emulator).unwrap_or_else(|fault| panic!("{}: {fault}", self.devices));
         let mut journal = Journal::create(Box::new(PowerLoss::new()), Durability::EverySyncPoint);
-        replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+        replay::begin(&mut journal, &header(&plan), &["text".to_owned()]).unwrap();
         let record =
             replay::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None)).record;
         assert!(

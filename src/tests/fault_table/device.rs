@@ -4,7 +4,7 @@
 use super::stage::{STIFFNESS, link, plan, run, run_without};
 use crate::plan::Interval;
 use crate::record::Outcome;
-use crate::record::journal::EntryKind;
+use crate::rig::journal::EntryKind;
 use crate::rig::safety::failpoint::Guarding;
 
 #[test]

@@ -6,16 +6,16 @@ use super::motion::impact_plan;
 use super::stage::{Ended, STIFFNESS, emulator, header, link, open, plan_of, run, run_watched, to};
 use crate::emulator::Log;
 use crate::plan::{Limits, Plan, ProcedureKind, SafeState};
-use crate::record::journal::testing::PowerLoss;
-use crate::record::journal::testing::recover;
-use crate::record::journal::{Durability, EntryKind, Journal};
 use crate::record::{EventKind, History, Outcome, Record};
+use crate::rig::journal::{Durability, EntryKind, Journal};
 use crate::rig::real::RealRig;
-use crate::rig::testing::forwarded;
 use crate::rig::{Rig, RigFault};
 use crate::run::replay::LoggedRun;
 use crate::run::{Inspection, Motion, Observer, UNLOADING, Unwatched, replay};
 use crate::tests::testing::{number, ramp};
+use psd_testing::forwarded;
+use psd_testing::journal::PowerLoss;
+use psd_testing::journal::recover;
 
 /// Force limit \[N\]: exceeded between the positions of two readings, and far from every target.
 const LIMIT: f64 = 125.0;
@@ -148,7 +148,7 @@ fn limits_that_do_not_reach_the_rig_leave_it_on_hold_and_the_run_replays() {
     let mut rig = Refusing(open(&plan, &emulator).unwrap());
     let disk = PowerLoss::new();
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
-    replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    replay::begin(&mut journal, &header(&plan), &["text".to_owned()]).unwrap();
     let recorded = replay::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None));
     let reported = |record: &Record| {
         let mut texts = record.events.iter().map(|event| event.text.as_str());

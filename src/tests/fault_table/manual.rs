@@ -1,13 +1,13 @@
 //! The rigs of the manual, each with its own emulator and the noise that it declares. Every rig passes its pre-test check for every seed.
 
 use super::stage::{emulator, header, open};
+use crate::check::{LoadError, Options, check};
 use crate::emulator::Log;
-use crate::language::check::{LoadError, Options, check};
 use crate::plan::Plan;
 use crate::record::Outcome;
-use crate::record::journal::testing::PowerLoss;
-use crate::record::journal::{Durability, Journal};
+use crate::rig::journal::{Durability, Journal};
 use crate::run::{Unwatched, replay};
+use psd_testing::journal::PowerLoss;
 
 /// The plans of the manual use no file but a ground motion.
 fn ground(path: &str) -> Result<String, LoadError> {
@@ -63,7 +63,7 @@ fn every_rig_of_the_manual_passes_its_pretest_check() {
             let mut rig = open(&plan, &emulator).unwrap_or_else(|fault| panic!("{name}: {fault}"));
             let mut journal =
                 Journal::create(Box::new(PowerLoss::new()), Durability::EverySyncPoint);
-            replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+            replay::begin(&mut journal, &header(&plan), &["text".to_owned()]).unwrap();
             let recorded =
                 replay::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None));
             assert_eq!(

@@ -4,10 +4,11 @@
 use super::stage::{STIFFNESS, plan, plan_of, run, run_without};
 use crate::plan::formula::Formula;
 use crate::plan::{Impact, InspectTrigger, Interval, Plan, ProcedureKind, Stepping};
-use crate::record::journal::EntryKind;
 use crate::record::{EventKind, Outcome};
+use crate::rig::journal::EntryKind;
 use crate::rig::safety::failpoint::Guarding;
 use crate::tests::testing::{every, impact};
+use psd_testing::plans::ChangeTarget as _;
 
 #[test]
 fn an_actuator_that_sticks_or_lags_is_a_following_error() {

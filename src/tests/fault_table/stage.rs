@@ -1,17 +1,14 @@
 //! A whole run on a rig emulator. In: a plan and a script of faults. Out: the outputs of the run, with the checks that the fault tests
 //! make on them.
 
-use crate::emulator::testing::{InProcess, SharedText, SimulatedPort};
 use crate::emulator::{Log, Script, of_plan};
 use crate::plan::formula::Formula;
 use crate::plan::{
     Behind, Datum, DeviceLink, Dialect, Interval, Limits, Link, Move, Plan, PortPlan, PretestCheck,
     ProcedureKind, ReadingRules, RealLink, SafeState, Settle,
 };
-use crate::record::journal::testing::PowerLoss;
-use crate::record::journal::testing::recover;
-use crate::record::journal::{Durability, EntryKind, Journal, Line, Recovered};
 use crate::record::{EventKind, History, Outcome, Record};
+use crate::rig::journal::{Durability, EntryKind, Journal, Line, Recovered};
 use crate::rig::real::RealRig;
 use crate::rig::safety::failpoint::{Guarding, without};
 use crate::rig::transport::Port;
@@ -21,6 +18,9 @@ use crate::run::replay::LoggedRun;
 use crate::run::{Observer, Unwatched};
 pub(super) use crate::tests::testing::header;
 use crate::tests::testing::{elastic_plan, ramp};
+use psd_testing::emulator::{InProcess, SharedText, SimulatedPort};
+use psd_testing::journal::PowerLoss;
+use psd_testing::journal::recover;
 
 /// Stiffness of the specimen \[N/m\].
 pub(super) const STIFFNESS: f64 = 1e5;
@@ -143,7 +143,7 @@ pub(super) fn run_watched(
     let mut rig = open(plan, &emulator)?;
     let disk = PowerLoss::new();
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
-    replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    replay::begin(&mut journal, &header(plan), &["text".to_owned()]).unwrap();
     let recorded = replay::record(plan, &mut rig, observer, journal, Box::new(|| None));
     assert!(recorded.mismatch.is_none() && recorded.fault.is_none());
     let recovered = recover(&disk.written()).unwrap();

@@ -10,11 +10,11 @@ use super::stage::{
 };
 use crate::emulator::Log;
 use crate::plan::{Datum, Dialect, ModbusMap, ModbusNumber, Plan};
-use crate::record::journal::EntryKind;
-use crate::record::journal::testing::PowerLoss;
 use crate::record::{EventKind, Outcome};
 use crate::rig::Rig as _;
+use crate::rig::journal::EntryKind;
 use crate::rig::safety::failpoint::{Guarding, without};
+use psd_testing::journal::PowerLoss;
 
 const AT_3_MM: &str = "stands at 3 mm";
 
@@ -190,12 +190,12 @@ fn a_run_goes_on_from_the_zero_on_record() {
     }
 }
 
-/// A run log of an older version, which did not ask for the start position, is replayed unchanged.
 #[test]
-fn a_record_without_a_datum_replays_unchanged() {
+fn a_record_without_a_datum_is_found() {
     let sent = run_without(Guarding::PretestStart, &plan(), AT_3_MM);
     let alter = |body: &mut serde_json::Value| drop(body.as_object_mut().unwrap().remove("datum"));
-    assert_eq!(found(&plan(), &sent, EntryKind::Rig, 0, alter), Ok(()));
+    let fault = found(&plan(), &sent, EntryKind::Rig, 0, alter).unwrap_err();
+    assert!(fault.contains("a real rig states its datum"), "{fault}");
 }
 
 #[test]

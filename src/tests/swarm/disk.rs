@@ -6,8 +6,8 @@ use std::panic::resume_unwind;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::fault::{DiskFault, Fault, Kill};
-use crate::record::journal::Storage;
-use crate::record::journal::testing::PowerLoss;
+use crate::rig::journal::Storage;
+use psd_testing::journal::PowerLoss;
 
 /// psd was killed: the panic of a kill, which is no fault.
 pub(super) struct Killed;

@@ -14,13 +14,13 @@ use super::world::{Endless, World};
 use crate::emulator::Log;
 use crate::emulator::script::LineFault;
 use crate::plan::{Behind, Plan};
-use crate::record::journal::testing::recover;
-use crate::record::journal::{Durability, EntryKind, Journal, Recovered};
 use crate::record::{Outcome, Record};
+use crate::rig::journal::{Durability, EntryKind, Journal, Recovered};
 use crate::rig::real::RealRig;
 use crate::rig::{RigFault, StopRequest, controllers};
 use crate::run::replay::{self, LoggedRun, Recorded, ResumeBody, TargetStatus};
 use crate::tests::testing::header;
+use psd_testing::journal::recover;
 
 /// What a life left behind.
 pub(super) struct Lived {
@@ -194,7 +194,7 @@ impl<'a> Life<'a> {
             Err(fault) => return Ended::Refused(fault.to_string()),
         };
         let mut journal = Journal::create(Box::new(self.disk.clone()), Durability::EverySyncPoint);
-        if let Err(fault) = replay::begin(&mut journal, &header(), &["text".to_owned()]) {
+        if let Err(fault) = replay::begin(&mut journal, &header(&self.plan), &["text".to_owned()]) {
             return Ended::Refused(fault.to_string());
         }
         let mut operator = self.operator(session, &self.plan, stop_request);

@@ -9,7 +9,7 @@ use super::laws::{Law, Released};
 use super::life::{Ended, Life, open, read};
 use crate::cli::operator::watch::Shared;
 use crate::plan::Plan;
-use crate::record::journal::{Durability, EntryKind, Journal, Storage as _};
+use crate::rig::journal::{Durability, EntryKind, Journal, Storage as _};
 use crate::rig::{Reading, Rig as _, RigFault, StopRequest};
 use crate::run::replay::{
     self, AmendBody, Assurance, Bands, Continuation, HeldBody, IntentBody, LoggedRun, RecoverBody,

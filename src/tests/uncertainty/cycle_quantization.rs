@@ -32,7 +32,6 @@ fn plan(behaviour: &Behaviour, amplitude: f64, about: f64, link: VirtualLink) ->
         rate: None,
         inspect: Vec::new(),
         fit: None,
-        evenly: false,
     };
     let mut plan = elastic_plan(1000.0, vec![ProcedureKind::Cycle(cycle)]);
     plan.specimens[0].behaviour = Some(behaviour.clone());

@@ -198,7 +198,6 @@ fn the_loops_of_a_cycle_are_predicted() {
         rate: None,
         inspect: Vec::new(),
         fit: None,
-        evenly: false,
     };
     let mut plan = elastic_plan(1000.0, vec![ProcedureKind::Cycle(cycle)]);
     plan.specimens[0].behaviour = Some(Behaviour::Bilinear {

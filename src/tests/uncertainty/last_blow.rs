@@ -3,13 +3,14 @@
 
 use crate::physics::contact::Approaching;
 use crate::physics::impact::{ImpactInput, Until};
-use crate::physics::reintegration::hysteresis_replay::Reading;
 use crate::physics::reintegration::impact::{ImpactValues, integrate};
+use crate::physics::reintegration::recorded_path::Reading;
 use crate::plan::formula::Formula;
 use crate::plan::{Contact, Impact, Link, Plan, ProcedureKind, VirtualLink};
 use crate::record::{NamedResult, Record};
 use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched};
 use crate::uncertainty::StepInterval;
+use psd_testing::plans::ChangeTarget as _;
 
 /// The beam of `plans/beam.psd`.
 const STIFFNESS: f64 = 3e5;

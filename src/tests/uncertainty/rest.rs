@@ -7,7 +7,6 @@ use crate::plan::{Behaviour, Calibration, Link, Plan, VirtualLink};
 use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::unload::run::{of_frame, to_rest};
 use crate::record::Rest;
-use crate::rig::testing::forwarded;
 use crate::rig::{EachReading, EncodedMove, Reading, Rig, RigFault, virtual_rig};
 use crate::run::Unwatched;
 use crate::run::inputs::Inputs;
@@ -15,6 +14,7 @@ use crate::run::session::Session;
 use crate::tests::procedures::frame::{close, three};
 use crate::tests::testing::elastic_plan;
 use crate::uncertainty::{Contribution, Source, combined};
+use psd_testing::forwarded;
 
 /// Force factor of the cell, its zero error \[N\], and displacement factor of the transducer, for each axis.
 #[derive(Clone, Copy, Debug)]

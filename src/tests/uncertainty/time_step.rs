@@ -9,6 +9,7 @@ use crate::plan::{
 use crate::record::{EventKind, Outcome, Record};
 use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched};
 use crate::uncertainty::{Source, StepInterval};
+use psd_testing::plans::ChangeTarget as _;
 
 const STIFFNESS: f64 = 327.65;
 const STRIKER: f64 = 10.0;

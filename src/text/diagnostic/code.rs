@@ -22,12 +22,6 @@ macro_rules! codes {
             pub const fn severity(self) -> Severity {
                 match self { $(Code::$name => Severity::$severity),* }
             }
-
-            /// The page that `psd explain` shows: meaning, reason, a wrong plan and a right one.
-            #[must_use]
-            pub const fn page(self) -> &'static str {
-                match self { $(Code::$name => include_str!(concat!("explain/", stringify!($code), ".md"))),* }
-            }
         }
     };
 }
@@ -56,7 +50,6 @@ codes! {
     E212 BlockName Error;
     E213 BadArgument Error;
     E214 UnknownParameter Error;
-    E215 OldName Error;
     // 3: dimensions and types
     E301 WrongDimension Error;
     E302 MissingUnit Error;

@@ -1,9 +1,10 @@
 //! Diagnostics as data. Every stage makes [`Diagnostic`]s; only [`render`] prints them for readers
-//! and [`json`] for editors. [`code`] lists each code once, with its page for `psd explain`.
+//! and [`json`] for editors. [`code`] lists each code once; [`page`] reads its page for `psd explain`.
 
 pub mod code;
 pub mod excerpt;
 pub mod json;
+pub mod page;
 pub mod render;
 
 pub use code::Code;

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::source_text::files_in;
-use psd::language::check::{Options, check};
+use psd::check::{Options, check};
 use psd::report::{Provenance, Run, vectors};
 use psd::rig::VirtualRig;
 use psd::run::{Unwatched, run};

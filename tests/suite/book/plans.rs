@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::source_text::files_in;
-use psd::language::check::{Options, check};
+use psd::check::{Options, check};
 use psd::text::diagnostic::render::{Appearance, render_all};
 
 /// The rig to select for a plan that has only real rigs.

@@ -560,7 +560,6 @@ fn plan() -> Plan {
         golden: psd::plan::Golden::default(),
         check_run_of: None,
         studies: psd::plan::Studies::default(),
-        unloads_at_once: false,
         files: vec![
             PlanFile {
                 name: "beam.psd".into(),

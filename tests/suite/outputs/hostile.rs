@@ -1,15 +1,15 @@
 //! Labels that contain markup or control characters, in every output: page, terminal, tables, JSON, file names, manifest, record. Each
 //! must appear as plain text.
 
+use psd::check::{Checked, Options, check, no_files};
 use psd::golden::comparison::page;
 use psd::golden::comparison::{Comparison, Side, csv};
 use psd::golden::print::json as golden_json;
 use psd::golden::{Change, Finding, Outcome as TestOutcome, Part, Report, Tested, junit, tap};
-use psd::language::check::{Checked, Options, check, no_files};
 use psd::plan::Format;
-use psd::record::journal::{Durability, EntryKind, FileStorage, Journal, recover};
 use psd::record::{EventKind, Outcome};
 use psd::report::{Figures, OutputFile, console};
+use psd::rig::journal::{Durability, EntryKind, FileStorage, Journal, recover};
 use psd::text::diagnostic::{json, render};
 use psd::text::sanitize;
 use rayon::prelude::*;

@@ -381,7 +381,7 @@ fn an_amended_name_of_the_operator_is_on_the_first_page_and_not_in_the_provenanc
     let issue = Issue {
         kind: IssueKind::Amendment,
         replaces: "0123".into(),
-        date: Some("2027-03-09".into()),
+        date: "2027-03-09".into(),
         by: "B. Editor".into(),
         reason: Some("a letter".into()),
         changes: vec![change],

@@ -5,9 +5,12 @@ use std::fmt::Write as _;
 
 use psd::schema::{BLOCKS, FUNCTIONS};
 use psd::text::diagnostic::Code;
+use psd::text::diagnostic::page::Page;
 use psd::units::Dimension;
 use psd::units::display::si_unit;
 use psd::units::unit::{PREFIXES, UNITS};
+
+use crate::explain_pages::page_text;
 
 mod blocks;
 mod options;
@@ -43,12 +46,8 @@ pub fn reference() -> String {
 pub fn codes() -> String {
     let mut text = "| code | |\n|---|---|\n".to_owned();
     for code in Code::ALL {
-        let title = code
-            .page()
-            .lines()
-            .next()
-            .and_then(|line| line.split_once(": "))
-            .map_or("", |(_, title)| title);
+        let page = page_text(*code);
+        let title = Page::read(&page).title();
         let _ = writeln!(text, "| <b id={code}>{code}</b> | {title} |");
     }
     text

@@ -6,6 +6,7 @@ use psd::text::diagnostic::Code;
 
 use super::literals::literals;
 use super::pages::commands;
+use crate::explain_pages::shown_text;
 use crate::source_text::{none, rust_files};
 
 #[test]
@@ -29,7 +30,7 @@ fn files_that_a_message_names_exist() {
     texts.extend(
         Code::ALL
             .iter()
-            .map(|code| (format!("psd explain {code}"), code.page().to_owned())),
+            .map(|code| (format!("psd explain {code}"), shown_text(*code))),
     );
     let mut missing = Vec::new();
     let mut seen = 0;

@@ -12,6 +12,7 @@ use std::path::Path;
 
 use psd::text::diagnostic::Code;
 
+use super::explain_pages::shown_text;
 use super::source_text::{none, rust_files};
 use literals::{is_silent, literals, message};
 use pages::{commands, descriptions, help_lines, paragraphs};
@@ -46,8 +47,6 @@ const EXCEPTIONS: &[(&str, &str)] = &[
         "mark 10 stand",
         "the maker's name of the machine: a Mark-10 test stand",
     ),
-    ("not certifiable", "a name in summaries of older versions"),
-    ("both were rehearsal", "a name in reports of older versions"),
     ("says more", "the pointer to a page of `psd explain`"),
     ("place of the test", "ISO/IEC 17025, 7.8.2.1 c"),
     (
@@ -191,7 +190,7 @@ fn all() -> Vec<(String, String, String)> {
         all.extend(lines.map(|line| ("help".to_owned(), command.clone(), line)));
     }
     for &code in Code::ALL {
-        let texts = paragraphs(code.page()).into_iter();
+        let texts = paragraphs(&shown_text(code)).into_iter();
         let position = format!("psd explain {code}");
         all.extend(texts.map(|text| ("explain pages".to_owned(), position.clone(), text)));
     }

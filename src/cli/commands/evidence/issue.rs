@@ -175,7 +175,7 @@ fn make(wanted: Wanted<'_>, settings: Settings) -> Result<Exit, Failure> {
         kind: wanted.kind,
         replaces: report.id.clone(),
         manifest_sha256: manifest.digest.clone(),
-        date: Some(wanted.date.to_owned()),
+        date: wanted.date.to_owned(),
         by: wanted.by,
         reason: wanted.reason,
         particulars,

@@ -16,8 +16,8 @@ use crate::cli::files::record_file::journal_of;
 use crate::cli::files::run_folder::{RunFolder, copy};
 use crate::cli::output::print_result;
 use crate::cli::settings::Settings;
-use crate::evidence::{Folder, IssueFile, MANIFEST, ReplayedRun, check_consistency, held_issue};
-use crate::record::journal::FileStorage;
+use crate::evidence::{Folder, IssueFile, MANIFEST, ReplayedRun, check_consistency};
+use crate::rig::journal::FileStorage;
 
 #[derive(Debug, Args)]
 #[command(
@@ -64,8 +64,7 @@ pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, F
         Some(out) => RunFolder::create(Some(out), run)?.path().to_owned(),
         None => without_results(run)?,
     };
-    let beside = held_issue(&kept).map(|(name, held)| (name.to_owned(), held.digest.clone()));
-    let beside: Vec<(String, String)> = kept.kept().into_iter().chain(beside).collect();
+    let beside = kept.kept();
     // The files of the manifest are copied: the new folder is a complete run folder and verifies.
     if folder != *run {
         beside

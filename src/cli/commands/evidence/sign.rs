@@ -72,7 +72,7 @@ pub fn sign(arguments: &SignArguments, settings: Settings) -> Result<Exit, Failu
     let statement = Statement {
         run: report.run_id.clone(),
         report: report.id.clone(),
-        status: Some(report.status.to_owned()),
+        status: report.status.to_owned(),
         issued: report.issued.as_deref().map(one_line),
         role: role.map(str::to_owned),
         name: arguments.name.clone(),

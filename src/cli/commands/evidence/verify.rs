@@ -12,7 +12,7 @@ use crate::cli::files::record_file::{JOURNAL, journal_of};
 use crate::cli::output::print_result;
 use crate::cli::settings::Settings;
 use crate::evidence::{Finding, Folder, Rebuilt, examine, keys};
-use crate::record::journal::{FileFault, FileStorage};
+use crate::rig::journal::{FileFault, FileStorage};
 use crate::text::diagnostic::excerpt::one_line;
 
 #[derive(Debug, Args)]

@@ -49,7 +49,7 @@ pub fn rows(plan: &Plan) -> Vec<Vec<String>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::language::check::{Options, check, no_files};
+    use crate::check::{Options, check, no_files};
 
     /// The rows of a real rig with this line in its block.
     fn start_text(line: &str) -> String {

@@ -124,7 +124,7 @@ fn time_between(found: &Drift) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::language::check::{Options, check, no_files};
+    use crate::check::{Options, check, no_files};
     use crate::rig::virtual_rig;
     use crate::run::{Unwatched, run};
 

@@ -55,10 +55,10 @@ pub struct RunArguments {
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub format: Format,
     /// Also replace the accepted results in reports/PLAN
-    #[arg(long, alias = "bless")]
+    #[arg(long)]
     pub accept: bool,
     /// Check run (A REAL RIG MOVES), and prediction of the rest
-    #[arg(long, alias = "rehearse", conflicts_with = "accept")]
+    #[arg(long, conflicts_with = "accept")]
     pub check_run: bool,
 }
 

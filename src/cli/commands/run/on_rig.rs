@@ -139,7 +139,7 @@ fn on_a_virtual_rig(
         circumstances,
     );
     let provenance = Provenance {
-        equipment: header.equipment.clone(),
+        equipment: Some(header.equipment.clone()),
         ..provenance
     };
     let journal = record_file::begin(folder.path(), plan, &header)?;
@@ -184,7 +184,7 @@ fn on_a_real_rig(
         circumstances,
     );
     let provenance = Provenance {
-        equipment: header.equipment.clone(),
+        equipment: Some(header.equipment.clone()),
         ..provenance
     };
     let journal = record_file::begin(folder.path(), plan, &header)?;

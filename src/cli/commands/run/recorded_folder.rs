@@ -1,27 +1,11 @@
-//! The folder of an interrupted run, before it continues: what its run log states, and its results. In: a run log, a folder. Out: its
-//! equipment, its changed files. It moves nothing.
+//! The folder of an interrupted run, before it continues: its files and results. In: a run log, a folder. Out: its
+//! changed files. It moves nothing.
 
 use std::path::{Path, PathBuf};
 
 use crate::cli::exit::Failure;
-use crate::cli::files::record_file::ReadRecord;
 use crate::files::failure::plain;
-use crate::record::equipment::{Device, Equipment};
-use crate::run::replay;
 use crate::run::replay::Header;
-
-/// The equipment that the run log states; for version 1, the equipment that plan and rig state.
-pub(super) fn equipment_of(read: &ReadRecord) -> Result<Equipment, Failure> {
-    if let Some(stated) = &read.logged.header.equipment {
-        return Ok(stated.clone());
-    }
-    let first = read.logged.rigs.first();
-    let rig = first.ok_or(replay::ResumeRefusal::NothingRecorded)?;
-    Ok(Equipment::of(
-        &read.plan,
-        Device::of(&rig.identity, rig.noise),
-    ))
-}
 
 /// Files whose digests differ, or that only one of the two has.
 pub(super) fn changed_files(recorded: &Header, now: &Header) -> Vec<String> {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::recorded_folder::{changed_files, equipment_of, put_results_aside};
+use super::recorded_folder::{changed_files, put_results_aside};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::finish_run::finish_run;
 use crate::cli::files::record_file;
@@ -21,8 +21,8 @@ use crate::evidence::MANIFEST;
 use crate::files::provenance::{BUILD, TOOLCHAIN};
 use crate::plan::Plan;
 use crate::record::equipment::Equipment;
-use crate::record::journal::{Durability, EntryKind, FileStorage, Journal};
 use crate::report::Provenance;
+use crate::rig::journal::{Durability, EntryKind, FileStorage, Journal};
 use crate::rig::real::RealRig;
 use crate::rig::{Rig as _, StopRequest, connect};
 use crate::run::replay;
@@ -279,7 +279,7 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Continue
             env!("CARGO_PKG_VERSION")
         ));
     }
-    let was = equipment_of(read)?;
+    let was = &recorded.equipment;
     let (mut plan, mut header, mut texts) = (
         read.plan.clone(),
         recorded.clone(),
@@ -315,7 +315,7 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Continue
         return Err(replay::ResumeRefusal::OtherMeasure { what }.into());
     }
     differences.extend(was.changes(&now));
-    header.equipment = Some(now);
+    header.equipment = now;
     if differences.is_empty() {
         return Ok((plan, read.provenance.clone(), None));
     }
@@ -336,7 +336,7 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Continue
         .files
         .first()
         .map_or_else(String::new, |file| file.sha256.clone());
-    let (equipment, build) = (header.equipment.clone(), provenance::this_build());
+    let (equipment, build) = (Some(header.equipment.clone()), provenance::this_build());
     let provenance = Provenance {
         plan_sha256,
         psd_version: header.psd.clone(),
@@ -378,7 +378,7 @@ fn settle(
     let (recorded, assured) = (&last.rig, assured(arguments));
     replay::same_rig(&recorded.identity, &rig.identity(), &assured)?;
     replay::same_resolution(recorded.noise, rig.declared_noise())?;
-    let limit = last.speed_limit.map(|limit| limit.high);
+    let limit = Some(last.speed_limit.high);
     let speeds = [
         ("own speed", recorded.own_speed, rig.own_speed()),
         ("limit of speed", limit, Some(plan.limits.speed.high)),

@@ -14,11 +14,11 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 
+use crate::check::ParsedPlan;
 use crate::cli::args::PlanSettings;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::plan_file;
 use crate::cli::settings::Settings;
-use crate::language::check::ParsedPlan;
 use crate::plan::Plan;
 use crate::study::definition::Definition;
 use crate::study::definition::measured;

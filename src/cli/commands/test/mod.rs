@@ -40,7 +40,7 @@ pub struct TestArguments {
     #[arg(long, value_name = "DIR")]
     pub golden: Option<PathBuf>,
     /// Accept the present results, and report the changes
-    #[arg(long, alias = "bless", conflicts_with_all = ["list", "fail_fast"])]
+    #[arg(long, conflicts_with_all = ["list", "fail_fast"])]
     pub accept: bool,
     /// With --accept: also write the files of unchanged results
     #[arg(long, requires = "accept")]

@@ -1,11 +1,11 @@
 //! `fit = multilinear(…)`: the number of breakpoints of a curve. In: the variant as written. Out: a [`BreakCount`].
 
-use crate::language::check::checker::{Checker, Context};
-use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::expressions::fields::whole;
-use crate::language::check::messages::specimens as message;
-use crate::plan::BreakCount;
-use crate::schema::curves::{BREAK_COUNT, LARGEST_BREAK_COUNT};
+use crate::check::checker::{Checker, Context};
+use crate::check::expressions::choice::Chosen;
+use crate::check::expressions::fields::whole;
+use crate::check::messages::specimens as message;
+use psd_plan::BreakCount;
+use psd_plan::schema::curves::{BREAK_COUNT, LARGEST_BREAK_COUNT};
 
 /// `breaks`, else the number up to `most` that the criterion chooses.
 pub fn breaks<'a>(

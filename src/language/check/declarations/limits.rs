@@ -1,22 +1,22 @@
 //! `limits`: ranges and bounds, the intersection of the plan's and the rig's limits, and targets that are known before the run.
 
-use crate::language::check::checker::{Checker, Context, Typed};
-use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::expressions::read_field::ReadField;
-use crate::language::check::messages::{types, values, whole};
-use crate::language::syntax::ast::{Expr, ExprKind};
-use crate::plan::declaration::reader;
-use crate::plan::formula::Formula;
-use crate::plan::procedures::damping_sweep::block as damping_sweep;
-use crate::plan::procedures::move_to::block as move_to;
-use crate::plan::procedures::stiffness_ramp::block as stiffness_ramp;
-use crate::plan::rig::limits::limits_fields;
-use crate::plan::{Interval, Limits, Specimen};
-use crate::schema::limits::NAMES;
-use crate::schema::procedures::SPEED;
-use crate::schema::{Field, FieldType, Kind};
-use crate::text::source::Span;
-use crate::units::Dimension;
+use crate::check::checker::{Checker, Context, Typed};
+use crate::check::expressions::choice::Chosen;
+use crate::check::expressions::read_field::ReadField;
+use crate::check::messages::{types, values, whole};
+use crate::syntax::ast::{Expr, ExprKind};
+use psd_plan::formula::Formula;
+use psd_plan::limits_fields;
+use psd_plan::procedures::damping_sweep::block as damping_sweep;
+use psd_plan::procedures::move_to::block as move_to;
+use psd_plan::procedures::stiffness_ramp::block as stiffness_ramp;
+use psd_plan::reader;
+use psd_plan::schema::limits::NAMES;
+use psd_plan::schema::procedures::SPEED;
+use psd_plan::schema::{Field, FieldType, Kind};
+use psd_plan::{Interval, Limits, Specimen};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 /// The limits of a run, with the span of the bound on each quantity.
 pub struct CheckedLimits {
@@ -71,10 +71,6 @@ impl<'a> Checker<'a> {
     }
 
     /// The same for an argument; `Some(None)` if it is omitted, None if it has an error.
-    #[expect(
-        clippy::option_option,
-        reason = "left out and faulty are different things here"
-    )]
     pub fn bounds_argument(
         &mut self,
         chosen: &Chosen<'a>,
@@ -132,7 +128,7 @@ impl<'a> Checker<'a> {
     fn moves_at_all(&mut self, field: &str, interval: Interval, span: Span) -> Option<Interval> {
         let nothing = interval.low >= 0.0 && interval.high <= 0.0;
         let help = match field {
-            _ if !nothing || self.recorded => return Some(interval),
+            _ if !nothing => return Some(interval),
             _ if field == NAMES.speed => "write the largest speed of the actuator, as in `10 mm/s`",
             _ if field == NAMES.displacement => "write the travel, as in `-5 mm .. 60 mm`",
             _ if field == NAMES.force => "write the largest force, as in `12 kN`",
@@ -263,9 +259,9 @@ pub fn check_start(checker: &mut Checker, limits: &CheckedLimits) {
 }
 
 /// Compares the forces of an elastic specimen on a virtual rig at the targets that are known before the run with the limits: they follow
-/// from its stiffness. A real specimen has the force that it has, and a recorded run has ended.
+/// from its stiffness. A real specimen has the force that it has.
 pub fn check_forces(checker: &mut Checker, limits: &CheckedLimits, specimens: &[Option<Specimen>]) {
-    let (Some(at), None, false) = (limits.force_at, checker.real_rig, checker.recorded) else {
+    let (Some(at), None) = (limits.force_at, checker.real_rig) else {
         return;
     };
     let interval = limits.limits.force;

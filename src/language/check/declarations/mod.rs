@@ -1,15 +1,14 @@
 //! Checks of blocks that declare: specimen, striker, ground, limits, report, requirements. In: a
 //! block of the syntax tree. Out: its part of the plan, in SI. They communicate with no rig.
 
-pub(crate) mod curve;
-pub(crate) mod golden;
-pub(crate) mod ground;
-pub(crate) mod limits;
-pub(crate) mod plan_block;
-pub(crate) mod print;
-pub(crate) mod report;
-pub(crate) mod reproduces;
-pub(crate) mod require;
-pub(crate) mod specimen;
-pub(crate) mod striker;
-pub(crate) mod study;
+pub mod curve;
+pub mod ground;
+pub mod limits;
+pub mod plan_block;
+pub mod print;
+pub mod reproduces;
+pub mod require;
+pub mod specimen;
+pub mod striker;
+pub mod study;
+pub mod tolerance;

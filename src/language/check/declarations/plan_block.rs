@@ -1,11 +1,11 @@
 //! `plan "Title" { … }`: the title, the edition and the administrative data of the report.
 
-use crate::language::check::checker::Checker;
-use crate::language::check::expressions::calendar;
-use crate::language::check::messages::{rigs, values};
-use crate::plan::DecisionRule;
-use crate::schema::plan_block as schema;
-use crate::schema::{FieldType, Kind};
+use crate::check::checker::Checker;
+use crate::check::expressions::calendar;
+use crate::check::messages::{rigs, values};
+use psd_plan::DecisionRule;
+use psd_plan::schema::plan_block as schema;
+use psd_plan::schema::{FieldType, Kind};
 
 /// The edition that this version reads.
 const EDITION: f64 = 1.0;
@@ -24,7 +24,7 @@ pub fn plan_block(
         .map(|(index, _)| index)
         .next();
     let mut particulars = Vec::new();
-    for field in crate::schema::block(Kind::Plan).fields {
+    for field in psd_plan::schema::block(Kind::Plan).fields {
         let given = block.and_then(|block| match field.ty {
             FieldType::Text => checker.text_field(block, field.name),
             FieldType::Choice(_) => checker

@@ -1,13 +1,13 @@
 //! Strings that appear in the report, compared with the characters of its fonts. In: titles, administrative data, names of requirements, publications.
 //! Out: one warning for all strings with a character that the fonts lack. It knows neither fonts nor pages.
 
-use crate::language::check::checker::Checker;
-use crate::language::check::messages::whole as message;
-use crate::language::syntax::ast::{Expr, ExprKind};
-use crate::plan::{Format, Report};
-use crate::schema::Kind;
-use crate::text::glyphs;
-use crate::text::source::Span;
+use crate::check::checker::Checker;
+use crate::check::messages::whole as message;
+use crate::syntax::ast::{Expr, ExprKind};
+use psd_plan::schema::Kind;
+use psd_plan::{Format, Report};
+use psd_text::glyphs;
+use psd_text::source::Span;
 
 /// Warns of characters that are printed as code points; called only if there is no error.
 pub fn warn(checker: &mut Checker, report: &Report) {

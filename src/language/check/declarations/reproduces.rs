@@ -1,12 +1,12 @@
 //! `reproduces NAME { … }`: a number of the run beside a published one. In: its blocks. Out: the numbers with their tolerances, in the
 //! order of the plan.
 
-use super::golden;
-use crate::language::check::checker::{Checker, Context, Reads, Typed};
-use crate::plan::formula::Formula;
-use crate::plan::{Condition, Reproduction, Test, Tolerance};
-use crate::schema::Kind;
-use crate::schema::reproduces as schema;
+use super::tolerance::tolerance;
+use crate::check::checker::{Checker, Context, Reads, Typed};
+use psd_plan::formula::Formula;
+use psd_plan::schema::Kind;
+use psd_plan::schema::reproduces as schema;
+use psd_plan::{Condition, Reproduction, Test, Tolerance};
 
 const OF_THE_RUN: Context = Context {
     entry: None,
@@ -40,9 +40,7 @@ fn reproduction(checker: &mut Checker, block: usize) -> Option<Reproduction> {
     });
     let tolerance = checker
         .field(block, schema::TOLERANCE.name)
-        .and_then(|(_, entry)| {
-            golden::tolerance(checker, schema::TOLERANCE.name, &entry.value, dimension)
-        });
+        .and_then(|(_, entry)| tolerance(checker, schema::TOLERANCE.name, &entry.value, dimension));
     let (width, relative) = match tolerance? {
         Tolerance::Relative(width) => (width, true),
         Tolerance::Absolute(width) => (width, false),

@@ -1,12 +1,12 @@
 //! `require "label" condition`: comparisons and `within`, one condition for each part joined with `and`.
 
-use crate::language::check::checker::{Checker, Context, Reads, Typed};
-use crate::language::check::messages::{studies, types as message, values};
-use crate::language::syntax::ast::{BinaryOperator, Expr, ExprKind};
-use crate::plan::formula::Formula;
-use crate::plan::procedures::escalate::block::WHILE;
-use crate::plan::{Comparison, Condition, Requirement, Test};
-use crate::units::Dimension;
+use crate::check::checker::{Checker, Context, Reads, Typed};
+use crate::check::messages::{studies, types as message, values};
+use crate::syntax::ast::{BinaryOperator, Expr, ExprKind};
+use psd_plan::formula::Formula;
+use psd_plan::procedures::escalate::block::WHILE;
+use psd_plan::{Comparison, Condition, Requirement, Test};
+use psd_text::units::Dimension;
 
 const REQUIREMENT: Context = Context {
     entry: None,

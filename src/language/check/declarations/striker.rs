@@ -1,15 +1,15 @@
 //! `striker NAME { … }`: mass, gap, and velocity, which may be stated as a drop height or the swing of a pendulum.
 
-use crate::language::check::checker::Checker;
-use crate::language::check::messages::{names as message, values};
-use crate::plan::Striker;
-use crate::plan::formula::{Formula, Operator, Stated};
-use crate::schema::striker::{
+use crate::check::checker::Checker;
+use crate::check::messages::{names as message, values};
+use psd_plan::Striker;
+use psd_plan::formula::{Formula, Operator, Stated};
+use psd_plan::schema::striker::{
     ANGLE, ARM, DROP_HEIGHT, GAP, GRAVITY, MASS, MASS_UNCERTAINTY, VELOCITY, VELOCITY_UNCERTAINTY,
 };
-use crate::text::source::Span;
-use crate::uncertainty::Source;
-use crate::units::unit::STANDARD_GRAVITY;
+use psd_plan::uncertainty::Source;
+use psd_text::source::Span;
+use psd_text::units::unit::STANDARD_GRAVITY;
 
 /// The fields of which each gives the velocity; an angle requires its arm.
 const FORMS: [&str; 3] = [VELOCITY.name, DROP_HEIGHT.name, ANGLE.name];

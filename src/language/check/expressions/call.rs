@@ -1,12 +1,12 @@
 //! Functions: `abs(x)`, `max(a, b)`, `sqrt(area)`.
 
-use crate::language::check::checker::{Checker, Context, Shape, Typed};
-use crate::language::check::messages::{names, types as message};
-use crate::language::syntax::ast::{Argument, Ident};
-use crate::plan::formula::{Formula, Function};
-use crate::schema::{FUNCTIONS, FunctionKind};
-use crate::text::source::Span;
-use crate::units::{Dimension, Exponent};
+use crate::check::checker::{Checker, Context, Shape, Typed};
+use crate::check::messages::{names, types as message};
+use crate::syntax::ast::{Argument, Ident};
+use psd_plan::formula::{Formula, Function};
+use psd_plan::schema::{FUNCTIONS, FunctionKind};
+use psd_text::source::Span;
+use psd_text::units::{Dimension, Exponent};
 
 impl<'a> Checker<'a> {
     pub fn call(

@@ -1,15 +1,15 @@
 //! Words and variants: `rigid`, `limit(1500 N)`, `[every(20), force_drop(10 %)]`. In: an expression and the variants of a
 //! field. Out: a [`Chosen`], with its arguments in SI.
 
-use crate::language::check::checker::{Checker, Context, Typed};
-use crate::language::check::messages::values;
-use crate::language::check::messages::{names as message, types};
-use crate::language::syntax::ast::{Argument, Expr, ExprKind};
-use crate::plan::Interval;
-use crate::plan::formula::Formula;
-use crate::schema::{Field, FieldType, Presence, Variant};
-use crate::text::source::Span;
-use crate::units::Dimension;
+use crate::check::checker::{Checker, Context, Typed};
+use crate::check::messages::values;
+use crate::check::messages::{names as message, types};
+use crate::syntax::ast::{Argument, Expr, ExprKind};
+use psd_plan::Interval;
+use psd_plan::formula::Formula;
+use psd_plan::schema::{Field, FieldType, Presence, Variant};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 /// A variant as it is written.
 pub struct Chosen<'a> {
@@ -212,10 +212,6 @@ impl<'a> Checker<'a> {
 /// Arguments other than one number. A required one always exists, because otherwise its variant had an error.
 impl<'a> Checker<'a> {
     /// An optional argument, a number known before the run: `Some(None)` if it is omitted, None if it has an error.
-    #[expect(
-        clippy::option_option,
-        reason = "left out and faulty are different things here"
-    )]
     pub fn optional_argument(
         &mut self,
         chosen: &Chosen<'a>,
@@ -260,10 +256,6 @@ impl<'a> Checker<'a> {
     }
 
     /// An argument that is a string, with its span; `Some(None)` if it is omitted, None if it is not a string.
-    #[expect(
-        clippy::option_option,
-        reason = "left out and faulty are different things here"
-    )]
     pub fn text_argument(
         &mut self,
         chosen: &Chosen<'a>,

@@ -2,12 +2,12 @@
 //! text, which then belongs to the plan like a used file. The block that names the file interprets it.
 
 use super::data_file::DataFile;
-use crate::language::check::checker::Checker;
-use crate::language::check::imports::{MOST_FILES, refused, resolved};
-use crate::language::check::messages::files as message;
-use crate::language::check::{LoadError, imports};
-use crate::plan::PlanFile;
-use crate::text::source::Span;
+use crate::check::checker::Checker;
+use crate::check::imports::{MOST_FILES, refused, resolved};
+use crate::check::messages::files as message;
+use crate::check::{LoadError, imports};
+use psd_plan::PlanFile;
+use psd_text::source::Span;
 
 impl Checker<'_> {
     /// The text of the data file `written`, whose path is relative to the file that names it. Read once, however often it is

@@ -1,15 +1,15 @@
 //! Expressions: names resolved, units converted, dimensions inferred. In: an expression of the syntax tree and its
 //! context. Out: a [`Typed`] formula in SI, or None where an error has been reported, here or earlier.
 
-use crate::language::check::checker::{Checker, Context, Shape, Typed, literal};
-use crate::language::check::declarations::specimen::frame;
-use crate::language::check::messages::{studies, types as message, values};
-use crate::language::syntax::ast::{BinaryOperator, Expr, ExprKind};
-use crate::plan::ProcedureBlock;
-use crate::plan::formula::{Formula, Operator};
-use crate::schema::{self, Kind};
-use crate::text::source::Span;
-use crate::units::{Dimension, Exponent};
+use crate::check::checker::{Checker, Context, Shape, Typed, literal};
+use crate::check::declarations::specimen::frame;
+use crate::check::messages::{studies, types as message, values};
+use crate::syntax::ast::{BinaryOperator, Expr, ExprKind};
+use psd_plan::ProcedureBlock;
+use psd_plan::formula::{Formula, Operator};
+use psd_plan::schema::{self, Kind};
+use psd_text::source::Span;
+use psd_text::units::{Dimension, Exponent};
 
 impl<'a> Checker<'a> {
     /// The value of an expression.

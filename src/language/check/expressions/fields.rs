@@ -1,18 +1,18 @@
 //! The entries of a block compared with the fields of its kind: unknown, repeated, missing; and their values, typed according to the
 //! schema. In: a declared block. Out: formulas and numbers in SI; an omitted field has its default.
 
-use crate::language::check::checker::{Checker, Context, Node, Reads, Typed};
-use crate::language::check::messages::{names as message, types, values};
-use crate::language::check::scope::Meaning;
-use crate::language::syntax::ast::{Entry, Expr, ExprKind};
-use crate::plan::ProcedureBlock;
-use crate::plan::formula::Formula;
-use crate::schema::methods::TIME_STEP;
-use crate::schema::procedures::STIFFNESS;
-use crate::schema::{Field, FieldType, Kind, Presence, RigKind};
-use crate::schema::{rig, specimen};
-use crate::text::source::Span;
-use crate::text::suggest;
+use crate::check::checker::{Checker, Context, Node, Reads, Typed};
+use crate::check::messages::{names as message, types, values};
+use crate::check::scope::Meaning;
+use crate::syntax::ast::{Entry, Expr, ExprKind};
+use psd_plan::ProcedureBlock;
+use psd_plan::formula::Formula;
+use psd_plan::schema::methods::TIME_STEP;
+use psd_plan::schema::procedures::STIFFNESS;
+use psd_plan::schema::{Field, FieldType, Kind, Presence, RigKind};
+use psd_plan::schema::{rig, specimen};
+use psd_text::source::Span;
+use psd_text::suggest;
 
 impl<'a> Checker<'a> {
     /// Reports errors of the set of entries. Each block reads their values itself.
@@ -86,7 +86,7 @@ impl<'a> Checker<'a> {
         const REAL: &str = "link = serial(port: \"/dev/ttyUSB0\", dialect: native)";
         let is_link =
             self.scope.blocks[block].kind.kind == Kind::Rig && field.name == rig::LINK.name;
-        let real = is_link && crate::language::check::rig::has_fields_of_real_rigs(self, block);
+        let real = is_link && crate::check::rig::has_fields_of_real_rigs(self, block);
         if real { REAL } else { field.example }
     }
 
@@ -103,7 +103,7 @@ impl<'a> Checker<'a> {
         match declared.kind.kind {
             Kind::Specimen => {
                 field == specimen::BEHAVIOUR.name
-                    && crate::language::check::declarations::specimen::frame::FIELDS
+                    && crate::check::declarations::specimen::frame::FIELDS
                         .iter()
                         .any(|frame| has(frame))
             }
@@ -115,9 +115,7 @@ impl<'a> Checker<'a> {
             Kind::Procedure(ProcedureBlock::Unload) => {
                 field == STIFFNESS.name
                     && self.tested(block).is_some_and(|tested| {
-                        crate::language::check::declarations::specimen::frame::is_frame(
-                            self, tested,
-                        )
+                        crate::check::declarations::specimen::frame::is_frame(self, tested)
                     })
             }
             _ => false,
@@ -218,7 +216,7 @@ impl<'a> Checker<'a> {
             Some(outside) => outside?,
             None => (self.expect(own?, dimension, field.name, written)?, written),
         };
-        if field.angle && !self.recorded && self.is_plain(&typed, written) {
+        if field.angle && self.is_plain(&typed, written) {
             return self.fail(types::angle_without_unit(
                 self.text(written.span),
                 written.span,
@@ -297,10 +295,6 @@ impl<'a> Checker<'a> {
     }
 
     /// Some(None) if the field is omitted, None if it has an error.
-    #[expect(
-        clippy::option_option,
-        reason = "left out and faulty are different things here"
-    )]
     pub fn optional(&mut self, block: usize, field: &str) -> Option<Option<Formula>> {
         match self.field(block, field) {
             Some(_) => self.quantity(block, field).map(Some),
@@ -361,12 +355,12 @@ impl<'a> Checker<'a> {
             };
         };
         match self.scope.meaning(name) {
-            Some(crate::language::check::scope::Meaning::Block(index))
+            Some(crate::check::scope::Meaning::Block(index))
                 if self.scope.blocks[index].kind.kind == kind =>
             {
                 Some(index)
             }
-            Some(crate::language::check::scope::Meaning::Poisoned) => None,
+            Some(crate::check::scope::Meaning::Poisoned) => None,
             Some(_) => self.fail(types::block_wanted(kind, span, name)),
             None if self.may_be_lost(name)
                 || self

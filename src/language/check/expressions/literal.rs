@@ -5,14 +5,14 @@
     reason = "a list has at most 100,000 entries"
 )]
 
-use crate::language::check::checker::{Checker, Context, Shape, Typed, literal};
-use crate::language::check::messages::{names, types as message, values};
-use crate::language::syntax::ast::{Expr, ExprKind, UnitToken};
-use crate::plan::formula::Formula;
-use crate::text::source::Span;
-use crate::units::unit;
-use crate::units::unit::UnitError;
-use crate::units::{Dimension, Unit};
+use crate::check::checker::{Checker, Context, Shape, Typed, literal};
+use crate::check::messages::{names, types as message, values};
+use crate::syntax::ast::{Expr, ExprKind, UnitToken};
+use psd_plan::formula::Formula;
+use psd_text::source::Span;
+use psd_text::units::unit;
+use psd_text::units::unit::UnitError;
+use psd_text::units::{Dimension, Unit};
 
 /// Most entries of a list, written one by one or as a range.
 pub const MOST_ENTRIES: usize = 100_000;

@@ -1,15 +1,15 @@
 //! Checks of expressions and field values. In: the syntax tree. Out: numbers in SI, formulas,
 //! chosen variants. They know no block.
 
-pub(crate) mod calendar;
-pub(crate) mod call;
-pub(crate) mod choice;
-pub(crate) mod data;
-pub(crate) mod data_file;
-pub(crate) mod expression;
-pub(crate) mod fields;
-pub(crate) mod literal;
-pub(crate) mod names;
-pub(crate) mod overrides;
-pub(crate) mod parameters;
-pub(crate) mod read_field;
+pub mod calendar;
+pub mod call;
+pub mod choice;
+pub mod data;
+pub mod data_file;
+pub mod expression;
+pub mod fields;
+pub mod literal;
+pub mod names;
+pub mod overrides;
+pub mod parameters;
+pub mod read_field;

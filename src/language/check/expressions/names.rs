@@ -1,31 +1,31 @@
 //! The meaning of a name in its context: a sibling field, then a `let`, a `param`, a block; and members of a block,
 //! `pendulum.energy`, or of a procedure, `k0.stiffness.u`.
 
-use crate::language::check::checker::{Checker, Context, Node, Reads, Shape, Typed};
-use crate::language::check::declarations::specimen::{self, frame};
-use crate::language::check::declarations::striker;
-use crate::language::check::messages::{frames, names as message, studies, types, values};
-use crate::language::check::scope::Meaning;
-use crate::language::syntax::ast::{Expr, ExprKind, Ident};
-use crate::plan::ProcedureBlock;
-use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
-use crate::schema::study::PROBABILITY;
-use crate::schema::{self, BlockKind, Kind};
-use crate::text::source::Span;
-use crate::units::Dimension;
+use crate::check::checker::{Checker, Context, Node, Reads, Shape, Typed};
+use crate::check::declarations::specimen::{self, frame};
+use crate::check::declarations::striker;
+use crate::check::messages::{frames, names as message, studies, types, values};
+use crate::check::scope::Meaning;
+use crate::syntax::ast::{Expr, ExprKind, Ident};
+use psd_plan::ProcedureBlock;
+use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference};
+use psd_plan::schema::study::PROBABILITY;
+use psd_plan::schema::{self, BlockKind, Kind};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 impl<'a> Checker<'a> {
     /// The value of a bare name.
     pub fn name(&mut self, name: &str, span: Span, context: Context) -> Option<Typed> {
         if let Reads::Impact(procedure) = context.reads
             && let Some(block) = self.procedure(procedure)
-            && let renamed = self
+            && let other = self
                 .left_under_another_name(block, name)
                 .filter(|last| self.result_of_impact(block, last.name).is_some())
-            && let Some(result) = self.result_of_impact(block, name).or(renamed)
+            && let Some(result) = self.result_of_impact(block, name).or(other)
             && (!result.of_storey || self.strikes_a_storey(procedure))
         {
-            if result.name != name && !self.recorded {
+            if result.name != name {
                 return self.fail(message::left_under_another_name(
                     self.scope.blocks[block].kind,
                     name,
@@ -232,8 +232,7 @@ impl<'a> Checker<'a> {
         context: Context,
     ) -> Option<Typed> {
         let declared = &self.scope.blocks[block];
-        let renamed = self.left_under_another_name(block, &name.node);
-        if let Some(now) = renamed.filter(|_| !self.recorded) {
+        if let Some(now) = self.left_under_another_name(block, &name.node) {
             return self.fail(message::left_under_another_name(
                 declared.kind,
                 &name.node,
@@ -241,7 +240,7 @@ impl<'a> Checker<'a> {
                 name.span,
             ));
         }
-        let known = renamed.or_else(|| declared.kind.result(&name.node));
+        let known = declared.kind.result(&name.node);
         if let (Some(result), Some(procedure)) = (known, declared.procedure) {
             let unloads = declared.kind.kind == Kind::Procedure(ProcedureBlock::Unload);
             if result.of_storey && !unloads && frame::struck_frame(self, block).is_none() {

@@ -1,19 +1,19 @@
 //! Inputs of a plan by name: a `param`, a field such as `beam.mass`, an argument such as `beam.behaviour.stiffness`. In: the name and the
 //! declarations. Out: the position at which the plan writes its value, or why there is none; and the values given from outside for such places.
 
-use crate::plan::ProcedureBlock;
+use psd_plan::ProcedureBlock;
 use std::collections::BTreeMap;
 
-use crate::language::check::checker::{Checker, Context, Reads, Typed};
-use crate::language::check::messages::inputs::{self as message, NoInput};
-use crate::language::check::messages::{types, values};
-use crate::language::check::rig;
-use crate::language::check::scope::{Meaning, Scope, Setting};
-use crate::language::syntax::ast::{Argument, Entry, Expr, ExprKind};
-use crate::plan::formula::{Formula, Part, ResultReference};
-use crate::schema::{Field, FieldType, Kind, Presence, RigKind, Variant};
-use crate::text::source::Span;
-use crate::units::{Dimension, Quantity};
+use crate::check::checker::{Checker, Context, Reads, Typed};
+use crate::check::messages::inputs::{self as message, NoInput};
+use crate::check::messages::{types, values};
+use crate::check::rig;
+use crate::check::scope::{Meaning, Scope, Setting};
+use crate::syntax::ast::{Argument, Entry, Expr, ExprKind};
+use psd_plan::formula::{Formula, Part, ResultReference};
+use psd_plan::schema::{Field, FieldType, Kind, Presence, RigKind, Variant};
+use psd_text::source::Span;
+use psd_text::units::{Dimension, Quantity};
 
 /// Where the plan writes the value of an input.
 #[derive(Clone, Copy)]
@@ -35,6 +35,9 @@ pub enum InputLocation<'a> {
 }
 
 /// The position of the input with this path.
+///
+/// # Errors
+/// Why the path names no input.
 pub fn find_input<'a>(scope: &Scope<'a>, path: &[&str]) -> Result<InputLocation<'a>, NoInput> {
     let (&owner, rest) = path.split_first().unwrap_or((&"", &[]));
     let block = match scope.meaning(owner) {
@@ -301,10 +304,6 @@ impl<'a> Checker<'a> {
     }
 
     /// The value given from outside the plan for a field or argument, checked as the plan's own would be. None: there is none.
-    #[expect(
-        clippy::option_option,
-        reason = "no value from outside and a faulty one are different things here"
-    )]
     pub fn overridden(
         &mut self,
         field: &'static Field,

@@ -3,15 +3,15 @@
 
 use std::collections::BTreeMap;
 
-use crate::language::check::checker::{Checker, Context, Reads, Shape, Typed};
-use crate::language::check::messages::{names, types, values};
-use crate::language::check::scope::{DeclaredValue, Setting};
-use crate::language::syntax;
-use crate::language::syntax::ast::{Ast, Expr, ItemKind};
-use crate::plan::formula::Formula;
-use crate::plan::{Interval, Parameter};
-use crate::text::diagnostic::Diagnostic;
-use crate::text::source::Sources;
+use crate::check::checker::{Checker, Context, Reads, Shape, Typed};
+use crate::check::messages::{names, types, values};
+use crate::check::scope::{DeclaredValue, Setting};
+use crate::syntax;
+use crate::syntax::ast::{Ast, Expr, ItemKind};
+use psd_plan::formula::Formula;
+use psd_plan::{Interval, Parameter};
+use psd_text::diagnostic::Diagnostic;
+use psd_text::source::Sources;
 
 /// Parses the values of `--set`, each as a source file of its own, so that an error in it can be shown. Later ones win.
 pub fn read_settings(

@@ -1,10 +1,10 @@
 //! Reading a field of a declared block by the type of its parameter. In: a block and the name of a field. Out: the parameter, or an error.
 
-use crate::language::check::checker::Checker;
-use crate::plan::formula::Formula;
+use crate::check::checker::Checker;
+use psd_plan::formula::Formula;
 
 /// A parameter that a field of a block gives; None after an error.
-pub(crate) trait ReadField: Sized {
+pub trait ReadField: Sized {
     fn read(checker: &mut Checker<'_>, block: usize, field: &'static str) -> Option<Self>;
 }
 

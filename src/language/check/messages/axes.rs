@@ -1,8 +1,8 @@
 //! Errors of the axes of a real rig: E615, E616, E626, E636, E637. In: names, numbers and spans. Out: diagnostics.
 
-use crate::plan::Dialect;
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
+use psd_plan::Dialect;
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Span;
 
 /// `one axis`, `3 axes`
 fn axes_of(count: usize) -> String {

@@ -1,7 +1,7 @@
 //! Errors of cycles and of impact series.
 
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::{Span, Spanned};
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::{Span, Spanned};
 
 pub fn amplitudes_twice(span: Span, first: Span) -> Diagnostic {
     Diagnostic::new(

@@ -1,7 +1,7 @@
 //! Errors of used files and of data files: E5xx.
 
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Span;
 
 pub fn bad_path(path: &str, span: Span, reason: &str) -> Diagnostic {
     Diagnostic::new(Code::BadPath, format!("invalid path `{path}`: {reason}"))

@@ -1,11 +1,11 @@
 //! Errors and warnings of frames and of their ground motion: E62x, W712 and W713.
 
 use super::shown;
-use crate::language::syntax::ast::Ident;
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::{Span, Spanned};
-use crate::units::Dimension;
-use crate::units::display::significant;
+use crate::syntax::ast::Ident;
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::{Span, Spanned};
+use psd_text::units::Dimension;
+use psd_text::units::display::significant;
 
 /// `files`: where the list is.
 pub fn no_such_record(number: usize, count: usize, span: Span, files: Span) -> Diagnostic {

@@ -1,9 +1,9 @@
 //! Errors of `golden { … }`.
 
 use super::{shown, suggestion};
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
-use crate::units::Dimension;
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 pub fn result_wanted(span: Span, text: &str) -> Diagnostic {
     Diagnostic::new(Code::WrongType, "a result is required")

@@ -1,8 +1,8 @@
 //! Errors of names of inputs, in `--set` and in studies.
 
 use super::suggestion;
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Span;
 
 /// Why a name is not an input of the plan.
 pub enum NoInput {

@@ -1,11 +1,11 @@
 //! Errors of integration and control: E64x, W71x and W718.
 
 use super::shown;
-use crate::plan::Integrator;
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
-use crate::units::Dimension;
-use crate::units::display::{self, minus, significant};
+use psd_plan::Integrator;
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
+use psd_text::units::display::{self, minus, significant};
 
 pub fn law_needs_the_tangent(integrator: &str, named: Span, law: &str, struck: Span) -> Diagnostic {
     let message = format!(

@@ -1,11 +1,12 @@
 //! The wording of the diagnostics of the check, one file per subject. In: names, values and spans.
 //! Out: diagnostics. They make no decision.
 
-use crate::language::syntax::ast::Ident;
-use crate::language::syntax::limits::ERRORS;
-use crate::schema::BlockKind;
-use crate::text::diagnostic::{Code, Diagnostic, Severity};
-use crate::units::{Dimension, display};
+use crate::syntax::ast::Ident;
+use crate::syntax::limits::ERRORS;
+use psd_plan::procedures::stiffness_ramp::block as stiffness_ramp;
+use psd_plan::schema::BlockKind;
+use psd_text::diagnostic::{Code, Diagnostic, Severity};
+use psd_text::units::{Dimension, display};
 
 pub mod axes;
 pub mod cyclic;
@@ -110,10 +111,17 @@ fn joined<'a>(words: impl IntoIterator<Item = &'a str>, by: &str) -> String {
     }
 }
 
+/// Terms of the field for which psd has another name, and that name.
+const SYNONYMS: &[(&str, &str)] = &[("hardening", stiffness_ramp::POST_YIELD_RATIO.name)];
+
 /// "did you mean `x`?", or a list of the known names.
 pub fn suggestion<'a>(written: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.into_iter().collect();
-    match crate::text::suggest::nearest(written, known.iter().copied()) {
+    let synonym = SYNONYMS
+        .iter()
+        .find(|(term, name)| *term == written && known.contains(name));
+    let near = synonym.map(|(_, name)| *name);
+    match near.or_else(|| psd_text::suggest::nearest(written, known.iter().copied())) {
         Some(near) => format!("did you mean `{near}`?"),
         None if known.is_empty() => "remove it".to_owned(),
         None => format!("known here: {}", one_of(known)),

@@ -1,13 +1,13 @@
 //! Errors and warnings of real rigs: E606 to E614, E619, W707, W708, W711, W727. In: names, numbers and spans. Out: diagnostics.
 
 use super::shown;
-use crate::language::syntax::ast::Ident;
-use crate::plan::{Dialect, Interval, PortPlan, PretestCheck};
-use crate::schema::Field;
-use crate::schema::{limits, rig as schema};
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
-use crate::units::Dimension;
+use crate::syntax::ast::Ident;
+use psd_plan::schema::Field;
+use psd_plan::schema::{limits, rig as schema};
+use psd_plan::{Dialect, Interval, PortPlan, PretestCheck};
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 /// Least ratio of the force of a probe to the noise of a reading.
 pub const CHECK_OVER_NOISE: f64 = 10.0;

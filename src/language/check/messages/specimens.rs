@@ -1,11 +1,11 @@
 //! Errors of specimens: E401 of a relaxation, E630 to E634, E649, E650, and W715, W724, W726.
 
 use super::shown;
-use crate::language::syntax::ast::Ident;
-use crate::plan::{Interval, Mechanism};
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
-use crate::units::Dimension;
+use crate::syntax::ast::Ident;
+use psd_plan::{Interval, Mechanism};
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 pub fn backbone_lists_differ(
     displacements: Span,
@@ -83,7 +83,7 @@ pub struct RelaxationLoss {
 pub fn relaxes_away(loss: RelaxationLoss, span: Span) -> Diagnostic {
     let RelaxationLoss { share, lost, .. } = loss;
     let longest = shown(loss.longest, Dimension::TIME);
-    let percent = |number: f64| crate::units::display::significant(100.0 * number, 3);
+    let percent = |number: f64| psd_text::units::display::significant(100.0 * number, 3);
     Diagnostic::new(Code::OutOfRange, "relaxation would exceed the force itself")
         .at(span, format!("loses {} % until {longest}", percent(lost)))
         .help(format!(

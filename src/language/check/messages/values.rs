@@ -1,14 +1,14 @@
 //! Errors of values: E4xx.
 
 use super::shown;
-use crate::physics::statistics::student_t::coverage;
-use crate::plan::Interval;
-use crate::schema::{Field, Range};
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
-use crate::uncertainty::FEW;
-use crate::units::display::significant;
-use crate::units::{Dimension, display};
+use psd_physics::statistics::student_t::coverage;
+use psd_plan::Interval;
+use psd_plan::schema::{Field, Range};
+use psd_plan::uncertainty::FEW;
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Span;
+use psd_text::units::display::significant;
+use psd_text::units::{Dimension, display};
 
 fn allowed(range: Range, dimension: Dimension) -> String {
     let number = |value: f64| ((value * 1e4).round() / 1e4).to_string();

@@ -1,10 +1,10 @@
 //! Errors and warnings of the test as a whole: E6xx and W7xx.
 
 use super::{one_of, shown, suggestion};
-use crate::plan::{Contact, Interval, MOST_RECORDED_STEPS};
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
-use crate::units::Dimension;
+use psd_plan::{Contact, Interval, MOST_RECORDED_STEPS};
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 /// Most spans of repeated declarations that are shown.
 pub const SHOWN: usize = 20;

@@ -4,14 +4,14 @@
 use super::device::{Device, device};
 use super::probe::probe;
 use super::{CheckedRig, context_of};
-use crate::language::check::checker::{Checker, Context};
-use crate::language::check::expressions::calendar;
-use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::messages::{axes as message, rigs, values};
-use crate::plan::{AxisCalibration, AxisPlan, Specimen};
-use crate::schema::limits;
-use crate::schema::rig as schema;
-use crate::text::source::Span;
+use crate::check::checker::{Checker, Context};
+use crate::check::expressions::calendar;
+use crate::check::expressions::choice::Chosen;
+use crate::check::messages::{axes as message, rigs, values};
+use psd_plan::schema::limits;
+use psd_plan::schema::rig as schema;
+use psd_plan::{AxisCalibration, AxisPlan, Specimen};
+use psd_text::source::Span;
 
 /// One axis, with the spans of its separate devices.
 pub struct CheckedAxis {

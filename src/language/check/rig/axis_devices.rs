@@ -3,10 +3,10 @@
 
 use super::axes::CheckedAxis;
 use super::device::Device;
-use crate::language::check::checker::Checker;
-use crate::language::check::messages::{axes as message, rigs};
-use crate::plan::{Abilities, Dialect};
-use crate::schema::rig as schema;
+use crate::check::checker::Checker;
+use crate::check::messages::{axes as message, rigs};
+use psd_plan::schema::rig as schema;
+use psd_plan::{Abilities, Dialect};
 
 /// Checks that one device moves every axis and one device measures its force. No device is without an axis, and none has more axes than
 /// it supports.

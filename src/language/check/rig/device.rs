@@ -3,13 +3,13 @@
 
 use super::dialect;
 use super::line_text::line_text;
-use crate::language::check::checker::{Checker, Context};
-use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::expressions::fields::whole;
-use crate::language::check::messages::rigs as message;
-use crate::plan::{DeviceLink, PortPlan};
-use crate::schema::devices as schema;
-use crate::text::source::Span;
+use crate::check::checker::{Checker, Context};
+use crate::check::expressions::choice::Chosen;
+use crate::check::expressions::fields::whole;
+use crate::check::messages::rigs as message;
+use psd_plan::schema::devices as schema;
+use psd_plan::{DeviceLink, PortPlan};
+use psd_text::source::Span;
 
 /// A device, with the spans of its parts.
 pub struct Device {

@@ -1,11 +1,11 @@
 //! The protocol of a device: `native`, `scpi(1 N)`, `modbus(…)`. In: the chosen variant. Out: a [`Dialect`].
 
 use super::line_text::line_text;
-use crate::language::check::checker::{Checker, Context};
-use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::messages::{names, rigs, values};
-use crate::plan::{Dialect, ModbusMap, ModbusNumber};
-use crate::schema::devices as schema;
+use crate::check::checker::{Checker, Context};
+use crate::check::expressions::choice::Chosen;
+use crate::check::messages::{names, rigs, values};
+use psd_plan::schema::devices as schema;
+use psd_plan::{Dialect, ModbusMap, ModbusNumber};
 
 pub fn dialect<'a>(
     checker: &mut Checker<'a>,
@@ -76,12 +76,12 @@ fn modbus<'a>(
         .and_then(|number| modbus_number(checker, &number));
     let unit = checker
         .constant_argument(chosen, schema::UNIT.name, context)
-        .and_then(crate::language::check::expressions::fields::whole);
+        .and_then(crate::check::expressions::fields::whole);
     let mut register = |name: &str| -> Option<Option<u16>> {
         let value = checker.optional_argument(chosen, name, context)?;
         Some(
             value
-                .and_then(crate::language::check::expressions::fields::whole)
+                .and_then(crate::check::expressions::fields::whole)
                 .and_then(|value| u16::try_from(value).ok()),
         )
     };

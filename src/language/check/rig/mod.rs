@@ -1,26 +1,26 @@
 //! Check of `rig NAME { … }`: connection, reading rules, axes, and which rig a run uses. In: the
 //! blocks of the plan. Out: the checked rig. It opens no port.
 
-pub(crate) mod axes;
-pub(crate) mod axis_devices;
-pub(crate) mod device;
-pub(crate) mod dialect;
-pub(crate) mod line_text;
-pub(crate) mod probe;
-pub(crate) mod real;
-pub(crate) mod real_warnings;
-pub(crate) mod zero_drift;
+pub mod axes;
+pub mod axis_devices;
+pub mod device;
+pub mod dialect;
+pub mod line_text;
+pub mod probe;
+pub mod real;
+pub mod real_warnings;
+pub mod zero_drift;
 
 use super::checker::{Checker, Context};
 use super::expressions::calendar;
 use super::expressions::choice::Chosen;
 use super::messages::rigs;
 use super::messages::whole as message;
-use crate::language::syntax::ast::{Expr, ExprKind};
-use crate::plan::{Calibration, Link, RigPlan, Settle, VirtualLink};
-use crate::schema::rig as schema;
-use crate::schema::{Kind, RigKind};
-use crate::text::source::{FileId, Span};
+use crate::syntax::ast::{Expr, ExprKind};
+use psd_plan::schema::rig as schema;
+use psd_plan::schema::{Kind, RigKind};
+use psd_plan::{Calibration, Link, RigPlan, Settle, VirtualLink};
+use psd_text::source::{FileId, Span};
 
 /// An immediate move, for a settling time of up to ten seconds.
 const IMMEDIATE: Settle = Settle {
@@ -40,7 +40,7 @@ pub struct CheckedRig {
 
 /// The rig of the run, if it moves a real specimen: only if `--rig` names it.
 pub fn real_rig_of_run(checker: &Checker, requested: Option<&str>) -> Option<usize> {
-    let named = |name: Option<&crate::language::syntax::ast::Ident>| {
+    let named = |name: Option<&crate::syntax::ast::Ident>| {
         name.is_some_and(|name| Some(name.node.as_str()) == requested)
     };
     let block = checker

@@ -1,9 +1,9 @@
 //! `probe(…)`: the pre-test check of a rig, or of one of its axes.
 
-use crate::language::check::checker::{Checker, Context};
-use crate::language::check::expressions::choice::Chosen;
-use crate::plan::PretestCheck;
-use crate::schema::rig as schema;
+use crate::check::checker::{Checker, Context};
+use crate::check::expressions::choice::Chosen;
+use psd_plan::PretestCheck;
+use psd_plan::schema::rig as schema;
 
 /// `probe(…)`, of a rig or of one of its axes.
 pub fn probe<'a>(

@@ -6,19 +6,17 @@ use super::axis_devices;
 use super::device::{Device, device};
 use super::probe::probe;
 use super::{CheckedRig, context_of, kind};
-use crate::language::check::checker::Checker;
-use crate::language::check::declarations::limits::CheckedLimits;
-use crate::language::check::expressions::fields::whole as whole_number;
-use crate::language::check::messages::rigs as message;
-use crate::language::check::messages::{values, whole};
-use crate::language::syntax::ast::{Argument, Expr, ExprKind};
-use crate::plan::{
-    Datum, Dialect, Interval, Link, PretestCheck, ReadingRules, RealLink, SafeState,
-};
-use crate::schema::rig as schema;
-use crate::schema::{Field, Kind, Presence, RigKind};
-use crate::schema::{limits as limits_block, plan_block};
-use crate::units::Dimension;
+use crate::check::checker::Checker;
+use crate::check::declarations::limits::CheckedLimits;
+use crate::check::expressions::fields::whole as whole_number;
+use crate::check::messages::rigs as message;
+use crate::check::messages::{values, whole};
+use crate::syntax::ast::{Argument, Expr, ExprKind};
+use psd_plan::schema::rig as schema;
+use psd_plan::schema::{Field, Kind, Presence, RigKind};
+use psd_plan::schema::{limits as limits_block, plan_block};
+use psd_plan::{Datum, Dialect, Interval, Link, PretestCheck, ReadingRules, RealLink, SafeState};
+use psd_text::units::Dimension;
 
 /// A request is sent after 0, T and 3T, and abandoned after 7T.
 const PATIENCE: f64 = 7.0;

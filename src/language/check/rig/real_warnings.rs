@@ -2,12 +2,12 @@
 //! checked rig of a run. Out: warnings. It opens no port.
 
 use super::CheckedRig;
-use crate::language::check::checker::Checker;
-use crate::language::check::messages::rigs as message;
-use crate::language::syntax::ast::{Expr, ExprKind};
-use crate::plan::{Calibration, DeviceLink, Dialect, PretestCheck, Specimen};
-use crate::schema::rig as schema;
-use crate::text::source::Span;
+use crate::check::checker::Checker;
+use crate::check::messages::rigs as message;
+use crate::syntax::ast::{Expr, ExprKind};
+use psd_plan::schema::rig as schema;
+use psd_plan::{Calibration, DeviceLink, Dialect, PretestCheck, Specimen};
+use psd_text::source::Span;
 
 /// Warnings for the real rig of a run whose results would not be reliable. Due dates are compared with `today`, if it is known.
 pub fn warn(

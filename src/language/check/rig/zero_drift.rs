@@ -2,21 +2,17 @@
 //! [`DriftCheck`]. It reads nothing.
 
 use super::{CheckedRig, context_of};
-use crate::language::check::checker::Checker;
-use crate::language::check::messages::rigs as message;
-use crate::plan::{DriftCheck, Link, ZeroAfter};
-use crate::schema::RigKind;
-use crate::schema::rig as schema;
-use crate::units::Dimension;
+use crate::check::checker::Checker;
+use crate::check::messages::rigs as message;
+use psd_plan::schema::RigKind;
+use psd_plan::schema::rig as schema;
+use psd_plan::{DriftCheck, Link, ZeroAfter};
+use psd_text::units::Dimension;
 
 /// Number of standard deviations of one reading that the difference of two readings rarely exceeds by chance, in a long run.
 const CHANCE: f64 = 5.0;
 
 /// The zero-drift check of a rig: `Some(None)` if it has none, None if it has an error.
-#[expect(
-    clippy::option_option,
-    reason = "left out and faulty are different things here"
-)]
 pub fn zero_drift(
     checker: &mut Checker,
     block: usize,

@@ -3,14 +3,14 @@
 
 use std::collections::BTreeMap;
 
-use crate::language::check::checker::Checker;
-use crate::language::check::messages::whole as message;
-use crate::language::syntax::ast::{Expr, ExprKind};
-use crate::plan::formula::{Formula, Function, Part, ProcedureId, ResultReference};
-use crate::plan::{Comparison, Condition, Limits, Procedure, ProcedureKind, Requirement, Test};
-use crate::schema::Possible;
-use crate::text::diagnostic::Diagnostic;
-use crate::text::source::Span;
+use crate::check::checker::Checker;
+use crate::check::messages::whole as message;
+use crate::syntax::ast::{Expr, ExprKind};
+use psd_plan::formula::{Formula, Function, Part, ProcedureId, ResultReference};
+use psd_plan::schema::Possible;
+use psd_plan::{Comparison, Condition, Limits, Procedure, ProcedureKind, Requirement, Test};
+use psd_text::diagnostic::Diagnostic;
+use psd_text::source::Span;
 
 /// One end of an interval: the value, and whether it is excluded.
 type End = (f64, bool);
@@ -139,7 +139,7 @@ struct Together {
     high: Span,
 }
 
-/// Reports requirements that are decided before the run. A plan from a run log has been run. `stays_positive`: whether a procedure
+/// Reports requirements that are decided before the run. `stays_positive`: whether a procedure
 /// certainly moves the specimen to no negative displacement.
 pub fn check(
     checker: &mut Checker,
@@ -148,9 +148,6 @@ pub fn check(
     limits: &Limits,
     stays_positive: fn(&ProcedureKind) -> bool,
 ) {
-    if checker.recorded {
-        return;
-    }
     let mut together: BTreeMap<(ProcedureId, &str), Together> = BTreeMap::new();
     for (index, requirement) in requirements.iter().enumerate() {
         let written = checker.scope.requirements[index].condition;

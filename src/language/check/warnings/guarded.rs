@@ -1,16 +1,16 @@
 //! Requirements to which the guarded rule cannot apply: they read a result that never has an uncertainty (W729), or the rig does not declare
 //! its calibrations (W736). In: procedures, requirements, the rule, the rig. Out: warnings. It knows no run.
 
-use crate::plan::procedures::escalate::block as escalate;
-use crate::plan::procedures::impact::block as impact;
+use psd_plan::procedures::escalate::block as escalate;
+use psd_plan::procedures::impact::block as impact;
 use std::collections::BTreeSet;
 
-use crate::language::check::checker::Checker;
-use crate::language::check::messages::values as message;
-use crate::plan::formula::Part;
-use crate::plan::report::undeclared::{DISPLACEMENT_CALIBRATION, FORCE_CALIBRATION};
-use crate::plan::{DecisionRule, Plan, Procedure, Requirement};
-use crate::schema::{block_of_words, rig};
+use crate::check::checker::Checker;
+use crate::check::messages::values as message;
+use psd_plan::formula::Part;
+use psd_plan::report::undeclared::{DISPLACEMENT_CALIBRATION, FORCE_CALIBRATION};
+use psd_plan::schema::{block_of_words, rig};
+use psd_plan::{DecisionRule, Plan, Procedure, Requirement};
 
 /// Exact results that are not measured: those from the plan, and the closure of the energy balance.
 const EXACT: [&str; 3] = [

@@ -2,9 +2,9 @@
 //! canonical layout; all other text is the same, byte for byte.
 
 use super::format;
-use crate::language::syntax::parse;
-use crate::text::markdown::Document;
-use crate::text::source::Sources;
+use crate::syntax::parse;
+use psd_text::markdown::Document;
+use psd_text::source::Sources;
 
 /// The canonical form of a Markdown document. Formatting it again changes nothing.
 #[must_use]

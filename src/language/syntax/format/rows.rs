@@ -2,8 +2,8 @@
 //! pieces. Out: [`Row`]s, whose columns are not yet aligned.
 
 use super::{BLOCK_WIDTH, INDENT, value};
-use crate::language::syntax::layout::{Piece, Statement};
-use crate::language::syntax::lexical::tokens::{Kind as TokenKind, Tokens};
+use crate::syntax::layout::{Piece, Statement};
+use crate::syntax::lexical::tokens::{Kind as TokenKind, Tokens};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -188,7 +188,7 @@ impl Writer<'_> {
         fields: &[Statement],
         close: usize,
     ) -> Option<String> {
-        let loose = |token: &crate::language::syntax::lexical::tokens::Token| {
+        let loose = |token: &crate::syntax::lexical::tokens::Token| {
             matches!(token.kind, TokenKind::Newline | TokenKind::Comment)
         };
         if self.tokens.list[open..close].iter().any(loose) {

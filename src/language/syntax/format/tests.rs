@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 
 use super::format;
-use crate::language::syntax::tests::corpus::soup;
-use crate::language::syntax::tests::{IMPACT, QUAKE, outline, read, sound};
+use crate::syntax::tests::corpus::soup;
+use crate::syntax::tests::{IMPACT, QUAKE, outline, read, sound};
 
 fn formatted(text: &str) -> String {
     let (ast, _) = sound(text);
@@ -12,7 +12,7 @@ fn formatted(text: &str) -> String {
     let (again, errors, _) = read(&once);
     assert!(errors.is_empty(), "{once}\n{errors:#?}");
     assert_eq!(outline(&again), outline(&ast), "meaning\n{text}\n{once}");
-    let comments = |ast: &crate::language::syntax::ast::Ast| -> Vec<String> {
+    let comments = |ast: &crate::syntax::ast::Ast| -> Vec<String> {
         ast.comments
             .iter()
             .map(|comment| comment.node.trim_end().to_owned())

@@ -2,7 +2,7 @@
 //! value's tokens and the text before it. Out: lines.
 
 use super::{INDENT, WIDTH};
-use crate::language::syntax::lexical::tokens::{JOINING_WORDS, Kind, Tokens};
+use crate::syntax::lexical::tokens::{JOINING_WORDS, Kind, Tokens};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Role {

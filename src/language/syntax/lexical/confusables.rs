@@ -8,9 +8,9 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::letters;
-use crate::language::syntax::{limits, messages};
-use crate::text::diagnostic::Diagnostic;
-use crate::text::source::{FileId, Span};
+use crate::syntax::{limits, messages};
+use psd_text::diagnostic::Diagnostic;
+use psd_text::source::{FileId, Span};
 
 /// A text with its confusables replaced.
 pub struct Normalized<'a> {

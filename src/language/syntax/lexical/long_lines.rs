@@ -1,9 +1,9 @@
 //! Lines that are too long, which are found before everything else: the work on one line may grow with the square of its length, and is
 //! bounded only because its length is. In: the text of a file. Out: one error for each such line.
 
-use crate::language::syntax::{limits, messages};
-use crate::text::diagnostic::Diagnostic;
-use crate::text::source::{FileId, Span};
+use crate::syntax::{limits, messages};
+use psd_text::diagnostic::Diagnostic;
+use psd_text::source::{FileId, Span};
 
 /// Spaces at the end of a line do not count, nor does the text around the blocks of a document.
 #[must_use]

@@ -1,6 +1,6 @@
 //! Errors of numbers, and their corrections. In: the text of one number, valid or not.
 
-use crate::language::syntax::limits;
+use crate::syntax::limits;
 
 /// Why a number is invalid, and its corrections.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -4,9 +4,9 @@
 
 use super::unit_tokens::{unit_extent, unit_in_parentheses};
 use super::{characters, numbers};
-use crate::language::syntax::{ast::ITEM_WORDS, limits, messages};
-use crate::text::diagnostic::Diagnostic;
-use crate::text::source::{FileId, Span, Spanned};
+use crate::syntax::{ast::ITEM_WORDS, limits, messages};
+use psd_text::diagnostic::Diagnostic;
+use psd_text::source::{FileId, Span, Spanned};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {

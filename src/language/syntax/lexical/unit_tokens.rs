@@ -15,7 +15,7 @@ pub fn unit_in_parentheses(text: &str, alone: bool) -> Option<(usize, String)> {
         .next()
         .filter(|unit| inside[unit.len()..].starts_with(')'))?;
     let trimmed = unit.trim();
-    if unit_extent(trimmed) != trimmed.len() || crate::units::unit::parse(trimmed).is_err() {
+    if unit_extent(trimmed) != trimmed.len() || psd_text::units::unit::parse(trimmed).is_err() {
         return None;
     }
     let turned = |c: char| match c {

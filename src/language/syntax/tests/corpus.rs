@@ -6,8 +6,8 @@ use proptest::prelude::*;
 use rustix::time::{ClockId, clock_gettime};
 
 use super::{errors, outline, read, sound};
-use crate::text::diagnostic::Code;
-use crate::text::diagnostic::Code::*;
+use psd_text::diagnostic::Code;
+use psd_text::diagnostic::Code::*;
 
 /// Processor time of this thread \[s\], independent of the load of the machine.
 fn processor_time() -> f64 {

@@ -1,8 +1,8 @@
 //! Text with errors: each error with its code and span, the valid rest in the tree.
 
 use super::{errors, outline, read};
-use crate::text::diagnostic::Code;
-use crate::text::diagnostic::Code::*;
+use psd_text::diagnostic::Code;
+use psd_text::diagnostic::Code::*;
 
 fn one(text: &str, code: Code, text_at_fault: &str) {
     assert_eq!(errors(text), [(code, text_at_fault.to_owned())], "{text}");
@@ -345,7 +345,7 @@ fn the_length_of_a_line_is_checked_before_anything_else() {
 
 #[test]
 fn a_long_paragraph_around_the_plan_of_a_document_is_no_line_of_the_plan() {
-    let mut sources = crate::text::source::Sources::default();
+    let mut sources = psd_text::source::Sources::default();
     let text = format!("{}\n\n```psd\nlet a = 1\n```\n", "word ".repeat(2_000));
     let file = sources.add("plan.md", text);
     assert_eq!(super::parse(&sources, file).1, []);

@@ -8,8 +8,8 @@ use super::{
     ast::{Argument, Ast, Block, Expr, ExprKind, ItemKind},
     parse,
 };
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Sources;
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Sources;
 
 pub const IMPACT: &str = include_str!("../samples/impact.psd");
 pub const QUAKE: &str = include_str!("../samples/quake.psd");

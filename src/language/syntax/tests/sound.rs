@@ -1,8 +1,8 @@
 //! Valid text: exact structure, exact spans.
 
 use super::{IMPACT, QUAKE, block, expression, outline, shape, sound};
-use crate::language::syntax::ast::{Expr, ExprKind};
-use crate::text::source::Sources;
+use crate::syntax::ast::{Expr, ExprKind};
+use psd_text::source::Sources;
 
 #[test]
 fn the_whole_sample_plan_has_its_exact_structure() {

@@ -163,17 +163,6 @@ impl Unloading {
         to: Loaded<'_>,
         sure: &dyn Fn(usize, f64, f64) -> bool,
     ) {
-        self.learn_within(BELIEVED, from, to, sure);
-    }
-
-    /// As [`Self::learn_where`], with a different factor within which a stiffness is accepted.
-    pub(super) fn learn_within(
-        &mut self,
-        believed: f64,
-        from: Loaded<'_>,
-        to: Loaded<'_>,
-        sure: &dyn Fn(usize, f64, f64) -> bool,
-    ) {
         let secants = self.secants(from, to);
         let [moved, _] = between(from, to);
         let Slopes::Storeys { expected, shown } = &mut self.slopes else {
@@ -183,7 +172,7 @@ impl Unloading {
             shown.iter_mut().zip(expected).zip(&secants).enumerate()
         {
             if let Some(secant) = secant.filter(|_| sure(storey, *expected, moved[storey])) {
-                *shown = secant.clamp(*expected / believed, believed * *expected);
+                *shown = secant.clamp(*expected / BELIEVED, BELIEVED * *expected);
             }
         }
     }

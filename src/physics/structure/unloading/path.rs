@@ -16,14 +16,12 @@ use super::{BELIEVED, Loaded, Unloading, largest, of_storeys};
 use crate::integrator::tangent::NOISE_MULTIPLE;
 use crate::statistics::DeclaredNoise;
 
-/// Part of the load that the first move removes, by the expected slope: the unloading branch may be this much stiffer.
+/// PathPart of the load that the first move removes, by the expected slope: the unloading branch may be this much stiffer.
 const FIRST: f64 = 1.0 / BELIEVED;
-/// Part that every further move removes: the error of a slope by noise then has a ninth of its effect, at most.
+/// PathPart that every further move removes: the error of a slope by noise then has a ninth of its effect, at most.
 const FURTHER: f64 = 0.9;
 /// A slope is not stiffer unless it exceeds the one before it by this factor.
 const STIFFER: f64 = 1.1;
-/// The factor within which older versions accepted a stiffness.
-const OF_OLDER: f64 = 4.0;
 /// Fraction of the load at the start: one move removes so small a load if the slope is known.
 const LITTLE: f64 = 0.3;
 /// As `LITTLE`, with the measured slope, even if a stiffer one was expected.
@@ -37,13 +35,12 @@ const NOISE: f64 = 3.0;
 #[derive(Clone, Debug)]
 pub struct UnloadingPath {
     unloading: Unloading,
-    parts: Vec<Part>,
-    at_once: bool,
+    parts: Vec<PathPart>,
 }
 
 /// A storey. For all floors as one, the load is the largest force and the move is counted in loads: their expected slope is 1.
 #[derive(Clone, Debug)]
-struct Part {
+struct PathPart {
     /// \[N/m\]
     expected: f64,
     /// By the last move that determined it \[N/m\].
@@ -68,7 +65,7 @@ impl UnloadingPath {
             force,
             resolution: displacement,
         } = noise;
-        let part = |expected: f64, last_significant: (f64, f64), noise: (f64, f64)| Part {
+        let part = |expected: f64, last_significant: (f64, f64), noise: (f64, f64)| PathPart {
             expected,
             slope: expected,
             falls: false,
@@ -104,29 +101,12 @@ impl UnloadingPath {
                 (force, unloading.force_of(displacement)),
             )],
         };
-        Self {
-            unloading,
-            parts,
-            at_once: false,
-        }
-    }
-
-    /// The moves of older versions, for the replay of their records: every move leads to the expected position of zero load, by the last
-    /// secant.
-    #[must_use]
-    pub fn at_once(self) -> Self {
-        Self {
-            at_once: true,
-            ..self
-        }
+        Self { unloading, parts }
     }
 
     /// The next move of each floor \[m\] under these forces \[N\].
     #[must_use]
     pub fn moves(&self, force: &[f64]) -> Vec<f64> {
-        if self.at_once {
-            return self.unloading.moves(force);
-        }
         if self.unloading.storeys().is_none() {
             let share = self.parts[0].moves(largest(force)).abs() / largest(force);
             return self
@@ -149,11 +129,7 @@ impl UnloadingPath {
     /// Largest load of a part \[N\]: it falls with every effective move.
     #[must_use]
     pub fn left(&self, force: &[f64]) -> f64 {
-        if self.at_once {
-            largest(force)
-        } else {
-            largest(&self.loads(force))
-        }
+        largest(&self.loads(force))
     }
 
     /// Whether a part is loaded in the opposite direction by more than a little: a part held by friction is not moved to and fro.
@@ -165,12 +141,10 @@ impl UnloadingPath {
                 .iter()
                 .fold(0.0, |most: f64, part| most.max(part.start.abs()));
         let loads = self.loads(force);
-        !self.at_once
-            && self
-                .parts
-                .iter()
-                .zip(loads)
-                .any(|(part, load)| load * part.start < 0.0 && load.abs() > most)
+        self.parts
+            .iter()
+            .zip(loads)
+            .any(|(part, load)| load * part.start < 0.0 && load.abs() > most)
     }
 
     /// Whether every part is unloaded as far as readings show, and some part is past its unloaded position: a move back would turn the
@@ -179,9 +153,8 @@ impl UnloadingPath {
     pub fn passed_by_noise(&self, force: &[f64]) -> bool {
         let loads = self.loads(force);
         let parts = || self.parts.iter().zip(&loads);
-        let is_past = |(part, load): (&Part, &f64)| load * part.start < 0.0;
-        !self.at_once
-            && parts().any(is_past)
+        let is_past = |(part, load): (&PathPart, &f64)| load * part.start < 0.0;
+        parts().any(is_past)
             && parts().all(|(part, load)| {
                 let readings = if is_past((part, load)) { 2.0_f64 } else { 1.0 };
                 load.abs() <= NOISE * readings.sqrt() * part.noise.0
@@ -200,10 +173,7 @@ impl UnloadingPath {
     /// Learns from a move between two positions. Returns the secant of each storey \[N/m\] with a change of storey drift, and none
     /// without storeys.
     pub fn learn(&mut self, from: Loaded<'_>, to: Loaded<'_>) -> Vec<Option<f64>> {
-        if self.at_once {
-            self.unloading
-                .learn_within(OF_OLDER, from, to, &|_, _, _| true);
-        } else if self.unloading.storeys().is_none() {
+        if self.unloading.storeys().is_none() {
             let [before, after] = [from, to].map(|at| largest(at.force));
             let travel = self.parts[0].moves(before);
             let part = &mut self.parts[0];
@@ -217,7 +187,7 @@ impl UnloadingPath {
     }
 }
 
-impl Part {
+impl PathPart {
     /// The next move \[m\] under this load \[N\].
     fn moves(&self, load: f64) -> f64 {
         let by_noise = load.abs() <= 2.0 * NOISE_MULTIPLE * self.noise.0;

@@ -1,30 +1,30 @@
 //! `cycle`: cycles of displacement, their protocols and results.
 
-use crate::plan::ProcedureBlock;
+use crate::ProcedureBlock;
 use crate::schema::curves;
 use crate::schema::procedures::{SPECIMEN, SPEED};
 use crate::schema::{BlockKind, Field, Kind, Naming, ResultKind, Variant};
-use crate::units::Dimension;
+use psd_text::units::Dimension;
 
-pub(crate) const FIRST: Field = Field::quantity("first", Dimension::LENGTH, "smallest amplitude")
+pub const FIRST: Field = Field::quantity("first", Dimension::LENGTH, "smallest amplitude")
     .required("first: 1 mm")
     .above_zero();
 
-pub(crate) const LAST: Field = Field::quantity("last", Dimension::LENGTH, "largest amplitude")
+pub const LAST: Field = Field::quantity("last", Dimension::LENGTH, "largest amplitude")
     .required("last: 10 mm")
     .above_zero();
 
-pub(crate) const RATIO: Field =
+pub const RATIO: Field =
     Field::quantity("ratio", Dimension::NUMBER, "ratio of successive amplitudes")
         .required("ratio: 1.4")
         .above_zero();
 
-pub(crate) const LARGEST: Field =
+pub const LARGEST: Field =
     Field::quantity("largest", Dimension::LENGTH, "amplitude of the last level")
         .required("largest: 40 mm")
         .above_zero();
 
-pub(crate) const LEVELS: Field = Field::count("levels", 1.0, 1000.0, "number of amplitudes");
+pub const LEVELS: Field = Field::count("levels", 1.0, 1000.0, "number of amplitudes");
 
 const PROTOCOLS: &[Variant] = &[
     Variant::with(
@@ -55,91 +55,91 @@ const PROTOCOLS: &[Variant] = &[
     ),
 ];
 
-pub(crate) const DISSIPATED_ENERGY: ResultKind = ResultKind::measured(
+pub const DISSIPATED_ENERGY: ResultKind = ResultKind::measured(
     "dissipated_energy",
     Dimension::ENERGY,
     "work done on the specimen in all cycles, ∫R dX",
 );
 
-pub(crate) const MAX_FORCE: ResultKind = ResultKind::measured(
+pub const MAX_FORCE: ResultKind = ResultKind::measured(
     "max_force",
     Dimension::FORCE,
     "largest restoring force, minus the part due to noise",
 );
 
-pub(crate) const MIN_FORCE: ResultKind = ResultKind::measured(
+pub const MIN_FORCE: ResultKind = ResultKind::measured(
     "min_force",
     Dimension::FORCE,
     "smallest (most negative) restoring force, corrected for noise",
 );
 
-pub(crate) const EQUIVALENT_DAMPING_RATIO: ResultKind = ResultKind::measured(
+pub const EQUIVALENT_DAMPING_RATIO: ResultKind = ResultKind::measured(
     "equivalent_damping_ratio",
     Dimension::NUMBER,
     "of the last cycle: E_D / (4π E_S0) with E_S0 = ½ K_sec a², a = half its width",
 );
 
-pub(crate) const STIFFNESS: ResultKind = ResultKind::measured(
+pub const STIFFNESS: ResultKind = ResultKind::measured(
     "stiffness",
     Dimension::STIFFNESS,
     "secant stiffness of the first cycle, from end to end",
 );
 
-pub(crate) const LAST_STIFFNESS: ResultKind = ResultKind::measured(
+pub const LAST_STIFFNESS: ResultKind = ResultKind::measured(
     "last_stiffness",
     Dimension::STIFFNESS,
     "secant stiffness of the last cycle",
 );
 
-pub(crate) const CYCLES: ResultKind = ResultKind::count("cycles", "number of complete cycles");
+pub const CYCLES: ResultKind = ResultKind::count("cycles", "number of complete cycles");
 
-pub(crate) const AMPLITUDES: ResultKind = ResultKind::measured_list(
+pub const AMPLITUDES: ResultKind = ResultKind::measured_list(
     "amplitudes",
     Dimension::LENGTH,
     "measured amplitude of each cycle (half its width)",
 );
 
-pub(crate) const ENERGIES: ResultKind =
+pub const ENERGIES: ResultKind =
     ResultKind::measured_list("energies", Dimension::ENERGY, "∫R dX of each cycle");
 
-pub(crate) const DAMPING_RATIOS: ResultKind = ResultKind::measured_list(
+pub const DAMPING_RATIOS: ResultKind = ResultKind::measured_list(
     "damping_ratios",
     Dimension::NUMBER,
     "equivalent damping ratio of each cycle",
 );
 
-pub(crate) const STIFFNESSES: ResultKind = ResultKind::measured_list(
+pub const STIFFNESSES: ResultKind = ResultKind::measured_list(
     "stiffnesses",
     Dimension::STIFFNESS,
     "secant stiffness of each cycle",
 );
 
-pub(crate) const YIELD_FORCE: ResultKind = ResultKind::measured(
+pub const YIELD_FORCE: ResultKind = ResultKind::measured(
     "yield_force",
     Dimension::FORCE,
     "force at which the backbone first softens (yield point)",
 );
 
-pub(crate) const YIELD_DISPLACEMENT: ResultKind = ResultKind::measured(
+pub const YIELD_DISPLACEMENT: ResultKind = ResultKind::measured(
     "yield_displacement",
     Dimension::LENGTH,
     "displacement at the yield point, from the centre of the cycles",
 );
 
-pub(crate) const POST_YIELD_STIFFNESS: ResultKind = ResultKind::measured(
+pub const POST_YIELD_STIFFNESS: ResultKind = ResultKind::measured(
     "post_yield_stiffness",
     Dimension::STIFFNESS,
     "slope of the last segment of the backbone",
 );
 
-pub(crate) const POST_YIELD_RATIO: ResultKind = ResultKind::measured(
+pub const POST_YIELD_RATIO: ResultKind = ResultKind::measured(
     "post_yield_ratio",
     Dimension::NUMBER,
     "post-yield over initial slope of the backbone",
 );
 
 /// What it leaves, in the order of the tables and of `summary.json`.
-pub(crate) const RESULTS: &[ResultKind] = &[
+pub const RESULTS: &[ResultKind] = &[
     DISSIPATED_ENERGY,
     MAX_FORCE,
     MIN_FORCE,
@@ -160,7 +160,7 @@ pub(crate) const RESULTS: &[ResultKind] = &[
     curves::CURVE_STIFFNESSES,
 ];
 
-pub(crate) const GIVEN_AMPLITUDES: Field = Field::quantities(
+pub const GIVEN_AMPLITUDES: Field = Field::quantities(
     "amplitudes",
     Dimension::LENGTH,
     "amplitudes of the cycles, in order; or `protocol`",
@@ -168,12 +168,12 @@ pub(crate) const GIVEN_AMPLITUDES: Field = Field::quantities(
 .above_zero()
 .default_in_words("the protocol's");
 
-pub(crate) const PROTOCOL: Field = Field::choice("protocol", PROTOCOLS, "rule for the amplitudes");
+pub const PROTOCOL: Field = Field::choice("protocol", PROTOCOLS, "rule for the amplitudes");
 
-pub(crate) const REPEATS: Field = Field::count("repeats", 1.0, 1e5, "cycles at each amplitude")
+pub const REPEATS: Field = Field::count("repeats", 1.0, 1e5, "cycles at each amplitude")
     .default_in_words("1, or the protocol's");
 
-pub(crate) const SIDES: Field = Field::choice(
+pub const SIDES: Field = Field::choice(
     "sides",
     &[
         Variant::word("both", "reversed: to + the amplitude, to −, and back"),
@@ -184,10 +184,10 @@ pub(crate) const SIDES: Field = Field::choice(
 )
 .default_in_words("both");
 
-pub(crate) const ABOUT: Field =
+pub const ABOUT: Field =
     Field::quantity("about", Dimension::LENGTH, "centre of the cycles").or(0.0, "mm");
 
-pub(crate) const POINTS: Field = Field::count(
+pub const POINTS: Field = Field::count(
     "points",
     1.0,
     1e5,
@@ -195,7 +195,7 @@ pub(crate) const POINTS: Field = Field::count(
 )
 .or(25.0, "");
 
-pub(crate) const PAUSE: Field = Field::quantity(
+pub const PAUSE: Field = Field::quantity(
     "pause",
     Dimension::TIME,
     "dwell at each target before the samples; with `rate`, at the ends only",
@@ -203,10 +203,10 @@ pub(crate) const PAUSE: Field = Field::quantity(
 .or(0.0, "s")
 .at_least_zero();
 
-pub(crate) const SAMPLES: Field =
+pub const SAMPLES: Field =
     Field::count("samples", 1.0, 1e5, "readings averaged at each target").or(1.0, "");
 
-pub(crate) const RATE: Field = Field::quantity(
+pub const RATE: Field = Field::quantity(
     "rate",
     Dimension::FREQUENCY,
     "sampling rate of cycles without stops; requires `speed`",
@@ -214,10 +214,10 @@ pub(crate) const RATE: Field = Field::quantity(
 .above_zero()
 .default_in_words("ramp-and-hold");
 
-pub(crate) const AMPLITUDES_BETWEEN: Field =
+pub const AMPLITUDES_BETWEEN: Field =
     Field::count("amplitudes", 1.0, 1e5, "amplitudes between inspections").required("1");
 
-pub(crate) const FRACTION: Field = Field::quantity(
+pub const FRACTION: Field = Field::quantity(
     "fraction",
     Dimension::NUMBER,
     "fraction of the largest force so far",
@@ -225,7 +225,7 @@ pub(crate) const FRACTION: Field = Field::quantity(
 .required("20 %")
 .within(0.0, 1.0);
 
-pub(crate) const INSPECT: Field = Field::choices(
+pub const INSPECT: Field = Field::choices(
     "inspect",
     &[
         Variant::with(
@@ -242,14 +242,14 @@ pub(crate) const INSPECT: Field = Field::choices(
     "when the operator inspects the specimen, between two amplitudes",
 );
 
-pub(crate) const FIT: Field = Field::choice(
+pub const FIT: Field = Field::choice(
     "fit",
     &[curves::MULTILINEAR],
     "curve fitted to the backbone: the ends of the first cycles, both directions together",
 )
 .default_in_words("nothing");
 
-pub(crate) const BLOCK: BlockKind = BlockKind {
+pub const BLOCK: BlockKind = BlockKind {
     kind: Kind::Procedure(ProcedureBlock::Cycle),
     keyword: &["cycle"],
     naming: Naming::Named,

@@ -1,7 +1,7 @@
 //! The history of a `cycle`: every reading, and the results of each cycle.
 
-use crate::physics::identification::cyclic::{Loop, LoopPoint};
-use crate::physics::identification::multilinear_fit::MultilinearFit;
+use psd_physics::identification::cyclic::{Loop, LoopPoint};
+use psd_physics::identification::multilinear_fit::MultilinearFit;
 
 /// One reading of a cycle: the mean of the samples at a target, or a single reading during the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]

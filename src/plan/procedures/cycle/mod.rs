@@ -1,5 +1,5 @@
 //! What the stages before the run know of `cycle`: its block, its parameters and its history.
 
-pub(crate) mod block;
-pub(crate) mod history;
-pub(crate) mod parameters;
+pub mod block;
+pub mod history;
+pub mod parameters;

@@ -1,7 +1,7 @@
 //! A checked `cycle`: reversed or one-sided cycles of displacement, amplitude by amplitude.
 
-use crate::plan::BreakCount;
-use crate::plan::formula::Formula;
+use crate::BreakCount;
+use crate::formula::Formula;
 
 /// Repeated displacement cycles of a specimen about one position.
 #[derive(Clone, Debug)]
@@ -13,7 +13,7 @@ pub struct Cycle {
     pub sides: Sides,
     /// The position from which the amplitudes are measured \[m\].
     pub about: Formula,
-    /// Targets between `about` and an amplitude, the amplitude included.
+    /// Targets between `about` and an amplitude, the amplitude included; they are closer together near the reversal points.
     pub points: u32,
     /// Readings averaged at each target.
     pub samples: u32,
@@ -26,8 +26,6 @@ pub struct Cycle {
     pub inspect: Vec<CycleInspection>,
     /// For the curve that is fitted to the backbone.
     pub fit: Option<BreakCount>,
-    /// The targets are equally spaced, as in older versions; otherwise they are closer together near the reversal points.
-    pub evenly: bool,
 }
 
 /// One amplitude and its number of cycles.

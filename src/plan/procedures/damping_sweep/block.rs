@@ -1,43 +1,43 @@
 //! `damping sweep`: its block and its results.
 
-use crate::plan::ProcedureBlock;
-use crate::plan::declaration::{fields, names};
-use crate::plan::procedures::damping_sweep::parameters::damping_sweep_fields;
+use crate::ProcedureBlock;
+use crate::damping_sweep_fields;
 use crate::schema::{BlockKind, Field, Kind, Naming, ResultKind};
-use crate::units::Dimension;
+use crate::{fields, names};
+use psd_text::units::Dimension;
 
-pub(crate) const DAMPING: ResultKind = ResultKind::measured(
+pub const DAMPING: ResultKind = ResultKind::measured(
     "damping",
     Dimension::DAMPING,
     "slope of damping force against velocity",
 );
 
-pub(crate) const COULOMB_FORCE: ResultKind = ResultKind::measured(
+pub const COULOMB_FORCE: ResultKind = ResultKind::measured(
     "coulomb_force",
     Dimension::FORCE,
     "Coulomb friction: fitted damping force at zero velocity",
 );
 
-pub(crate) const R_SQUARED: ResultKind = ResultKind::new(
+pub const R_SQUARED: ResultKind = ResultKind::new(
     "r_squared",
     Dimension::NUMBER,
     "coefficient of determination of the fit",
 );
 
-pub(crate) const DAMPING_RATIO: ResultKind = ResultKind::measured(
+pub const DAMPING_RATIO: ResultKind = ResultKind::measured(
     "damping_ratio",
     Dimension::NUMBER,
     "fraction of critical damping, c / (2 sqrt(K M))",
 );
 
-pub(crate) const MAX_VELOCITY: ResultKind = ResultKind::new(
+pub const MAX_VELOCITY: ResultKind = ResultKind::new(
     "max_velocity",
     Dimension::VELOCITY,
     "largest velocity of the sweep",
 );
 
 /// What it leaves, in the order of the tables and of `summary.json`.
-pub(crate) const RESULTS: &[ResultKind] = &[
+pub const RESULTS: &[ResultKind] = &[
     DAMPING,
     COULOMB_FORCE,
     R_SQUARED,
@@ -47,7 +47,7 @@ pub(crate) const RESULTS: &[ResultKind] = &[
 
 damping_sweep_fields!(names);
 
-pub(crate) const BLOCK: BlockKind = BlockKind {
+pub const BLOCK: BlockKind = BlockKind {
     kind: Kind::Procedure(ProcedureBlock::DampingSweep),
     keyword: &["damping", "sweep"],
     naming: Naming::Named,

@@ -1,9 +1,10 @@
 //! The fields of a `damping sweep`, declared once: its parameters here, its schema in `block.rs`, its reader in
 //! `procedures::damping_sweep::check`.
 
-use crate::plan::declaration::parameters;
-use crate::plan::formula::Formula;
+use crate::formula::Formula;
+use crate::parameters;
 
+#[macro_export]
 macro_rules! damping_sweep_fields {
     ($into:ident) => {
         $into! {
@@ -35,6 +36,5 @@ macro_rules! damping_sweep_fields {
         }
     };
 }
-pub(crate) use damping_sweep_fields;
 
 damping_sweep_fields!(parameters);

@@ -1,12 +1,12 @@
 //! `escalate`: its block and its results.
 
-use crate::plan::ProcedureBlock;
-use crate::plan::procedures::impact::block as impact;
+use crate::ProcedureBlock;
+use crate::procedures::impact::block as impact;
 use crate::schema::methods::TRUTH;
 use crate::schema::{BlockKind, Field, Kind, Naming, Possible, ResultKind, Variant};
-use crate::units::Dimension;
+use psd_text::units::Dimension;
 
-pub(crate) const SPEEDS: Field = Field::quantities(
+pub const SPEEDS: Field = Field::quantities(
     "speeds",
     Dimension::VELOCITY,
     "striker velocity of each impact; or `drop_heights`, or `energies`",
@@ -14,23 +14,23 @@ pub(crate) const SPEEDS: Field = Field::quantities(
 .above_zero()
 .default_in_words("from heights or energies");
 
-pub(crate) const DROP_HEIGHTS: Field = Field::quantities(
+pub const DROP_HEIGHTS: Field = Field::quantities(
     "drop_heights",
     Dimension::LENGTH,
     "drop height of each impact",
 )
 .above_zero();
 
-pub(crate) const ENERGIES: Field =
+pub const ENERGIES: Field =
     Field::quantities("energies", Dimension::ENERGY, "energy of each impact").above_zero();
 
-pub(crate) const WHILE: Field = Field::condition(
+pub const WHILE: Field = Field::condition(
     "while",
     "the next impact follows while this condition on the results of the last one is met",
 )
 .required("while = max_displacement < 20 mm");
 
-pub(crate) const BETWEEN: Field = Field::choice(
+pub const BETWEEN: Field = Field::choice(
     "between",
     &[
         Variant::word("unload", "to zero restoring force"),
@@ -44,7 +44,7 @@ pub(crate) const BETWEEN: Field = Field::choice(
 )
 .default_in_words("unload");
 
-pub(crate) const INSPECT_BETWEEN: Field = Field::choice(
+pub const INSPECT_BETWEEN: Field = Field::choice(
     "inspect_between",
     TRUTH,
     "asks the operator to inspect the specimen between impacts",
@@ -75,18 +75,18 @@ const FIELDS: [Field; OWN.len() + impact::BLOCK.fields.len()] = {
     all
 };
 
-pub(crate) const IMPACTS: ResultKind = ResultKind::count(
+pub const IMPACTS: ResultKind = ResultKind::count(
     "impacts",
     "number of impacts, including one that failed or was inconclusive",
 );
 
-pub(crate) const PASSED: ResultKind = ResultKind::count(
+pub const PASSED: ResultKind = ResultKind::count(
     "passed",
     "number of impacts after which the condition was true",
 )
 .decided_by_condition();
 
-pub(crate) const LAST_PASSED_ENERGY: ResultKind = ResultKind::measured(
+pub const LAST_PASSED_ENERGY: ResultKind = ResultKind::measured(
     "last_passed_energy",
     Dimension::ENERGY,
     "energy of the last impact after which the condition was true; 0 if false after the first",
@@ -94,7 +94,7 @@ pub(crate) const LAST_PASSED_ENERGY: ResultKind = ResultKind::measured(
 .decided_by_condition()
 .made_of(&impact::STRIKER_ENERGY);
 
-pub(crate) const FIRST_FAILED_ENERGY: ResultKind = ResultKind::measured(
+pub const FIRST_FAILED_ENERGY: ResultKind = ResultKind::measured(
     "first_failed_energy",
     Dimension::ENERGY,
     "energy of the first impact after which the condition was false",
@@ -102,7 +102,7 @@ pub(crate) const FIRST_FAILED_ENERGY: ResultKind = ResultKind::measured(
 .decided_by_condition()
 .made_of(&impact::STRIKER_ENERGY);
 
-pub(crate) const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
+pub const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
     "max_displacement",
     Dimension::LENGTH,
     "largest displacement in all impacts",
@@ -110,77 +110,77 @@ pub(crate) const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
 .within(Possible::LargestDisplacement)
 .made_of(&impact::MAX_DISPLACEMENT);
 
-pub(crate) const RESIDUAL_DISPLACEMENT: ResultKind = ResultKind::measured(
+pub const RESIDUAL_DISPLACEMENT: ResultKind = ResultKind::measured(
     "residual_displacement",
     Dimension::LENGTH,
     "unloaded position after the last impact, with `between = unload`",
 );
 
-pub(crate) const FINAL_DISPLACEMENT: ResultKind = ResultKind::measured(
+pub const FINAL_DISPLACEMENT: ResultKind = ResultKind::measured(
     "final_displacement",
     Dimension::LENGTH,
     "position after the last impact, with `between = home` or `stay`",
 );
 
-pub(crate) const ABSORBED_ENERGY: ResultKind = ResultKind::measured(
+pub const ABSORBED_ENERGY: ResultKind = ResultKind::measured(
     "absorbed_energy",
     Dimension::ENERGY,
     "sum of the energies absorbed up to the largest displacement of each impact",
 )
 .made_of(&impact::ABSORBED_ENERGY);
 
-pub(crate) const VELOCITIES: ResultKind = ResultKind::measured_list(
+pub const VELOCITIES: ResultKind = ResultKind::measured_list(
     "velocities",
     Dimension::VELOCITY,
     "striker velocity of each impact",
 )
 .made_of(&impact::STRIKER_ENERGY);
 
-pub(crate) const IMPACT_ENERGIES: ResultKind = ResultKind::measured_list(
+pub const IMPACT_ENERGIES: ResultKind = ResultKind::measured_list(
     "blow_energies",
     Dimension::ENERGY,
     "striker energy of each impact",
 )
 .made_of(&impact::STRIKER_ENERGY);
 
-pub(crate) const MAX_DISPLACEMENTS: ResultKind = ResultKind::measured_list(
+pub const MAX_DISPLACEMENTS: ResultKind = ResultKind::measured_list(
     "max_displacements",
     Dimension::LENGTH,
     "largest displacement of each impact",
 )
 .made_of(&impact::MAX_DISPLACEMENT);
 
-pub(crate) const RESIDUAL_DISPLACEMENTS: ResultKind = ResultKind::measured_list(
+pub const RESIDUAL_DISPLACEMENTS: ResultKind = ResultKind::measured_list(
     "residual_displacements",
     Dimension::LENGTH,
     "unloaded position after each impact, with `between = unload`",
 );
 
-pub(crate) const FINAL_DISPLACEMENTS: ResultKind = ResultKind::measured_list(
+pub const FINAL_DISPLACEMENTS: ResultKind = ResultKind::measured_list(
     "final_displacements",
     Dimension::LENGTH,
     "position after each impact, with `between = home` or `stay`",
 );
 
-pub(crate) const ABSORBED_ENERGIES: ResultKind = ResultKind::measured_list(
+pub const ABSORBED_ENERGIES: ResultKind = ResultKind::measured_list(
     "absorbed_energies",
     Dimension::ENERGY,
     "energy absorbed in each impact up to its largest displacement",
 )
 .made_of(&impact::ABSORBED_ENERGY);
 
-pub(crate) const IMPULSES: ResultKind =
+pub const IMPULSES: ResultKind =
     ResultKind::measured_list("impulses", Dimension::IMPULSE, "impulse of each impact")
         .made_of(&impact::IMPULSE);
 
-pub(crate) const ENERGY_ERRORS: ResultKind = ResultKind::list(
+pub const ENERGY_ERRORS: ResultKind = ResultKind::list(
     "energy_errors",
     Dimension::NUMBER,
     "residual of the energy balance of each impact relative to its input energy",
 )
 .in_percent();
 
-pub(crate) const MAX_DRIFT: ResultKind = ResultKind::measured_list(
+pub const MAX_DRIFT: ResultKind = ResultKind::measured_list(
     "max_drift",
     Dimension::LENGTH,
     "peak absolute drift of each storey in all impacts",
@@ -189,21 +189,21 @@ pub(crate) const MAX_DRIFT: ResultKind = ResultKind::measured_list(
 .of_storey()
 .made_of(&impact::MAX_DRIFT);
 
-pub(crate) const RESIDUAL_DRIFT: ResultKind = ResultKind::measured_list(
+pub const RESIDUAL_DRIFT: ResultKind = ResultKind::measured_list(
     "residual_drift",
     Dimension::LENGTH,
     "drift of each unloaded storey after the last impact, with `between = unload`",
 )
 .of_storey();
 
-pub(crate) const FINAL_DRIFT: ResultKind = ResultKind::measured_list(
+pub const FINAL_DRIFT: ResultKind = ResultKind::measured_list(
     "final_drift",
     Dimension::LENGTH,
     "drift of each storey after the last impact, with `between = home` or `stay`",
 )
 .of_storey();
 
-pub(crate) const STOREY_ENERGY: ResultKind = ResultKind::measured_list(
+pub const STOREY_ENERGY: ResultKind = ResultKind::measured_list(
     "storey_energy",
     Dimension::ENERGY,
     "energy absorbed by each storey in all impacts",
@@ -212,7 +212,7 @@ pub(crate) const STOREY_ENERGY: ResultKind = ResultKind::measured_list(
 .made_of(&impact::STOREY_ENERGY);
 
 /// What it leaves, in the order of the tables and of `summary.json`.
-pub(crate) const RESULTS: &[ResultKind] = &[
+pub const RESULTS: &[ResultKind] = &[
     IMPACTS,
     PASSED,
     LAST_PASSED_ENERGY,
@@ -235,7 +235,7 @@ pub(crate) const RESULTS: &[ResultKind] = &[
     STOREY_ENERGY,
 ];
 
-pub(crate) const BLOCK: BlockKind = BlockKind {
+pub const BLOCK: BlockKind = BlockKind {
     kind: Kind::Procedure(ProcedureBlock::Escalate),
     keyword: &["escalate"],
     naming: Naming::Named,

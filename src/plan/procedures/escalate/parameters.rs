@@ -1,7 +1,7 @@
 //! A checked `escalate`: an impact series of increasing energy on one specimen, until a condition no longer holds.
 
-use crate::plan::formula::{Formula, ProcedureId};
-use crate::plan::{Condition, Impact, Striker};
+use crate::formula::{Formula, ProcedureId};
+use crate::{Condition, Impact, Striker};
 
 /// A series of impacts, each with a higher velocity than the previous one.
 #[derive(Clone, Debug)]

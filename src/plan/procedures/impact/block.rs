@@ -1,11 +1,11 @@
 //! `impact`: its block and its results.
 
-use crate::physics::contact::argument;
-use crate::plan::ProcedureBlock;
+use crate::ProcedureBlock;
 use crate::schema::procedures::{SPECIMEN, STIFFNESS, tracking};
 use crate::schema::{BlockKind, Field, Kind, Naming, Possible, ResultKind, Variant};
 use crate::schema::{frames, methods};
-use crate::units::Dimension;
+use psd_physics::contact::argument;
+use psd_text::units::Dimension;
 
 const LIMIT_FORCE: Field =
     Field::quantity(argument::FORCE, Dimension::FORCE, "largest contact force")
@@ -31,9 +31,9 @@ const HERTZ_STIFFNESS: Field = Field::quantity(
 const LOSS: Field = Field::quantity(
     argument::LOSS,
     Dimension {
-        length: crate::units::Exponent::whole(-1),
-        mass: crate::units::Exponent::ZERO,
-        time: crate::units::Exponent::whole(1),
+        length: psd_text::units::Exponent::whole(-1),
+        mass: psd_text::units::Exponent::ZERO,
+        time: psd_text::units::Exponent::whole(1),
     },
     "factor of Hunt and Crossley, F = k δ^1.5 (1 + loss·dδ/dt)",
 )
@@ -47,7 +47,7 @@ const FORCE_LIMIT: Field = Field::quantity(
 )
 .above_zero();
 
-/// The contact laws. Readers take every argument of a law, in this order; [`crate::physics::contact::ContactLaw`] names the same ones.
+/// The contact laws. Readers take every argument of a law, in this order; [`psd_physics::contact::ContactLaw`] names the same ones.
 const CONTACT_LAWS: &[Variant] = &[
     Variant::word(
         "rigid",
@@ -71,48 +71,48 @@ const CONTACT_LAWS: &[Variant] = &[
 ];
 
 /// A number of a contact law.
-pub(crate) fn contact_number(law: &str, argument: &str) -> &'static Field {
+pub fn contact_number(law: &str, argument: &str) -> &'static Field {
     let law = CONTACT_LAWS.iter().find(|variant| variant.name == law);
     let mut arguments = law.iter().flat_map(|law| law.arguments);
     let named = arguments.find(|field| field.name == argument);
     named.expect("the schema has every number of every law")
 }
 
-pub(crate) const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
+pub const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
     "max_displacement",
     Dimension::LENGTH,
     "largest displacement of the structure",
 )
 .within(Possible::LargestDisplacement);
 
-pub(crate) const TIME_OF_MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
+pub const TIME_OF_MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
     "time_of_max_displacement",
     Dimension::TIME,
     "simulated time of the largest displacement",
 )
 .within(Possible::NotNegative);
 
-pub(crate) const STOP_TIME: ResultKind = ResultKind::measured(
+pub const STOP_TIME: ResultKind = ResultKind::measured(
     "stop_time",
     Dimension::TIME,
     "simulated time at which the striker first stops",
 )
 .within(Possible::NotNegative);
 
-pub(crate) const FINAL_DISPLACEMENT: ResultKind = ResultKind::measured(
+pub const FINAL_DISPLACEMENT: ResultKind = ResultKind::measured(
     "final_displacement",
     Dimension::LENGTH,
     "displacement at the last step of the run, possibly under load",
 );
 
-pub(crate) const MAX_VELOCITY: ResultKind = ResultKind::measured(
+pub const MAX_VELOCITY: ResultKind = ResultKind::measured(
     "max_velocity",
     Dimension::VELOCITY,
     "peak absolute velocity of the structure",
 )
 .within(Possible::NotNegative);
 
-pub(crate) const MAX_CONTACT_FORCE: ResultKind = ResultKind::measured(
+pub const MAX_CONTACT_FORCE: ResultKind = ResultKind::measured(
     "max_contact_force",
     Dimension::FORCE,
     "largest step-mean contact force; grows as 1/Δt under `rigid`, `restitution` and an unreached `limit`",
@@ -120,80 +120,80 @@ pub(crate) const MAX_CONTACT_FORCE: ResultKind = ResultKind::measured(
 .within(Possible::NotNegative)
 .grows_as_inverse_step();
 
-pub(crate) const IMPULSE: ResultKind = ResultKind::measured(
+pub const IMPULSE: ResultKind = ResultKind::measured(
     "impulse",
     Dimension::IMPULSE,
     "contact force integrated over the run",
 );
 
-pub(crate) const CONTACTS: ResultKind = ResultKind::count(
+pub const CONTACTS: ResultKind = ResultKind::count(
     "contacts",
     "number of contacts, including those within a step",
 );
 
-pub(crate) const RESTITUTION: ResultKind = ResultKind::measured(
+pub const RESTITUTION: ResultKind = ResultKind::measured(
     "restitution",
     Dimension::NUMBER,
     "separation speed over closing speed of the first impact",
 );
 
-pub(crate) const INDENTATION: ResultKind = ResultKind::measured(
+pub const INDENTATION: ResultKind = ResultKind::measured(
     "indentation",
     Dimension::LENGTH,
     "permanent indentation of the contact surface",
 )
 .within(Possible::NotNegative);
 
-pub(crate) const INDENTATION_ENERGY: ResultKind = ResultKind::measured(
+pub const INDENTATION_ENERGY: ResultKind = ResultKind::measured(
     "indentation_energy",
     Dimension::ENERGY,
     "limit force times indentation",
 );
 
-pub(crate) const ABSORBED_ENERGY: ResultKind = ResultKind::measured(
+pub const ABSORBED_ENERGY: ResultKind = ResultKind::measured(
     "absorbed_energy",
     Dimension::ENERGY,
     "restoring force integrated up to the largest displacement",
 );
 
-pub(crate) const RESTORING_ENERGY: ResultKind = ResultKind::measured(
+pub const RESTORING_ENERGY: ResultKind = ResultKind::measured(
     "restoring_energy",
     Dimension::ENERGY,
     "restoring force integrated over the run, including damping force in continuous mode",
 );
 
-pub(crate) const DAMPING_ENERGY: ResultKind = ResultKind::measured(
+pub const DAMPING_ENERGY: ResultKind = ResultKind::measured(
     "damping_energy",
     Dimension::ENERGY,
     "energy dissipated by the computed `damping`",
 );
 
-pub(crate) const STRIKER_ENERGY: ResultKind = ResultKind::measured(
+pub const STRIKER_ENERGY: ResultKind = ResultKind::measured(
     "striker_energy",
     Dimension::ENERGY,
     "kinetic energy of the striker at the start",
 )
 .within(Possible::NotNegative);
 
-pub(crate) const ENERGY_ERROR: ResultKind = ResultKind::new(
+pub const ENERGY_ERROR: ResultKind = ResultKind::new(
     "energy_error",
     Dimension::NUMBER,
     "residual of the energy balance relative to the input energy",
 )
 .in_percent();
 
-pub(crate) const TIME_STEP: ResultKind =
+pub const TIME_STEP: ResultKind =
     ResultKind::new("time_step", Dimension::TIME, "time step of the run");
 
-pub(crate) const CRITICAL_TIME_STEP: ResultKind = ResultKind::measured(
+pub const CRITICAL_TIME_STEP: ResultKind = ResultKind::measured(
     "critical_time_step",
     Dimension::TIME,
     "critical time step (Melo et al. 2006, eq. 7); under `hertz`, with the contact closed",
 );
 
-pub(crate) const STEPS: ResultKind = ResultKind::count("steps", "number of steps");
+pub const STEPS: ResultKind = ResultKind::count("steps", "number of steps");
 
-pub(crate) const CONTACT_DURATION: ResultKind = ResultKind::measured(
+pub const CONTACT_DURATION: ResultKind = ResultKind::measured(
     "contact_duration",
     Dimension::TIME,
     "simulated time of the first contact, in whole steps",
@@ -201,14 +201,14 @@ pub(crate) const CONTACT_DURATION: ResultKind = ResultKind::measured(
 .within(Possible::NotNegative)
 .of_storey();
 
-pub(crate) const REBOUND_VELOCITY: ResultKind = ResultKind::measured(
+pub const REBOUND_VELOCITY: ResultKind = ResultKind::measured(
     "rebound_velocity",
     Dimension::VELOCITY,
     "rebound speed of the striker at the end of the run",
 )
 .of_storey();
 
-pub(crate) const FLOOR_DISPLACEMENT: ResultKind = ResultKind::measured_list(
+pub const FLOOR_DISPLACEMENT: ResultKind = ResultKind::measured_list(
     "floor_displacement",
     Dimension::LENGTH,
     "peak absolute displacement of each floor",
@@ -216,7 +216,7 @@ pub(crate) const FLOOR_DISPLACEMENT: ResultKind = ResultKind::measured_list(
 .within(Possible::PeakDisplacement)
 .of_storey();
 
-pub(crate) const MAX_DRIFT: ResultKind = ResultKind::measured_list(
+pub const MAX_DRIFT: ResultKind = ResultKind::measured_list(
     "max_drift",
     Dimension::LENGTH,
     "peak absolute drift of each storey",
@@ -224,33 +224,33 @@ pub(crate) const MAX_DRIFT: ResultKind = ResultKind::measured_list(
 .within(Possible::NotNegative)
 .of_storey();
 
-pub(crate) const FINAL_DRIFT: ResultKind = ResultKind::measured_list(
+pub const FINAL_DRIFT: ResultKind = ResultKind::measured_list(
     "final_drift",
     Dimension::LENGTH,
     "drift of each storey at the last step of the run",
 )
 .of_storey();
 
-pub(crate) const STOREY_ENERGY: ResultKind = ResultKind::measured_list(
+pub const STOREY_ENERGY: ResultKind = ResultKind::measured_list(
     "storey_energy",
     Dimension::ENERGY,
     "work of each storey shear over its drift, in the run",
 )
 .of_storey();
 
-pub(crate) const MAX_BASE_SHEAR: ResultKind = ResultKind::measured(
+pub const MAX_BASE_SHEAR: ResultKind = ResultKind::measured(
     "max_base_shear",
     Dimension::FORCE,
     "peak absolute base shear, minus the part due to noise",
 )
 .of_storey();
 
-pub(crate) const PERIODS: ResultKind =
+pub const PERIODS: ResultKind =
     ResultKind::measured_list("periods", Dimension::TIME, "natural periods, longest first")
         .of_storey();
 
 /// What it leaves, in the order of the tables and of `summary.json`.
-pub(crate) const RESULTS: &[ResultKind] = &[
+pub const RESULTS: &[ResultKind] = &[
     MAX_DISPLACEMENT,
     TIME_OF_MAX_DISPLACEMENT,
     STOP_TIME,
@@ -288,10 +288,10 @@ pub(crate) const RESULTS: &[ResultKind] = &[
     tracking::FLOOR_PEAK_ERROR.of_storey(),
 ];
 
-pub(crate) const STRIKER: Field =
+pub const STRIKER: Field =
     Field::reference("striker", Kind::Striker, "striker").required("striker = pendulum");
 
-pub(crate) const STOREY: Field = Field::count(
+pub const STOREY: Field = Field::count(
     "storey",
     1.0,
     64.0,
@@ -299,19 +299,18 @@ pub(crate) const STOREY: Field = Field::count(
 )
 .of_frames();
 
-pub(crate) const MASS: Field = Field::quantity("mass", Dimension::MASS, "M of eqs. 4 and 5")
+pub const MASS: Field = Field::quantity("mass", Dimension::MASS, "M of eqs. 4 and 5")
     .above_zero()
     .default_in_words("the specimen's");
 
-pub(crate) const DAMPING: Field =
-    Field::quantity("damping", Dimension::DAMPING, "C of eqs. 4 and 5")
-        .or(0.0, "N*s/m")
-        .at_least_zero();
+pub const DAMPING: Field = Field::quantity("damping", Dimension::DAMPING, "C of eqs. 4 and 5")
+    .or(0.0, "N*s/m")
+    .at_least_zero();
 
-pub(crate) const CONTACT: Field =
+pub const CONTACT: Field =
     Field::choice("contact", CONTACT_LAWS, "contact law").default_in_words("rigid");
 
-pub(crate) const UNTIL: Field = Field::choice(
+pub const UNTIL: Field = Field::choice(
     "until",
     &[
         Variant::word(
@@ -325,7 +324,7 @@ pub(crate) const UNTIL: Field = Field::choice(
 )
 .default_in_words("striker_stop");
 
-pub(crate) const BLOCK: BlockKind = BlockKind {
+pub const BLOCK: BlockKind = BlockKind {
     kind: Kind::Procedure(ProcedureBlock::Impact),
     keyword: &["impact"],
     naming: Naming::Named,

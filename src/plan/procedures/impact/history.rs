@@ -1,9 +1,9 @@
 //! The history of an impact, on one degree of freedom or on a floor of a frame: one row per step.
 
-use crate::physics::impact::energy::Energies;
-use crate::physics::impact::summary::still_rising;
-use crate::physics::tracking::monitor::Tracking;
 use crate::record::{StepState, StruckFrame};
+use psd_physics::impact::energy::Energies;
+use psd_physics::impact::summary::still_rising;
+use psd_physics::tracking::monitor::Tracking;
 
 /// One row of an impact's table; step 0 is the start.
 #[derive(Clone, Copy, Debug, PartialEq)]

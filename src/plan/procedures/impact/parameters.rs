@@ -1,10 +1,10 @@
 //! A checked `impact`: a computed striker meets a structure on the rig, either one degree of freedom or one floor of a frame. In:
 //! formulas from the check. Out: SI numbers, and the critical time step if its inputs are known. It integrates nothing.
 
-use crate::physics::contact::contact_time_step::Approach;
-use crate::physics::contact::{ContactLaw, ContactSpring};
-use crate::plan::formula::Formula;
-use crate::plan::{ShakeDamping, Stepping, Striker, Until};
+use crate::formula::Formula;
+use crate::{ShakeDamping, Stepping, Striker, Until};
+use psd_physics::contact::contact_time_step::Approach;
+use psd_physics::contact::{ContactLaw, ContactSpring};
 
 /// A striker, which is computed, meets a structure, which is on the rig (Melo et al. 2006, eqs. 4 and 5).
 #[derive(Clone, Debug)]

@@ -1,12 +1,12 @@
 //! `inspect`: its block.
 
-use crate::plan::ProcedureBlock;
+use crate::ProcedureBlock;
 use crate::schema::{BlockKind, Field, Kind, Naming};
 
-pub(crate) const NOTE: Field = Field::text("note", "instruction to the operator")
+pub const NOTE: Field = Field::text("note", "instruction to the operator")
     .required("note = \"look for cracks at the supports\"");
 
-pub(crate) const BLOCK: BlockKind = BlockKind {
+pub const BLOCK: BlockKind = BlockKind {
     kind: Kind::Procedure(ProcedureBlock::Inspect),
     keyword: &["inspect"],
     naming: Naming::Named,

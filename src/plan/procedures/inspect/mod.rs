@@ -1,3 +1,3 @@
 //! What the stages before the run know of `inspect`: its block.
 
-pub(crate) mod block;
+pub mod block;

@@ -1,14 +1,14 @@
 //! `move`: its block.
 
-use crate::plan::ProcedureBlock;
-use crate::plan::declaration::{fields, names};
-use crate::plan::procedures::move_to::parameters::move_fields;
+use crate::ProcedureBlock;
+use crate::move_fields;
 use crate::schema::{BlockKind, Field, Kind, Naming};
-use crate::units::Dimension;
+use crate::{fields, names};
+use psd_text::units::Dimension;
 
 move_fields!(names);
 
-pub(crate) const BLOCK: BlockKind = BlockKind {
+pub const BLOCK: BlockKind = BlockKind {
     kind: Kind::Procedure(ProcedureBlock::Move),
     keyword: &["move"],
     naming: Naming::Named,

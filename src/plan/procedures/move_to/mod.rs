@@ -1,4 +1,4 @@
 //! What the stages before the run know of `move`: its block and its parameters.
 
-pub(crate) mod block;
-pub(crate) mod parameters;
+pub mod block;
+pub mod parameters;

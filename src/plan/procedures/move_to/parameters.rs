@@ -1,9 +1,10 @@
 //! The fields of a `move`, declared once: its parameters here, its schema in `block.rs`, its reader in
 //! `procedures::move_to::check`.
 
-use crate::plan::declaration::parameters;
-use crate::plan::formula::Formula;
+use crate::formula::Formula;
+use crate::parameters;
 
+#[macro_export]
 macro_rules! move_fields {
     ($into:ident) => {
         $into! {
@@ -18,6 +19,5 @@ macro_rules! move_fields {
         }
     };
 }
-pub(crate) use move_fields;
 
 move_fields!(parameters);

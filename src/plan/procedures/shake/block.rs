@@ -1,52 +1,52 @@
 //! `shake`: its block and its results.
 
-use crate::plan::ProcedureBlock;
+use crate::ProcedureBlock;
 use crate::schema::procedures::{SPECIMEN, tracking};
 use crate::schema::{BlockKind, Field, Kind, Naming, Possible, ResultKind};
 use crate::schema::{frames, methods};
-use crate::units::Dimension;
+use psd_text::units::Dimension;
 
-pub(crate) const MAX_DISPLACEMENT: ResultKind = ResultKind::measured_list(
+pub const MAX_DISPLACEMENT: ResultKind = ResultKind::measured_list(
     "max_displacement",
     Dimension::LENGTH,
     "peak absolute displacement of each floor, relative to the ground",
 )
 .within(Possible::PeakDisplacement);
 
-pub(crate) const MAX_DRIFT: ResultKind = ResultKind::measured_list(
+pub const MAX_DRIFT: ResultKind = ResultKind::measured_list(
     "max_drift",
     Dimension::LENGTH,
     "peak absolute drift of each storey",
 )
 .within(Possible::NotNegative);
 
-pub(crate) const FINAL_DRIFT: ResultKind = ResultKind::measured_list(
+pub const FINAL_DRIFT: ResultKind = ResultKind::measured_list(
     "final_drift",
     Dimension::LENGTH,
     "drift of each storey at the last step of the run",
 );
 
-pub(crate) const PERIODS: ResultKind =
+pub const PERIODS: ResultKind =
     ResultKind::measured_list("periods", Dimension::TIME, "natural periods, longest first")
         .within(Possible::NotNegative);
 
-pub(crate) const MAX_BASE_SHEAR: ResultKind = ResultKind::measured(
+pub const MAX_BASE_SHEAR: ResultKind = ResultKind::measured(
     "max_base_shear",
     Dimension::FORCE,
     "peak absolute base shear, minus the part due to noise",
 );
 
-pub(crate) const ENERGY_ERROR: ResultKind = ResultKind::new(
+pub const ENERGY_ERROR: ResultKind = ResultKind::new(
     "energy_error",
     Dimension::NUMBER,
     "residual of the energy balance relative to the input energy",
 )
 .in_percent();
 
-pub(crate) const STEPS: ResultKind = ResultKind::count("steps", "number of steps");
+pub const STEPS: ResultKind = ResultKind::count("steps", "number of steps");
 
 /// What it leaves, in the order of the tables and of `summary.json`.
-pub(crate) const RESULTS: &[ResultKind] = &[
+pub const RESULTS: &[ResultKind] = &[
     MAX_DISPLACEMENT,
     MAX_DRIFT,
     FINAL_DRIFT,
@@ -64,13 +64,13 @@ pub(crate) const RESULTS: &[ResultKind] = &[
     tracking::FLOOR_PEAK_ERROR,
 ];
 
-pub(crate) const GROUND: Field =
+pub const GROUND: Field =
     Field::reference("ground", Kind::Ground, "ground motion").required("ground = sine");
 
-pub(crate) const SCALE: Field =
+pub const SCALE: Field =
     Field::quantity("scale", Dimension::NUMBER, "factor on the record").or(1.0, "");
 
-pub(crate) const BLOCK: BlockKind = BlockKind {
+pub const BLOCK: BlockKind = BlockKind {
     kind: Kind::Procedure(ProcedureBlock::Shake),
     keyword: &["shake"],
     naming: Naming::Named,

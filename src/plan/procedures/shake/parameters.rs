@@ -1,7 +1,7 @@
 //! The parameters of a `shake`, in SI. They are data: they compute no motion.
 
-use crate::plan::formula::Formula;
-use crate::plan::{ShakeDamping, Stepping};
+use crate::formula::Formula;
+use crate::{ShakeDamping, Stepping};
 
 /// A frame on moving ground.
 #[derive(Clone, Debug)]

@@ -1,14 +1,14 @@
 //! `stiffness ramp`: its block and its results.
 
-use crate::plan::ProcedureBlock;
-use crate::plan::declaration::{fields, names};
-use crate::plan::procedures::stiffness_ramp::parameters::stiffness_ramp_fields;
+use crate::ProcedureBlock;
 use crate::schema::curves;
 use crate::schema::methods::TRUTH;
 use crate::schema::{BlockKind, Field, Kind, Naming, Possible, ResultKind, Variant};
-use crate::units::Dimension;
+use crate::stiffness_ramp_fields;
+use crate::{fields, names};
+use psd_text::units::Dimension;
 
-pub(crate) const ACCURACY: Field = Field::quantity(
+pub const ACCURACY: Field = Field::quantity(
     "accuracy",
     Dimension::FORCE,
     "force accuracy wanted; determines the required dwell time",
@@ -16,7 +16,7 @@ pub(crate) const ACCURACY: Field = Field::quantity(
 .above_zero()
 .default_in_words("`noise` of the load cell");
 
-pub(crate) const ALLOWED_RATE: Field = Field::quantity(
+pub const ALLOWED_RATE: Field = Field::quantity(
     "rate",
     Dimension::FORCE_RATE,
     "force rate allowed at the end of a pause; determines the required dwell time",
@@ -26,7 +26,7 @@ pub(crate) const ALLOWED_RATE: Field = Field::quantity(
 
 const WATCHED: &[Field] = &[READINGS, ACCURACY];
 
-pub(crate) const READINGS: Field = Field::count(
+pub const READINGS: Field = Field::count(
     "readings",
     3.0,
     10_000.0,
@@ -70,141 +70,141 @@ const RELAXATION_MODELS: &[Variant] = &[
     ),
 ];
 
-pub(crate) const STIFFNESS: ResultKind = ResultKind::measured(
+pub const STIFFNESS: ResultKind = ResultKind::measured(
     "stiffness",
     Dimension::STIFFNESS,
     "slope of the line fitted to force against displacement; of the first segment in other fits",
 );
 
-pub(crate) const SECANT_STIFFNESS: ResultKind = ResultKind::measured(
+pub const SECANT_STIFFNESS: ResultKind = ResultKind::measured(
     "secant_stiffness",
     Dimension::STIFFNESS,
     "force over displacement of the first increment",
 );
 
-pub(crate) const INTERCEPT_FORCE: ResultKind = ResultKind::measured(
+pub const INTERCEPT_FORCE: ResultKind = ResultKind::measured(
     "intercept_force",
     Dimension::FORCE,
     "fitted force at zero displacement",
 );
 
-pub(crate) const R_SQUARED: ResultKind = ResultKind::new(
+pub const R_SQUARED: ResultKind = ResultKind::new(
     "r_squared",
     Dimension::NUMBER,
     "coefficient of determination of the fit",
 );
 
-pub(crate) const MAX_FORCE: ResultKind = ResultKind::measured(
+pub const MAX_FORCE: ResultKind = ResultKind::measured(
     "max_force",
     Dimension::FORCE,
     "peak absolute restoring force, minus the part due to noise",
 );
 
-pub(crate) const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
+pub const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
     "max_displacement",
     Dimension::LENGTH,
     "peak absolute measured displacement",
 )
 .within(Possible::PeakDisplacement);
 
-pub(crate) const LOOP_ENERGY: ResultKind = ResultKind::measured(
+pub const LOOP_ENERGY: ResultKind = ResultKind::measured(
     "loop_energy",
     Dimension::ENERGY,
     "energy of the hysteresis loop, with `return = true`",
 );
 
-pub(crate) const RELAXATION: ResultKind = ResultKind::measured(
+pub const RELAXATION: ResultKind = ResultKind::measured(
     "relaxation",
     Dimension::FORCE,
     "mean force lost during a pause",
 );
 
-pub(crate) const TANGENT_STIFFNESS: ResultKind = ResultKind::measured(
+pub const TANGENT_STIFFNESS: ResultKind = ResultKind::measured(
     "tangent_stiffness",
     Dimension::STIFFNESS,
     "secant of the last outward step: tangent at the end of the ramp",
 );
 
-pub(crate) const YIELD_FORCE: ResultKind = ResultKind::measured(
+pub const YIELD_FORCE: ResultKind = ResultKind::measured(
     "yield_force",
     Dimension::FORCE,
     "force at the yield point of a bilinear or multilinear fit",
 );
 
-pub(crate) const YIELD_DISPLACEMENT: ResultKind = ResultKind::measured(
+pub const YIELD_DISPLACEMENT: ResultKind = ResultKind::measured(
     "yield_displacement",
     Dimension::LENGTH,
     "displacement at the yield point",
 );
 
-pub(crate) const POST_YIELD_STIFFNESS: ResultKind = ResultKind::measured(
+pub const POST_YIELD_STIFFNESS: ResultKind = ResultKind::measured(
     "post_yield_stiffness",
     Dimension::STIFFNESS,
     "post-yield slope, or slope of the last segment",
 );
 
-pub(crate) const POST_YIELD_RATIO: ResultKind = ResultKind::measured(
+pub const POST_YIELD_RATIO: ResultKind = ResultKind::measured(
     "post_yield_ratio",
     Dimension::NUMBER,
     "post-yield over initial slope",
 );
 
-pub(crate) const TIME_CONSTANT: ResultKind = ResultKind::measured(
+pub const TIME_CONSTANT: ResultKind = ResultKind::measured(
     "time_constant",
     Dimension::TIME,
     "τ of the relaxation, with `relaxation`",
 );
 
-pub(crate) const RELAXED_STIFFNESS: ResultKind = ResultKind::measured(
+pub const RELAXED_STIFFNESS: ResultKind = ResultKind::measured(
     "relaxed_stiffness",
     Dimension::STIFFNESS,
     "slope of the fully relaxed forces",
 );
 
-pub(crate) const BRANCH_STIFFNESS: ResultKind = ResultKind::measured(
+pub const BRANCH_STIFFNESS: ResultKind = ResultKind::measured(
     "branch_stiffness",
     Dimension::STIFFNESS,
     "stiffness of the relaxing part of a standard linear solid",
 );
 
-pub(crate) const REMAINING_RELAXATION: ResultKind = ResultKind::measured(
+pub const REMAINING_RELAXATION: ResultKind = ResultKind::measured(
     "remaining_relaxation",
     Dimension::FORCE,
     "largest remaining relaxation at the end of a pause",
 );
 
-pub(crate) const REQUIRED_PAUSE: ResultKind = ResultKind::measured(
+pub const REQUIRED_PAUSE: ResultKind = ResultKind::measured(
     "required_pause",
     Dimension::TIME,
     "required dwell time for the requested `accuracy` or `rate`",
 );
 
-pub(crate) const RELAXATION_SHARE: ResultKind = ResultKind::measured(
+pub const RELAXATION_SHARE: ResultKind = ResultKind::measured(
     "relaxation_share",
     Dimension::NUMBER,
     "a or g: relaxed fraction of the unrelaxed force; only laws with a fraction",
 );
 
-pub(crate) const REFERENCE_TIME: ResultKind = ResultKind::measured(
+pub const REFERENCE_TIME: ResultKind = ResultKind::measured(
     "reference_time",
     Dimension::TIME,
     "t₀ of the logarithmic law",
 );
 
-pub(crate) const RELAXATION_RATE: ResultKind = ResultKind::measured(
+pub const RELAXATION_RATE: ResultKind = ResultKind::measured(
     "relaxation_rate",
     Dimension::FORCE_RATE,
     "largest force rate at the end of a pause",
 );
 
-pub(crate) const BIC_MARGIN: ResultKind = ResultKind::new(
+pub const BIC_MARGIN: ResultKind = ResultKind::new(
     "bic_margin",
     Dimension::NUMBER,
     "BIC of the exponential minus BIC of the logarithm, with `either`; positive: the logarithm fits better",
 );
 
 /// What it leaves, in the order of the tables and of `summary.json`.
-pub(crate) const RESULTS: &[ResultKind] = &[
+pub const RESULTS: &[ResultKind] = &[
     STIFFNESS,
     SECANT_STIFFNESS,
     INTERCEPT_FORCE,
@@ -234,7 +234,7 @@ pub(crate) const RESULTS: &[ResultKind] = &[
 
 stiffness_ramp_fields!(names);
 
-pub(crate) const BLOCK: BlockKind = BlockKind {
+pub const BLOCK: BlockKind = BlockKind {
     kind: Kind::Procedure(ProcedureBlock::StiffnessRamp),
     keyword: &["stiffness", "ramp"],
     naming: Naming::Named,

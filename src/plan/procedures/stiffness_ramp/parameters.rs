@@ -1,12 +1,13 @@
 //! The fields of a `stiffness ramp`, declared once: its parameters here, its schema in `block.rs`, its reader in
 //! `procedures::stiffness_ramp::check`. It fits nothing itself.
 
-pub use crate::physics::identification::multilinear_fit::BreakCount;
-pub use crate::physics::relaxation::law::RelaxationLaw;
-pub use crate::physics::relaxation::time_constant::RelaxationModel;
-use crate::plan::declaration::parameters;
-use crate::plan::formula::Formula;
+use crate::formula::Formula;
+use crate::parameters;
+pub use psd_physics::identification::multilinear_fit::BreakCount;
+pub use psd_physics::relaxation::law::RelaxationLaw;
+pub use psd_physics::relaxation::time_constant::RelaxationModel;
 
+#[macro_export]
 macro_rules! stiffness_ramp_fields {
     ($into:ident) => {
         $into! {
@@ -42,7 +43,6 @@ macro_rules! stiffness_ramp_fields {
         }
     };
 }
-pub(crate) use stiffness_ramp_fields;
 
 stiffness_ramp_fields!(parameters);
 

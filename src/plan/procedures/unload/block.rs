@@ -1,37 +1,37 @@
 //! `unload`: its block and results.
 
-use crate::plan::ProcedureBlock;
+use crate::ProcedureBlock;
 use crate::schema::procedures::{SPECIMEN, SPEED, STIFFNESS};
 use crate::schema::{BlockKind, Field, Kind, Naming, ResultKind};
-use crate::units::Dimension;
+use psd_text::units::Dimension;
 
-pub(crate) const RESIDUAL_DISPLACEMENT: ResultKind = ResultKind::measured(
+pub const RESIDUAL_DISPLACEMENT: ResultKind = ResultKind::measured(
     "residual_displacement",
     Dimension::LENGTH,
     "unloaded position; of a frame, the largest of all floors",
 );
 
-pub(crate) const RESIDUAL_FORCE: ResultKind = ResultKind::measured(
+pub const RESIDUAL_FORCE: ResultKind = ResultKind::measured(
     "residual_force",
     Dimension::FORCE,
     "remaining force there; of a frame, the largest of a floor",
 );
 
-pub(crate) const FLOOR_DISPLACEMENT: ResultKind = ResultKind::measured_list(
+pub const FLOOR_DISPLACEMENT: ResultKind = ResultKind::measured_list(
     "floor_displacement",
     Dimension::LENGTH,
     "unloaded position of each floor",
 )
 .of_storey();
 
-pub(crate) const RESIDUAL_DRIFT: ResultKind = ResultKind::measured_list(
+pub const RESIDUAL_DRIFT: ResultKind = ResultKind::measured_list(
     "residual_drift",
     Dimension::LENGTH,
     "drift of each unloaded storey",
 )
 .of_storey();
 
-pub(crate) const RESIDUAL_SHEAR: ResultKind = ResultKind::measured_list(
+pub const RESIDUAL_SHEAR: ResultKind = ResultKind::measured_list(
     "residual_shear",
     Dimension::FORCE,
     "remaining shear of each storey",
@@ -39,7 +39,7 @@ pub(crate) const RESIDUAL_SHEAR: ResultKind = ResultKind::measured_list(
 .of_storey();
 
 /// What it leaves, in the order of the tables and of `summary.json`.
-pub(crate) const RESULTS: &[ResultKind] = &[
+pub const RESULTS: &[ResultKind] = &[
     RESIDUAL_DISPLACEMENT,
     RESIDUAL_FORCE,
     FLOOR_DISPLACEMENT,
@@ -47,7 +47,7 @@ pub(crate) const RESULTS: &[ResultKind] = &[
     RESIDUAL_SHEAR,
 ];
 
-pub(crate) const WITHIN: Field = Field::quantity(
+pub const WITHIN: Field = Field::quantity(
     "within",
     Dimension::FORCE,
     "largest force that counts as zero; of a frame, on a floor",
@@ -55,7 +55,7 @@ pub(crate) const WITHIN: Field = Field::quantity(
 .above_zero()
 .default_in_words("0.1 % of the initial force, or the smallest detectable force if larger");
 
-pub(crate) const BLOCK: BlockKind = BlockKind {
+pub const BLOCK: BlockKind = BlockKind {
     kind: Kind::Procedure(ProcedureBlock::Unload),
     keyword: &["unload"],
     naming: Naming::Named,

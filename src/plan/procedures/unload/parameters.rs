@@ -1,6 +1,6 @@
 //! A checked `unload`: the load is removed until the specimen carries zero force. One degree of freedom or a frame.
 
-use crate::plan::formula::Formula;
+use crate::formula::Formula;
 
 /// Moves to the position of zero restoring force; all floors of a frame move together.
 #[derive(Clone, Debug)]

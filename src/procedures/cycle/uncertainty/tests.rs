@@ -26,7 +26,6 @@ fn plan(behaviour: Behaviour, link: VirtualLink, calibration: Calibration) -> Pl
         rate: None,
         inspect: Vec::new(),
         fit: None,
-        evenly: false,
     };
     let mut plan = elastic_plan(STIFFNESS, vec![ProcedureKind::Cycle(cycle)]);
     plan.specimens[0].behaviour = Some(behaviour);

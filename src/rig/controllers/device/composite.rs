@@ -3,8 +3,8 @@
 //! none begins. It knows no protocol.
 
 use super::{Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Sample};
-use crate::plan::{Interval, Limits};
-use crate::rig::{LineStatistics, NO_POWER_UP};
+use crate::{LineStatistics, NO_POWER_UP};
+use psd_plan::{Interval, Limits};
 
 /// One of these devices.
 pub struct Member {

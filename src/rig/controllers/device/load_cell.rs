@@ -2,7 +2,7 @@
 //! move and has nothing to hold or stop. It knows no protocol.
 
 use super::{Device, DeviceFault, DeviceIdentity, DeviceMove, Sample};
-use crate::rig::LineStatistics;
+use crate::LineStatistics;
 
 /// A load cell on a separate port. All calls end within a bounded time.
 pub trait LoadCell: Send {

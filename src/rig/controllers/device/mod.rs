@@ -4,9 +4,9 @@
 mod composite;
 mod load_cell;
 
-use crate::physics::tracking::trajectory::Path;
-use crate::plan::{Interval, Limits};
-use crate::rig::{LastMove, LineStatistics};
+use crate::{LastMove, LineStatistics};
+use psd_physics::tracking::trajectory::Path;
+use psd_plan::{Interval, Limits};
 
 pub use composite::{Member, together};
 pub use load_cell::LoadCell;

@@ -1,7 +1,7 @@
 //! A load cell on an HX711: a sketch that sends one raw count a line, unsolicited. In: a line without its ending. Out: the
 //! count. It knows neither the cell nor its calibration.
 
-use crate::rig::controllers::number;
+use crate::controllers::number;
 
 /// Lowest and highest count of the converter's 24 bits: at either it is saturated.
 pub const RAILS: (i64, i64) = (-8_388_608, 8_388_607);

@@ -1,10 +1,10 @@
 //! A load cell that sends raw counts unsolicited, one a line. In: nothing. Out: a count whose conversion began after the
 //! request. It moves nothing and does not know its calibration.
 
-use crate::rig::LineStatistics;
-use crate::rig::controllers::hx711;
-use crate::rig::controllers::hx711::codec::RAILS;
-use crate::rig::controllers::{
+use crate::LineStatistics;
+use crate::controllers::hx711;
+use crate::controllers::hx711::codec::RAILS;
+use crate::controllers::{
     DeviceFault, DeviceIdentity, Flags, Force, LineClient, LoadCell, Sample, stream,
 };
 
@@ -21,7 +21,7 @@ impl Hx711Device {
 }
 
 /// The identity of a device that sends counts.
-pub(crate) fn introduced() -> DeviceIdentity {
+pub fn introduced() -> DeviceIdentity {
     DeviceIdentity {
         model: "HX711".to_owned(),
         ..DeviceIdentity::default()
@@ -29,7 +29,10 @@ pub(crate) fn introduced() -> DeviceIdentity {
 }
 
 /// The count of a line.
-pub(crate) fn decoded(line: Vec<u8>) -> Result<Sample, DeviceFault> {
+///
+/// # Errors
+/// The reply is no reading of this device, or its status forbids one.
+pub fn decoded(line: Vec<u8>) -> Result<Sample, DeviceFault> {
     let Some(count) = hx711::codec::count(&line) else {
         return Err(DeviceFault::NoReading {
             raw: line,
@@ -63,7 +66,7 @@ impl LoadCell for Hx711Device {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
+    use crate::testing::rig::{Scripted, ScriptedPort, VirtualClock};
 
     fn device() -> (Hx711Device, ScriptedPort, VirtualClock) {
         let clock = VirtualClock::default();

@@ -2,4 +2,4 @@
 //! motion.
 
 pub mod codec;
-pub(crate) mod driver;
+pub mod driver;

@@ -1,7 +1,7 @@
 //! Weighing indicators: `ST,GS,+0001234,kg`. In: a line without its ending. Out: a force with the status of the indicator.
 //! The unit is in the line, so a wrong setting of the indicator cannot give a wrong force.
 
-use crate::rig::controllers::number;
+use crate::controllers::number;
 
 /// Requests one line, for an indicator that does not send automatically.
 pub const READ: &[u8] = b"READ\r\n";

@@ -1,11 +1,11 @@
 //! A load cell on a weighing indicator, which sends unsolicited or on request. In: nothing. Out: a force whose line began
 //! after the request, with the status of the indicator. It moves nothing.
 
-use crate::rig::LineStatistics;
-use crate::rig::controllers::indicator;
-use crate::rig::controllers::indicator::codec::Status;
-use crate::rig::controllers::request_reply::RequestReply;
-use crate::rig::controllers::{
+use crate::LineStatistics;
+use crate::controllers::indicator;
+use crate::controllers::indicator::codec::Status;
+use crate::controllers::request_reply::RequestReply;
+use crate::controllers::{
     Answer, DeviceFault, DeviceIdentity, Flags, Force, LineClient, LoadCell, Sample, stream,
 };
 
@@ -38,7 +38,7 @@ impl IndicatorDevice {
 }
 
 /// The identity of a device that sends weights.
-pub(crate) fn introduced() -> DeviceIdentity {
+pub fn introduced() -> DeviceIdentity {
     DeviceIdentity {
         model: "weighing indicator".to_owned(),
         ..DeviceIdentity::default()
@@ -46,7 +46,10 @@ pub(crate) fn introduced() -> DeviceIdentity {
 }
 
 /// The force of a line.
-pub(crate) fn decoded(line: Vec<u8>) -> Result<Sample, DeviceFault> {
+///
+/// # Errors
+/// The reply is no reading of this device, or its status forbids one.
+pub fn decoded(line: Vec<u8>) -> Result<Sample, DeviceFault> {
     let weight = match indicator::codec::weight(&line) {
         Ok(weight) => weight,
         Err(reason) => {
@@ -94,7 +97,7 @@ impl LoadCell for IndicatorDevice {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
+    use crate::testing::rig::{Scripted, ScriptedPort, VirtualClock};
 
     fn device() -> (IndicatorDevice, ScriptedPort) {
         let clock = VirtualClock::default();

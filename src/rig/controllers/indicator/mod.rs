@@ -2,4 +2,4 @@
 //! no motion.
 
 pub mod codec;
-pub(crate) mod driver;
+pub mod driver;

@@ -2,7 +2,7 @@
 //! seconds. Out: the bytes of questions and commands, and the meaning of answers and status words. Only questions (`Q`) are
 //! answered; every command is sent between taking and releasing control, otherwise the hydraulics trip. It knows no device.
 
-use crate::rig::controllers::number;
+use crate::controllers::number;
 
 /// Ends every line, in both directions.
 pub const ENDING: &[u8] = b"\r\n";

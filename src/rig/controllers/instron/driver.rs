@@ -2,12 +2,12 @@
 //! and \[m/s\]. Out: ramps that are read back before they start, and readings in which an exact zero is requested again.
 //! Commands are not answered, so their effect is queried.
 
-use crate::rig::LineStatistics;
-use crate::rig::controllers;
-use crate::rig::controllers::instron;
-use crate::rig::controllers::instron::codec::{Channel, Movement, Question, Trouble};
-use crate::rig::controllers::unsequenced::ask_line;
-use crate::rig::controllers::{
+use crate::LineStatistics;
+use crate::controllers;
+use crate::controllers::instron;
+use crate::controllers::instron::codec::{Channel, Movement, Question, Trouble};
+use crate::controllers::unsequenced::ask_line;
+use crate::controllers::{
     Device, DeviceFault, DeviceIdentity, DeviceMove, Flags, Force, LineClient, Sample, one_axis,
 };
 
@@ -329,7 +329,7 @@ impl Device for Instron {
 }
 
 /// The identity of a console, from these replies: the full scales of position and load.
-pub(crate) fn introduced(raw: Vec<Vec<u8>>) -> DeviceIdentity {
+pub fn introduced(raw: Vec<Vec<u8>>) -> DeviceIdentity {
     DeviceIdentity {
         model: "Instron 8800-style console".to_owned(),
         raw,

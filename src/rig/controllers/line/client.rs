@@ -5,10 +5,10 @@
 use std::io::ErrorKind;
 use std::time::Duration;
 
-use crate::rig::controllers::DeviceFault;
-use crate::rig::safety::failpoint::{Guarding, on};
-use crate::rig::transport::{Clock, Port};
-use crate::rig::{LineStatistics, StopRequest, safety};
+use crate::controllers::DeviceFault;
+use crate::safety::failpoint::{Guarding, on};
+use crate::transport::{Clock, Port};
+use crate::{LineStatistics, StopRequest, safety};
 
 /// Longest line with its ending, and the size of the receive buffer, bytes.
 pub const LONGEST_LINE: usize = 512;

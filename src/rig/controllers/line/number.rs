@@ -2,7 +2,7 @@
 //! number to be sent. It knows no unit and no protocol. Forms that `f64` accepts beyond plain decimals (nan, inf, `1e400`,
 //! `.5`, `5.`) are not numbers here: an invalid reading must never become a number.
 
-use crate::rig::safety::failpoint::{Guarding, on};
+use crate::safety::failpoint::{Guarding, on};
 
 /// Longest field that can be a number, bytes.
 const LONGEST: usize = 40;

@@ -2,7 +2,7 @@
 //! a function that recognises its answer. Out: an answer to this question. After a silence no answer is accepted until the line was quiet
 //! and two answers agreed.
 
-use crate::rig::controllers::{Answer, DeviceFault, LineClient};
+use crate::controllers::{Answer, DeviceFault, LineClient};
 
 /// Number of times a question is sent before it is abandoned.
 const ATTEMPTS: u32 = 3;
@@ -85,7 +85,7 @@ impl RequestReply {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
+    use crate::testing::rig::{Scripted, ScriptedPort, VirtualClock};
 
     fn client() -> (LineClient, ScriptedPort) {
         let clock = VirtualClock::default();

@@ -1,6 +1,6 @@
 //! Devices that send automatically. In: a line that never stops. Out: a whole line that was begun after the request for it.
 
-use crate::rig::controllers::{Answer, DeviceFault, LineClient};
+use crate::controllers::{Answer, DeviceFault, LineClient};
 
 /// A whole line, without its ending, of which no byte was received before this call. The line in progress is discarded.
 ///

@@ -1,8 +1,8 @@
 //! Lines whose answers have no sequence number, so that a late answer cannot be distinguished from a fresh one. In: a question as a
 //! closure. Out: its answer, or none. It knows no protocol.
 
-use crate::rig::controllers::{Answer, DeviceFault, LineClient, Missed};
-use crate::rig::safety::failpoint::{Guarding, on};
+use crate::controllers::{Answer, DeviceFault, LineClient, Missed};
+use crate::safety::failpoint::{Guarding, on};
 
 /// Number of times a question is repeated after the first silence.
 const AGAIN: u32 = 3;

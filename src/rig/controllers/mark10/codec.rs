@@ -2,7 +2,7 @@
 //! Out: the bytes of settings and questions, and the meaning of status, travel and force. The test frame has no absolute move: a target
 //! is a travel limit. Negative is the direction that the gauge calls negative. It knows no device.
 
-use crate::rig::controllers::number;
+use crate::controllers::number;
 
 /// Ends every answer.
 pub const ENDING: &[u8] = b"\r\n";

@@ -2,11 +2,11 @@
 //! readings in newtons. The resolution of travel and targets is 0.01 mm. Lines have no checksum: unsolicited bytes are discarded, and
 //! after a silence every question is asked twice.
 
-use crate::rig::LineStatistics;
-use crate::rig::controllers::mark10;
-use crate::rig::controllers::mark10::codec::{Side, Status};
-use crate::rig::controllers::unsequenced::ask_line;
-use crate::rig::controllers::{
+use crate::LineStatistics;
+use crate::controllers::mark10;
+use crate::controllers::mark10::codec::{Side, Status};
+use crate::controllers::unsequenced::ask_line;
+use crate::controllers::{
     Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Flags, Force, LineClient, Sample,
     one_axis,
 };
@@ -244,7 +244,7 @@ impl Device for Mark10 {
 }
 
 /// The reading of a status, a travel and a force.
-pub(crate) fn decoded(replies: &[Vec<u8>]) -> Option<Sample> {
+pub fn decoded(replies: &[Vec<u8>]) -> Option<Sample> {
     let [status, travel, force] = replies else {
         return None;
     };
@@ -271,7 +271,7 @@ fn sample_of(status: Status, travel: f64, force: Force) -> Sample {
 }
 
 /// The identity of a test frame.
-pub(crate) fn stand_introduced() -> DeviceIdentity {
+pub fn stand_introduced() -> DeviceIdentity {
     DeviceIdentity {
         model: "Mark-10 stand".to_owned(),
         ..DeviceIdentity::default()
@@ -304,7 +304,9 @@ const fn direction(side: Side) -> &'static [u8] {
     }
 }
 
-pub(crate) fn newtons(answer: &[u8]) -> Result<Force, DeviceFault> {
+/// # Errors
+/// The answer is no force.
+pub fn newtons(answer: &[u8]) -> Result<Force, DeviceFault> {
     match mark10::codec::force(answer) {
         Some(mark10::codec::Force::Newtons(newtons)) => Ok(Force::Newtons(newtons)),
         Some(mark10::codec::Force::Unknown) => {

@@ -2,10 +2,10 @@
 //! another device.
 
 use super::driver::newtons;
-use crate::rig::LineStatistics;
-use crate::rig::controllers::mark10;
-use crate::rig::controllers::unsequenced::ask_line;
-use crate::rig::controllers::{DeviceFault, DeviceIdentity, Flags, LineClient, LoadCell, Sample};
+use crate::LineStatistics;
+use crate::controllers::mark10;
+use crate::controllers::unsequenced::ask_line;
+use crate::controllers::{DeviceFault, DeviceIdentity, Flags, LineClient, LoadCell, Sample};
 
 /// The gauge at the other end of a line.
 pub struct Mark10Gauge {
@@ -39,7 +39,7 @@ impl LoadCell for Mark10Gauge {
 }
 
 /// The identity of a gauge.
-pub(crate) fn introduced() -> DeviceIdentity {
+pub fn introduced() -> DeviceIdentity {
     DeviceIdentity {
         model: "Mark-10 gauge".to_owned(),
         ..DeviceIdentity::default()
@@ -47,7 +47,10 @@ pub(crate) fn introduced() -> DeviceIdentity {
 }
 
 /// The force of its answer.
-pub(crate) fn decoded(reply: Vec<u8>) -> Result<Sample, DeviceFault> {
+///
+/// # Errors
+/// The reply is no reading of this device, or its status forbids one.
+pub fn decoded(reply: Vec<u8>) -> Result<Sample, DeviceFault> {
     let force = newtons(&reply)?;
     Ok(Sample::of_force(force, Flags::default(), reply))
 }

@@ -2,5 +2,5 @@
 //! target.
 
 pub mod codec;
-pub(crate) mod driver;
+pub mod driver;
 mod word_order;

@@ -3,11 +3,11 @@
 //! order 0.1 mm is 10^8 mm. Every motion of a drive passes here, whatever commands it.
 
 use super::codec;
-use crate::plan::{Interval, Limits, ModbusNumber};
-use crate::rig::controllers::DeviceFault;
-use crate::rig::safety::failpoint::{Guarding, on};
-use crate::units::Dimension;
-use crate::units::display::plain;
+use crate::controllers::DeviceFault;
+use crate::safety::failpoint::{Guarding, on};
+use psd_plan::{Interval, Limits, ModbusNumber};
+use psd_text::units::Dimension;
+use psd_text::units::display::plain;
 
 /// Smaller than any non-zero reading: the value of a float whose words are swapped.
 pub(super) const IMPLAUSIBLY_SMALL: f64 = 1e-30;

@@ -1,4 +1,4 @@
 //! psd's own line protocol: `codec` turns bytes into meaning, `driver` leads the conversation.
 
 pub mod codec;
-pub(crate) mod driver;
+pub mod driver;

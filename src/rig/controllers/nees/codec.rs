@@ -2,7 +2,7 @@
 //! transaction, a control point, \[m\]. Out: the bytes of a request; the meaning of a reply. Lengths are in metres and
 //! forces in newtons, as OpenFresco sends them: the protocol itself names no unit. It knows no device.
 
-use crate::rig::controllers::number;
+use crate::controllers::number;
 
 /// Ends every line; a CR before it is allowed.
 pub const ENDING: &[u8] = b"\n";

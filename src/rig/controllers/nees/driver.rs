@@ -4,11 +4,11 @@
 //! line. The protocol has no speed: the rig's own speed must be below the limit. Several axes are several control points of one session.
 //! They are proposed, executed and refused together in one transaction, and read one after the other.
 
-use crate::rig::LineStatistics;
-use crate::rig::controllers::metres;
-use crate::rig::controllers::nees;
-use crate::rig::controllers::nees::codec::Reply;
-use crate::rig::controllers::{
+use crate::LineStatistics;
+use crate::controllers::metres;
+use crate::controllers::nees;
+use crate::controllers::nees::codec::Reply;
+use crate::controllers::{
     Answer, Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Flags, Force, LineClient,
     Sample,
 };
@@ -299,7 +299,7 @@ impl Device for Nees {
 }
 
 /// The identity of a site from its answer to the opening of a session.
-pub(crate) fn introduced(control_points: &[String], welcome: &[u8]) -> Option<DeviceIdentity> {
+pub fn introduced(control_points: &[String], welcome: &[u8]) -> Option<DeviceIdentity> {
     let Reply::Done(welcome_text) = nees::codec::reply(welcome) else {
         return None;
     };
@@ -321,7 +321,7 @@ pub(crate) fn introduced(control_points: &[String], welcome: &[u8]) -> Option<De
 }
 
 /// The reading of one reply for each control point.
-pub(crate) fn decoded(control_points: &[String], replies: &[Vec<u8>]) -> Option<Sample> {
+pub fn decoded(control_points: &[String], replies: &[Vec<u8>]) -> Option<Sample> {
     let point = |(reply, control_point): (&Vec<u8>, &String)| match nees::codec::reply(reply) {
         Reply::Done(fields) => measured(&fields, control_point),
         Reply::Refused { .. } => None,

@@ -1,4 +1,4 @@
 //! NEES sites: `codec` turns messages into meaning, `driver` leads the conversation.
 
 pub mod codec;
-pub(crate) mod driver;
+pub mod driver;

@@ -1,7 +1,7 @@
 //! SCPI transducers: `*IDN?` and `READ?`. In: a line without its ending. Out: the identity; the number of a reading. The
 //! force of one unit is stated in the plan.
 
-use crate::rig::controllers::number;
+use crate::controllers::number;
 
 pub const IDENTIFY: &[u8] = b"*IDN?\n";
 pub const READ: &[u8] = b"READ?\n";

@@ -1,9 +1,9 @@
 //! A transducer that answers `READ?`. In: nothing. Out: a force, by the plan's N per reading unit. After a silence its
 //! identity is requested until it answers: all late answers have then been received. It moves nothing.
 
-use crate::rig::LineStatistics;
-use crate::rig::controllers::scpi;
-use crate::rig::controllers::{
+use crate::LineStatistics;
+use crate::controllers::scpi;
+use crate::controllers::{
     Answer, Channel, DeviceFault, DeviceIdentity, Flags, Force, LineClient, LoadCell, Sample,
 };
 
@@ -102,10 +102,10 @@ fn stripped(line: &[u8]) -> &[u8] {
 }
 
 /// The identity of a meter from this reply.
-pub(crate) fn introduced(name: &[u8]) -> Option<DeviceIdentity> {
+pub fn introduced(name: &[u8]) -> Option<DeviceIdentity> {
     let who = scpi::codec::identification(name)?;
-    let simulated = who.maker.starts_with(crate::rig::controllers::SIMULATED)
-        || who.model.starts_with(crate::rig::controllers::SIMULATED);
+    let simulated = who.maker.starts_with(crate::controllers::SIMULATED)
+        || who.model.starts_with(crate::controllers::SIMULATED);
     let model = format!("{} {}", who.maker, who.model);
     Some(DeviceIdentity {
         model,
@@ -118,7 +118,10 @@ pub(crate) fn introduced(name: &[u8]) -> Option<DeviceIdentity> {
 }
 
 /// The forces of an answer, one a channel, by the N of a unit of each.
-pub(crate) fn decoded(line: Vec<u8>, newtons_per_unit: &[f64]) -> Result<Sample, DeviceFault> {
+///
+/// # Errors
+/// The reply is no reading of this device, or its status forbids one.
+pub fn decoded(line: Vec<u8>, newtons_per_unit: &[f64]) -> Result<Sample, DeviceFault> {
     let words: Vec<&[u8]> = line.split(|byte| *byte == b',').collect();
     if words.len() != newtons_per_unit.len() {
         let reason = format!(
@@ -198,7 +201,7 @@ impl LoadCell for ScpiDevice {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
+    use crate::testing::rig::{Scripted, ScriptedPort, VirtualClock};
 
     const NAME: &str = "PSD-SIM,DMM 7,1234,A.02";
 

@@ -5,18 +5,18 @@ use std::io;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use crate::StopRequest;
+use crate::controllers::instron::driver::Instron;
+use crate::controllers::mark10::driver::Mark10;
+use crate::controllers::mark10::load_cell::Mark10Gauge;
+use crate::controllers::modbus::driver::Modbus;
+use crate::controllers::nees::driver::Nees;
+use crate::controllers::{Device, DeviceFault, Force, LineClient};
 use crate::emulator::firmware::testing::spring;
 use crate::emulator::{EmulatedRig, Firmware, firmware};
-use crate::plan::{Interval, Limits, ModbusMap, ModbusNumber};
-use crate::rig::StopRequest;
-use crate::rig::controllers::instron::driver::Instron;
-use crate::rig::controllers::mark10::driver::Mark10;
-use crate::rig::controllers::mark10::load_cell::Mark10Gauge;
-use crate::rig::controllers::modbus::driver::Modbus;
-use crate::rig::controllers::nees::driver::Nees;
-use crate::rig::controllers::{Device, DeviceFault, Force, LineClient};
-use crate::rig::testing::VirtualClock;
-use crate::rig::transport::{Clock as _, Emergency, Port};
+use crate::testing::rig::VirtualClock;
+use crate::transport::{Clock as _, Emergency, Port};
+use psd_plan::{Interval, Limits, ModbusMap, ModbusNumber};
 
 /// Stiffness of the spring of the emulator \[N/m\].
 const STIFFNESS: f64 = 1e5;

@@ -1,9 +1,9 @@
 //! Opening a device: nothing is sent, and the device can be moved if its protocol in the plan includes motion.
 
-use crate::plan::PortPlan;
-use crate::rig::controllers::DeviceMove;
-use crate::rig::controllers::*;
-use crate::rig::testing::{ScriptedPort, VirtualClock};
+use crate::controllers::DeviceMove;
+use crate::controllers::*;
+use crate::testing::rig::{ScriptedPort, VirtualClock};
+use psd_plan::PortPlan;
 
 #[test]
 fn actuators_of_the_plan_accept_moves_and_opening_sends_nothing() {

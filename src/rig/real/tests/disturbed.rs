@@ -3,13 +3,13 @@
 //! that never settled.
 
 use super::*;
-use crate::plan::{
+use crate::controllers::{Channel, DeviceIdentity, Force, Sample};
+use crate::safety::failpoint::without;
+use crate::testing::rig::VirtualClock;
+use psd_plan::{
     AxisPlan, Datum, DeviceLink, Dialect, Interval, Link, PortPlan, PretestCheck, RigPlan,
     SafeState,
 };
-use crate::rig::controllers::{Channel, DeviceIdentity, Force, Sample};
-use crate::rig::safety::failpoint::without;
-use crate::rig::testing::VirtualClock;
 
 const BAND: f64 = 1e-5;
 const LIMITS: Limits = Limits {

@@ -2,8 +2,8 @@
 //! without such a reading is not reported as held.
 
 use super::{Stand, stand};
-use crate::rig::controllers::{DeviceFault, Force};
-use crate::rig::{FinalHold, Rig as _};
+use crate::controllers::{DeviceFault, Force};
+use crate::{FinalHold, Rig as _};
 
 /// A rig that has moved towards 2 mm at 1 mm/s for one second, and the result of its final hold.
 fn halted_in_motion(mut stand: Stand) -> (Stand, FinalHold) {

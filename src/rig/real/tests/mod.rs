@@ -8,14 +8,14 @@ mod straying;
 mod strokes;
 
 use super::*;
-use crate::plan::{
+use crate::LimitedQuantity;
+use crate::controllers::{Force, Sample};
+use crate::safety::failpoint::without;
+use crate::testing::rig::{FakeDevice, VirtualClock};
+use psd_plan::{
     Calibration, Datum, DeviceLink, Dialect, Interval, Limits, Link, PortPlan, PretestCheck,
     ReadingRules, RigPlan, SafeState,
 };
-use crate::rig::LimitedQuantity;
-use crate::rig::controllers::{Force, Sample};
-use crate::rig::safety::failpoint::without;
-use crate::rig::testing::{FakeDevice, VirtualClock};
 
 pub(super) const LIMITS: Limits = Limits {
     displacement: Interval {
@@ -118,13 +118,6 @@ fn opened(plan: &RigPlan, prepare: impl FnOnce(&FakeDevice)) -> Result<Stand, Ri
 
 pub(super) fn stand() -> Stand {
     opened(&plan(), |_| {}).unwrap()
-}
-
-impl RealRig {
-    /// Whether its position and readings can be trusted: no device restarted or lost its reference.
-    pub(crate) const fn trusted(&self) -> bool {
-        self.untrusted.is_none()
-    }
 }
 
 impl Stand {
@@ -345,7 +338,7 @@ impl RealRig {
         let going = self.proposed.take().unwrap().going;
         self.actuator
             .start(&going)
-            .map_err(|fault| self.device_fault(Part::Actuator, &fault))
+            .map_err(|fault| self.device_fault(DeviceRole::Actuator, &fault))
     }
 }
 

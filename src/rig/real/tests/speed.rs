@@ -2,7 +2,7 @@
 //! commanded speed if the rig was faster.
 
 use super::{LIMITS, stand};
-use crate::rig::{Guard, Rig as _};
+use crate::{Guard, Rig as _};
 
 #[test]
 fn a_move_is_seen_no_faster_than_it_went_and_a_little_slower() {

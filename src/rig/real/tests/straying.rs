@@ -2,9 +2,9 @@
 //! a virtual clock: each is caught by its guard, and missed without it.
 
 use super::stand;
-use crate::rig::controllers::Force;
-use crate::rig::safety::failpoint::{Guarding, without};
-use crate::rig::{Rig as _, RigFault};
+use crate::controllers::Force;
+use crate::safety::failpoint::{Guarding, without};
+use crate::{Rig as _, RigFault};
 
 /// Commanded to 2 mm through a line that multiplies the target by `reaches`. Gives the position at the hold \[m\], and the message.
 fn sent(reaches: f64) -> (f64, Option<String>) {

@@ -10,9 +10,9 @@ use super::entry::{
 };
 use super::logged_run::{LoggedRun, UnreadableLog, body};
 use super::state::Undecided;
-use crate::record::journal::{EntryKind, Line};
 use crate::record::{Event, EventKind};
 use crate::rig::Reading;
+use crate::rig::journal::{EntryKind, Line};
 use crate::run::{Inspection, UNLOADING};
 
 pub use position::Bands;

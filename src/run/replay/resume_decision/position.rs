@@ -3,7 +3,7 @@
 use super::refusal::ResumeRefusal;
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::{Interval, RealLink, RigPlan};
-use crate::record::journal::{EntryKind, Line};
+use crate::rig::journal::{EntryKind, Line};
 use crate::rig::safety::failpoint::{Guarding, on};
 use crate::rig::{Reading, named_axis};
 use crate::run::replay::entry::{SampleBody, TargetStatus};

@@ -2,8 +2,8 @@
 
 use super::refusal::ResumeRefusal;
 use crate::plan::{RealLink, RigPlan};
-use crate::record::journal::EntryKind;
 use crate::rig::controllers::NOT_TRUSTED;
+use crate::rig::journal::EntryKind;
 use crate::rig::safety::failpoint::{Guarding, on};
 use crate::rig::{DeclaredNoise, Identity, JUST_STARTED, NO_POWER_UP};
 use crate::run::replay::entry::{Assurance, FaultBody};

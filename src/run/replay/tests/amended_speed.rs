@@ -6,9 +6,8 @@ use std::cell::Cell;
 use super::entry::IntentBody;
 use super::*;
 use crate::plan::{Interval, Plan};
-use crate::record::equipment::{Device, Equipment};
-use crate::rig::testing::forwarded;
 use crate::tests::testing::{elastic_plan, header, ramp};
+use psd_testing::forwarded;
 
 /// Speed of the rig at the start of the run, and of the amended rig \[m/s\].
 const FAST: f64 = 9e-3;
@@ -52,15 +51,6 @@ fn limited(speed: f64) -> Plan {
     plan
 }
 
-fn header_of(plan: &Plan) -> Header {
-    let rig = RestingRig::new(plan);
-    let device = Device::of(&rig.identity(), rig.declared_noise());
-    Header {
-        equipment: Some(Equipment::of(plan, device)),
-        ..header()
-    }
-}
-
 /// A run that was killed, and resumed on the amended rig.
 struct SlowedDown {
     /// The speeds of the targets before and after the resumption \[m/s\].
@@ -85,7 +75,7 @@ fn slowed_down(call: usize, after: bool) -> Option<SlowedDown> {
     let storage = Killed::at(&disk, call, after);
     let ended = catch_unwind(AssertUnwindSafe(|| {
         let mut journal = journal(storage);
-        begin(&mut journal, &header_of(&plan), &["text".to_owned()]).unwrap();
+        begin(&mut journal, &header(&plan), &["text".to_owned()]).unwrap();
         record(&plan, &mut rig.clone(), &mut Witness, journal, no_wall())
     }));
     if ended.is_ok() {
@@ -126,7 +116,7 @@ fn slowed_down(call: usize, after: bool) -> Option<SlowedDown> {
         by: "A. Witness".to_owned(),
         reason: "too fast".to_owned(),
         differences: Vec::new(),
-        header: header_of(&amended),
+        header: header(&amended),
     };
     amend(&mut journal, &amendment, &["text".to_owned()]).unwrap();
     journal.append(EntryKind::Rig, &about).unwrap();

@@ -1,7 +1,7 @@
 //! No target is sent and no reading is used before it is durable, and a disk that fails holds the rig.
 
 use super::*;
-use crate::rig::testing::forwarded;
+use psd_testing::forwarded;
 
 /// A rig that checks at every call which entries of the run log would survive a loss of power.
 struct Suspicious {
@@ -85,7 +85,7 @@ fn lost_to_power() -> Vec<&'static str> {
         missing: Vec::new(),
     };
     let mut journal = journal(disk);
-    begin(&mut journal, &header(), &[]).unwrap();
+    begin(&mut journal, &header(&plan), &[]).unwrap();
     let recorded = record(&plan, &mut rig, &mut Witness, journal, no_wall());
     assert_eq!(recorded.record.outcome, Outcome::Completed);
     rig.missing
@@ -110,7 +110,7 @@ fn a_disk_that_fails_holds_the_rig_and_nothing_more_is_sent() {
         });
         let mut rig = RestingRig::new(&plan);
         let mut journal = journal(disk.clone());
-        begin(&mut journal, &header(), &[]).unwrap();
+        begin(&mut journal, &header(&plan), &[]).unwrap();
         let recorded = record(&plan, &mut rig, &mut Witness, journal, no_wall());
         assert!(
             matches!(&recorded.record.outcome, Outcome::Faulted { reason } if reason.contains("cannot be written"))

@@ -8,13 +8,14 @@ use super::{RestingRig, Witness, logged};
 use crate::plan::formula::Formula;
 use crate::plan::{Interval, Move, Plan, ProcedureKind};
 use crate::record::EventKind;
-use crate::record::journal::Durability;
-use crate::record::journal::testing::PowerLoss;
-use crate::rig::testing::forwarded;
+use crate::rig::journal::Durability;
 use crate::rig::{EncodedMove, FinalHold, Identity, RigFault};
 use crate::run::session::Session;
 use crate::run::{Inspection, Motion};
 use crate::tests::testing::{elastic_plan, header, ramp};
+use psd_testing::forwarded;
+use psd_testing::journal::AlterEntry as _;
+use psd_testing::journal::PowerLoss;
 
 /// The operator stops the rig on the path to a target, at 40 % of the path.
 struct HeldDuringMotion {
@@ -95,7 +96,7 @@ fn held(heard: bool) -> (Recorded, Vec<u8>) {
         at_a_look: None,
     };
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
-    begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    begin(&mut journal, &header(&plan), &["text".to_owned()]).unwrap();
     let recorded = record(&plan, &mut rig, &mut Witness, journal, Box::new(|| None));
     (recorded, disk.written())
 }
@@ -162,7 +163,7 @@ fn a_hold_at_a_look_behind_a_step_is_played_back_as_one_at_the_look() {
         at_a_look,
     };
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
-    begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    begin(&mut journal, &header(&plan), &["text".to_owned()]).unwrap();
     let recorded = record(
         &plan,
         &mut rig,
@@ -332,43 +333,4 @@ fn a_specimen_that_yielded_may_go_on_along_its_tangent_and_lose_nothing() {
     for (force, fits) in [(0.03, true), (0.06, true), (0.028, false), (0.062, false)] {
         assert_eq!(decided(force).is_ok(), fits, "{force} N");
     }
-}
-
-#[test]
-fn a_record_without_the_held_position_replays_as_before() {
-    let (_, bytes) = held(true);
-    let (_, whole) = logged(&bytes);
-    let lines = whole.lines.iter().filter(|line| {
-        let event = line.kind == EntryKind::Event && line.body()["kind"] == "held";
-        line.kind != EntryKind::Held && !event
-    });
-    let older = LoggedRun {
-        lines: lines.cloned().collect(),
-        ..whole.clone()
-    };
-    // The event of the stop has a separate time there: the time of the fault before it.
-    let replayed = replay(
-        &plan(),
-        LoggedRun {
-            lines: without_events(&older),
-            ..older
-        },
-    );
-    assert_eq!(replayed.mismatch, None);
-    assert!(
-        replayed
-            .record
-            .events
-            .iter()
-            .all(|event| event.kind != EventKind::Held)
-    );
-}
-
-fn without_events(logged: &LoggedRun) -> std::collections::VecDeque<crate::record::journal::Line> {
-    logged
-        .lines
-        .iter()
-        .filter(|line| line.kind != EntryKind::Event)
-        .cloned()
-        .collect()
 }

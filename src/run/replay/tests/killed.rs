@@ -31,7 +31,7 @@ pub(super) fn killed_everywhere(plan: &Plan, least: usize) {
             let storage = Killed::at(&disk, call, after);
             let ended = catch_unwind(AssertUnwindSafe(|| {
                 let mut journal = journal(storage);
-                begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+                begin(&mut journal, &header(plan), &["text".to_owned()]).unwrap();
                 record(plan, &mut rig.clone(), &mut Witness, journal, no_wall())
             }));
             if ended.is_ok() {

@@ -21,8 +21,7 @@ use super::*;
 use crate::physics::tracking::trajectory::Path;
 use crate::plan::{DampingSweep, InspectTrigger, Move, Plan, ProcedureKind, StiffnessRamp};
 use crate::record::EventKind;
-use crate::record::journal::testing::{Killed, PowerLoss, SickDisk, Sickness, recover};
-use crate::record::journal::{Durability, Recovered, Storage};
+use crate::rig::journal::{Durability, Recovered, Storage};
 use crate::rig::safety::failpoint::{Guarding, without};
 use crate::rig::{
     CutOff, DeclaredNoise, EachReading, EncodedMove, Identity, LastMove, LineStatistics, Reading,
@@ -30,6 +29,8 @@ use crate::rig::{
 };
 use crate::run::{Inspection, StepReport};
 use crate::tests::testing::{elastic_plan, header, impact, ramp, result_of, struck_frame};
+use psd_testing::journal::AlterEntry as _;
+use psd_testing::journal::{Killed, PowerLoss, SickDisk, Sickness, recover};
 
 /// The same rig for one program after another: it remembers its moves, as a real rig does. The recovered communication errors are counted
 /// for each program.
@@ -285,7 +286,7 @@ fn journal(storage: impl Storage + 'static) -> Journal {
 pub(super) fn recorded(plan: &Plan) -> (RestingRig, Recorded, Vec<u8>) {
     let (mut rig, disk) = (RestingRig::new(plan), PowerLoss::new());
     let mut journal = journal(disk.clone());
-    begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    begin(&mut journal, &header(plan), &["text".to_owned()]).unwrap();
     let recorded = record(plan, &mut rig, &mut Witness, journal, no_wall());
     (rig, recorded, disk.written())
 }
@@ -379,7 +380,7 @@ fn what_the_run_would_not_have_done_is_found_out() {
 fn an_answer_of_the_operator_has_its_time_of_day_and_replays_without_a_clock() {
     let (plan, disk) = (plan(), PowerLoss::new());
     let mut journal = journal(disk.clone());
-    begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    begin(&mut journal, &header(&plan), &["text".to_owned()]).unwrap();
     let wall: Wall = Box::new(|| Some("2026-05-31T10:00:00.000Z".to_owned()));
     let whole = record(
         &plan,

@@ -61,7 +61,6 @@ pub(super) fn cycle(rate: Option<f64>) -> Cycle {
         rate: rate.map(Constant),
         inspect: Vec::new(),
         fit: None,
-        evenly: false,
     }
 }
 

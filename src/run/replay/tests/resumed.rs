@@ -2,43 +2,19 @@
 //! twice, and the run log of both parts is replayed. A run without a run log has the same times as one with it.
 
 use super::entry::FaultBody;
-use super::procedures::{CONTINUOUS, cycle, plans, shaken, short, swept_past_yield, to};
+use super::procedures::{CONTINUOUS, plans, shaken, short, swept_past_yield, to};
 use super::*;
 use crate::plan::formula::Formula::Constant;
 use crate::plan::formula::ResultValue;
-use crate::plan::{Cycle, Impact, Mode, ProcedureKind, StiffnessRamp};
+use crate::plan::{Impact, Mode, ProcedureKind, StiffnessRamp};
 use crate::record::History;
-use crate::record::journal::Durability;
-use crate::record::journal::testing::PowerLoss;
 use crate::rig::controllers::DeviceFault;
+use crate::rig::journal::Durability;
 use crate::rig::safety::failpoint::{Guarding, without};
 use crate::rig::{Identity, JUST_STARTED, RigFault};
 use crate::tests::testing::{elastic_plan, header, ramp, result_of};
-
-/// A run log of an older version with equally spaced targets is replayed with them; this version does not write such run logs.
-#[test]
-fn a_cycle_is_played_back_by_the_spacing_of_its_time() {
-    let plan = |evenly| {
-        elastic_plan(
-            300.0,
-            vec![ProcedureKind::Cycle(Cycle {
-                evenly,
-                ..cycle(None)
-            })],
-        )
-    };
-    for (evenly, rules, fits) in [(true, 2, true), (true, 3, false), (false, 3, true)] {
-        let (_, recorded, bytes) = recorded(&plan(evenly));
-        assert!(recorded.fault.is_none());
-        let (_, mut logged) = logged(&bytes);
-        logged.header.rules = rules;
-        assert_eq!(
-            replay(&plan(false), logged).mismatch.is_none(),
-            fits,
-            "even: {evenly}, rules {rules}"
-        );
-    }
-}
+use psd_testing::journal::PowerLoss;
+use psd_testing::plans::ChangeTarget as _;
 
 fn killed(name: &str) {
     let plan = plans().into_iter().find(|(own, _)| *own == name).unwrap().1;
@@ -176,7 +152,7 @@ fn a_logged_restart_requires_a_reference_whatever_else_is_stated() {
     let of = |fault: &str| {
         let disk = PowerLoss::new();
         let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
-        begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+        begin(&mut journal, &header(&plan), &["text".to_owned()]).unwrap();
         journal
             .append(EntryKind::Rig, &RigBody::of(&RestingRig::new(&plan)))
             .unwrap();

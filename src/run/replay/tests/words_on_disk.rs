@@ -1,5 +1,5 @@
-//! The words of the bodies on disk. Every body is here as a run log of this version has it, with all of its keys: a field that is renamed
-//! in the code without its word on disk is then missing, and old run logs could not be read.
+//! The words of the bodies on disk. Every body is here as a run log of this version has it, with all of its keys: a field that is
+//! renamed in the code is then missing, and run logs of earlier releases could not be read.
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -10,8 +10,8 @@ use super::super::entry::{
     RecoverBody, ResumeBody, RigBody, SampleBody, StepBody, StrokeBody,
 };
 use crate::record::Event;
-use crate::record::journal::EntryKind;
 use crate::rig::LineStatistics;
+use crate::rig::journal::EntryKind;
 
 /// Whether these bodies are read, and written with the same keys and values.
 fn stable<Body: Serialize + DeserializeOwned>(bodies: &[Value]) {
@@ -25,9 +25,9 @@ fn stable<Body: Serialize + DeserializeOwned>(bodies: &[Value]) {
 
 fn header() -> Value {
     json!({
-        "run_id": "1f", "psd": "0.2.0", "build": "2e", "rules": 5, "toolchain": "rustc",
+        "run_id": "1f", "psd": "0.2.0", "build": "2e", "rules": 1, "toolchain": "rustc",
         "files": [{"name": "plan.psd", "sha256": "3d"}], "settings": [["v", "1 m/s"]],
-        "rig": "bench", "equipment": equipment(), "rehearsal": true, "served": "nees",
+        "rig": "bench", "equipment": equipment(), "check_run": true, "served": "nees",
         "date": "2026-05-31", "operator": "A. Person", "host": "lab",
         "began": "2026-05-31T08:00:00Z"
     })
@@ -44,12 +44,12 @@ fn equipment() -> Value {
         "channels": [
             {
                 "axis": 1, "measures": "displacement", "given_in": "counts", "factor": 1e-6,
-                "zero": 12.0, "doubt": 1e-6, "uncertainty": 0.001, "certificate": "C-1",
+                "zero": 12.0, "declared_scatter": 1e-6, "uncertainty": 0.001, "certificate": "C-1",
                 "due": "2027-01-01", "class": "0.5", "range": [-0.1, 0.1], "calibrated": [0.0, 0.1]
             },
             {
                 "axis": 1, "measures": "force", "given_in": "units", "factor": 1.0, "zero": 0.0,
-                "doubt": 0.5, "uncertainty": 0.0, "certificate": null, "due": null
+                "declared_scatter": 0.5, "uncertainty": 0.0, "certificate": null, "due": null
             }
         ],
         "limits": [{"quantity": "force", "axis": 1, "low": -5000.0, "high": 5000.0}]
@@ -139,7 +139,7 @@ fn operator_bodies() -> Vec<Value> {
     ];
     requests.extend(
         ["closed", "stopped", "failed"]
-            .map(|end| json!({"asks": "leave", "parting": end, "reason": "end"})),
+            .map(|end| json!({"asks": "leave", "disconnect": end, "reason": "end"})),
     );
     bodies.extend(
         requests
@@ -158,7 +158,7 @@ fn event_bodies() -> Vec<Value> {
         "held",
         "not_held",
         "fault",
-        "mended",
+        "recovered",
         "remark",
         "resume",
         "amendment",
@@ -173,13 +173,13 @@ fn resume_bodies() -> Vec<Value> {
         json!({"target": "none"}),
         json!({"target": "executed"}),
         json!({"target": "not_executed"}),
-        json!({"target": "held_on_the_way"}),
-        json!({"target": "rest_of_the_way", "from": [1e-3]}),
+        json!({"target": "held_during_motion"}),
+        json!({"target": "remaining_motion", "from": [1e-3]}),
         json!({"target": "stroke", "back_to": 0.0, "others": [1e-3]}),
     ];
     let body = |target| {
         json!({
-            "from": 12, "by": "A. Person", "reason": "power cut", "doubt": target,
+            "from": 12, "by": "A. Person", "reason": "power cut", "target_status": target,
             "assured": ["same_power_up", "re_referenced", "accepted_relaxation", "let_go"],
             "found": [[1e-3], [10.0]], "recorded": [[1e-3], [11.0]], "held": [[1e-3], [10.5]],
             "released": "RELEASE", "t": 4.0, "wall": "08:00"
@@ -199,12 +199,12 @@ fn every_body_has_its_words_on_disk() {
                     json!({
                         "t": 0.0, "identity": identity(), "axes": 1,
                         "noise": {"force": 0.5, "resolution": 1e-6}, "own_speed": 1e-3,
-                        "last_move": {"id": 4, "target": target}, "datum": [0.05], "said": ["OK"]
+                        "last_move": {"id": 4, "target": target}, "datum": [0.05], "replies": ["OK"]
                     })
                 }));
             }
             EntryKind::Intent => stable::<IntentBody>(&[json!({
-                "n": 1, "t": 0.5, "to": [1e-3], "speed": -1e-3, "said": [1e-3], "rate": 1e-3,
+                "n": 1, "t": 0.5, "to": [1e-3], "speed": -1e-3, "encoded": [1e-3], "rate": 1e-3,
                 "wire": "MOVE 1", "id": 5, "own": [0.051], "path": [{
                     "from": 0.0, "to": 1e-3, "start_velocity": 0.0, "end_velocity": 0.0,
                     "seconds": 1.0
@@ -224,7 +224,7 @@ fn every_body_has_its_words_on_disk() {
             EntryKind::Event => stable::<Event>(&event_bodies()),
             EntryKind::Fault => stable::<FaultBody>(&fault_bodies()),
             EntryKind::Held => stable::<HeldBody>(&[json!({
-                "t": 2.0, "doubt": "no answer", "found": [[1e-3], [10.0]], "raw": ["X 1"],
+                "t": 2.0, "unconfirmed": "no answer", "found": [[1e-3], [10.0]], "raw": ["X 1"],
                 "wall": "08:00"
             })]),
             EntryKind::LineStatistics => {

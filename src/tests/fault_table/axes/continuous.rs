@@ -3,7 +3,6 @@
 
 use super::two_axes::{checked, continuous_text, ideal, results, same, upper};
 use super::{logged_run, stopped};
-use crate::emulator::testing::InProcess;
 use crate::plan::{Interval, Plan};
 use crate::record::Outcome;
 use crate::rig::LineStatistics;
@@ -12,6 +11,7 @@ use crate::rig::transport::Clock as _;
 use crate::run::replay;
 use crate::tests::fault_table::interrupted::cut_off::cut_off_anywhere;
 use crate::tests::fault_table::stage::{link, run, run_without};
+use psd_testing::emulator::InProcess;
 
 fn plan(duration: &str) -> Plan {
     checked(&continuous_text(duration), "frame_rig")

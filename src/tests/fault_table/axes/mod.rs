@@ -11,14 +11,14 @@ use super::interrupted::cut_off::{Resumed, killed, resumed};
 use super::stage::{Ended, emulator, link, open, run, run_watched, run_without};
 use crate::emulator::Log;
 use crate::plan::{Interval, Plan};
-use crate::record::journal::testing::PowerLoss;
-use crate::record::journal::testing::recover;
 use crate::record::{EventKind, Outcome};
 use crate::rig::safety::failpoint::Guarding;
 use crate::rig::{LineStatistics, Reading, Rig as _, RigFault};
 use crate::run::Unwatched;
 use crate::run::replay;
 use crate::run::replay::{Bands, LoggedRun, RigBody};
+use psd_testing::journal::PowerLoss;
+use psd_testing::journal::recover;
 use two_axes::{base_excited_plan, checked, ideal, results, same, upper};
 
 const SINE: &str = include_str!("../../../../plans/two_storeys_sine.psd");
@@ -258,7 +258,7 @@ fn a_controller_of_another_number_of_axes_is_refused_before_anything_is_asked_of
 }
 
 /// Target of every move, by its number.
-fn moves(emulator: &crate::emulator::testing::InProcess) -> Vec<(Option<u64>, Vec<f64>)> {
+fn moves(emulator: &psd_testing::emulator::InProcess) -> Vec<(Option<u64>, Vec<f64>)> {
     emulator
         .lock()
         .rig()
@@ -381,7 +381,7 @@ fn each_axis_is_held_to_its_own_bands_when_it_goes_on() {
     );
 }
 
-pub(super) fn logged_run(disk: &PowerLoss) -> (crate::record::journal::Recovered, LoggedRun) {
+pub(super) fn logged_run(disk: &PowerLoss) -> (crate::rig::journal::Recovered, LoggedRun) {
     let recovered = recover(&disk.written()).unwrap();
     let logged_run = LoggedRun::of(&recovered).unwrap();
     (recovered, logged_run)

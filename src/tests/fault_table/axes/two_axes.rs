@@ -1,7 +1,7 @@
 //! The plans of this folder's tests of several axes: a two-storey frame under ground motion on a rig of two axes. The upper axis has the
 //! opposite polarity. In: text. Out: checked plans, and the same plans on an ideal virtual rig.
 
-use crate::language::check::{LoadError, Options, check};
+use crate::check::{LoadError, Options, check};
 use crate::plan::formula::ResultValue;
 use crate::plan::{AxisPlan, Plan, RealLink};
 use crate::record::Record;

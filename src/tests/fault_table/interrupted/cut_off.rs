@@ -4,17 +4,17 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::emulator::Log;
-use crate::emulator::testing::InProcess;
 use crate::plan::Plan;
-use crate::record::journal::testing::{Killed, PowerLoss};
-use crate::record::journal::{Durability, EntryKind, Journal};
 use crate::record::{Outcome, Record};
 use crate::rig::Rig as _;
+use crate::rig::journal::{Durability, EntryKind, Journal};
 use crate::run::Unwatched;
 use crate::run::replay;
 use crate::run::replay::{Bands, RigBody};
 use crate::tests::fault_table::axes::logged_run;
 use crate::tests::fault_table::stage::{emulator, header, open};
+use psd_testing::emulator::InProcess;
+use psd_testing::journal::{Killed, PowerLoss};
 
 /// Runs the plan until the given write or sync of its run log. psd is killed there, before the write or `after` it. Returns whether psd
 /// was killed.
@@ -30,7 +30,7 @@ pub(crate) fn killed(
             Box::new(Killed::at(disk, call, after)),
             Durability::EverySyncPoint,
         );
-        replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+        replay::begin(&mut journal, &header(plan), &["text".to_owned()]).unwrap();
         replay::record(plan, &mut rig, &mut Unwatched, journal, Box::new(|| None))
     }));
     ended.is_err()

@@ -3,12 +3,12 @@
 
 use crate::emulator::Log;
 use crate::plan::Plan;
-use crate::record::journal::testing::{SickDisk, Sickness, recover};
-use crate::record::journal::{Durability, Journal};
 use crate::record::{Event, EventKind, Outcome, Record};
+use crate::rig::journal::{Durability, Journal};
 use crate::run::Unwatched;
 use crate::run::replay::{self, LoggedRun};
 use crate::tests::fault_table::stage::{emulator, header, open, plan_of, to};
+use psd_testing::journal::{SickDisk, Sickness, recover};
 
 /// Runs the plan on this disk. Returns whether the disk failed.
 fn fails(plan: &Plan, sickness: Sickness) -> bool {
@@ -16,7 +16,7 @@ fn fails(plan: &Plan, sickness: Sickness) -> bool {
     let mut rig = open(plan, &emulator).unwrap();
     let disk = SickDisk::new(sickness);
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
-    if replay::begin(&mut journal, &header(), &["text".to_owned()]).is_err() {
+    if replay::begin(&mut journal, &header(plan), &["text".to_owned()]).is_err() {
         return true;
     }
     let recorded = replay::record(plan, &mut rig, &mut Unwatched, journal, Box::new(|| None));

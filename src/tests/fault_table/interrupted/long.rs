@@ -8,9 +8,9 @@ use std::sync::{Arc, Mutex};
 use crate::emulator::Log;
 use crate::plan::formula::Formula;
 use crate::plan::{Plan, ProcedureKind, StiffnessRamp};
-use crate::record::journal::{Durability, Journal, Line, Storage};
 use crate::record::{EventKind, History, Outcome};
 use crate::rig::LineStatistics;
+use crate::rig::journal::{Durability, Journal, Line, Storage};
 use crate::run::{Unwatched, replay};
 use crate::tests::fault_table::stage::{STIFFNESS, emulator, header, link, open, plan_of};
 use crate::tests::testing::ramp;
@@ -138,7 +138,7 @@ fn very_many_steps_with_faults_by_chance_lose_no_sample_and_hold_on_to_nothing()
     let mut rig = open(&plan, &emulator).unwrap_or_else(|fault| panic!("seed {seed}: {fault}"));
     let counted = Counted::default();
     let mut journal = Journal::create(Box::new(counted.clone()), Durability::EverySyncPoint);
-    replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+    replay::begin(&mut journal, &header(&plan), &["text".to_owned()]).unwrap();
     let recorded = replay::record(&plan, &mut rig, &mut Unwatched, journal, Box::new(|| None));
     let record = recorded.record;
     assert_eq!(record.outcome, Outcome::Completed, "seed {seed}");
@@ -202,12 +202,12 @@ fn a_wall_clock_that_jumps_changes_no_duration() {
         let plan = long_plan(20);
         let emulator = emulator(&plan, "", Log::none(), 1);
         let mut rig = open(&plan, &emulator).unwrap();
-        let disk = crate::record::journal::testing::PowerLoss::new();
+        let disk = psd_testing::journal::PowerLoss::new();
         let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
-        replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+        replay::begin(&mut journal, &header(&plan), &["text".to_owned()]).unwrap();
         let record = replay::record(&plan, &mut rig, &mut Unwatched, journal, wall).record;
         assert_eq!(record.outcome, Outcome::Completed);
-        let lines = crate::record::journal::testing::recover(&disk.written())
+        let lines = psd_testing::journal::recover(&disk.written())
             .unwrap()
             .lines;
         let stamps = lines

@@ -9,14 +9,14 @@ use std::time::Duration;
 
 use super::cut_off::{Resumed, resumed};
 use crate::emulator::Log;
-use crate::emulator::testing::{InProcess, SimulatedPort};
 use crate::plan::{Plan, ProcedureKind, StiffnessRamp};
-use crate::record::journal::testing::PowerLoss;
-use crate::record::journal::{Durability, Journal};
+use crate::rig::journal::{Durability, Journal};
 use crate::rig::transport::{Emergency, Port};
 use crate::run::{Unwatched, replay};
 use crate::tests::fault_table::stage::{emulator, header, open_through, plan_of, run};
 use crate::tests::testing::ramp;
+use psd_testing::emulator::{InProcess, SimulatedPort};
+use psd_testing::journal::PowerLoss;
 
 /// A line on which psd is killed at one command.
 struct Dying {
@@ -62,7 +62,7 @@ fn killed(plan: &Plan, emulator: &InProcess, disk: &PowerLoss, word: usize, afte
     let ended = catch_unwind(AssertUnwindSafe(|| {
         let mut rig = open_through(plan, emulator, &through).unwrap();
         let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
-        replay::begin(&mut journal, &header(), &["text".to_owned()]).unwrap();
+        replay::begin(&mut journal, &header(plan), &["text".to_owned()]).unwrap();
         replay::record(plan, &mut rig, &mut Unwatched, journal, Box::new(|| None))
     }));
     ended.is_err()

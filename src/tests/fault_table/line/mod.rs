@@ -168,7 +168,7 @@ fn every_flipped_bit_of_a_reply_is_seen() {
     let plan = plan_of(vec![to(2e-4)]);
     // The reading of a rig at rest, from its first byte to the last byte before the line end.
     let reading = |bit: Option<usize>| {
-        let text = crate::emulator::testing::SharedText::default();
+        let text = psd_testing::emulator::SharedText::default();
         let emulator = emulator(&plan, "", Log::to(Box::new(text.clone())), 1);
         let mut rig = open(&plan, &emulator).unwrap();
         let replies = text.text().matches(" actuator < ").count();

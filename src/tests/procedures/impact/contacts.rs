@@ -7,6 +7,7 @@ use crate::plan::{
 };
 use crate::record::{History, ImpactStep, Record, StepState};
 use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched, struck_frame};
+use psd_testing::plans::ChangeTarget as _;
 
 /// As heavy as the earth, compared with a striker of 10 kg.
 const HEAVY: f64 = 1e9;

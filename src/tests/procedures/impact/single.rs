@@ -10,6 +10,7 @@ use crate::record::{EventKind, History, ImpactStep, Outcome, Record};
 use crate::rig::VirtualRig;
 use crate::run::{Inspection, Observer, run};
 use crate::tests::testing::{elastic_plan, every, number, result_of, run_unwatched};
+use psd_testing::plans::ChangeTarget as _;
 
 fn constant(value: f64) -> Formula {
     Formula::Constant(value)

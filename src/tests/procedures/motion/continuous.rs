@@ -7,6 +7,7 @@ use crate::plan::{
 };
 use crate::record::{History, ImpactStep, Outcome, Record};
 use crate::tests::testing::{elastic_plan, every, impact, run_unwatched};
+use psd_testing::journal::AlterEntry as _;
 
 const STIFFNESS: f64 = 300.0;
 const SCALE: f64 = 100.0;
@@ -182,12 +183,12 @@ fn after_an_impact_the_damper_acts_at_the_velocity_of_the_structure() {
 /// trend.
 #[test]
 fn an_impact_is_not_extrapolated_as_a_trend() {
-    use crate::record::journal::testing::PowerLoss;
-    use crate::record::journal::testing::recover;
-    use crate::record::journal::{Durability, EntryKind, Journal};
     use crate::rig::VirtualRig;
+    use crate::rig::journal::{Durability, EntryKind, Journal};
     use crate::run::Unwatched;
     use crate::run::replay::{begin, record};
+    use psd_testing::journal::PowerLoss;
+    use psd_testing::journal::recover;
 
     let time_step = 1e-3;
     let struck = Impact {
@@ -199,7 +200,7 @@ fn an_impact_is_not_extrapolated_as_a_trend() {
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
     begin(
         &mut journal,
-        &crate::tests::testing::header(),
+        &crate::tests::testing::header(&plan),
         &["text".to_owned()],
     )
     .unwrap();
@@ -300,12 +301,12 @@ fn a_continuous_run_is_stopped_by_a_reading_during_the_motion() {
 /// The recorded continuous run is replayed bit-identically. With one bit of a path changed, the replay differs.
 #[test]
 fn a_continuous_run_is_played_back_from_its_record() {
-    use crate::record::journal::testing::PowerLoss;
-    use crate::record::journal::testing::recover;
-    use crate::record::journal::{Durability, EntryKind, Journal};
     use crate::rig::VirtualRig;
+    use crate::rig::journal::{Durability, EntryKind, Journal};
     use crate::run::Unwatched;
     use crate::run::replay::{LoggedRun, begin, record, replay};
+    use psd_testing::journal::PowerLoss;
+    use psd_testing::journal::recover;
 
     let mut plan = let_go(CONTINUOUS, 50.0, 0.05, 5e-3);
     plan.rig.link = Link::Virtual(VirtualLink {
@@ -318,7 +319,7 @@ fn a_continuous_run_is_played_back_from_its_record() {
     let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
     begin(
         &mut journal,
-        &crate::tests::testing::header(),
+        &crate::tests::testing::header(&plan),
         &["text".to_owned()],
     )
     .unwrap();

@@ -2,10 +2,10 @@
 
 use crate::plan::{Plan, ProcedureKind};
 use crate::record::{EventKind, History, Outcome, Record};
-use crate::rig::testing::forwarded;
 use crate::rig::{EncodedMove, Reading, Rig, RigFault, VirtualRig};
 use crate::run::{Unwatched, run};
 use crate::tests::testing::{elastic_plan, number, ramp};
+use psd_testing::forwarded;
 
 /// The reading that follows some valid readings.
 #[derive(Clone, Copy)]

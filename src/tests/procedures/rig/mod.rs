@@ -6,8 +6,8 @@ pub(crate) mod remote_control;
 pub(crate) mod settled_hold;
 pub(crate) mod slow_line;
 
+use crate::check::{Options, check, no_files};
 use crate::emulator::Log;
-use crate::language::check::{Options, check, no_files};
 use crate::plan::formula::ResultValue;
 use crate::record::{ProcedureRecord, Record};
 use crate::run::{Unwatched, run};

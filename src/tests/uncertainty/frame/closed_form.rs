@@ -8,6 +8,7 @@ use crate::plan::{
 };
 use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched, struck_frame};
 use crate::uncertainty::{Contribution, Source, combined};
+use psd_testing::plans::ChangeTarget as _;
 
 /// A plastic impact on a frame of one storey equals the impact on one degree of freedom, including its uncertainty. The contributions of
 /// the inputs are equal, and those of the simulated reading errors.

@@ -5,6 +5,7 @@ use crate::plan::formula::ProcedureId;
 use crate::plan::{Impact, Link, ProcedureKind, VirtualLink};
 use crate::tests::testing::{elastic_plan, impact, number, ramp, result_of, run_unwatched};
 use crate::uncertainty::{Contribution, Source, StepInterval, combined};
+use psd_testing::plans::ChangeTarget as _;
 
 /// X = `Ms·V0/√(K(M + Ms))`, t = π/2·√((M + Ms)/K), ½KX². K is proportional to the factor of the force over that of the displacement. A
 /// force F₀ that was read too low changes X by −F₀/K.

@@ -9,6 +9,7 @@ use crate::plan::{Calibration, Contact, Impact, Plan, ProcedureKind};
 use crate::record::Record;
 use crate::tests::testing::{elastic_plan, every, impact};
 use crate::uncertainty::{Contribution, Source};
+use psd_testing::plans::ChangeTarget as _;
 
 pub(super) const STIFFNESS: f64 = 327.65;
 pub(super) const STRIKER: f64 = 10.0;

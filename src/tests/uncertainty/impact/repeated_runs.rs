@@ -7,6 +7,7 @@ use crate::tests::testing::{
     Uniform, elastic_plan, number, ramp, result_of, run_unwatched, scatter,
 };
 use crate::uncertainty::Source;
+use psd_testing::plans::ChangeTarget as _;
 
 /// The rig runs again with random inputs; the scatter is compared with the prediction of one recorded run. The specimen yields and
 /// unloads with a residual displacement. A cell with a force factor error makes the specimen stronger by that factor.

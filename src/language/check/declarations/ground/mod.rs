@@ -2,10 +2,10 @@
 
 pub mod record;
 
-use crate::language::check::checker::Checker;
-use crate::language::check::messages::frames as message;
-use crate::plan::Ground;
-use crate::schema::ground::{FILE, RECORD_NUMBER, SCALE, SCALE_UNCERTAINTY, UNIT};
+use crate::check::checker::Checker;
+use crate::check::messages::frames as message;
+use psd_plan::Ground;
+use psd_plan::schema::ground::{FILE, RECORD_NUMBER, SCALE, SCALE_UNCERTAINTY, UNIT};
 
 /// A ground motion with a valid record; None if an error was reported.
 pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {

@@ -2,7 +2,7 @@
 //! header with NPTS and DT). In: the text. Out: times and numbers as they are in the file, with the scale factor of the numbers;
 //! or the line of an error, and the reason. It knows no plan.
 
-use crate::units::unit::STANDARD_GRAVITY;
+use psd_text::units::unit::STANDARD_GRAVITY;
 
 /// Most samples of one record.
 pub const MOST_SAMPLES: usize = 100_000;
@@ -21,6 +21,9 @@ pub struct GroundRecord {
 }
 
 /// Reads a record according to its file extension.
+///
+/// # Errors
+/// The reason why the text is not read.
 pub fn read(name: &str, text: &str) -> Result<GroundRecord, String> {
     let ending = name.rsplit('.').next().unwrap_or_default();
     let record = if ending.eq_ignore_ascii_case("at2") {

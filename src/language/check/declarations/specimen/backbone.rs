@@ -2,12 +2,12 @@
 //! [`Behaviour`] in SI, or an error.
 
 use super::table_file;
-use crate::language::check::checker::{Checker, Context};
-use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::messages::specimens as message;
-use crate::physics::specimen::pinching::{CAPPING_CAPACITY, CAPPING_DISPLACEMENT, CAPPING_SLOPE};
-use crate::plan::{Behaviour, Pinching, Table, Unloading};
-use crate::schema::behaviours::argument;
+use crate::check::checker::{Checker, Context};
+use crate::check::expressions::choice::Chosen;
+use crate::check::messages::specimens as message;
+use psd_physics::specimen::pinching::{CAPPING_CAPACITY, CAPPING_DISPLACEMENT, CAPPING_SLOPE};
+use psd_plan::schema::behaviours::argument;
+use psd_plan::{Behaviour, Pinching, Table, Unloading};
 
 /// The capping point of a backbone: after yield, and only together with its other arguments.
 pub fn check_capping<'a>(

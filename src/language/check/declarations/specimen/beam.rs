@@ -1,11 +1,11 @@
 //! `beam(…)`: an elastic beam by its section and its ends. In: the variant as it is written. Out: a [`Behaviour`] in SI.
 
-use crate::language::check::checker::{Checker, Context};
-use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::messages::specimens as message;
-use crate::physics::structure::beam::{self, Span};
-use crate::plan::{Beam, Behaviour, Ends};
-use crate::schema::behaviours::argument;
+use crate::check::checker::{Checker, Context};
+use crate::check::expressions::choice::Chosen;
+use crate::check::messages::specimens as message;
+use psd_physics::structure::beam::{self, Span};
+use psd_plan::schema::behaviours::argument;
+use psd_plan::{Beam, Behaviour, Ends};
 
 /// Stiffness of a beam at midspan or at its tip; the formulas are in `physics/structure/beam.rs`.
 pub fn beam<'a>(

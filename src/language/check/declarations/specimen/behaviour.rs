@@ -2,16 +2,16 @@
 
 use super::backbone::{check_capping, multilinear, table};
 use super::{beam, portal};
-use crate::language::check::checker::{Checker, Context};
-use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::messages::{shown, specimens as message, values};
-use crate::language::syntax::ast::{Expr, ExprKind};
-use crate::physics::relaxation::logarithmic::LogarithmicRelaxation;
-use crate::plan::{Behaviour, Breaks};
-use crate::schema::behaviours::{STIFFNESS, argument};
-use crate::schema::{Presence, Variant};
-use crate::text::source::Span;
-use crate::units::Dimension;
+use crate::check::checker::{Checker, Context};
+use crate::check::expressions::choice::Chosen;
+use crate::check::messages::{shown, specimens as message, values};
+use crate::syntax::ast::{Expr, ExprKind};
+use psd_physics::relaxation::logarithmic::LogarithmicRelaxation;
+use psd_plan::schema::behaviours::{STIFFNESS, argument};
+use psd_plan::schema::{Presence, Variant};
+use psd_plan::{Behaviour, Breaks};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 /// Most springs of one model.
 pub const MOST_PARTS: usize = 16;

@@ -5,18 +5,18 @@ use std::rc::Rc;
 
 use super::behaviour::{self, Material, Written};
 use super::matrix;
-use crate::language::check::checker::{Checker, Context};
-use crate::language::check::declarations::striker::MOST_UNCERTAIN;
-use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::messages::{frames as message, values};
-use crate::language::syntax::ast::ExprKind;
-use crate::plan::procedures::impact::block as impact;
-use crate::plan::{Behaviour, Frame, MOST_STOREYS, Storey};
-use crate::schema::frames::storey;
-use crate::schema::specimen as fields;
-use crate::schema::{Field, FieldType};
-use crate::text::source::{Span, Spanned};
-use crate::units::Dimension;
+use crate::check::checker::{Checker, Context};
+use crate::check::declarations::striker::MOST_UNCERTAIN;
+use crate::check::expressions::choice::Chosen;
+use crate::check::messages::{frames as message, values};
+use crate::syntax::ast::ExprKind;
+use psd_plan::procedures::impact::block as impact;
+use psd_plan::schema::frames::storey;
+use psd_plan::schema::specimen as fields;
+use psd_plan::schema::{Field, FieldType};
+use psd_plan::{Behaviour, Frame, MOST_STOREYS, Storey};
+use psd_text::source::{Span, Spanned};
+use psd_text::units::Dimension;
 
 /// Fields that make a specimen a frame.
 pub const FIELDS: [&str; 3] = [

@@ -1,7 +1,7 @@
 //! `mass_matrix = "m.csv"`: a square table of numbers without a header, one row per line. In: the text. Out: a symmetric, positive
 //! definite matrix, or the row and column of an error, and the reason. It knows no plan.
 
-use crate::plan::MOST_STOREYS;
+use psd_plan::MOST_STOREYS;
 
 /// Relative difference within which two mirrored entries are equal: the last digits of the program that wrote the file.
 const SYMMETRIC: f64 = 1e-9;

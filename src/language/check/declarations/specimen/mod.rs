@@ -10,16 +10,16 @@ mod table_file;
 
 use super::limits::CheckedLimits;
 use super::striker::uncertainty;
-use crate::language::check::checker::Checker;
-use crate::language::check::messages::{frames, names as message, specimens};
-use crate::language::syntax::ast::{Expr, ExprKind};
-use crate::physics::structure::portal::limit::mechanism_limit;
-use crate::plan::formula::{Formula, Function, Stated};
-use crate::plan::{Behaviour, Interval, Mechanism, Specimen, Storey};
-use crate::schema::{FieldType, Kind, specimen as fields};
-use crate::text::source::Span;
-use crate::uncertainty::Source;
+use crate::check::checker::Checker;
+use crate::check::messages::{frames, names as message, specimens};
+use crate::syntax::ast::{Expr, ExprKind};
 use behaviour::{Material, Written};
+use psd_physics::structure::portal::limit::mechanism_limit;
+use psd_plan::formula::{Formula, Function, Stated};
+use psd_plan::schema::{FieldType, Kind, specimen as fields};
+use psd_plan::uncertainty::Source;
+use psd_plan::{Behaviour, Interval, Mechanism, Specimen, Storey};
+use psd_text::source::Span;
 
 /// Standard uncertainty of the mass that an impact takes from its specimen \[kg\].
 pub fn mass_uncertainty(checker: &mut Checker, block: usize) -> Option<f64> {
@@ -109,16 +109,14 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     })
 }
 
-/// A `beam` has ends, and q·A·L/2 applies to two supports: the plan must state which of its masses applies. Plans of older run logs used
-/// q·A·L/2.
+/// A `beam` has ends, and q·A·L/2 applies to two supports: the plan must state which of its masses applies.
 fn beam_has_mass(checker: &mut Checker, block: usize, half: Option<f64>) {
     let declared = &checker.scope.blocks[block];
     let beam = |written: &Expr| behaviour::names(written, "beam");
     let named = checker
         .field(block, fields::BEHAVIOUR.name)
         .is_some_and(|(_, entry)| beam(&entry.value));
-    let (Some(half), Some(name)) = (half.filter(|_| named && !checker.recorded), declared.name)
-    else {
+    let (Some(half), Some(name)) = (half.filter(|_| named), declared.name) else {
         return;
     };
     if checker.field(block, fields::MASS.name).is_some() {

@@ -1,12 +1,12 @@
 //! `behaviour = portal(…)`: a frame with plastic hinges. In: its arguments, and the material data of the specimen. Out: a
 //! [`Portal`] in SI. The governing mechanism and the mass that moves with it are calculated in `physics`.
 
-use crate::language::check::checker::{Checker, Context};
-use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::messages::specimens as message;
-use crate::plan::{Behaviour, FrameMasses, Loads, Portal, Sections};
-use crate::schema::behaviours::{STIFFNESS, argument};
-use crate::text::source::Span;
+use crate::check::checker::{Checker, Context};
+use crate::check::expressions::choice::Chosen;
+use crate::check::messages::specimens as message;
+use psd_plan::schema::behaviours::{STIFFNESS, argument};
+use psd_plan::{Behaviour, FrameMasses, Loads, Portal, Sections};
+use psd_text::source::Span;
 
 /// The frame as the plan specifies it; `mass_per_length` \[kg/m\] comes from the material data of the specimen.
 pub fn portal<'a>(

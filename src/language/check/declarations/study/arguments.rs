@@ -1,14 +1,14 @@
 //! Arguments of a distribution that have the unit of the input. In: the option as written. Out: numbers and ranges in SI.
 
 use super::known;
-use crate::language::check::checker::{Checker, Context, Reads, Typed};
-use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::messages::{studies as message, values};
-use crate::plan::Interval;
-use crate::plan::formula::Formula;
-use crate::schema::Field;
-use crate::schema::study as schema;
-use crate::units::Dimension;
+use crate::check::checker::{Checker, Context, Reads, Typed};
+use crate::check::expressions::choice::Chosen;
+use crate::check::messages::{studies as message, values};
+use psd_plan::Interval;
+use psd_plan::formula::Formula;
+use psd_plan::schema::Field;
+use psd_plan::schema::study as schema;
+use psd_text::units::Dimension;
 
 const CONTEXT: Context = Context {
     entry: None,

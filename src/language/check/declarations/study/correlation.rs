@@ -3,13 +3,13 @@
 
 use super::target::path_of;
 use super::varied::{Varied, source_of};
-use crate::language::check::checker::Checker;
-use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::messages::{inputs as names, studies as message};
-use crate::language::syntax::ast::Expr;
-use crate::physics::study::correlation::{CorrelationError, Pair};
-use crate::schema::study as schema;
-use crate::text::source::{Span, Spanned};
+use crate::check::checker::Checker;
+use crate::check::expressions::choice::Chosen;
+use crate::check::messages::{inputs as names, studies as message};
+use crate::syntax::ast::Expr;
+use psd_physics::study::correlation::{CorrelationError, Pair};
+use psd_plan::schema::study as schema;
+use psd_text::source::{Span, Spanned};
 
 /// The pairs of a block. None if one has an error.
 pub(super) fn correlations(

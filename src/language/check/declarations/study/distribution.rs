@@ -5,16 +5,16 @@ use super::arguments::{number, range};
 use super::samples;
 use super::target::Target;
 use super::varied::Law;
-use crate::language::check::checker::{Checker, Context};
-use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::expressions::overrides::InputLocation;
-use crate::language::check::messages::{inputs, studies as message};
-use crate::physics::study::distribution::{Distribution, DistributionError, Spread};
-use crate::plan::Interval;
-use crate::schema::study as schema;
-use crate::schema::{Field, Kind, ground, specimen, striker};
-use crate::text::diagnostic::Diagnostic;
-use crate::text::source::Span;
+use crate::check::checker::{Checker, Context};
+use crate::check::expressions::choice::Chosen;
+use crate::check::expressions::overrides::InputLocation;
+use crate::check::messages::{inputs, studies as message};
+use psd_physics::study::distribution::{Distribution, DistributionError, Spread};
+use psd_plan::Interval;
+use psd_plan::schema::study as schema;
+use psd_plan::schema::{Field, Kind, ground, specimen, striker};
+use psd_text::diagnostic::Diagnostic;
+use psd_text::source::Span;
 
 /// The word of the distribution by the stated uncertainty.
 pub(super) const MEASURED: &str = "measured";

@@ -3,11 +3,11 @@
 
 use super::target::Target;
 use super::varied::{Law, Varied};
-use crate::language::check::checker::{Checker, End};
-use crate::language::check::messages::studies::intensity::INSIDE;
-use crate::physics::study::distribution::Tails;
-use crate::text::source::Span;
-use crate::units::Quantity;
+use crate::check::checker::{Checker, End};
+use crate::check::messages::studies::intensity::INSIDE;
+use psd_physics::study::distribution::Tails;
+use psd_text::source::Span;
+use psd_text::units::Quantity;
 
 /// Notes the smallest and the largest value of every input that has both.
 pub(super) fn note(checker: &mut Checker, varied: &[Varied]) {

@@ -2,13 +2,13 @@
 
 use super::target::{self, Target};
 use super::{confidence, ends, inputs, known, reads_a_result, whole};
-use crate::language::check::checker::{Checker, Context, Reads};
-use crate::language::check::messages::studies as message;
-use crate::language::check::messages::studies::intensity;
-use crate::language::syntax::ast::{Expr, ExprKind};
-use crate::plan::Condition;
-use crate::plan::study::Fragility;
-use crate::schema::study as schema;
+use crate::check::checker::{Checker, Context, Reads};
+use crate::check::messages::studies as message;
+use crate::check::messages::studies::intensity;
+use crate::syntax::ast::{Expr, ExprKind};
+use psd_plan::Condition;
+use psd_plan::schema::study as schema;
+use psd_plan::study::Fragility;
 
 pub(super) fn fragility(checker: &mut Checker, block: usize) -> Option<Fragility> {
     let confidence = confidence(checker, block);

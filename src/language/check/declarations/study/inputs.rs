@@ -4,16 +4,16 @@
 use super::target::{Target, target};
 use super::varied::{Law, Varied, source_of};
 use super::{correlation, distribution, ends, items, sampling, seed, spaced};
-use crate::language::check::checker::{Checker, Context};
-use crate::language::check::messages::{inputs as names, studies as message};
-use crate::language::syntax::ast::{BinaryOperator, Expr, ExprKind};
-use crate::physics::study::distribution::{Distribution, Spread};
-use crate::physics::study::inputs::{InputError, Inputs, Source};
-use crate::physics::study::sampling::sobol::MOST_INPUTS;
-use crate::physics::study::sampling::{Design, DesignError};
-use crate::plan::study::{Measured, REPLICATES, Sampling, Variation};
-use crate::schema::study as schema;
-use crate::text::source::Span;
+use crate::check::checker::{Checker, Context};
+use crate::check::messages::{inputs as names, studies as message};
+use crate::syntax::ast::{BinaryOperator, Expr, ExprKind};
+use psd_physics::study::distribution::{Distribution, Spread};
+use psd_physics::study::inputs::{InputError, Source, StudyInputs};
+use psd_physics::study::sampling::sobol::MOST_INPUTS;
+use psd_physics::study::sampling::{Design, DesignError};
+use psd_plan::schema::study as schema;
+use psd_plan::study::{Measured, REPLICATES, Sampling, Variation};
+use psd_text::source::Span;
 
 /// The inputs of a field, with their correlations and points. `stepped`: the intensity of a fragility, which is not varied as well.
 pub(super) fn variation(
@@ -52,7 +52,7 @@ pub(super) fn variation(
     let correlations = correlation::correlations(checker, block, &varied)?;
     let (sampling, seed) = (sampling?, seed?);
     let pairs: Vec<_> = correlations.iter().map(|pair| pair.node).collect();
-    match Inputs::new(sources.clone(), &pairs, design(sampling), seed) {
+    match StudyInputs::new(sources.clone(), &pairs, design(sampling), seed) {
         Ok(_) => {}
         Err(InputError::Correlation(reason)) => {
             return correlation::refused(checker, reason, &correlations, &varied);

@@ -16,14 +16,14 @@ mod varied;
 
 pub use samples_file::MOST_ROWS as MOST_SAMPLE_ROWS;
 
-use crate::language::check::checker::{Checker, Context, Reads, Shape};
-use crate::language::check::messages::{studies as message, values};
-use crate::language::syntax::ast::{Expr, ExprKind};
-use crate::physics::study::Confidence;
-use crate::plan::study::{Collected, MOST_RUNS, Runs, Sampling, Studies, Study};
-use crate::schema::Kind;
-use crate::schema::study as schema;
-use crate::text::source::Span;
+use crate::check::checker::{Checker, Context, Reads, Shape};
+use crate::check::messages::{studies as message, values};
+use crate::syntax::ast::{Expr, ExprKind};
+use psd_physics::study::Confidence;
+use psd_plan::schema::Kind;
+use psd_plan::schema::study as schema;
+use psd_plan::study::{Collected, MOST_RUNS, Runs, Sampling, Studies, Study};
+use psd_text::source::Span;
 
 /// The studies of the plan; None if one has an error.
 pub fn studies(checker: &mut Checker) -> Option<Studies> {
@@ -209,7 +209,7 @@ fn collected<'a>(checker: &mut Checker<'a>, item: &'a Expr, context: Context) ->
     })
 }
 
-fn reads_a_result(formula: &crate::plan::formula::Formula) -> bool {
+fn reads_a_result(formula: &psd_plan::formula::Formula) -> bool {
     let mut references = Vec::new();
     formula.collect_references(&mut references);
     !references.is_empty()

@@ -2,18 +2,18 @@
 //! requirements of the plan, and its studies. Out: [`StudyRequirement`]s, and whether the runs can show their limits at all.
 
 use super::{known, spaced};
-use crate::language::check::checker::{Checker, Context, Reads};
-use crate::language::check::messages::{names, studies as message, types};
-use crate::language::check::scope::Meaning;
-use crate::language::syntax::ast::{BinaryOperator, Expr, ExprKind};
-use crate::physics::study::Confidence;
-use crate::physics::study::probability::clopper_pearson::fewest_clean_runs;
-use crate::plan::Comparison;
-use crate::plan::study::{Runs, Study, StudyEvent, StudyRequirement};
-use crate::schema::study as schema;
-use crate::schema::{Field, Kind};
-use crate::text::source::Span;
-use crate::units::Dimension;
+use crate::check::checker::{Checker, Context, Reads};
+use crate::check::messages::{names, studies as message, types};
+use crate::check::scope::Meaning;
+use crate::syntax::ast::{BinaryOperator, Expr, ExprKind};
+use psd_physics::study::Confidence;
+use psd_physics::study::probability::clopper_pearson::fewest_clean_runs;
+use psd_plan::Comparison;
+use psd_plan::schema::study as schema;
+use psd_plan::schema::{Field, Kind};
+use psd_plan::study::{Runs, Study, StudyEvent, StudyRequirement};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 const LIMIT: Context = Context {
     entry: None,

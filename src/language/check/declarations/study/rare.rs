@@ -1,12 +1,12 @@
 //! `sampling = subset(points: 1000)`: a study of a rare failure. In: the block, and the requirements on probabilities. Out: a [`RareEvent`]
 //! with the one requirement of the plan that it is about.
 
-use crate::language::check::checker::{Checker, Context, Reads};
-use crate::language::check::messages::studies::rare as message;
-use crate::plan::study::{RareEvent, Runs, Study, StudyEvent, StudyRequirement};
-use crate::plan::{Comparison, Test};
-use crate::schema::Kind;
-use crate::schema::study as schema;
+use crate::check::checker::{Checker, Context, Reads};
+use crate::check::messages::studies::rare as message;
+use psd_plan::schema::Kind;
+use psd_plan::schema::study as schema;
+use psd_plan::study::{RareEvent, Runs, Study, StudyEvent, StudyRequirement};
+use psd_plan::{Comparison, Test};
 
 /// Points and replicates; the requirement is known only once all of them are read.
 pub(super) fn levels(checker: &mut Checker, block: usize) -> Option<RareEvent> {
@@ -14,7 +14,7 @@ pub(super) fn levels(checker: &mut Checker, block: usize) -> Option<RareEvent> {
     let (entry, written) = checker.field(block, schema::SAMPLING.name)?;
     let context = checker.context_of(block, entry);
     let span = written.value.span;
-    let mut count = |field: crate::schema::Field| {
+    let mut count = |field: psd_plan::schema::Field| {
         let value = checker.optional_argument(&chosen, field.name, context)?;
         let value = value.or_else(|| field.default_number())?;
         #[expect(

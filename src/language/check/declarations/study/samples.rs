@@ -5,12 +5,12 @@ use super::arguments;
 use super::samples_file;
 use super::target::Target;
 use super::varied::Law;
-use crate::language::check::checker::Checker;
-use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::messages::studies as message;
-use crate::schema::study as schema;
-use crate::units::Dimension;
-use crate::units::display::si_unit;
+use crate::check::checker::Checker;
+use crate::check::expressions::choice::Chosen;
+use crate::check::messages::studies as message;
+use psd_plan::schema::study as schema;
+use psd_text::units::Dimension;
+use psd_text::units::display::si_unit;
 
 pub(super) fn column<'a>(
     checker: &mut Checker<'a>,

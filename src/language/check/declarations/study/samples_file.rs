@@ -1,8 +1,8 @@
 //! A file of measured values: a header, then one row for each specimen measured; `#` begins a comment. In: its text and the name of a
 //! column. Out: the numbers of the column as they are in the file; or the row of an error, and the reason.
 
-use crate::text::suggest;
-use crate::units::{Unit, unit};
+use psd_text::suggest;
+use psd_text::units::{Unit, unit};
 
 /// Most rows of a file of measured inputs.
 pub const MOST_ROWS: usize = 100_000;
@@ -156,7 +156,7 @@ fn factor(word: &str) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::units::Dimension;
+    use psd_text::units::Dimension;
 
     const TEXT: &str = "# shop floor\r\nname, mass_kg , K\r\n\r\nA,1.5,300\nB, 2 ,310e3\n";
 

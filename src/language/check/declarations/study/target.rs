@@ -1,16 +1,16 @@
 //! An input as a study names it: `impact_speed`, `beam.mass`. In: the expression. Out: its position, dimension and value in the plan.
 
-use crate::language::check::checker::{Checker, Shape, literal};
-use crate::language::check::expressions::overrides::{self, InputLocation};
-use crate::language::check::messages::{inputs as names, studies as message};
-use crate::language::check::rig;
-use crate::language::syntax::ast::{Expr, ExprKind};
-use crate::plan::formula::ResultReference;
-use crate::plan::study::Input;
-use crate::schema::ground::RECORD_NUMBER;
-use crate::schema::{Field, FieldType, Kind, RigKind};
-use crate::text::source::Span;
-use crate::units::Dimension;
+use crate::check::checker::{Checker, Shape, literal};
+use crate::check::expressions::overrides::{self, InputLocation};
+use crate::check::messages::{inputs as names, studies as message};
+use crate::check::rig;
+use crate::syntax::ast::{Expr, ExprKind};
+use psd_plan::formula::ResultReference;
+use psd_plan::schema::ground::RECORD_NUMBER;
+use psd_plan::schema::{Field, FieldType, Kind, RigKind};
+use psd_plan::study::Input;
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 /// An input as a study names it.
 pub(super) struct Target<'a> {

@@ -1,10 +1,10 @@
 //! A varied input of a study, and where its values come from. The columns of one file are one source.
 
 use super::target::Target;
-use crate::physics::study::distribution::Distribution;
-use crate::plan::Interval;
-use crate::plan::formula::ResultReference;
-use crate::text::source::Span;
+use psd_physics::study::distribution::Distribution;
+use psd_plan::Interval;
+use psd_plan::formula::ResultReference;
+use psd_text::source::Span;
 
 /// A varied input.
 pub(super) struct Varied<'a> {

@@ -1,10 +1,10 @@
 //! Errors of variants, of functions and of their arguments.
 
-use crate::language::check::messages::{all_of, suggestion};
-use crate::language::syntax::ast::Ident;
-use crate::schema::{FUNCTIONS, Field, FunctionKind, Presence, Variant};
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
+use crate::check::messages::{all_of, suggestion};
+use crate::syntax::ast::Ident;
+use psd_plan::schema::{FUNCTIONS, Field, FunctionKind, Presence, Variant};
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Span;
 
 pub fn unknown_variant(field: &str, name: &str, span: Span, variants: &[Variant]) -> Diagnostic {
     let known = variants.iter().map(|variant| variant.name);

@@ -1,8 +1,8 @@
 //! Errors of figures: an unknown one, and procedures that cannot share a chart.
 
-use crate::language::check::messages::{one_of, suggestion};
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::{Span, Spanned};
+use crate::check::messages::{one_of, suggestion};
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::{Span, Spanned};
 
 pub fn unknown_figure(
     name: &str,

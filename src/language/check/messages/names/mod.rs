@@ -11,11 +11,11 @@ pub use results::*;
 pub use units::*;
 
 use super::{one_of, owner, suggestion};
-use crate::language::syntax::ast::{Block, Ident};
-use crate::language::syntax::control;
-use crate::schema::{BLOCKS, BlockKind, Field, ITEM_WORDS, Kind, Naming, Renamed, RigKind};
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::{FileId, Span};
+use crate::syntax::ast::{Block, Ident};
+use crate::syntax::control;
+use psd_plan::schema::{BLOCKS, BlockKind, Field, ITEM_WORDS, Kind, Naming, RigKind};
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::{FileId, Span};
 
 pub fn unknown_block(block: &Block) -> Diagnostic {
     let words: Vec<&str> = block.words.iter().map(|word| word.node.as_str()).collect();
@@ -40,7 +40,7 @@ pub fn unknown_block(block: &Block) -> Diagnostic {
         .filter(|count| *count <= words.len())
         .find_map(|count| {
             let written = words[..count].join(" ");
-            crate::text::suggest::nearest(&written, known()).map(|near| (count, near))
+            psd_text::suggest::nearest(&written, known()).map(|near| (count, near))
         });
     let turned = words.len() == 2 && keywords.iter().any(|keyword| keyword == words[1]);
     if turned {
@@ -154,16 +154,6 @@ pub fn velocity_twice(again: &str, span: Span, first_field: &str, first: Span) -
     .help("remove one of them")
 }
 
-/// A name of an older version.
-pub fn renamed(row: &Renamed, span: Span) -> Diagnostic {
-    Diagnostic::new(
-        Code::OldName,
-        format!("`{}` is now called `{}`", row.old, row.new),
-    )
-    .at(span, "old name")
-    .help(format!("write `{}`", row.new))
-}
-
 pub fn unknown_field(kind: &BlockKind, key: &Ident) -> Diagnostic {
     let known = kind.fields.iter().map(|field| field.name);
     Diagnostic::new(
@@ -246,7 +236,7 @@ pub fn unknown_name<'n>(
         )
     } else if name == "critical" {
         "write `critical` in `time_step` only; after the run, read `critical_time_step`".to_owned()
-    } else if let Some(near) = crate::text::suggest::nearest(name, known) {
+    } else if let Some(near) = psd_text::suggest::nearest(name, known) {
         format!("did you mean `{near}`?")
     } else {
         format!("declare it, as in `let {name} = …`, or correct the name")
@@ -258,7 +248,7 @@ pub fn unknown_name<'n>(
 
 /// `1 m/s` for `1 m / s`, and `10 mm` for `10 * mm`, where the last word is a unit.
 fn quantity_apart(name: &str, before: &str) -> Option<String> {
-    crate::units::unit::lookup(name)?;
+    psd_text::units::unit::lookup(name)?;
     let before = before.trim_end().trim_end_matches('(').trim_end();
     let sign = before
         .chars()
@@ -276,7 +266,7 @@ fn quantity_apart(name: &str, before: &str) -> Option<String> {
     let number = head
         .rsplit(|c: char| c.is_whitespace() || matches!(c, '(' | '[' | ',' | ':'))
         .next()?;
-    let unit = crate::units::unit::parse(last).is_ok() && is_number(number);
+    let unit = psd_text::units::unit::parse(last).is_ok() && is_number(number);
     unit.then(|| format!("{number} {last}{sign}{name}"))
 }
 
@@ -292,7 +282,7 @@ pub fn requirement_twice(label: &str, span: Span, first: Span) -> Diagnostic {
 }
 
 pub fn unknown_block_name(kind: Kind, name: &str, span: Span, known: &[&str]) -> Diagnostic {
-    let block = crate::schema::block(kind);
+    let block = psd_plan::schema::block(kind);
     let help = if known.is_empty() {
         format!("declare one, as in\n{}", block.example)
     } else {

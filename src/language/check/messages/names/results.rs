@@ -1,11 +1,11 @@
 //! Errors of results and of other members of a block.
 
-use crate::language::check::messages::{owner, suggestion};
-use crate::language::syntax::ast::Ident;
-use crate::plan::ProcedureBlock;
-use crate::schema::{BlockKind, Kind};
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
+use crate::check::messages::{owner, suggestion};
+use crate::syntax::ast::Ident;
+use psd_plan::ProcedureBlock;
+use psd_plan::schema::{BlockKind, Kind};
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Span;
 
 /// A result without its procedure.
 pub fn result_without_procedure(name: &str, procedure: &str, span: Span) -> Diagnostic {

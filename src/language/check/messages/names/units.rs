@@ -2,11 +2,11 @@
 
 use std::sync::LazyLock;
 
-use crate::language::check::messages::one_of;
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
-use crate::units::display;
-use crate::units::unit::{STANDARD_GRAVITY, UNITS};
+use crate::check::messages::one_of;
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Span;
+use psd_text::units::display;
+use psd_text::units::unit::{STANDARD_GRAVITY, UNITS};
 
 /// Units as words.
 const SPELT_OUT: &[(&str, &str)] = &[
@@ -36,7 +36,7 @@ const SPELT_OUT: &[(&str, &str)] = &[
 
 /// `kN*m` for `kNm`.
 fn unit_product(name: &str) -> Option<String> {
-    let dimension = |part: &str| crate::units::unit::lookup(part).map(|unit| unit.dimension);
+    let dimension = |part: &str| psd_text::units::unit::lookup(part).map(|unit| unit.dimension);
     // `mmm` is a typing error, and not an area.
     let product = |(one, other): &(&str, &str)| {
         dimension(one)
@@ -83,7 +83,7 @@ static USUAL: LazyLock<Vec<String>> = LazyLock::new(|| {
 fn power(name: &str) -> Option<String> {
     let unit = name.trim_end_matches(|digit: char| digit.is_ascii_digit());
     let exponent = &name[unit.len()..];
-    let known = crate::units::unit::lookup(unit).is_some();
+    let known = psd_text::units::unit::lookup(unit).is_some();
     (known && !exponent.is_empty()).then(|| format!("{unit}^{exponent}"))
 }
 
@@ -102,7 +102,7 @@ fn meant(name: &str) -> Option<String> {
                 .cloned()
         })
         .or_else(|| {
-            crate::text::suggest::nearest(name, USUAL.iter().map(String::as_str)).map(str::to_owned)
+            psd_text::suggest::nearest(name, USUAL.iter().map(String::as_str)).map(str::to_owned)
         })
 }
 

@@ -1,7 +1,7 @@
 //! Errors of the values of an intensity, and of the ends of an input.
 
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Span;
 
 /// The help for a distribution that reaches an invalid value.
 pub const INSIDE: &str = "write limits inside the valid range: `uniform(a .. b)`, or `between: a .. b` of another distribution";

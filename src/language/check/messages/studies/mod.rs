@@ -5,12 +5,12 @@ pub mod rare;
 pub mod scatter;
 
 use super::{shown, suggestion};
-use crate::physics::study::distribution::DistributionError;
-use crate::plan::study::Sampling;
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
-use crate::units::Dimension;
-use crate::units::display::significant;
+use psd_physics::study::distribution::DistributionError;
+use psd_plan::study::Sampling;
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
+use psd_text::units::display::significant;
 
 pub fn varies_nothing(head: Span) -> Diagnostic {
     Diagnostic::new(Code::VariesNothing, "every run of this study is the same")
@@ -361,7 +361,7 @@ pub fn event_wanted(span: Span) -> Diagnostic {
 }
 
 pub fn unknown_requirement(label: &str, span: Span, known: &[&str]) -> Diagnostic {
-    let help = match crate::text::suggest::nearest(label, known.iter().copied()) {
+    let help = match psd_text::suggest::nearest(label, known.iter().copied()) {
         Some(near) => format!("did you mean \"{near}\"?"),
         None if known.is_empty() => "add a requirement on the results of a run".to_owned(),
         None => format!(

@@ -1,7 +1,7 @@
 //! Messages on subset simulations. In: what the plan writes. Out: diagnostics.
 
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Span;
 
 /// `stated`: `runs` or `until`.
 pub fn runs_of_subset(sampling: Span, stated: Span) -> Diagnostic {

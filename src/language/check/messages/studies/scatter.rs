@@ -1,8 +1,8 @@
 //! Scatters of inputs that are not what was meant.
 
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
-use crate::units::display::significant;
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Span;
+use psd_text::units::display::significant;
 
 /// `mean` and `sd` as they are written, without names.
 pub fn mean_first(distribution: &str, mean: &str, sd: &str, span: Span) -> Diagnostic {

@@ -1,11 +1,11 @@
 //! Errors of dimensions and missing units: E301 to E303.
 
-use crate::language::check::checker::Typed;
-use crate::language::check::messages::shown;
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
-use crate::units::unit::{PREFIXES, STANDARD_GRAVITY, UNITS};
-use crate::units::{Dimension, Quantity};
+use crate::check::checker::Typed;
+use crate::check::messages::shown;
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Span;
+use psd_text::units::unit::{PREFIXES, STANDARD_GRAVITY, UNITS};
+use psd_text::units::{Dimension, Quantity};
 
 /// "a length", "an energy", "a value in kg/m"
 pub(super) fn article(dimension: Dimension) -> String {

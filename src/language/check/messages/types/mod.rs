@@ -1,4 +1,4 @@
-//! Errors of types: E304. Those of dimensions are in [`dimensions`].
+//! Errors of types: E304. Those of dimensions are in `dimensions`.
 
 mod dimensions;
 
@@ -10,11 +10,11 @@ pub use dimensions::{
 use dimensions::article;
 
 use super::one_of;
-use crate::language::check::checker::Typed;
-use crate::schema::{BlockKind, Field, Kind, Variant};
-use crate::text::diagnostic::{Code, Diagnostic};
-use crate::text::source::Span;
-use crate::units::Dimension;
+use crate::check::checker::Typed;
+use psd_plan::schema::{BlockKind, Field, Kind, Variant};
+use psd_text::diagnostic::{Code, Diagnostic};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 pub fn list_for_number(span: Span) -> Diagnostic {
     Diagnostic::new(Code::WrongType, "expected one number, found a list")
@@ -87,7 +87,7 @@ pub fn requirement_wanted(field: &str, span: Span, required: &str) -> Diagnostic
 }
 
 pub fn block_wanted(kind: Kind, span: Span, text: &str) -> Diagnostic {
-    let words = crate::schema::block(kind).words();
+    let words = psd_plan::schema::block(kind).words();
     Diagnostic::new(
         Code::WrongType,
         format!("expected the name of a {words}, found `{text}`"),

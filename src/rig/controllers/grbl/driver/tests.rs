@@ -1,8 +1,8 @@
 //! Transcripts of Grbl: commands, replies, and their meaning.
 
 use super::*;
-use crate::plan::Limits;
-use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
+use crate::testing::rig::{Scripted, ScriptedPort, VirtualClock};
+use psd_plan::Limits;
 
 const SETTINGS: &str =
     "$1=255\r\n$10=1\r\n$13=0\r\n$20=1\r\n$21=1\r\n$22=1\r\n$100=400.000\r\n$110=500.000\r\nok\r\n";
@@ -310,7 +310,7 @@ fn held_and_let_go(answer: &str) -> (GrblDevice, ScriptedPort) {
     let clock = VirtualClock::default();
     let port = ScriptedPort::new(&clock);
     let client = LineClient::new(Box::new(port.clone()), Box::new(clock), 0.25)
-        .observing(crate::rig::StopRequest::default().with_release_allowed(true));
+        .observing(crate::StopRequest::default().with_release_allowed(true));
     for _ in 0..4 {
         status(&port, "Hold:0", 1.0);
     }
@@ -355,7 +355,7 @@ fn an_axis_that_lost_its_position_or_is_elsewhere_is_not_considered_cleared() {
     let clock = VirtualClock::default();
     let port = ScriptedPort::new(&clock);
     let client = LineClient::new(Box::new(port.clone()), Box::new(clock), 0.25)
-        .observing(crate::rig::StopRequest::default().with_release_allowed(true));
+        .observing(crate::StopRequest::default().with_release_allowed(true));
     for x in [1.0, 1.0, 1.0, 1.001] {
         status(&port, "Hold:0", x);
     }
@@ -370,7 +370,7 @@ fn a_start_seen_while_its_port_is_opened_is_reported_as_one() {
     introduce(&port, SETTINGS);
     assert_eq!(
         device.identify().unwrap().boot.as_deref(),
-        Some(crate::rig::JUST_STARTED)
+        Some(crate::JUST_STARTED)
     );
     assert_eq!(device.line_statistics().ignored, 0);
 }

@@ -1,7 +1,7 @@
 //! Transcripts of a console: a ramp read back before it starts, glitches to zero, silences, trips.
 
 use super::*;
-use crate::rig::testing::{ScriptedPort, Transcript, VirtualClock};
+use crate::testing::rig::{ScriptedPort, Transcript, VirtualClock};
 
 const T: f64 = 0.5;
 const RAMP: &str = "P909,1 C904,0 C1,0 C300,1 C2,1,3 C86,1,5.000 C4,1,0.05000000 P909,0 ";

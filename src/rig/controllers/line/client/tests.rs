@@ -1,8 +1,8 @@
 //! Requests with replies in pieces, noise, silence and disconnections.
 
 use super::*;
-use crate::rig::safety::failpoint::without;
-use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
+use crate::safety::failpoint::without;
+use crate::testing::rig::{Scripted, ScriptedPort, VirtualClock};
 
 fn client() -> (LineClient, ScriptedPort, VirtualClock) {
     let clock = VirtualClock::default();

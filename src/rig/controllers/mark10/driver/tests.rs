@@ -1,8 +1,8 @@
 //! Transcripts of a test frame with its gauge: limits read back, lost characters, silences, overruns.
 
 use super::*;
-use crate::rig::controllers::mark10::load_cell::Mark10Gauge;
-use crate::rig::testing::{Scripted, ScriptedPort, Transcript, VirtualClock};
+use crate::controllers::mark10::load_cell::Mark10Gauge;
+use crate::testing::rig::{Scripted, ScriptedPort, Transcript, VirtualClock};
 
 const T: f64 = 0.2;
 const FORCE: &str = "/?\r\\";

@@ -1,10 +1,10 @@
 //! Transcripts of a drive and of a transmitter: exceptions, noise, silence, late answers, swapped words.
 
 use super::*;
-use crate::plan::Interval;
-use crate::rig::safety::failpoint::{Guarding, without};
-use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
-use crate::rig::transport::Clock as _;
+use crate::safety::failpoint::{Guarding, without};
+use crate::testing::rig::{Scripted, ScriptedPort, VirtualClock};
+use crate::transport::Clock as _;
+use psd_plan::Interval;
 
 const T: f64 = 0.2;
 const FLOAT: ModbusNumber = ModbusNumber::Float32 {

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::checksum::checksum;
 use super::{AxisBounds, Bounds};
-use crate::rig::controllers::number;
+use crate::controllers::number;
 
 /// Longest request with its ending \[bytes\]: for one axis, for several axes.
 pub const LONGEST_FRAME: usize = 96;
@@ -123,14 +123,14 @@ pub fn lengths(values: &[f64]) -> Option<String> {
 }
 
 /// Position and velocity of each end, one after the other.
-pub(crate) fn in_turn(ends: &[End]) -> Vec<f64> {
+pub fn in_turn(ends: &[End]) -> Vec<f64> {
     ends.iter()
         .flat_map(|end| [end.position, end.velocity])
         .collect()
 }
 
 /// \[s\] as ms in text.
-pub(crate) fn time(seconds: f64) -> Option<String> {
+pub fn time(seconds: f64) -> Option<String> {
     number::write(seconds * 1e3, 3)
 }
 

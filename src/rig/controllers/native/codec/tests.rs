@@ -1,7 +1,7 @@
 //! The native protocol against the vectors of its specification, and against every single fault of a line.
 
 use super::*;
-use crate::rig::safety::failpoint::without;
+use crate::safety::failpoint::without;
 
 const DATA: &[u8] = b"<DATA 42 7F3A 118203 1.249871 512.375 812344 0x0000 IDLE*788B";
 const ACK: &[u8] = b"<ACK 41 7F3A MOVING*1F01";
@@ -43,9 +43,9 @@ fn the_vectors_of_the_specification() {
     let accepted = reply(ACK).unwrap();
     assert_eq!(
         (accepted.kind, accepted.sequence, accepted.boot()),
-        (Kind::Ack, 41, "7F3A")
+        (ReplyKind::Ack, 41, "7F3A")
     );
-    assert_eq!(state(accepted.words()[0]), Some(State::Moving));
+    assert_eq!(state(accepted.words()[0]), Some(ReportedState::Moving));
     let read = read(DATA).unwrap();
     let axis = AxisData {
         displacement: 1.249_871e-3,
@@ -55,7 +55,7 @@ fn the_vectors_of_the_specification() {
     };
     assert_eq!(
         (read.time, read.axes, read.state),
-        (118.203, vec![axis], State::Idle)
+        (118.203, vec![axis], ReportedState::Idle)
     );
 }
 

@@ -1,12 +1,12 @@
 //! Continuous motion in psd's own protocol: smooth paths whose ends are passed. In: a path per axis, in the device's own
 //! directions. Out: the frame of a `GLIDE`, and its decoded values. It sends nothing.
 
-use super::{DeviceMove, NativeDevice, Proposed};
-use crate::physics::tracking::trajectory::Path;
-use crate::rig::controllers::DeviceFault;
-use crate::rig::controllers::native;
-use crate::rig::controllers::native::codec::{End, Request};
-use crate::rig::controllers::{metres, number};
+use super::{DeviceMove, NativeDevice, RequestedMove};
+use crate::controllers::DeviceFault;
+use crate::controllers::native;
+use crate::controllers::native::codec::{End, Request};
+use crate::controllers::{metres, number};
+use psd_physics::tracking::trajectory::Path;
 
 impl NativeDevice {
     pub(super) fn glide_move(&mut self, paths: &[Path]) -> Result<DeviceMove, DeviceFault> {
@@ -69,7 +69,7 @@ impl NativeDevice {
             ends: &ends,
             seconds,
         })?;
-        self.proposed = Some(Proposed {
+        self.proposed = Some(RequestedMove {
             id,
             targets: written,
             sent: false,

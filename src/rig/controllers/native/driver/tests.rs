@@ -1,10 +1,10 @@
 //! Transcripts of the native protocol: commands, replies, and their meaning; and every fault of a line.
 
 use super::*;
-use crate::plan::Interval;
-use crate::rig::controllers::Flags;
-use crate::rig::safety::failpoint::without;
-use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
+use crate::controllers::Flags;
+use crate::safety::failpoint::without;
+use crate::testing::rig::{Scripted, ScriptedPort, VirtualClock};
+use psd_plan::Interval;
 
 const WHO: &str =
     "PSD-BENCH 0042 1.3 -2.000000 25.000000 -2000.000 12000.000 120.000000 17 1.250000";

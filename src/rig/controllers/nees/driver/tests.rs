@@ -1,9 +1,9 @@
 //! Transcripts of a session: proposals, refusals, a slow execution, replies to other transactions.
 
 use super::*;
-use crate::rig::StopRequest;
-use crate::rig::testing::{Scripted, ScriptedPort, VirtualClock};
-use crate::rig::transport::Clock as _;
+use crate::StopRequest;
+use crate::testing::rig::{Scripted, ScriptedPort, VirtualClock};
+use crate::transport::Clock as _;
 
 const T: f64 = 1.0;
 const POINT: &str = "MDL-00-01";

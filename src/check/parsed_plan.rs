@@ -1,0 +1,242 @@
+//! A plan that is parsed once and checked as often as its parameters take other values. In: the text of the plan and of its files, then
+//! for each check a number for each parameter that changes. Out: checked plans. After the first check it reads no file.
+
+use std::collections::BTreeMap;
+
+use super::driver::{self, Findings, PlanText};
+use super::{Checked, Options};
+use super::{Loader, no_files};
+use crate::language::check::checker::{Checker, End};
+use crate::language::check::expressions::data_file::DataFile;
+use crate::language::check::expressions::parameters::{names_of_parameters, read_settings};
+use crate::language::check::messages::{self, names};
+use crate::language::check::scope::{Scope, Setting};
+use crate::language::check::{imports, rig};
+use crate::language::syntax::ast::Ast;
+use crate::plan::{Plan, PlanFile};
+use crate::text::diagnostic::Diagnostic;
+use crate::text::source::{Sources, Span};
+use crate::units::Quantity;
+
+/// Checks a plan and all it uses.
+#[must_use]
+pub fn check(name: &str, text: &str, loader: &Loader<'_>, options: &Options) -> Checked {
+    ParsedPlan::parse(name, text, loader, options).check(loader)
+}
+
+/// The syntax trees of a plan and its files, with everything else that does not change when a parameter does.
+pub struct ParsedPlan {
+    name: String,
+    options: Options,
+    /// Every file that was parsed, and every `--set`.
+    sources: Sources,
+    trees: Vec<Ast>,
+    files: Vec<PlanFile>,
+    settings: BTreeMap<String, Setting>,
+    /// Errors that were found before any check.
+    errors: Vec<Diagnostic>,
+    /// Lines that could not be parsed.
+    unread: Vec<Span>,
+    /// Whether some file could not be read, so that names may be missing.
+    incomplete: bool,
+    /// The data files that the last check with a loader read.
+    data: Vec<DataFile>,
+}
+
+/// Most ends of inputs at which a plan is checked: each is a check of its own.
+const MOST_ENDS: usize = 64;
+
+/// The findings of one check.
+struct Outcome {
+    plan: Option<Plan>,
+    diagnostics: Vec<Diagnostic>,
+    rig_links: Vec<Span>,
+    data: Vec<DataFile>,
+    ends: Vec<End>,
+    tails: Vec<End>,
+}
+
+impl ParsedPlan {
+    /// Parses a plan, the files that it uses, and the values of `--set`.
+    #[must_use]
+    pub fn parse(name: &str, text: &str, loader: &Loader<'_>, options: &Options) -> Self {
+        let mut sources = Sources::default();
+        let mut errors = Vec::new();
+        let imports = imports::load(name, text, loader, &mut sources, &mut errors);
+        let unread = driver::unread_lines(&sources, &errors);
+        let files = sources
+            .iter()
+            .map(|(_, file)| PlanFile {
+                name: file.name.clone(),
+                text: file.text.clone(),
+            })
+            .collect();
+        let settings = read_settings(&mut sources, &imports.asts, &options.settings, &mut errors);
+        Self {
+            name: name.to_owned(),
+            options: options.clone(),
+            sources,
+            trees: imports.asts,
+            files,
+            settings,
+            errors,
+            unread,
+            incomplete: imports.incomplete,
+            data: Vec::new(),
+        }
+    }
+
+    /// Checks the plan as it is written, with the values of `--set`. Keeps the data files that the plan names for [`Self::bind`].
+    pub fn check(&mut self, loader: &Loader<'_>) -> Checked {
+        let settings = self.written_settings();
+        let mut outcome =
+            self.evaluate(&self.settings, settings, loader, Findings::WarningsToo, &[]);
+        self.data = std::mem::take(&mut outcome.data);
+        self.try_ends(&mut outcome);
+        messages::cap(&mut outcome.diagnostics);
+        Checked {
+            plan: outcome.plan,
+            diagnostics: outcome.diagnostics,
+            sources: self.sources.clone(),
+            rig_links: outcome.rig_links,
+        }
+    }
+
+    /// Whether the plan is valid at the ends of the inputs of its studies, and at values that one draw in 1000 exceeds. Not where a value is set: a run of a study is one point, and the
+    /// ends of the other inputs do not matter there.
+    fn try_ends(&self, outcome: &mut Outcome) {
+        if outcome.plan.is_none() || !self.settings.is_empty() {
+            return;
+        }
+        let mut reported = Vec::new();
+        for end in outcome.ends.iter().take(MOST_ENDS) {
+            let value = BTreeMap::from([(end.name.clone(), end.value)]);
+            let Err(errors) = self.bind(&value) else {
+                continue;
+            };
+            if let Some(first) = errors.first().filter(|_| !reported.contains(&end.span)) {
+                reported.push(end.span);
+                let shown = end.value.in_plan_syntax();
+                let diagnostic = messages::studies::intensity::invalid_end(
+                    &end.name, &shown, first, end.span, end.help,
+                );
+                outcome.diagnostics.push(diagnostic);
+            }
+        }
+        if !reported.is_empty() {
+            outcome.plan = None;
+        }
+        for tail in outcome.tails.iter().take(MOST_ENDS) {
+            if reported.contains(&tail.span) {
+                continue;
+            }
+            let value = BTreeMap::from([(tail.name.clone(), tail.value)]);
+            if let Some(first) = self.bind(&value).err().iter().flatten().next() {
+                reported.push(tail.span);
+                let shown = messages::shown(tail.value.value, tail.value.dimension);
+                let diagnostic = messages::studies::scatter::runs_without_result(
+                    &tail.name, &shown, first, tail.span, tail.help,
+                );
+                outcome.diagnostics.push(diagnostic);
+            }
+        }
+        if !reported.is_empty() {
+            outcome
+                .diagnostics
+                .sort_by_key(|found| found.span().map(|span| (span.file, span.start, span.end)));
+        }
+    }
+
+    /// The plan with other values of its inputs, named as by `--set`: a `param`, or a field such as `beam.mass`. Its expressions are
+    /// evaluated and checked again, but no text is parsed. An input without a value here keeps the one of `--set`, else its own. The
+    /// plan has no studies. To be called after [`Self::check`] found no error.
+    ///
+    /// # Errors
+    /// The errors of the plan with these values: an unknown input, a value with a wrong dimension or outside its bounds, and any
+    /// other error of the plan.
+    pub fn bind(&self, values: &BTreeMap<String, Quantity>) -> Result<Plan, Vec<Diagnostic>> {
+        self.bound(values, Findings::ErrorsAlone)
+    }
+
+    /// [`Self::bind`] with the studies of the plan, whose formulas may contain the values.
+    ///
+    /// # Errors
+    /// As [`Self::bind`].
+    pub fn bind_with_studies(
+        &self,
+        values: &BTreeMap<String, Quantity>,
+    ) -> Result<Plan, Vec<Diagnostic>> {
+        self.bound(values, Findings::OfStudies)
+    }
+
+    fn bound(
+        &self,
+        values: &BTreeMap<String, Quantity>,
+        findings: Findings,
+    ) -> Result<Plan, Vec<Diagnostic>> {
+        let known = names_of_parameters(&self.trees);
+        let unknown: Vec<Diagnostic> = values
+            .keys()
+            .filter(|name| !known.contains(&name.as_str()) && !name.contains('.'))
+            .map(|name| names::unknown_parameter(name, &known))
+            .collect();
+        if !unknown.is_empty() {
+            return Err(unknown);
+        }
+        let mut settings = self.settings.clone();
+        let mut written = self.written_settings();
+        for (name, value) in values {
+            settings.insert(name.clone(), Setting::Bound(*value));
+            written.insert(name.clone(), value.in_plan_syntax());
+        }
+        let outcome = self.evaluate(&settings, written, &no_files, findings, &self.data);
+        outcome.plan.ok_or(outcome.diagnostics)
+    }
+
+    /// The texts of `--set`, by name; if several have one name, the last.
+    fn written_settings(&self) -> BTreeMap<String, String> {
+        self.options.settings.iter().cloned().collect()
+    }
+
+    /// Checks the trees with these settings, whose text is in `written`, and with these data files.
+    fn evaluate(
+        &self,
+        settings: &BTreeMap<String, Setting>,
+        written: BTreeMap<String, String>,
+        loader: &Loader<'_>,
+        findings: Findings,
+        data: &[DataFile],
+    ) -> Outcome {
+        let mut errors = self.errors.clone();
+        let scope = Scope::collect(&self.trees, settings, &mut errors);
+        let mut checker = Checker::new(
+            &self.sources,
+            &scope,
+            loader,
+            errors,
+            self.unread.clone(),
+            self.incomplete,
+        );
+        checker.data = data.to_vec();
+        checker.real_rig = rig::real_rig_of_run(&checker, self.options.rig.as_deref());
+        checker.override_fields(settings);
+        let text = PlanText {
+            name: &self.name,
+            files: self.files.clone(),
+            settings: written.into_iter().collect(),
+        };
+        let plan = driver::plan(&mut checker, text, &self.options, findings);
+        let rig_links = rig::links_of_run(&checker, self.options.rig.as_deref());
+        let misspelt = self.trees.iter().flat_map(|tree| tree.misspelt.iter());
+        let misspelt: Vec<Span> = misspelt.copied().collect();
+        let diagnostics = driver::reportable(checker.diagnostics, &misspelt, checker.explained);
+        Outcome {
+            plan: plan.filter(|_| !diagnostics.iter().any(Diagnostic::is_error)),
+            diagnostics,
+            rig_links,
+            data: checker.data,
+            ends: checker.ends,
+            tails: checker.tails,
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! Warnings: plans that can run but give poor results. In: the checked plan. Out: diagnostics with
+//! the numbers. They change nothing in the plan.
+
+pub(crate) mod left;
+pub(crate) mod recorded_steps;
+pub mod tracking;
+
+use crate::language::check::checker::Checker;
+use crate::language::check::messages::{cyclic, values, whole as message};
+use crate::plan::procedures::escalate::block::WHILE;
+use crate::plan::{Condition, Ground, Procedure, Reproduction, Requirement};
+use crate::procedures::facts::{Leaves, Motion};
+use crate::schema::Kind;
+use crate::schema::reproduces;
+use crate::schema::specimen::MASS_UNCERTAINTY;
+use crate::text::source::{FileId, Span, Spanned};
+use crate::uncertainty::Source;
+
+/// What a plan states about the numbers of its run.
+#[derive(Clone, Copy)]
+pub struct Stated<'a> {
+    pub requirements: &'a [Requirement],
+    pub reproductions: &'a [Reproduction],
+}
+
+/// Warnings of the whole plan; called only if there is no error.
+pub fn whole_plan(
+    checker: &mut Checker,
+    procedures: &[(usize, Option<Procedure>)],
+    stated: Stated<'_>,
+    grounds: &[Option<Ground>],
+    plan: Span,
+) {
+    peak_forces(checker, procedures, stated);
+    impacts_on_moving_specimens(checker, procedures, grounds);
+    unused_uncertainties(checker, procedures, stated.requirements);
+    match procedures.last() {
+        None => checker.diagnostics.push(message::nothing_runs(plan)),
+        Some((block, _)) if stated.requirements.is_empty() && stated.reproductions.is_empty() => {
+            let head = checker.scope.blocks[*block].block.head;
+            checker.diagnostics.push(message::nothing_required(head));
+        }
+        Some(_) => {}
+    }
+    for (index, value) in checker.scope.values.iter().enumerate() {
+        if value.name.span.file == FileId(0) && !checker.used.contains(&index) {
+            checker.diagnostics.push(message::unused(
+                value.keyword,
+                &value.name.node,
+                value.name.span,
+            ));
+        }
+    }
+}
+
+/// A run that integrates directly after another starts from the final state of that one, under load. A specimen does not stay in that
+/// state without an actuator. A damped frame comes to rest without an actuator, if its run continues for long enough.
+fn impacts_on_moving_specimens(
+    checker: &mut Checker,
+    procedures: &[(usize, Option<Procedure>)],
+    grounds: &[Option<Ground>],
+) {
+    let mut before: Option<(usize, &str, &str)> = None;
+    for (block, procedure) in procedures {
+        let left = procedure.as_ref().map_or(Leaves::AtRest, |procedure| {
+            crate::procedures::leaves(&procedure.kind, grounds)
+        });
+        let Motion {
+            what,
+            ends,
+            help,
+            rests,
+        } = match left {
+            Leaves::Moving(motion) => motion,
+            Leaves::AsFound => continue,
+            Leaves::AtRest => {
+                before = None;
+                continue;
+            }
+        };
+        if let Some((first, ended, remedy)) = before {
+            let (first, this) = (&checker.scope.blocks[first], &checker.scope.blocks[*block]);
+            let name = first.name.map_or("", |name| name.node.as_str());
+            let diagnostic = cyclic::impact_on_moving_specimen(
+                Spanned::new(what, this.block.head),
+                Spanned::new(name, first.block.head),
+                ended,
+                remedy,
+            );
+            checker.diagnostics.push(diagnostic);
+        }
+        before = Some((*block, ends, help)).filter(|_| !rests);
+    }
+}
+
+/// The uncertainty of a mass is used by an impact that uses the mass of the specimen, and by the damping ratio of a sweep.
+fn unused_uncertainties(
+    checker: &mut Checker,
+    procedures: &[(usize, Option<Procedure>)],
+    requirements: &[Requirement],
+) {
+    let mut read = Vec::new();
+    for condition in requirements
+        .iter()
+        .flat_map(|requirement| &requirement.conditions)
+    {
+        condition.collect_stated(&mut read);
+    }
+    let mut used = Vec::new();
+    for (_, procedure) in procedures {
+        if let Some(procedure) = procedure {
+            used.extend(crate::procedures::uses_mass(&procedure.kind, &mut read));
+        }
+    }
+    used.extend(read.into_iter().filter_map(|source| match source {
+        Source::SpecimenMass(specimen) => Some(specimen),
+        _ => None,
+    }));
+    let specimens: Vec<usize> = checker
+        .scope
+        .of_kind(Kind::Specimen)
+        .map(|(block, _)| block)
+        .collect();
+    for block in specimens
+        .into_iter()
+        .enumerate()
+        .filter(|(index, _)| !used.contains(index))
+        .map(|(_, block)| block)
+    {
+        let stated = checker
+            .field(block, MASS_UNCERTAINTY.name)
+            .map(|(_, entry)| entry.value.span);
+        let some = stated.is_some()
+            && checker
+                .constant(block, MASS_UNCERTAINTY.name)
+                .is_some_and(|stated| stated > 0.0);
+        if let (true, Some(span)) = (some, stated) {
+            let name = checker.scope.blocks[block]
+                .name
+                .map_or("", |name| name.node.as_str());
+            checker
+                .diagnostics
+                .push(values::uncertainty_unused(name, span));
+        }
+    }
+}
+
+fn peak_forces(
+    checker: &mut Checker,
+    procedures: &[(usize, Option<Procedure>)],
+    stated: Stated<'_>,
+) {
+    let read = |checker: &mut Checker, conditions: &[Condition], span: Span| {
+        let mut references = Vec::new();
+        for condition in conditions {
+            condition.collect_references(&mut references);
+        }
+        for reference in references {
+            if let Some((block, Some(procedure))) = procedures.get(reference.procedure.0)
+                && let Some(result) = checker.result_of_impact(*block, reference.name)
+                && result.grows_as_inverse_step
+                && let Some(law) = crate::procedures::facts_of(&procedure.kind).contact
+                && law.is_impulsive()
+            {
+                let head = checker.scope.blocks[*block].block.head;
+                checker
+                    .diagnostics
+                    .push(message::peak_force_follows_the_step(span, head, law));
+            }
+        }
+    };
+    for (index, requirement) in stated.requirements.iter().enumerate() {
+        let span = checker.scope.requirements[index].condition.span;
+        read(checker, &requirement.conditions, span);
+    }
+    let blocks = checker.scope.of_kind(Kind::Reproduces);
+    let blocks: Vec<usize> = blocks.map(|(block, _)| block).collect();
+    for (block, reproduction) in blocks.into_iter().zip(stated.reproductions) {
+        let span = checker.value_or_head(block, reproduces::VALUE.name);
+        read(checker, std::slice::from_ref(&reproduction.condition), span);
+    }
+    for (block, procedure) in procedures {
+        let kind = procedure.as_ref().map(|procedure| &procedure.kind);
+        if let Some(conditions) = kind.and_then(|kind| crate::procedures::facts_of(kind).conditions)
+        {
+            let span = checker.value_or_head(*block, WHILE.name);
+            read(checker, conditions, span);
+        }
+    }
+}

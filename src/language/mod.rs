@@ -1,6 +1,0 @@
-//! The language: text to syntax tree (`syntax`), syntax tree to checked plan (`check`). Its
-//! keywords and fields are in `schema`. It runs nothing.
-
-pub mod check;
-mod renamed;
-pub mod syntax;

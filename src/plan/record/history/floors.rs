@@ -1,0 +1,196 @@
+//! The floors of a frame: the storeys of a step, whatever moved them, and the impact on one of them. In: numbers of a run,
+//! SI. It computes no motion.
+
+use crate::record::Modes;
+use psd_physics::integrator::state::State;
+use psd_physics::integrator::tangents::HasTangents;
+use psd_physics::structure::{drifts, shears};
+use psd_physics::tracking::monitor::Tracking;
+
+/// The state of a frame at a step, one entry per floor from the ground up; empty for quantities that were not computed.
+#[derive(Clone, Copy, Debug)]
+pub struct FloorsAt<'a> {
+    /// Simulated time \[s\].
+    pub time: f64,
+    /// Targets \[m\].
+    pub command: &'a [f64],
+    /// Measured \[m\].
+    pub measured: &'a [f64],
+    /// Computed X, m.
+    pub computed: &'a [f64],
+    /// \[m/s\]
+    pub velocity: &'a [f64],
+    /// \[m/s²\]
+    pub acceleration: &'a [f64],
+    /// Measured \[N\].
+    pub restoring_force: &'a [f64],
+    /// The tracking error of each floor.
+    pub tracking: &'a [Tracking],
+}
+
+/// A step of a frame.
+pub trait Floors {
+    /// Its floors.
+    fn at(&self) -> FloorsAt<'_>;
+
+    /// Simulated time \[s\].
+    fn time(&self) -> f64 {
+        self.at().time
+    }
+
+    /// Computed displacement of each floor \[m\].
+    fn computed(&self) -> &[f64] {
+        self.at().computed
+    }
+
+    /// Measured restoring force of each floor \[N\].
+    fn restoring_force(&self) -> &[f64] {
+        self.at().restoring_force
+    }
+
+    /// Target of each floor \[m\].
+    fn command(&self) -> &[f64] {
+        self.at().command
+    }
+
+    /// Measured displacement of each floor \[m\].
+    fn measured(&self) -> &[f64] {
+        self.at().measured
+    }
+
+    /// The tracking error of each floor.
+    fn tracking(&self) -> &[Tracking] {
+        self.at().tracking
+    }
+
+    /// Drift of each storey \[m\], from the computed displacements.
+    #[must_use]
+    fn drift(&self) -> Vec<f64> {
+        drift_of(self.computed())
+    }
+
+    /// Shear of each storey \[N\]: the forces of the floors it carries; the first is the base shear.
+    #[must_use]
+    fn shear(&self) -> Vec<f64> {
+        shear_of(self.restoring_force())
+    }
+}
+
+impl<F: Floors> Floors for &F {
+    fn at(&self) -> FloorsAt<'_> {
+        F::at(self)
+    }
+}
+
+/// Drift of each storey \[m\], from the displacement of each floor \[m\].
+pub fn drift_of(floors: &[f64]) -> Vec<f64> {
+    let mut drift = vec![0.0; floors.len()];
+    drifts(floors, &mut drift);
+    drift
+}
+
+/// Shear of each storey \[N\], from the force of each floor \[N\].
+pub fn shear_of(floors: &[f64]) -> Vec<f64> {
+    let mut shear = vec![0.0; floors.len()];
+    shears(floors, &mut shear);
+    shear
+}
+
+/// All floors of one step of a procedure that integrates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FloorMotion {
+    /// Simulated time \[s\].
+    pub time: f64,
+    /// Targets \[m\].
+    pub command: Vec<f64>,
+    /// Measured \[m\].
+    pub displacement: Vec<f64>,
+    /// Computed X \[m\]: the target, except under α-OS.
+    pub computed: Vec<f64>,
+    /// \[m/s\]
+    pub velocity: Vec<f64>,
+    /// \[m/s²\]
+    pub acceleration: Vec<f64>,
+    /// Measured, of each floor \[N\].
+    pub restoring_force: Vec<f64>,
+    /// For each axis.
+    pub tracking: Vec<Tracking>,
+}
+
+impl FloorMotion {
+    /// The floors at the end of a step, with the tracking of each axis.
+    pub fn of_state<V: HasTangents>(state: &State<V>, tracking: &[Tracking]) -> Self {
+        let of = |vector: &V| vector.as_slice().to_vec();
+        Self {
+            time: state.time,
+            command: of(&state.target),
+            displacement: of(&state.measured_displacement),
+            computed: of(&state.displacement),
+            velocity: of(&state.velocity),
+            acceleration: of(&state.acceleration),
+            restoring_force: of(&state.restoring_force),
+            tracking: tracking.to_vec(),
+        }
+    }
+
+    /// The floors where a limit ended the motion to these targets \[m\], after this step, by this time \[s\]: displacement \[m\] and
+    /// force \[N\] as measured.
+    pub fn cut_off(
+        &self,
+        time: f64,
+        command: &[f64],
+        displacement: &[f64],
+        restoring_force: &[f64],
+    ) -> Self {
+        Self {
+            time,
+            command: command.to_vec(),
+            displacement: displacement.to_vec(),
+            computed: displacement.to_vec(),
+            restoring_force: restoring_force.to_vec(),
+            ..self.clone()
+        }
+    }
+}
+
+impl Floors for FloorMotion {
+    fn at(&self) -> FloorsAt<'_> {
+        FloorsAt {
+            time: self.time,
+            command: &self.command,
+            measured: &self.displacement,
+            computed: &self.computed,
+            velocity: &self.velocity,
+            acceleration: &self.acceleration,
+            restoring_force: &self.restoring_force,
+            tracking: &self.tracking,
+        }
+    }
+}
+
+/// All floors of one step of an impact on a storey. The impact step contains the step, the striker and the contact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FloorStep {
+    pub floors: FloorMotion,
+    /// ∫ shear d(storey drift) of each storey up to this step \[J\]; their sum is the energy of the restoring forces.
+    pub storey_energy: Vec<f64>,
+}
+
+impl Floors for FloorStep {
+    fn at(&self) -> FloorsAt<'_> {
+        self.floors.at()
+    }
+}
+
+/// A frame with one floor struck.
+#[derive(Clone, Debug)]
+pub struct StruckFrame {
+    /// The struck floor, from 0.
+    pub struck: usize,
+    /// Every floor, a row for each step of the impact.
+    pub floors: Vec<FloorStep>,
+    /// None if the procedure did not begin.
+    pub modes: Option<Modes>,
+    /// Fraction of critical damping of each mode.
+    pub damping_ratios: Vec<f64>,
+}

@@ -1,0 +1,94 @@
+//! The history of a procedure, one file a procedure: its steps, as they were read and computed. In: numbers of a run, SI. Out: data. It
+//! computes no motion.
+
+pub mod floors;
+
+use crate::procedures::stiffness_ramp::block as stiffness_ramp;
+use crate::record::{
+    CycleHistory, DampingSweepHistory, EscalateHistory, ImpactHistory, RampStep, ShakeHistory,
+    StiffnessRampHistory, UnloadStep,
+};
+
+/// The history of a procedure, step by step.
+#[derive(Clone, Debug)]
+pub enum History {
+    StiffnessRamp(StiffnessRampHistory),
+    DampingSweep(DampingSweepHistory),
+    Impact(ImpactHistory),
+    Shake(ShakeHistory),
+    Cycle(CycleHistory),
+    Escalate(EscalateHistory),
+    Move(Vec<RampStep>),
+    /// The floors of a frame during the unloading.
+    FrameUnload(Vec<UnloadStep>),
+    Inspect,
+}
+
+/// Results of a ramp that are fitted to the relaxation of all its moves and dwells together.
+const OF_SUPERPOSITION: [&str; 6] = [
+    stiffness_ramp::TIME_CONSTANT.name,
+    stiffness_ramp::REMAINING_RELAXATION.name,
+    stiffness_ramp::REQUIRED_PAUSE.name,
+    stiffness_ramp::RELAXATION_SHARE.name,
+    stiffness_ramp::REFERENCE_TIME.name,
+    stiffness_ramp::RELAXATION_RATE.name,
+];
+
+/// Results of a ramp that are fitted to its relaxation with all of its degrees of freedom.
+const OF_RELAXATION: [&str; 4] = [
+    stiffness_ramp::TIME_CONSTANT.name,
+    stiffness_ramp::BRANCH_STIFFNESS.name,
+    stiffness_ramp::REMAINING_RELAXATION.name,
+    stiffness_ramp::REQUIRED_PAUSE.name,
+];
+
+impl History {
+    /// The time step and the critical time step \[s\], if the step was longer than the critical one; for several impacts, those of the
+    /// first.
+    #[must_use]
+    pub fn above_critical(&self) -> Option<(f64, f64)> {
+        let steps_of = |impact: &ImpactHistory| (impact.time_step, impact.critical_time_step);
+        let mut steps = match self {
+            Self::Impact(impact) => vec![steps_of(impact)],
+            Self::Shake(history) => vec![(history.time_step, history.critical_time_step)],
+            Self::Escalate(history) => history
+                .impacts
+                .iter()
+                .map(|impact| steps_of(&impact.history))
+                .collect(),
+            Self::StiffnessRamp(_)
+            | Self::DampingSweep(_)
+            | Self::Cycle(_)
+            | Self::Move(_)
+            | Self::FrameUnload(_)
+            | Self::Inspect => Vec::new(),
+        };
+        steps.retain(|(step, critical)| step > critical);
+        steps.first().copied()
+    }
+
+    /// Degrees of freedom of the scatter of a fitted result. None for a result that is not fitted.
+    #[must_use]
+    pub fn degrees(&self, result: &str) -> Option<f64> {
+        match self {
+            Self::StiffnessRamp(StiffnessRampHistory {
+                reached: Some(fit), ..
+            }) if OF_SUPERPOSITION.contains(&result) => Some(fit.best().degrees),
+            Self::StiffnessRamp(ramp) => match (result, ramp.relaxation.as_deref()) {
+                (_, Some(fit)) if result == stiffness_ramp::RELAXED_STIFFNESS.name => {
+                    Some(fit.degrees_of_stiffness())
+                }
+                (_, Some(fit)) if OF_RELAXATION.contains(&result) => Some(fit.degrees),
+                _ => {
+                    let line = ramp.fit.map(|fit| fit.degrees);
+                    let bilinear = || ramp.bilinear.as_ref().map(|fit| fit.degrees);
+                    line.or_else(bilinear)
+                        .or_else(|| ramp.multilinear.as_ref().map(|fit| fit.degrees))
+                }
+            },
+            Self::DampingSweep(sweep) => sweep.fit.map(|fit| fit.degrees),
+            Self::Cycle(cycle) => cycle.backbone.as_ref().map(|fit| fit.degrees),
+            _ => None,
+        }
+    }
+}

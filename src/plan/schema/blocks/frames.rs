@@ -1,0 +1,126 @@
+//! Many degrees of freedom: the storeys of a frame, and its matrices.
+
+use super::behaviours::{BEHAVIOURS, STIFFNESS};
+use crate::schema::types::{Field, Variant};
+use psd_text::units::Dimension;
+
+/// The names of the arguments of a storey.
+pub mod storey {
+    pub const STIFFNESS: &str = super::STIFFNESS.name;
+    pub const MASS: &str = "mass";
+    pub const COLUMN_STIFFNESS: &str = "column_stiffness";
+    pub const MASS_UNCERTAINTY: &str = "mass_uncertainty";
+    pub const STIFFNESS_UNCERTAINTY: &str = "stiffness_uncertainty";
+    pub const HEIGHT: &str = "height";
+    pub const BEHAVIOUR: &str = "behaviour";
+    pub const DAMPING: &str = "damping";
+    pub const COULOMB: &str = "coulomb";
+}
+
+const STOREY: &[Variant] = &[Variant::with(
+    "storey",
+    &[
+        Field::quantity(storey::MASS, Dimension::MASS, "mass of the floor")
+            .required("mass: 2 t")
+            .above_zero(),
+        Field {
+            example: "stiffness: 3 MN/m",
+            ..STIFFNESS.default_in_words("from the behaviour, or 2 × `column_stiffness`")
+        },
+        Field::quantity(
+            storey::COLUMN_STIFFNESS,
+            Dimension::STIFFNESS,
+            "stiffness of one of its two columns",
+        )
+        .above_zero(),
+        Field::quantity(
+            storey::MASS_UNCERTAINTY,
+            Dimension::MASS,
+            "standard uncertainty of the mass",
+        )
+        .or(0.0, "kg")
+        .at_least_zero(),
+        Field::quantity(
+            storey::STIFFNESS_UNCERTAINTY,
+            Dimension::STIFFNESS,
+            "standard uncertainty of the stiffness of the storey",
+        )
+        .or(0.0, "N/m")
+        .at_least_zero(),
+        Field::quantity(storey::HEIGHT, Dimension::LENGTH, "height of the storey").above_zero(),
+        Field::choice(
+            storey::BEHAVIOUR,
+            BEHAVIOURS,
+            "restoring-force model of a virtual rig: storey shear against drift",
+        )
+        .default_in_words("elastic with `stiffness`"),
+        Field::quantity(
+            storey::DAMPING,
+            Dimension::DAMPING,
+            "viscous damping, c times drift velocity, in the force of a virtual rig",
+        )
+        .or(0.0, "N*s/m")
+        .at_least_zero(),
+        Field::quantity(
+            storey::COULOMB,
+            Dimension::FORCE,
+            "friction against the drift, in the force of a virtual rig",
+        )
+        .or(0.0, "N")
+        .at_least_zero(),
+    ],
+    "floor on its columns",
+)];
+
+pub const STOREYS: Field = Field::choices(
+    "storeys",
+    STOREY,
+    "storeys from the ground up, instead of `mass` and `behaviour`",
+);
+
+pub const MASS_MATRIX: Field = Field::text(
+    "mass_matrix",
+    "CSV file of M in kg, one row per line; requires `stiffness_matrix`",
+)
+.advanced();
+
+pub const STIFFNESS_MATRIX: Field = Field::text(
+    "stiffness_matrix",
+    "CSV file of K in N/m, one row per line; requires `mass_matrix`",
+)
+.advanced();
+
+pub const MASS_MATRIX_UNCERTAINTY: Field = Field::quantity(
+    "mass_matrix_uncertainty",
+    Dimension::NUMBER,
+    "relative standard uncertainty of M (one factor for all entries)",
+)
+.or(0.0, "%")
+.within(0.0, 0.2)
+.advanced();
+
+pub const STIFFNESS_MATRIX_UNCERTAINTY: Field = Field::quantity(
+    "stiffness_matrix_uncertainty",
+    Dimension::NUMBER,
+    "relative standard uncertainty of K (one factor for all entries)",
+)
+.or(0.0, "%")
+.within(0.0, 0.2)
+.advanced();
+
+/// The damping of a frame.
+pub const DAMPING_RATIO: Field = Field::quantities(
+    "damping_ratio",
+    Dimension::NUMBER,
+    "one value: Rayleigh damping with this ratio in the first two modes; a list: one ratio per mode",
+)
+.within(0.0, 1.0)
+.or(0.0, "");
+
+pub const DAMPING_UNCERTAINTY: Field = Field::quantity(
+    "damping_ratio_uncertainty",
+    Dimension::NUMBER,
+    "standard uncertainty of the damping ratio of a frame; of each ratio separately if it is a list",
+)
+.or(0.0, "%")
+.within(0.0, 0.2);

@@ -1,0 +1,182 @@
+//! The schema of the language as data: every block, field, variant, default, range, result and function,
+//! written once. The check, the suggestions, the reference and the tools read it. It knows no
+//! syntax and no plan.
+
+pub mod blocks;
+pub mod columns;
+mod constructors;
+mod functions;
+mod types;
+
+pub use blocks::evaluation::{golden, report, reproduces, study};
+pub use blocks::{
+    behaviours, curves, devices, frames, ground, limits, methods, plan_block, procedures, rig,
+    specimen, striker,
+};
+pub use columns::Column;
+pub use functions::{FUNCTIONS, FunctionKind};
+pub use types::{
+    BlockKind, Field, FieldType, Kind, Naming, Possible, Presence, Range, ResultKind, RigKind,
+    Variant,
+};
+
+use psd_text::units::{Dimension, display};
+
+/// Every kind of block, in the order of the reference: the declarations, the procedures, and the blocks about the run.
+pub const BLOCKS: &[&BlockKind] = &joined::<
+    { DECLARATIONS.len() + procedures::BLOCKS.len() + ABOUT_THE_RUN.len() },
+>([DECLARATIONS, procedures::BLOCKS, ABOUT_THE_RUN]);
+
+const DECLARATIONS: &[&BlockKind] = &[
+    &blocks::plan_block::PLAN,
+    &blocks::specimen::SPECIMEN,
+    &blocks::striker::STRIKER,
+    &blocks::ground::GROUND,
+    &blocks::limits::LIMITS,
+    &blocks::rig::RIG,
+];
+
+const ABOUT_THE_RUN: &[&BlockKind] = &[
+    &blocks::evaluation::reproduces::REPRODUCES,
+    &blocks::evaluation::report::REPORT,
+    &blocks::evaluation::golden::GOLDEN,
+    &blocks::evaluation::study::STUDY,
+    &blocks::evaluation::study::FRAGILITY,
+];
+
+/// These lists as one, of `N` blocks.
+const fn joined<const N: usize>(
+    lists: [&'static [&'static BlockKind]; 3],
+) -> [&'static BlockKind; N] {
+    let mut all = [lists[0][0]; N];
+    let (mut position, mut list) = (0, 0);
+    while list < lists.len() {
+        let mut entry = 0;
+        while entry < lists[list].len() {
+            all[position] = lists[list][entry];
+            (position, entry) = (position + 1, entry + 1);
+        }
+        list += 1;
+    }
+    all
+}
+
+/// Keywords of items that are not blocks, for suggestions.
+pub const ITEM_WORDS: &[&str] = &["use", "param", "let", "require"];
+
+/// The kind whose keyword begins these words; the longest one that matches.
+#[must_use]
+pub fn block_of_words(words: &[&str]) -> Option<&'static BlockKind> {
+    BLOCKS
+        .iter()
+        .copied()
+        .filter(|block| words.starts_with(block.keyword))
+        .max_by_key(|block| block.keyword.len())
+}
+
+/// The entry of a kind of block.
+#[must_use]
+pub fn block(kind: Kind) -> &'static BlockKind {
+    BLOCKS
+        .iter()
+        .copied()
+        .find(|block| block.kind == kind)
+        .unwrap_or(&blocks::plan_block::PLAN)
+}
+
+/// Whether a result is a fraction that is printed in percent. The name of its procedure and an index may be part of the name.
+#[must_use]
+pub fn is_in_percent(result: &str) -> bool {
+    let name = result.rsplit('.').next().unwrap_or(result);
+    let name = name.split('[').next().unwrap_or(name);
+    BLOCKS
+        .iter()
+        .flat_map(|block| block.results)
+        .any(|kind| kind.fraction && kind.name == name)
+}
+
+/// The unit that a result is printed in, and its factor to SI units.
+#[must_use]
+pub fn printed_unit(result: &str, value: f64, dimension: Dimension) -> (String, f64) {
+    if is_in_percent(result) {
+        ("%".to_owned(), 0.01)
+    } else {
+        display::unit(value, dimension)
+    }
+}
+
+/// A result with four significant digits in its unit.
+#[must_use]
+pub fn readable_result(result: &str, value: f64, dimension: Dimension) -> String {
+    let (unit, factor) = printed_unit(result, value, dimension);
+    display::join(&display::digits(value, factor, dimension), &unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ProcedureBlock;
+
+    #[test]
+    fn the_longest_keyword_wins_and_a_name_is_no_part_of_it() {
+        assert_eq!(
+            block_of_words(&["stiffness", "ramp", "k0"]).map(|block| block.kind),
+            Some(Kind::Procedure(ProcedureBlock::StiffnessRamp))
+        );
+        assert_eq!(
+            block_of_words(&["inspect"]).map(|block| block.kind),
+            Some(Kind::Procedure(ProcedureBlock::Inspect))
+        );
+        assert!(block_of_words(&["stiffness", "k0"]).is_none());
+    }
+
+    #[test]
+    fn every_default_with_a_unit_has_the_dimension_of_its_field() {
+        /// The field, its arguments, and theirs.
+        fn all(field: &'static Field) -> Vec<&'static Field> {
+            let inner: Vec<&Field> = match field.ty {
+                FieldType::Choice(variants)
+                | FieldType::Choices(variants)
+                | FieldType::Inputs(variants) => variants
+                    .iter()
+                    .flat_map(|variant| variant.arguments)
+                    .flat_map(all)
+                    .collect(),
+                _ => Vec::new(),
+            };
+            [vec![field], inner].concat()
+        }
+        for field in BLOCKS.iter().flat_map(|block| block.fields).flat_map(all) {
+            if let (Presence::Default { unit, .. }, Some(dimension)) =
+                (field.presence, field.dimension())
+                && !unit.is_empty()
+            {
+                assert_eq!(
+                    psd_text::units::unit::parse(unit).unwrap().dimension,
+                    dimension,
+                    "{}",
+                    field.name
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn no_block_declares_a_name_twice() {
+        for block in BLOCKS {
+            for names in [
+                block
+                    .fields
+                    .iter()
+                    .map(|field| field.name)
+                    .collect::<Vec<_>>(),
+                block.results.iter().map(|result| result.name).collect(),
+            ] {
+                let mut sorted = names.clone();
+                sorted.sort_unstable();
+                sorted.dedup();
+                assert_eq!(sorted.len(), names.len(), "{:?}", block.keyword);
+            }
+        }
+    }
+}

@@ -1,0 +1,317 @@
+//! The steps of a structure on a rig, whatever excites it: predict, command, settle, pause, read, feed back. In continuous mode the
+//! actuators follow smooth paths together (`continuous_motion`) and are read as they pass their targets. In: a [`Stepped`] that computes
+//! and keeps the steps, the settings of the steps, the rig behind its guard. Out: every step completed, checked and reported, or the
+//! reason of the end. It knows no ground, no striker and no equation.
+//!
+//! If an actuator was not at its target (lag, resolution), the reading is corrected to the target by the I-modification,
+//! r* = `r_m` − `K_I`(`d_m` − d̃). The force of a damper of the specimen is in the reading, at the actuator's velocity:
+//! c·v/`time_scale`.
+
+use super::continuous_motion::{ContinuousMotion, Waypoint};
+use super::operator_stability_watch::StifferSprings;
+use super::setting::{Start, Steps};
+use super::tracking::{Monitors, TrackingSummary};
+use crate::physics::integrator::state::State;
+use crate::physics::structure::matrix::Vector;
+use crate::physics::tracking::monitor::Tracking;
+use crate::plan::{InspectTrigger, Mode, Stepping};
+use crate::rig::Reading;
+use crate::run::session::Session;
+use crate::run::stop::Stop;
+use crate::run::{AxisReport, StepReport};
+
+/// The energy of a test at the end of a step \[J\].
+pub(crate) struct Balance {
+    /// Energy error.
+    pub error: f64,
+    /// Reference of the relative errors.
+    pub input: f64,
+}
+
+/// Computes the steps of a structure, and keeps them.
+pub(crate) trait Stepped {
+    /// The end of the last step.
+    fn axes(&self) -> AxesState<'_>;
+
+    /// Target of each axis at the end of the next step \[m\]. Within one step it is always the same.
+    fn predict(&mut self) -> Vec<f64>;
+
+    /// Predicted velocity of each axis at its target \[m/s\]. True if a contact force contributes to it.
+    fn predicted_velocity(&mut self, velocity: &mut [f64]) -> bool;
+
+    /// Effective forces of the recursion at the start \[N\].
+    fn effective_force_at_start(&self, start: &Start) -> Vec<f64>;
+
+    /// Effective forces of the recursion at the targets of the last step \[N\].
+    fn effective_force(&self) -> Vec<f64>;
+
+    /// Ends the step with a reading.
+    fn complete(&mut self, reading: &Reading);
+
+    /// Keeps the reading that exceeded a limit on the way to the target: the step, of this length \[s\], has not ended.
+    fn cut_off(&mut self, reading: &Reading, time_step: f64, session: &Session<'_>);
+
+    /// Whether a contact force acted in the last step.
+    fn is_struck(&self) -> bool;
+
+    /// Keeps the end of a step, with the tracking of each axis so far.
+    fn keep(&mut self, axes: &[Tracking], session: &Session<'_>) -> Balance;
+
+    /// Steps of the procedure done before these.
+    fn before(&self) -> u64 {
+        0
+    }
+
+    /// Whether the run ends before all steps are done.
+    fn over(&self) -> bool;
+}
+
+/// All steps, from the present position of the rig.
+pub(crate) fn run<S: Stepped>(
+    steps: &Steps,
+    plan: &Stepping,
+    followed: &mut TrackingSummary,
+    session: &mut Session<'_>,
+    begin: impl FnOnce(&Start) -> Result<(S, StifferSprings), Stop>,
+) -> Result<(), Stop> {
+    let mut triggers = Triggers::new(&plan.inspect);
+    let (commanded, reading) = (session.guard.commanded().to_vec(), session.guard.read()?);
+    let start = Start {
+        commanded,
+        reading,
+        noise: session.guard.declared_noise(),
+    };
+    let (mut stepped, mut stiffer) = begin(&start)?;
+    let mut monitors = Monitors::new(
+        &start.commanded,
+        &start.reading,
+        &stepped.effective_force_at_start(&start),
+    );
+    let mut motion = match plan.mode {
+        Mode::Continuous { time_scale } => Some(ContinuousMotion::from_rest(
+            &start.commanded,
+            time_scale,
+            steps.time_step,
+        )),
+        Mode::StepAndPause => None,
+    };
+    stepped.keep(&monitors.tracking(), session);
+    let mut struck = false;
+    for _ in 0..steps.count {
+        let (reading, broken, is_reached) = if let Some(motion) = &mut motion {
+            let (reading, broken) = motion.step(|| waypoints(&mut stepped), session)?;
+            let is_reached = broken.is_none();
+            (reading, broken, is_reached)
+        } else {
+            let moved = session.guard.move_to(&stepped.predict(), None);
+            let is_reached = moved.is_ok();
+            let paused = moved.and_then(|()| session.guard.pause(steps.pause));
+            let (reading, broken) = session.read_after(paused)?;
+            (reading, broken, is_reached)
+        };
+        if !is_reached {
+            stepped.cut_off(&reading, steps.time_step, session);
+            return broken.map_or(Ok(()), Err);
+        }
+        stepped.complete(&reading);
+        let axes = monitors.take(stepped.axes().target, &reading, &stepped.effective_force());
+        if let Some(stop) = broken {
+            stepped.keep(&axes, session);
+            return Err(stop);
+        }
+        let (before, now) = (struck, stepped.is_struck());
+        stiffer.take(&reading, before || now, session);
+        struck = now;
+        let Balance { error, input } = stepped.keep(&axes, session);
+        let (tracking, tracking_energy_error) = followed.assess(&axes, input, session);
+        let errors = Errors {
+            energy_error: if error == 0.0 { 0.0 } else { error / input },
+            tracking,
+            tracking_energy_error,
+        };
+        session.guard.check_energy_error(errors.energy_error)?;
+        session
+            .guard
+            .check_tracking(errors.tracking_energy_error, errors.tracking.nrms_error)?;
+        let reported = report(&stepped.axes(), &errors);
+        session.step_done(StepReport {
+            step: stepped.before() + reported.step,
+            ..reported
+        })?;
+        if stepped.over() {
+            break;
+        }
+        let AxesState {
+            step, time, force, ..
+        } = stepped.axes();
+        if let Some(reason) = triggers.after(step, time, force.iter().sum()) {
+            session.inspect(&reason)?;
+        }
+    }
+    motion.map_or(Ok(()), |motion| motion.brake(session))
+}
+
+/// The waypoint of each axis at the end of this step.
+fn waypoints(stepped: &mut impl Stepped) -> Vec<Waypoint> {
+    let displacements = stepped.predict();
+    let mut velocities = vec![0.0; displacements.len()];
+    let struck = stepped.predicted_velocity(&mut velocities);
+    displacements
+        .into_iter()
+        .zip(velocities)
+        .map(|(position, velocity)| Waypoint {
+            position,
+            velocity,
+            struck,
+        })
+        .collect()
+}
+
+/// The end of a step, one entry per axis.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AxesState<'a> {
+    pub step: u64,
+    /// \[s\]
+    pub time: f64,
+    /// \[m\]
+    pub target: &'a [f64],
+    /// Measured \[m\].
+    pub displacement: &'a [f64],
+    /// \[m/s\]
+    pub velocity: &'a [f64],
+    /// \[m/s²\]
+    pub acceleration: &'a [f64],
+    /// Measured \[N\].
+    pub force: &'a [f64],
+}
+
+impl<'a> AxesState<'a> {
+    pub(crate) fn of<V: Vector>(state: &'a State<V>) -> Self {
+        Self {
+            step: state.step,
+            time: state.time,
+            target: state.target.as_slice(),
+            displacement: state.measured_displacement.as_slice(),
+            velocity: state.velocity.as_slice(),
+            acceleration: state.acceleration.as_slice(),
+            force: state.restoring_force.as_slice(),
+        }
+    }
+}
+
+/// The errors of a step.
+pub(crate) struct Errors {
+    pub energy_error: f64,
+    pub tracking: Tracking,
+    pub tracking_energy_error: Option<f64>,
+}
+
+/// The step of all axes.
+pub(crate) fn report(state: &AxesState<'_>, errors: &Errors) -> StepReport {
+    let axis = |axis: usize| AxisReport {
+        command: state.target[axis],
+        displacement: state.displacement[axis],
+        velocity: Some(state.velocity[axis]),
+        acceleration: Some(state.acceleration[axis]),
+        force: state.force[axis],
+    };
+    StepReport {
+        step: state.step,
+        time: state.time,
+        axes: (0..state.target.len()).map(axis).collect(),
+        speed: None,
+        energy_error: Some(errors.energy_error),
+        tracking: Some(errors.tracking),
+        tracking_energy_error: errors.tracking_energy_error,
+    }
+}
+
+/// The triggers of the plan with their states.
+pub(crate) struct Triggers {
+    armed: Vec<Armed>,
+}
+
+struct Armed {
+    trigger: InspectTrigger,
+    /// Largest |R| since its last trigger \[N\].
+    largest_force: f64,
+    fired: bool,
+}
+
+impl Triggers {
+    pub(crate) fn new(triggers: &[InspectTrigger]) -> Self {
+        let armed = |trigger: &InspectTrigger| Armed {
+            trigger: trigger.clone(),
+            largest_force: 0.0,
+            fired: false,
+        };
+        Self {
+            armed: triggers.iter().map(armed).collect(),
+        }
+    }
+
+    /// The first reason for an inspection after `step` at the simulated time `time` \[s\] with restoring force `force` \[N\].
+    pub(crate) fn after(&mut self, step: u64, time: f64, force: f64) -> Option<String> {
+        let mut reason = None;
+        for armed in &mut self.armed {
+            if let Some(found) = armed.after(step, time, force) {
+                reason.get_or_insert(found);
+            }
+        }
+        reason
+    }
+}
+
+impl Armed {
+    fn after(&mut self, step: u64, time: f64, force: f64) -> Option<String> {
+        match self.trigger {
+            InspectTrigger::Every(steps) => (steps > 0 && step.is_multiple_of(u64::from(steps)))
+                .then(|| format!("inspection every {steps} steps")),
+            InspectTrigger::ForceDrop(fraction) => {
+                let size = force.abs();
+                let dropped = size < (1.0 - fraction) * self.largest_force;
+                // After an inspection, only a further fall from here counts.
+                self.largest_force = if dropped {
+                    size
+                } else {
+                    self.largest_force.max(size)
+                };
+                dropped
+                    .then(|| format!("the restoring force fell by {} % or more", fraction * 100.0))
+            }
+            InspectTrigger::At(moment) => {
+                // Half a billionth for a step end that rounding put just before the moment.
+                let due = !self.fired && time >= moment * (1.0 - 5e-10);
+                self.fired |= due;
+                due.then(|| format!("inspection at {moment} s of test time"))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn goes_off_every_n_steps_once_at_a_time_and_once_a_drop() {
+        let steps = |triggers: &[InspectTrigger]| {
+            let mut triggers = Triggers::new(triggers);
+            let forces = [10.0, 50.0, 100.0, 95.0, 89.0, 85.0, 81.0, 80.0, 100.0];
+            let due = |(step, force): (u64, &f64)| {
+                #[expect(clippy::cast_precision_loss, reason = "nine steps")]
+                let time = step as f64 * 0.1;
+                triggers.after(step, time, *force).map(|_| step)
+            };
+            (1..).zip(&forces).filter_map(due).collect::<Vec<_>>()
+        };
+        assert_eq!(steps(&[InspectTrigger::Every(4)]), [4, 8]);
+        assert_eq!(steps(&[InspectTrigger::At(0.3)]), [3]);
+        // 89 is below 90 % of 100; 80 is below 90 % of 89.
+        assert_eq!(steps(&[InspectTrigger::ForceDrop(0.1)]), [5, 8]);
+        assert_eq!(
+            steps(&[InspectTrigger::At(0.4), InspectTrigger::Every(4)]),
+            [4, 8]
+        );
+    }
+}

@@ -1,0 +1,149 @@
+//! The structure on an emulated rig: a specimen of one degree of freedom, or a frame with an actuator at every floor. In: positions and
+//! moves of the actuators. Out: the restoring force at each. It knows no rig and no sensor.
+
+use psd_physics::relaxation::maxwell::Motion;
+use psd_physics::relaxation::relaxation_state::{Deformed, RelaxationState};
+use psd_physics::specimen::SpecimenModel;
+use psd_physics::structure::cell_damping::CellDamping;
+use psd_physics::structure::{drifts, floor_forces};
+use psd_plan::{Behaviour, Frame};
+
+#[derive(Debug)]
+pub enum Structure {
+    /// One degree of freedom is one storey.
+    Storeys(Vec<Storey>),
+    /// R = K X, row by row.
+    Matrix(Vec<Vec<f64>>),
+}
+
+/// A restoring-force model and the damping beside it.
+#[derive(Debug)]
+pub struct Storey {
+    model: SpecimenModel,
+    damping: CellDamping,
+    relaxing: RelaxationState,
+    /// \[N\]
+    shear: f64,
+}
+
+impl Storey {
+    fn new(behaviour: &Behaviour, damping: CellDamping) -> Self {
+        Self {
+            model: SpecimenModel::new(behaviour),
+            damping: damping.with_rate_of(behaviour),
+            relaxing: RelaxationState::new(behaviour),
+            shear: 0.0,
+        }
+    }
+
+    /// It comes to this drift, the last `moved` of it in the first of the durations, and rests for the second.
+    fn bend(&mut self, drift: f64, moved: f64, durations: [f64; 2]) {
+        let [going, resting] = durations;
+        let velocity = if moved == 0.0 { 0.0 } else { moved / going };
+        let motions = [
+            (drift - moved, Motion::even(velocity, going)),
+            (drift, Motion::rest(resting)),
+        ];
+        for (displacement, motion) in motions {
+            let from = Deformed {
+                displacement,
+                force: self.shear,
+            };
+            self.shear = self.relaxing.advance(&mut self.model, &motion, from, drift);
+        }
+    }
+}
+
+impl Structure {
+    /// `damping`: c of c·v \[N·s/m\].
+    pub fn of_one(behaviour: &Behaviour, damping: f64) -> Self {
+        let damping = CellDamping::new(damping, 0.0);
+        Self::Storeys(vec![Storey::new(behaviour, damping)])
+    }
+
+    pub fn of_frame(frame: &Frame) -> Self {
+        if frame.storeys.is_empty() {
+            return Self::Matrix(frame.stiffness.clone());
+        }
+        let storeys = frame.storeys.iter().map(|storey| {
+            let damping = CellDamping::new(storey.damping, storey.coulomb);
+            Storey::new(&storey.behaviour, damping)
+        });
+        Self::Storeys(storeys.collect())
+    }
+
+    /// Calculates the restoring forces \[N\] at these positions of the actuators \[m\]. The last increments \[m\] took the time
+    /// `going` at constant velocity. The actuators were at rest for the other `seconds`.
+    pub fn bend(&mut self, positions: &[f64], moved: &[f64], going: f64, seconds: f64) -> Vec<f64> {
+        match self {
+            Self::Storeys(storeys) => {
+                let apart = of_drifts(positions).into_iter().zip(of_drifts(moved));
+                for (storey, (drift, moved)) in storeys.iter_mut().zip(apart) {
+                    storey.bend(drift, moved, [going, seconds - going]);
+                }
+                of_floors(storeys.iter().map(|storey| storey.shear))
+            }
+            Self::Matrix(rows) => rows
+                .iter()
+                .map(|row| row.iter().zip(positions).map(|(k, x)| k * x).sum())
+                .collect(),
+        }
+    }
+
+    /// Calculates the forces on the load cells from `forces` \[N\] at these velocities of the actuators \[m/s\].
+    pub fn actuator_forces(&mut self, forces: &[f64], velocities: &[f64]) -> Vec<f64> {
+        let storeys = match self {
+            Self::Storeys(storeys) => storeys,
+            Self::Matrix(_) => return forces.to_vec(),
+        };
+        if let [storey] = storeys.as_mut_slice() {
+            let force = storey.damping.measured_force(forces[0], velocities[0]);
+            return vec![force + storey.relaxing.force()];
+        }
+        // A fault can reduce the force of a floor. Only the forces in parallel with the storeys are added here.
+        let storeys = storeys.iter_mut().zip(of_drifts(velocities));
+        let beside = storeys.map(|(storey, velocity)| {
+            storey.damping.measured_force(storey.shear, velocity) - storey.shear
+                + storey.relaxing.force()
+        });
+        let floors = of_floors(beside);
+        forces
+            .iter()
+            .zip(floors)
+            .map(|(f, more)| f + more)
+            .collect()
+    }
+
+    /// Sets the friction on the load cell of a specimen of one degree of freedom \[N\].
+    pub fn set_friction(&mut self, friction: f64) {
+        if let Self::Storeys(storeys) = self
+            && let [storey] = storeys.as_mut_slice()
+        {
+            storey.damping.coulomb = friction;
+        }
+    }
+
+    /// Sets the present velocities of the actuators \[m/s\]: friction acts against the last motion.
+    pub fn goes(&mut self, velocities: &[f64]) {
+        if let Self::Storeys(storeys) = self {
+            for (storey, velocity) in storeys.iter_mut().zip(of_drifts(velocities)) {
+                storey.damping.force(velocity);
+            }
+        }
+    }
+}
+
+/// The drift of each storey, of displacements or of velocities of the floors.
+fn of_drifts(floors: &[f64]) -> Vec<f64> {
+    let mut drift = vec![0.0; floors.len()];
+    drifts(floors, &mut drift);
+    drift
+}
+
+/// The force at each floor \[N\] from the shears of the storeys \[N\].
+fn of_floors(shears: impl Iterator<Item = f64>) -> Vec<f64> {
+    let shears: Vec<f64> = shears.collect();
+    let mut forces = vec![0.0; shears.len()];
+    floor_forces(&shears, &mut forces);
+    forces
+}
