@@ -7,6 +7,7 @@ use std::sync::OnceLock;
 use serde_json::{Value, json};
 
 use super::{psd, run};
+use crate::check::{LoadError, Options, check};
 use crate::cli::args::PlanSettings;
 use crate::cli::commands::prediction::prediction;
 use crate::cli::files::record_file;
@@ -15,7 +16,6 @@ use crate::evidence::consistency;
 use crate::evidence::rebuilt::ReplayedRun;
 use crate::files::provenance;
 use crate::files::recorded_run::JOURNAL;
-use crate::language::check::{LoadError, Options, check};
 use crate::record::Outcome;
 use crate::report;
 use crate::rig::Reading;
