@@ -341,6 +341,20 @@ fn of_row(history: &EscalateHistory, result: &str, name: &str) -> Option<Growth>
             why,
         })
     };
+    // A list with one entry per storey.
+    let by_storey = |own: ResultKind| {
+        let found: Vec<Growth> = numbered_impacts()
+            .filter_map(|impact| of(impact, own))
+            .collect();
+        let why = found.first()?.why.clone();
+        let mut entries: Vec<usize> = found
+            .into_iter()
+            .flat_map(|growth| growth.entries)
+            .collect();
+        entries.sort_unstable();
+        entries.dedup();
+        Some(Growth { entries, why })
+    };
     if is(
         result,
         &[series::LAST_PASSED_ENERGY, series::PASSED, series::IMPACTS],
@@ -370,32 +384,19 @@ fn of_row(history: &EscalateHistory, result: &str, name: &str) -> Option<Growth>
     if let Some(kind) = of_last.into_iter().find(|kind| kind.name == result) {
         return of(numbered_impacts().next_back()?, kind);
     }
-    if is(result, &[series::MAX_DISPLACEMENT]) {
-        by_impact(schema::MAX_DISPLACEMENT).map(one)
-    } else if is(result, &[series::ABSORBED_ENERGY]) {
-        by_impact(schema::ABSORBED_ENERGY).map(one)
-    } else if is(result, &[series::MAX_DISPLACEMENTS]) {
-        by_impact(schema::MAX_DISPLACEMENT)
-    } else if is(result, &[series::ABSORBED_ENERGIES]) {
-        by_impact(schema::ABSORBED_ENERGY)
-    } else if is(
+    if is(
         result,
         &[series::RESIDUAL_DISPLACEMENTS, series::FINAL_DISPLACEMENTS],
     ) {
-        by_impact(series::RESIDUAL_DISPLACEMENT)
-    } else if is(result, &[series::MAX_DRIFT]) {
-        let found: Vec<Growth> = numbered_impacts()
-            .filter_map(|impact| of(impact, schema::MAX_DRIFT))
-            .collect();
-        let why = found.first()?.why.clone();
-        let mut entries: Vec<usize> = found
-            .into_iter()
-            .flat_map(|growth| growth.entries)
-            .collect();
-        entries.sort_unstable();
-        entries.dedup();
-        Some(Growth { entries, why })
+        return by_impact(series::RESIDUAL_DISPLACEMENT);
+    }
+    let kind = series::BLOCK.result(result)?;
+    let of_impact = *kind.made_of?;
+    if of_impact.list {
+        by_storey(of_impact)
+    } else if kind.list {
+        by_impact(of_impact)
     } else {
-        None
+        by_impact(of_impact).map(one)
     }
 }

@@ -8,7 +8,6 @@ pub mod tracking;
 use crate::language::check::checker::Checker;
 use crate::language::check::messages::{cyclic, values, whole as message};
 use crate::plan::procedures::escalate::block::WHILE;
-use crate::plan::procedures::impact::block::MAX_CONTACT_FORCE;
 use crate::plan::{Condition, Ground, Procedure, Reproduction, Requirement};
 use crate::procedures::facts::{Leaves, Motion};
 use crate::schema::Kind;
@@ -151,21 +150,17 @@ fn peak_forces(
     procedures: &[(usize, Option<Procedure>)],
     stated: Stated<'_>,
 ) {
-    let law = |procedure: &Procedure| {
-        let contact = crate::procedures::facts_of(&procedure.kind).contact?;
-        contact.is_impulsive().then(|| contact.name())
-    };
     let read = |checker: &mut Checker, conditions: &[Condition], span: Span| {
         let mut references = Vec::new();
         for condition in conditions {
             condition.collect_references(&mut references);
         }
-        for reference in references
-            .iter()
-            .filter(|reference| reference.name == MAX_CONTACT_FORCE.name)
-        {
+        for reference in references {
             if let Some((block, Some(procedure))) = procedures.get(reference.procedure.0)
-                && let Some(law) = law(procedure)
+                && let Some(result) = checker.result_of_impact(*block, reference.name)
+                && result.grows_as_inverse_step
+                && let Some(law) = crate::procedures::facts_of(&procedure.kind).contact
+                && law.is_impulsive()
             {
                 let head = checker.scope.blocks[*block].block.head;
                 checker

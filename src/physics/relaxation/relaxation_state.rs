@@ -53,7 +53,8 @@ impl RelaxationState {
                     reference_time: *reference_time,
                     longest: *longest,
                 };
-                Some(LogarithmicLoss::new(&law, of.largest_stiffness()))
+                let steepest = of.largest_stiffness().unwrap_or(f64::INFINITY);
+                Some(LogarithmicLoss::new(&law, steepest))
             }
             _ => None,
         };

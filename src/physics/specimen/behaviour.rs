@@ -59,9 +59,14 @@ impl Behaviour {
 
     /// Largest slope dR/dX on any path \[N/m\], which determines stability. Most behaviours are stiffest at first; a joint that bears
     /// before its faces slip is twice as stiff, a Bouc–Wen spring unloads at up to 2β of its hysteretic part, and measured points have the
-    /// slope of their steepest segment. Infinite for a slope without a bound, which states no stability limit.
+    /// slope of their steepest segment. None for a slope without a bound, which states no stability limit.
     #[must_use]
-    pub fn largest_stiffness(&self) -> f64 {
+    pub fn largest_stiffness(&self) -> Option<f64> {
+        Some(self.steepest_slope()).filter(|slope| slope.is_finite())
+    }
+
+    /// Largest slope dR/dX on any path \[N/m\]; infinite without a bound.
+    fn steepest_slope(&self) -> f64 {
         match self {
             Self::BoucWen {
                 stiffness,
@@ -76,7 +81,7 @@ impl Behaviour {
             | Self::Logarithmic { .. }
             | Self::Maxwell { .. }
             | Self::Series(_)
-            | Self::Parallel(_) => self.stiffness_of_parts(Self::largest_stiffness),
+            | Self::Parallel(_) => self.stiffness_of_parts(Self::steepest_slope),
             Self::Elastic { .. }
             | Self::Bilinear { .. }
             | Self::DeterioratingBilinear { .. }

@@ -131,11 +131,7 @@ impl FrameProperties {
                 .iter()
                 .map(|storey| {
                     let largest = storey.behaviour.largest_stiffness();
-                    if largest.is_finite() {
-                        largest
-                    } else {
-                        storey.stiffness
-                    }
+                    largest.unwrap_or(storey.stiffness)
                 })
                 .collect();
             met.highest = own.max(self.highest(&storey_stiffness(&behaves)));

@@ -232,6 +232,8 @@ impl ResultKind {
             fraction: false,
             of_storey: false,
             decided_by_condition: false,
+            grows_as_inverse_step: false,
+            made_of: None,
             possible: Possible::Any,
             doc,
         }
@@ -262,6 +264,22 @@ impl ResultKind {
     pub const fn decided_by_condition(self) -> Self {
         Self {
             decided_by_condition: true,
+            ..self
+        }
+    }
+
+    /// It grows as 1/Δt where the contact force is that of an impulse over one step.
+    pub const fn grows_as_inverse_step(self) -> Self {
+        Self {
+            grows_as_inverse_step: true,
+            ..self
+        }
+    }
+
+    /// It is made of this result of each impact of a series.
+    pub const fn made_of(self, of_impact: &'static Self) -> Self {
+        Self {
+            made_of: Some(of_impact),
             ..self
         }
     }

@@ -221,6 +221,10 @@ pub struct ResultKind {
     pub of_storey: bool,
     /// Whether the condition decides it under which the next impact of a series follows.
     pub decided_by_condition: bool,
+    /// Whether it grows as 1/Δt where the contact force is that of an impulse over one step.
+    pub grows_as_inverse_step: bool,
+    /// The result of each impact of a series that it is made of.
+    pub made_of: Option<&'static ResultKind>,
     /// The values that it can have.
     pub possible: Possible,
     pub doc: &'static str,

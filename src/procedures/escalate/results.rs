@@ -23,21 +23,6 @@ pub(crate) fn results(history: &EscalateHistory, between: Between) -> Vec<NamedR
     results
 }
 
-/// The results of a series, each with the result of its impacts that it is made of.
-const OF_IMPACTS: [(ResultKind, ResultKind); 11] = [
-    (schema::LAST_PASSED_ENERGY, impact::STRIKER_ENERGY),
-    (schema::FIRST_FAILED_ENERGY, impact::STRIKER_ENERGY),
-    (schema::VELOCITIES, impact::STRIKER_ENERGY),
-    (schema::IMPACT_ENERGIES, impact::STRIKER_ENERGY),
-    (schema::MAX_DISPLACEMENT, impact::MAX_DISPLACEMENT),
-    (schema::MAX_DISPLACEMENTS, impact::MAX_DISPLACEMENT),
-    (schema::ABSORBED_ENERGY, impact::ABSORBED_ENERGY),
-    (schema::ABSORBED_ENERGIES, impact::ABSORBED_ENERGY),
-    (schema::IMPULSES, impact::IMPULSE),
-    (schema::MAX_DRIFT, impact::MAX_DRIFT),
-    (schema::STOREY_ENERGY, impact::STOREY_ENERGY),
-];
-
 /// Withholds the uncertainty of a result of the series if that of one of its impacts, or of the
 /// position after it, is withheld.
 fn withhold(result: &mut NamedResult, impacts: &[SeriesImpact], left: &Left) {
@@ -48,8 +33,8 @@ fn withhold(result: &mut NamedResult, impacts: &[SeriesImpact], left: &Left) {
     } else if is(left.displacements) {
         impacts.iter().find_map(incomplete)
     } else {
-        let of_impact = OF_IMPACTS.iter().find(|(kind, _)| is(*kind));
-        of_impact.and_then(|(_, kind)| {
+        let of_impact = schema::BLOCK.result(&result.name);
+        of_impact.and_then(|kind| kind.made_of).and_then(|kind| {
             let own = |impact: &SeriesImpact| impact.result(kind.name)?.withheld.clone();
             impacts.iter().find_map(own)
         })

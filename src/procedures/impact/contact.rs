@@ -9,6 +9,7 @@ use crate::plan::formula::Formula;
 use crate::plan::procedures::impact::block as schema;
 use crate::run::inputs::Inputs;
 use crate::run::stop::Stop;
+use crate::schema::ResultKind;
 
 /// The contact law that a block specifies.
 pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<Contact> {
@@ -65,33 +66,28 @@ pub(crate) fn spring(law: ContactLaw) -> Option<ContactSpring> {
     })
 }
 
-/// The results of the law that a reader looks for first: its largest contact force where it does not depend on the time step, and the
-/// permanent indentation where it can occur.
+/// The results of the law that a reader looks for first, where a table prints them: its largest contact force and the permanent
+/// indentation.
 pub(crate) fn headline(contact: &Contact) -> Vec<&'static str> {
-    let force = (!contact.is_impulsive()).then_some(schema::MAX_CONTACT_FORCE.name);
-    let indentation = contact.indents().then_some(schema::INDENTATION.name);
-    force.into_iter().chain(indentation).collect()
+    let unprinted = unprinted(contact);
+    [schema::MAX_CONTACT_FORCE, schema::INDENTATION]
+        .map(|kind| kind.name)
+        .into_iter()
+        .filter(|name| !unprinted.contains(name))
+        .collect()
 }
 
-/// The results that no table prints: a peak force that depends on the time step, an indentation that the
-/// law does not have, a restitution that the plan states.
+/// The results that no table prints: those that depend on the time step, an indentation that the law does not have, a restitution that
+/// the plan states.
 pub(crate) fn unprinted(contact: &Contact) -> Vec<&'static str> {
-    let force = contact
-        .is_impulsive()
-        .then_some(schema::MAX_CONTACT_FORCE.name);
-    let indentation = if contact.indents() {
-        &[][..]
-    } else {
-        &[schema::INDENTATION.name, schema::INDENTATION_ENERGY.name]
+    let is_unprinted = |kind: &&ResultKind| {
+        let is = |kinds: &[ResultKind]| kinds.iter().any(|other| other.name == kind.name);
+        (kind.grows_as_inverse_step && contact.is_impulsive())
+            || (!contact.indents() && is(&[schema::INDENTATION, schema::INDENTATION_ENERGY]))
+            || (contact.states_restitution() && is(&[schema::RESTITUTION]))
     };
-    let restitution = contact
-        .states_restitution()
-        .then_some(schema::RESTITUTION.name);
-    force
-        .into_iter()
-        .chain(indentation.iter().copied())
-        .chain(restitution)
-        .collect()
+    let results = schema::RESULTS.iter().filter(is_unprinted);
+    results.map(|kind| kind.name).collect()
 }
 
 /// The name of the energy that the contact took: a spring stores it, every other law loses it.

@@ -1,7 +1,7 @@
 //! Errors and warnings of the test as a whole: E6xx and W7xx.
 
 use super::{one_of, shown, suggestion};
-use psd_plan::{Interval, MOST_RECORDED_STEPS};
+use psd_plan::{Contact, Interval, MOST_RECORDED_STEPS};
 use psd_text::diagnostic::{Code, Diagnostic};
 use psd_text::source::Span;
 use psd_text::units::Dimension;
@@ -172,10 +172,12 @@ pub fn step_above_predicted(span: Span, step: f64, critical: f64) -> Diagnostic 
 }
 
 /// `law`: a law without a duration, whose force is an impulse over one step.
-pub fn peak_force_follows_the_step(span: Span, impact: Span, law: &str) -> Diagnostic {
-    let (of, holds) = match law {
-        "rigid" => ("the rigid law", "`contact = rigid`"),
-        _ => ("`restitution`", "`contact = restitution(…)`"),
+pub fn peak_force_follows_the_step(span: Span, impact: Span, law: &Contact) -> Diagnostic {
+    let word = law.name();
+    let (of, holds) = if law.numbers().is_empty() {
+        (format!("the {word} law"), format!("`contact = {word}`"))
+    } else {
+        (format!("`{word}`"), format!("`contact = {word}(…)`"))
     };
     let message = format!("peak contact force depends on the time step under {of}, as 1/Δt");
     Diagnostic::new(Code::PeakForceUnderRigidLaw, message)

@@ -91,21 +91,24 @@ pub const LAST_PASSED_ENERGY: ResultKind = ResultKind::measured(
     Dimension::ENERGY,
     "energy of the last impact after which the condition was true; 0 if false after the first",
 )
-.decided_by_condition();
+.decided_by_condition()
+.made_of(&impact::STRIKER_ENERGY);
 
 pub const FIRST_FAILED_ENERGY: ResultKind = ResultKind::measured(
     "first_failed_energy",
     Dimension::ENERGY,
     "energy of the first impact after which the condition was false",
 )
-.decided_by_condition();
+.decided_by_condition()
+.made_of(&impact::STRIKER_ENERGY);
 
 pub const MAX_DISPLACEMENT: ResultKind = ResultKind::measured(
     "max_displacement",
     Dimension::LENGTH,
     "largest displacement in all impacts",
 )
-.within(Possible::LargestDisplacement);
+.within(Possible::LargestDisplacement)
+.made_of(&impact::MAX_DISPLACEMENT);
 
 pub const RESIDUAL_DISPLACEMENT: ResultKind = ResultKind::measured(
     "residual_displacement",
@@ -123,25 +126,29 @@ pub const ABSORBED_ENERGY: ResultKind = ResultKind::measured(
     "absorbed_energy",
     Dimension::ENERGY,
     "sum of the energies absorbed up to the largest displacement of each impact",
-);
+)
+.made_of(&impact::ABSORBED_ENERGY);
 
 pub const VELOCITIES: ResultKind = ResultKind::measured_list(
     "velocities",
     Dimension::VELOCITY,
     "striker velocity of each impact",
-);
+)
+.made_of(&impact::STRIKER_ENERGY);
 
 pub const IMPACT_ENERGIES: ResultKind = ResultKind::measured_list(
     "blow_energies",
     Dimension::ENERGY,
     "striker energy of each impact",
-);
+)
+.made_of(&impact::STRIKER_ENERGY);
 
 pub const MAX_DISPLACEMENTS: ResultKind = ResultKind::measured_list(
     "max_displacements",
     Dimension::LENGTH,
     "largest displacement of each impact",
-);
+)
+.made_of(&impact::MAX_DISPLACEMENT);
 
 pub const RESIDUAL_DISPLACEMENTS: ResultKind = ResultKind::measured_list(
     "residual_displacements",
@@ -159,10 +166,12 @@ pub const ABSORBED_ENERGIES: ResultKind = ResultKind::measured_list(
     "absorbed_energies",
     Dimension::ENERGY,
     "energy absorbed in each impact up to its largest displacement",
-);
+)
+.made_of(&impact::ABSORBED_ENERGY);
 
 pub const IMPULSES: ResultKind =
-    ResultKind::measured_list("impulses", Dimension::IMPULSE, "impulse of each impact");
+    ResultKind::measured_list("impulses", Dimension::IMPULSE, "impulse of each impact")
+        .made_of(&impact::IMPULSE);
 
 pub const ENERGY_ERRORS: ResultKind = ResultKind::list(
     "energy_errors",
@@ -177,7 +186,8 @@ pub const MAX_DRIFT: ResultKind = ResultKind::measured_list(
     "peak absolute drift of each storey in all impacts",
 )
 .within(Possible::NotNegative)
-.of_storey();
+.of_storey()
+.made_of(&impact::MAX_DRIFT);
 
 pub const RESIDUAL_DRIFT: ResultKind = ResultKind::measured_list(
     "residual_drift",
@@ -198,7 +208,8 @@ pub const STOREY_ENERGY: ResultKind = ResultKind::measured_list(
     Dimension::ENERGY,
     "energy absorbed by each storey in all impacts",
 )
-.of_storey();
+.of_storey()
+.made_of(&impact::STOREY_ENERGY);
 
 /// What it leaves, in the order of the tables and of `summary.json`.
 pub const RESULTS: &[ResultKind] = &[

@@ -117,7 +117,8 @@ pub const MAX_CONTACT_FORCE: ResultKind = ResultKind::measured(
     Dimension::FORCE,
     "largest step-mean contact force; grows as 1/Δt under `rigid`, `restitution` and an unreached `limit`",
 )
-.within(Possible::NotNegative);
+.within(Possible::NotNegative)
+.grows_as_inverse_step();
 
 pub const IMPULSE: ResultKind = ResultKind::measured(
     "impulse",

@@ -305,7 +305,10 @@ pub(crate) fn give_resolved(
     for (name, count) in &layout[..layout.len() - 1] {
         let parts = &contributions[first..first + count];
         first += count;
-        if *name == schema::MAX_CONTACT_FORCE.name && law.force_follows_the_step(largest) {
+        let grows = schema::BLOCK
+            .result(name)
+            .is_some_and(|kind| kind.grows_as_inverse_step);
+        if grows && law.force_follows_the_step(largest) {
             withheld.push((*name, GROWS));
         } else if law.blows_follow_the_step(largest)
             && parts

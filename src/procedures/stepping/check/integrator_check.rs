@@ -80,8 +80,7 @@ pub fn stable(
         .filter(|_| virtual_rig)
         .and_then(|specimen| specimen.behaviour.as_ref());
     let behaves = specimen
-        .map(Behaviour::largest_stiffness)
-        .filter(|stiffness| stiffness.is_finite())
+        .and_then(Behaviour::largest_stiffness)
         .unwrap_or(0.0);
     let assumed = point.stiffness.constant();
     let stiffest = assumed.unwrap_or(0.0).max(behaves);
