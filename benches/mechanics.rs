@@ -7,7 +7,7 @@ use common::{SPECIMEN, STEPS, example_1};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use psd::physics::impact::batch::{self, Impact};
-use psd::physics::impact::{ImpactInput, ImpactSolver, Row, Until, simulate};
+use psd::physics::impact::{ImpactInput, ImpactSolver, StepRow, Until, simulate};
 use psd::physics::specimen::{RestoringForce, SpecimenModel};
 
 fn main() {
@@ -26,7 +26,7 @@ fn bare(bencher: Bencher) {
 #[divan::bench]
 fn recorded(bencher: Bencher) {
     let input = example_1();
-    let mut rows: Vec<Row> = Vec::new();
+    let mut rows: Vec<StepRow> = Vec::new();
     bencher.counter(ItemsCount::new(STEPS)).bench_local(|| {
         rows.clear();
         simulate(&input, &mut { SPECIMEN }, None, STEPS, &mut rows)

@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 use common::{SPECIMEN, STEPS, example_1};
 use psd::physics::contact::ContactLaw;
 use psd::physics::impact::batch::{self, Impact};
-use psd::physics::impact::{ImpactInput, Row, Until, simulate};
+use psd::physics::impact::{ImpactInput, StepRow, Until, simulate};
 use psd::physics::specimen::{Bilinear, BilinearCurve, SpecimenModel};
 use rustix::time::{ClockId, clock_gettime};
 
@@ -107,7 +107,7 @@ fn main() {
         bare * per_step,
         "ns",
     );
-    let mut rows: Vec<Row> = Vec::new();
+    let mut rows: Vec<StepRow> = Vec::new();
     let recorded = fastest(100, || {
         rows.clear();
         simulate(&input, &mut { SPECIMEN }, None, STEPS, &mut rows).expect("an impact");

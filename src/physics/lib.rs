@@ -19,6 +19,7 @@
 //! | [`impact`] | a striker on one degree of freedom or on a floor: steps, peaks, summary; many impacts at once |
 //! | [`specimen`] | restoring-force (hysteretic) models |
 //! | [`relaxation`] | Maxwell branches, logarithmic relaxation, their fits |
+//! | [`number`] | one number, or several side by side: the arithmetic of a step |
 //! | [`identification`] | fits of stiffness, yield point and damping; loops of cycles |
 //! | [`tracking`] | trajectories of an actuator, monitors of its tracking error |
 //! | [`reintegration`] | a recorded test integrated again with one input perturbed |
@@ -79,6 +80,7 @@ pub mod contact;
 pub mod identification;
 pub mod impact;
 pub mod integrator;
+pub mod number;
 pub mod reintegration;
 pub mod relaxation;
 pub mod self_test;

@@ -17,7 +17,7 @@ pub mod unload;
 use crate::language::check::checker::Checker;
 use crate::language::check::declarations::limits::CheckedLimits;
 use crate::language::check::declared::Declared;
-use crate::physics::self_test::Part;
+use crate::physics::self_test::SelfTestPart;
 use crate::plan::formula::Formula;
 use crate::plan::{
     DeclaredNoise, Figure, FigureKind, Ground, Impact, Plan, Procedure, ProcedureBlock,
@@ -294,8 +294,8 @@ pub(crate) fn known_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
 /// Check: the delay of the actuators of a simulated rig; None if too little is known before the run, or nothing is integrated.
 pub(crate) fn delay(kind: &ProcedureKind, plan: &Plan) -> Option<Delay> {
     match kind {
-        ProcedureKind::Impact(impact) => impact::delay::of_impact(plan, impact),
-        ProcedureKind::Escalate(series) => impact::delay::of_series(plan, series),
+        ProcedureKind::Impact(impact) => impact::facts::delay(plan, impact),
+        ProcedureKind::Escalate(series) => impact::facts::delay_in_series(plan, series),
         ProcedureKind::Shake(shake) => shake::facts::delay(plan, shake),
         ProcedureKind::StiffnessRamp(_)
         | ProcedureKind::DampingSweep(_)
@@ -408,15 +408,15 @@ pub(crate) fn report(
 }
 
 /// Report: the parts of the self-test that a procedure uses, each with the parts in combination with it.
-pub(crate) fn self_tested(kind: &ProcedureKind) -> Vec<Vec<Part>> {
+pub(crate) fn self_tested(kind: &ProcedureKind) -> Vec<Vec<SelfTestPart>> {
     match kind {
         ProcedureKind::StiffnessRamp(ramp) => vec![vec![stiffness_ramp::facts::self_tested(ramp)]],
-        ProcedureKind::DampingSweep(_) => vec![vec![Part::DampingFit]],
+        ProcedureKind::DampingSweep(_) => vec![vec![SelfTestPart::DampingFit]],
         ProcedureKind::Impact(impact) => impact::facts::self_tested(impact),
         ProcedureKind::Escalate(series) => impact::facts::self_tested(&series.impact),
         ProcedureKind::Shake(shake) => stepping::self_tested::stepped(&shake.stepping, true, None),
-        ProcedureKind::Cycle(_) => vec![vec![Part::Loops]],
-        ProcedureKind::Unload(_) => vec![vec![Part::Unloading]],
+        ProcedureKind::Cycle(_) => vec![vec![SelfTestPart::Loops]],
+        ProcedureKind::Unload(_) => vec![vec![SelfTestPart::Unloading]],
         ProcedureKind::Move(_) | ProcedureKind::Inspect { .. } => Vec::new(),
     }
 }

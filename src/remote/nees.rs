@@ -36,7 +36,7 @@ pub fn usual_names(axes: usize) -> Vec<String> {
 }
 
 /// The state that coordinator and rig share.
-struct State<'a> {
+struct SharedState<'a> {
     open: bool,
     names: &'a [String],
     /// The direction in which the client moved each control point, as written by the client.
@@ -97,7 +97,7 @@ fn converse(
     names: &[String],
 ) -> Result<Ended, Ended> {
     let directions = vec!["x".to_owned(); specimen.degrees_of_freedom()];
-    let mut state = State {
+    let mut state = SharedState {
         open: false,
         names,
         directions,
@@ -143,7 +143,7 @@ fn converse(
     }
 }
 
-impl State<'_> {
+impl SharedState<'_> {
     fn control_point_index(&self, name: &str) -> Option<usize> {
         if self.names.is_empty() {
             Some(0)

@@ -1,7 +1,7 @@
 //! The input values of every run of a study. In: a study or a fragility of the plan, its number of runs. Out: the values of run i, which
 //! depend on the seed and i alone. It knows no plan text and no result.
 
-use crate::physics::study::inputs::{InputError, Inputs};
+use crate::physics::study::inputs::{InputError, StudyInputs};
 use crate::physics::study::sampling::Design;
 use crate::plan::study::{REPLICATES, Sampling, Variation};
 
@@ -14,14 +14,14 @@ pub struct Draws {
     /// Values of the intensity, SI; empty for a study.
     stripes: Vec<f64>,
     /// One for a study, one for each stripe of a fragility; none if a fragility varies nothing else.
-    inputs: Vec<Inputs>,
+    inputs: Vec<StudyInputs>,
 }
 
 impl Draws {
     /// The values of a study of `runs` runs.
     ///
     /// # Errors
-    /// As [`Inputs::new`].
+    /// As [`StudyInputs::new`].
     pub fn of_study(variation: &Variation, runs: u64) -> Result<Self, InputError> {
         Ok(Self {
             stripes: Vec::new(),
@@ -33,7 +33,7 @@ impl Draws {
     /// more runs leave the first ones as they are.
     ///
     /// # Errors
-    /// As [`Inputs::new`].
+    /// As [`StudyInputs::new`].
     pub fn of_fragility(
         stripes: &[f64],
         variation: Option<&Variation>,
@@ -78,7 +78,7 @@ impl Draws {
     }
 }
 
-fn inputs(variation: &Variation, seed: u64, runs: u64) -> Result<Inputs, InputError> {
+fn inputs(variation: &Variation, seed: u64, runs: u64) -> Result<StudyInputs, InputError> {
     let design = match variation.sampling {
         // The points of a subset simulation follow from its runs: see `at`.
         Sampling::Random | Sampling::Subset => Design::Random,
@@ -87,7 +87,7 @@ fn inputs(variation: &Variation, seed: u64, runs: u64) -> Result<Inputs, InputEr
             replicates: REPLICATES,
         },
     };
-    Inputs::new(
+    StudyInputs::new(
         variation.sources.clone(),
         &variation.correlations,
         design,

@@ -8,7 +8,9 @@ use psd::check::{LoadError, Options, check};
 use psd::language::syntax::{format, parse};
 use psd::plan::Interval;
 use psd::rig::controllers::native;
-use psd::rig::controllers::native::codec::{AxisBounds, Bounds, End, Kind, LONGEST_FRAME, Request};
+use psd::rig::controllers::native::codec::{
+    AxisBounds, Bounds, End, LONGEST_FRAME, ReplyKind, Request,
+};
 use psd::rig::journal::EntryKind;
 use psd::text::diagnostic::render::{Appearance, render_all};
 use psd::text::source::Sources;
@@ -226,12 +228,12 @@ fn every_reply_on_the_page_is_valid_and_has_the_meaning_on_the_page() {
         assert_eq!(reply.boot(), "7F3A");
         let parts = reply.words();
         match (reply.kind, parts.len()) {
-            (Kind::Data, words) => {
+            (ReplyKind::Data, words) => {
                 let data =
                     native::codec::data(&parts).unwrap_or_else(|| panic!("{line} is no reading"));
                 assert_eq!(data.axes.len(), (words - 2) / 4);
             }
-            (Kind::Ack, 10 | 15) => {
+            (ReplyKind::Ack, 10 | 15) => {
                 let hello = native::codec::hello(&parts).expect("who the rig is");
                 let highs: Vec<(f64, f64)> = hello
                     .bounds
@@ -253,11 +255,11 @@ fn every_reply_on_the_page_is_valid_and_has_the_meaning_on_the_page() {
                     );
                 }
             }
-            (Kind::Ack, 2) if native::codec::left(&parts).is_some() => {
+            (ReplyKind::Ack, 2) if native::codec::left(&parts).is_some() => {
                 assert!(line.contains("MOVING"), "{line}");
             }
-            (Kind::Ack, _) => assert!(native::codec::state(parts[0]).is_some(), "{line}"),
-            (Kind::Err, _) => assert!(
+            (ReplyKind::Ack, _) => assert!(native::codec::state(parts[0]).is_some(), "{line}"),
+            (ReplyKind::Err, _) => assert!(
                 !native::codec::refusal(&parts).contains("does not know"),
                 "{line}"
             ),

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::{checked, files};
 use crate::check::{Options, ParsedPlan};
 use crate::physics::study::distribution::{Distribution, Spread};
-use crate::physics::study::inputs::{Inputs, Source};
+use crate::physics::study::inputs::{Source, StudyInputs};
 use crate::physics::study::sampling::Design;
 use crate::plan::study::{RareEvent, Runs, Sampling, Study, StudyEvent};
 use crate::plan::{Comparison, Plan};
@@ -105,7 +105,7 @@ fn a_distribution_is_around_the_value_of_the_plan_or_a_stated_mean() {
 #[test]
 fn a_triangular_distribution_has_the_stated_deviation() {
     let study = study("vary = [hammer.mass ~ triangular(sd: 100 g)]");
-    let inputs = Inputs::new(study.variation.sources, &[], Design::Random, 1).unwrap();
+    let inputs = StudyInputs::new(study.variation.sources, &[], Design::Random, 1).unwrap();
     let mut values = Vec::new();
     let runs = 20_000_u32;
     let squares: f64 = (0..u64::from(runs))

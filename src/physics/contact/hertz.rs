@@ -1,7 +1,7 @@
 //! Contact of finite stiffness: Hunt–Crossley's F = k δ^1.5 (1 + loss·δ̇), never in tension, with an optional limit force above which the
 //! surface is indented.
 
-use super::followed::{GAUSS, Part, SpringForce};
+use super::spring::{ContactPart, GAUSS, SpringForce};
 
 /// The force of Hertz and of Hunt and Crossley.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,8 +35,8 @@ impl SpringForce for HertzForce {
         }
     }
 
-    fn mean(&self, part: &Part, to: f64) -> (f64, f64) {
-        let Part { from, duration, .. } = *part;
+    fn mean(&self, part: &ContactPart, to: f64) -> (f64, f64) {
+        let ContactPart { from, duration, .. } = *part;
         let (mut force, mut slope) = (0.0, 0.0);
         for (node, weight) in GAUSS {
             let depth = from + node * (to - from);

@@ -16,22 +16,109 @@
 //! ½(F₀+F₁)·½Δt(v₀+v₁), exactly, so that the contact loss counts the travel ½Δt(v₀+v₁) and not d₁ − d₀, which under explicit
 //! Newmark differ by ¼Δt²(a₀ − a₁). The striker gives F₁ΔXs.
 
-use super::{Advance, Start};
+#![allow(
+    clippy::inline_always,
+    reason = "a part of its caller, which is compiled for several vector units"
+)]
+
+use std::fmt::Debug;
+
+use super::Start;
 use crate::contact::state::StepState;
 use crate::integrator::substep::Striker;
+use crate::number::{Answer as _, Number, numbers};
 
-/// Rigid contact, cut at a limit force.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ImpulseContact {
-    /// N; infinite under the rigid law.
-    force_limit: f64,
+numbers! {
+    /// Rigid contact, cut at a limit force, with what the striker brings into a step. `fall` and `striker_compliance` are not neighbours:
+    /// the compiler would add both in one vector with numbers that were stored one by one just before, and the processor waits for such.
+    pub struct ImpulseContact {
+        /// N; infinite under the rigid law.
+        force_limit,
+        /// gΔt of a step of free fall \[m/s\].
+        fall,
+        /// Ms \[kg\]
+        striker_mass,
+        /// Δt/Ms \[s/kg\]
+        striker_compliance,
+    }
+}
+
+/// A number whose contact has a state, or numbers side by side with that of each.
+pub trait Touching: Number {
+    type State: Copy + Debug;
+
+    /// At the limit force, otherwise in contact, otherwise free.
+    fn state(at_limit: Self::Answer, in_contact: Self::Answer) -> Self::State;
+
+    /// The number of each state. Of several numbers all three are computed.
+    fn of_state(
+        state: Self::State,
+        free: impl FnOnce() -> Self,
+        contact: impl FnOnce() -> Self,
+        limit: impl FnOnce() -> Self,
+    ) -> Self;
+}
+
+impl Touching for f64 {
+    type State = StepState;
+
+    #[inline(always)]
+    fn state(at_limit: bool, in_contact: bool) -> StepState {
+        match (at_limit, in_contact) {
+            (true, _) => StepState::Limit,
+            (false, true) => StepState::Contact,
+            (false, false) => StepState::Free,
+        }
+    }
+
+    #[inline(always)]
+    fn of_state(
+        state: StepState,
+        free: impl FnOnce() -> Self,
+        contact: impl FnOnce() -> Self,
+        limit: impl FnOnce() -> Self,
+    ) -> Self {
+        match state {
+            StepState::Free => free(),
+            StepState::Contact => contact(),
+            StepState::Limit => limit(),
+        }
+    }
 }
 
 /// State and force \[N\] of a contact in a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Decided {
-    pub state: StepState,
-    pub force: f64,
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Decided<N: Touching = f64> {
+    pub state: N::State,
+    pub force: N,
+}
+
+numbers! {
+    /// The striker at the end of a step, and what the contact did in it.
+    pub(crate) struct StrikerEnd {
+        displacement,
+        velocity,
+        /// δp \[m\]
+        indentation,
+        /// Energy that left the two bodies through their contact in this step \[J\].
+        contact_loss,
+        /// `F_lim` Δδp \[J\]
+        indentation_work,
+    }
+}
+
+impl ImpulseContact {
+    /// A force of `force_limit` at most \[N\]. Without a limit, which is infinite, the force is whatever stops the closing within the
+    /// step.
+    #[must_use]
+    pub fn new(force_limit: f64, striker: &Striker) -> Self {
+        Self {
+            force_limit,
+            striker_mass: striker.mass,
+            fall: striker.gravity * striker.time_step,
+            striker_compliance: striker.time_step / striker.mass,
+        }
+    }
 }
 
 impl Decided {
@@ -41,98 +128,77 @@ impl Decided {
     };
 }
 
-impl ImpulseContact {
-    /// No limit: the force is whatever stops the closing within the step.
-    #[must_use]
-    pub const fn rigid() -> Self {
-        Self {
-            force_limit: f64::INFINITY,
-        }
+impl<N: Touching> ImpulseContact<N> {
+    /// F that stops the closing within a step \[N\], from the velocity Ẋs at its start, `v_free` \[m/s\] and w \[m/s/N\].
+    #[inline(always)]
+    pub(crate) fn needed(&self, striker_velocity: N, free: N, compliance: N) -> N {
+        (striker_velocity + self.fall - free) / (self.striker_compliance + compliance)
     }
 
-    /// At most `force` \[N\].
-    #[must_use]
-    pub const fn limited(force: f64) -> Self {
-        Self { force_limit: force }
-    }
-
-    /// \[N\]; infinite without a limit.
-    pub(crate) const fn force_limit(self) -> f64 {
-        self.force_limit
-    }
-
-    /// F of a step from `v_free` \[m/s\] and w \[m/s/N\]: at most the limit, and never in tension.
-    #[inline]
-    pub(crate) fn decide(
-        self,
-        striker: &Striker,
-        start: &Start,
-        free: f64,
-        compliance: f64,
-    ) -> Decided {
+    /// F of a step that needs this force: at most the limit, and never in tension. Only a law that is `LIMITED` can have a limit.
+    #[inline(always)]
+    pub(crate) fn decide<const LIMITED: bool>(
+        &self,
+        start: &Start<N>,
+        needed: impl FnOnce() -> N,
+    ) -> Decided<N> {
+        let zero = self.force_limit.same(0.0);
         // No tolerance: δp was stored as this very difference, so that a surface at rest on its dent touches it.
-        if start.striker_displacement - start.displacement < start.indentation {
-            return Decided::FREE;
+        let near = (start.striker_displacement - start.displacement).ge(start.indentation);
+        if near.is_surely_no() {
+            return Decided {
+                state: N::state(near, near),
+                force: zero,
+            };
         }
-        let falling = start.striker_velocity + striker.gravity * striker.time_step;
-        match (falling - free) / (striker.time_step / striker.mass + compliance) {
-            needed if needed > self.force_limit => Decided {
-                state: StepState::Limit,
-                force: self.force_limit,
-            },
-            needed if needed >= 0.0 => Decided {
-                state: StepState::Contact,
-                force: needed,
-            },
-            _ => Decided::FREE,
-        }
+        let needed = needed();
+        let beyond = if LIMITED {
+            needed.gt(self.force_limit)
+        } else {
+            near & !near
+        };
+        let state = N::state(near & beyond, near & needed.ge(zero));
+        let force = N::of_state(state, || zero, || needed, || self.force_limit);
+        Decided { state, force }
     }
 
-    /// The striker after a step, the struck degree of freedom at `displacement` \[m\] with `velocity` \[m/s\] then.
-    #[inline]
+    /// The striker after a step of Δt \[s\], the struck degree of freedom at `displacement` \[m\] with `velocity` \[m/s\] then.
+    #[inline(always)]
     pub(crate) fn advance(
-        striker: &Striker,
-        start: &Start,
-        decided: Decided,
-        [displacement, velocity]: [f64; 2],
-    ) -> Advance {
-        let Striker {
-            mass,
-            gravity,
-            time_step,
-            ..
-        } = *striker;
-        let Decided { state, force } = decided;
-        let falling = start.striker_velocity + gravity * time_step;
-        let striker_velocity = match state {
-            StepState::Free => falling,
-            StepState::Contact => velocity,
-            StepState::Limit => falling - force * time_step / mass,
-        };
-        let striker_moved = 0.5 * time_step * (start.striker_velocity + striker_velocity);
-        let striker_displacement = start.striker_displacement + striker_moved;
-        let limited = state == StepState::Limit;
-        let dent = striker_displacement - displacement;
-        let indentation = if limited {
-            start.indentation.max(dent)
-        } else {
-            start.indentation
-        };
-        let moved = 0.5 * time_step * (start.velocity + velocity);
-        Advance {
-            striker_displacement,
-            striker_velocity,
+        &self,
+        time_step: N,
+        start: &Start<N>,
+        decided: &Decided<N>,
+        [displacement, velocity]: [N; 2],
+    ) -> StrikerEnd<N> {
+        let Decided { state, force } = *decided;
+        let half = time_step * 0.5;
+        let falling = start.striker_velocity + self.fall;
+        let striker_velocity = N::of_state(
             state,
-            contact_force: force,
+            || falling,
+            || velocity,
+            || falling - force * time_step / self.striker_mass,
+        );
+        let striker_moved = half * (start.striker_velocity + striker_velocity);
+        let striker_displacement = start.striker_displacement + striker_moved;
+        let unchanged = || start.indentation;
+        let dent = || {
+            start
+                .indentation
+                .larger(striker_displacement - displacement)
+        };
+        let indentation = N::of_state(state, unchanged, unchanged, dent);
+        let none = || force.same(0.0);
+        let work = || force * (indentation - start.indentation);
+        let indentation_work = N::of_state(state, none, none, work);
+        let moved = half * (start.velocity + velocity);
+        StrikerEnd {
+            displacement: striker_displacement,
+            velocity: striker_velocity,
             indentation,
-            contact_loss: force * striker_moved - 0.5 * (start.contact_force + force) * moved,
-            damping_work: 0.0,
-            indentation_work: if limited {
-                force * (indentation - start.indentation)
-            } else {
-                0.0
-            },
-            contacts: u32::from(!start.touching && state != StepState::Free),
+            contact_loss: force * striker_moved - (start.contact_force + force) * 0.5 * moved,
+            indentation_work,
         }
     }
 }

@@ -2,17 +2,17 @@
 //! the contact force of the step. They know no rig and no procedure.
 
 pub mod contact_time_step;
-mod followed;
 mod hertz;
 mod impulse;
 mod restitution;
+mod spring;
 pub mod state;
 
-pub use followed::Followed;
 pub use hertz::HertzForce;
-pub(super) use impulse::Decided;
-pub use impulse::ImpulseContact;
+pub(crate) use impulse::{Decided, StrikerEnd};
+pub use impulse::{ImpulseContact, Touching};
 pub use restitution::RestitutionContact;
+pub use spring::SpringContact;
 
 use thiserror::Error;
 
@@ -20,7 +20,8 @@ use super::contact::state::StepState;
 use crate::integrator::Integrator;
 use crate::integrator::step_form::Motion;
 use crate::integrator::substep::{Scratch, Striker, Substep};
-use crate::self_test::Part;
+use crate::number::numbers;
+use crate::self_test::SelfTestPart;
 use crate::structure::matrix::Vector;
 
 /// The contact law between striker and structure, with its numbers: f64 in SI here, formulas in a plan.
@@ -168,12 +169,12 @@ impl<N> ContactLaw<N> {
 
     /// The parts of the self-test that cover it, on one degree of freedom and on a storey.
     #[must_use]
-    pub const fn self_tested(&self) -> [Part; 2] {
+    pub const fn self_tested(&self) -> [SelfTestPart; 2] {
         match self {
-            Self::Rigid => [Part::Rigid, Part::FrameRigid],
-            Self::Limit { .. } => [Part::Limit, Part::FrameLimit],
-            Self::Restitution { .. } => [Part::Restitution, Part::FrameRestitution],
-            Self::Hertz { .. } => [Part::Hertz, Part::FrameHertz],
+            Self::Rigid => [SelfTestPart::Rigid, SelfTestPart::FrameRigid],
+            Self::Limit { .. } => [SelfTestPart::Limit, SelfTestPart::FrameLimit],
+            Self::Restitution { .. } => [SelfTestPart::Restitution, SelfTestPart::FrameRestitution],
+            Self::Hertz { .. } => [SelfTestPart::Hertz, SelfTestPart::FrameHertz],
         }
     }
 
@@ -237,19 +238,18 @@ impl ContactLaw {
     }
 }
 
-/// Striker and struck degree of freedom at the start of a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Start {
-    pub displacement: f64,
-    pub velocity: f64,
-    pub striker_displacement: f64,
-    pub striker_velocity: f64,
-    /// F of the step before \[N\].
-    pub contact_force: f64,
-    /// Whether the step before was one in contact.
-    pub touching: bool,
-    /// δp \[m\]
-    pub indentation: f64,
+numbers! {
+    /// Striker and struck degree of freedom at the start of a step.
+    pub struct Start {
+        displacement,
+        velocity,
+        striker_displacement,
+        striker_velocity,
+        /// F of the step before \[N\].
+        contact_force,
+        /// δp \[m\]
+        indentation,
+    }
 }
 
 /// The striker and its contact at the end of a step.
@@ -289,7 +289,7 @@ pub enum AnyContact {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DividingContact {
     Restitution(RestitutionContact),
-    Hertz(Followed<HertzForce>),
+    Hertz(SpringContact<HertzForce>),
 }
 
 impl DividingContact {
@@ -320,13 +320,14 @@ impl AnyContact {
         law: ContactLaw,
         integrator: Integrator,
         impact: Approaching,
+        striker: &Striker,
     ) -> Result<Self, NeedsTangent> {
         if law.needs_tangent() && integrator != Integrator::Tangent {
             return Err(NeedsTangent(law.name()));
         }
         match law {
-            ContactLaw::Rigid => Ok(Self::Impulse(ImpulseContact::rigid())),
-            ContactLaw::Limit { force } => Ok(Self::Impulse(ImpulseContact::limited(force))),
+            ContactLaw::Rigid => Ok(Self::Impulse(ImpulseContact::new(f64::INFINITY, striker))),
+            ContactLaw::Limit { force } => Ok(Self::Impulse(ImpulseContact::new(force, striker))),
             ContactLaw::Restitution { coefficient } => Ok(Self::Divided(
                 DividingContact::Restitution(RestitutionContact::new(coefficient)),
             )),
@@ -336,8 +337,8 @@ impl AnyContact {
                 force_limit,
             } => {
                 let law = HertzForce::new(stiffness, loss, force_limit);
-                let followed = Followed::new(law, impact);
-                Ok(Self::Divided(DividingContact::Hertz(followed)))
+                let contact = SpringContact::new(law, impact);
+                Ok(Self::Divided(DividingContact::Hertz(contact)))
             }
         }
     }

@@ -6,7 +6,7 @@ use psd_physics::impact::{ImpactInput, Until};
 use psd_physics::specimen::{Elastic, SpecimenModel};
 use psd_physics::study::Confidence;
 use psd_physics::study::distribution::{Distribution, Spread};
-use psd_physics::study::inputs::{Inputs, Source};
+use psd_physics::study::inputs::{Source, StudyInputs};
 use psd_physics::study::probability::Outcomes;
 use psd_physics::study::sampling::Design;
 use psd_physics::study::sensitivity::first_order;
@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let speed = Distribution::normal(1.0, Spread::Sd(0.05))?; // m/s
     let mass = Distribution::lognormal(1.0, Spread::Cv(0.1))?; // kg
     let sources = [speed, mass].map(Source::Distribution).to_vec();
-    let inputs = Inputs::new(sources, &[], Design::Random, 1)?;
+    let inputs = StudyInputs::new(sources, &[], Design::Random, 1)?;
 
     let (mut values, mut drawn) = (Vec::new(), [Vec::new(), Vec::new()]);
     let mut impacts = Vec::new();

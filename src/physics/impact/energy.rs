@@ -28,3 +28,11 @@ pub struct Energies {
     /// The remainder of the input: the integration error.
     pub error: f64,
 }
+
+impl Energies {
+    /// What is missing of the input \[J\]: the energy of the striker at the start, the work of its weight, and that of the loads.
+    pub(super) fn missing(&self, striker_at_start: f64, loads: f64) -> f64 {
+        striker_at_start + self.weight + loads
+            - (self.striker + self.structure + self.restoring + self.damping + self.contact_loss)
+    }
+}

@@ -24,6 +24,7 @@ use crate::integrator::state::State;
 use crate::specimen::RestoringForce;
 use crate::structure::Matrices;
 use energy::Energies;
+use summary::StepEnd;
 
 /// Initial state and parameters of an impact on one degree of freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -155,6 +156,21 @@ pub struct ImpactState {
     pub contacts: u64,
 }
 
+impl ImpactState {
+    /// As far as the results follow it.
+    #[inline]
+    pub(crate) const fn step_end(&self) -> StepEnd {
+        StepEnd {
+            instant: self.time,
+            displacement: self.displacement,
+            velocity: self.velocity,
+            restoring_force: self.restoring_force,
+            contact_force: self.contact_force,
+            restoring_energy: self.energies.restoring,
+        }
+    }
+}
+
 /// The setup of an impact: a striker, its contact law and the struck degree of freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImpactSetup {
@@ -195,7 +211,7 @@ impl<V> Sink<V> for () {
 
 /// The end of a step in a table \[SI\].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct StepRow {
     pub time: f64,
     pub displacement: f64,
     pub velocity: f64,
@@ -207,10 +223,10 @@ pub struct Row {
 }
 
 /// Memory that was touched before costs a quarter: a vector is to be reused.
-impl Sink for Vec<Row> {
+impl Sink for Vec<StepRow> {
     #[inline]
     fn push(&mut self, _: &State<f64>, state: &ImpactState, _: bool) {
-        self.push(Row {
+        self.push(StepRow {
             time: state.time,
             displacement: state.displacement,
             velocity: state.velocity,

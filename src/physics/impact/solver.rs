@@ -5,7 +5,9 @@
 use super::energy::Energies;
 use super::{ImpactError, ImpactInput, ImpactSetup, ImpactState, Sink, Until};
 use crate::contact::state::StepState;
-use crate::contact::{Advance, AnyContact, Approaching, Decided, ImpulseContact, Start};
+use crate::contact::{
+    Advance, AnyContact, Approaching, Decided, ImpulseContact, Start, StrikerEnd,
+};
 use crate::integrator::Integrator;
 use crate::integrator::input::SolverInput;
 use crate::integrator::solver::Solver;
@@ -22,8 +24,8 @@ pub struct ImpactSolver<V: HasTangents = f64> {
     law: AnyContact,
     striker: Striker,
     decided: Decided,
-    /// The step in progress, for a law that divides the step.
-    passed: Option<Advance>,
+    /// The step in progress, of a law that divides the step.
+    passed: Advance,
     workspace: Workspace<V>,
     reach: Option<Reach<V>>,
     unloaded: V,
@@ -148,7 +150,13 @@ impl<V: HasTangents> ImpactSolver<V> {
             velocity,
             time_step,
         };
-        let law = AnyContact::new(law, input.integrator, approaching)?;
+        let striker = Striker {
+            struck,
+            mass,
+            gravity,
+            time_step,
+        };
+        let law = AnyContact::new(law, input.integrator, approaching, &striker)?;
         let striker_energy = 0.5 * mass * velocity * velocity;
         let stored = reach.as_ref().map_or(0.0, |reach| {
             reach.stored(&structure.state().restoring_force)
@@ -175,14 +183,9 @@ impl<V: HasTangents> ImpactSolver<V> {
             unloaded: structure.state().load.clone(),
             structure,
             law,
-            striker: Striker {
-                struck,
-                mass,
-                gravity,
-                time_step,
-            },
+            striker,
             decided: Decided::FREE,
-            passed: None,
+            passed: advance,
             reach,
             striker_energy,
             first_input,
@@ -215,7 +218,7 @@ impl<V: HasTangents> ImpactSolver<V> {
             AnyContact::Impulse(law) => {
                 let start = start(state);
                 structure.predict_with(unloaded.view(), |free, compliance| {
-                    *decided = law.decide(striker, &start, free, compliance);
+                    *decided = decide(law, &start, free, compliance);
                     decided.force
                 })
             }
@@ -227,9 +230,8 @@ impl<V: HasTangents> ImpactSolver<V> {
                     else {
                         return 0.0;
                     };
-                    passed
-                        .insert(law.pass(&mut substep, striker, &start, &mut scratch, to))
-                        .damping_work
+                    *passed = law.pass(&mut substep, striker, &start, &mut scratch, to);
+                    passed.damping_work
                 })
             }
         }
@@ -244,11 +246,7 @@ impl<V: HasTangents> ImpactSolver<V> {
         let before = self.state.contact_force;
         match &self.law {
             AnyContact::Impulse(law) if self.structure.form.integrator != Integrator::Tangent => {
-                let over = if before >= law.force_limit() {
-                    0.0
-                } else {
-                    0.5
-                };
+                let over = if before >= law.force_limit { 0.0 } else { 0.5 };
                 let mut change = V::zero(velocity.len());
                 self.structure
                     .form
@@ -259,9 +257,7 @@ impl<V: HasTangents> ImpactSolver<V> {
                 before > 0.0
             }
             AnyContact::Impulse(_) => before > 0.0 || self.structure.form.contact_force() > 0.0,
-            AnyContact::Divided(_) => {
-                before > 0.0 || self.passed.is_some_and(|passed| passed.contact_force > 0.0)
-            }
+            AnyContact::Divided(_) => before > 0.0 || self.passed.contact_force > 0.0,
         }
     }
 
@@ -279,7 +275,6 @@ impl<V: HasTangents> ImpactSolver<V> {
         let Self {
             structure,
             law,
-            striker,
             decided,
             ..
         } = self;
@@ -288,7 +283,7 @@ impl<V: HasTangents> ImpactSolver<V> {
             restoring_force,
             |free, compliance| {
                 if let AnyContact::Impulse(law) = law {
-                    *decided = law.decide(striker, &start, free, compliance);
+                    *decided = decide(law, &start, free, compliance);
                 }
                 decided.force
             },
@@ -300,21 +295,30 @@ impl<V: HasTangents> ImpactSolver<V> {
     /// The striker, and the energies of both.
     #[inline]
     fn follow(&mut self, start: &Start) {
-        let passed = self.passed.take();
         let Self {
             structure,
+            law,
             striker,
             decided,
+            passed,
             ..
         } = &*self;
         let (after, struck) = (structure.state(), striker.struck);
-        let advance = passed.unwrap_or_else(|| {
-            let end = [
-                after.displacement.as_slice()[struck],
-                after.velocity.as_slice()[struck],
-            ];
-            ImpulseContact::advance(striker, start, *decided, end)
-        });
+        let advance = match law {
+            AnyContact::Impulse(law) => {
+                let end = [
+                    after.displacement.as_slice()[struck],
+                    after.velocity.as_slice()[struck],
+                ];
+                let touching = self.state.state != StepState::Free;
+                of_impulse(
+                    law.advance(striker.time_step, start, decided, end),
+                    *decided,
+                    touching,
+                )
+            }
+            AnyContact::Divided(_) => *passed,
+        };
         let (balance, before) = (&after.energies, &self.state.energies);
         let fallen = advance.striker_displacement - start.striker_displacement;
         let mut energies = Energies {
@@ -327,12 +331,7 @@ impl<V: HasTangents> ImpactSolver<V> {
             weight: before.weight + striker.mass * striker.gravity * fallen,
             error: 0.0,
         };
-        energies.error = self.striker_energy + energies.weight + balance.input
-            - (energies.striker
-                + energies.structure
-                + energies.restoring
-                + energies.damping
-                + energies.contact_loss);
+        energies.error = energies.missing(self.striker_energy, balance.input);
         let input = self.state.input.max(self.first_input + energies.weight);
         let contacts = self.state.contacts + u64::from(advance.contacts);
         self.state = ImpactState {
@@ -443,8 +442,32 @@ const fn start(state: &ImpactState) -> Start {
         striker_displacement: state.striker_displacement,
         striker_velocity: state.striker_velocity,
         contact_force: state.contact_force,
-        touching: !matches!(state.state, StepState::Free),
         indentation: state.indentation,
+    }
+}
+
+/// The contact force of a step under a law of impulses.
+#[inline]
+fn decide(law: &ImpulseContact, start: &Start, free: f64, compliance: f64) -> Decided {
+    law.decide::<true>(start, || {
+        law.needed(start.striker_velocity, free, compliance)
+    })
+}
+
+/// The step of such a law; `touching`: the step before it was one in contact.
+#[inline]
+fn of_impulse(end: StrikerEnd, decided: Decided, touching: bool) -> Advance {
+    let state = decided.state;
+    Advance {
+        striker_displacement: end.displacement,
+        striker_velocity: end.velocity,
+        state,
+        contact_force: decided.force,
+        indentation: end.indentation,
+        contact_loss: end.contact_loss,
+        damping_work: 0.0,
+        indentation_work: end.indentation_work,
+        contacts: u32::from(!touching && state != StepState::Free),
     }
 }
 

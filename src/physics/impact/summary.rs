@@ -1,9 +1,15 @@
-//! Results of an impact: peaks, times, impulse, energies. In: the ends of its steps.
+//! Results of an impact: peaks, times, impulse, energies. In: the ends of its steps, of one impact or of several side by side.
+
+#![allow(
+    clippy::inline_always,
+    reason = "a part of its caller, which is compiled for several vector units"
+)]
 
 use super::{ImpactInput, ImpactState, Sink};
 use crate::contact::ContactLaw;
 use crate::contact::state::StepState;
 use crate::integrator::state::State;
+use crate::number::{Number, numbers};
 
 /// Results of an impact. Peaks are over step ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,30 +48,151 @@ pub struct ImpactSummary {
     pub last_contact_cut: bool,
 }
 
-/// The first contact in progress.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum FirstContact {
-    /// Closing speed at the last step end without contact \[m/s\].
-    ToCome {
-        closing: f64,
-    },
-    UnderWay {
-        closing: f64,
-    },
-    Over {
-        restitution: Option<f64>,
-    },
+/// The end of a step, as far as the results follow it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StepEnd<N = f64> {
+    /// Time \[s\], or the number of the step.
+    pub instant: N,
+    pub displacement: N,
+    pub velocity: N,
+    pub restoring_force: N,
+    pub contact_force: N,
+    /// ∫R dX so far \[J\].
+    pub restoring_energy: N,
+}
+
+numbers! {
+    /// The results that every step changes, so far.
+    pub(crate) struct RunningResults {
+        max_displacement,
+        /// Of the largest displacement.
+        instant,
+        absorbed_energy,
+        max_velocity,
+        max_contact_force,
+        impulse,
+    }
+}
+
+impl RunningResults {
+    /// Before step 0.
+    pub const START: Self = Self {
+        max_displacement: f64::NEG_INFINITY,
+        instant: 0.0,
+        absorbed_energy: 0.0,
+        max_velocity: 0.0,
+        max_contact_force: 0.0,
+        impulse: 0.0,
+    };
+}
+
+impl<N: Number> RunningResults<N> {
+    /// Adds the end of the next step.
+    #[inline(always)]
+    pub fn add(&mut self, time_step: N, end: &StepEnd<N>) {
+        let farther = end.displacement.gt(self.max_displacement);
+        let chosen = |now: N, before: N| N::choose(farther, || now, || before);
+        self.instant = chosen(end.instant, self.instant);
+        self.absorbed_energy = chosen(end.restoring_energy, self.absorbed_energy);
+        self.max_displacement = self.max_displacement.larger(end.displacement);
+        self.max_velocity = self.max_velocity.larger(end.velocity.abs());
+        self.max_contact_force = self.max_contact_force.larger(end.contact_force);
+        self.impulse = self.impulse + end.contact_force * time_step;
+    }
+}
+
+/// What happens in few steps: contacts that begin and end, the stop of the striker.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Events {
+    /// End of the first step with Ẋs ≤ 0 \[s\], or the number of the step.
+    pub stop: Option<f64>,
+    pub contacts: u64,
+    /// Closing speed at the last step end before the first contact \[m/s\].
+    closing: Option<f64>,
+    /// The same when the first contact has ended.
+    separating: Option<f64>,
+}
+
+impl Events {
+    /// A contact begins, after a step end with this closing speed \[m/s\].
+    pub fn contact_begins(&mut self, closing: f64) {
+        self.closing.get_or_insert(closing);
+    }
+
+    /// A contact has ended at the end of the free step that follows it, with this closing speed \[m/s\]: the tensile step, repeated as a
+    /// free one.
+    pub fn contact_ends(&mut self, closing: f64) {
+        self.separating.get_or_insert(closing);
+    }
+
+    /// Coefficient of restitution of the first contact; None before it has ended.
+    fn restitution(&self) -> Option<f64> {
+        let (closing, separating) = (self.closing?, self.separating?);
+        (closing > 0.0).then(|| -separating / closing)
+    }
+}
+
+/// The last step end.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct LastEnd {
+    pub displacement: f64,
+    pub velocity: f64,
+    pub contact_force: f64,
+    pub indentation: f64,
+    pub indentation_energy: f64,
+    /// Over the energy put into the test.
+    pub energy_error: f64,
+}
+
+impl ImpactSummary {
+    /// The results of all steps so far.
+    pub(crate) fn new(
+        input: &ImpactInput,
+        results: &RunningResults,
+        events: &Events,
+        last: &LastEnd,
+    ) -> Self {
+        let restitution = match input.law {
+            // Located inside a step: the coefficient of the law, because the ends of the step include later contacts.
+            ContactLaw::Restitution { coefficient } => (events.contacts > 0).then_some(coefficient),
+            _ => events.restitution(),
+        };
+        let farthest = results.max_displacement;
+        Self {
+            max_displacement: if farthest == f64::NEG_INFINITY {
+                0.0
+            } else {
+                farthest
+            },
+            time_of_max_displacement: results.instant,
+            stop_time: events.stop,
+            final_displacement: last.displacement,
+            max_velocity: results.max_velocity,
+            max_contact_force: results.max_contact_force,
+            impulse: results.impulse,
+            contacts: events.contacts,
+            restitution,
+            indentation: last.indentation,
+            indentation_energy: last.indentation_energy,
+            absorbed_energy: results.absorbed_energy,
+            striker_energy: input.striker_energy(),
+            energy_error: last.energy_error,
+            still_rising: still_rising(last.velocity, last.displacement >= farthest),
+            last_contact_cut: events.stop.is_some() && last.contact_force > 0.0,
+        }
+    }
 }
 
 /// Sums up steps one by one, step 0 first.
 #[derive(Clone, Debug)]
 pub struct SummaryBuilder {
     input: ImpactInput,
-    first_contact: FirstContact,
-    last_velocity: f64,
-    /// \[N\]
-    last_contact_force: f64,
-    summary: ImpactSummary,
+    pub(super) results: RunningResults,
+    events: Events,
+    pub(super) last: LastEnd,
+    /// Closing speed at the last step end \[m/s\], and whether the step was one in contact.
+    closing: f64,
+    touching: bool,
 }
 
 impl SummaryBuilder {
@@ -74,103 +201,55 @@ impl SummaryBuilder {
     pub fn new(input: &ImpactInput) -> Self {
         Self {
             input: *input,
-            first_contact: FirstContact::ToCome {
-                closing: input.striker_velocity,
-            },
-            last_velocity: 0.0,
-            last_contact_force: 0.0,
-            summary: ImpactSummary {
-                max_displacement: f64::NEG_INFINITY,
-                time_of_max_displacement: 0.0,
-                stop_time: None,
-                final_displacement: 0.0,
-                max_velocity: 0.0,
-                max_contact_force: 0.0,
-                impulse: 0.0,
-                contacts: 0,
-                restitution: None,
-                indentation: 0.0,
-                indentation_energy: 0.0,
-                absorbed_energy: 0.0,
-                striker_energy: input.striker_energy(),
-                energy_error: 0.0,
-                still_rising: false,
-                last_contact_cut: false,
-            },
+            results: RunningResults::START,
+            events: Events::default(),
+            last: LastEnd::default(),
+            closing: input.striker_velocity,
+            touching: false,
         }
     }
 
     /// Adds the end of the next step.
     pub fn push(&mut self, state: &ImpactState) {
-        let summary = &mut self.summary;
-        if state.displacement > summary.max_displacement {
-            summary.max_displacement = state.displacement;
-            summary.time_of_max_displacement = state.time;
-            summary.absorbed_energy = state.energies.restoring;
-        }
-        summary.final_displacement = state.displacement;
-        summary.max_velocity = summary.max_velocity.max(state.velocity.abs());
-        summary.max_contact_force = summary.max_contact_force.max(state.contact_force);
-        summary.impulse += state.contact_force * self.input.time_step;
-        summary.indentation = state.indentation;
-        summary.indentation_energy = state.energies.indentation;
-        if state.input > 0.0 {
-            summary.energy_error = state.energies.error / state.input;
-        }
-        if summary.stop_time.is_none() && state.step > 0 && state.striker_velocity <= 0.0 {
-            summary.stop_time = Some(state.time);
+        self.results.add(self.input.time_step, &state.step_end());
+        self.events.contacts = state.contacts;
+        if self.events.stop.is_none() && state.step > 0 && state.striker_velocity <= 0.0 {
+            self.events.stop = Some(state.time);
         }
         let touching = state.state != StepState::Free;
-        summary.contacts = state.contacts;
-        self.follow_first_contact(state, touching);
-        self.last_velocity = state.velocity;
-        self.last_contact_force = state.contact_force;
+        let closing = state.striker_velocity - state.velocity;
+        match (self.touching, touching) {
+            (false, true) => self.events.contact_begins(self.closing),
+            (true, false) => self.events.contact_ends(closing),
+            _ => {}
+        }
+        (self.touching, self.closing) = (touching, closing);
+        self.last = LastEnd {
+            displacement: state.displacement,
+            velocity: state.velocity,
+            contact_force: state.contact_force,
+            indentation: state.indentation,
+            indentation_energy: state.energies.indentation,
+            energy_error: if state.input > 0.0 {
+                state.energies.error / state.input
+            } else {
+                self.last.energy_error
+            },
+        };
     }
 
     /// The structure was moved to this displacement \[m\] by this time \[s\], in a step that did not end.
     pub fn moved_to(&mut self, displacement: f64, time: f64) {
-        if displacement > self.summary.max_displacement {
-            self.summary.max_displacement = displacement;
-            self.summary.time_of_max_displacement = time;
+        if displacement > self.results.max_displacement {
+            self.results.max_displacement = displacement;
+            self.results.instant = time;
         }
-    }
-
-    /// A contact has ended at the end of the free step that follows it: the tensile step, repeated as a free one.
-    fn follow_first_contact(&mut self, state: &ImpactState, touching: bool) {
-        let closing_now = state.striker_velocity - state.velocity;
-        self.first_contact = match self.first_contact {
-            FirstContact::ToCome { closing } if touching => FirstContact::UnderWay { closing },
-            FirstContact::ToCome { .. } => FirstContact::ToCome {
-                closing: closing_now,
-            },
-            FirstContact::UnderWay { closing } if !touching => FirstContact::Over {
-                restitution: (closing > 0.0).then(|| -closing_now / closing),
-            },
-            unchanged => unchanged,
-        };
     }
 
     /// The results of all steps so far.
     #[must_use]
-    pub fn finish(mut self) -> ImpactSummary {
-        self.summary.restitution = match (self.input.law, self.first_contact) {
-            // Located inside a step: the coefficient of the law, because the ends of the step include later contacts.
-            (ContactLaw::Restitution { coefficient }, _) => {
-                (self.summary.contacts > 0).then_some(coefficient)
-            }
-            (_, FirstContact::Over { restitution }) => restitution,
-            _ => None,
-        };
-        self.summary.still_rising = still_rising(
-            self.last_velocity,
-            self.summary.final_displacement >= self.summary.max_displacement,
-        );
-        self.summary.last_contact_cut =
-            self.summary.stop_time.is_some() && self.last_contact_force > 0.0;
-        if self.summary.max_displacement == f64::NEG_INFINITY {
-            self.summary.max_displacement = 0.0;
-        }
-        self.summary
+    pub fn finish(self) -> ImpactSummary {
+        ImpactSummary::new(&self.input, &self.results, &self.events, &self.last)
     }
 }
 

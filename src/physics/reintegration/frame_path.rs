@@ -7,7 +7,7 @@
 //! position they change with the initial stiffness: this is exact for an elastic frame. At the recorded targets the readings are
 //! bit-identical to the recorded ones.
 
-use super::hysteresis_replay::{ContinuousMotion, Reading, RecordedPath, Retrace, lag, nearest};
+use super::recorded_path::{ContinuousMotion, Reading, RecordedPath, Retrace, lag, nearest};
 use crate::reintegration::perturbation::Perturbation;
 use crate::statistics::DeclaredNoise;
 use crate::structure::{SymmetricBand, drifts, shears, storeys_of};

@@ -2,7 +2,7 @@
 //! perturbed readings. Out: the results of the impact, between the ends of steps, so that they follow the inputs smoothly.
 //! It moves no rig and knows no uncertainty.
 
-use super::hysteresis_replay::{Reading, RecordedPath};
+use super::recorded_path::{Reading, RecordedPath};
 use crate::impact::peaks::farther;
 use crate::impact::summary::{ImpactSummary, SummaryBuilder};
 use std::cell::Cell;

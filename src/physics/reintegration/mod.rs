@@ -4,6 +4,6 @@
 
 pub mod frame;
 pub mod frame_path;
-pub mod hysteresis_replay;
 pub mod impact;
 pub mod perturbation;
+pub mod recorded_path;

@@ -3,7 +3,7 @@
 use super::runs::{
     displacement_on_moving_ground, free_vibration, impact, impact_of, input, struck_storey,
 };
-use super::{Part, Quantity, SelfTest};
+use super::{Quantity, SelfTest, SelfTestPart};
 use crate::contact::ContactLaw;
 use crate::critical_time_step;
 use crate::identification::fit_line;
@@ -16,8 +16,8 @@ fn number(value: Option<f64>) -> f64 {
 
 /// Melo et al. 2006.
 pub(super) fn papers() -> Vec<SelfTest> {
-    const RIGID: &[Part] = &[Part::Tangent, Part::Rigid];
-    const LIMIT: &[Part] = &[Part::Tangent, Part::Limit];
+    const RIGID: &[SelfTestPart] = &[SelfTestPart::Tangent, SelfTestPart::Rigid];
+    const LIMIT: &[SelfTestPart] = &[SelfTestPart::Tangent, SelfTestPart::Limit];
     let case = |case, result, quantity, computed, expected, tolerance, parts| SelfTest {
         case,
         result,
@@ -144,43 +144,43 @@ pub(super) fn one_degree() -> Vec<SelfTest> {
     vec![
         SelfTest {
             expected: -0.5,
-            parts: &[Part::Explicit],
+            parts: &[SelfTestPart::Explicit],
             ..free(Integrator::Explicit)
         },
         SelfTest {
             expected: -0.852_814_186_383,
-            parts: &[Part::AlphaOs],
+            parts: &[SelfTestPart::AlphaOs],
             ..free(Integrator::AlphaOs { alpha: -0.1 })
         },
         rigid(
             Integrator::Explicit,
             0.157_185,
-            &[Part::Explicit, Part::Rigid],
+            &[SelfTestPart::Explicit, SelfTestPart::Rigid],
         ),
         limited(
             Integrator::Explicit,
             0.165_285,
-            &[Part::Explicit, Part::Limit],
+            &[SelfTestPart::Explicit, SelfTestPart::Limit],
         ),
         rigid(
             Integrator::AlphaOs { alpha: -0.1 },
             0.157_791,
-            &[Part::AlphaOs, Part::Rigid],
+            &[SelfTestPart::AlphaOs, SelfTestPart::Rigid],
         ),
         limited(
             Integrator::AlphaOs { alpha: -0.1 },
             0.165_524,
-            &[Part::AlphaOs, Part::Limit],
+            &[SelfTestPart::AlphaOs, SelfTestPart::Limit],
         ),
         collisions(
             "example 1, hard collisions",
             exact.max_displacement,
-            &[Part::Tangent, Part::Restitution],
+            &[SelfTestPart::Tangent, SelfTestPart::Restitution],
         ),
         hertz(
             "free masses of 1 kg and 10 kg",
             soft.max_contact_force,
-            &[Part::Tangent, Part::Hertz],
+            &[SelfTestPart::Tangent, SelfTestPart::Hertz],
         ),
     ]
 }
@@ -189,7 +189,7 @@ fn displacement(
     case: &'static str,
     computed: f64,
     expected: f64,
-    parts: &'static [Part],
+    parts: &'static [SelfTestPart],
 ) -> SelfTest {
     let (result, quantity) = ("largest displacement", Quantity::Length);
     SelfTest {
@@ -203,7 +203,7 @@ fn displacement(
     }
 }
 
-fn collisions(case: &'static str, computed: f64, parts: &'static [Part]) -> SelfTest {
+fn collisions(case: &'static str, computed: f64, parts: &'static [SelfTestPart]) -> SelfTest {
     let (result, quantity) = ("largest displacement", Quantity::Length);
     SelfTest {
         case,
@@ -216,7 +216,7 @@ fn collisions(case: &'static str, computed: f64, parts: &'static [Part]) -> Self
     }
 }
 
-fn hertz(case: &'static str, computed: f64, parts: &'static [Part]) -> SelfTest {
+fn hertz(case: &'static str, computed: f64, parts: &'static [SelfTestPart]) -> SelfTest {
     let (result, quantity) = ("largest contact force", Quantity::Force);
     SelfTest {
         case,
@@ -273,41 +273,53 @@ pub(super) fn frames() -> Vec<SelfTest> {
         on_moving_ground(
             Integrator::Tangent,
             -5.132_347_348_85e-3,
-            &[Part::FrameTangent],
+            &[SelfTestPart::FrameTangent],
         ),
-        on_moving_ground(Integrator::Explicit, -5.241_088e-3, &[Part::FrameExplicit]),
-        on_moving_ground(alpha, -5.110_555_718_17e-3, &[Part::FrameAlphaOs]),
+        on_moving_ground(
+            Integrator::Explicit,
+            -5.241_088e-3,
+            &[SelfTestPart::FrameExplicit],
+        ),
+        on_moving_ground(alpha, -5.110_555_718_17e-3, &[SelfTestPart::FrameAlphaOs]),
         rigid(
             Integrator::Tangent,
             0.157_864,
-            &[Part::FrameTangent, Part::FrameRigid],
+            &[SelfTestPart::FrameTangent, SelfTestPart::FrameRigid],
         ),
         rigid(
             Integrator::Explicit,
             0.157_185,
-            &[Part::FrameExplicit, Part::FrameRigid],
+            &[SelfTestPart::FrameExplicit, SelfTestPart::FrameRigid],
         ),
-        rigid(alpha, 0.157_791, &[Part::FrameAlphaOs, Part::FrameRigid]),
+        rigid(
+            alpha,
+            0.157_791,
+            &[SelfTestPart::FrameAlphaOs, SelfTestPart::FrameRigid],
+        ),
         limited(
             Integrator::Tangent,
             0.165_524,
-            &[Part::FrameTangent, Part::FrameLimit],
+            &[SelfTestPart::FrameTangent, SelfTestPart::FrameLimit],
         ),
         limited(
             Integrator::Explicit,
             0.165_285,
-            &[Part::FrameExplicit, Part::FrameLimit],
+            &[SelfTestPart::FrameExplicit, SelfTestPart::FrameLimit],
         ),
-        limited(alpha, 0.165_524, &[Part::FrameAlphaOs, Part::FrameLimit]),
+        limited(
+            alpha,
+            0.165_524,
+            &[SelfTestPart::FrameAlphaOs, SelfTestPart::FrameLimit],
+        ),
         collisions(
             "example 1 on a storey, hard collisions",
             hard,
-            &[Part::FrameTangent, Part::FrameRestitution],
+            &[SelfTestPart::FrameTangent, SelfTestPart::FrameRestitution],
         ),
         hertz(
             "free masses, one a storey",
             soft,
-            &[Part::FrameTangent, Part::FrameHertz],
+            &[SelfTestPart::FrameTangent, SelfTestPart::FrameHertz],
         ),
     ]
 }
@@ -322,7 +334,7 @@ pub(super) fn fits() -> Vec<SelfTest> {
         computed: number(computed),
         expected,
         tolerance: 1e-12,
-        parts: &[Part::LineFit],
+        parts: &[SelfTestPart::LineFit],
     };
     vec![
         line("slope", fit.map(|fit| fit.slope), 1.0),

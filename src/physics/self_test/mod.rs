@@ -19,7 +19,7 @@ use cases::{fits, frames, one_degree, papers};
 
 /// A part of the program that a run may use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum SelfTestPart {
     /// Integrators of one degree of freedom.
     Tangent,
     Explicit,
@@ -47,7 +47,7 @@ pub enum Part {
     Continuous,
 }
 
-impl Part {
+impl SelfTestPart {
     /// Its name in a report.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -102,7 +102,7 @@ pub struct SelfTest {
     /// Largest difference of the scheme at this step from the answer, else half a unit of its last digit. SI.
     pub tolerance: f64,
     /// The parts that it uses.
-    pub parts: &'static [Part],
+    pub parts: &'static [SelfTestPart],
 }
 
 impl SelfTest {
@@ -128,7 +128,7 @@ pub fn passed() -> bool {
 
 /// Whether one case uses all of these parts together.
 #[must_use]
-pub fn covers(parts: &[Part]) -> bool {
+pub fn covers(parts: &[SelfTestPart]) -> bool {
     all()
         .iter()
         .any(|test| parts.iter().all(|part| test.parts.contains(part)))
@@ -158,11 +158,11 @@ mod tests {
 
     #[test]
     fn every_integrator_has_its_case_with_every_contact_that_it_takes() {
-        use Part::{
+        use SelfTestPart::{
             AlphaOs, Explicit, FrameAlphaOs, FrameExplicit, FrameHertz, FrameLimit,
             FrameRestitution, FrameRigid,
         };
-        use Part::{FrameTangent, Hertz, Limit, LineFit, Restitution, Rigid, Tangent};
+        use SelfTestPart::{FrameTangent, Hertz, Limit, LineFit, Restitution, Rigid, Tangent};
         for integrator in [Tangent, Explicit, AlphaOs] {
             assert!(
                 covers(&[integrator, Rigid]) && covers(&[integrator, Limit]),
@@ -181,7 +181,7 @@ mod tests {
         }
         assert!(covers(&[Tangent, Restitution]) && covers(&[Tangent, Hertz]) && covers(&[LineFit]));
         assert!(covers(&[FrameTangent, FrameRestitution]) && covers(&[FrameTangent, FrameHertz]));
-        assert!(!covers(&[Part::DampingFit]) && !covers(&[Tangent, FrameRigid]));
+        assert!(!covers(&[SelfTestPart::DampingFit]) && !covers(&[Tangent, FrameRigid]));
         assert!(all().iter().all(|case| !case.parts.is_empty()));
     }
 }

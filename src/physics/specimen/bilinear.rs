@@ -1,6 +1,7 @@
 //! Elastic–plastic with two slopes. In: a displacement. Out: the force there, by an exact return map.
 
 use super::RestoringForce;
+use crate::number::{Number, numbers};
 
 /// The parameters of a curve with two slopes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,13 +14,23 @@ pub struct BilinearCurve {
     pub post_yield_ratio: f64,
 }
 
+numbers! {
+    /// The lines of an elastic–plastic model.
+    pub(crate) struct BilinearLines {
+        /// K \[N/m\]
+        stiffness,
+        /// `K_p` \[N/m\]
+        hardened,
+        /// Half of the height of the band between the two parallel lines \[N\].
+        half_band,
+    }
+}
+
 /// Elastic–plastic with kinematic hardening: the force has the stiffness K between two parallel lines of slope `K_p`,
 /// `R = K_p X ± (1 − K_p/K) F_y`, and along the line it meets. The elastic trial cut to the band is the exact return map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bilinear {
-    stiffness: f64,
-    hardened: f64,
-    half_band: f64,
+    lines: BilinearLines,
     displacement: f64,
     force: f64,
 }
@@ -29,9 +40,11 @@ impl Bilinear {
     #[must_use]
     pub fn new(curve: BilinearCurve) -> Self {
         Self {
-            stiffness: curve.stiffness,
-            hardened: curve.post_yield_ratio * curve.stiffness,
-            half_band: (1.0 - curve.post_yield_ratio) * curve.yield_force,
+            lines: BilinearLines {
+                stiffness: curve.stiffness,
+                hardened: curve.post_yield_ratio * curve.stiffness,
+                half_band: (1.0 - curve.post_yield_ratio) * curve.yield_force,
+            },
             displacement: 0.0,
             force: 0.0,
         }
@@ -42,25 +55,39 @@ impl Bilinear {
         self.displacement == 0.0 && self.force == 0.0
     }
 
-    /// K, `K_p` \[N/m\] and half of the height of the band between the two lines \[N\].
-    pub(crate) const fn lines(&self) -> [f64; 3] {
-        [self.stiffness, self.hardened, self.half_band]
+    pub(crate) const fn lines(&self) -> BilinearLines {
+        self.lines
+    }
+}
+
+#[allow(
+    clippy::inline_always,
+    reason = "a part of its caller, which is compiled for several vector units"
+)]
+impl<N: Number> BilinearLines<N> {
+    /// The force \[N\] at `displacement` \[m\] after a move from (X, R).
+    #[inline(always)]
+    pub(crate) fn force(&self, [from, force]: [N; 2], displacement: N) -> N {
+        let trial = force + self.stiffness * (displacement - from);
+        let middle = self.hardened * displacement;
+        trial
+            .larger(middle - self.half_band)
+            .smaller(middle + self.half_band)
     }
 }
 
 impl RestoringForce for Bilinear {
+    #[inline]
     fn move_to(&mut self, displacement: f64) -> f64 {
-        let trial = self.force + self.stiffness * (displacement - self.displacement);
-        let middle = self.hardened * displacement;
+        self.force = self
+            .lines
+            .force([self.displacement, self.force], displacement);
         self.displacement = displacement;
-        self.force = trial
-            .max(middle - self.half_band)
-            .min(middle + self.half_band);
         self.force
     }
 
     fn initial_stiffness(&self) -> f64 {
-        self.stiffness
+        self.lines.stiffness
     }
 }
 

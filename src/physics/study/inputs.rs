@@ -38,13 +38,13 @@ pub enum InputError {
 
 /// The inputs, with the points at which they are drawn.
 #[derive(Clone, Debug)]
-pub struct Inputs {
+pub struct StudyInputs {
     sources: Vec<Source>,
     correlation: Option<Correlation>,
     sampler: Sampler,
 }
 
-impl Inputs {
+impl StudyInputs {
     /// `pairs` refer to `sources` by their places.
     ///
     /// # Errors
@@ -160,7 +160,7 @@ mod tests {
         ]
     }
 
-    fn rows(inputs: &Inputs, runs: u64) -> Vec<Vec<f64>> {
+    fn rows(inputs: &StudyInputs, runs: u64) -> Vec<Vec<f64>> {
         let mut values = Vec::new();
         (0..runs)
             .map(|run| {
@@ -179,7 +179,7 @@ mod tests {
         };
         for design in [Design::Random, Design::Sobol { replicates: 16 }] {
             for pairs in [&[][..], &[pair]] {
-                let inputs = || Inputs::new(sources(), pairs, design, 42).unwrap();
+                let inputs = || StudyInputs::new(sources(), pairs, design, 42).unwrap();
                 assert_eq!(rows(&inputs(), 1000)[..300], rows(&inputs(), 300));
             }
         }
@@ -193,7 +193,7 @@ mod tests {
             correlation: 0.7,
         };
         for pairs in [&[][..], &[pair]] {
-            let inputs = Inputs::new(sources(), pairs, Design::Random, 42).unwrap();
+            let inputs = StudyInputs::new(sources(), pairs, Design::Random, 42).unwrap();
             let mut values = Vec::new();
             for (run, drawn) in (0..).zip(rows(&inputs, 50)) {
                 let score = |at| Tails::of_uniform(inputs.sampler.uniform(run, at)).score();
@@ -211,7 +211,7 @@ mod tests {
     /// Each row comes as one, and a third of the time: 10,000 draws, four standard errors.
     #[test]
     fn rows_of_a_table_are_drawn_together() {
-        let inputs = Inputs::new(sources(), &[], Design::Random, 1).unwrap();
+        let inputs = StudyInputs::new(sources(), &[], Design::Random, 1).unwrap();
         let mut counts = [0_u32; 3];
         for values in rows(&inputs, 10_000) {
             assert_eq!(values[2], 10.0 * values[1]);
@@ -231,7 +231,7 @@ mod tests {
     #[test]
     fn defective_inputs_are_refused() {
         let refused =
-            |sources, pairs: &[Pair]| Inputs::new(sources, pairs, Design::Random, 1).err();
+            |sources, pairs: &[Pair]| StudyInputs::new(sources, pairs, Design::Random, 1).err();
         assert_eq!(refused(vec![], &[]), Some(InputError::NoInputs));
         assert_eq!(
             refused(vec![Source::Rows(vec![])], &[]),

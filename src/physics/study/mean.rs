@@ -13,7 +13,7 @@ pub struct Mean {
 
 /// Of independent values, such as the means of the replicates of a study. None with fewer than two.
 #[must_use]
-pub fn of(values: &[f64], confidence: Confidence) -> Option<Mean> {
+pub fn mean_of(values: &[f64], confidence: Confidence) -> Option<Mean> {
     if values.len() < 2 {
         return None;
     }
@@ -62,7 +62,7 @@ mod tests {
                 "{degrees}"
             );
         }
-        assert_eq!(of(&[1.0], confidence), None);
+        assert_eq!(mean_of(&[1.0], confidence), None);
     }
 
     /// The mean of x₁x₂ is ¼. Of 500 studies of 16 replicates of 32 Sobol' points, the intervals contain it in 95 % ± 3 %, and are ten
@@ -80,11 +80,11 @@ mod tests {
             for run in 0..512 {
                 means[usize::try_from(run % 16).unwrap()] += product(&sobol, run) / 32.0;
             }
-            let found = of(&means, confidence).unwrap();
+            let found = mean_of(&means, confidence).unwrap();
             covered += u32::from(found.interval.contains(0.25));
             let values: Vec<f64> = (0..512).map(|run| product(&random, run)).collect();
             widths[0] += found.interval.half_width();
-            widths[1] += of(&values, confidence).unwrap().interval.half_width();
+            widths[1] += mean_of(&values, confidence).unwrap().interval.half_width();
         }
         assert!((460..=490).contains(&covered), "{covered} of 500");
         assert!(widths[1] > 10.0 * widths[0], "{widths:?}");

@@ -200,7 +200,7 @@ impl Progress {
             return None;
         }
         let found: Vec<f64> = self.replicates.iter().map(|it| it.probability).collect();
-        let mut probability = mean::of(&found, confidence)?;
+        let mut probability = mean::mean_of(&found, confidence)?;
         // A replicate without an exceedance shows an upper bound, not zero.
         let points = self.simulation.points as u64;
         let bound = |replicate: &Replicate| match &replicate.levels[..] {

@@ -11,7 +11,7 @@ use crate::procedures::common::calibrated_range;
 use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::common::reached::of_impact;
 use crate::procedures::impact::run::ImpactRun;
-use crate::procedures::stepping::run::above_critical;
+use crate::procedures::stepping::setting::above_critical;
 use crate::procedures::unload::run::{MOST_TARGETS, to_rest, withhold_position};
 use crate::record::{EscalateHistory, EventKind, History, NamedResult, Rest, SeriesImpact};
 use crate::run::Performed;

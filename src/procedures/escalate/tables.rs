@@ -16,12 +16,12 @@ const REST_DISPLACEMENT: Column = column("rest_displacement_m", Dimension::LENGT
 const REST_FORCE: Column = column("rest_force_n", Dimension::FORCE);
 
 /// An impact and its number, from 1.
-pub(crate) struct Row<'a> {
+pub(crate) struct ImpactRow<'a> {
     number: u64,
     impact: &'a SeriesImpact,
 }
 
-impl Row<'_> {
+impl ImpactRow<'_> {
     fn result(&self, result: ResultKind) -> Option<f64> {
         self.impact.number(result.name)
     }
@@ -46,7 +46,7 @@ impl StoreyRow<'_> {
 }
 
 /// One row per impact: its level, its results, the position after it. Each impact also has the table of an impact.
-pub(crate) fn impact_columns<'a>() -> Vec<TableColumn<Row<'a>>> {
+pub(crate) fn impact_columns<'a>() -> Vec<TableColumn<ImpactRow<'a>>> {
     vec![
         Integer(IMPACT_NUMBER, |row| row.number),
         Number(columns::VELOCITY, |row| row.impact.velocity),
@@ -149,10 +149,10 @@ pub(crate) fn tables(name: String, history: &EscalateHistory) -> Vec<Table<'_>> 
     .collect()
 }
 
-fn rows(history: &EscalateHistory) -> Vec<Row<'_>> {
+fn rows(history: &EscalateHistory) -> Vec<ImpactRow<'_>> {
     let numbered = (1..).zip(&history.impacts);
     numbered
-        .map(|(number, impact)| Row { number, impact })
+        .map(|(number, impact)| ImpactRow { number, impact })
         .collect()
 }
 

@@ -1,12 +1,17 @@
 //! The facts about an impact that check and report need without running it. In: an impact of the plan, or its history. Out: facts, the
 //! motion at its end, the parts of the program that it uses.
 
+use super::check::time_step::time_step_before_the_run;
 use super::{figures, report, results};
-use crate::physics::self_test::Part;
-use crate::plan::{Dependence, Impact, ImpactTarget, Until};
-use crate::procedures::facts::{Facts, Motion, Recorded, Tests};
+use crate::physics::self_test::SelfTestPart;
+use crate::plan::formula::Formula;
+use crate::plan::{
+    Dependence, Escalate, Impact, ImpactTarget, Plan, PointTarget, StoreyTarget, Striker, Until,
+};
+use crate::procedures::facts::{Delay, Facts, Motion, Recorded, Tests};
 use crate::procedures::stepping;
 use crate::procedures::stepping::self_tested::stepped;
+use crate::procedures::stepping::tracking::{delay as actuator_delay, frame_delay};
 use crate::record::ImpactHistory;
 
 pub(crate) fn facts(impact: &Impact) -> Facts<'_> {
@@ -88,9 +93,60 @@ pub(crate) fn motion(impact: &Impact) -> Motion<'static> {
 }
 
 /// The parts of the self-test that an impact uses, each with the parts in combination with it.
-pub(crate) fn self_tested(impact: &Impact) -> Vec<Vec<Part>> {
+pub(crate) fn self_tested(impact: &Impact) -> Vec<Vec<SelfTestPart>> {
     let of_frame = matches!(impact.target, ImpactTarget::Storey(_));
     let [point, storey] = impact.contact.self_tested();
     let law = if of_frame { storey } else { point };
     stepped(&impact.stepping, of_frame, Some(law))
+}
+
+/// The delay of the actuators in an impact, before the run; None where not enough is known.
+pub(crate) fn delay(plan: &Plan, impact: &Impact) -> Option<Delay> {
+    with_striker(plan, impact, plan.strikers.get(impact.striker)?)
+}
+
+/// The delay in the fastest impact of a series.
+pub(crate) fn delay_in_series(plan: &Plan, series: &Escalate) -> Option<Delay> {
+    let impact = &series.impact;
+    let fastest = series.fastest(plan.strikers.get(impact.striker)?);
+    with_striker(plan, impact, &fastest)
+}
+
+fn with_striker(plan: &Plan, impact: &Impact, striker: &Striker) -> Option<Delay> {
+    match &impact.target {
+        ImpactTarget::Point(point) => on_point(plan, impact, point, striker),
+        ImpactTarget::Storey(storey) => on_storey(plan, impact, storey, striker),
+    }
+}
+
+fn on_point(plan: &Plan, impact: &Impact, point: &PointTarget, striker: &Striker) -> Option<Delay> {
+    let behaviour = plan.specimens.get(impact.specimen)?.behaviour.as_ref()?;
+    // The stiffness from an earlier procedure is near the specimen's own.
+    let stiffness = point
+        .stiffness
+        .constant()
+        .unwrap_or_else(|| behaviour.initial_stiffness());
+    let time_step = time_step_before_the_run(impact, striker)?;
+    let late = actuator_delay(plan, &impact.stepping, time_step);
+    Some(Delay {
+        late,
+        time_step,
+        omega: (stiffness / point.mass.constant()?).sqrt(),
+    })
+}
+
+fn on_storey(
+    plan: &Plan,
+    impact: &Impact,
+    target: &StoreyTarget,
+    striker: &Striker,
+) -> Option<Delay> {
+    let approach = impact.approach(striker, Formula::constant)?;
+    frame_delay(
+        plan,
+        impact.specimen,
+        &target.damping,
+        &impact.stepping,
+        |properties| Some(properties.critical_on_impact(target.storey, &approach)),
+    )
 }

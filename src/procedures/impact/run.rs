@@ -3,22 +3,22 @@
 //! impact of the plan. Out: every step, and the results that follow from them. The equations are in `physics`; this file only connects
 //! them with the rig.
 
-use super::results::{observe, results};
+use super::results::{StruckSummary, observe, results};
 use super::setting::{Setting, StruckStructure};
-use super::steps::{ImpactSteps, Kept};
-use super::summary::StruckSummary;
-use super::uncertainty::ImpactUncertainty;
-use super::uncertainty::storey::{self, StoreyRecord};
+use super::uncertainty::UncertaintyInputs;
 use crate::physics::impact::{FrameImpactSolver, ImpactSetup, ImpactSolver};
+use crate::physics::integrator::tangents::HasTangents;
 use crate::physics::structure::frame_properties::FrameProperties;
-use crate::plan::{Impact, ImpactTarget, Plan, StoreyTarget};
-use crate::procedures::common::perturbed_inputs::UncertainRun;
-use crate::procedures::stepping::frame_uncertainty::FrameUncertainty;
+use crate::physics::tracking::monitor::Tracking;
+use crate::plan::{Impact, ImpactTarget, Plan, StoreyTarget, Until};
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
-use crate::procedures::stepping::run::{FrameSteps, above_critical};
-use crate::procedures::stepping::start::{Start, not_stepped};
-use crate::procedures::stepping::tracking::tracking_summary::Followed;
-use crate::record::{FloorStep, History, ImpactHistory, ImpactStep, NamedResult, StruckFrame};
+use crate::procedures::stepping::setting::{FrameSteps, Start, above_critical, not_stepped};
+use crate::procedures::stepping::step_loop::{self, AxesState, Balance, Stepped};
+use crate::procedures::stepping::tracking::TrackingSummary;
+use crate::record::{
+    FloorMotion, FloorStep, History, ImpactHistory, ImpactStep, NamedResult, StruckFrame,
+};
+use crate::rig::Reading;
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::{Session, of_base_shear};
@@ -36,7 +36,7 @@ pub(crate) fn perform(
         Err(stop) => {
             let history = history_of(plan, None, Vec::new(), Vec::new());
             return Performed {
-                results: results(None, &Followed::default(), &history),
+                results: results(None, &TrackingSummary::default(), &history),
                 history: History::Impact(history),
                 stop: Some(stop),
             };
@@ -53,44 +53,6 @@ pub(crate) fn perform(
         results,
         history: History::Impact(history),
         stop,
-    }
-}
-
-/// The uncertain inputs of an impact.
-#[derive(Clone, Copy)]
-pub(crate) enum UncertaintyInputs<'a> {
-    Point(ImpactUncertainty<'a>),
-    Storey(FrameUncertainty<'a>),
-}
-
-impl<'a> UncertaintyInputs<'a> {
-    pub(crate) fn new(
-        plan: &'a Impact,
-        whole: &'a Plan,
-        inputs: &Inputs<'a>,
-        session: &Session<'_>,
-    ) -> Self {
-        let run = UncertainRun::new(whole, inputs, session.guard.declared_noise());
-        match &plan.target {
-            ImpactTarget::Point(point) => Self::Point(ImpactUncertainty { run, plan, point }),
-            ImpactTarget::Storey(storey) => Self::Storey(FrameUncertainty::new(
-                run,
-                plan.specimen,
-                &storey.damping,
-                storey.damping_uncertainty,
-                &plan.stepping,
-            )),
-        }
-    }
-
-    /// Those of impact number `index` of a series, from 0.
-    pub(crate) fn of_impact(mut self, index: usize) -> Self {
-        let run = match &mut self {
-            Self::Point(ImpactUncertainty { run, .. })
-            | Self::Storey(FrameUncertainty { run, .. }) => run,
-        };
-        *run = run.of_impact(index);
-        self
     }
 }
 
@@ -114,54 +76,34 @@ pub(crate) fn strike(
         None => StruckSummary::new(input),
         Some(frame) => StruckSummary::of_frame(input, frame.order(), of_base_shear(session)),
     };
-    let mut kept = Kept::new(summary, setting.steps().count);
-    let order = ImpactSteps {
-        stepping: &plan.stepping,
-        steps: setting.steps(),
-        until: plan.until,
-        before,
-    };
+    let mut so_far = ImpactSoFar::new(summary, setting.steps().count);
     let ran = match (&plan.target, &setting.structure) {
         (ImpactTarget::Storey(target), StruckStructure::Storey(frame)) => {
-            order.run(&mut kept, session, |start| {
+            take_steps(plan, setting, before, &mut so_far, session, |start| {
                 on_storey(plan, target, setting, frame, start)
             })
         }
-        _ => order.run(&mut kept, session, |start| on_point(plan, setting, start)),
+        _ => take_steps(plan, setting, before, &mut so_far, session, |start| {
+            on_point(plan, setting, start)
+        }),
     };
     let mut stop = ran.err();
-    let Kept {
+    let ImpactSoFar {
         steps,
         floors,
         summary,
-        followed,
-    } = kept;
+        tracking,
+    } = so_far;
     let summary = (!steps.is_empty()).then_some(summary);
     let history = history_of(plan, Some(setting), steps, floors);
     if let (Some(summary), None) = (&summary, &stop) {
         observe(&summary.impact(), plan.until, &input.law, session);
     }
-    let mut results = results(summary.as_ref(), &followed, &history);
+    let mut results = results(summary.as_ref(), &tracking, &history);
     if let (Some(summary), None) = (&summary, &stop) {
         let summary = summary.impact();
         stop = session.evaluate_uncertainty(&mut results, |results, progress| {
-            match (uncertainty, &history.frame) {
-                (UncertaintyInputs::Storey(storey), Some(frame)) => storey::propagate(
-                    storey,
-                    plan,
-                    StoreyRecord {
-                        setting,
-                        floors: &frame.floors,
-                        summary: &summary,
-                    },
-                    results,
-                    progress,
-                ),
-                (UncertaintyInputs::Point(point), _) => {
-                    point.propagate(setting, &history.steps, &summary, results, progress)
-                }
-                (UncertaintyInputs::Storey(_), None) => Ok(()),
-            }
+            uncertainty.propagate(plan, setting, &history, &summary, results, progress)
         });
     }
     ImpactRun {
@@ -232,5 +174,194 @@ fn history_of(
         frame,
         time_step: planned.map_or(0.0, |planned| planned.time_step),
         critical_time_step: planned.map_or(0.0, |planned| planned.critical_time_step),
+    }
+}
+
+/// The record of an impact in progress.
+struct ImpactSoFar {
+    /// The struck degree of freedom and the striker.
+    steps: Vec<ImpactStep>,
+    /// Every floor of a frame.
+    floors: Vec<FloorStep>,
+    summary: StruckSummary,
+    tracking: TrackingSummary,
+}
+
+impl ImpactSoFar {
+    /// Before the first of `steps` steps. Capacity is reserved for at most 100,000 of them: `duration` is often far beyond the end.
+    fn new(summary: StruckSummary, steps: u64) -> Self {
+        let capacity = usize::try_from(steps + 1)
+            .unwrap_or(usize::MAX)
+            .min(100_000);
+        Self {
+            steps: Vec::with_capacity(capacity),
+            floors: Vec::new(),
+            summary,
+            tracking: TrackingSummary::default(),
+        }
+    }
+}
+
+/// All steps, with the solver that `begin` makes from the present position of the rig; `before` steps of the procedure are done already.
+fn take_steps<V: HasTangents>(
+    plan: &Impact,
+    setting: &Setting,
+    before: u64,
+    so_far: &mut ImpactSoFar,
+    session: &mut Session<'_>,
+    begin: impl FnOnce(&Start) -> Result<(ImpactSolver<V>, StifferSprings), Stop>,
+) -> Result<(), Stop> {
+    let ImpactSoFar {
+        steps,
+        floors,
+        summary,
+        tracking,
+    } = so_far;
+    let until = plan.until;
+    step_loop::run(
+        setting.steps(),
+        &plan.stepping,
+        tracking,
+        session,
+        |start| {
+            let (mut solver, stiffer) = begin(start)?;
+            solver.measured_at_start(V::view_of(&start.reading.displacement));
+            Ok((
+                Struck {
+                    solver,
+                    until,
+                    before,
+                    steps,
+                    floors,
+                    summary,
+                },
+                stiffer,
+            ))
+        },
+    )
+}
+
+/// The structure in motion, with its striker.
+struct Struck<'a, V: HasTangents> {
+    solver: ImpactSolver<V>,
+    until: Until,
+    before: u64,
+    steps: &'a mut Vec<ImpactStep>,
+    floors: &'a mut Vec<FloorStep>,
+    summary: &'a mut StruckSummary,
+}
+
+impl<V: HasTangents> Stepped for Struck<'_, V> {
+    fn axes(&self) -> AxesState<'_> {
+        AxesState::of(self.solver.structure())
+    }
+
+    fn predict(&mut self) -> Vec<f64> {
+        V::slice_of(&self.solver.predict()).to_vec()
+    }
+
+    fn predicted_velocity(&mut self, velocity: &mut [f64]) -> bool {
+        self.solver.predicted_velocity(velocity)
+    }
+
+    fn effective_force_at_start(&self, start: &Start) -> Vec<f64> {
+        let Reading {
+            displacement,
+            force,
+            ..
+        } = &start.reading;
+        let effective_force = self.solver.effective_force_at(
+            V::view_of(&start.commanded),
+            V::view_of(displacement),
+            V::view_of(force),
+        );
+        effective_force.as_slice().to_vec()
+    }
+
+    fn effective_force(&self) -> Vec<f64> {
+        V::slice_of(&self.solver.effective_force()).to_vec()
+    }
+
+    fn complete(&mut self, reading: &Reading) {
+        self.solver.complete(
+            V::view_of(&reading.displacement),
+            V::view_of(&reading.force),
+        );
+    }
+
+    fn keep(&mut self, axes: &[Tracking], session: &Session<'_>) -> Balance {
+        let state = self.solver.state();
+        self.summary.push(self.solver.structure(), state);
+        self.steps.push(ImpactStep {
+            step: state.step,
+            time: state.time,
+            wall_time: session.guard.time(),
+            state: state.state,
+            command: state.target,
+            computed: state.displacement,
+            displacement: state.measured_displacement,
+            velocity: state.velocity,
+            acceleration: state.acceleration,
+            restoring_force: state.restoring_force,
+            contact_force: state.contact_force,
+            striker_displacement: state.striker_displacement,
+            striker_velocity: state.striker_velocity,
+            tangent_stiffness: state.tangent_stiffness,
+            indentation: state.indentation,
+            energies: state.energies,
+            tracking: Tracking::together(axes),
+        });
+        if let Some(floors) = self.summary.floors() {
+            self.floors.push(FloorStep {
+                floors: FloorMotion::of_state(self.solver.structure(), axes),
+                storey_energy: floors.storey_energy().to_vec(),
+            });
+        }
+        Balance {
+            error: state.energies.error,
+            input: state.input,
+        }
+    }
+
+    fn cut_off(&mut self, reading: &Reading, time_step: f64, session: &Session<'_>) {
+        let (target, struck) = (self.predict(), self.solver.struck());
+        let Some(last) = self.steps.last() else {
+            return;
+        };
+        let time = last.time + time_step;
+        let step = ImpactStep {
+            step: last.step + 1,
+            time,
+            wall_time: session.guard.time(),
+            command: target[struck],
+            computed: reading.displacement[struck],
+            displacement: reading.displacement[struck],
+            restoring_force: reading.force[struck],
+            ..*last
+        };
+        self.steps.push(step);
+        self.summary.moved_to(struck, reading, time);
+        if let Some(last) = self.floors.last() {
+            let floors = last
+                .floors
+                .cut_off(time, &target, &reading.displacement, &reading.force);
+            let storey_energy = last.storey_energy.clone();
+            self.floors.push(FloorStep {
+                floors,
+                storey_energy,
+            });
+        }
+    }
+
+    fn is_struck(&self) -> bool {
+        self.solver.state().contact_force > 0.0
+    }
+
+    fn before(&self) -> u64 {
+        self.before
+    }
+
+    fn over(&self) -> bool {
+        self.solver.over(self.until)
     }
 }

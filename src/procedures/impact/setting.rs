@@ -13,7 +13,7 @@ use crate::plan::{
     Frame, Impact, ImpactTarget, Plan, PointTarget, Stepping, StoreyTarget, Striker,
 };
 use crate::procedures::stepping;
-use crate::procedures::stepping::run::{FrameSteps, Steps, Times, frame_of, stable};
+use crate::procedures::stepping::setting::{FrameSteps, Steps, Times, frame_of, stable};
 use crate::rig::DeclaredNoise;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
@@ -113,7 +113,7 @@ impl Setting {
         let law = contact::with_numbers(&plan.contact, inputs)?;
         let approach = striker.approach(contact::spring(law));
         let critical = approach.critical_time_step(mass, stiffness);
-        let time_step = stepping::run::time_step(&plan.stepping, critical, inputs)?;
+        let time_step = stepping::setting::time_step(&plan.stepping, critical, inputs)?;
         let duration = inputs.positive(methods::DURATION.name, &plan.duration, Dimension::TIME)?;
         let steps = Steps::evaluate(
             &plan.stepping,
@@ -156,12 +156,12 @@ impl Setting {
         inputs: &mut Inputs<'_>,
         session: &Session<'_>,
     ) -> Result<Self, Stop> {
-        let properties = stepping::run::properties(frame, &target.damping, inputs)?;
+        let properties = stepping::setting::properties(frame, &target.damping, inputs)?;
         let law = contact::with_numbers(&plan.contact, inputs)?;
         let approach = striker.approach(contact::spring(law));
         let critical = properties.critical_on_impact(target.storey, &approach);
-        let time_step = stepping::run::time_step(&plan.stepping, critical, inputs)?;
-        stepping::run::stable_on_frame(&plan.stepping, time_step, frame, &properties, session)?;
+        let time_step = stepping::setting::time_step(&plan.stepping, critical, inputs)?;
+        stepping::setting::stable_on_frame(&plan.stepping, time_step, frame, &properties, session)?;
         let duration = inputs.positive(methods::DURATION.name, &plan.duration, Dimension::TIME)?;
         let times = Times {
             time_step,

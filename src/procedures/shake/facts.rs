@@ -5,7 +5,7 @@ use crate::plan::procedures::shake::block as schema;
 use crate::plan::{Dependence, Plan, Shake};
 use crate::procedures::facts::{Delay, Facts, Recorded, Tests};
 use crate::procedures::stepping;
-use crate::procedures::stepping::tracking::delay::of_frame;
+use crate::procedures::stepping::tracking::frame_delay;
 use crate::record::ShakeHistory;
 
 pub(crate) fn facts(shake: &Shake) -> Facts<'_> {
@@ -59,7 +59,7 @@ pub(crate) fn delay(plan: &Plan, shake: &Shake) -> Option<Delay> {
         stepping,
         ..
     } = shake;
-    of_frame(plan, *specimen, damping, stepping, |properties| {
+    frame_delay(plan, *specimen, damping, stepping, |properties| {
         Some(properties.critical_time_step())
     })
 }

@@ -5,7 +5,7 @@ use crate::physics::integrator::state::FrameState;
 use crate::physics::statistics::noisy_largest::NoisyLargest;
 use crate::physics::structure::{Modes, drifts, widen};
 use crate::plan::procedures::shake::block as schema;
-use crate::procedures::stepping::tracking::tracking_summary::Followed;
+use crate::procedures::stepping::tracking::TrackingSummary;
 use crate::record::NamedResult;
 use crate::schema::ResultKind;
 
@@ -72,7 +72,7 @@ impl ShakeSummary {
 pub(crate) fn results(
     modes: Option<&Modes>,
     summary: Option<&ShakeSummary>,
-    followed: &Followed,
+    followed: &TrackingSummary,
 ) -> Vec<NamedResult> {
     let list = |kind: ResultKind, read: fn(&ShakeSummary) -> &[f64]| {
         kind.found_list(summary.map(|summary| read(summary).to_vec()))

@@ -10,8 +10,8 @@ use crate::plan::{Plan, Shake};
 use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::stepping::energy::observe_imbalance;
 use crate::procedures::stepping::frame_uncertainty::FrameUncertainty;
-use crate::procedures::stepping::run::{FrameSteps, above_critical, frame_of};
-use crate::procedures::stepping::tracking::tracking_summary::Followed;
+use crate::procedures::stepping::setting::{FrameSteps, above_critical, frame_of};
+use crate::procedures::stepping::tracking::TrackingSummary;
 use crate::record::{History, ShakeHistory};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
@@ -31,7 +31,7 @@ pub(crate) fn perform(
         Err(stop) => {
             return Performed {
                 history: History::Shake(ShakeHistory::default()),
-                results: results(None, None, &Followed::default()),
+                results: results(None, None, &TrackingSummary::default()),
                 stop: Some(stop),
             };
         }
@@ -51,7 +51,7 @@ pub(crate) fn perform(
         setting: &setting,
         history,
         summary: ShakeSummary::new(setting.frame.order(), of_base_shear(session)),
-        followed: Followed::default(),
+        followed: TrackingSummary::default(),
     };
     let mut stop = shaking.run(plan, ground, session).err();
     let summary = Some(&shaking.summary).filter(|_| !shaking.history.steps.is_empty());

@@ -6,7 +6,7 @@ use crate::plan::formula::Formula;
 use crate::plan::procedures::shake::block as schema;
 use crate::plan::{Frame, Ground, Shake};
 use crate::procedures::stepping;
-use crate::procedures::stepping::run::{FrameSteps, Times};
+use crate::procedures::stepping::setting::{FrameSteps, Times};
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
@@ -30,10 +30,10 @@ impl Setting {
         inputs: &mut Inputs<'_>,
         session: &Session<'_>,
     ) -> Result<Self, Stop> {
-        let properties = stepping::run::properties(frame, &plan.damping, inputs)?;
+        let properties = stepping::setting::properties(frame, &plan.damping, inputs)?;
         let critical = properties.critical_time_step();
-        let time_step = stepping::run::time_step(&plan.stepping, critical, inputs)?;
-        stepping::run::stable_on_frame(&plan.stepping, time_step, frame, &properties, session)?;
+        let time_step = stepping::setting::time_step(&plan.stepping, critical, inputs)?;
+        stepping::setting::stable_on_frame(&plan.stepping, time_step, frame, &properties, session)?;
         let to_the_end = Formula::Constant(ground.duration());
         let duration = inputs.positive(
             methods::DURATION.name,

@@ -7,12 +7,10 @@ use crate::physics::integrator::solver::FrameSolver;
 use crate::physics::structure::ground::acceleration_at;
 use crate::physics::tracking::monitor::Tracking;
 use crate::plan::{Ground, Shake};
-use crate::procedures::stepping::axes::AxesState;
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
-use crate::procedures::stepping::start::{Start, not_stepped};
-use crate::procedures::stepping::step_loop;
-use crate::procedures::stepping::step_loop::{Balance, Stepped};
-use crate::procedures::stepping::tracking::tracking_summary::Followed;
+use crate::procedures::stepping::setting::{Start, not_stepped};
+use crate::procedures::stepping::step_loop::{self, AxesState, Balance, Stepped};
+use crate::procedures::stepping::tracking::TrackingSummary;
 use crate::record::{FloorMotion, ShakeHistory, ShakeStep};
 use crate::rig::Reading;
 use crate::run::session::Session;
@@ -22,7 +20,7 @@ pub(crate) struct Shaking<'a> {
     pub(crate) setting: &'a Setting,
     pub(crate) history: ShakeHistory,
     pub(crate) summary: ShakeSummary,
-    pub(crate) followed: Followed,
+    pub(crate) followed: TrackingSummary,
 }
 
 impl Shaking<'_> {

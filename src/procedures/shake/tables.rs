@@ -9,7 +9,7 @@ use crate::schema::columns::{self, column};
 use crate::units::Dimension;
 
 /// A storey at the end of a step.
-pub(crate) struct Row<'a, S> {
+pub(crate) struct FloorRow<'a, S> {
     step: &'a S,
     floors: FloorsAt<'a>,
     floor: usize,
@@ -24,10 +24,12 @@ pub(crate) struct StruckStep<'a> {
 }
 
 /// The storeys of a step after each other, from the ground up.
-fn rows<'a, F: Floors + 'a, S>(steps: impl Iterator<Item = (&'a F, &'a S)>) -> Vec<Row<'a, S>> {
+fn rows<'a, F: Floors + 'a, S>(
+    steps: impl Iterator<Item = (&'a F, &'a S)>,
+) -> Vec<FloorRow<'a, S>> {
     let storeys = |(floors, step): (&'a F, &'a S)| {
         let storeys = floors.drift().into_iter().zip(floors.shear()).enumerate();
-        storeys.map(move |(floor, (drift, shear))| Row {
+        storeys.map(move |(floor, (drift, shear))| FloorRow {
             step,
             floors: floors.at(),
             floor,
@@ -39,17 +41,17 @@ fn rows<'a, F: Floors + 'a, S>(steps: impl Iterator<Item = (&'a F, &'a S)>) -> V
 }
 
 /// The rows of steps that contain their floors.
-fn rows_of<S: Floors>(steps: &[S]) -> Vec<Row<'_, S>> {
+fn rows_of<S: Floors>(steps: &[S]) -> Vec<FloorRow<'_, S>> {
     rows(steps.iter().map(|step| (step, step)))
 }
 
 /// The number of the storey, from 1.
-const fn storey<'a, S>() -> TableColumn<Row<'a, S>> {
+const fn storey<'a, S>() -> TableColumn<FloorRow<'a, S>> {
     Integer(columns::STOREY, |row| row.floor as u64 + 1)
 }
 
 /// Commanded and measured positions of the floors.
-fn positions<'a, S>() -> Vec<TableColumn<Row<'a, S>>> {
+fn positions<'a, S>() -> Vec<TableColumn<FloorRow<'a, S>>> {
     vec![
         Number(columns::COMMAND, |row| row.floors.command[row.floor]),
         Number(columns::DISPLACEMENT, |row| row.floors.measured[row.floor]),
@@ -57,7 +59,7 @@ fn positions<'a, S>() -> Vec<TableColumn<Row<'a, S>>> {
 }
 
 /// The computed motion of the floors.
-fn computed<'a, S>() -> Vec<TableColumn<Row<'a, S>>> {
+fn computed<'a, S>() -> Vec<TableColumn<FloorRow<'a, S>>> {
     vec![
         Number(columns::COMPUTED, |row| row.floors.computed[row.floor]),
         Number(columns::VELOCITY, |row| row.floors.velocity[row.floor]),
@@ -68,7 +70,7 @@ fn computed<'a, S>() -> Vec<TableColumn<Row<'a, S>>> {
 }
 
 /// The restoring forces of the floors, and the drifts and shears of the storeys.
-fn forces<'a, S>() -> Vec<TableColumn<Row<'a, S>>> {
+fn forces<'a, S>() -> Vec<TableColumn<FloorRow<'a, S>>> {
     vec![
         Number(columns::RESTORING_FORCE, |row| {
             row.floors.restoring_force[row.floor]
@@ -79,7 +81,7 @@ fn forces<'a, S>() -> Vec<TableColumn<Row<'a, S>>> {
 }
 
 /// The tracking of the floors.
-fn tracking<'a, S>() -> Vec<TableColumn<Row<'a, S>>> {
+fn tracking<'a, S>() -> Vec<TableColumn<FloorRow<'a, S>>> {
     vec![
         Number(columns::TRACKING_ENERGY_ERROR, |row| {
             row.floors.tracking[row.floor].energy_error
@@ -102,10 +104,10 @@ pub(crate) fn table(name: String, history: &ShakeHistory) -> Table<'_> {
 }
 
 /// The columns of a ground-motion test; the energies are those of the whole frame.
-pub(crate) fn shake<'a>() -> Vec<TableColumn<Row<'a, ShakeStep>>> {
+pub(crate) fn shake<'a>() -> Vec<TableColumn<FloorRow<'a, ShakeStep>>> {
     let ground_acceleration = column("ground_acceleration_m_per_s2", Dimension::ACCELERATION);
     let step = vec![
-        Integer(columns::STEP, |row: &Row<'a, ShakeStep>| row.step.step),
+        Integer(columns::STEP, |row: &FloorRow<'a, ShakeStep>| row.step.step),
         storey(),
         Number(columns::TIME, |row| row.floors.time),
         Number(columns::WALL_TIME, |row| row.step.wall_time),
@@ -114,7 +116,7 @@ pub(crate) fn shake<'a>() -> Vec<TableColumn<Row<'a, ShakeStep>>> {
     let energies = vec![
         Number(
             column("kinetic_energy_j", Dimension::ENERGY),
-            |row: &Row<'a, ShakeStep>| row.step.energies.kinetic,
+            |row: &FloorRow<'a, ShakeStep>| row.step.energies.kinetic,
         ),
         Number(columns::RESTORING_ENERGY, |row| row.step.energies.restoring),
         Number(columns::DAMPING_ENERGY, |row| row.step.energies.damping),
@@ -134,9 +136,9 @@ pub(crate) fn shake<'a>() -> Vec<TableColumn<Row<'a, ShakeStep>>> {
 }
 
 /// The columns of an impact on a storey: the striker, and the floors.
-pub(crate) fn struck<'a>() -> Vec<TableColumn<Row<'a, StruckStep<'a>>>> {
+pub(crate) fn struck<'a>() -> Vec<TableColumn<FloorRow<'a, StruckStep<'a>>>> {
     let step = vec![
-        Integer(columns::STEP, |row: &Row<'a, StruckStep<'a>>| {
+        Integer(columns::STEP, |row: &FloorRow<'a, StruckStep<'a>>| {
             row.step.impact.step
         }),
         storey(),
@@ -145,9 +147,10 @@ pub(crate) fn struck<'a>() -> Vec<TableColumn<Row<'a, StruckStep<'a>>>> {
         Text(columns::STATE, |row| row.step.impact.state.name()),
     ];
     let striker = vec![
-        Number(columns::STOREY_ENERGY, |row: &Row<'a, StruckStep<'a>>| {
-            row.step.floors.storey_energy[row.floor]
-        }),
+        Number(
+            columns::STOREY_ENERGY,
+            |row: &FloorRow<'a, StruckStep<'a>>| row.step.floors.storey_energy[row.floor],
+        ),
         Number(columns::CONTACT_FORCE, |row| row.step.impact.contact_force),
         Number(columns::STRIKER_DISPLACEMENT, |row| {
             row.step.impact.striker_displacement
@@ -192,15 +195,17 @@ pub(crate) fn storey_impact(steps: &[ImpactStep], floors: &[FloorStep]) -> Vec<C
 }
 
 /// The columns of an unloading.
-pub(crate) fn unloaded<'a>() -> Vec<TableColumn<Row<'a, UnloadStep>>> {
+pub(crate) fn unloaded<'a>() -> Vec<TableColumn<FloorRow<'a, UnloadStep>>> {
     let step = vec![
-        Integer(columns::STEP, |row: &Row<'a, UnloadStep>| row.step.step),
+        Integer(columns::STEP, |row: &FloorRow<'a, UnloadStep>| {
+            row.step.step
+        }),
         storey(),
         Number(columns::WALL_TIME, |row| row.step.wall_time),
     ];
     let tangents = vec![Optional(
         columns::TANGENT_STIFFNESS,
-        |row: &Row<'a, UnloadStep>| row.step.tangent_stiffness[row.floor],
+        |row: &FloorRow<'a, UnloadStep>| row.step.tangent_stiffness[row.floor],
     )];
     joined([step, positions(), forces(), tangents])
 }

@@ -13,7 +13,7 @@ use crate::procedures::common::perturbed_inputs::LEADS_ELSEWHERE;
 use crate::procedures::common::results::{Evaluated, flat, give, index_of, layout_of, values};
 use crate::procedures::stepping;
 use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there};
-use crate::procedures::stepping::run::Steps;
+use crate::procedures::stepping::setting::Steps;
 use crate::record::{NamedResult, ShakeHistory};
 use crate::run::stop::Stop;
 use crate::uncertainty::engine::{Evaluate, Evaluation, Progress, Shifts, Unknown};
@@ -120,13 +120,13 @@ struct RecordedShake<'a, 'run> {
 }
 
 /// The frame, its periods \[s\] and the factor on the ground.
-struct Inputs {
+struct ShakeInputs {
     run: FrameRun,
     periods: Vec<f64>,
     scale: f64,
 }
 
-impl Inputs {
+impl ShakeInputs {
     /// The results with their values.
     fn numbers(&self, floors: &Floors) -> Evaluated {
         vec![
@@ -140,7 +140,11 @@ impl Inputs {
 }
 
 impl RecordedShake<'_, '_> {
-    fn run(&self, inputs: &Inputs, readings: &Perturbation) -> Result<FloorsOutcome, FrameError> {
+    fn run(
+        &self,
+        inputs: &ShakeInputs,
+        readings: &Perturbation,
+    ) -> Result<FloorsOutcome, FrameError> {
         let accelerations = self
             .accelerations
             .iter()
@@ -155,9 +159,9 @@ impl RecordedShake<'_, '_> {
 }
 
 impl Evaluate for RecordedShake<'_, '_> {
-    type Inputs = Inputs;
+    type Inputs = ShakeInputs;
 
-    fn inputs(&self, shifts: Shifts<'_>) -> Result<Inputs, String> {
+    fn inputs(&self, shifts: Shifts<'_>) -> Result<ShakeInputs, String> {
         let ShakeUncertainty {
             uncertainty,
             plan,
@@ -169,7 +173,7 @@ impl Evaluate for RecordedShake<'_, '_> {
             uncertainty.moved_damping(shifts),
         );
         let (properties, scale) = uncertainty.run.with_inputs(shifts, &mut |inputs| {
-            let properties = stepping::run::properties(&frame, &damping, inputs)?;
+            let properties = stepping::setting::properties(&frame, &damping, inputs)?;
             Ok((
                 properties,
                 inputs.number(schema::SCALE.name, &plan.scale, Dimension::NUMBER)?,
@@ -186,14 +190,14 @@ impl Evaluate for RecordedShake<'_, '_> {
             matrices: properties.matrices,
             ..uncertainty.frame_run(&setting.frame)
         };
-        Ok(Inputs {
+        Ok(ShakeInputs {
             run,
             periods,
             scale: scale * (1.0 + by * ground.scale_uncertainty),
         })
     }
 
-    fn evaluate(&self, readings: &Perturbation, inputs: &Inputs) -> Evaluation {
+    fn evaluate(&self, readings: &Perturbation, inputs: &ShakeInputs) -> Evaluation {
         let numbers = |floors: &Floors| flat(inputs.numbers(floors));
         let Ok(FloorsOutcome {
             between,

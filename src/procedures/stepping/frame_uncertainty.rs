@@ -2,10 +2,10 @@
 //! of the plan, its damping, the rig's calibration. Out: the sources, inputs with sources perturbed, and the runs to re-integrate. The
 //! run itself does not change, and no rig moves.
 
-use super::run::FrameSteps;
+use super::setting::FrameSteps;
 use crate::physics::reintegration::frame::{Floors, FrameRun};
 use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
-use crate::physics::reintegration::hysteresis_replay::ContinuousMotion;
+use crate::physics::reintegration::recorded_path::ContinuousMotion;
 use crate::plan::formula::{Formula, Operator};
 use crate::plan::procedures::shake::block as schema;
 use crate::plan::{Frame, Mode, ShakeDamping, Stepping};

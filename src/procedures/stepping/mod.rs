@@ -2,14 +2,13 @@
 //! motion, tracking. In: who computes the steps, and a rig behind the guard. Out: completed steps.
 //! It knows no striker and no ground motion.
 
-pub(crate) mod axes;
 pub(crate) mod check;
+mod continuous_motion;
 pub(crate) mod energy;
 pub(crate) mod frame_uncertainty;
 pub(crate) mod operator_stability_watch;
 pub(crate) mod report;
-pub(crate) mod run;
 pub(crate) mod self_tested;
-pub(crate) mod start;
+pub(crate) mod setting;
 pub(crate) mod step_loop;
 pub(crate) mod tracking;

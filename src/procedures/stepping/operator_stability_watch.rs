@@ -2,7 +2,7 @@
 //! specimen is not stiffer than `K_I`, and explicit Newmark up to 2/ω of its largest stiffness. In: the readings, step by step. Out: one
 //! observation. It stops nothing.
 
-use super::start::Start;
+use super::setting::Start;
 use crate::physics::impact::ImpactInput;
 use crate::physics::integrator::stability::{Met, longest_stable_step};
 use crate::physics::structure::{FrameMatrices, Matrices, drifts, shears, storeys_of};

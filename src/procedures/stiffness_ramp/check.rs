@@ -92,7 +92,11 @@ fn fit(checker: &mut Checker<'_>, block: usize) -> Option<RampFit> {
     }
 }
 
-/// The readings during the pauses.
+/// The readings during the pauses: `Some(None)` if the plan states none.
+#[expect(
+    clippy::option_option,
+    reason = "left out and faulty are different things here"
+)]
 fn watched_hold(checker: &mut Checker<'_>, block: usize) -> Option<Option<WatchedHold>> {
     match checker.field(block, NAMES.relaxation) {
         Some((entry, written)) => {

@@ -1,7 +1,7 @@
 //! The facts about a stiffness ramp that check and report need without running it. In: the ramp. Out: facts.
 
 use super::{figures, report};
-use crate::physics::self_test::Part;
+use crate::physics::self_test::SelfTestPart;
 use crate::plan::procedures::stiffness_ramp::block as schema;
 use crate::plan::{RampFit, StiffnessRamp};
 use crate::procedures::facts::{Facts, Recorded};
@@ -30,9 +30,9 @@ pub(crate) fn recorded(history: &StiffnessRampHistory) -> Recorded {
 }
 
 /// The fit that a ramp uses.
-pub(crate) const fn self_tested(ramp: &StiffnessRamp) -> Part {
+pub(crate) const fn self_tested(ramp: &StiffnessRamp) -> SelfTestPart {
     match ramp.fit {
-        RampFit::Linear => Part::LineFit,
-        RampFit::Bilinear | RampFit::Multilinear(_) => Part::CurveFit,
+        RampFit::Linear => SelfTestPart::LineFit,
+        RampFit::Bilinear | RampFit::Multilinear(_) => SelfTestPart::CurveFit,
     }
 }

@@ -7,7 +7,7 @@ use crate::physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
 use crate::plan::procedures::unload::block as schema;
 use crate::plan::{Frame, Plan, Unload};
 use crate::procedures::common::perturbed_inputs::UncertainRun;
-use crate::procedures::stepping::run::frame_of;
+use crate::procedures::stepping::setting::frame_of;
 use crate::record::{EventKind, History, NamedResult, Rest, UnloadStep};
 use crate::rig::Reading;
 use crate::run::Performed;

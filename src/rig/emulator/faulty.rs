@@ -5,7 +5,7 @@ use rand::RngExt as _;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::SeedableRng as _;
 
-use super::script::{Fault, GarbagePosition, LineFault, ReplyFault, What, When};
+use super::script::{GarbagePosition, LineFault, ReplyFault, ScriptedFault, What, When};
 use super::{EmulatedRig, Firmware};
 
 /// Time between the parts of a split reply, and between a reply and the hang-up after it \[s\].
@@ -29,7 +29,7 @@ pub struct Faulty {
 
 /// A fault that is still active.
 struct Armed {
-    fault: Fault,
+    fault: ScriptedFault,
     /// Remaining number of replies that it affects; None: all.
     left: Option<u64>,
 }
@@ -44,8 +44,8 @@ struct Outgoing {
 impl Faulty {
     /// A firmware with the faults of its line.
     #[must_use]
-    pub fn new(firmware: Box<dyn Firmware>, faults: Vec<Fault>, seed: u64) -> Self {
-        let arm = |fault: Fault| {
+    pub fn new(firmware: Box<dyn Firmware>, faults: Vec<ScriptedFault>, seed: u64) -> Self {
+        let arm = |fault: ScriptedFault| {
             let left = if let What::Replies(_, count) = &fault.what {
                 *count
             } else {

@@ -76,7 +76,7 @@ pub fn of_plan(
     let mut controllers = of_role("actuator", link.actuators());
     controllers.extend(of_role("load cell", link.load_cells()));
     let names: Vec<String> = controllers.iter().map(|(name, _)| name.clone()).collect();
-    let unreachable = |fault: &&super::script::Fault| {
+    let unreachable = |fault: &&super::script::ScriptedFault| {
         fault.own_of.is_some() && fault.line_index(&names).is_none()
     };
     if let Some(axis) = script
@@ -87,7 +87,7 @@ pub fn of_plan(
     {
         return Err(NoStandIn::NoOwnDevice { axis: axis + 1 });
     }
-    Ok(RigEmulator::of(rig, log, script, controllers))
+    Ok(RigEmulator::with_controllers(rig, log, script, controllers))
 }
 
 /// Initial position of each actuator \[m\].

@@ -1,17 +1,17 @@
 //! A rig emulator: one emulated rig and its controllers, each on a separate line. In: bytes of a line, time. Out: bytes of a line. It knows
 //! neither whether its time is real nor the transport of the bytes.
 
-use super::script::{Fault, Script};
+use super::script::{Script, ScriptedFault};
 use super::{EmulatedRig, Faulty, Firmware, Log};
 
 /// Everything behind the ports of an emulated rig.
 pub struct RigEmulator {
     rig: EmulatedRig,
-    lines: Vec<Line>,
+    lines: Vec<EmulatedLine>,
     log: Log,
 }
 
-struct Line {
+struct EmulatedLine {
     name: String,
     controller: Faulty,
     /// Whether its hang-up is in the log.
@@ -32,7 +32,7 @@ impl RigEmulator {
     /// A rig emulator with its controllers, each with its name, the actuators first. A fault affects the controller that its line
     /// names. For a load cell without an axis this is the first load cell, otherwise the first controller.
     #[must_use]
-    pub fn of(
+    pub fn with_controllers(
         rig: EmulatedRig,
         log: Log,
         script: &Script,
@@ -41,14 +41,14 @@ impl RigEmulator {
         let mut emulator = Self::new(rig, log);
         let names: Vec<String> = controllers.iter().map(|(name, _)| name.clone()).collect();
         for (at, (name, firmware)) in controllers.into_iter().enumerate() {
-            let befalls = |fault: &&Fault| at == fault.line_index(&names).unwrap_or(0);
+            let befalls = |fault: &&ScriptedFault| at == fault.line_index(&names).unwrap_or(0);
             let faults = script.faults.iter().filter(befalls).cloned().collect();
             let controller = Faulty::new(
                 firmware,
                 faults,
                 emulator.rig.settings().seed.wrapping_add(at as u64),
             );
-            emulator.lines.push(Line {
+            emulator.lines.push(EmulatedLine {
                 name,
                 controller,
                 hangup_sent: false,

@@ -37,14 +37,14 @@ use words::Words;
 /// The faults, in the order of their lines.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Script {
-    pub faults: Vec<Fault>,
+    pub faults: Vec<ScriptedFault>,
     /// Indices of actuators and their initial positions \[m\].
     pub starts: Vec<(usize, f64)>,
 }
 
 /// One line of a script.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Fault {
+pub struct ScriptedFault {
     /// On the line of the load cell, and not of the actuator.
     pub on_load_cell: bool,
     /// Index of the axis whose own device has the faulty line.
@@ -148,7 +148,7 @@ impl Script {
     }
 
     fn add(&mut self, line: &str) -> Result<(), String> {
-        let mut words = Words::of(line);
+        let mut words = Words::split(line);
         let actuator = if words.take(&["axis"]) {
             words.axis()?
         } else {
@@ -163,11 +163,11 @@ impl Script {
     }
 }
 
-fn fault(line: &str) -> Result<Fault, String> {
+fn fault(line: &str) -> Result<ScriptedFault, String> {
     let (when, what) = line
         .split_once(':')
         .ok_or("`:` is missing between the time and the fault")?;
-    let mut words = Words::of(what);
+    let mut words = Words::split(what);
     let probability = words.probability()?;
     let when = self::when(when, probability)?;
     let on_load_cell = words.take(&["load", "cell"]);
@@ -203,7 +203,7 @@ fn fault(line: &str) -> Result<Fault, String> {
         }
         _ => {}
     }
-    Ok(Fault {
+    Ok(ScriptedFault {
         on_load_cell,
         own_of,
         actuator,
@@ -212,7 +212,7 @@ fn fault(line: &str) -> Result<Fault, String> {
     })
 }
 
-impl Fault {
+impl ScriptedFault {
     /// Returns the index of the affected controller; None if there is no such controller.
     #[must_use]
     pub fn line_index(&self, names: &[String]) -> Option<usize> {
@@ -231,7 +231,7 @@ impl Fault {
 }
 
 fn when(text: &str, probability: Option<f64>) -> Result<When, String> {
-    let mut words = Words::of(text);
+    let mut words = Words::split(text);
     let when = if words.take(&["at"]) {
         When::At(words.amount("s")?)
     } else if words.take(&["after"]) {

@@ -1,7 +1,7 @@
 //! The final hold of a run that ends early. In: devices that may not answer. Out: whether the rig was seen at rest after
 //! the command, and where. Every wait is bounded. The reason of the hold is not known here.
 
-use super::{Part, RealRig};
+use super::{DeviceRole, RealRig};
 use crate::controllers::{DeviceFault, SLICE};
 use crate::safety;
 use crate::{FinalHold, RigFault};
@@ -32,7 +32,7 @@ impl RealRig {
                 confirmed = self.actuator.hold();
             }
             let Err(fault) = confirmed else { return Ok(()) };
-            self.hold_failure = self.device_fault(Part::Actuator, &fault).to_string();
+            self.hold_failure = self.device_fault(DeviceRole::Actuator, &fault).to_string();
             self.deaf = true;
         }
         safety::hold_everything();
@@ -90,9 +90,11 @@ impl RealRig {
                 }
                 Err(DeviceFault::Interrupted) => self.stop_request.acknowledge(),
                 Err(fault @ (DeviceFault::NoReading { .. } | DeviceFault::Impossible { .. })) => {
-                    last = self.device_fault(Part::Actuator, &fault).to_string();
+                    last = self.device_fault(DeviceRole::Actuator, &fault).to_string();
                 }
-                Err(fault) => return Err(self.device_fault(Part::Actuator, &fault).to_string()),
+                Err(fault) => {
+                    return Err(self.device_fault(DeviceRole::Actuator, &fault).to_string());
+                }
             }
             self.sleep(between);
         }

@@ -49,7 +49,7 @@ pub struct RealRig {
     began: f64,
     /// Time of the last answer of the devices \[s\], by the clock.
     last_contact: f64,
-    proposed: Option<Proposed>,
+    proposed: Option<ProposedMove>,
     /// The position where it has settled \[m\]. None during a motion, and after a motion without settling.
     settled: Option<Vec<f64>>,
     /// For each axis, the start of the dwell in which it settled \[s\] and its median force \[N\].
@@ -96,7 +96,7 @@ struct Axis {
 
 /// A move that was proposed and not yet sent.
 #[derive(Clone, Debug)]
-struct Proposed {
+struct ProposedMove {
     going: DeviceMove,
     /// \[m\], in the polarity of the plan.
     targets: Vec<f64>,
@@ -141,9 +141,9 @@ impl RealRig {
     }
 
     /// A fault of a device as a fault of the rig.
-    fn device_fault(&mut self, part: Part, fault: &DeviceFault) -> RigFault {
+    fn device_fault(&mut self, part: DeviceRole, fault: &DeviceFault) -> RigFault {
         let (role, behind, faulty_member) = match (part, &self.load_cell) {
-            (Part::LoadCell, Some(cell)) => {
+            (DeviceRole::LoadCell, Some(cell)) => {
                 ("load cell", self.link.load_cells(), cell.faulty_member())
             }
             _ => (
@@ -184,9 +184,9 @@ fn degrees_of_freedom(count: usize) -> String {
     }
 }
 
-/// The device.
+/// What a device of the rig does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Part {
+enum DeviceRole {
     Actuator,
     LoadCell,
 }
@@ -238,7 +238,7 @@ impl Rig for RealRig {
         let going = self
             .actuator
             .encode(&turned, speed)
-            .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
+            .map_err(|fault| self.device_fault(DeviceRole::Actuator, &fault))?;
         let encoded = self.in_plan(&going.targets);
         // A first target that is rounded is settled at where it was sent.
         let (rounding, settles_at) = if self.actuator.rounds_first_target() {
@@ -276,7 +276,7 @@ impl Rig for RealRig {
             move_id: going.id,
             at_the_rig,
         };
-        self.proposed = Some(Proposed {
+        self.proposed = Some(ProposedMove {
             going,
             targets: settles_at,
             from,

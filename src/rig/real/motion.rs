@@ -3,7 +3,7 @@
 
 use super::poll::Point;
 use super::settle::{Disturbed, Settling, SettlingReading};
-use super::{Axis, Part, Proposed, RealRig};
+use super::{Axis, DeviceRole, ProposedMove, RealRig};
 use crate::controllers::SLICE;
 use crate::safety::failpoint::{Guarding, on};
 use crate::{LimitedQuantity, Reading, RigFault, named_axis, who};
@@ -38,7 +38,7 @@ impl RealRig {
     /// `arrival` (\[s\], by the clock) is the expected arrival of the axis with the longest travel. Gives the time when all
     /// were seen to be settled \[s\].
     pub(super) fn settle_at(&mut self, targets: &[f64], arrival: f64) -> Result<f64, RigFault> {
-        let mut settling = Settling::of(self.settle, targets);
+        let mut settling = Settling::each_axis(self.settle, targets);
         let mut rested = None;
         loop {
             let point = self.poll()?;
@@ -180,7 +180,7 @@ impl RealRig {
     /// Sends the proposed move. Gives its targets \[m\] and the duration of the longest travel \[s\].
     pub(super) fn set_off(&mut self) -> Result<(Vec<f64>, f64), RigFault> {
         let nothing = || RigFault::Device("nothing was proposed to execute".to_owned());
-        let Proposed {
+        let ProposedMove {
             going,
             targets,
             from,
@@ -188,7 +188,7 @@ impl RealRig {
         self.moved = true;
         self.actuator
             .start(&going)
-            .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
+            .map_err(|fault| self.device_fault(DeviceRole::Actuator, &fault))?;
         (self.deaf, self.settled, self.broken) = (false, None, None);
         self.seen_positions = vec![(self.clock.now(), from[0])];
         for axis in &mut self.axes {
@@ -213,7 +213,7 @@ impl RealRig {
 
     /// Whether a reading at the settled position shows that the rig is not settled.
     pub(super) fn disturbed(&self, point: &Point, targets: &[f64]) -> Option<Disturbed> {
-        let astray = first_astray(&Settling::of(self.settle, targets), point);
+        let astray = first_astray(&Settling::each_axis(self.settle, targets), point);
         (astray.is_some() || point.moving == Some(true) || point.unsettled)
             .then_some(Disturbed { astray })
     }

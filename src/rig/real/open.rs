@@ -3,7 +3,7 @@
 
 use super::coordinate::Coordinate;
 use super::validity::ReadingValidator;
-use super::{Axis, Part, RealRig, degrees_of_freedom};
+use super::{Axis, DeviceRole, RealRig, degrees_of_freedom};
 use crate::controllers::{Device, DeviceFault, DeviceIdentity, metres};
 use crate::transport::Clock;
 use crate::{Identity, Live, Rig as _, RigFault, StopRequest, named_axis};
@@ -117,14 +117,14 @@ impl RealRig {
         let actuator = self
             .actuator
             .identify()
-            .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
+            .map_err(|fault| self.device_fault(DeviceRole::Actuator, &fault))?;
         // Several devices of one role each check their own serial number.
         let alone = |behind: Vec<Behind<'_>>| match behind.as_slice() {
             [one] => Some(one.link.clone()),
             _ => None,
         };
         let fit = alone(self.link.actuators()).map_or(Ok(()), |link| pinned(&link, &actuator));
-        fit.map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
+        fit.map_err(|fault| self.device_fault(DeviceRole::Actuator, &fault))?;
         let mut identities = vec![actuator];
         let cell_link = alone(self.link.load_cells());
         if let Some(cell) = &mut self.load_cell {
@@ -134,7 +134,7 @@ impl RealRig {
             let met = cell
                 .identify()
                 .and_then(|identity| fit(&identity).map(|()| identity));
-            identities.push(met.map_err(|fault| self.device_fault(Part::LoadCell, &fault))?);
+            identities.push(met.map_err(|fault| self.device_fault(DeviceRole::LoadCell, &fault))?);
         }
         self.identity = identity_of(&self.identity.name, &self.link, &identities);
         self.introduction = identities
@@ -150,8 +150,8 @@ impl RealRig {
         let cell = self
             .load_cell
             .as_ref()
-            .map(|cell| (Part::LoadCell, cell.axes()));
-        let other = [Some((Part::Actuator, self.actuator.axes())), cell]
+            .map(|cell| (DeviceRole::LoadCell, cell.axes()));
+        let other = [Some((DeviceRole::Actuator, self.actuator.axes())), cell]
             .into_iter()
             .flatten()
             .find(|(_, axes)| *axes != wanted);
@@ -173,10 +173,10 @@ impl RealRig {
             .collect();
         self.actuator
             .narrow_limits(&own)
-            .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
+            .map_err(|fault| self.device_fault(DeviceRole::Actuator, &fault))?;
         if let Some(cell) = &mut self.load_cell {
             cell.narrow_limits(&own)
-                .map_err(|fault| self.device_fault(Part::LoadCell, &fault))?;
+                .map_err(|fault| self.device_fault(DeviceRole::LoadCell, &fault))?;
         }
         Ok(())
     }

@@ -4,7 +4,7 @@
 //! not diverge over a long run.
 
 use super::RealRig;
-use super::{Part, WIRE_ROUNDING};
+use super::{DeviceRole, WIRE_ROUNDING};
 use crate::controllers::metres;
 use crate::safety::failpoint::{Guarding, on};
 use crate::{EachReading, Reading, Rig as _, RigFault, named_axis};
@@ -96,7 +96,7 @@ impl RealRig {
         let going = self
             .actuator
             .encode_path(&turned)
-            .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
+            .map_err(|fault| self.device_fault(DeviceRole::Actuator, &fault))?;
         let ends = going.targets.iter().zip(&turned);
         let apt = |(axis, (encoded, path)): (&super::Axis, (&f64, &Path))| {
             (encoded - path.to).abs()
@@ -115,7 +115,7 @@ impl RealRig {
         let left = self
             .actuator
             .start_path(&going)
-            .map_err(|fault| self.device_fault(Part::Actuator, &fault))?;
+            .map_err(|fault| self.device_fault(DeviceRole::Actuator, &fault))?;
         (self.deaf, self.settled, self.broken) = (false, None, None);
         self.look_up()?;
         Ok(self.clock.now() + left)

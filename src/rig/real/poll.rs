@@ -5,7 +5,7 @@
 use super::median::representative;
 use super::settle::Disturbed;
 use super::validity::{Invalid, RawSample};
-use super::{Part, RealRig};
+use super::{DeviceRole, RealRig};
 use crate::controllers::{DeviceFault, Flags, Force, Sample};
 use crate::safety::failpoint::{Guarding, on};
 use crate::{Reading, RigFault, safety};
@@ -205,11 +205,11 @@ impl RealRig {
 
     fn ask(&mut self, raw: &mut Vec<Vec<u8>>) -> Result<Point, Unusable> {
         let moved = self.actuator.sample();
-        let moved = self.sampled(Part::Actuator, moved, raw)?;
+        let moved = self.sampled(DeviceRole::Actuator, moved, raw)?;
         let force_sample = match &mut self.load_cell {
             Some(cell) => {
                 let force_sample = cell.sample();
-                Some(self.sampled(Part::LoadCell, force_sample, raw)?)
+                Some(self.sampled(DeviceRole::LoadCell, force_sample, raw)?)
             }
             None => None,
         };
@@ -272,7 +272,7 @@ impl RealRig {
     /// Keeps the bytes, also those of an invalid reading.
     fn sampled(
         &mut self,
-        part: Part,
+        part: DeviceRole,
         sample: Result<Sample, DeviceFault>,
         raw: &mut Vec<Vec<u8>>,
     ) -> Result<Sample, Unusable> {

@@ -30,7 +30,7 @@ pub(super) struct Settling {
 
 impl Settling {
     /// One for each axis.
-    pub(super) fn of(settle: Settle, targets: &[f64]) -> Vec<Self> {
+    pub(super) fn each_axis(settle: Settle, targets: &[f64]) -> Vec<Self> {
         targets
             .iter()
             .map(|target| Self::new(settle, *target))

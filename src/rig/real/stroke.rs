@@ -4,7 +4,7 @@
 
 use super::motion::first_astray;
 use super::settle::Settling;
-use super::{Proposed, RealRig};
+use super::{ProposedMove, RealRig};
 use crate::safety::failpoint::{Guarding, on};
 use crate::{CutOff, EachReading, Rig as _, RigFault};
 
@@ -30,7 +30,9 @@ impl RealRig {
         let ahead = self
             .proposed
             .as_ref()
-            .is_some_and(|Proposed { targets, from, .. }| (targets[0] - from[0]) * velocity > 0.0);
+            .is_some_and(|ProposedMove { targets, from, .. }| {
+                (targets[0] - from[0]) * velocity > 0.0
+            });
         if samples == 0 || !ahead {
             return Err(RigFault::Device(format!(
                 "invalid stroke at {velocity} m/s with {samples} readings"
@@ -76,7 +78,7 @@ impl RealRig {
         let travel = self
             .proposed
             .as_ref()
-            .map_or(0.0, |Proposed { targets, from, .. }| {
+            .map_or(0.0, |ProposedMove { targets, from, .. }| {
                 (targets[0] - from[0]) * velocity.signum()
             });
         if left > 0 && travel > self.settle.band {
@@ -93,7 +95,7 @@ impl RealRig {
     /// Waits at the end of a stroke until the rig is at rest there, so that the next one begins from rest. The settling of the force is
     /// not relevant for a stroke.
     fn come_to_rest(&mut self, targets: &[f64], arrival: f64) -> Result<(), RigFault> {
-        let settling = Settling::of(self.settle, targets);
+        let settling = Settling::each_axis(self.settle, targets);
         let deadline = arrival + self.settle.timeout;
         loop {
             let point = self.poll()?;

@@ -21,7 +21,7 @@ use super::transport::{Clock as _, Emergency, MonotonicClock};
 pub type Lines = Vec<(Box<dyn Emergency>, Vec<u8>)>;
 
 /// An armed line.
-struct Line {
+struct ArmedLine {
     /// Number of the owner that armed it.
     owner: u64,
     sender: Box<dyn Emergency>,
@@ -29,7 +29,7 @@ struct Line {
 }
 
 /// All armed lines.
-static LINES: Mutex<Vec<Line>> = Mutex::new(Vec::new());
+static LINES: Mutex<Vec<ArmedLine>> = Mutex::new(Vec::new());
 static NEXT: AtomicU64 = AtomicU64::new(0);
 static BEATS: AtomicU64 = AtomicU64::new(0);
 
@@ -50,7 +50,7 @@ pub fn arm(lines: Lines) -> Armed {
     let number = NEXT.fetch_add(1, Ordering::SeqCst);
     if let Some(mut armed) = take_lines() {
         let able = lines.into_iter().filter(|(_, bytes)| !bytes.is_empty());
-        armed.extend(able.map(|(sender, bytes)| Line {
+        armed.extend(able.map(|(sender, bytes)| ArmedLine {
             owner: number,
             sender,
             bytes,
@@ -96,7 +96,7 @@ impl Drop for Armed {
 /// Sends the bytes of every armed line, without waiting for an answer.
 pub fn hold_everything() {
     if let Some(mut lines) = take_lines() {
-        for Line { sender, bytes, .. } in lines.iter_mut() {
+        for ArmedLine { sender, bytes, .. } in lines.iter_mut() {
             sender.send(bytes);
         }
     }
@@ -108,7 +108,7 @@ pub fn beat() {
 }
 
 /// The lines. None if another thread has the lock, such as a thread that panicked while sending.
-fn take_lines() -> Option<MutexGuard<'static, Vec<Line>>> {
+fn take_lines() -> Option<MutexGuard<'static, Vec<ArmedLine>>> {
     for _ in 0..TRIES {
         match LINES.try_lock() {
             Ok(lines) => return Some(lines),

@@ -101,7 +101,7 @@ fn hang_up(errno: Errno) -> io::Error {
 pub(super) struct Sender(OwnedFd);
 
 impl Sender {
-    pub(super) fn of(descriptor: &OwnedFd) -> io::Result<Box<dyn Emergency>> {
+    pub(super) fn to_same_line(descriptor: &OwnedFd) -> io::Result<Box<dyn Emergency>> {
         Ok(Box::new(Self(descriptor.try_clone()?)))
     }
 }

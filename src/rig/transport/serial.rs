@@ -103,7 +103,7 @@ impl Port for SerialPort {
     }
 
     fn emergency(&self) -> io::Result<Box<dyn Emergency>> {
-        Sender::of(&self.descriptor)
+        Sender::to_same_line(&self.descriptor)
     }
 }
 

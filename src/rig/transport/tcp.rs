@@ -77,7 +77,7 @@ impl Port for TcpPort {
     }
 
     fn emergency(&self) -> io::Result<Box<dyn Emergency>> {
-        Sender::of(&self.descriptor)
+        Sender::to_same_line(&self.descriptor)
     }
 }
 

@@ -20,7 +20,7 @@ pub struct Course {
 }
 
 impl Course {
-    pub fn of(path: Path, sign: f64, actuator: &Actuator) -> Self {
+    pub fn along(path: Path, sign: f64, actuator: &Actuator) -> Self {
         let missed = sign * path.from - actuator.reference();
         let misses = sign * path.to - actuator.aim(sign * path.to);
         Self {
@@ -35,7 +35,7 @@ impl Course {
     pub fn resumed(path: Path, sign: f64, actuator: &Actuator, interrupted: Option<Self>) -> Self {
         interrupted
             .filter(|course| course.path == path)
-            .unwrap_or_else(|| Self::of(path, sign, actuator))
+            .unwrap_or_else(|| Self::along(path, sign, actuator))
     }
 
     /// The actuator moves from one time on the path to another \[s\]. Gives the motion of the piston.

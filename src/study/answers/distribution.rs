@@ -159,7 +159,7 @@ impl Distributions {
             Sampling::Sobol => {
                 let replicates = self.of[index].iter().filter(|moments| moments.count > 0);
                 let means: Vec<f64> = replicates.map(|moments| moments.mean).collect();
-                mean::of(&means, confidence).map(|mean| ends(mean.interval))
+                mean::mean_of(&means, confidence).map(|mean| ends(mean.interval))
             }
         }
     }
@@ -182,7 +182,7 @@ impl Distributions {
         // A quantile beyond all results of one replicate has no mean.
         let side = |side: usize| {
             let values: Option<Vec<f64>> = each.iter().map(|ends| ends[side]).collect();
-            values.and_then(|values| mean::of(&values, confidence))
+            values.and_then(|values| mean::mean_of(&values, confidence))
         };
         let [low, high] = [0, 1].map(side);
         Quantile {

@@ -4,7 +4,7 @@ use tempfile::TempDir;
 
 use super::Answers;
 use crate::physics::study::distribution::{Distribution, Spread};
-use crate::physics::study::inputs::{Inputs, Source};
+use crate::physics::study::inputs::{Source, StudyInputs};
 use crate::physics::study::sampling::Design;
 use crate::study::data_set::testing::{metadata as any_metadata, written};
 use crate::study::data_set::{
@@ -13,9 +13,9 @@ use crate::study::data_set::{
 use crate::units::Dimension;
 
 /// y = a + 2b with a, b ~ N(1, 0.1): mean 3, standard deviation 0.1√5, first-order indices 0.2 and 0.8.
-pub fn normals(design: Design, seed: u64) -> Inputs {
+pub fn normals(design: Design, seed: u64) -> StudyInputs {
     let law = || Source::Distribution(Distribution::normal(1.0, Spread::Sd(0.1)).unwrap());
-    Inputs::new(vec![law(), law()], &[], design, seed).unwrap()
+    StudyInputs::new(vec![law(), law()], &[], design, seed).unwrap()
 }
 
 /// The standard deviation of y.
@@ -45,7 +45,7 @@ pub fn metadata(runs: u64) -> Metadata {
 }
 
 /// The runs of y; every run of `lost` has no result.
-pub fn rows(inputs: &Inputs, runs: u64, lost: impl Fn(u64) -> bool) -> Vec<Row> {
+pub fn rows(inputs: &StudyInputs, runs: u64, lost: impl Fn(u64) -> bool) -> Vec<Row> {
     let limit = 3.0 + 2.0 * scatter();
     let mut values = Vec::new();
     (0..runs)
@@ -109,7 +109,7 @@ pub fn fragility_metadata(values: &[f64], runs: u64) -> Metadata {
 /// The rows of it; at the capacity, the displacement is 50 mm.
 pub fn fragility_rows(values: &[f64], runs: u64) -> Vec<Row> {
     let law = Distribution::normal(0.0, Spread::Sd(1.0)).unwrap();
-    let inputs = Inputs::new(vec![Source::Distribution(law)], &[], Design::Random, 8).unwrap();
+    let inputs = StudyInputs::new(vec![Source::Distribution(law)], &[], Design::Random, 8).unwrap();
     let mut drawn = Vec::new();
     (0..values.len() as u64 * runs)
         .map(|run| {

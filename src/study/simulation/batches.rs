@@ -4,7 +4,7 @@
 use crate::plan::Plan;
 use crate::plan::formula::{Part, ResultReference};
 use crate::procedures;
-use crate::procedures::impact::steps::batched::{self, BatchedImpact};
+use crate::procedures::impact::batched::{self, BatchedImpact};
 use crate::record::{Outcome, Record};
 use crate::rig::virtual_rig;
 

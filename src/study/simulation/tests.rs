@@ -107,7 +107,7 @@ fn every_example_that_a_batch_takes_has_the_same_results_in_it() {
             .results
             .iter()
             .map(|result| result.name)
-            .filter(|name| crate::procedures::impact::steps::batched::gives(name))
+            .filter(|name| crate::procedures::impact::batched::gives(name))
             .collect();
         for name in names {
             let number = |record: &crate::record::Record| {

@@ -210,7 +210,7 @@ mod tests {
             ..NativeSettings::default()
         };
         let firmware = Native::new(settings, &rig);
-        InProcess::new(RigEmulator::of(
+        InProcess::new(RigEmulator::with_controllers(
             rig,
             log,
             &script,

@@ -19,6 +19,9 @@ use serde_json::Value;
 use psd_rig::journal::{Damage, Line, Recovered, Unreadable};
 
 /// Reads a run log in memory.
+///
+/// # Errors
+/// The reason, for a person.
 pub fn recover(bytes: &[u8]) -> Result<Recovered, Damage> {
     psd_rig::journal::recover(&bytes.to_vec().into()).map_err(|fault| match fault {
         Unreadable::Damaged(damage) => damage,

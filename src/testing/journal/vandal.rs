@@ -129,7 +129,7 @@ impl Vandal {
             Value::String(text) => match self.below(4) {
                 0 => text.clear(),
                 1 => text.push_str(" \u{1b}[31m\u{0}"),
-                2 => *text = "unloading".to_owned(),
+                2 => "unloading".clone_into(text),
                 _ => *text = other[self.below(other.len())].0.word().to_lowercase(),
             },
             Value::Object(_) | Value::Null => *value = other[self.below(other.len())].1.clone(),

@@ -3,7 +3,7 @@
 use super::case::{Amendment, Case, Devices, Registers};
 use super::fault::Fault;
 use super::laws::{Obeys, Witness};
-use crate::emulator::script::{Fault as Scripted, Script, What, When};
+use crate::emulator::script::{Script, ScriptedFault, What, When};
 use crate::emulator::{Log, RigEmulator, of_plan};
 use crate::plan::formula::Formula;
 use crate::plan::{
@@ -306,7 +306,7 @@ const fn swapped(number: ModbusNumber) -> ModbusNumber {
 }
 
 /// The fault as the emulator scripts it. None: it is a fault of another part.
-fn scripted(fault: &Fault) -> Option<Scripted> {
+fn scripted(fault: &Fault) -> Option<ScriptedFault> {
     let (on_load_cell, when, what) = match fault {
         Fault::Reply {
             after,
@@ -324,7 +324,7 @@ fn scripted(fault: &Fault) -> Option<Scripted> {
         }
         _ => return None,
     };
-    Some(Scripted {
+    Some(ScriptedFault {
         on_load_cell,
         own_of: None,
         actuator: 0,

@@ -3,8 +3,8 @@
 
 use crate::physics::contact::Approaching;
 use crate::physics::impact::{ImpactInput, Until};
-use crate::physics::reintegration::hysteresis_replay::Reading;
 use crate::physics::reintegration::impact::{ImpactValues, integrate};
+use crate::physics::reintegration::recorded_path::Reading;
 use crate::plan::formula::Formula;
 use crate::plan::{Contact, Impact, Link, Plan, ProcedureKind, VirtualLink};
 use crate::record::{NamedResult, Record};

@@ -2,8 +2,8 @@
 //! compared with the re-integration along the recorded path.
 
 use crate::physics::impact::ImpactInput;
-use crate::physics::reintegration::hysteresis_replay::Reading;
 use crate::physics::reintegration::impact::integrate;
+use crate::physics::reintegration::recorded_path::Reading;
 use crate::physics::specimen::{RestoringForce, SpecimenModel};
 use crate::plan::formula::{Formula, ProcedureId};
 use crate::plan::{

@@ -71,9 +71,14 @@ impl PageCase {
     }
 }
 
-/// The shared plans that a case begins with: `with="beam, hammer"`, each with an empty line after it.
-fn shared_plans(written: &PagePlan<'_>, shared: &Page<'_>) -> String {
+/// The names of the shared plans that a case begins with: `with="beam, hammer"`.
+fn shared_names<'a>(written: &PagePlan<'a>) -> impl Iterator<Item = &'a str> {
     let names = written.option("with").unwrap_or_default();
+    names.split(", ").filter(|name| !name.is_empty())
+}
+
+/// The shared plans that a case begins with, each with an empty line after it.
+fn shared_plans(written: &PagePlan<'_>, shared: &Page<'_>) -> String {
     let text = |name: &str| {
         let plan = shared
             .plans
@@ -82,8 +87,9 @@ fn shared_plans(written: &PagePlan<'_>, shared: &Page<'_>) -> String {
         plan.unwrap_or_else(|| panic!("no plan `{name}` is shared"))
             .text
     };
-    let names = names.split(", ").filter(|name| !name.is_empty());
-    names.flat_map(|name| [text(name), "\n"]).collect()
+    shared_names(written)
+        .flat_map(|name| [text(name), "\n"])
+        .collect()
 }
 
 /// Every case of every page.
@@ -173,5 +179,18 @@ fn the_cases_of_a_page_have_names_of_their_own() {
             "{}: twice",
             case.place(case.line)
         );
+    }
+}
+
+#[test]
+fn every_shared_plan_is_used() {
+    let pages: Vec<String> = Code::ALL.iter().map(|code| page_text(*code)).collect();
+    let pages: Vec<Page<'_>> = pages.iter().map(|text| Page::read(text)).collect();
+    let cases = pages.iter().flat_map(|page| &page.cases);
+    let used: Vec<&str> = cases.flat_map(shared_names).collect();
+    let shared = shared_text();
+    for plan in Page::read(&shared).plans {
+        let name = plan.option("shared").expect("a shared plan has a name");
+        assert!(used.contains(&name), "no case begins with `{name}`");
     }
 }

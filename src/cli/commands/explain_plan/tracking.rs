@@ -7,7 +7,7 @@
 
 use crate::plan::procedures::impact::block::MASS;
 use crate::plan::{Impact, Link, Mode, Plan, Shake, Stepping, VirtualLink};
-use crate::procedures::stepping::tracking::delay::late;
+use crate::procedures::stepping::tracking::delay;
 use crate::record::{
     Floors, ImpactHistory, Modes, Outcome, ProcedureRecord, Record, ShakeHistory, StruckFrame,
 };
@@ -26,7 +26,7 @@ pub(crate) fn rows(
     history: &ImpactHistory,
 ) -> Vec<Vec<String>> {
     let (late, unsettled) = (
-        late(plan, &impact.stepping, history.time_step),
+        delay(plan, &impact.stepping, history.time_step),
         uncertain(plan, impact.stepping.mode),
     );
     let input = |name: &str| {
@@ -138,7 +138,7 @@ fn frame_rows<S: Floors>(
     steps: &[S],
 ) -> Vec<Vec<String>> {
     let (late, unsettled) = (
-        late(plan, stepping, time_step),
+        delay(plan, stepping, time_step),
         uncertain(plan, stepping.mode),
     );
     let amplitude = steps

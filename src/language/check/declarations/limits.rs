@@ -71,10 +71,6 @@ impl<'a> Checker<'a> {
     }
 
     /// The same for an argument; `Some(None)` if it is omitted, None if it has an error.
-    #[expect(
-        clippy::option_option,
-        reason = "left out and faulty are different things here"
-    )]
     pub fn bounds_argument(
         &mut self,
         chosen: &Chosen<'a>,

@@ -212,10 +212,6 @@ impl<'a> Checker<'a> {
 /// Arguments other than one number. A required one always exists, because otherwise its variant had an error.
 impl<'a> Checker<'a> {
     /// An optional argument, a number known before the run: `Some(None)` if it is omitted, None if it has an error.
-    #[expect(
-        clippy::option_option,
-        reason = "left out and faulty are different things here"
-    )]
     pub fn optional_argument(
         &mut self,
         chosen: &Chosen<'a>,
@@ -260,10 +256,6 @@ impl<'a> Checker<'a> {
     }
 
     /// An argument that is a string, with its span; `Some(None)` if it is omitted, None if it is not a string.
-    #[expect(
-        clippy::option_option,
-        reason = "left out and faulty are different things here"
-    )]
     pub fn text_argument(
         &mut self,
         chosen: &Chosen<'a>,

@@ -295,10 +295,6 @@ impl<'a> Checker<'a> {
     }
 
     /// Some(None) if the field is omitted, None if it has an error.
-    #[expect(
-        clippy::option_option,
-        reason = "left out and faulty are different things here"
-    )]
     pub fn optional(&mut self, block: usize, field: &str) -> Option<Option<Formula>> {
         match self.field(block, field) {
             Some(_) => self.quantity(block, field).map(Some),

@@ -35,6 +35,9 @@ pub enum InputLocation<'a> {
 }
 
 /// The position of the input with this path.
+///
+/// # Errors
+/// Why the path names no input.
 pub fn find_input<'a>(scope: &Scope<'a>, path: &[&str]) -> Result<InputLocation<'a>, NoInput> {
     let (&owner, rest) = path.split_first().unwrap_or((&"", &[]));
     let block = match scope.meaning(owner) {
@@ -301,10 +304,6 @@ impl<'a> Checker<'a> {
     }
 
     /// The value given from outside the plan for a field or argument, checked as the plan's own would be. None: there is none.
-    #[expect(
-        clippy::option_option,
-        reason = "no value from outside and a faulty one are different things here"
-    )]
     pub fn overridden(
         &mut self,
         field: &'static Field,

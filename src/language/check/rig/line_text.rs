@@ -5,10 +5,6 @@ use crate::check::expressions::choice::Chosen;
 use crate::check::messages::rigs as message;
 
 /// A string that is sent on a line of a protocol: `Some(None)` if it is omitted.
-#[expect(
-    clippy::option_option,
-    reason = "left out and faulty are different things here"
-)]
 pub fn line_text<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,

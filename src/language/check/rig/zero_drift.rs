@@ -13,10 +13,6 @@ use psd_text::units::Dimension;
 const CHANCE: f64 = 5.0;
 
 /// The zero-drift check of a rig: `Some(None)` if it has none, None if it has an error.
-#[expect(
-    clippy::option_option,
-    reason = "left out and faulty are different things here"
-)]
 pub fn zero_drift(
     checker: &mut Checker,
     block: usize,

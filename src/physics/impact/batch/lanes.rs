@@ -1,38 +1,50 @@
-//! Many impacts side by side, one step at a time. In: impacts that begin in a lane. Out: their results when they end. The arithmetic is
-//! that of [`super::super::ImpactSolver`], in the same order, and of the summary of its steps.
+//! Many impacts side by side, one step at a time. In: impacts that begin in a lane. Out: their results when they end. The step is in
+//! [`super::step`].
+
+#![allow(
+    clippy::inline_always,
+    reason = "a part of its caller, which is compiled for several vector units"
+)]
 
 use fearless_simd::Simd;
 
-use super::rows::{Inputs, LANES, Row, States, Structure, Sums};
-use super::step::{Also, Bits, Setting, step};
-use super::{Impact, LaneSpecimen, Reach};
-use crate::contact::ContactLaw;
+use super::rows::{LANES, LanePart, LaneRow};
+use super::step::{
+    self, Also, BetweenSteps, Marks, StepInputs, StrikerInput, Structure, end_step, needed,
+    without_contact,
+};
+use super::{Batched, Impact, LaneSpecimen};
+use crate::contact::{ContactLaw, ImpulseContact};
 use crate::impact::ImpactInput;
-use crate::impact::summary::{ImpactSummary, still_rising};
+use crate::impact::energy::Energies;
+use crate::impact::summary::{Events, ImpactSummary, LastEnd};
+use crate::integrator::substep::Striker;
+use crate::specimen::BilinearLines;
 
-/// The contacts of an impact, and its stop.
+/// The lanes, as bits, in which something is so at the end of a step.
 #[derive(Clone, Copy, Debug, Default)]
-struct Events {
+struct Bits {
+    touching: u64,
+    stopped: u64,
+    over: u64,
+}
+
+/// An impact in its lane.
+#[derive(Clone, Copy, Debug, Default)]
+struct Course {
     /// Steps of all lanes before its first one, and at its last one.
     begun: u64,
     last: u64,
-    /// The first step at whose end the striker does not move forward.
-    stop: Option<f64>,
-    contacts: u64,
-    /// Speed at which the striker approaches before the first contact.
-    closing: f64,
-    /// The same when the first contact has ended.
-    separating: Option<f64>,
+    events: Events,
 }
 
 /// The impacts of all lanes.
 #[derive(Clone, Debug)]
 pub struct Lanes {
-    inputs: Inputs,
+    inputs: StepInputs<LaneRow>,
     /// A step reads one of them and writes the other, each at its own address. A number that is selected and written where it was read would
-    /// become a masked store, which is slow on some processors.
-    states: [States; 2],
-    sums: Sums,
+    /// become a masked store, which is slow on some processors. What a step leaves as it is, is the same in both.
+    states: [BetweenSteps<LaneRow>; 2],
     /// Index of the state after the last step.
     now: usize,
     /// Steps so far.
@@ -40,162 +52,227 @@ pub struct Lanes {
     /// The last step of the lane that ends first.
     next_end: u64,
     also: Also,
+    ends_at_stop: bool,
     bits: Bits,
     /// What [`Self::follow`] has followed of them.
     touching: u64,
     stopped: u64,
-    events: [Events; LANES],
+    courses: [Course; LANES],
+}
+
+/// The inputs of an impact, its striker and K0, which its first tangent is.
+fn inputs_of(input: &ImpactInput, specimen: LaneSpecimen) -> StepInputs {
+    let force_limit = match input.law {
+        ContactLaw::Limit { force } => force,
+        _ => f64::INFINITY,
+    };
+    let striker = Striker {
+        struck: 0,
+        mass: input.striker_mass,
+        gravity: input.gravity,
+        time_step: input.time_step,
+    };
+    StepInputs {
+        structure: Structure {
+            mass: input.mass,
+            damping: input.damping,
+            time_step: input.time_step,
+            largest_tangent: input.max_tangent_ratio * input.stiffness,
+        },
+        specimen: match specimen {
+            LaneSpecimen::Elastic(model) => BilinearLines {
+                stiffness: model.stiffness,
+                hardened: 0.0,
+                half_band: 0.0,
+            },
+            LaneSpecimen::Bilinear(model) => model.lines(),
+        },
+        contact: ImpulseContact::new(force_limit, &striker),
+        striker: StrikerInput {
+            weight: input.striker_mass * input.gravity,
+            energy: input.striker_energy(),
+        },
+    }
+}
+
+/// A mass at rest, and a striker that is apart for ever and moves: nothing ever happens.
+fn resting() -> (StepInputs, [f64; 2]) {
+    let inputs = StepInputs {
+        structure: Structure {
+            mass: 1.0,
+            damping: 0.0,
+            time_step: 0.0,
+            largest_tangent: 0.0,
+        },
+        specimen: BilinearLines {
+            stiffness: 0.0,
+            hardened: 0.0,
+            half_band: 0.0,
+        },
+        contact: ImpulseContact {
+            force_limit: 0.0,
+            striker_mass: 1.0,
+            fall: 0.0,
+            striker_compliance: 1.0,
+        },
+        striker: StrikerInput {
+            weight: 0.0,
+            energy: 0.0,
+        },
+    };
+    (inputs, [-1.0, f64::MIN_POSITIVE])
 }
 
 impl Lanes {
     /// All at rest.
     pub fn new() -> Self {
+        let (inputs, striker) = resting();
+        let state = BetweenSteps::at_rest(&inputs, striker, 0.0, 0.0);
         Self {
-            inputs: Inputs::new(),
-            states: [States::new(), States::new()],
-            sums: Sums::new(),
+            inputs: inputs.map(|_| LaneRow::ZERO),
+            states: [state.map(|_| LaneRow::ZERO), state.map(|_| LaneRow::ZERO)],
             now: 0,
             clock: 0,
             next_end: 0,
             also: Also::default(),
+            ends_at_stop: false,
             bits: Bits::default(),
             touching: 0,
             stopped: 0,
-            events: [Events::default(); LANES],
+            courses: [Course::default(); LANES],
         }
     }
 
-    fn clear(&mut self, lane: usize) {
-        self.inputs.clear(lane);
-        self.sums.clear(lane);
-        self.states[self.now].clear(lane);
+    fn set(&mut self, lane: usize, inputs: StepInputs, state: BetweenSteps, last: u64) {
+        let set = |row: &mut LaneRow, number: f64| row.set_lane(lane, number);
+        self.inputs.each(inputs, set);
+        for states in &mut self.states {
+            states.each(state, set);
+        }
         self.touching &= !(1 << lane);
         self.stopped &= !(1 << lane);
-        self.events[lane] = Events {
+        self.courses[lane] = Course {
             begun: self.clock,
-            last: u64::MAX,
-            ..Events::default()
+            last,
+            events: Events::default(),
         };
+    }
+
+    /// The number of the last step, counted for all lanes together.
+    #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]
+    const fn instant(&self) -> f64 {
+        self.clock as f64
     }
 
     /// An impact at its start, which takes so many steps at most.
     pub fn begin(&mut self, lane: usize, impact: &Impact, steps: u64) {
-        self.clear(lane);
-        self.events[lane].last = self.clock.saturating_add(steps);
         let input = &impact.input;
-        let specimen = impact.lane_specimen(None).expect("batched");
-        let set = |row: &mut Row, value: f64| row[lane] = value;
-        let structure = Structure {
-            mass: input.mass,
-            damping: input.damping,
-            tangent: input.stiffness,
-        };
-
-        let inputs = &mut self.inputs;
-        set(&mut inputs.mass, input.mass);
-        set(&mut inputs.damping, input.damping);
-        set(&mut inputs.time_step, input.time_step);
-        set(
-            &mut inputs.largest_tangent,
-            input.max_tangent_ratio * input.stiffness,
-        );
-        match specimen {
-            LaneSpecimen::Elastic(model) => set(&mut inputs.stiffness, model.stiffness),
-            LaneSpecimen::Bilinear(model) => {
-                let [stiffness, hardened, half_band] = model.lines();
-                set(&mut inputs.stiffness, stiffness);
-                set(&mut inputs.hardened, hardened);
-                set(&mut inputs.half_band, half_band);
-            }
-        }
-        set(&mut inputs.striker_mass, input.striker_mass);
-        set(&mut inputs.weight, input.striker_mass * input.gravity);
-        set(&mut inputs.fall, input.gravity * input.time_step);
-        set(
-            &mut inputs.striker_compliance,
-            input.time_step / input.striker_mass,
-        );
-        let force_limit = match input.law {
-            ContactLaw::Limit { force } => force,
-            _ => f64::INFINITY,
-        };
-        set(&mut inputs.force_limit, force_limit);
-        set(&mut inputs.striker_energy, input.striker_energy());
-
-        set(&mut self.sums.input, input.striker_energy());
-        let state = &mut self.states[self.now];
-        set(&mut state.tangent, input.stiffness);
-        let response = 1.0 / structure.effective_mass(input.time_step);
-        set(&mut state.response, response);
-        let compliance = input.time_step / input.striker_mass + 0.5 * input.time_step * response;
-        let falling = input.striker_velocity + input.gravity * input.time_step;
-        set(&mut state.needed, falling / compliance);
-        #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]
-        set(&mut state.step_of_max_displacement, self.clock as f64);
-        set(&mut state.striker_displacement, 0.0 - input.gap);
-        set(&mut state.striker_velocity, input.striker_velocity);
+        let inputs = inputs_of(input, impact.lane_specimen(None).expect("batched"));
+        let striker = [0.0 - input.gap, input.striker_velocity];
+        let state = BetweenSteps::at_rest(&inputs, striker, input.stiffness, self.instant());
+        self.set(lane, inputs, state, self.clock.saturating_add(steps));
     }
 
-    /// A lane without an impact: a mass at rest.
+    /// A lane without an impact.
     pub fn rest(&mut self, lane: usize) {
-        self.clear(lane);
-        self.inputs.mass[lane] = 1.0;
-        self.inputs.striker_compliance[lane] = 1.0;
-        self.inputs.striker_mass[lane] = 1.0;
-        let state = &mut self.states[self.now];
-        state.response[lane] = 1.0;
-        // Apart for ever, and moving: nothing ever happens.
-        state.striker_displacement[lane] = -1.0;
-        state.striker_velocity[lane] = f64::MIN_POSITIVE;
+        let (inputs, striker) = resting();
+        let state = BetweenSteps::at_rest(&inputs, striker, 0.0, self.instant());
+        self.set(lane, inputs, state, u64::MAX);
     }
 
     /// One step of every lane, from state `NOW` to the other one; the first step is from state 0. Whether [`Self::follow`] has something to
     /// follow.
-    #[allow(clippy::inline_always, reason = "as `step`")]
     #[inline(always)]
     pub fn step<S: Simd, const YIELDS: bool, const LIMITED: bool, const NOW: usize>(
         &mut self,
         simd: S,
     ) -> bool {
+        self.now = 1 - NOW;
+        self.clock += 1;
+        let instant = self.instant();
         let [first, second] = &mut self.states;
         let (from, to) = if NOW == 0 {
             (&*first, second)
         } else {
             (&*second, first)
         };
-        self.now = 1 - NOW;
-        self.clock += 1;
-        #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]
-        let setting = Setting {
-            inputs: &self.inputs,
-            also: self.also,
-            clock: self.clock as f64,
-        };
-        self.bits = step::<S, YIELDS, LIMITED>(simd, setting, from, to, &mut self.sums);
-        let stops = self.bits.stopped & !self.stopped;
-        let ended = self.bits.over != 0 || self.clock >= self.next_end;
-        self.bits.touching != self.touching || stops != 0 || ended
+        let (inputs, also) = (&self.inputs, self.also);
+        let mut bits = Bits::default();
+        for part in LanePart::all(simd) {
+            let get = |row: &LaneRow| part.get(row);
+            let set = |row: &mut LaneRow, numbers| part.set(row, numbers);
+            let (
+                state,
+                Marks {
+                    state: contact,
+                    stopped,
+                    over,
+                },
+            ) = end_step::<_, YIELDS, LIMITED>(
+                &inputs.map(get),
+                &from.map(get),
+                also,
+                part.number(instant),
+            );
+            to.motion.each(state.motion, set);
+            to.work.each(state.work, set);
+            if LIMITED {
+                to.indented.each(state.indented, set);
+            }
+            if also.damped {
+                to.damped.each(state.damped, set);
+            }
+            if also.falls {
+                to.fallen.each(state.fallen, set);
+            }
+            to.results.each(state.results, set);
+            to.reach.each(state.reach, set);
+            bits.touching |= part.bits(contact.at_limit | contact.in_contact);
+            bits.stopped |= part.bits(stopped);
+            if self.ends_at_stop {
+                bits.over |= part.bits(over);
+            }
+        }
+        for part in LanePart::all(simd) {
+            let get = |row: &LaneRow| part.get(row);
+            let tangent = step::tangent(&inputs.map(get), &from.map(get), &to.map(get));
+            part.set(&mut to.ahead.tangent, tangent);
+        }
+        for part in LanePart::all(simd) {
+            let get = |row: &LaneRow| part.get(row);
+            let [acceleration, response] = without_contact(&inputs.map(get), &to.map(get));
+            part.set(&mut to.ahead.free_acceleration, acceleration);
+            part.set(&mut to.ahead.response, response);
+        }
+        for part in LanePart::all(simd) {
+            let get = |row: &LaneRow| part.get(row);
+            let needed = needed(&inputs.map(get), &to.map(get));
+            part.set(&mut to.ahead.needed, needed);
+        }
+        self.bits = bits;
+        let stops = bits.stopped & !self.stopped;
+        let ended = bits.over != 0 || self.clock >= self.next_end;
+        bits.touching != self.touching || stops != 0 || ended
     }
 
     /// The contacts that begin or end with the last step, and the strikers that stop.
     pub fn follow(&mut self) {
         let changed = self.bits.touching ^ self.touching;
         let stops = self.bits.stopped & !self.stopped;
-        #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]
-        let clock = self.clock as f64;
-        for (lane, events) in self.events.iter_mut().enumerate() {
+        let instant = self.instant();
+        for (lane, Course { events, .. }) in self.courses.iter_mut().enumerate() {
             let is_set = |bits: u64| bits >> lane & 1 == 1;
-            let closing = |state: &States| state.striker_velocity[lane] - state.velocity[lane];
+            let closing = |state: &BetweenSteps<LaneRow>| {
+                state.motion.striker_velocity.lane(lane) - state.motion.velocity.lane(lane)
+            };
             if is_set(changed & self.bits.touching) {
                 events.contacts += 1;
-                if events.contacts == 1 {
-                    events.closing = closing(&self.states[1 - self.now]);
-                }
-            } else if is_set(changed) && events.separating.is_none() {
-                events.separating = Some(closing(&self.states[self.now]));
+                events.contact_begins(closing(&self.states[1 - self.now]));
+            } else if is_set(changed) {
+                events.contact_ends(closing(&self.states[self.now]));
             }
             if is_set(stops) {
-                events.stop = Some(clock);
+                events.stop = Some(instant);
             }
         }
         self.touching = self.bits.touching;
@@ -204,79 +281,66 @@ impl Lanes {
 
     /// Whether the impact of a lane has ended.
     pub const fn is_over(&self, lane: usize) -> bool {
-        self.clock >= self.events[lane].last || self.bits.over >> lane & 1 == 1
+        self.clock >= self.courses[lane].last || self.bits.over >> lane & 1 == 1
     }
 
     /// When the next impact ends at the latest, and what a step has to do; after impacts have begun.
     pub fn look_ahead(&mut self, ends_at_stop: bool) {
-        let lasts = self.events.iter().map(|events| events.last);
+        let lasts = self.courses.iter().map(|course| course.last);
         self.next_end = lasts.min().unwrap_or_default();
-        let some = |row: &Row| row.iter().any(|number| *number != 0.0);
+        let some = |row: &LaneRow| row.any(|number| number != 0.0);
         self.also = Also {
-            damped: some(&self.inputs.damping),
-            falls: some(&self.inputs.fall),
-            ends_at_stop,
+            damped: some(&self.inputs.structure.damping),
+            falls: some(&self.inputs.contact.fall),
         };
-    }
-
-    /// How far the impact of a lane reached.
-    pub fn reach(&self, lane: usize) -> Reach {
-        let (state, sums) = (&self.states[self.now], &self.sums);
-        Reach {
-            displacement: [sums.least_displacement[lane], sums.max_displacement[lane]],
-            restoring_force: [sums.least_force[lane], sums.largest_force[lane]],
-            increment: sums.largest_increment[lane],
-            last_velocity: state.velocity[lane],
-            last_contact_force: state.contact_force[lane],
-        }
-    }
-
-    /// The energy that is missing at the end of the last step \[J\].
-    fn energy_error(&self, lane: usize) -> f64 {
-        let (state, sums, inputs) = (&self.states[self.now], &self.sums, &self.inputs);
-        let (v1, vs1) = (state.velocity[lane], state.striker_velocity[lane]);
-        let structure = 0.5 * (inputs.mass[lane] * v1 * v1);
-        let striker = 0.5 * inputs.striker_mass[lane] * vs1 * vs1;
-        let kept = striker
-            + structure
-            + sums.restoring_energy[lane]
-            + sums.damping_energy[lane]
-            + sums.contact_loss[lane];
-        inputs.striker_energy[lane] + sums.weight[lane] - kept
+        self.ends_at_stop = ends_at_stop;
     }
 
     /// The results of the impact of a lane.
-    pub fn summary(&self, lane: usize, input: &ImpactInput) -> ImpactSummary {
-        let (state, sums, events) = (&self.states[self.now], &self.sums, &self.events[lane]);
-        let energy_error = if sums.input[lane] > 0.0 {
-            self.energy_error(lane) / sums.input[lane]
-        } else {
-            0.0
-        };
+    pub fn results(&self, lane: usize, input: &ImpactInput) -> Batched {
+        let Course {
+            begun, mut events, ..
+        } = self.courses[lane];
         #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]
-        let time = |step: f64| (step - events.begun as f64) * self.inputs.time_step[lane];
-        let stop_time = events.stop.map(time);
-        let rebound = events.separating.filter(|_| events.closing > 0.0);
-        ImpactSummary {
-            max_displacement: sums.max_displacement[lane],
-            time_of_max_displacement: time(state.step_of_max_displacement[lane]),
-            stop_time,
-            final_displacement: state.displacement[lane],
-            max_velocity: sums.max_velocity[lane],
-            max_contact_force: sums.max_contact_force[lane],
-            impulse: sums.impulse[lane],
-            contacts: events.contacts,
-            restitution: rebound.map(|separating| -separating / events.closing),
-            indentation: state.indentation[lane],
-            indentation_energy: sums.indentation_energy[lane],
-            absorbed_energy: state.absorbed_energy[lane],
-            striker_energy: input.striker_energy(),
-            energy_error,
-            still_rising: still_rising(
-                state.velocity[lane],
-                state.displacement[lane] >= sums.max_displacement[lane],
-            ),
-            last_contact_cut: stop_time.is_some() && state.contact_force[lane] > 0.0,
+        let time = |step: f64| (step - begun as f64) * input.time_step;
+        let number = |row: &LaneRow| row.lane(lane);
+        let BetweenSteps {
+            motion,
+            work,
+            indented,
+            damped,
+            fallen,
+            mut results,
+            reach,
+            ..
+        } = self.states[self.now].map(number);
+        results.instant = time(results.instant);
+        events.stop = events.stop.map(time);
+        let energies = Energies {
+            striker: 0.5 * input.striker_mass * motion.striker_velocity * motion.striker_velocity,
+            structure: 0.5 * (input.mass * motion.velocity * motion.velocity),
+            restoring: work.restoring,
+            damping: damped.work,
+            contact_loss: work.contact_loss,
+            indentation: indented.work,
+            weight: fallen.work,
+            error: 0.0,
+        };
+        let last = LastEnd {
+            displacement: motion.displacement,
+            velocity: motion.velocity,
+            contact_force: motion.contact_force,
+            indentation: indented.depth,
+            indentation_energy: indented.work,
+            energy_error: if fallen.input > 0.0 {
+                energies.missing(input.striker_energy(), 0.0) / fallen.input
+            } else {
+                0.0
+            },
+        };
+        Batched {
+            summary: ImpactSummary::new(input, &results, &events, &last),
+            reach: reach.finish(&results, &last),
         }
     }
 }

@@ -2,8 +2,9 @@
 //! [`super::simulate`]. It keeps no steps.
 //!
 //! The tangent form under the rigid and the limit law, with elastic and bilinear specimens and exact readings, runs in lanes: one loop steps
-//! thirty-two impacts with the vectors of the processor. Branches are selections, and no product and sum are fused, so every lane
-//! does the arithmetic of a single impact. An impact that ends gives its lane to the next one. All other impacts run one by one.
+//! thirty-two impacts with the vectors of the processor. The equations of contact, motion, specimen and results are those of a single
+//! impact, written for any [`crate::number::Number`]: branches are selections, and no product and sum are fused. An impact that ends
+//! gives its lane to the next one. All other impacts run one by one.
 
 mod lanes;
 mod reach;
@@ -23,7 +24,7 @@ use crate::specimen::{Bilinear, Elastic, RestoringForce, SpecimenModel};
 use crate::statistics::DeclaredNoise;
 use lanes::Lanes;
 pub use reach::Reach;
-use reach::ReachBuilder;
+use reach::RunningReach;
 use rows::LANES;
 
 /// An impact on an ideal rig from rest at X = 0.
@@ -43,13 +44,16 @@ pub struct Batched {
 /// Sums up the steps of an impact that runs alone.
 struct Builder {
     summary: SummaryBuilder,
-    reach: ReachBuilder,
+    reach: RunningReach,
+    /// X at the last step end.
+    displacement: f64,
 }
 
 impl<V> Sink<V> for Builder {
-    fn push(&mut self, structure: &State<V>, state: &ImpactState, over: bool) {
+    fn push(&mut self, _: &State<V>, state: &ImpactState, _: bool) {
         self.summary.push(state);
-        self.reach.push(structure, state, over);
+        self.reach.add(self.displacement, &state.step_end());
+        self.displacement = state.displacement;
     }
 }
 
@@ -95,7 +99,8 @@ impl Impact {
         let mut solver = ImpactSolver::new(&self.input, 0.0, specimen.move_to(0.0))?;
         let mut builder = Builder {
             summary: SummaryBuilder::new(&self.input),
-            reach: ReachBuilder::default(),
+            reach: RunningReach::START,
+            displacement: 0.0,
         };
         builder.push(solver.structure(), solver.state(), false);
         let read = |solver: &mut ImpactSolver| {
@@ -103,9 +108,10 @@ impl Impact {
             [target, specimen.move_to(target)]
         };
         solver.run(until, steps, read, &mut builder);
+        let Builder { summary, reach, .. } = builder;
         Ok(Batched {
-            summary: builder.summary.finish(),
-            reach: builder.reach.reach,
+            reach: reach.finish(&summary.results, &summary.last),
+            summary: summary.finish(),
         })
     }
 }
@@ -210,11 +216,7 @@ fn in_lanes<S: Simd, const YIELDS: bool, const LIMITED: bool>(
             if let Some(index) = *running
                 && lanes.is_over(lane)
             {
-                let result = Batched {
-                    summary: lanes.summary(lane, &impacts[index].input),
-                    reach: lanes.reach(lane),
-                };
-                take(index, result);
+                take(index, lanes.results(lane, &impacts[index].input));
                 *running = begin(lanes, lane);
             }
         }

@@ -1,8 +1,13 @@
 //! How far an impact reaches: the ranges that limits of a rig bound, and the ends of what may still grow. In: the ends of its steps. Out:
 //! numbers.
 
-use crate::impact::{ImpactState, Sink};
-use crate::integrator::state::State;
+#![allow(
+    clippy::inline_always,
+    reason = "a part of its caller, which is compiled for several vector units"
+)]
+
+use crate::impact::summary::{LastEnd, RunningResults, StepEnd};
+use crate::number::{Number, numbers};
 
 /// Ranges over the steps of an impact on an ideal rig, step 0 included, and its last step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -19,28 +24,44 @@ pub struct Reach {
     pub last_contact_force: f64,
 }
 
-/// Collects the reach, step by step, from rest at X = 0.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct ReachBuilder {
-    pub reach: Reach,
-    last: f64,
+numbers! {
+    /// The reach so far, beside the largest displacement.
+    pub(super) struct RunningReach {
+        least_displacement,
+        least_force,
+        largest_force,
+        largest_increment,
+    }
 }
 
-impl<V> Sink<V> for ReachBuilder {
-    fn push(&mut self, _: &State<V>, state: &ImpactState, _: bool) {
-        let reach = &mut self.reach;
-        let widen = |range: &mut [f64; 2], value: f64| {
-            range[0] = if value < range[0] { value } else { range[0] };
-            range[1] = if value > range[1] { value } else { range[1] };
-        };
-        widen(&mut reach.displacement, state.displacement);
-        widen(&mut reach.restoring_force, state.restoring_force);
-        let increment = (state.displacement - self.last).abs();
-        if increment > reach.increment {
-            reach.increment = increment;
+impl RunningReach {
+    /// At rest at X = 0.
+    pub const START: Self = Self {
+        least_displacement: 0.0,
+        least_force: 0.0,
+        largest_force: 0.0,
+        largest_increment: 0.0,
+    };
+
+    pub fn finish(&self, results: &RunningResults, last: &LastEnd) -> Reach {
+        Reach {
+            displacement: [self.least_displacement, results.max_displacement],
+            restoring_force: [self.least_force, self.largest_force],
+            increment: self.largest_increment,
+            last_velocity: last.velocity,
+            last_contact_force: last.contact_force,
         }
-        reach.last_velocity = state.velocity;
-        reach.last_contact_force = state.contact_force;
-        self.last = state.displacement;
+    }
+}
+
+impl<N: Number> RunningReach<N> {
+    /// Adds the end of a step that began at the displacement `before`.
+    #[inline(always)]
+    pub fn add(&mut self, before: N, end: &StepEnd<N>) {
+        let increment = (end.displacement - before).abs();
+        self.least_displacement = self.least_displacement.smaller(end.displacement);
+        self.least_force = self.least_force.smaller(end.restoring_force);
+        self.largest_force = self.largest_force.larger(end.restoring_force);
+        self.largest_increment = self.largest_increment.larger(increment);
     }
 }

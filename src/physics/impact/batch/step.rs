@@ -1,294 +1,374 @@
-//! One step of all lanes. In: the state before it. Out: the state after it. It knows nothing of impacts that begin and end.
+//! One step of an impact in tangent form under a law of impulses, on an elastic or bilinear specimen with exact readings; of one impact or
+//! of several side by side. In: the state before it. Out: the state after it. It knows nothing of impacts that begin and end.
+//!
+//! A step has four parts, and each part is done for all lanes before the next one: a division takes long, and those of several lanes
+//! overlap only if little is between them. So a step ends with the divisions of the next one.
 
 #![allow(
     clippy::inline_always,
     reason = "a part of its caller, which is compiled for several vector units"
 )]
 
-use fearless_simd::prelude::*;
+use super::reach::RunningReach;
+use crate::contact::{ImpulseContact, Start, Touching};
+use crate::impact::summary::{RunningResults, StepEnd};
+use crate::integrator::tangent::secant;
+use crate::number::{Number, numbers};
+use crate::specimen::BilinearLines;
+use crate::structure::matrix::one_degree::{effective_mass, travel, unbalanced_force};
 
-use super::rows::{Inputs, LANES, Row, States, Sums};
-
-// `a.max(b)` is `if a > b { a } else { b }` and `a.min(b)` is `if a < b { a } else { b }` here: a lane that is not a number runs again alone.
-
-/// The lanes, as bits, in which something is so at the end of a step.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Bits {
-    /// The striker touches the structure.
-    pub touching: u64,
-    /// The striker does not move forward.
-    pub stopped: u64,
-    /// Nor does the structure, if that is an end.
-    pub over: u64,
+numbers! {
+    /// The structure.
+    pub(super) struct Structure {
+        /// M, C
+        mass,
+        damping,
+        /// Δt
+        time_step,
+        /// The largest `K_t`.
+        largest_tangent,
+    }
 }
 
-/// What the impact of some lane has.
+numbers! {
+    /// What the striker brings: its weight Ms·g and ½MsV0².
+    pub(super) struct StrikerInput {
+        weight,
+        energy,
+    }
+}
+
+numbers! {
+    /// Structure and striker at the end of a step, beside δp.
+    pub(super) struct Motion {
+        displacement,
+        velocity,
+        acceleration,
+        /// R
+        force,
+        striker_displacement,
+        striker_velocity,
+        contact_force,
+    }
+}
+
+numbers! {
+    /// What the next step needs.
+    pub(super) struct Ahead {
+        /// K_t
+        tangent,
+        /// Ẍ₁ without its contact.
+        free_acceleration,
+        /// 1/M̂
+        response,
+        /// The contact force that stops the closing.
+        needed,
+    }
+}
+
+numbers! {
+    /// The work so far.
+    pub(super) struct Work {
+        restoring,
+        contact_loss,
+    }
+}
+
+numbers! {
+    /// Of a limit force.
+    pub(super) struct Indented {
+        /// δp \[m\]
+        depth,
+        work,
+    }
+}
+
+numbers! {
+    /// Of a damper.
+    pub(super) struct Damped {
+        work,
+    }
+}
+
+numbers! {
+    /// Of a falling striker: the work of its weight, and the energy put in.
+    pub(super) struct Fallen {
+        work,
+        input,
+    }
+}
+
+/// Declares groups of numbers that belong together.
+macro_rules! groups {
+    ($(#[$about:meta])* $name:ident { $($(#[$doc:meta])* $field:ident: $group:ident,)* }) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug)]
+        pub(super) struct $name<N = f64> { $($(#[$doc])* pub $field: $group<N>,)* }
+
+        impl<N> $name<N> {
+            /// Each number by itself.
+            #[inline(always)]
+            pub fn map<M>(&self, mut each: impl FnMut(&N) -> M) -> $name<M> {
+                $name { $($field: self.$field.map(&mut each),)* }
+            }
+
+            /// Each number with the same one of `others`.
+            #[inline(always)]
+            pub fn each<M>(&mut self, others: $name<M>, mut each: impl FnMut(&mut N, M)) {
+                $(self.$field.each(others.$field, &mut each);)*
+            }
+        }
+    };
+}
+
+groups! {
+    /// What does not change.
+    StepInputs {
+        structure: Structure,
+        specimen: BilinearLines,
+        contact: ImpulseContact,
+        striker: StrikerInput,
+    }
+}
+
+groups! {
+    /// The end of a step, where the next one begins.
+    BetweenSteps {
+        motion: Motion,
+        ahead: Ahead,
+        work: Work,
+        indented: Indented,
+        damped: Damped,
+        fallen: Fallen,
+        results: RunningResults,
+        reach: RunningReach,
+    }
+}
+
+/// What an impact has, or the impact of some lane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Also {
     /// A damper.
     pub damped: bool,
     /// A falling striker.
     pub falls: bool,
-    /// An end as soon as structure and striker move back.
-    pub ends_at_stop: bool,
 }
 
-/// What a step is made with.
-#[derive(Clone, Copy)]
-pub(super) struct Setting<'a> {
-    pub inputs: &'a Inputs,
-    pub also: Also,
-    /// The number of the step, counted for all lanes together.
-    pub clock: f64,
+/// What is so at the end of a step.
+pub(super) struct Marks<N: Touching> {
+    /// Of the contact.
+    pub state: N::State,
+    /// The striker does not move forward.
+    pub stopped: N::Answer,
+    /// Nor does the structure.
+    pub over: N::Answer,
 }
 
-/// One step from one state to another. It is several short loops: a division takes long, and those of several lanes
-/// overlap only if little is between them. So a step ends with the divisions of the next one.
-#[inline(always)]
-pub(super) fn step<S: Simd, const YIELDS: bool, const LIMITED: bool>(
-    simd: S,
-    setting: Setting<'_>,
-    from: &States,
-    to: &mut States,
-    sums: &mut Sums,
-) -> Bits {
-    let mut bits = Bits::default();
-    let inputs = setting.inputs;
-    for part in Part::all(simd) {
-        let Bits {
-            touching,
-            stopped,
-            over,
-        } = end_step::<S, YIELDS, LIMITED>(part, setting, from, to, sums);
-        bits.touching |= touching;
-        bits.stopped |= stopped;
-        bits.over |= over;
-    }
-    for part in Part::all(simd) {
-        follow_tangent(part, inputs, from, to);
-    }
-    for part in Part::all(simd) {
-        without_contact(part, inputs, to);
-    }
-    for part in Part::all(simd) {
-        force_of_contact(part, inputs, to);
-    }
-    bits
-}
-
-/// Some lanes, as many as a vector of the processor has.
-#[derive(Clone, Copy)]
-struct Part<S> {
-    simd: S,
-    first: usize,
-}
-
-impl<S: Simd> Part<S> {
-    #[inline(always)]
-    fn all(simd: S) -> impl Iterator<Item = Self> {
-        (0..LANES)
-            .step_by(S::f64s::LEN)
-            .map(move |first| Self { simd, first })
-    }
-
-    #[inline(always)]
-    fn get(self, row: &Row) -> S::f64s {
-        S::f64s::from_slice(self.simd, &row[self.first..self.first + S::f64s::LEN])
-    }
-
-    #[inline(always)]
-    fn set(self, row: &mut Row, numbers: S::f64s) {
-        numbers.store_slice(&mut row[self.first..self.first + S::f64s::LEN]);
-    }
-
-    #[inline(always)]
-    fn number(self, number: f64) -> S::f64s {
-        S::f64s::splat(self.simd, number)
-    }
-
-    /// Lanes of this part as lanes of all.
-    #[inline(always)]
-    fn bits(self, lanes: S::mask64s) -> u64 {
-        lanes.to_bitmask() << self.first
+impl BetweenSteps {
+    /// From rest at X = 0, with the striker at `striker_displacement`; `instant` is the start.
+    pub fn at_rest(inputs: &StepInputs, [xs, vs]: [f64; 2], tangent: f64, instant: f64) -> Self {
+        let end = StepEnd {
+            instant,
+            displacement: 0.0,
+            velocity: 0.0,
+            restoring_force: 0.0,
+            contact_force: 0.0,
+            restoring_energy: 0.0,
+        };
+        let mut results = RunningResults::START;
+        results.add(inputs.structure.time_step, &end);
+        let mut state = Self {
+            motion: Motion {
+                displacement: 0.0,
+                velocity: 0.0,
+                acceleration: 0.0,
+                force: 0.0,
+                striker_displacement: xs,
+                striker_velocity: vs,
+                contact_force: 0.0,
+            },
+            ahead: Ahead {
+                tangent,
+                free_acceleration: 0.0,
+                response: 0.0,
+                needed: 0.0,
+            },
+            work: Work {
+                restoring: 0.0,
+                contact_loss: 0.0,
+            },
+            indented: Indented {
+                depth: 0.0,
+                work: 0.0,
+            },
+            damped: Damped { work: 0.0 },
+            fallen: Fallen {
+                work: 0.0,
+                input: inputs.striker.energy,
+            },
+            results,
+            reach: RunningReach::START,
+        };
+        [state.ahead.free_acceleration, state.ahead.response] = without_contact(inputs, &state);
+        state.ahead.needed = needed(inputs, &state);
+        state
     }
 }
 
 /// The contact; eqs. (2c) and (2d), and the force there; the striker; the work of all forces, and the results so far.
 #[inline(always)]
-fn end_step<S: Simd, const YIELDS: bool, const LIMITED: bool>(
-    part: Part<S>,
-    setting: Setting<'_>,
-    from: &States,
-    to: &mut States,
-    sums: &mut Sums,
-) -> Bits {
-    let Setting {
-        inputs,
-        also,
-        clock,
-    } = setting;
-    let at = |row: &Row| part.get(row);
-    let zero = part.number(0.0);
-    let time_step = at(&inputs.time_step);
-    let half = time_step * 0.5;
-    let [x0, v0, a0] = [
-        at(&from.displacement),
-        at(&from.velocity),
-        at(&from.acceleration),
-    ];
-    let (xs0, vs0) = (at(&from.striker_displacement), at(&from.striker_velocity));
-    let indentation = if LIMITED { at(&from.indentation) } else { zero };
-    let falling = vs0 + at(&inputs.fall);
-    let needed = at(&from.needed);
-    let near = (xs0 - x0).simd_ge(indentation);
-    let (at_limit, in_contact, contact_force);
-    if LIMITED {
-        let limit = at(&inputs.force_limit);
-        at_limit = near & needed.simd_gt(limit);
-        in_contact = near & needed.simd_ge(zero) & !at_limit;
-        contact_force = at_limit.select(limit, in_contact.select(needed, zero));
-    } else {
-        at_limit = S::mask64s::splat(part.simd, false);
-        in_contact = near & needed.simd_ge(zero);
-        contact_force = in_contact.select(needed, zero);
-    }
+pub(super) fn end_step<N: Touching, const YIELDS: bool, const LIMITED: bool>(
+    inputs: &StepInputs<N>,
+    from: &BetweenSteps<N>,
+    also: Also,
+    instant: N,
+) -> (BetweenSteps<N>, Marks<N>) {
+    let StepInputs {
+        structure,
+        specimen,
+        contact,
+        striker,
+    } = inputs;
+    let zero = instant.same(0.0);
+    let time_step = structure.time_step;
+    let Motion {
+        displacement: x0,
+        velocity: v0,
+        acceleration: a0,
+        force: r0,
+        ..
+    } = from.motion;
+    let start = Start {
+        displacement: x0,
+        velocity: v0,
+        striker_displacement: from.motion.striker_displacement,
+        striker_velocity: from.motion.striker_velocity,
+        contact_force: from.motion.contact_force,
+        indentation: if LIMITED { from.indented.depth } else { zero },
+    };
+    let decided = contact.decide::<LIMITED>(&start, || from.ahead.needed);
 
-    let a1 = at(&from.free_acceleration) + contact_force * at(&from.response);
-    let v1 = v0 + half * (a0 + a1);
-    let moved = half * (v0 + v1);
-    let x1 = x0 + moved;
-    let stiffness = at(&inputs.stiffness);
-    let r0 = at(&from.force);
+    let a1 = from.ahead.free_acceleration + decided.force * from.ahead.response;
+    let [x1, v1] = travel(time_step, [x0, v0, a0], a1);
     let r1 = if YIELDS {
-        let trial = r0 + stiffness * (x1 - x0);
-        let middle = at(&inputs.hardened) * x1;
-        let half_band = at(&inputs.half_band);
-        let [low, high] = [middle - half_band, middle + half_band];
-        high.min(low.max(trial))
+        specimen.force([x0, r0], x1)
     } else {
-        stiffness * x1
+        specimen.stiffness * x1
     };
+    let end = contact.advance(time_step, &start, &decided, [x1, v1]);
 
-    let vs1 = if LIMITED {
-        let limited = falling - contact_force * time_step / at(&inputs.striker_mass);
-        at_limit.select(limited, in_contact.select(v1, falling))
-    } else {
-        in_contact.select(v1, falling)
-    };
-    let striker_moved = half * (vs0 + vs1);
-    let xs1 = xs0 + striker_moved;
-    if LIMITED {
-        let deeper = (xs1 - x1).max(indentation);
-        let indented = at_limit.select(deeper, indentation);
-        let work = at_limit.select(contact_force * (indented - indentation), zero);
-        let energy = at(&sums.indentation_energy) + work;
-        part.set(&mut sums.indentation_energy, energy);
-        part.set(&mut to.indentation, indented);
-    }
-    let loss =
-        contact_force * striker_moved - (at(&from.contact_force) + contact_force) * 0.5 * moved;
-    let loss = at(&sums.contact_loss) + loss;
-    part.set(&mut sums.contact_loss, loss);
-    let impulse = at(&sums.impulse) + contact_force * time_step;
-    part.set(&mut sums.impulse, impulse);
-    part.set(&mut to.force, r1);
-    part.set(&mut to.acceleration, a1);
-    part.set(&mut to.velocity, v1);
-    part.set(&mut to.displacement, x1);
-    part.set(&mut to.striker_velocity, vs1);
-    part.set(&mut to.striker_displacement, xs1);
-    part.set(&mut to.contact_force, contact_force);
-
-    let change = x1 - x0;
-    let restoring = (r0 + r1) * change * 0.5;
-    let restoring = at(&sums.restoring_energy) + restoring;
-    part.set(&mut sums.restoring_energy, restoring);
+    let BetweenSteps {
+        mut work,
+        mut indented,
+        mut damped,
+        mut fallen,
+        mut results,
+        mut reach,
+        ..
+    } = *from;
+    work.contact_loss = work.contact_loss + end.contact_loss;
+    indented.depth = end.indentation;
+    indented.work = indented.work + end.indentation_work;
+    work.restoring = work.restoring + (r0 + r1) * (x1 - x0) * 0.5;
     if also.damped {
         let mean_velocity = (v0 + v1) * 0.5;
-        let damped = time_step * (mean_velocity * (at(&inputs.damping) * mean_velocity));
-        let damped = at(&sums.damping_energy) + damped;
-        part.set(&mut sums.damping_energy, damped);
+        let damping = structure.damping * mean_velocity;
+        damped.work = damped.work + time_step * (mean_velocity * damping);
     }
     if also.falls {
-        let weight = at(&sums.weight) + at(&inputs.weight) * (xs1 - xs0);
-        let input = (at(&inputs.striker_energy) + weight).max(at(&sums.input));
-        part.set(&mut sums.weight, weight);
-        part.set(&mut sums.input, input);
+        let height = end.displacement - start.striker_displacement;
+        fallen.work = fallen.work + striker.weight * height;
+        fallen.input = fallen.input.larger(striker.energy + fallen.work);
     }
 
-    let most = at(&sums.max_displacement);
-    let farther = x1.simd_gt(most);
-    let step = farther.select(part.number(clock), at(&from.step_of_max_displacement));
-    let absorbed = farther.select(restoring, at(&from.absorbed_energy));
-    part.set(&mut to.step_of_max_displacement, step);
-    part.set(&mut to.absorbed_energy, absorbed);
-    part.set(&mut sums.max_displacement, x1.max(most));
-    let fastest = v1.abs().max(at(&sums.max_velocity));
-    part.set(&mut sums.max_velocity, fastest);
-    let strongest = contact_force.max(at(&sums.max_contact_force));
-    part.set(&mut sums.max_contact_force, strongest);
-    let least = x1.min(at(&sums.least_displacement));
-    part.set(&mut sums.least_displacement, least);
-    let least = r1.min(at(&sums.least_force));
-    part.set(&mut sums.least_force, least);
-    let largest = r1.max(at(&sums.largest_force));
-    part.set(&mut sums.largest_force, largest);
-    let increment = change.abs().max(at(&sums.largest_increment));
-    part.set(&mut sums.largest_increment, increment);
-    let stopped = vs1.simd_le(zero);
-    let over = stopped & v1.simd_le(zero);
-    Bits {
-        touching: part.bits(at_limit | in_contact),
-        stopped: part.bits(stopped),
-        over: if also.ends_at_stop {
-            part.bits(over)
-        } else {
-            0
+    let step_end = StepEnd {
+        instant,
+        displacement: x1,
+        velocity: v1,
+        restoring_force: r1,
+        contact_force: decided.force,
+        restoring_energy: work.restoring,
+    };
+    results.add(time_step, &step_end);
+    reach.add(x0, &step_end);
+    let stopped = end.velocity.le(zero);
+    let marks = Marks {
+        state: decided.state,
+        stopped,
+        over: stopped & v1.le(zero),
+    };
+    let state = BetweenSteps {
+        motion: Motion {
+            displacement: x1,
+            velocity: v1,
+            acceleration: a1,
+            force: r1,
+            striker_displacement: end.displacement,
+            striker_velocity: end.velocity,
+            contact_force: decided.force,
         },
-    }
+        ahead: from.ahead,
+        work,
+        indented,
+        damped,
+        fallen,
+        results,
+        reach,
+    };
+    (state, marks)
 }
 
-/// Eq. (6).
+/// K_t of the next step, eq. (6).
 #[inline(always)]
-fn follow_tangent<S: Simd>(part: Part<S>, inputs: &Inputs, from: &States, to: &mut States) {
-    let at = |row: &Row| part.get(row);
-    let zero = part.number(0.0);
-    let change = at(&to.displacement) - at(&from.displacement);
-    let force = at(&to.force);
-    let secant = (force - at(&from.force)) / change;
-    let secant = at(&inputs.largest_tangent).min(zero.max(secant));
-    let tangent = change.simd_eq(zero).select(at(&from.tangent), secant);
-    part.set(&mut to.tangent, tangent);
+pub(super) fn tangent<N: Number>(
+    inputs: &StepInputs<N>,
+    from: &BetweenSteps<N>,
+    to: &BetweenSteps<N>,
+) -> N {
+    let change = to.motion.displacement - from.motion.displacement;
+    let secant = || {
+        secant(
+            to.motion.force - from.motion.force,
+            change,
+            inputs.structure.largest_tangent,
+        )
+    };
+    N::choose(
+        change.equals(change.same(0.0)),
+        || from.ahead.tangent,
+        secant,
+    )
 }
 
-/// Eqs. (4) and (5) of the next step, without contact; 1/M̂.
+/// Eqs. (4) and (5) of the next step without its contact: Ẍ₁, and 1/M̂.
 #[inline(always)]
-fn without_contact<S: Simd>(part: Part<S>, inputs: &Inputs, to: &mut States) {
-    let at = |row: &Row| part.get(row);
-    let zero = part.number(0.0);
-    let time_step = at(&inputs.time_step);
-    let (half, damping) = (time_step * 0.5, at(&inputs.damping));
-    let (tangent, force) = (at(&to.tangent), at(&to.force));
-    let effective = (tangent * half + damping) * half + at(&inputs.mass);
-    let [v0, a0] = [at(&to.velocity), at(&to.acceleration)];
+pub(super) fn without_contact<N: Number>(inputs: &StepInputs<N>, to: &BetweenSteps<N>) -> [N; 2] {
+    let Structure {
+        mass,
+        damping,
+        time_step,
+        ..
+    } = inputs.structure;
+    let tangent = to.ahead.tangent;
+    let effective = effective_mass(time_step, [mass, damping, tangent]);
     // Without damping, a zero is subtracted.
-    let push = (zero - force) - damping * (v0 + half * a0);
-    let drift = time_step * (v0 + half * 0.5 * a0);
-    let push = push - tangent * drift;
-    let acceleration = push / effective;
-    let response = part.number(1.0) / effective;
-    part.set(&mut to.free_acceleration, acceleration);
-    part.set(&mut to.response, response);
+    let push = unbalanced_force(
+        time_step,
+        [to.motion.velocity, to.motion.acceleration],
+        [mass.same(0.0), to.motion.force],
+        Some(damping),
+        tangent,
+    );
+    [push / effective, mass.same(1.0) / effective]
 }
 
-/// The contact force that ends the approach in the next step.
+/// The contact force that stops the closing in the next step.
 #[inline(always)]
-fn force_of_contact<S: Simd>(part: Part<S>, inputs: &Inputs, to: &mut States) {
-    let at = |row: &Row| part.get(row);
-    let half = at(&inputs.time_step) * 0.5;
-    let free = at(&to.velocity) + half * (at(&to.acceleration) + at(&to.free_acceleration));
-    let response = at(&to.response);
-    let falling = at(&to.striker_velocity) + at(&inputs.fall);
-    let needed = (falling - free) / (at(&inputs.striker_compliance) + half * response);
-    part.set(&mut to.needed, needed);
+pub(super) fn needed<N: Touching>(inputs: &StepInputs<N>, to: &BetweenSteps<N>) -> N {
+    let half = inputs.structure.time_step * 0.5;
+    let accelerations = to.motion.acceleration + to.ahead.free_acceleration;
+    let free = to.motion.velocity + half * accelerations;
+    inputs
+        .contact
+        .needed(to.motion.striker_velocity, free, half * to.ahead.response)
 }

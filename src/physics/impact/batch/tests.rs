@@ -206,7 +206,7 @@ fn what_has_a_state_or_noise_runs_alone() {
 #[test]
 fn a_study_of_impacts_recovers_a_known_probability() {
     use crate::study::distribution::{Distribution, Spread, normal};
-    use crate::study::inputs::{Inputs, Source};
+    use crate::study::inputs::{Source, StudyInputs};
     use crate::study::probability::Outcomes;
     use crate::study::sampling::Design;
     use crate::study::{Confidence, Interval};
@@ -233,7 +233,8 @@ fn a_study_of_impacts_recovers_a_known_probability() {
         .max_displacement;
     let truth = normal::below(-1.5);
     let speed = Distribution::normal(1.0, Spread::Sd(0.05)).unwrap();
-    let inputs = Inputs::new(vec![Source::Distribution(speed)], &[], Design::Random, 1).unwrap();
+    let inputs =
+        StudyInputs::new(vec![Source::Distribution(speed)], &[], Design::Random, 1).unwrap();
     let mut values = Vec::new();
     let impacts: Vec<Impact> = (0..4096)
         .map(|run| {

@@ -4,6 +4,7 @@
 
 mod band;
 mod factor;
+pub(crate) mod one_degree;
 mod tridiagonal;
 
 use std::fmt::Debug;
@@ -231,9 +232,19 @@ impl Vector for f64 {
         velocity: &mut Self,
         displacement: &mut Self,
     ) {
-        let half = 0.5 * time_step;
-        *velocity = from[1] + half * (from[2] + acceleration);
-        *displacement = from[0] + half * (from[1] + *velocity);
+        [*displacement, *velocity] =
+            one_degree::travel(time_step, from.map(|number| *number), *acceleration);
+    }
+
+    #[inline]
+    fn set_out(step: &SetOut<Self>, push: &mut Self, _: &mut Self, _: &mut Self) {
+        *push = one_degree::unbalanced_force(
+            step.time_step,
+            [*step.velocity, *step.acceleration],
+            [*step.load_end, *step.force],
+            step.damping.copied(),
+            *step.stiffness,
+        );
     }
 }
 

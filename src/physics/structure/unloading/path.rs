@@ -16,9 +16,9 @@ use super::{BELIEVED, Loaded, Unloading, largest, of_storeys};
 use crate::integrator::tangent::NOISE_MULTIPLE;
 use crate::statistics::DeclaredNoise;
 
-/// Part of the load that the first move removes, by the expected slope: the unloading branch may be this much stiffer.
+/// PathPart of the load that the first move removes, by the expected slope: the unloading branch may be this much stiffer.
 const FIRST: f64 = 1.0 / BELIEVED;
-/// Part that every further move removes: the error of a slope by noise then has a ninth of its effect, at most.
+/// PathPart that every further move removes: the error of a slope by noise then has a ninth of its effect, at most.
 const FURTHER: f64 = 0.9;
 /// A slope is not stiffer unless it exceeds the one before it by this factor.
 const STIFFER: f64 = 1.1;
@@ -35,12 +35,12 @@ const NOISE: f64 = 3.0;
 #[derive(Clone, Debug)]
 pub struct UnloadingPath {
     unloading: Unloading,
-    parts: Vec<Part>,
+    parts: Vec<PathPart>,
 }
 
 /// A storey. For all floors as one, the load is the largest force and the move is counted in loads: their expected slope is 1.
 #[derive(Clone, Debug)]
-struct Part {
+struct PathPart {
     /// \[N/m\]
     expected: f64,
     /// By the last move that determined it \[N/m\].
@@ -65,7 +65,7 @@ impl UnloadingPath {
             force,
             resolution: displacement,
         } = noise;
-        let part = |expected: f64, last_significant: (f64, f64), noise: (f64, f64)| Part {
+        let part = |expected: f64, last_significant: (f64, f64), noise: (f64, f64)| PathPart {
             expected,
             slope: expected,
             falls: false,
@@ -153,7 +153,7 @@ impl UnloadingPath {
     pub fn passed_by_noise(&self, force: &[f64]) -> bool {
         let loads = self.loads(force);
         let parts = || self.parts.iter().zip(&loads);
-        let is_past = |(part, load): (&Part, &f64)| load * part.start < 0.0;
+        let is_past = |(part, load): (&PathPart, &f64)| load * part.start < 0.0;
         parts().any(is_past)
             && parts().all(|(part, load)| {
                 let readings = if is_past((part, load)) { 2.0_f64 } else { 1.0 };
@@ -187,7 +187,7 @@ impl UnloadingPath {
     }
 }
 
-impl Part {
+impl PathPart {
     /// The next move \[m\] under this load \[N\].
     fn moves(&self, load: f64) -> f64 {
         let by_noise = load.abs() <= 2.0 * NOISE_MULTIPLE * self.noise.0;

@@ -5,22 +5,22 @@
 
 /// A dimension after the first.
 #[derive(Clone, Copy, Debug)]
-pub struct Row {
+pub struct DirectionRow {
     /// The inner coefficients of a primitive polynomial over GF(2), the highest power first: a₁ … a₍s₋₁₎ as bits.
     pub coefficients: u32,
     /// m₁ … m₍s₎, odd, mᵢ < 2ⁱ. Their number s is the degree of the polynomial.
     pub first: &'static [u64],
 }
 
-const fn row(coefficients: u32, first: &'static [u64]) -> Row {
-    Row {
+const fn row(coefficients: u32, first: &'static [u64]) -> DirectionRow {
+    DirectionRow {
         coefficients,
         first,
     }
 }
 
 /// The second dimension first.
-pub const ROWS: [Row; 63] = [
+pub const ROWS: [DirectionRow; 63] = [
     row(0, &[1]),
     row(1, &[1, 3]),
     row(1, &[1, 3, 1]),

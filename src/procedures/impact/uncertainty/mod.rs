@@ -2,7 +2,7 @@
 //! contributions of each source to each result. The impact is re-integrated along the recorded force–displacement path with perturbed
 //! inputs and readings; no rig is moved.
 
-pub(crate) mod storey;
+mod storey;
 
 use super::contact;
 use super::results::re_integrated;
@@ -10,23 +10,27 @@ use super::setting::{Setting, StruckStructure};
 use crate::physics::contact::ContactLaw;
 use crate::physics::impact::ImpactError;
 use crate::physics::impact::summary::ImpactSummary;
-use crate::physics::reintegration::hysteresis_replay::{ContinuousMotion, Reading, RecordedPath};
 use crate::physics::reintegration::impact::{ImpactValues, Outcome, predicted_velocities, rerun};
 use crate::physics::reintegration::perturbation::Perturbation;
+use crate::physics::reintegration::recorded_path::{ContinuousMotion, Reading, RecordedPath};
 use crate::plan::formula::Formula;
 use crate::plan::procedures::impact::block as schema;
-use crate::plan::{Impact, Mode, Plan, PointTarget, Striker};
+use crate::plan::{Impact, ImpactTarget, Mode, Plan, PointTarget, Striker};
 use crate::procedures::common::perturbed_inputs::{
     LEADS_ELSEWHERE, UncertainRun, uncertain_inputs,
 };
 use crate::procedures::common::results::{Evaluated, flat, give, layout_of, values};
-use crate::record::{ImpactStep, NamedResult};
+use crate::procedures::stepping::frame_uncertainty::FrameUncertainty;
+use crate::record::{ImpactHistory, ImpactStep, NamedResult};
+use crate::run::inputs::Inputs;
+use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::schema::ResultKind;
 use crate::uncertainty::engine::{
     CLOSE, Contributions, Evaluate, Evaluation, Progress, Shifts, Unknown,
 };
 use crate::uncertainty::{Contribution, Refinement, Source};
+use storey::StoreyRecord;
 
 /// The numbers of an impact on one degree of freedom.
 fn numbers(values: &ImpactValues, setting: &Setting) -> Evaluated {
@@ -145,6 +149,73 @@ pub(super) fn striker_sources(whole: &Plan, striker: usize) -> [(Source, f64); 2
         (Source::StrikerMass(striker), mass_uncertainty),
         (Source::StrikerVelocity(striker), velocity_uncertainty),
     ]
+}
+
+/// The uncertain inputs of an impact on either structure.
+#[derive(Clone, Copy)]
+pub(crate) enum UncertaintyInputs<'a> {
+    Point(ImpactUncertainty<'a>),
+    Storey(FrameUncertainty<'a>),
+}
+
+impl<'a> UncertaintyInputs<'a> {
+    pub(crate) fn new(
+        plan: &'a Impact,
+        whole: &'a Plan,
+        inputs: &Inputs<'a>,
+        session: &Session<'_>,
+    ) -> Self {
+        let run = UncertainRun::new(whole, inputs, session.guard.declared_noise());
+        match &plan.target {
+            ImpactTarget::Point(point) => Self::Point(ImpactUncertainty { run, plan, point }),
+            ImpactTarget::Storey(storey) => Self::Storey(FrameUncertainty::new(
+                run,
+                plan.specimen,
+                &storey.damping,
+                storey.damping_uncertainty,
+                &plan.stepping,
+            )),
+        }
+    }
+
+    /// Gives the results of an impact their contributions.
+    pub(crate) fn propagate(
+        &self,
+        plan: &Impact,
+        setting: &Setting,
+        history: &ImpactHistory,
+        summary: &ImpactSummary,
+        results: &mut [NamedResult],
+        progress: Progress<'_, Stop>,
+    ) -> Result<(), Unknown<Stop>> {
+        match (self, &history.frame) {
+            (Self::Storey(storey), Some(frame)) => storey::propagate(
+                storey,
+                plan,
+                StoreyRecord {
+                    setting,
+                    floors: &frame.floors,
+                    summary,
+                },
+                results,
+                progress,
+            ),
+            (Self::Point(point), _) => {
+                point.propagate(setting, &history.steps, summary, results, progress)
+            }
+            (Self::Storey(_), None) => Ok(()),
+        }
+    }
+
+    /// Those of impact number `index` of a series, from 0.
+    pub(crate) fn of_impact(mut self, index: usize) -> Self {
+        let run = match &mut self {
+            Self::Point(ImpactUncertainty { run, .. })
+            | Self::Storey(FrameUncertainty { run, .. }) => run,
+        };
+        *run = run.of_impact(index);
+        self
+    }
 }
 
 /// An impact along its recorded path.

@@ -17,7 +17,7 @@ use crate::procedures::common::perturbed_inputs::LEADS_ELSEWHERE;
 use crate::procedures::common::results::{Evaluated, flat, index_of, layout_of, values};
 use crate::procedures::stepping;
 use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there};
-use crate::procedures::stepping::run::FrameSteps;
+use crate::procedures::stepping::setting::FrameSteps;
 use crate::record::{FloorStep, NamedResult};
 use crate::run::stop::Stop;
 use crate::uncertainty::engine::{Evaluate, Evaluation, Progress, Shifts, Unknown};
@@ -115,7 +115,7 @@ struct RecordedStoreyImpact<'a, 'run> {
     length: usize,
 }
 
-struct Inputs {
+struct StoreyInputs {
     run: FrameRun,
     impact: FloorImpact,
     /// \[s\]
@@ -123,7 +123,7 @@ struct Inputs {
     critical_time_step: f64,
 }
 
-impl Inputs {
+impl StoreyInputs {
     /// The results with their values: those of any impact, then those of a storey.
     fn numbers(
         &self,
@@ -166,9 +166,9 @@ impl Inputs {
 }
 
 impl Evaluate for RecordedStoreyImpact<'_, '_> {
-    type Inputs = Inputs;
+    type Inputs = StoreyInputs;
 
-    fn inputs(&self, shifts: Shifts<'_>) -> Result<Inputs, String> {
+    fn inputs(&self, shifts: Shifts<'_>) -> Result<StoreyInputs, String> {
         let Self {
             uncertainty,
             plan,
@@ -183,7 +183,7 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
         );
         let (properties, law) = uncertainty.run.with_inputs(shifts, &mut |inputs| {
             Ok((
-                stepping::run::properties(&frame, &damping, inputs)?,
+                stepping::setting::properties(&frame, &damping, inputs)?,
                 contact::with_numbers(&plan.contact, inputs)?,
             ))
         })?;
@@ -232,7 +232,7 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
             matrices: properties.matrices,
             ..uncertainty.frame_run(steps)
         };
-        Ok(Inputs {
+        Ok(StoreyInputs {
             run,
             impact,
             periods,
@@ -240,7 +240,7 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
         })
     }
 
-    fn evaluate(&self, readings: &Perturbation, inputs: &Inputs) -> Evaluation {
+    fn evaluate(&self, readings: &Perturbation, inputs: &StoreyInputs) -> Evaluation {
         let Ok(found) = inputs.run.struck(&inputs.impact, &self.path, readings) else {
             return Evaluation::none(self.length);
         };

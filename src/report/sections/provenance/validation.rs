@@ -3,7 +3,7 @@
 
 use super::Source;
 use crate::physics::self_test;
-use crate::physics::self_test::{Part, Quantity, SelfTest};
+use crate::physics::self_test::{Quantity, SelfTest, SelfTestPart};
 use crate::procedures;
 use crate::report::document::{Block, Column, Style, Table, Text};
 use crate::report::number;
@@ -14,7 +14,7 @@ use crate::schema::plan_block::VALIDATION;
 use crate::units::Dimension;
 
 /// Parts of the program that one procedure uses together.
-type Combination = Vec<Part>;
+type Combination = Vec<SelfTestPart>;
 
 /// The parts of this run that the self-test does and does not cover, its failed cases, and the laboratory's own validation.
 pub(in super::super) fn validation(source: &Source<'_>, body: &mut Vec<Block>) {
@@ -100,7 +100,7 @@ fn listed(combinations: &[Combination]) -> String {
         .join("; ")
 }
 
-fn names(parts: &[Part]) -> String {
+fn names(parts: &[SelfTestPart]) -> String {
     parts
         .iter()
         .map(|part| part.name())

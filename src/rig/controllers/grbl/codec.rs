@@ -47,14 +47,14 @@ impl Word {
 /// A status report.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Status {
-    pub state: State,
+    pub state: MachineState,
     /// X in machine coordinates \[m\].
     pub position: f64,
 }
 
 /// The state in a status report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum State {
+pub enum MachineState {
     Idle,
     Run,
     Jog,
@@ -69,7 +69,7 @@ pub enum State {
     Sleep,
 }
 
-impl std::fmt::Display for State {
+impl std::fmt::Display for MachineState {
     /// The words of the status report.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
@@ -87,7 +87,7 @@ impl std::fmt::Display for State {
     }
 }
 
-impl State {
+impl MachineState {
     #[must_use]
     pub const fn is_moving(self) -> bool {
         matches!(self, Self::Run | Self::Jog | Self::Holding | Self::Home)
@@ -208,16 +208,16 @@ fn setting(text: &[u8]) -> Option<Word> {
 fn status(report: &[u8]) -> Option<Status> {
     let mut fields = report.split(|byte| *byte == b'|');
     let state = match fields.next()? {
-        b"Idle" => State::Idle,
-        b"Run" => State::Run,
-        b"Jog" => State::Jog,
-        b"Hold:0" => State::Held,
-        b"Hold:1" => State::Holding,
-        b"Alarm" => State::Alarm,
-        b"Door" | b"Door:0" | b"Door:1" | b"Door:2" | b"Door:3" => State::Door,
-        b"Check" => State::Check,
-        b"Home" => State::Home,
-        b"Sleep" => State::Sleep,
+        b"Idle" => MachineState::Idle,
+        b"Run" => MachineState::Run,
+        b"Jog" => MachineState::Jog,
+        b"Hold:0" => MachineState::Held,
+        b"Hold:1" => MachineState::Holding,
+        b"Alarm" => MachineState::Alarm,
+        b"Door" | b"Door:0" | b"Door:1" | b"Door:2" | b"Door:3" => MachineState::Door,
+        b"Check" => MachineState::Check,
+        b"Home" => MachineState::Home,
+        b"Sleep" => MachineState::Sleep,
         _ => return None,
     };
     let axes: Option<Vec<f64>> = fields
@@ -321,19 +321,23 @@ mod tests {
         let status = |state, position| Word::Status(Status { state, position });
         assert_eq!(
             one("<Idle|MPos:1.250,0.000,0.000|FS:0,0>"),
-            status(State::Idle, 1.25e-3)
+            status(MachineState::Idle, 1.25e-3)
         );
         assert_eq!(
             one("<Hold:1|MPos:-5.529,0.560,7.000|FS:0,0|Pn:X>"),
-            status(State::Holding, -5.529e-3)
+            status(MachineState::Holding, -5.529e-3)
         );
-        assert!(State::Holding.is_moving() && State::Jog.is_moving() && !State::Held.is_moving());
+        assert!(
+            MachineState::Holding.is_moving()
+                && MachineState::Jog.is_moving()
+                && !MachineState::Held.is_moving()
+        );
     }
 
     #[test]
     fn joined_lines_are_split_and_a_start_in_the_middle_is_detected() {
         let idle = Word::Status(Status {
-            state: State::Idle,
+            state: MachineState::Idle,
             position: 0.0,
         });
         assert_eq!(

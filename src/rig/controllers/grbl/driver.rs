@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use crate::controllers::grbl;
-use crate::controllers::grbl::codec::{State, Status, Word};
+use crate::controllers::grbl::codec::{MachineState, Status, Word};
 use crate::controllers::request_reply::RequestReply;
 use crate::controllers::{
     Answer, Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, LineClient, Sample, one_axis,
@@ -77,10 +77,10 @@ impl GrblDevice {
     fn fit_status(&mut self) -> Result<(Status, Vec<u8>), DeviceFault> {
         let (status, raw) = self.status()?;
         let reason = match status.state {
-            State::Alarm => "it is in alarm and does not know its position: home it (`$H`)",
-            State::Door => "its safety door is open",
-            State::Check => "it is in check mode and executes no command (`$C`)",
-            State::Sleep => "it is asleep and its motor does not hold",
+            MachineState::Alarm => "it is in alarm and does not know its position: home it (`$H`)",
+            MachineState::Door => "its safety door is open",
+            MachineState::Check => "it is in check mode and executes no command (`$C`)",
+            MachineState::Sleep => "it is asleep and its motor does not hold",
             _ => return Ok((status, raw)),
         };
         Err(DeviceFault::Refused {
@@ -123,7 +123,7 @@ impl GrblDevice {
     }
 
     /// Waits until it is in this state, for several time-outs.
-    fn until(&mut self, wanted: impl Fn(State) -> bool) -> Result<Status, DeviceFault> {
+    fn until(&mut self, wanted: impl Fn(MachineState) -> bool) -> Result<Status, DeviceFault> {
         let give_up = self.client.now() + 8.0 * self.client.reply_timeout();
         loop {
             let (status, _) = self.status()?;
@@ -149,12 +149,12 @@ impl GrblDevice {
             })
         };
         match self.fit_status()?.0.state {
-            State::Idle => Ok(()),
-            State::Held if self.unanswered => refused(
+            MachineState::Idle => Ok(()),
+            MachineState::Held if self.unanswered => refused(
                 "an unanswered move may be pending in it: inspect it, then start again with `--let-go`",
             ),
-            State::Held if self.held => self.resume_at_rest(),
-            State::Held => refused("it is on hold, and not by psd"),
+            MachineState::Held if self.held => self.resume_at_rest(),
+            MachineState::Held => refused("it is on hold, and not by psd"),
             _ => refused("it is still moving"),
         }
     }
@@ -162,7 +162,7 @@ impl GrblDevice {
     /// Nothing is pending, so nothing moves when the hold is cleared.
     fn resume_at_rest(&mut self) -> Result<(), DeviceFault> {
         self.client.send(grbl::codec::RESUME)?;
-        self.until(|state| state == State::Idle)?;
+        self.until(|state| state == MachineState::Idle)?;
         self.held = false;
         Ok(())
     }
@@ -192,7 +192,7 @@ impl GrblDevice {
         let (now, _) = self.fit_status()?;
         if now
             == (Status {
-                state: State::Idle,
+                state: MachineState::Idle,
                 ..held
             })
         {
@@ -320,9 +320,9 @@ impl Device for GrblDevice {
         self.request_reply.expect_late_answer();
         let status = self.fit_status()?.0;
         match status.state {
-            State::Idle => {}
-            State::Held if self.client.release_allowed() => self.let_go(status)?,
-            State::Held => {
+            MachineState::Idle => {}
+            MachineState::Held if self.client.release_allowed() => self.let_go(status)?,
+            MachineState::Held => {
                 let help = "the rig is HELD: inspect it, then clear its hold with `--let-go` (`psd resume`, or `psd rig jog` \
                             before a new run); it does not move, and discards the interrupted move";
                 return Err(DeviceFault::Unfit(help.to_owned()));
@@ -405,7 +405,7 @@ impl Device for GrblDevice {
         // An `ok` may answer an earlier request: only the axis itself shows that the move was accepted.
         let (status, _) = self.fit_status()?;
         let arrived = (status.position - going.targets[0]).abs() <= self.quantum();
-        if status.state == State::Jog || status.state == State::Idle && arrived {
+        if status.state == MachineState::Jog || status.state == MachineState::Idle && arrived {
             return Ok(());
         }
         self.unanswered = true;
@@ -428,7 +428,7 @@ impl Device for GrblDevice {
         self.held = true;
         let rest = self.until(|state| !state.is_moving())?;
         // It was at rest and nothing is pending: it keeps its load without a hold, and the next program finds it idle.
-        if rest.state == State::Held && !self.unanswered {
+        if rest.state == MachineState::Held && !self.unanswered {
             self.resume_at_rest()
         } else {
             Ok(())

@@ -29,6 +29,9 @@ pub fn introduced() -> DeviceIdentity {
 }
 
 /// The count of a line.
+///
+/// # Errors
+/// The reply is no reading of this device, or its status forbids one.
 pub fn decoded(line: Vec<u8>) -> Result<Sample, DeviceFault> {
     let Some(count) = hx711::codec::count(&line) else {
         return Err(DeviceFault::NoReading {

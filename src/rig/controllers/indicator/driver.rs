@@ -46,6 +46,9 @@ pub fn introduced() -> DeviceIdentity {
 }
 
 /// The force of a line.
+///
+/// # Errors
+/// The reply is no reading of this device, or its status forbids one.
 pub fn decoded(line: Vec<u8>) -> Result<Sample, DeviceFault> {
     let weight = match indicator::codec::weight(&line) {
         Ok(weight) => weight,

@@ -304,6 +304,8 @@ const fn direction(side: Side) -> &'static [u8] {
     }
 }
 
+/// # Errors
+/// The answer is no force.
 pub fn newtons(answer: &[u8]) -> Result<Force, DeviceFault> {
     match mark10::codec::force(answer) {
         Some(mark10::codec::Force::Newtons(newtons)) => Ok(Force::Newtons(newtons)),

@@ -47,6 +47,9 @@ pub fn introduced() -> DeviceIdentity {
 }
 
 /// The force of its answer.
+///
+/// # Errors
+/// The reply is no reading of this device, or its status forbids one.
 pub fn decoded(reply: Vec<u8>) -> Result<Sample, DeviceFault> {
     let force = newtons(&reply)?;
     Ok(Sample::of_force(force, Flags::default(), reply))

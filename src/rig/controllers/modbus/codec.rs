@@ -23,7 +23,7 @@ pub enum Table {
 
 /// Why an answer cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Fault {
+pub enum FrameFault {
     /// It is not a complete and correct answer to the question.
     Broken(&'static str),
     /// The unit refused.
@@ -82,18 +82,20 @@ pub fn write(unit: u8, start: u16, words: &[u16]) -> Vec<u8> {
 ///
 /// # Errors
 /// The received bytes do not answer it.
-pub fn answer_length(question: &[u8], received: &[u8]) -> Result<Option<usize>, Fault> {
+pub fn answer_length(question: &[u8], received: &[u8]) -> Result<Option<usize>, FrameFault> {
     let (unit, function) = (question[0], question[1]);
     match received {
-        [from, ..] if *from != unit => Err(Fault::Broken("another unit answered")),
+        [from, ..] if *from != unit => Err(FrameFault::Broken("another unit answered")),
         [] | [_] => Ok(None),
         [_, found, ..] if *found == function | REFUSED => Ok(Some(EXCEPTION_LENGTH)),
-        [_, found, ..] if *found != function => Err(Fault::Broken("another function was answered")),
+        [_, found, ..] if *found != function => {
+            Err(FrameFault::Broken("another function was answered"))
+        }
         _ if writes(question) => Ok(Some(ECHO_LENGTH)),
         [_, _] => Ok(None),
-        [_, _, bytes, ..] if usize::from(*bytes) != asked_bytes(question) => Err(Fault::Broken(
-            "the answer has a different number of registers",
-        )),
+        [_, _, bytes, ..] if usize::from(*bytes) != asked_bytes(question) => Err(
+            FrameFault::Broken("the answer has a different number of registers"),
+        ),
         _ => Ok(Some(EXCEPTION_LENGTH + asked_bytes(question))),
     }
 }
@@ -102,23 +104,23 @@ pub fn answer_length(question: &[u8], received: &[u8]) -> Result<Option<usize>, 
 ///
 /// # Errors
 /// It is broken, does not answer the question, or is an exception.
-pub fn answer(question: &[u8], received: &[u8]) -> Result<Vec<u16>, Fault> {
+pub fn answer(question: &[u8], received: &[u8]) -> Result<Vec<u16>, FrameFault> {
     if answer_length(question, received)? != Some(received.len()) {
-        return Err(Fault::Broken("wrong length"));
+        return Err(FrameFault::Broken("wrong length"));
     }
     let (body, check) = received.split_at(received.len() - 2);
     if crc(body).to_le_bytes() != check {
-        return Err(Fault::Broken("wrong CRC"));
+        return Err(FrameFault::Broken("wrong CRC"));
     }
     if body[1] & REFUSED != 0 {
-        return Err(Fault::Exception(body[2]));
+        return Err(FrameFault::Exception(body[2]));
     }
     if writes(question) {
         // Register and value, or register and count, are echoed.
         return if body[..6] == question[..6] {
             Ok(Vec::new())
         } else {
-            Err(Fault::Broken("the echo differs"))
+            Err(FrameFault::Broken("the echo differs"))
         };
     }
     Ok(words(&body[3..]))
@@ -377,18 +379,24 @@ mod tests {
             (&several, sound(&several[..6])),
         ];
         for (question, whole) in answers {
-            assert!(!matches!(answer(question, &whole), Err(Fault::Broken(_))));
+            assert!(!matches!(
+                answer(question, &whole),
+                Err(FrameFault::Broken(_))
+            ));
             for bit in 0..8 * whole.len() {
                 let mut flipped = whole.clone();
                 flipped[bit / 8] ^= 1 << (bit % 8);
                 assert!(
-                    matches!(answer(question, &flipped), Err(Fault::Broken(_))),
+                    matches!(answer(question, &flipped), Err(FrameFault::Broken(_))),
                     "bit {bit} of {whole:?}"
                 );
             }
             for short in 0..whole.len() {
                 assert!(
-                    matches!(answer(question, &whole[..short]), Err(Fault::Broken(_))),
+                    matches!(
+                        answer(question, &whole[..short]),
+                        Err(FrameFault::Broken(_))
+                    ),
                     "{short} bytes of {whole:?}"
                 );
             }
@@ -401,7 +409,7 @@ mod tests {
         assert_eq!(answer(&question, &sound(&[1, 3, 2, 0, 7])), Ok(vec![7]));
         assert_eq!(
             answer(&question, &sound(&[1, 0x83, 2])),
-            Err(Fault::Exception(2))
+            Err(FrameFault::Exception(2))
         );
         for other in [
             &[2, 3, 2, 0, 7][..],
@@ -409,7 +417,7 @@ mod tests {
             &[1, 3, 4, 0, 7, 0, 8],
         ] {
             assert!(
-                matches!(answer(&question, &sound(other)), Err(Fault::Broken(_))),
+                matches!(answer(&question, &sound(other)), Err(FrameFault::Broken(_))),
                 "{other:?}"
             );
         }
@@ -417,7 +425,7 @@ mod tests {
         assert_eq!(answer(&order, &order), Ok(vec![]));
         assert!(matches!(
             answer(&order, &write(1, 1, &[4])),
-            Err(Fault::Broken(_))
+            Err(FrameFault::Broken(_))
         ));
     }
 

@@ -6,7 +6,7 @@
 use super::word_order::{IMPLAUSIBLY_SMALL, Measured, Registers, WordOrder};
 use crate::LineStatistics;
 use crate::controllers::modbus;
-use crate::controllers::modbus::codec::{Fault, Table};
+use crate::controllers::modbus::codec::{FrameFault, Table};
 use crate::controllers::unsequenced::{clear, fault, fresh, order};
 use crate::controllers::{
     Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Force, LineClient, Sample, one_axis,
@@ -41,7 +41,7 @@ struct Register {
 }
 
 /// A number as it was read.
-struct Value {
+struct RegisterReading {
     /// \[m\] or \[N\]
     value: f64,
     raw: Vec<u8>,
@@ -94,7 +94,11 @@ impl Modbus {
         Ok(Some(Register { address, table }))
     }
 
-    fn read(&mut self, measured: Measured, register: Register) -> Result<Value, DeviceFault> {
+    fn read(
+        &mut self,
+        measured: Measured,
+        register: Register,
+    ) -> Result<RegisterReading, DeviceFault> {
         let (unit, bound) = unit_and_bound(&self.map, measured);
         let question = modbus::codec::read(
             self.map.unit,
@@ -111,7 +115,7 @@ impl Modbus {
                 };
                 self.order
                     .read(measured, words, |other| plausible(other, bound));
-                Ok(Value { value, raw })
+                Ok(RegisterReading { value, raw })
             }
             None => Err(DeviceFault::Impossible {
                 raw,
@@ -183,12 +187,12 @@ impl Device for Modbus {
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
         let (mut sample, mut axis) = (Sample::default(), Channel::default());
         if let Some(register) = self.position {
-            let Value { value, raw } = self.read(Measured::Position, register)?;
+            let RegisterReading { value, raw } = self.read(Measured::Position, register)?;
             axis.displacement = Some(value);
             sample.raw.push(raw);
         }
         if let Some(register) = self.force {
-            let Value { value, raw } = self.read(Measured::Force, register)?;
+            let RegisterReading { value, raw } = self.read(Measured::Force, register)?;
             axis.force = Some(Force::Newtons(value));
             sample.raw.push(raw);
         }
@@ -411,10 +415,10 @@ fn exchange(
     };
     match answer {
         Ok(words) => Ok((words, received)),
-        Err(Fault::Exception(code)) => Err(DeviceFault::Refused {
+        Err(FrameFault::Exception(code)) => Err(DeviceFault::Refused {
             reason: format!("{} (exception {code})", modbus::codec::exception(code)),
         }),
-        Err(Fault::Broken(_)) => {
+        Err(FrameFault::Broken(_)) => {
             client.line_statistics_mut().ignored += 1;
             Err(DeviceFault::Silent {
                 seconds: client.reply_timeout(),

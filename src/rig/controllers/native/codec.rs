@@ -89,7 +89,7 @@ impl Bounds {
 
 /// The first word of a reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ReplyKind {
     Ack,
     Data,
     Err,
@@ -98,7 +98,7 @@ pub enum Kind {
 /// A complete reply.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reply {
-    pub kind: Kind,
+    pub kind: ReplyKind,
     pub sequence: u32,
     /// As received, without its ending.
     pub line: Vec<u8>,
@@ -150,7 +150,7 @@ pub struct Hello {
 
 /// The state that a rig reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum State {
+pub enum ReportedState {
     Idle,
     Moving,
     Held,
@@ -162,7 +162,7 @@ pub struct Data {
     /// \[s\]
     pub time: f64,
     pub axes: Vec<AxisData>,
-    pub state: State,
+    pub state: ReportedState,
 }
 
 /// The reading of one axis: \[m\], \[N\].
@@ -199,9 +199,9 @@ pub fn reply(line: &[u8]) -> Result<Reply, Broken> {
     let mut next = || words.next().ok_or(Broken::Shape);
     let kind = next()?;
     let (kind_length, kind) = match kind {
-        b"ACK" => (kind.len(), Kind::Ack),
-        b"DATA" => (kind.len(), Kind::Data),
-        b"ERR" => (kind.len(), Kind::Err),
+        b"ACK" => (kind.len(), ReplyKind::Ack),
+        b"DATA" => (kind.len(), ReplyKind::Data),
+        b"ERR" => (kind.len(), ReplyKind::Err),
         _ => return Err(Broken::Shape),
     };
     let counted = next()?;
@@ -357,11 +357,11 @@ pub fn flags(word: &str) -> Option<Flags> {
 }
 
 #[must_use]
-pub fn state(word: &str) -> Option<State> {
+pub fn state(word: &str) -> Option<ReportedState> {
     match word {
-        "IDLE" => Some(State::Idle),
-        "MOVING" => Some(State::Moving),
-        "HELD" => Some(State::Held),
+        "IDLE" => Some(ReportedState::Idle),
+        "MOVING" => Some(ReportedState::Moving),
+        "HELD" => Some(ReportedState::Held),
         _ => None,
     }
 }

@@ -118,6 +118,9 @@ pub fn introduced(name: &[u8]) -> Option<DeviceIdentity> {
 }
 
 /// The forces of an answer, one a channel, by the N of a unit of each.
+///
+/// # Errors
+/// The reply is no reading of this device, or its status forbids one.
 pub fn decoded(line: Vec<u8>, newtons_per_unit: &[f64]) -> Result<Sample, DeviceFault> {
     let words: Vec<&[u8]> = line.split(|byte| *byte == b',').collect();
     if words.len() != newtons_per_unit.len() {

@@ -159,7 +159,7 @@ mod tests {
             ..NativeSettings::default()
         };
         let firmware = Native::new(settings, &rig);
-        RigEmulator::of(
+        RigEmulator::with_controllers(
             rig,
             Log::none(),
             &Script::parse(script).expect("a script"),

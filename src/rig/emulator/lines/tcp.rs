@@ -121,7 +121,7 @@ mod tests {
     fn it_serves_until_its_only_host_leaves() {
         let rig = elastic_rig();
         let firmware = Native::new(NativeSettings::default(), &rig);
-        let mut emulator = RigEmulator::of(
+        let mut emulator = RigEmulator::with_controllers(
             rig,
             Log::none(),
             &Script::default(),

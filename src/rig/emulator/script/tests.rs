@@ -2,7 +2,7 @@
 
 use super::*;
 
-fn one(line: &str) -> Fault {
+fn one(line: &str) -> ScriptedFault {
     let script = Script::parse(line).unwrap_or_else(|error| panic!("{line}: {error}"));
     script.faults.into_iter().next().expect("a fault")
 }
@@ -12,7 +12,7 @@ fn a_line_states_time_and_event() {
     let fault = one("after 12 moves: drop replies 3  # and why");
     assert_eq!(
         fault,
-        Fault {
+        ScriptedFault {
             on_load_cell: false,
             own_of: None,
             actuator: 0,

@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 pub(super) struct Words<'a>(VecDeque<&'a str>);
 
 impl<'a> Words<'a> {
-    pub(super) fn of(text: &'a str) -> Self {
+    pub(super) fn split(text: &'a str) -> Self {
         Self(text.split_whitespace().collect())
     }
 

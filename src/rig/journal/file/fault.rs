@@ -22,7 +22,7 @@ pub enum FileFault {
 }
 
 impl FileFault {
-    pub(super) fn of(doing: &'static str, path: &Path) -> impl Fn(io::Error) -> Self {
+    pub(super) fn cannot_be(doing: &'static str, path: &Path) -> impl Fn(io::Error) -> Self {
         move |error| Self::System {
             doing,
             path: path.to_owned(),

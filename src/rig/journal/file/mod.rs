@@ -44,7 +44,7 @@ impl FileStorage {
     /// # Errors
     /// A file with this name exists, or the disk has no space for the reserve; then no file remains.
     pub fn create(path: &Path) -> Result<Self, FileFault> {
-        let file = new_file(path).map_err(FileFault::of("created", path))?;
+        let file = new_file(path).map_err(FileFault::cannot_be("created", path))?;
         let storage = Self::locked(file, path)?;
         // The storage removes the reserve when it is dropped.
         storage
@@ -65,10 +65,12 @@ impl FileStorage {
             .read(true)
             .append(true)
             .custom_flags(flags.cast_signed());
-        let file = options.open(path).map_err(FileFault::of("opened", path))?;
+        let file = options
+            .open(path)
+            .map_err(FileFault::cannot_be("opened", path))?;
         if !file
             .metadata()
-            .map_err(FileFault::of("opened", path))?
+            .map_err(FileFault::cannot_be("opened", path))?
             .is_file()
         {
             return Err(FileFault::NotAFile {
@@ -90,13 +92,13 @@ impl FileStorage {
             .read(true)
             .custom_flags(flags.cast_signed())
             .open(path);
-        let file = file.map_err(FileFault::of("opened", path))?;
+        let file = file.map_err(FileFault::cannot_be("opened", path))?;
         if on(Guarding::Lock) {
             file.try_lock_shared().map_err(|refused| match refused {
                 TryLockError::WouldBlock => FileFault::InUse {
                     path: path.to_owned(),
                 },
-                TryLockError::Error(error) => FileFault::of("locked", path)(error),
+                TryLockError::Error(error) => FileFault::cannot_be("locked", path)(error),
             })?;
         }
         Ok(Still { _file: file })
@@ -109,7 +111,7 @@ impl FileStorage {
     pub fn text(&self) -> Result<LogText, FileFault> {
         // Through the descriptor with the lock: the path may meanwhile lead to a different file.
         let text = self.file.try_clone().and_then(LogText::of_file);
-        let text = text.map_err(FileFault::of("read", &self.path))?;
+        let text = text.map_err(FileFault::cannot_be("read", &self.path))?;
         if text.length() > MOST_BYTES {
             return Err(FileFault::TooLarge {
                 path: self.path.clone(),
@@ -133,7 +135,7 @@ impl FileStorage {
                 }
                 Ok(aside)
             })
-            .map_err(FileFault::of("truncated", &self.path))
+            .map_err(FileFault::cannot_be("truncated", &self.path))
     }
 
     /// Free space of the disk, bytes.
@@ -142,7 +144,7 @@ impl FileStorage {
     /// The file system does not report it.
     pub fn free_space(&self) -> Result<u64, FileFault> {
         let statistics = rustix::fs::fstatvfs(&self.file).map_err(io::Error::from);
-        let statistics = statistics.map_err(FileFault::of(
+        let statistics = statistics.map_err(FileFault::cannot_be(
             "asked about the free space of its disk",
             &self.path,
         ))?;
@@ -156,12 +158,12 @@ impl FileStorage {
                 TryLockError::WouldBlock => FileFault::InUse {
                     path: path.to_owned(),
                 },
-                TryLockError::Error(error) => FileFault::of("locked", path)(error),
+                TryLockError::Error(error) => FileFault::cannot_be("locked", path)(error),
             })?;
         }
         let length = file
             .metadata()
-            .map_err(FileFault::of("opened", path))?
+            .map_err(FileFault::cannot_be("opened", path))?
             .len();
         Ok(Self {
             file,
@@ -175,7 +177,7 @@ impl FileStorage {
         let settled = ballast::lay(&self.path)
             .and_then(|()| self.file.sync_all())
             .and_then(|()| sync_folder(&self.path));
-        settled.map_err(FileFault::of("given its reserve", &self.path))
+        settled.map_err(FileFault::cannot_be("given its reserve", &self.path))
     }
 }
 

@@ -338,7 +338,7 @@ impl RealRig {
         let going = self.proposed.take().unwrap().going;
         self.actuator
             .start(&going)
-            .map_err(|fault| self.device_fault(Part::Actuator, &fault))
+            .map_err(|fault| self.device_fault(DeviceRole::Actuator, &fault))
     }
 }
 

@@ -6,13 +6,11 @@ use crate::physics::structure::frame_properties::FrameProperties;
 use crate::physics::structure::{Damping, FrameEnergies};
 use crate::physics::tracking::monitor::Tracking;
 use crate::plan::{Integrator, Interval, Link, Mode, Plan, ProcedureKind, Stepping, VirtualLink};
-use crate::procedures::stepping::axes::AxesState;
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
-use crate::procedures::stepping::run::Steps;
-use crate::procedures::stepping::start::Start;
-use crate::procedures::stepping::step_loop;
-use crate::procedures::stepping::step_loop::{Balance, Stepped};
-use crate::procedures::stepping::tracking::tracking_summary::Followed;
+use crate::procedures::stepping::setting::Start;
+use crate::procedures::stepping::setting::Steps;
+use crate::procedures::stepping::step_loop::{self, AxesState, Balance, Stepped};
+use crate::procedures::stepping::tracking::TrackingSummary;
 use crate::record::{NamedResult, Outcome};
 use crate::rig::{Reading, virtual_rig};
 use crate::run::Unwatched;
@@ -98,7 +96,11 @@ impl Stepped for &mut Sine {
 }
 
 /// Monitor values of each axis after every step, from which a procedure forms its results.
-fn followed(link: VirtualLink, mode: Mode, per_cycle: u32) -> (Vec<Vec<Tracking>>, Followed) {
+fn followed(
+    link: VirtualLink,
+    mode: Mode,
+    per_cycle: u32,
+) -> (Vec<Vec<Tracking>>, TrackingSummary) {
     let mut plan = struck_frame();
     plan.rig.link = Link::Virtual(link);
     plan.limits.tracking_energy_error.high = 1e6;
@@ -141,7 +143,7 @@ fn followed(link: VirtualLink, mode: Mode, per_cycle: u32) -> (Vec<Vec<Tracking>
         kept: Vec::new(),
     };
     let (mut rig, mut observer, mut followed) =
-        (virtual_rig(&plan), Unwatched, Followed::default());
+        (virtual_rig(&plan), Unwatched, TrackingSummary::default());
     let Ok(mut session) = Session::begin(&plan, rig.as_mut(), &mut observer) else {
         panic!("no session")
     };

@@ -21,6 +21,9 @@ pub struct GroundRecord {
 }
 
 /// Reads a record according to its file extension.
+///
+/// # Errors
+/// The reason why the text is not read.
 pub fn read(name: &str, text: &str) -> Result<GroundRecord, String> {
     let ending = name.rsplit('.').next().unwrap_or_default();
     let record = if ending.eq_ignore_ascii_case("at2") {

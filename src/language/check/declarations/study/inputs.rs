@@ -8,7 +8,7 @@ use crate::check::checker::{Checker, Context};
 use crate::check::messages::{inputs as names, studies as message};
 use crate::syntax::ast::{BinaryOperator, Expr, ExprKind};
 use psd_physics::study::distribution::{Distribution, Spread};
-use psd_physics::study::inputs::{InputError, Inputs, Source};
+use psd_physics::study::inputs::{InputError, Source, StudyInputs};
 use psd_physics::study::sampling::sobol::MOST_INPUTS;
 use psd_physics::study::sampling::{Design, DesignError};
 use psd_plan::schema::study as schema;
@@ -52,7 +52,7 @@ pub(super) fn variation(
     let correlations = correlation::correlations(checker, block, &varied)?;
     let (sampling, seed) = (sampling?, seed?);
     let pairs: Vec<_> = correlations.iter().map(|pair| pair.node).collect();
-    match Inputs::new(sources.clone(), &pairs, design(sampling), seed) {
+    match StudyInputs::new(sources.clone(), &pairs, design(sampling), seed) {
         Ok(_) => {}
         Err(InputError::Correlation(reason)) => {
             return correlation::refused(checker, reason, &correlations, &varied);

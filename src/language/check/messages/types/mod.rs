@@ -1,4 +1,4 @@
-//! Errors of types: E304. Those of dimensions are in [`dimensions`].
+//! Errors of types: E304. Those of dimensions are in `dimensions`.
 
 mod dimensions;
 

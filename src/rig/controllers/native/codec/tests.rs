@@ -43,9 +43,9 @@ fn the_vectors_of_the_specification() {
     let accepted = reply(ACK).unwrap();
     assert_eq!(
         (accepted.kind, accepted.sequence, accepted.boot()),
-        (Kind::Ack, 41, "7F3A")
+        (ReplyKind::Ack, 41, "7F3A")
     );
-    assert_eq!(state(accepted.words()[0]), Some(State::Moving));
+    assert_eq!(state(accepted.words()[0]), Some(ReportedState::Moving));
     let read = read(DATA).unwrap();
     let axis = AxisData {
         displacement: 1.249_871e-3,
@@ -55,7 +55,7 @@ fn the_vectors_of_the_specification() {
     };
     assert_eq!(
         (read.time, read.axes, read.state),
-        (118.203, vec![axis], State::Idle)
+        (118.203, vec![axis], ReportedState::Idle)
     );
 }
 

@@ -2,7 +2,9 @@
 //! power-up. `codec` knows the bytes. It does not validate a reading.
 
 use crate::controllers::native;
-use crate::controllers::native::codec::{AxisBounds, Bounds, Hello, Kind, Reply, Request, State};
+use crate::controllers::native::codec::{
+    AxisBounds, Bounds, Hello, Reply, ReplyKind, ReportedState, Request,
+};
 use crate::controllers::{
     Answer, Channel, Device, DeviceFault, DeviceIdentity, DeviceMove, Force, LineClient, Sample,
 };
@@ -34,11 +36,11 @@ pub struct NativeDevice {
     held: bool,
     /// Number of the next move, if none is proposed.
     next_id: u64,
-    proposed: Option<Proposed>,
+    proposed: Option<RequestedMove>,
 }
 
 /// A move that has not been accepted.
-struct Proposed {
+struct RequestedMove {
     id: u64,
     /// The targets as they are sent.
     targets: String,
@@ -69,11 +71,11 @@ impl NativeDevice {
     }
 
     /// Sends a request and waits for the reply of this kind, after resynchronising an interrupted conversation.
-    fn request(&mut self, request: &Request<'_>, kind: Kind) -> Result<Reply, DeviceFault> {
+    fn request(&mut self, request: &Request<'_>, kind: ReplyKind) -> Result<Reply, DeviceFault> {
         if self.out_of_step {
             self.send_hello()?;
             if let Some(bounds) = self.narrowed.clone() {
-                self.request(&Request::Limits(&bounds), Kind::Ack)?;
+                self.request(&Request::Limits(&bounds), ReplyKind::Ack)?;
             }
         }
         let frame = framed(self.sequence.wrapping_add(1), request)?;
@@ -81,14 +83,14 @@ impl NativeDevice {
     }
 
     /// Sends the frame of the next sequence number.
-    fn exchange(&mut self, frame: &[u8], kind: Kind) -> Result<Reply, DeviceFault> {
+    fn exchange(&mut self, frame: &[u8], kind: ReplyKind) -> Result<Reply, DeviceFault> {
         self.sequence = self.sequence.wrapping_add(1);
         self.out_of_step = true;
         let (sequence, boot) = (self.sequence, self.boot.as_deref());
         let answered = self
             .client
             .exchange(frame, b"\n", |line| classify(line, sequence, kind, boot))?;
-        let refused = answered.kind == Kind::Err;
+        let refused = answered.kind == ReplyKind::Err;
         self.out_of_step = refused && answered.words().first() == Some(&"SEQ");
         if refused {
             return Err(DeviceFault::Refused {
@@ -100,7 +102,7 @@ impl NativeDevice {
 
     fn send_hello(&mut self) -> Result<(), DeviceFault> {
         let frame = framed(self.sequence.wrapping_add(1), &Request::Hello)?;
-        let reply = self.exchange(&frame, Kind::Ack)?;
+        let reply = self.exchange(&frame, ReplyKind::Ack)?;
         let hello =
             native::codec::hello(&reply.words()).filter(|hello| hello.bounds.allow_something());
         let strange = || {
@@ -141,7 +143,7 @@ impl NativeDevice {
         }
         let mut last = None;
         for frame in &going.frames {
-            let answered = self.exchange(frame, Kind::Ack)?;
+            let answered = self.exchange(frame, ReplyKind::Ack)?;
             state(&answered)?;
             last = Some(answered);
         }
@@ -166,8 +168,8 @@ impl NativeDevice {
     }
 
     /// A request that is answered by the state alone.
-    fn command(&mut self, request: &Request<'_>) -> Result<State, DeviceFault> {
-        state(&self.request(request, Kind::Ack)?)
+    fn command(&mut self, request: &Request<'_>) -> Result<ReportedState, DeviceFault> {
+        state(&self.request(request, ReplyKind::Ack)?)
     }
 }
 
@@ -197,6 +199,9 @@ pub fn native_identity(hello: &Hello, boot: Option<String>) -> DeviceIdentity {
 }
 
 /// The reading of a `DATA` reply with this number of axes.
+///
+/// # Errors
+/// The reply is no reading of this device, or its status forbids one.
 pub fn decoded(reply: Reply, axes: usize) -> Result<Sample, DeviceFault> {
     let words = reply.words();
     let Some(data) = native::codec::data(&words).filter(|data| data.axes.len() == axes) else {
@@ -216,14 +221,14 @@ pub fn decoded(reply: Reply, axes: usize) -> Result<Sample, DeviceFault> {
     });
     Ok(Sample {
         time: Some(data.time),
-        moving: Some(data.state == State::Moving),
+        moving: Some(data.state == ReportedState::Moving),
         channels: channels.collect(),
         raw: vec![reply.line],
     })
 }
 
 /// The meaning of a received line for the open request.
-fn classify(line: &[u8], sequence: u32, kind: Kind, boot: Option<&str>) -> Answer<Reply> {
+fn classify(line: &[u8], sequence: u32, kind: ReplyKind, boot: Option<&str>) -> Answer<Reply> {
     let Ok(reply) = native::codec::reply(line) else {
         return Answer::Ignore;
     };
@@ -236,14 +241,14 @@ fn classify(line: &[u8], sequence: u32, kind: Kind, boot: Option<&str>) -> Answe
         });
     }
     if reply.sequence != sequence && on(Guarding::Sequence)
-        || reply.kind != kind && reply.kind != Kind::Err
+        || reply.kind != kind && reply.kind != ReplyKind::Err
     {
         return Answer::Ignore;
     }
     Answer::Take(reply)
 }
 
-fn state(reply: &Reply) -> Result<State, DeviceFault> {
+fn state(reply: &Reply) -> Result<ReportedState, DeviceFault> {
     let word = reply
         .words()
         .first()
@@ -259,7 +264,7 @@ impl Device for NativeDevice {
         self.client.drain()?;
         self.narrowed = None;
         self.send_hello()?;
-        let reply = self.request(&Request::Status, Kind::Ack)?;
+        let reply = self.request(&Request::Status, ReplyKind::Ack)?;
         let flags = reply
             .words()
             .get(1)
@@ -275,7 +280,7 @@ impl Device for NativeDevice {
         }
         // Between two runs the rig receives no frames, so its watchdog has tripped. The start of a run is the operator's
         // act that clears the hold. Within a run it is never cleared.
-        if state(&reply)? == State::Held {
+        if state(&reply)? == ReportedState::Held {
             self.command(&Request::Clear)?;
         }
         (self.held, self.proposed) = (false, None);
@@ -354,7 +359,7 @@ impl Device for NativeDevice {
             .proposed
             .as_ref()
             .is_some_and(|proposed| proposed.sent && proposed.id == id);
-        self.proposed = Some(Proposed {
+        self.proposed = Some(RequestedMove {
             id,
             targets: written,
             sent,
@@ -387,7 +392,7 @@ impl Device for NativeDevice {
     }
 
     fn sample(&mut self) -> Result<Sample, DeviceFault> {
-        let reply = self.request(&Request::Measure { readings: 1 }, Kind::Data)?;
+        let reply = self.request(&Request::Measure { readings: 1 }, ReplyKind::Data)?;
         decoded(reply, self.axes())
     }
 
@@ -395,9 +400,9 @@ impl Device for NativeDevice {
         self.client.send(&self.emergency())?;
         self.held = true;
         let reported = match self.command(&Request::Stop)? {
-            State::Held => return Ok(()),
-            State::Moving => "that it moves",
-            State::Idle => "no hold",
+            ReportedState::Held => return Ok(()),
+            ReportedState::Moving => "that it moves",
+            ReportedState::Idle => "no hold",
         };
         Err(DeviceFault::Unfit(format!(
             "after the hold command the rig reports {reported}"

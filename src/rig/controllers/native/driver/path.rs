@@ -1,7 +1,7 @@
 //! Continuous motion in psd's own protocol: smooth paths whose ends are passed. In: a path per axis, in the device's own
 //! directions. Out: the frame of a `GLIDE`, and its decoded values. It sends nothing.
 
-use super::{DeviceMove, NativeDevice, Proposed};
+use super::{DeviceMove, NativeDevice, RequestedMove};
 use crate::controllers::DeviceFault;
 use crate::controllers::native;
 use crate::controllers::native::codec::{End, Request};
@@ -69,7 +69,7 @@ impl NativeDevice {
             ends: &ends,
             seconds,
         })?;
-        self.proposed = Some(Proposed {
+        self.proposed = Some(RequestedMove {
             id,
             targets: written,
             sent: false,

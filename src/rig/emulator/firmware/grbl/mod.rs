@@ -20,7 +20,7 @@ const TRAVEL: f64 = 0.2;
 const PLANNER: usize = 15;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum State {
+enum BoardState {
     Idle,
     Jog,
     Hold,
@@ -33,7 +33,7 @@ pub struct Grbl {
     /// Build information of the owner, which `$I` shows.
     owner: String,
     line: Vec<u8>,
-    state: State,
+    state: BoardState,
     planned: VecDeque<Jog>,
     /// End of the last planned move \[m\].
     end: f64,
@@ -48,7 +48,7 @@ impl Grbl {
         Self {
             owner: owner.to_owned(),
             line: Vec::new(),
-            state: State::Idle,
+            state: BoardState::Idle,
             planned: VecDeque::new(),
             end: 0.0,
             dwell: None,
@@ -60,8 +60,8 @@ impl Grbl {
         rig.hold();
         self.planned.clear();
         self.end = rig.commanded();
-        if self.state == State::Jog {
-            self.state = State::Idle;
+        if self.state == BoardState::Jog {
+            self.state = BoardState::Idle;
         }
     }
 
@@ -70,16 +70,16 @@ impl Grbl {
             b'?' => Some(self.status(rig)),
             b'!' => {
                 // A hold cancels a jog. The board has no other motion.
-                let at_rest = self.state == State::Idle;
+                let at_rest = self.state == BoardState::Idle;
                 self.cancel(rig);
                 if at_rest {
-                    self.state = State::Hold;
+                    self.state = BoardState::Hold;
                 }
                 Some(String::new())
             }
             b'~' => {
-                if self.state == State::Hold {
-                    self.state = State::Idle;
+                if self.state == BoardState::Hold {
+                    self.state = BoardState::Idle;
                 }
                 Some(String::new())
             }
@@ -102,7 +102,7 @@ impl Grbl {
         };
         let banner = "\r\nGrbl 1.1h ['$' for help]\r\n";
         if in_motion {
-            self.state = State::Alarm;
+            self.state = BoardState::Alarm;
             format!("ALARM:3\r\n{banner}[MSG:'$H'|'$X' to unlock]\r\n")
         } else {
             banner.to_owned()
@@ -111,10 +111,10 @@ impl Grbl {
 
     fn status(&self, rig: &EmulatedRig) -> String {
         let state = match self.state {
-            State::Idle => "Idle",
-            State::Jog => "Jog",
-            State::Hold => "Hold:0",
-            State::Alarm => "Alarm",
+            BoardState::Idle => "Idle",
+            BoardState::Jog => "Jog",
+            BoardState::Hold => "Hold:0",
+            BoardState::Alarm => "Alarm",
         };
         let feed = if rig.moving() { Self::feed(rig) } else { 0.0 };
         format!(
@@ -165,9 +165,9 @@ impl Grbl {
                 self.owner
             )),
             "$X" => {
-                let locked = self.state == State::Alarm;
+                let locked = self.state == BoardState::Alarm;
                 if locked {
-                    self.state = State::Idle;
+                    self.state = BoardState::Idle;
                 }
                 Ok(if locked {
                     "[MSG:Caution: Unlocked]\r\n".to_owned()
@@ -178,8 +178,8 @@ impl Grbl {
             bare => match bare.strip_prefix("$J=") {
                 Some(words) => self.jog(words, rig).map(|()| String::new()),
                 None if bare.starts_with('$') => Err(3),
-                None if self.state == State::Alarm
-                    || self.state == State::Jog && !bare.starts_with("G4P") =>
+                None if self.state == BoardState::Alarm
+                    || self.state == BoardState::Jog && !bare.starts_with("G4P") =>
                 {
                     Err(9)
                 }
@@ -199,7 +199,7 @@ impl Grbl {
     }
 
     fn jog(&mut self, words: &str, rig: &mut EmulatedRig) -> Result<(), u32> {
-        if !matches!(self.state, State::Idle | State::Jog) {
+        if !matches!(self.state, BoardState::Idle | BoardState::Jog) {
             return Err(8);
         }
         let Jog { target, speed } = Jog::read(words, self.end)?;
@@ -223,17 +223,17 @@ impl Grbl {
             target: self.end,
             speed,
         });
-        self.state = State::Jog;
+        self.state = BoardState::Jog;
         self.proceed(rig);
         Ok(())
     }
 
     /// Starts the next planned move once the last one is done.
     fn proceed(&mut self, rig: &mut EmulatedRig) {
-        while self.state == State::Jog && !rig.moving() {
+        while self.state == BoardState::Jog && !rig.moving() {
             match self.planned.pop_front() {
                 Some(Jog { target, speed }) => rig.go(target, speed),
-                None => self.state = State::Idle,
+                None => self.state = BoardState::Idle,
             }
         }
     }
@@ -269,7 +269,7 @@ impl Firmware for Grbl {
         self.proceed(rig);
         let now = rig.time();
         match &mut self.dwell {
-            Some((seconds, since)) if self.state != State::Jog => {
+            Some((seconds, since)) if self.state != BoardState::Jog => {
                 let over = now - *since.get_or_insert(now) >= *seconds;
                 if over {
                     self.dwell = None;
@@ -285,7 +285,7 @@ impl Firmware for Grbl {
     fn reboot(&mut self, rig: &mut EmulatedRig) -> Vec<u8> {
         rig.hold();
         let banner = self.reset(rig);
-        self.state = State::Alarm;
+        self.state = BoardState::Alarm;
         format!("{banner}[MSG:'$H'|'$X' to unlock]\r\n").into_bytes()
     }
 }

@@ -74,7 +74,7 @@ fn rounded(value: f64, scale: f64) -> f64 {
 
 impl AxisBounds {
     /// Parses the four words of an axis.
-    pub(super) fn of(words: &[&str]) -> Option<Self> {
+    pub(super) fn parse(words: &[&str]) -> Option<Self> {
         let [low, high, least, most] = words else {
             return None;
         };

@@ -173,7 +173,8 @@ impl Native {
                 return Ok(("ACK", self.hello()));
             }
             ("LIM", [limits @ .., speed]) if limits.len() == 4 * axes => {
-                let given: Option<Vec<AxisBounds>> = limits.chunks(4).map(AxisBounds::of).collect();
+                let given: Option<Vec<AxisBounds>> =
+                    limits.chunks(4).map(AxisBounds::parse).collect();
                 let (given, top_speed) = given.zip(decimal(speed)).ok_or("ARG")?;
                 let wider = given
                     .iter()

@@ -1,14 +1,227 @@
-//! The re-run along the record. In: the record, targets one by one. Out: the readings there. The re-run reverses where its own targets
-//! reverse. Each reversal is matched to the recorded one of that direction nearest in time. If the record reversed and the re-run does
-//! not, the re-run continues on its present curve. If the re-run reverses and the record did not, it unloads with the initial stiffness
-//! of the specimen. It reports a departure from the record in two cases: it unloads where nothing is recorded, or, if the record does not
-//! keep Masing's rule, it follows a curve that begins at a different point.
+//! The measured force–displacement path of a specimen, used as its model. In: targets and the
+//! forces read there, in order. Out: the force at targets near them, so that a run can be
+//! re-integrated with a perturbed input. At the recorded targets it returns the recorded readings
+//! bit for bit.
+//!
+//! `branches` cuts the path into branches, and compares it with Masing's rule: a branch that begins elsewhere keeps its shape. That is
+//! exact for elastic specimens and for elastic–plastic elements in parallel (Iwan's model). Beyond the end of a branch the force follows
+//! its tangent. `rate_correction` removes lag and damping of a moving actuator from the readings.
+//!
+//! The re-run reverses where its own targets reverse. Each reversal is matched to the recorded one of that direction nearest in time. If
+//! the record reversed and the re-run does not, the re-run continues on its present curve. If the re-run reverses and the record did not,
+//! it unloads with the initial stiffness of the specimen. It reports a departure from the record in two cases: it unloads where nothing
+//! is recorded, or, if the record does not keep Masing's rule, it follows a curve that begins at a different point.
 
-use super::rate_correction::{Passage, Speed};
-use super::{ROUNDING, Reading, RecordedPath, SETTLED, UNSEEN};
+mod branches;
+mod rate_correction;
+
+pub(crate) use rate_correction::lag;
+
+use branches::{Branch, Piece, Slopes};
+use rate_correction::{ContinuousReadings, Passage, Speed};
+
+use crate::integrator::tangent::NOISE_MULTIPLE;
+use crate::statistics::DeclaredNoise;
+
+/// One step of the record.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// Commanded displacement \[m\].
+    pub target: f64,
+    /// Measured \[m\].
+    pub displacement: f64,
+    /// Measured \[N\].
+    pub force: f64,
+}
+
+/// The motion of a run whose actuators do not stop at their targets.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContinuousMotion<V> {
+    /// Predicted for the targets \[m/s\].
+    pub velocities: V,
+    /// From one reading to the next, in the same time \[s\].
+    pub time_step: f64,
+}
+
+/// Readings at the ends of each segment without a reversal, and its direction, from the move to each reading: a displacement change, or a
+/// velocity.
+fn branches_of(travel: impl Iterator<Item = f64>) -> Vec<(usize, usize, f64)> {
+    let mut found = Vec::new();
+    let (mut begin, mut last, mut direction) = (0, 0, 0.0);
+    for (step, moved) in travel.enumerate() {
+        last = step;
+        if moved * direction < 0.0 {
+            found.push((begin, step - 1, direction));
+            begin = step - 1;
+        }
+        if moved != 0.0 {
+            direction = moved.signum();
+        }
+    }
+    found.push((begin, last, direction));
+    found
+}
+
+/// A re-run that reverses where nothing is recorded departs from the record beyond this fraction of the farthest recorded position.
+const UNSEEN: f64 = 1e-3;
+/// Curves nearer to their record than this fraction of it lie on it.
+const ROUNDING: f64 = 1e-9;
+/// A curve whose last slope is less than this fraction of its first has settled on that.
+const SETTLED: f64 = 0.9;
+
+/// Readings along the path, in branches and curves.
+#[derive(Clone, Debug)]
+pub struct RecordedPath {
+    readings: Vec<Reading>,
+    branches: Vec<Branch>,
+    pieces: Vec<Piece>,
+    /// Positions closer than this determine no slope \[m\].
+    least: f64,
+    /// Farthest target from zero \[m\].
+    farthest: f64,
+    /// Whether its curves satisfy Masing's rule.
+    keeps_masing: bool,
+    /// Readings of a continuous motion; `readings` are then those of the specimen at rest.
+    continuous: Option<ContinuousReadings>,
+}
+
+impl RecordedPath {
+    /// `motion` is that of a continuous run; without it the specimen rested at each reading. `stiffness` \[N/m\] applies where no branch
+    /// determines one. None without readings.
+    #[must_use]
+    pub fn new(
+        readings: Vec<Reading>,
+        motion: Option<ContinuousMotion<&[f64]>>,
+        stiffness: f64,
+        noise: DeclaredNoise,
+    ) -> Option<Self> {
+        readings.first()?;
+        let continuous =
+            motion.map(|motion| ContinuousReadings::of(&readings, motion, noise.resolution));
+        let readings = continuous
+            .as_ref()
+            .map_or(readings, ContinuousReadings::at_rest);
+        let least = noise
+            .resolution
+            .max(NOISE_MULTIPLE * noise.force / stiffness);
+        let force_uncertainty = continuous.as_ref().map_or(0.0, |continuous| {
+            continuous.force_uncertainty(stiffness, noise.resolution)
+        });
+        let slopes = Slopes {
+            stiffness,
+            force_noise: noise.force.hypot(force_uncertainty),
+            least,
+        };
+        let (branches, pieces) = branches::cut(&readings, slopes, continuous.as_ref());
+        let keeps_masing = branches::keeps_masing_rule(
+            &readings,
+            &branches,
+            &pieces,
+            noise.force,
+            continuous.is_some(),
+        );
+        let farthest = readings.iter().fold(0.0, |farthest: f64, reading| {
+            farthest.max(reading.target.abs())
+        });
+        Some(Self {
+            readings,
+            branches,
+            pieces,
+            least,
+            farthest,
+            keeps_masing,
+            continuous,
+        })
+    }
+
+    /// The recorded reading of a step; past the end of the record, of its last.
+    #[must_use]
+    pub fn recorded(&self, step: usize) -> &Reading {
+        let step = step.min(self.readings.len() - 1);
+        self.continuous
+            .as_ref()
+            .map_or(&self.readings[step], |continuous| continuous.reading(step))
+    }
+
+    /// Retraces it from its begin, in `finer` steps for each of the record.
+    #[must_use]
+    pub fn retrace(&self, finer: u8) -> Retrace<'_> {
+        Retrace::new(self, finer)
+    }
+
+    /// Displacement and force at `position` \[m\] on the curve of `piece`, searched from the reading of `step`.
+    fn at(&self, piece: usize, step: usize, position: f64) -> (f64, f64) {
+        let mut index = piece;
+        // On either side of the point at which the curve was left and later continued.
+        let piece = loop {
+            let piece = self.pieces[index];
+            let direction = self.branches[piece.branch].direction;
+            let beyond = |reading: &Reading| (position - reading.target) * direction;
+            index = match (piece.before, piece.after) {
+                (Some(before), _) if beyond(&piece.begin) < 0.0 => before,
+                (_, Some(after)) if beyond(&self.pieces[after].begin) > 0.0 => after,
+                _ => break piece,
+            };
+        };
+        let direction = self.branches[piece.branch].direction;
+        let count = piece.last + 1 - piece.first;
+        let reading = |point: usize| {
+            if point == 0 {
+                piece.begin
+            } else {
+                self.readings[piece.first + point - 1]
+            }
+        };
+        let mut from = (step + 1).saturating_sub(piece.first).min(count);
+        let here = reading(from);
+        if position == here.target {
+            return (here.displacement, here.force);
+        }
+        let onwards = (position - here.target) * direction > 0.0;
+        loop {
+            let next = if onwards && from < count {
+                from + 1
+            } else if !onwards && from > 0 {
+                from - 1
+            } else {
+                break;
+            };
+            let (near, far) = (reading(from), reading(next));
+            let off = |reading: Reading| (reading.target - here.target).abs();
+            // Between the two, or at one of them. Nearby, the noise of this reading applies and not that of its neighbours: the
+            // force continues from here to the first reading that is far enough to determine a slope.
+            if off(far) >= (position - here.target).abs()
+                && off(far) >= self.least
+                && off(far) > off(near)
+            {
+                let near = if off(near) < self.least { here } else { near };
+                let share = (position - near.target) / (far.target - near.target);
+                let between = |near: f64, far: f64| near + share * (far - near);
+                return (
+                    between(near.displacement, far.displacement),
+                    between(near.force, far.force),
+                );
+            }
+            from = next;
+        }
+        let tangent = if from == count {
+            piece.end_tangent
+        } else {
+            piece.start_tangent
+        };
+        let end = reading(from);
+        let end = if (end.target - here.target).abs() < self.least {
+            here
+        } else {
+            end
+        };
+        let beyond = position - end.target;
+        (end.displacement + beyond, end.force + tangent * beyond)
+    }
+}
 
 /// The step of the record nearest to `step` of a path with `finer` steps for each recorded step.
-pub const fn nearest(step: usize, finer: u8) -> usize {
+pub(crate) const fn nearest(step: usize, finer: u8) -> usize {
     let finer = if finer == 0 { 1 } else { finer as usize };
     (step + finer / 2) / finer
 }
@@ -58,7 +271,7 @@ struct Aside {
 }
 
 impl<'a> Retrace<'a> {
-    pub(super) fn new(path: &'a RecordedPath, finer: u8) -> Self {
+    fn new(path: &'a RecordedPath, finer: u8) -> Self {
         let turns = path
             .branches
             .iter()
@@ -336,3 +549,6 @@ impl<'a> Retrace<'a> {
         (displacement, actual.unwrap_or(force))
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,10 @@
 //! The quantities that the steps of a procedure need before the first one: time step, duration, number of steps, and for a frame its
-//! properties and tangents. In: a procedure of the plan, and a frame where it tests one. Out: numbers, each inside its domain. It knows
-//! no ground and no striker.
+//! properties and tangents; the state of rig and structure there. In: a procedure of the plan, a frame where it tests one, the first
+//! reading. Out: numbers, each inside its domain, and the initial state of a solver. It knows no ground and no striker.
 
+use std::fmt::Display;
+
+use crate::physics::integrator::input::FrameInput;
 use crate::physics::integrator::tangents::Tangents;
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::physics::structure::{Damping, storeys_of};
@@ -9,11 +12,11 @@ use crate::plan::{
     Frame, Integrator, MOST_STEPS, Plan, ShakeDamping, Stepping, rayleigh, step_count, steps_in,
 };
 use crate::record::EventKind;
+use crate::rig::{DeclaredNoise, Reading};
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use crate::schema::frames;
-use crate::schema::methods;
+use crate::schema::{frames, methods};
 use crate::units::Dimension;
 use crate::units::display::stated;
 
@@ -113,6 +116,45 @@ impl FrameSteps {
     pub(crate) fn order(&self) -> usize {
         self.properties.matrices.order()
     }
+}
+
+/// The state when the first step begins.
+pub(crate) struct Start {
+    /// Commanded positions of the actuators \[m\]: X starts there.
+    pub commanded: Vec<f64>,
+    /// One reading there: it contains R₀.
+    pub reading: Reading,
+    pub noise: DeclaredNoise,
+}
+
+impl Start {
+    /// The initial state of a frame, with these loads on its floors \[N\].
+    pub(crate) fn input<'a>(
+        &'a self,
+        frame: &'a FrameSteps,
+        plan: &Stepping,
+        load: &'a [f64],
+    ) -> FrameInput<'a> {
+        let matrices = &frame.properties.matrices;
+        FrameInput {
+            matrices,
+            operator_stiffness: &matrices.stiffness,
+            integrator: plan.integrator,
+            i_modification: plan.i_modification,
+            tangents: frame.tangents,
+            time_step: frame.steps.time_step,
+            initial_displacement: &self.commanded,
+            initial_restoring_force: &self.reading.force,
+            initial_load: load,
+            noise: self.noise,
+        }
+    }
+}
+
+/// The input error of a structure that cannot be integrated with `time_step` \[s\].
+pub(crate) fn not_stepped(time_step: f64, error: &impl Display) -> Stop {
+    let wanted = format!("one that can be stepped: {error}");
+    Stop::bad_input(methods::TIME_STEP.name, time_step, Dimension::TIME, wanted)
 }
 
 /// The frame of a specimen; `check` refuses a procedure on a frame whose specimen has none.

@@ -7,22 +7,18 @@
 //! r* = `r_m` − `K_I`(`d_m` − d̃). The force of a damper of the specimen is in the reading, at the actuator's velocity:
 //! c·v/`time_scale`.
 
-pub(crate) mod continuous_motion;
-pub(crate) mod triggers;
-
-use super::axes::{AxesState, Errors, Monitors, report};
+use super::continuous_motion::{ContinuousMotion, Waypoint};
 use super::operator_stability_watch::StifferSprings;
-use super::run::Steps;
-use super::start::Start;
-use super::tracking::tracking_summary::Followed;
+use super::setting::{Start, Steps};
+use super::tracking::{Monitors, TrackingSummary};
+use crate::physics::integrator::state::State;
+use crate::physics::structure::matrix::Vector;
 use crate::physics::tracking::monitor::Tracking;
-use crate::plan::{Mode, Stepping};
+use crate::plan::{InspectTrigger, Mode, Stepping};
 use crate::rig::Reading;
-use crate::run::StepReport;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use continuous_motion::{ContinuousMotion, Waypoint};
-use triggers::Triggers;
+use crate::run::{AxisReport, StepReport};
 
 /// The energy of a test at the end of a step \[J\].
 pub(crate) struct Balance {
@@ -74,7 +70,7 @@ pub(crate) trait Stepped {
 pub(crate) fn run<S: Stepped>(
     steps: &Steps,
     plan: &Stepping,
-    followed: &mut Followed,
+    followed: &mut TrackingSummary,
     session: &mut Session<'_>,
     begin: impl FnOnce(&Start) -> Result<(S, StifferSprings), Stop>,
 ) -> Result<(), Stop> {
@@ -169,4 +165,153 @@ fn waypoints(stepped: &mut impl Stepped) -> Vec<Waypoint> {
             struck,
         })
         .collect()
+}
+
+/// The end of a step, one entry per axis.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AxesState<'a> {
+    pub step: u64,
+    /// \[s\]
+    pub time: f64,
+    /// \[m\]
+    pub target: &'a [f64],
+    /// Measured \[m\].
+    pub displacement: &'a [f64],
+    /// \[m/s\]
+    pub velocity: &'a [f64],
+    /// \[m/s²\]
+    pub acceleration: &'a [f64],
+    /// Measured \[N\].
+    pub force: &'a [f64],
+}
+
+impl<'a> AxesState<'a> {
+    pub(crate) fn of<V: Vector>(state: &'a State<V>) -> Self {
+        Self {
+            step: state.step,
+            time: state.time,
+            target: state.target.as_slice(),
+            displacement: state.measured_displacement.as_slice(),
+            velocity: state.velocity.as_slice(),
+            acceleration: state.acceleration.as_slice(),
+            force: state.restoring_force.as_slice(),
+        }
+    }
+}
+
+/// The errors of a step.
+pub(crate) struct Errors {
+    pub energy_error: f64,
+    pub tracking: Tracking,
+    pub tracking_energy_error: Option<f64>,
+}
+
+/// The step of all axes.
+pub(crate) fn report(state: &AxesState<'_>, errors: &Errors) -> StepReport {
+    let axis = |axis: usize| AxisReport {
+        command: state.target[axis],
+        displacement: state.displacement[axis],
+        velocity: Some(state.velocity[axis]),
+        acceleration: Some(state.acceleration[axis]),
+        force: state.force[axis],
+    };
+    StepReport {
+        step: state.step,
+        time: state.time,
+        axes: (0..state.target.len()).map(axis).collect(),
+        speed: None,
+        energy_error: Some(errors.energy_error),
+        tracking: Some(errors.tracking),
+        tracking_energy_error: errors.tracking_energy_error,
+    }
+}
+
+/// The triggers of the plan with their states.
+pub(crate) struct Triggers {
+    armed: Vec<Armed>,
+}
+
+struct Armed {
+    trigger: InspectTrigger,
+    /// Largest |R| since its last trigger \[N\].
+    largest_force: f64,
+    fired: bool,
+}
+
+impl Triggers {
+    pub(crate) fn new(triggers: &[InspectTrigger]) -> Self {
+        let armed = |trigger: &InspectTrigger| Armed {
+            trigger: trigger.clone(),
+            largest_force: 0.0,
+            fired: false,
+        };
+        Self {
+            armed: triggers.iter().map(armed).collect(),
+        }
+    }
+
+    /// The first reason for an inspection after `step` at the simulated time `time` \[s\] with restoring force `force` \[N\].
+    pub(crate) fn after(&mut self, step: u64, time: f64, force: f64) -> Option<String> {
+        let mut reason = None;
+        for armed in &mut self.armed {
+            if let Some(found) = armed.after(step, time, force) {
+                reason.get_or_insert(found);
+            }
+        }
+        reason
+    }
+}
+
+impl Armed {
+    fn after(&mut self, step: u64, time: f64, force: f64) -> Option<String> {
+        match self.trigger {
+            InspectTrigger::Every(steps) => (steps > 0 && step.is_multiple_of(u64::from(steps)))
+                .then(|| format!("inspection every {steps} steps")),
+            InspectTrigger::ForceDrop(fraction) => {
+                let size = force.abs();
+                let dropped = size < (1.0 - fraction) * self.largest_force;
+                // After an inspection, only a further fall from here counts.
+                self.largest_force = if dropped {
+                    size
+                } else {
+                    self.largest_force.max(size)
+                };
+                dropped
+                    .then(|| format!("the restoring force fell by {} % or more", fraction * 100.0))
+            }
+            InspectTrigger::At(moment) => {
+                // Half a billionth for a step end that rounding put just before the moment.
+                let due = !self.fired && time >= moment * (1.0 - 5e-10);
+                self.fired |= due;
+                due.then(|| format!("inspection at {moment} s of test time"))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn goes_off_every_n_steps_once_at_a_time_and_once_a_drop() {
+        let steps = |triggers: &[InspectTrigger]| {
+            let mut triggers = Triggers::new(triggers);
+            let forces = [10.0, 50.0, 100.0, 95.0, 89.0, 85.0, 81.0, 80.0, 100.0];
+            let due = |(step, force): (u64, &f64)| {
+                #[expect(clippy::cast_precision_loss, reason = "nine steps")]
+                let time = step as f64 * 0.1;
+                triggers.after(step, time, *force).map(|_| step)
+            };
+            (1..).zip(&forces).filter_map(due).collect::<Vec<_>>()
+        };
+        assert_eq!(steps(&[InspectTrigger::Every(4)]), [4, 8]);
+        assert_eq!(steps(&[InspectTrigger::At(0.3)]), [3]);
+        // 89 is below 90 % of 100; 80 is below 90 % of 89.
+        assert_eq!(steps(&[InspectTrigger::ForceDrop(0.1)]), [5, 8]);
+        assert_eq!(
+            steps(&[InspectTrigger::At(0.4), InspectTrigger::Every(4)]),
+            [4, 8]
+        );
+    }
 }

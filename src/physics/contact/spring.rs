@@ -45,7 +45,7 @@ impl Closing {
 }
 
 /// A part of a step.
-pub struct Part {
+pub struct ContactPart {
     /// Depth at its start \[m\].
     pub from: f64,
     /// Change of the depth without a contact force \[m\].
@@ -62,7 +62,7 @@ pub trait SpringForce {
     fn elastic(&self, depth: f64) -> f64;
 
     /// Mean force of a part that ends at the depth `to` \[N\], and its derivative by that \[N/m\]. Neither falls as `to` grows.
-    fn mean(&self, part: &Part, to: f64) -> (f64, f64);
+    fn mean(&self, part: &ContactPart, to: f64) -> (f64, f64);
 
     /// Force at an instant \[N\], without the limit.
     fn instant(&self, depth: f64, rate: f64) -> f64;
@@ -83,13 +83,13 @@ pub trait SpringForce {
 
 /// A law of finite stiffness, followed in parts of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Followed<F> {
+pub struct SpringContact<F> {
     law: F,
     /// Duration of a part of a step \[s\].
     part: f64,
 }
 
-impl<F: SpringForce> Followed<F> {
+impl<F: SpringForce> SpringContact<F> {
     /// Resolves the impact of free bodies.
     pub(super) fn new(law: F, impact: Approaching) -> Self {
         let Approaching {
@@ -109,8 +109,8 @@ impl<F: SpringForce> Followed<F> {
 
     /// Mean force of a part: `to = from + travel − yielding·F` and F = mean(to), by Newton's method between bounds.
     /// Both sides are monotone, so that there is one answer.
-    fn solve(&self, part: &Part) -> f64 {
-        let Part {
+    fn solve(&self, part: &ContactPart) -> f64 {
+        let ContactPart {
             from,
             travel,
             yielding,
@@ -147,7 +147,7 @@ impl<F: SpringForce> Followed<F> {
     }
 
     /// Mean force of a part (see `solve`) \[N\], and whether the limit bounds it.
-    fn force(&self, part: &Part) -> (f64, bool) {
+    fn force(&self, part: &ContactPart) -> (f64, bool) {
         let force = self.solve(part);
         if force > self.law.force_limit() {
             (self.law.force_limit(), true)
@@ -230,7 +230,7 @@ impl<F: SpringForce> Followed<F> {
             substep.solve(&mut mean_velocity);
             done += 1.0;
             let falling = vs + half * gravity;
-            let (force, over) = self.force(&Part {
+            let (force, over) = self.force(&ContactPart {
                 from: depth,
                 travel: duration * (falling - mean_velocity.as_slice()[struck]),
                 yielding,

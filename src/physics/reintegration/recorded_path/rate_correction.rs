@@ -40,8 +40,7 @@
 //! that Δr = f'Δx + cΔv, and the part of Δv orthogonal to Δx determines c. It is largest where a/v changes most, near the reversals. Each
 //! group has its own c; the weighted median of all is not affected by the groups in which the specimen yields.
 
-use super::monotonic::branches_of;
-use super::{ContinuousMotion, Reading};
+use super::{ContinuousMotion, Reading, branches_of};
 
 /// Increments of a group: few enough for one tangent, more than the two unknowns.
 const TOGETHER: usize = 4;
