@@ -15,7 +15,7 @@ use crate::evidence::consistency;
 use crate::evidence::rebuilt::ReplayedRun;
 use crate::files::provenance;
 use crate::files::recorded_run::JOURNAL;
-use crate::language::check::{LoadError, Options, check};
+use crate::check::{LoadError, Options, check};
 use crate::record::Outcome;
 use crate::report;
 use crate::rig::Reading;
