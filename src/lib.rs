@@ -25,6 +25,7 @@ pub mod report;
 
 pub mod remote;
 
+pub mod codes;
 pub(crate) mod evidence;
 pub(crate) mod files;
 pub mod golden;

@@ -1,16 +1,18 @@
 //! The order of a check: every block in turn, then conditions on several of them, then the warnings. In: the syntax trees and a loader of
 //! data files. Out: the plan, or diagnostics with the reasons why it is missing. It does not depend on any particular procedure.
 
-use super::{Options, golden, procedures, report, warnings};
 use crate::language::check::checker::Checker;
 use crate::language::check::declared::Declared;
 use crate::language::check::{declarations, rig, warnings as of_the_language};
+use crate::language::codes::E203;
 use crate::plan::{Plan, PlanFile, Procedure, Studies};
 use crate::procedures as slices;
 use crate::schema::Kind;
-use crate::text::diagnostic::{Code, Diagnostic};
+use crate::text::diagnostic::Diagnostic;
 use crate::text::markdown::is_document;
 use crate::text::source::{FileId, Sources, Span};
+
+use super::{Options, golden, procedures, report, warnings};
 
 /// Whether a check also looks for warnings.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -46,7 +48,7 @@ pub fn reportable(
     };
     diagnostics.retain(|found| is_of_the_text(found) || !is_within(found, misspelt));
     explained.sort_unstable();
-    diagnostics.retain(|found| found.code != Code::UnknownName || !is_within(found, &explained));
+    diagnostics.retain(|found| found.code != E203 || !is_within(found, &explained));
     diagnostics.sort_by_key(|found| found.span().map(|span| (span.file, span.start, span.end)));
     diagnostics
 }

@@ -1,17 +1,20 @@
 //! `golden { … }`: required agreement of a rerun with the accepted results. Its tolerances are fixed before the run; `%` is relative to
 //! the absolute value of the number, as in `require … within`.
 
+use crate::codes::{E617, E618, W710};
 use crate::language::check::checker::{Checker, Context, Reads};
 use crate::language::check::declarations::tolerance::tolerance;
 use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::messages::{golden as message, names};
 use crate::language::check::scope::Meaning;
+use crate::language::check::violations::UnknownProcedure;
+use crate::language::check::wording::{shown, suggestion};
+use crate::language::codes::E304;
 use crate::language::syntax::ast::{Expr, ExprKind};
 use crate::plan::formula::{Part, ProcedureId};
 use crate::plan::{ColumnTolerance, Golden, ResultTolerance, Tolerance};
 use crate::procedures;
-use crate::schema::golden as schema;
-use crate::schema::{BlockKind, Column, Kind};
+use crate::schema::{BlockKind, Column, Kind, golden as schema};
+use crate::text::diagnostic::Violation;
 use crate::text::source::Span;
 use crate::units::Dimension;
 
@@ -23,6 +26,21 @@ const RESULTS: Context = Context {
     reads: Reads::All,
     critical: false,
 };
+
+#[derive(Violation)]
+#[violation(
+    W710,
+    "a tolerance of {percent} % would hide real changes",
+    percent = shown(100.0 * tolerance, Dimension::NUMBER)
+)]
+#[help(
+    "write a smaller tolerance: results on a virtual rig differ between machines by rounding only"
+)]
+struct WideAcceptance {
+    tolerance: f64,
+    #[label("more than 10 %")]
+    span: Span,
+}
 
 pub fn golden(checker: &mut Checker) -> Option<Golden> {
     let Some(block) = checker
@@ -38,9 +56,10 @@ pub fn golden(checker: &mut Checker) -> Option<Golden> {
         (tolerance, checker.field(block, schema::TOLERANCE.name))
         && tolerance > WIDE
     {
-        checker
-            .diagnostics
-            .push(message::wide(tolerance, entry.value.span));
+        checker.report(WideAcceptance {
+            tolerance,
+            span: entry.value.span,
+        });
     }
     let mut named = Vec::new();
     let results = each(checker, block, schema::RESULTS.name, |checker, chosen| {
@@ -74,6 +93,17 @@ fn each<'a, T>(
 
 type Named<T> = Vec<(T, Span)>;
 
+#[derive(Violation)]
+#[violation(E304, "a result is required")]
+#[help(
+    "name a result, such as `hit.max_displacement`; the tolerance applies to its uncertainty too"
+)]
+struct AcceptedResultWanted<'a> {
+    #[label("`{text}` is not a result of a procedure")]
+    span: Span,
+    text: &'a str,
+}
+
 /// `tolerance(hit.stop_time, 1 us)`
 fn result_tolerance<'a>(
     checker: &mut Checker<'a>,
@@ -87,7 +117,10 @@ fn result_tolerance<'a>(
         .as_result()
         .filter(|reference| reference.part == Part::Value)
     else {
-        return checker.fail(message::result_wanted(of.span, checker.text(of.span)));
+        return checker.fail(AcceptedResultWanted {
+            span: of.span,
+            text: checker.text(of.span),
+        });
     };
     once(
         checker,
@@ -122,6 +155,27 @@ fn column_tolerance<'a>(
     })
 }
 
+#[derive(Violation)]
+#[violation(E304, "a column is required")]
+#[help(
+    "name a column of one procedure, such as `hit.displacement_m`, or of all, such as `wall_time_s`"
+)]
+struct AcceptedColumnWanted<'a> {
+    #[label("`{text}` is not a column")]
+    span: Span,
+    text: &'a str,
+}
+
+#[derive(Violation)]
+#[violation(E617, "no table has a numeric column `{name}`")]
+#[help("{}", suggestion(name, known))]
+struct UnknownColumn<'a, I: Iterator<Item = &'a str>> {
+    name: &'a str,
+    #[label("unknown column")]
+    span: Span,
+    known: I,
+}
+
 /// The named column, of one procedure or of all.
 fn column(checker: &mut Checker, of: &Expr) -> Option<(Option<ProcedureId>, Column)> {
     let (procedure, kinds, name, span) = match &of.kind {
@@ -135,7 +189,10 @@ fn column(checker: &mut Checker, of: &Expr) -> Option<(Option<ProcedureId>, Colu
         }
         ExprKind::Field { base, name } => {
             let ExprKind::Name(owner) = &base.kind else {
-                return checker.fail(message::column_wanted(of.span, checker.text(of.span)));
+                return checker.fail(AcceptedColumnWanted {
+                    span: of.span,
+                    text: checker.text(of.span),
+                });
             };
             let block = match checker.scope.meaning(owner) {
                 Some(Meaning::Poisoned) => return None,
@@ -154,7 +211,11 @@ fn column(checker: &mut Checker, of: &Expr) -> Option<(Option<ProcedureId>, Colu
                         .filter_map(|(_, block)| block.name)
                         .map(|n| &*n.node)
                         .collect();
-                    return checker.fail(names::unknown_procedure(owner, base.span, &known));
+                    return checker.fail(UnknownProcedure {
+                        name: owner,
+                        span: base.span,
+                        known: &known,
+                    });
                 }
             };
             let declared = &checker.scope.blocks[block];
@@ -166,17 +227,33 @@ fn column(checker: &mut Checker, of: &Expr) -> Option<(Option<ProcedureId>, Colu
             )
         }
         ExprKind::Faulty => return None,
-        _ => return checker.fail(message::column_wanted(of.span, checker.text(of.span))),
+        _ => {
+            return checker.fail(AcceptedColumnWanted {
+                span: of.span,
+                text: checker.text(of.span),
+            });
+        }
     };
     let known: Vec<Column> = kinds.into_iter().flat_map(procedures::columns).collect();
     match known.iter().find(|column| column.name == name) {
         Some(column) => Some((procedure, *column)),
-        None => checker.fail(message::unknown_column(
+        None => checker.fail(UnknownColumn {
             name,
             span,
-            known.iter().map(|column| column.name),
-        )),
+            known: known.iter().map(|column| column.name),
+        }),
     }
+}
+
+#[derive(Violation)]
+#[violation(E618, "`{text}` has two tolerances")]
+#[help("remove one of the tolerances")]
+struct ToleranceTwice<'a> {
+    text: &'a str,
+    #[label("second tolerance")]
+    span: Span,
+    #[label("first tolerance")]
+    first: Span,
 }
 
 /// A name has only one tolerance.
@@ -187,7 +264,12 @@ fn once<T: PartialEq>(
     span: Span,
 ) -> Option<()> {
     if let Some((_, first)) = named.iter().find(|(before, _)| *before == name) {
-        let diagnostic = message::tolerance_twice(checker.text(span), span, *first);
+        let diagnostic = ToleranceTwice {
+            text: checker.text(span),
+            span,
+            first: *first,
+        }
+        .diagnostic();
         return checker.fail(diagnostic);
     }
     named.push((name, span));
@@ -205,7 +287,10 @@ fn narrow<'a>(
     if let Tolerance::Relative(value) = tolerance
         && value > WIDE
     {
-        checker.diagnostics.push(message::wide(value, written.span));
+        checker.report(WideAcceptance {
+            tolerance: value,
+            span: written.span,
+        });
     }
     Some(tolerance)
 }

@@ -3,20 +3,24 @@
 
 use std::collections::BTreeMap;
 
-use super::driver::{self, Findings, PlanText};
-use super::{Checked, Options};
-use super::{Loader, no_files};
+use crate::codes::E666;
 use crate::language::check::checker::{Checker, End};
 use crate::language::check::expressions::data_file::DataFile;
 use crate::language::check::expressions::parameters::{names_of_parameters, read_settings};
-use crate::language::check::messages::{self, names};
 use crate::language::check::scope::{Scope, Setting};
+use crate::language::check::violations::UnknownParameter;
+use crate::language::check::wording::shown;
 use crate::language::check::{imports, rig};
+use crate::language::codes::{E107, W733};
 use crate::language::syntax::ast::Ast;
+use crate::language::syntax::limits::ERRORS;
 use crate::plan::{Plan, PlanFile};
-use crate::text::diagnostic::Diagnostic;
+use crate::text::diagnostic::{Code, Diagnostic, Severity, Violation};
 use crate::text::source::{Sources, Span};
 use crate::units::Quantity;
+
+use super::driver::{self, Findings, PlanText};
+use super::{Checked, Loader, Options, no_files};
 
 /// Checks a plan and all it uses.
 #[must_use]
@@ -56,6 +60,102 @@ struct Outcome {
     tails: Vec<End>,
 }
 
+/// Keeps the first diagnostics of many, errors before warnings, and counts the others.
+fn cap(diagnostics: &mut Vec<Diagnostic>) {
+    let errors = diagnostics
+        .iter()
+        .filter(|diagnostic| diagnostic.is_error())
+        .count();
+    let mut left = [ERRORS, ERRORS.saturating_sub(errors)];
+    let mut out: Vec<Diagnostic> = Vec::new();
+    for diagnostic in std::mem::take(diagnostics) {
+        let left = &mut left[usize::from(!diagnostic.is_error())];
+        if *left > 0 {
+            *left -= 1;
+            diagnostics.push(diagnostic);
+        } else {
+            out.push(diagnostic);
+        }
+    }
+    let Some(first) = out
+        .iter()
+        .find(|diagnostic| diagnostic.is_error())
+        .or(out.first())
+    else {
+        return;
+    };
+    let one = if first.is_error() {
+        Severity::Error
+    } else {
+        Severity::Warning
+    };
+    let message = format!(
+        "{} more errors are not listed (at most {ERRORS})",
+        out.len()
+    );
+    let more = Diagnostic {
+        severity: one,
+        ..Diagnostic::new(E107, message)
+    };
+    let more = first
+        .span()
+        .into_iter()
+        .fold(more, |more, span| more.at(span, "first unlisted error"));
+    diagnostics.push(more.help("correct the listed errors first"));
+}
+
+/// `value`: an end of the distribution or intensity `name`, at which the plan has the error `reason`. `help`: [`INSIDE`] or [`ENDS`].
+struct InvalidEnd<'a> {
+    name: &'a str,
+    value: &'a str,
+    reason: &'a Diagnostic,
+    span: Span,
+    help: &'a str,
+}
+
+impl Violation for InvalidEnd<'_> {
+    const CODE: Code = E666;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            name,
+            value,
+            reason,
+            span,
+            help,
+        } = self;
+        let message = format!(
+            "the plan has an error where `{name}` is {value}: {}",
+            reason.message
+        );
+        let diagnostic = Diagnostic::new(Self::CODE, message).at(span, "reaches this value");
+        let cause = reason.labels.iter().filter(|label| label.span != span);
+        cause
+            .take(1)
+            .fold(diagnostic, |diagnostic, label| {
+                diagnostic.at(label.span, "invalid there")
+            })
+            .help(help)
+    }
+}
+
+/// `value`: one draw of `name` in 1000 is beyond it, and the plan has the error `reason` there.
+#[derive(Violation)]
+#[violation(
+    W733,
+    "one run in 1000 or more has no result, where `{name}` is beyond {value}: {}",
+    reason.message
+)]
+#[help("{}", help)]
+struct RunsWithoutResult<'a> {
+    name: &'a str,
+    value: &'a str,
+    reason: &'a Diagnostic,
+    #[label("reaches this value")]
+    span: Span,
+    help: &'a str,
+}
+
 impl ParsedPlan {
     /// Parses a plan, the files that it uses, and the values of `--set`.
     #[must_use]
@@ -93,7 +193,7 @@ impl ParsedPlan {
             self.evaluate(&self.settings, settings, loader, Findings::WarningsToo, &[]);
         self.data = std::mem::take(&mut outcome.data);
         self.try_ends(&mut outcome);
-        messages::cap(&mut outcome.diagnostics);
+        cap(&mut outcome.diagnostics);
         Checked {
             plan: outcome.plan,
             diagnostics: outcome.diagnostics,
@@ -117,9 +217,14 @@ impl ParsedPlan {
             if let Some(first) = errors.first().filter(|_| !reported.contains(&end.span)) {
                 reported.push(end.span);
                 let shown = end.value.in_plan_syntax();
-                let diagnostic = messages::studies::intensity::invalid_end(
-                    &end.name, &shown, first, end.span, end.help,
-                );
+                let diagnostic = InvalidEnd {
+                    name: &end.name,
+                    value: &shown,
+                    reason: first,
+                    span: end.span,
+                    help: end.help,
+                }
+                .diagnostic();
                 outcome.diagnostics.push(diagnostic);
             }
         }
@@ -133,10 +238,15 @@ impl ParsedPlan {
             let value = BTreeMap::from([(tail.name.clone(), tail.value)]);
             if let Some(first) = self.bind(&value).err().iter().flatten().next() {
                 reported.push(tail.span);
-                let shown = messages::shown(tail.value.value, tail.value.dimension);
-                let diagnostic = messages::studies::scatter::runs_without_result(
-                    &tail.name, &shown, first, tail.span, tail.help,
-                );
+                let shown = shown(tail.value.value, tail.value.dimension);
+                let diagnostic = RunsWithoutResult {
+                    name: &tail.name,
+                    value: &shown,
+                    reason: first,
+                    span: tail.span,
+                    help: tail.help,
+                }
+                .diagnostic();
                 outcome.diagnostics.push(diagnostic);
             }
         }
@@ -178,7 +288,13 @@ impl ParsedPlan {
         let unknown: Vec<Diagnostic> = values
             .keys()
             .filter(|name| !known.contains(&name.as_str()) && !name.contains('.'))
-            .map(|name| names::unknown_parameter(name, &known))
+            .map(|name| {
+                UnknownParameter {
+                    name,
+                    known: &known,
+                }
+                .diagnostic()
+            })
             .collect();
         if !unknown.is_empty() {
             return Err(unknown);

@@ -1,15 +1,15 @@
 //! The procedures in the order of the plan, and the specimen that they test.
 
+use crate::codes::{E605, E625, E626};
 use crate::language::check::checker::Checker;
-use crate::language::check::messages::{axes as axis_faults, frames, whole as message};
-use crate::language::check::rig::CheckedRig;
-use crate::language::check::rig::axes;
+use crate::language::check::rig::{CheckedRig, axes};
 use crate::plan::{Procedure, Specimen};
 use crate::procedures;
 use crate::procedures::facts::Tests;
 use crate::schema::Kind;
 use crate::schema::procedures::SPECIMEN;
 use crate::schema::rig::AXES;
+use crate::text::diagnostic::{Code, Diagnostic, Violation};
 use crate::text::source::Span;
 
 /// Every procedure; None for those with an error.
@@ -28,6 +28,21 @@ fn procedure(checker: &mut Checker, block: usize) -> Option<Procedure> {
         name: declared.name?.node.clone(),
         kind: kind?,
     })
+}
+
+#[derive(Violation)]
+#[violation(
+    E605,
+    "specimen `{on_rig}` is on the rig, but this procedure tests `{name}`"
+)]
+#[help("write `specimen = {on_rig}`, or move `{name}` to a separate plan")]
+struct AnotherSpecimen<'a> {
+    name: &'a str,
+    #[label("tests `{name}`")]
+    span: Span,
+    on_rig: &'a str,
+    #[label("`{on_rig}` is on the rig from here")]
+    first: Span,
 }
 
 /// One rig holds one specimen: every procedure must test the same one as the first.
@@ -50,10 +65,65 @@ pub fn check_specimen(checker: &mut Checker, procedures: &[(usize, Option<Proced
                     .and_then(|(_, block)| block.name);
                 named.map_or("", |name| name.node.as_str())
             };
-            let diagnostic =
-                message::another_specimen(name(specimen), span, name(first), first_span);
+            let diagnostic = AnotherSpecimen {
+                name: name(specimen),
+                span,
+                on_rig: name(first),
+                first: first_span,
+            }
+            .diagnostic();
             checker.diagnostics.push(diagnostic);
         }
+    }
+}
+
+#[derive(Violation)]
+#[violation(
+    E626,
+    "frame `{specimen}` requires {storeys} actuators and load cells, but rig `{rig}` has one"
+)]
+#[help(
+    "list them in the rig, the lowest storey first: axes = [{}]; or leave `--rig` out for a virtual rig",
+    vec!["axis"; storeys].join(", ")
+)]
+struct FrameOnOneAxis<'a> {
+    specimen: &'a str,
+    storeys: usize,
+    rig: &'a str,
+    #[label("moves all storeys")]
+    span: Span,
+}
+
+struct OneDegreeOfFreedom<'a> {
+    keyword: &'a str,
+    specimen: &'a str,
+    axes: usize,
+    span: Span,
+    declared: Option<Span>,
+}
+
+impl Violation for OneDegreeOfFreedom<'_> {
+    const CODE: Code = E625;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            keyword,
+            specimen,
+            axes,
+            span,
+            declared,
+        } = self;
+        let diagnostic = Diagnostic::new(
+            Self::CODE,
+            format!("`{keyword}` drives one actuator, but the frame `{specimen}` has {axes}"),
+        )
+        .at(span, "one degree of freedom");
+        let diagnostic = match declared {
+            Some(declared) => diagnostic.at(declared, format!("{axes} storeys")),
+            None => diagnostic,
+        };
+        diagnostic.help("use `shake`, `impact`, `escalate` or `unload` for a frame, or test a single-degree-of-freedom \
+     specimen in a separate plan")
     }
 }
 
@@ -93,21 +163,25 @@ pub fn check_axes(
         let Some(procedure) = procedure else { continue };
         let head = checker.scope.blocks[*block].block.head;
         match procedures::facts_of(&procedure.kind).tests {
-            Tests::Frame => checker.diagnostics.extend(
-                one_axis
-                    .iter()
-                    .map(|rig| axis_faults::frame_on_one_axis(&specimen.name, storeys, rig, head)),
-            ),
+            Tests::Frame => checker.diagnostics.extend(one_axis.iter().map(|rig| {
+                FrameOnOneAxis {
+                    specimen: &specimen.name,
+                    storeys,
+                    rig,
+                    span: head,
+                }
+                .diagnostic()
+            })),
             Tests::Nothing => {}
             Tests::OneDegreeOfFreedom => {
                 let keyword = procedure.kind.keyword();
-                checker.diagnostics.push(frames::one_degree_of_freedom(
+                checker.report(OneDegreeOfFreedom {
                     keyword,
-                    &specimen.name,
-                    storeys,
-                    head,
+                    specimen: &specimen.name,
+                    axes: storeys,
+                    span: head,
                     declared,
-                ));
+                });
             }
         }
     }

@@ -1,20 +1,22 @@
 //! `report { … }`: results, annexes, figures, formats, signatories. Without it: the headline results, every table and figure.
 
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
-
+use crate::codes::E651;
 use crate::language::check::checker::{Checker, Context, Reads};
-use crate::language::check::messages::{files, names, types};
 use crate::language::check::scope::Meaning;
+use crate::language::check::violations::UnknownProcedure;
+use crate::language::check::wording::{one_of, suggestion};
+use crate::language::codes::{E205, E304, E501, E502, E504};
 use crate::language::syntax::ast::{Argument, Expr, ExprKind};
 use crate::plan::formula::{Part, ProcedureId, ResultReference};
 use crate::plan::{
     Annex, Figure, FigureKind, Format, MOST_PHOTOS, MOST_TOGETHER, Picture, PictureKind, Procedure,
     Report,
 };
-use crate::schema::report as schema;
-use crate::schema::{BlockKind, Kind};
+use crate::schema::{BlockKind, Kind, report as schema};
+use crate::text::diagnostic::{Code, Diagnostic, Violation};
 use crate::text::source::{Span, Spanned};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 
 const EVERY_FORMAT: [Format; 4] = [Format::Html, Format::Pdf, Format::Csv, Format::Parquet];
 
@@ -79,6 +81,15 @@ pub fn report(checker: &mut Checker, procedures: &[Option<Procedure>]) -> Option
     })
 }
 
+#[derive(Violation)]
+#[violation(E504, "too many photographs (at most {most})")]
+#[help("remove photographs")]
+struct TooManyPhotos {
+    most: usize,
+    #[label("one too many")]
+    span: Span,
+}
+
 fn photos(checker: &mut Checker, block: usize) -> Option<Vec<Picture>> {
     let Some((_, written)) = checker.field(block, schema::PHOTOS.name) else {
         return Some(Vec::new());
@@ -88,7 +99,10 @@ fn photos(checker: &mut Checker, block: usize) -> Option<Vec<Picture>> {
         _ => std::slice::from_ref(&written.value),
     };
     if let Some(one_too_many) = items.get(MOST_PHOTOS) {
-        return checker.fail(files::too_many_photos(MOST_PHOTOS, one_too_many.span));
+        return checker.fail(TooManyPhotos {
+            most: MOST_PHOTOS,
+            span: one_too_many.span,
+        });
     }
     let read: Vec<Option<Picture>> = items
         .iter()
@@ -97,11 +111,33 @@ fn photos(checker: &mut Checker, block: usize) -> Option<Vec<Picture>> {
     read.into_iter().collect()
 }
 
+#[derive(Violation)]
+#[violation(E502, "`{path}` is not a picture file")]
+#[help("name a file that ends in `.png`, `.jpg`, `.jpeg` or `.svg`")]
+struct NotAPicture<'a> {
+    path: &'a str,
+    #[label("not a picture file")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(E501, "`{path}` cannot be used: {reason}")]
+#[help("save it as PNG, JPEG or SVG of up to 2 MiB")]
+struct BadPicture<'a> {
+    path: &'a str,
+    reason: &'a str,
+    #[label("not a usable picture")]
+    span: Span,
+}
+
 /// A picture file of the plan, with its format verified.
 fn picture(checker: &mut Checker, field: &str, written: &Expr) -> Option<Picture> {
     let path = checker.text_value(field, written)?;
     let Some(kind) = PictureKind::of(&path) else {
-        return checker.fail(files::not_a_picture(&path, written.span));
+        return checker.fail(NotAPicture {
+            path: &path,
+            span: written.span,
+        });
     };
     let file = checker.data_file(&path, written.span)?;
     let bytes = if kind.is_binary() {
@@ -115,7 +151,11 @@ fn picture(checker: &mut Checker, field: &str, written: &Expr) -> Option<Picture
             kind,
             bytes,
         }),
-        Err(reason) => checker.fail(files::bad_picture(&file.name, &reason, written.span)),
+        Err(reason) => checker.fail(BadPicture {
+            path: &file.name,
+            reason: &reason,
+            span: written.span,
+        }),
     }
 }
 
@@ -150,6 +190,15 @@ fn results<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option<Vec<Resul
     Some(results)
 }
 
+#[derive(Violation)]
+#[violation(E304, "`{text}` is not a result of a procedure")]
+#[help("name a procedure and its result, as in `hit.max_displacement`")]
+struct ResultWanted<'a> {
+    #[label("not a result")]
+    span: Span,
+    text: &'a str,
+}
+
 /// `hit.max_displacement`
 fn result<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option<ResultReference> {
     const RESULTS: Context = Context {
@@ -164,10 +213,10 @@ fn result<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option<ResultRefe
         .filter(|reference| reference.part == Part::Value);
     match reference {
         Some(reference) => Some(reference),
-        None => checker.fail(types::result_wanted(
-            written.span,
-            checker.text(written.span),
-        )),
+        None => checker.fail(ResultWanted {
+            span: written.span,
+            text: checker.text(written.span),
+        }),
     }
 }
 
@@ -213,6 +262,27 @@ fn figures(
     checked.into_iter().collect()
 }
 
+#[derive(Violation)]
+#[violation(E304, "`{text}` is not a figure of a procedure")]
+#[help(
+    "write a figure with its procedure, as in `energy(hit)`, or several, as in `displacement(first, second)`"
+)]
+struct FigureWanted<'a> {
+    #[label("not a figure")]
+    span: Span,
+    text: &'a str,
+}
+
+#[derive(Violation)]
+#[violation(E205, "unknown figure `{name}`")]
+#[help("{}", suggestion(name, known))]
+struct UnknownFigure<'a, I: IntoIterator<Item = &'static str>> {
+    name: &'a str,
+    #[label("unknown figure")]
+    span: Span,
+    known: I,
+}
+
 /// `energy(hit)`, or `displacement(paused, moving)`: several on one chart.
 fn figure(
     checker: &mut Checker,
@@ -222,27 +292,27 @@ fn figure(
     let ExprKind::Call { name, arguments } = &written.kind else {
         return match written.kind {
             ExprKind::Faulty => None,
-            _ => checker.fail(types::figure_wanted(
-                written.span,
-                checker.text(written.span),
-            )),
+            _ => checker.fail(FigureWanted {
+                span: written.span,
+                text: checker.text(written.span),
+            }),
         };
     };
     let Some(kind) = FigureKind::ALL
         .into_iter()
         .find(|kind| kind.name() == name.node)
     else {
-        return checker.fail(names::unknown_figure(
-            &name.node,
-            name.span,
-            FigureKind::ALL.map(FigureKind::name),
-        ));
+        return checker.fail(UnknownFigure {
+            name: &name.node,
+            span: name.span,
+            known: FigureKind::ALL.map(FigureKind::name),
+        });
     };
     if arguments.is_empty() {
-        return checker.fail(types::figure_wanted(
-            written.span,
-            checker.text(written.span),
-        ));
+        return checker.fail(FigureWanted {
+            span: written.span,
+            text: checker.text(written.span),
+        });
     }
     let drawn: Vec<Option<ProcedureId>> = arguments
         .iter()
@@ -259,6 +329,47 @@ fn figure(
     })
 }
 
+#[derive(Violation)]
+#[violation(E304, "`{name}` is not a procedure")]
+#[help("write the name of a procedure, as in `energy(hit)`")]
+struct ProcedureWanted<'a> {
+    name: &'a str,
+    #[label("has no figures")]
+    span: Span,
+}
+
+struct FigureOfOtherProcedure<'a, I: Iterator<Item = &'a str>> {
+    figure: &'a str,
+    procedure: &'a str,
+    span: Span,
+    drawn: I,
+}
+
+impl<'a, I: Iterator<Item = &'a str>> Violation for FigureOfOtherProcedure<'a, I> {
+    const CODE: Code = E205;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            figure,
+            procedure,
+            span,
+            drawn,
+        } = self;
+        let drawn: Vec<&str> = drawn.collect();
+        let help = if drawn.is_empty() {
+            "remove it; such a procedure has no figures".to_owned()
+        } else {
+            format!("known figures: {}", one_of(drawn))
+        };
+        Diagnostic::new(
+            Self::CODE,
+            format!("`{procedure}` has no figure `{figure}`"),
+        )
+        .at(span, "unknown for this procedure")
+        .help(help)
+    }
+}
+
 /// The procedure that a figure names, if it has such a figure.
 fn drawn_of(
     checker: &mut Checker,
@@ -268,13 +379,16 @@ fn drawn_of(
     procedures: &[Option<Procedure>],
 ) -> Option<ProcedureId> {
     let ExprKind::Name(of) = &argument.kind else {
-        return checker.fail(types::figure_wanted(figure, checker.text(figure)));
+        return checker.fail(FigureWanted {
+            span: figure,
+            text: checker.text(figure),
+        });
     };
     let span = argument.span;
     let block = match checker.scope.meaning(of) {
         Some(Meaning::Poisoned) => return None,
         Some(Meaning::Block(block)) => block,
-        Some(Meaning::Value(_)) => return checker.fail(types::procedure_wanted(of, span)),
+        Some(Meaning::Value(_)) => return checker.fail(ProcedureWanted { name: of, span }),
         None if checker.may_be_lost(of)
             || checker.scope.nameless().any(BlockKind::is_procedure) =>
         {
@@ -287,24 +401,110 @@ fn drawn_of(
                 .filter_map(|(_, block)| block.name)
                 .map(|name| name.node.as_str())
                 .collect();
-            return checker.fail(names::unknown_procedure(of, span, &known));
+            return checker.fail(UnknownProcedure {
+                name: of,
+                span,
+                known: &known,
+            });
         }
     };
     let Some(procedure) = checker.scope.blocks[block].procedure else {
-        return checker.fail(types::procedure_wanted(of, span));
+        return checker.fail(ProcedureWanted { name: of, span });
     };
     let drawn = crate::procedures::facts_of(&procedures.get(procedure.0)?.as_ref()?.kind).figures;
     if !drawn.contains(&kind) {
         let words = checker.scope.blocks[block].kind.words();
         let drawn = drawn.iter().map(|kind| kind.name());
-        return checker.fail(names::figure_of_other_procedure(
-            kind.name(),
-            &words,
-            figure,
+        return checker.fail(FigureOfOtherProcedure {
+            figure: kind.name(),
+            procedure: &words,
+            span: figure,
             drawn,
-        ));
+        });
     }
     Some(procedure)
+}
+
+/// E651 from here on: procedures that cannot share a chart.
+struct FigureOfOne<'a, I: Iterator<Item = &'a str>> {
+    figure: &'a str,
+    procedure: &'a str,
+    span: Span,
+    shared: I,
+}
+
+impl<'a, I: Iterator<Item = &'a str>> Violation for FigureOfOne<'a, I> {
+    const CODE: Code = E651;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            figure,
+            procedure,
+            span,
+            shared,
+        } = self;
+        let shared: Vec<&str> = shared.collect();
+        let message = format!(
+            "`{figure}` has several curves of one `{procedure}`, so it cannot combine procedures"
+        );
+        let help = if shared.is_empty() {
+            format!("write one figure each: `{figure}(one), {figure}(other)`")
+        } else {
+            format!(
+                "write one figure each; these can be combined: {}",
+                one_of(shared)
+            )
+        };
+        Diagnostic::new(Self::CODE, message)
+            .at(span, "second procedure")
+            .help(help)
+    }
+}
+
+struct FigureOfTwoKinds<'a> {
+    figure: &'a str,
+    first: Spanned<&'a str>,
+    other: Spanned<&'a str>,
+}
+
+impl Violation for FigureOfTwoKinds<'_> {
+    const CODE: Code = E651;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            figure,
+            first,
+            other,
+        } = self;
+        let message = format!(
+            "`{figure}` shows different quantities for `{}` and `{}`",
+            other.node, first.node
+        );
+        Diagnostic::new(Self::CODE, message)
+            .at(other.span, format!("`{}`", other.node))
+            .at(first.span, format!("`{}`", first.node))
+            .help("write a figure for each kind of procedure")
+    }
+}
+
+#[derive(Violation)]
+#[violation(E651, "procedure named twice in one chart")]
+#[help("name each procedure once")]
+struct FigureDrawnTwice {
+    #[label("named again")]
+    again: Span,
+    #[label("first named here")]
+    first: Span,
+}
+
+#[derive(Violation)]
+#[violation(E651, "too many procedures in one chart: {found} (at most {most})")]
+#[help("write two figures")]
+struct TooManyTogether {
+    found: usize,
+    most: usize,
+    #[label("too many")]
+    span: Span,
 }
 
 /// Whether these procedures fit on one chart: one curve of each, all of one kind, each once, not too many.
@@ -331,27 +531,35 @@ fn together(
             .iter()
             .filter(|kind| shared.contains(kind))
             .map(|kind| kind.name());
-        return checker.fail(names::figure_of_one(kind.name(), keyword, at(1), shared));
+        return checker.fail(FigureOfOne {
+            figure: kind.name(),
+            procedure: keyword,
+            span: at(1),
+            shared,
+        });
     }
     for (index, procedure) in drawn.iter().enumerate().skip(1) {
         let kinds = of(procedure)?;
         if kinds.keyword() != keyword {
-            return checker.fail(names::figure_of_two_kinds(
-                kind.name(),
-                Spanned::new(keyword, at(0)),
-                Spanned::new(kinds.keyword(), at(index)),
-            ));
+            return checker.fail(FigureOfTwoKinds {
+                figure: kind.name(),
+                first: Spanned::new(keyword, at(0)),
+                other: Spanned::new(kinds.keyword(), at(index)),
+            });
         }
         if let Some(before) = drawn[..index].iter().position(|other| other == procedure) {
-            return checker.fail(names::figure_drawn_twice(at(before), at(index)));
+            return checker.fail(FigureDrawnTwice {
+                first: at(before),
+                again: at(index),
+            });
         }
     }
     if drawn.len() > MOST_TOGETHER {
-        return checker.fail(names::too_many_together(
-            drawn.len(),
-            MOST_TOGETHER,
-            at(MOST_TOGETHER),
-        ));
+        return checker.fail(TooManyTogether {
+            found: drawn.len(),
+            most: MOST_TOGETHER,
+            span: at(MOST_TOGETHER),
+        });
     }
     Some(())
 }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::codes::E629;
 use crate::text::diagnostic::Code;
 use crate::text::source::Position;
 
@@ -112,7 +113,7 @@ pub struct DiskSpaceFault {
 }
 
 impl DiskSpaceFault {
-    pub const CODE: Code = Code::DiskSpace;
+    pub const CODE: Code = E629;
 
     /// The action that corrects it.
     pub fn help(&self) -> String {

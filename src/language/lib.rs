@@ -2,4 +2,5 @@
 //! keywords and fields are in `schema`. It runs nothing.
 
 pub mod check;
+pub mod codes;
 pub mod syntax;

@@ -348,7 +348,7 @@ fn explain_gives_a_page_the_list_and_a_guess() {
     let full = workspace.psd(&["explain", "E301", "--full"]).with(0).stdout;
     assert!(full.contains("wrong:\nspecimen beam {\n"), "{full}");
     let all = workspace.psd(&["explain"]).with(0).stdout;
-    assert_eq!(all.lines().count(), psd::text::diagnostic::Code::ALL.len());
+    assert_eq!(all.lines().count(), psd::codes::all().len());
     assert!(
         all.lines().all(|line| line.len() > 8),
         "every page has a title:\n{all}"

@@ -7,7 +7,6 @@ use std::path::PathBuf;
 use psd::check::{Options, check, no_files};
 use psd::language::syntax::{format, parse};
 use psd::schema::BLOCKS;
-use psd::text::diagnostic::Code;
 use psd::text::diagnostic::render::{Appearance, render_all};
 use psd::text::source::Sources;
 
@@ -90,7 +89,7 @@ fn every_field_result_and_code_has_one_anchor() {
         .skip(1)
         .filter_map(|rest| rest.split('>').next())
         .collect();
-    let mut wanted: Vec<String> = Code::ALL.iter().map(ToString::to_string).collect();
+    let mut wanted: Vec<String> = psd::codes::all().iter().map(ToString::to_string).collect();
     for block in BLOCKS {
         let of = block.keyword.join("-");
         let section = section(&page, &block.words());

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::{checked, files};
 use crate::check::{Options, ParsedPlan};
+use crate::codes::E666;
+use crate::language::codes::E665;
 use crate::physics::study::distribution::{Distribution, Spread};
 use crate::physics::study::inputs::{Source, StudyInputs};
 use crate::physics::study::sampling::Design;
@@ -11,6 +12,8 @@ use crate::plan::study::{RareEvent, Runs, Sampling, Study, StudyEvent};
 use crate::plan::{Comparison, Plan};
 use crate::text::diagnostic::Code;
 use crate::units::{Dimension, Quantity};
+
+use super::{checked, files};
 
 const MEASURED: &str = "# shop floor\nname,mass_kg,K_kn_per_m\nA,0.9,290\nB,1.1,310\n";
 const FILES: &[(&str, &str)] = &[("measured.csv", MEASURED)];
@@ -262,7 +265,7 @@ fn the_plan_must_be_valid_at_the_ends_of_its_inputs() {
     let far = text("study scatter {\nvary = [speed ~ uniform(0.4 .. 2 m/s)]\n}");
     let (found, _) = checked(&far, &files(FILES), &[]);
     let codes: Vec<Code> = found.diagnostics.iter().map(|found| found.code).collect();
-    assert_eq!(codes, [Code::InvalidEnd]);
+    assert_eq!(codes, [E666]);
     assert!(found.plan.is_none());
     let (set, _) = checked(&far, &files(FILES), &[("speed", "1.5 m/s")]);
     assert!(set.plan.is_some(), "{:?}", set.diagnostics);
@@ -287,6 +290,6 @@ fn studies_are_not_run_on_a_real_rig() {
         errors.map(|found| found.code).collect::<Vec<_>>()
     };
     let plain = codes(false);
-    assert!(!plain.contains(&Code::StudyOnRealRig), "{plain:?}");
-    assert!(codes(true).contains(&Code::StudyOnRealRig));
+    assert!(!plain.contains(&E665), "{plain:?}");
+    assert!(codes(true).contains(&E665));
 }

@@ -3,11 +3,48 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::codes::W730;
 use crate::language::check::checker::Checker;
-use crate::language::check::messages::values;
 use crate::language::check::warnings::left::LEFT;
 use crate::plan::formula::{Formula, Part, ResultReference};
 use crate::plan::{Condition, Procedure, Requirement};
+use crate::text::diagnostic::{Code, Diagnostic, Violation};
+use crate::text::source::Span;
+
+/// `read` is a position at the last step of a run; `row`: of an impact series.
+struct FinalIsNotResidual<'a> {
+    read: &'a str,
+    row: bool,
+    required: Span,
+    head: Span,
+}
+
+impl Violation for FinalIsNotResidual<'_> {
+    const CODE: Code = W730;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            read,
+            row,
+            required,
+            head,
+        } = self;
+        let or_row = if row {
+            ", or write `between = unload`"
+        } else {
+            ""
+        };
+        Diagnostic::new(
+            Self::CODE,
+            format!("`{read}` is read under load: it is not a residual value"),
+        )
+        .at(required, "value at the last step")
+        .at(head, "not unloaded afterwards")
+        .help(format!(
+            "add `unload rest {{ }}`, and require its `residual_…`{or_row}"
+        ))
+    }
+}
 
 /// Requirements on the position at the last step of a run, after which the specimen is not unloaded.
 pub fn warn(
@@ -43,9 +80,12 @@ pub fn warn(
                     .conditions
                     .is_some();
                 let read = format!("{}.{}", procedure.name, reference.name);
-                checker
-                    .diagnostics
-                    .push(values::final_is_not_residual(&read, row, required, head));
+                checker.report(FinalIsNotResidual {
+                    read: &read,
+                    row,
+                    required,
+                    head,
+                });
             }
         }
     }

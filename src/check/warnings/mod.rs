@@ -5,14 +5,14 @@ pub(crate) mod left;
 pub(crate) mod recorded_steps;
 pub mod tracking;
 
+use crate::codes::{W702, W704, W705, W706, W714, W720};
 use crate::language::check::checker::Checker;
-use crate::language::check::messages::{cyclic, values, whole as message};
 use crate::plan::procedures::escalate::block::WHILE;
-use crate::plan::{Condition, Ground, Procedure, Reproduction, Requirement};
+use crate::plan::{Condition, Contact, Ground, Procedure, Reproduction, Requirement};
 use crate::procedures::facts::{Leaves, Motion};
-use crate::schema::Kind;
-use crate::schema::reproduces;
 use crate::schema::specimen::MASS_UNCERTAINTY;
+use crate::schema::{Kind, reproduces};
+use crate::text::diagnostic::{Code, Diagnostic, Violation};
 use crate::text::source::{FileId, Span, Spanned};
 use crate::uncertainty::Source;
 
@@ -21,6 +21,34 @@ use crate::uncertainty::Source;
 pub struct Stated<'a> {
     pub requirements: &'a [Requirement],
     pub reproductions: &'a [Reproduction],
+}
+
+#[derive(Violation)]
+#[violation(W705, "the plan has no procedure")]
+#[help(
+    "add a procedure, such as\nstiffness ramp k0 {{ displacements = 0.1 mm .. 1 mm step 0.1 mm }}"
+)]
+struct NothingRuns {
+    #[label("no procedure follows")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(W704, "the plan has no requirement: its verdict is only `completed`")]
+#[help("add a line such as `require \"stays in travel\" hit.max_displacement <= 8.5 mm`")]
+struct NothingRequired {
+    #[label("last procedure")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(W706, "`{keyword}` `{name}` is never used")]
+#[help("remove it, or use it")]
+struct UnusedDeclaration<'a> {
+    keyword: &'a str,
+    name: &'a str,
+    #[label("not used")]
+    span: Span,
 }
 
 /// Warnings of the whole plan; called only if there is no error.
@@ -35,21 +63,52 @@ pub fn whole_plan(
     impacts_on_moving_specimens(checker, procedures, grounds);
     unused_uncertainties(checker, procedures, stated.requirements);
     match procedures.last() {
-        None => checker.diagnostics.push(message::nothing_runs(plan)),
+        None => checker.report(NothingRuns { span: plan }),
         Some((block, _)) if stated.requirements.is_empty() && stated.reproductions.is_empty() => {
             let head = checker.scope.blocks[*block].block.head;
-            checker.diagnostics.push(message::nothing_required(head));
+            checker.report(NothingRequired { span: head });
         }
         Some(_) => {}
     }
     for (index, value) in checker.scope.values.iter().enumerate() {
         if value.name.span.file == FileId(0) && !checker.used.contains(&index) {
-            checker.diagnostics.push(message::unused(
-                value.keyword,
-                &value.name.node,
-                value.name.span,
-            ));
+            checker.report(UnusedDeclaration {
+                keyword: value.keyword,
+                name: &value.name.node,
+                span: value.name.span,
+            });
         }
+    }
+}
+
+/// `what` begins at the final state of `before`.
+struct ImpactOnMovingSpecimen<'a> {
+    what: Spanned<&'a str>,
+    before: Spanned<&'a str>,
+    ends: &'a str,
+    help: &'a str,
+}
+
+impl Violation for ImpactOnMovingSpecimen<'_> {
+    const CODE: Code = W720;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            what,
+            before,
+            ends,
+            help,
+        } = self;
+        Diagnostic::new(
+            Self::CODE,
+            format!(
+                "loaded start: this {} begins where `{}` ended, under load and at rest",
+                what.node, before.node
+            ),
+        )
+        .at(what.span, "ends under load")
+        .at(before.span, ends.to_owned())
+        .help(help)
     }
 }
 
@@ -81,16 +140,32 @@ fn impacts_on_moving_specimens(
         if let Some((first, ended, remedy)) = before {
             let (first, this) = (&checker.scope.blocks[first], &checker.scope.blocks[*block]);
             let name = first.name.map_or("", |name| name.node.as_str());
-            let diagnostic = cyclic::impact_on_moving_specimen(
-                Spanned::new(what, this.block.head),
-                Spanned::new(name, first.block.head),
-                ended,
-                remedy,
-            );
+            let diagnostic = ImpactOnMovingSpecimen {
+                what: Spanned::new(what, this.block.head),
+                before: Spanned::new(name, first.block.head),
+                ends: ended,
+                help: remedy,
+            }
+            .diagnostic();
             checker.diagnostics.push(diagnostic);
         }
         before = Some((*block, ends, help)).filter(|_| !rests);
     }
+}
+
+/// A mass whose uncertainty is not used.
+#[derive(Violation)]
+#[violation(
+    W714,
+    "the uncertainty of the mass of `{specimen}` has no effect on any result"
+)]
+#[help(
+    "remove `mass` from the impact, so that the specimen's mass is used; or remove `mass_uncertainty`"
+)]
+struct UncertaintyUnused<'a> {
+    specimen: &'a str,
+    #[label("mass not used by any impact")]
+    span: Span,
 }
 
 /// The uncertainty of a mass is used by an impact that uses the mass of the specimen, and by the damping ratio of a sweep.
@@ -138,10 +213,37 @@ fn unused_uncertainties(
             let name = checker.scope.blocks[block]
                 .name
                 .map_or("", |name| name.node.as_str());
-            checker
-                .diagnostics
-                .push(values::uncertainty_unused(name, span));
+            checker.report(UncertaintyUnused {
+                specimen: name,
+                span,
+            });
         }
+    }
+}
+
+/// `law`: a law without a duration, whose force is an impulse over one step.
+struct PeakForceFollowsTheStep<'a> {
+    span: Span,
+    impact: Span,
+    law: &'a Contact,
+}
+
+impl Violation for PeakForceFollowsTheStep<'_> {
+    const CODE: Code = W702;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { span, impact, law } = self;
+        let word = law.name();
+        let (of, holds) = if law.numbers().is_empty() {
+            (format!("the {word} law"), format!("`contact = {word}`"))
+        } else {
+            (format!("`{word}`"), format!("`contact = {word}(…)`"))
+        };
+        let message = format!("peak contact force depends on the time step under {of}, as 1/Δt");
+        Diagnostic::new(Self::CODE, message)
+            .at(span, "depends on the time step")
+            .at(impact, format!("{holds} applies here"))
+            .help("require the `impulse`, or use a law that converges: `contact = hertz(…)`")
     }
 }
 
@@ -163,9 +265,11 @@ fn peak_forces(
                 && law.is_impulsive()
             {
                 let head = checker.scope.blocks[*block].block.head;
-                checker
-                    .diagnostics
-                    .push(message::peak_force_follows_the_step(span, head, law));
+                checker.report(PeakForceFollowsTheStep {
+                    span,
+                    impact: head,
+                    law,
+                });
             }
         }
     };

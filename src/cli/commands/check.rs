@@ -2,16 +2,17 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
-
-use super::explain_plan;
 use crate::cli::args::{Format, PlanSettings};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::plan_file;
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
+use crate::language::codes::E106;
 use crate::text::diagnostic::excerpt::one_line;
 use crate::text::diagnostic::json;
+use clap::Args;
+
+use super::explain_plan;
 
 #[derive(Debug, Args)]
 pub struct CheckArguments {
@@ -41,7 +42,7 @@ pub fn check(arguments: &CheckArguments, settings: Settings) -> Result<Exit, Fai
                 found.push(json::unreadable(
                     &path.display().to_string(),
                     &failure.to_string(),
-                    failure.position(),
+                    failure.position().map(|at| (E106, at)),
                 ));
                 exit = exit.max(failure.exit());
                 continue;

@@ -3,16 +3,17 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
-use super::Loader;
-use super::expressions::data_file::DataFile;
-use super::messages::{names as message, values};
-use super::scope::{Overrides, Scope};
+use crate::codes::{E404, E405};
 use crate::syntax::ast::Expr;
 use psd_plan::Frame;
 use psd_plan::formula::{Formula, ProcedureId, ResultReference};
-use psd_text::diagnostic::Diagnostic;
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::{Sources, Span};
 use psd_text::units::{Dimension, Quantity};
+
+use super::Loader;
+use super::expressions::data_file::DataFile;
+use super::scope::{Overrides, Scope};
 
 /// A value that is evaluated once: a `let` or `param`, or an entry of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -126,6 +127,61 @@ pub const MOST_TERMS: usize = 1_000;
 /// Number of diagnostics after which no similar name is suggested for an unknown one.
 const SUGGESTED: usize = 50;
 
+/// A value that is copied wherever it is named.
+#[derive(Violation)]
+#[violation(
+    E405,
+    "a value can use at most {most} results and operators, including those of the values it names"
+)]
+#[help("name each result once, or simplify the calculation")]
+struct TooManyTerms {
+    #[label("too many")]
+    span: Span,
+    most: usize,
+}
+
+/// `requested_at` closes the cycle.
+struct CircularDefinition<'a> {
+    cycle: &'a [(String, Span)],
+    requested_at: Span,
+}
+
+impl Violation for CircularDefinition<'_> {
+    const CODE: Code = E404;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            cycle,
+            requested_at,
+        } = self;
+        let first = cycle.first().map_or("", |(name, _)| name.as_str());
+        let names = cycle
+            .iter()
+            .map(|(name, _)| name.as_str())
+            .chain([first])
+            .collect::<Vec<_>>()
+            .join(" → ");
+        let diagnostic = Diagnostic::new(Self::CODE, format!("circular definition: {names}"))
+            .at(requested_at, "closes the circle");
+        cycle
+            .iter()
+            .fold(diagnostic, |diagnostic, (name, span)| {
+                diagnostic.at(*span, format!("`{name}` is part of it"))
+            })
+            .help("write a value for one of them")
+    }
+}
+
+/// Values that depend on one another too deeply.
+#[derive(Violation)]
+#[violation(E405, "values are nested more than {most} deep")]
+#[help("declare a value before the values that use it, or use fewer intermediate values")]
+struct ValuesTooDeep {
+    #[label("too deep")]
+    span: Span,
+    most: usize,
+}
+
 impl<'a> Checker<'a> {
     pub fn new(
         sources: &'a Sources,
@@ -171,9 +227,13 @@ impl<'a> Checker<'a> {
     }
 
     /// Adds a diagnostic; returns None, so that the caller can return it.
-    pub fn fail<T>(&mut self, diagnostic: Diagnostic) -> Option<T> {
-        self.diagnostics.push(diagnostic);
+    pub fn fail<T>(&mut self, found: impl Into<Diagnostic>) -> Option<T> {
+        self.diagnostics.push(found.into());
         None
+    }
+
+    pub fn report(&mut self, found: impl Into<Diagnostic>) {
+        self.diagnostics.push(found.into());
     }
 
     pub fn text(&self, span: Span) -> &'a str {
@@ -201,7 +261,10 @@ impl<'a> Checker<'a> {
         if typed.formula.terms() <= MOST_TERMS {
             return Some(typed);
         }
-        self.fail(values::too_many_terms(typed.span, MOST_TERMS))
+        self.fail(TooManyTerms {
+            span: typed.span,
+            most: MOST_TERMS,
+        })
     }
 
     /// Does `work` for a node, unless it is already in progress further up.
@@ -219,13 +282,18 @@ impl<'a> Checker<'a> {
             for node in self.stack[start..].iter().copied() {
                 self.known.insert(node, None);
             }
-            return self.fail(message::cycle(&cycle, requested_at));
+            return self.fail(CircularDefinition {
+                cycle: &cycle,
+                requested_at,
+            });
         }
         if self.stack.len() >= DEEPEST_VALUES {
             // Only once: if a chain is too deep, each of its parts is too.
             if !std::mem::replace(&mut self.too_deep, true) {
-                self.diagnostics
-                    .push(values::too_deep(requested_at, DEEPEST_VALUES));
+                self.report(ValuesTooDeep {
+                    span: requested_at,
+                    most: DEEPEST_VALUES,
+                });
             }
             self.known.insert(node, None);
             return None;

@@ -1,12 +1,14 @@
 //! `use "lib/frame.psd"`: every file of a plan, each loaded once. In: the plan's text and a [`Loader`]. Out: the syntax
 //! trees, the plan's first.
 
-use super::messages::files as message;
-use super::{LoadError, Loader};
+use crate::check::violations::{FileMissing, TooManyFiles};
+use crate::codes::{E501, E502, E503, E504};
 use crate::syntax;
 use crate::syntax::ast::{Ast, ItemKind};
-use psd_text::diagnostic::Diagnostic;
-use psd_text::source::{FileId, Sources, Spanned};
+use psd_text::diagnostic::{Diagnostic, Violation};
+use psd_text::source::{FileId, Sources, Span, Spanned};
+
+use super::{LoadError, Loader};
 
 /// Deepest chain of files that use files.
 pub const DEEPEST: usize = 8;
@@ -49,6 +51,50 @@ pub fn load(
         asts: loading.loaded.into_iter().map(|(_, ast)| ast).collect(),
         incomplete: loading.incomplete,
     }
+}
+
+#[derive(Violation)]
+#[violation(E502, "invalid path `{path}`: {reason}")]
+#[help("move the file into the plan's folder, or a folder in it: `use \"lib/frame.psd\"`")]
+struct BadUsePath<'a> {
+    path: &'a str,
+    #[label("not in the plan's folder")]
+    span: Span,
+    reason: &'a str,
+}
+
+#[derive(Violation)]
+#[violation(E503, "circular `use`: {cycle}", cycle = chain
+        .iter()
+        .map(String::as_str)
+        .chain([path])
+        .collect::<Vec<_>>()
+        .join(" → "))]
+#[help("move the shared declarations into a third file")]
+struct UseCycle<'a> {
+    chain: &'a [String],
+    path: &'a str,
+    #[label("closes the circle")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(E504, "`use` nested more than {deepest} deep")]
+#[help("use the file from the plan directly")]
+struct UseTooDeep {
+    deepest: usize,
+    #[label("too deep")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(E501, "`{path}` cannot be read: {reason}")]
+#[help("name a UTF-8 text file in the plan's folder")]
+struct FileRefused<'a> {
+    path: &'a str,
+    reason: &'a str,
+    #[label("cannot be read")]
+    span: Span,
 }
 
 impl Loading<'_> {
@@ -103,28 +149,55 @@ impl Loading<'_> {
     ) -> Result<(), Diagnostic> {
         let written = used.node.as_str();
         if let Some(reason) = refused(written) {
-            return Err(message::bad_path(written, used.span, reason));
+            return Err(BadUsePath {
+                path: written,
+                span: used.span,
+                reason,
+            }
+            .diagnostic());
         }
         let path = resolved(from, written);
         if let Some(start) = self.chain.iter().position(|open| *open == path) {
-            return Err(message::use_cycle(&self.chain[start..], &path, used.span));
+            return Err(UseCycle {
+                chain: &self.chain[start..],
+                path: &path,
+                span: used.span,
+            }
+            .diagnostic());
         }
         if self.loaded.iter().any(|(known, _)| *known == path) {
             return Ok(());
         }
         if self.chain.len() > DEEPEST {
-            return Err(message::too_deep(DEEPEST, used.span));
+            return Err(UseTooDeep {
+                deepest: DEEPEST,
+                span: used.span,
+            }
+            .diagnostic());
         }
         if self.loaded.len() >= MOST_FILES {
-            return Err(message::too_many_files(MOST_FILES, used.span));
+            return Err(TooManyFiles {
+                most: MOST_FILES,
+                span: used.span,
+            }
+            .diagnostic());
         }
         match (self.loader)(&path) {
             Ok(text) => {
                 self.read(&path, &path, &text, sources, diagnostics);
                 Ok(())
             }
-            Err(LoadError::NotFound) => Err(message::not_found(&path, used.span)),
-            Err(LoadError::Refused(reason)) => Err(message::refused(&path, &reason, used.span)),
+            Err(LoadError::NotFound) => Err(FileMissing {
+                path: &path,
+                span: used.span,
+            }
+            .diagnostic()),
+            Err(LoadError::Refused(reason)) => Err(FileRefused {
+                path: &path,
+                reason: &reason,
+                span: used.span,
+            }
+            .diagnostic()),
         }
     }
 }

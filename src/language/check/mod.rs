@@ -6,11 +6,12 @@ pub mod declarations;
 pub mod declared;
 pub mod expressions;
 pub mod imports;
-pub mod messages;
 pub mod rig;
 pub mod scope;
 pub mod tested;
+pub mod violations;
 pub mod warnings;
+pub mod wording;
 
 pub use checker::{DEEPEST_VALUES, MOST_TERMS};
 pub use declarations::ground::record::MOST_SAMPLES as MOST_GROUND_SAMPLES;

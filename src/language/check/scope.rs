@@ -3,12 +3,13 @@
 
 use std::collections::BTreeMap;
 
-use super::messages::names as message;
+use crate::check::wording::one_of;
+use crate::codes::{E201, E208, E212};
 use crate::syntax::ast::{Ast, Block, Expr, ExprKind, Ident, ItemKind};
 use crate::syntax::control;
 use psd_plan::formula::ProcedureId;
-use psd_plan::schema::{self, BlockKind, Kind, Naming};
-use psd_text::diagnostic::Diagnostic;
+use psd_plan::schema::{self, BLOCKS, BlockKind, ITEM_WORDS, Kind, Naming};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::{FileId, Span, Spanned};
 use psd_text::units::Quantity;
 
@@ -90,6 +91,149 @@ pub struct Scope<'a> {
     labels: BTreeMap<&'a str, Span>,
 }
 
+#[derive(Violation)]
+#[violation(E212, "`{what}` is not allowed in a shared file")]
+#[help(
+    "move it into the plan; a shared file can have `specimen`, `striker`, `rig`, `limits`, `let`, `param` and `use`"
+)]
+struct NotInLibrary<'a> {
+    what: &'a str,
+    #[label("not a declaration")]
+    span: Span,
+}
+
+/// The name of a requirement identifies its verdict.
+#[derive(Violation)]
+#[violation(E208, "two requirements are named \"{label}\"")]
+#[help("rename one, or join their conditions with `and`")]
+struct RequirementTwice<'a> {
+    label: &'a str,
+    #[label("named again")]
+    span: Span,
+    #[label("first named here")]
+    first: Span,
+}
+
+#[derive(Violation)]
+#[violation(E208, "name `{name}` declared twice")]
+#[help("rename one of them")]
+struct DeclaredTwice<'a> {
+    name: &'a str,
+    #[label("declared again")]
+    span: Span,
+    #[label("first declared here")]
+    first: Span,
+}
+
+struct UnknownBlock<'a> {
+    block: &'a Block,
+}
+
+impl Violation for UnknownBlock<'_> {
+    const CODE: Code = E201;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { block } = self;
+        let words: Vec<&str> = block.words.iter().map(|word| word.node.as_str()).collect();
+        if let Some((message, help)) = words
+            .first()
+            .and_then(|word| control::of_another_language(word))
+        {
+            return Diagnostic::new(Self::CODE, message)
+                .at(block.words[0].span, "not an item")
+                .help(help);
+        }
+        let keywords: Vec<String> = BLOCKS.iter().map(|block| block.words()).collect();
+        let known = || {
+            keywords
+                .iter()
+                .map(String::as_str)
+                .chain(ITEM_WORDS.iter().copied())
+        };
+        // All words but the name, two of them, or the first alone: whichever is most similar to a keyword.
+        let near = [words.len().saturating_sub(1).max(1), 2, 1]
+            .into_iter()
+            .filter(|count| *count <= words.len())
+            .find_map(|count| {
+                let written = words[..count].join(" ");
+                psd_text::suggest::nearest(&written, known()).map(|near| (count, near))
+            });
+        let turned = words.len() == 2 && keywords.iter().any(|keyword| keyword == words[1]);
+        if turned {
+            let help = format!("write the kind first: `{} {}`", words[1], words[0]);
+            return Diagnostic::new(Self::CODE, format!("unknown block `{}`", words[0]))
+                .at(block.head, "unknown block")
+                .help(help);
+        }
+        let begun = keywords
+            .iter()
+            .find(|keyword| keyword.split(' ').next() == words.first().copied());
+        let (count, help) = match (near, begun) {
+            (Some((count, near)), _) => (count, format!("did you mean `{near}`?")),
+            (None, Some(keyword)) => (1, format!("did you mean `{keyword}`?")),
+            (None, None) => (
+                1,
+                format!(
+                    "known blocks: {}",
+                    one_of(keywords.iter().map(String::as_str))
+                ),
+            ),
+        };
+        let written = words[..count].join(" ");
+        let span = block.words[0].span.to(block.words[count - 1].span);
+        Diagnostic::new(Self::CODE, format!("unknown block `{written}`"))
+            .at(span, "unknown block")
+            .help(help)
+    }
+}
+
+/// The error of the words after the keyword, if any.
+fn block_name(kind: &BlockKind, block: &Block, rest: &[Ident]) -> Option<Diagnostic> {
+    let words = kind.words();
+    let example = kind.example.lines().next().unwrap_or_default();
+    let wrong = |message: String, span, label: &str| {
+        Diagnostic::new(E212, message)
+            .at(span, label)
+            .help(format!("write it as in `{example}`"))
+    };
+    if let (Some(title), true) = (&block.title, kind.naming != Naming::Titled) {
+        return Some(wrong(
+            format!("`{words}` requires a title"),
+            title.span,
+            "title in quotes",
+        ));
+    }
+    match (kind.naming, rest) {
+        (Naming::Named, []) => Some(wrong(
+            format!("`{words}` requires a name"),
+            block.head,
+            "name missing",
+        )),
+        (Naming::Unnamed | Naming::Titled, [name, ..]) => Some(wrong(
+            format!("`{words}` takes no name"),
+            name.span,
+            "extra word",
+        )),
+        (_, [_, second, ..]) => Some(wrong(
+            format!("the name of a `{words}` block is one word"),
+            second.span,
+            "extra word",
+        )),
+        _ => None,
+    }
+}
+
+#[derive(Violation)]
+#[violation(E208, "two `{}` blocks", kind.words())]
+#[help("combine their fields in one block")]
+struct BlockTwice<'a> {
+    kind: &'a BlockKind,
+    #[label("second block")]
+    span: Span,
+    #[label("first block")]
+    first: Span,
+}
+
 impl<'a> Scope<'a> {
     /// Collects all declarations of the files; `settings` are the values given from outside, by name.
     pub fn collect(
@@ -131,7 +275,13 @@ impl<'a> Scope<'a> {
                         scope.declare_value(declared, diagnostics);
                     }
                     ItemKind::Require { label, .. } if library => {
-                        diagnostics.push(message::not_in_library("require", label.span));
+                        diagnostics.push(
+                            NotInLibrary {
+                                what: "require",
+                                span: label.span,
+                            }
+                            .diagnostic(),
+                        );
                     }
                     ItemKind::Require { label, condition } => {
                         scope.require(label, condition, diagnostics);
@@ -195,7 +345,14 @@ impl<'a> Scope<'a> {
     ) {
         let first = *self.labels.entry(&label.node).or_insert(label.span);
         if first != label.span {
-            diagnostics.push(message::requirement_twice(&label.node, label.span, first));
+            diagnostics.push(
+                RequirementTwice {
+                    label: &label.node,
+                    span: label.span,
+                    first,
+                }
+                .diagnostic(),
+            );
         }
         let declared = DeclaredRequirement { label, condition };
         if reads_a_study(condition) {
@@ -208,7 +365,14 @@ impl<'a> Scope<'a> {
     fn declare(&mut self, name: &'a Ident, meaning: Meaning, diagnostics: &mut Vec<Diagnostic>) {
         match self.names.get(name.node.as_str()) {
             Some((before, first)) => {
-                diagnostics.push(message::declared_twice(&name.node, name.span, *first));
+                diagnostics.push(
+                    DeclaredTwice {
+                        name: &name.node,
+                        span: name.span,
+                        first: *first,
+                    }
+                    .diagnostic(),
+                );
                 // It is unknown which of two declarations of different sorts is meant.
                 if std::mem::discriminant(before) != std::mem::discriminant(&meaning) {
                     self.names.insert(&name.node, (Meaning::Poisoned, *first));
@@ -235,7 +399,7 @@ impl<'a> Scope<'a> {
     ) {
         let words: Vec<&str> = block.words.iter().map(|word| word.node.as_str()).collect();
         let Some(kind) = schema::block_of_words(&words) else {
-            diagnostics.push(message::unknown_block(block));
+            diagnostics.push(UnknownBlock { block }.diagnostic());
             // `if heavy {` declares nothing.
             if words
                 .first()
@@ -263,7 +427,13 @@ impl<'a> Scope<'a> {
                 Kind::Specimen | Kind::Striker | Kind::Ground | Kind::Rig | Kind::Limits
             )
         {
-            diagnostics.push(message::not_in_library(&kind.words(), block.head));
+            diagnostics.push(
+                NotInLibrary {
+                    what: &kind.words(),
+                    span: block.head,
+                }
+                .diagnostic(),
+            );
             self.poison(rest, diagnostics);
             return;
         }
@@ -272,13 +442,20 @@ impl<'a> Scope<'a> {
             at.file == block.head.file
                 && (block.head.start..=block.head.end + 1).contains(&at.start)
         });
-        if let Some(wrong) = message::block_name(kind, block, rest).filter(|_| !cut_short) {
+        if let Some(wrong) = block_name(kind, block, rest).filter(|_| !cut_short) {
             diagnostics.push(wrong);
         } else if let (Naming::Unnamed | Naming::Titled | Naming::MaybeNamed, []) =
             (kind.naming, rest)
             && let Some(first) = self.unnamed(kind, span)
         {
-            diagnostics.push(message::block_twice(kind, block.head, first));
+            diagnostics.push(
+                BlockTwice {
+                    kind,
+                    span: block.head,
+                    first,
+                }
+                .diagnostic(),
+            );
             if !self.twice.contains(&kind.kind) {
                 self.twice.push(kind.kind);
             }

@@ -1,14 +1,72 @@
 //! The specimen that a procedure tests: the one that it names, else the only one declared. In: a block. Out: its specimen, or an error.
 
-use super::checker::Checker;
-use super::declarations::specimen::export as specimen_export;
-use super::messages::{names, whole as message};
-use super::scope::{DeclaredBlock, Meaning};
+use crate::check::wording::one_of;
+use crate::codes::{E201, E210, E601};
 use crate::syntax::ast::ExprKind;
 use psd_plan::formula::Formula;
 use psd_plan::schema::procedures::{SPECIMEN, STIFFNESS};
-use psd_plan::schema::{self, Kind};
-use psd_text::diagnostic::Code;
+use psd_plan::schema::{self, BlockKind, Kind};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::Span;
+
+use super::checker::Checker;
+use super::declarations::specimen::export as specimen_export;
+use super::scope::{DeclaredBlock, Meaning};
+
+/// Most spans of repeated declarations that are shown.
+const SHOWN: usize = 20;
+
+/// `declared`: the first [`SHOWN`] of `several`.
+struct SeveralSpecimens<'a> {
+    head: Span,
+    declared: &'a [(String, Span)],
+    several: usize,
+}
+
+impl Violation for SeveralSpecimens<'_> {
+    const CODE: Code = E601;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            head,
+            declared,
+            several,
+        } = self;
+        let diagnostic = Diagnostic::new(
+            Self::CODE,
+            "specimen not specified: the plan declares several",
+        )
+        .at(head, "specimen missing");
+        let lines: Vec<String> = declared
+            .iter()
+            .map(|(name, _)| format!("specimen = {name}"))
+            .collect();
+        let more = if several > SHOWN {
+            format!(", or one of {} more", several - SHOWN)
+        } else {
+            String::new()
+        };
+        let help = format!(
+            "add a line {}{more}",
+            one_of(lines.iter().map(String::as_str))
+        );
+        declared
+            .iter()
+            .fold(diagnostic, |diagnostic, (name, span)| {
+                diagnostic.at(*span, format!("`{name}` is one"))
+            })
+            .help(help)
+    }
+}
+
+#[derive(Violation)]
+#[violation(E210, "the plan has no `{}` block", kind.words())]
+#[help("add one, such as\n{}", kind.example)]
+struct MissingBlock<'a> {
+    kind: &'a BlockKind,
+    #[label("requires a `{}`", kind.words())]
+    span: Span,
+}
 
 impl Checker<'_> {
     /// `stiffness`, or on a simulated rig the initial one of the `specimen` block. On a real rig it is required; its absence is an error
@@ -59,8 +117,12 @@ impl Checker<'_> {
                     .of_kind(Kind::Specimen)
                     .map(named)
                     .filter_map(|(name, head)| Some((name?, head)));
-                let shown: Vec<_> = declared.take(message::SHOWN).collect();
-                self.fail(message::several_specimens(head, &shown, several))
+                let shown: Vec<_> = declared.take(SHOWN).collect();
+                self.fail(SeveralSpecimens {
+                    head,
+                    declared: &shown,
+                    several,
+                })
             }
         }
     }
@@ -92,11 +154,13 @@ impl Checker<'_> {
         let is_reported = self
             .diagnostics
             .iter()
-            .any(|diagnostic| matches!(diagnostic.code, Code::MissingBlock | Code::UnknownBlock));
+            .any(|diagnostic| matches!(diagnostic.code, E210 | E201));
         if none && !is_reported && !self.names_lost && self.unread.is_empty() {
             let head = self.scope.blocks[block].block.head;
-            self.diagnostics
-                .push(names::missing_block(schema::block(Kind::Specimen), head));
+            self.report(MissingBlock {
+                kind: schema::block(Kind::Specimen),
+                span: head,
+            });
         }
     }
 }

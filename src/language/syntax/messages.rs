@@ -1,15 +1,17 @@
 //! Every syntax error as a diagnostic: the code, the message, the span and the suggestion. Other files find the errors; this file
 //! contains their text.
 
+use std::ops::Range;
+
+use crate::codes::{E101, E102, E103, E104, E105, E106, E107, E108};
+use psd_text::diagnostic::Diagnostic;
+use psd_text::markdown::{FRAGMENT, FenceError};
+use psd_text::source::{FileId, Span};
+
 use super::{
     lexical::{confusable::Confusable, letters, numbers},
     limits,
 };
-use std::ops::Range;
-
-use psd_text::diagnostic::{Code, Diagnostic};
-use psd_text::markdown::{FRAGMENT, FenceError};
-use psd_text::source::{FileId, Span};
 
 /// The replacement for an `or`.
 const EITHER: &str = "all requirements must be met, so there is no `or`; if one of two values is sufficient, require \
@@ -19,7 +21,7 @@ const COMPARED: &str = "write a comparison with `<=`, `>=`, `==` or `within 5 % 
 
 /// `found` and `expected` are phrases, with their backquotes.
 pub fn unexpected(span: Span, found: &str, expected: &str) -> Diagnostic {
-    Diagnostic::new(Code::Syntax, format!("found {found}, expected {expected}"))
+    Diagnostic::new(E101, format!("found {found}, expected {expected}"))
         .at(span, format!("expected {expected}"))
         .help(match found {
         "`}`" => "remove this `}`, or open the block that it closes".to_owned(),
@@ -75,7 +77,7 @@ pub fn unexpected(span: Span, found: &str, expected: &str) -> Diagnostic {
 
 pub fn field_outside(span: Span, key: &str) -> Diagnostic {
     Diagnostic::new(
-        Code::Syntax,
+        E101,
         format!("field `{key}` outside a block, expected an item"),
     )
     .at(span, "not in a block")
@@ -91,7 +93,7 @@ pub fn stray_words(span: Span, words: &str) -> Diagnostic {
         short.push('…');
     }
     Diagnostic::new(
-        Code::Syntax,
+        E101,
         format!("`{short}` is neither a block nor an item"),
     )
     .at(span, "neither a block nor an item")
@@ -102,21 +104,21 @@ pub fn stray_words(span: Span, words: &str) -> Diagnostic {
 
 /// A line that begins with a keyword of another language.
 pub fn word_of_another_language(span: Span, word: &str, help: &str) -> Diagnostic {
-    Diagnostic::new(Code::Syntax, format!("unknown word `{word}`"))
+    Diagnostic::new(E101, format!("unknown word `{word}`"))
         .at(span, "not an item")
         .help(help)
 }
 
 /// A condition or a loop: `whole` is skipped.
 pub fn no_control(message: &str, help: &str, begins: Span, whole: Span) -> Diagnostic {
-    Diagnostic::new(Code::Syntax, message)
+    Diagnostic::new(E101, message)
         .at(begins, "not an item")
         .at(whole, "not read")
         .help(help)
 }
 
 pub fn arguments_in_braces(span: Span, call: &str) -> Diagnostic {
-    Diagnostic::new(Code::Syntax, "arguments must be in `( )`")
+    Diagnostic::new(E101, "arguments must be in `( )`")
         .at(span, "in braces")
         .help(format!("write `{call}`"))
 }
@@ -125,38 +127,35 @@ pub fn arguments_in_braces(span: Span, call: &str) -> Diagnostic {
 pub fn requirement_without_name(span: Span, rest: &str) -> Diagnostic {
     let short = rest.len() <= 60 && !rest.contains('\n');
     let rest = if short { rest } else { "…" };
-    Diagnostic::new(
-        Code::Syntax,
-        "a requirement must have a name, a string in quotes",
-    )
-    .at(span, "expected a string in quotes")
-    .help(format!(
-        "add a name, as in `require \"stays in travel\" {rest}`"
-    ))
+    Diagnostic::new(E101, "a requirement must have a name, a string in quotes")
+        .at(span, "expected a string in quotes")
+        .help(format!(
+            "add a name, as in `require \"stays in travel\" {rest}`"
+        ))
 }
 
 /// A line that continues an expression of the line before.
 pub fn operator_begins_line(span: Span, operator: &str) -> Diagnostic {
-    Diagnostic::new(Code::Syntax, format!("this line begins with `{operator}`"))
+    Diagnostic::new(E101, format!("this line begins with `{operator}`"))
         .at(span, "continues the line before")
         .help("move the operator to the end of the line before, or join the lines")
 }
 
 pub fn brace_missing(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::Syntax, "this block has no `{`")
+    Diagnostic::new(E101, "this block has no `{`")
         .at(span, "block contents without `{`")
         .help("write the `{` at the end of this line, as in `striker hammer {`")
 }
 
 pub fn brace_on_next_line(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::Syntax, "`{` is not on the line of its block")
+    Diagnostic::new(E101, "`{` is not on the line of its block")
         .at(span, "on a separate line")
         .help("move it to the line of the block's name, as in `striker hammer {`")
 }
 
 pub fn misplaced_block(span: Span) -> Diagnostic {
     Diagnostic::new(
-        Code::Syntax,
+        E101,
         "found a block or item inside a block, expected `key = value` or `}`",
     )
     .at(span, "expected a field")
@@ -165,7 +164,7 @@ pub fn misplaced_block(span: Span) -> Diagnostic {
 
 pub fn positional_after_named(span: Span) -> Diagnostic {
     Diagnostic::new(
-        Code::Syntax,
+        E101,
         "value without a name after a named one, expected `name: value`",
     )
     .at(span, "expected a name")
@@ -175,7 +174,7 @@ pub fn positional_after_named(span: Span) -> Diagnostic {
 }
 
 pub fn unclosed(span: Span, open: &str, close: &str) -> Diagnostic {
-    Diagnostic::new(Code::UnclosedBracket, format!("`{open}` is never closed"))
+    Diagnostic::new(E102, format!("`{open}` is never closed"))
         .at(span, "opened here")
         .help(format!("write the matching `{close}`"))
 }
@@ -183,7 +182,7 @@ pub fn unclosed(span: Span, open: &str, close: &str) -> Diagnostic {
 /// A Markdown document without a `psd` block.
 pub fn no_plan_block(span: Span) -> Diagnostic {
     Diagnostic::new(
-        Code::PlanBlock,
+        E108,
         "no `psd` block in this Markdown document: it has no plan",
     )
     .at(span, "no block from here to the end")
@@ -197,7 +196,7 @@ pub fn fence(file: FileId, error: &FenceError) -> Diagnostic {
     let at = |range: &Range<usize>| Span::new(file, range.start, range.end);
     match error {
         FenceError::Unclosed { opening, next } => {
-            let unclosed = Diagnostic::new(Code::PlanBlock, "this code block is never closed")
+            let unclosed = Diagnostic::new(E108, "this code block is never closed")
                 .at(at(opening), "opened here");
             let unclosed = next.iter().fold(unclosed, |unclosed, next| {
                 unclosed.at(at(next), "next block of the plan")
@@ -205,7 +204,7 @@ pub fn fence(file: FileId, error: &FenceError) -> Diagnostic {
             unclosed.help("write the closing fence, \"```\" or \"~~~\", on a separate line")
         }
         FenceError::UnknownWord { words } => Diagnostic::new(
-            Code::PlanBlock,
+            E108,
             "unknown word after `psd`: psd does not know whether this block is part of the plan",
         )
         .at(at(words), "unknown word")
@@ -217,12 +216,9 @@ pub fn fence(file: FileId, error: &FenceError) -> Diagnostic {
 
 /// A block of the plan that begins in one code block and ends in another.
 pub fn item_over_fences(head: Span) -> Diagnostic {
-    Diagnostic::new(
-        Code::PlanBlock,
-        "this continues after the end of its code block",
-    )
-    .at(head, "begins here")
-    .help("end it before the closing fence, or join the two code blocks")
+    Diagnostic::new(E108, "this continues after the end of its code block")
+        .at(head, "begins here")
+        .help("end it before the closing fence, or join the two code blocks")
 }
 
 pub fn bad_number(span: Span, written: &str, error: &numbers::NumberError) -> Diagnostic {
@@ -236,35 +232,29 @@ pub fn bad_number(span: Span, written: &str, error: &numbers::NumberError) -> Di
         [one] => format!("write `{one}`"),
         [one, others @ ..] => format!("write `{one}` or `{}`", others.join("` or `")),
     };
-    Diagnostic::new(
-        Code::BadNumber,
-        format!("`{short}` is not a number that psd reads"),
-    )
-    .at(span, error.why)
-    .help(help)
+    Diagnostic::new(E103, format!("`{short}` is not a number that psd reads"))
+        .at(span, error.why)
+        .help(help)
 }
 
 /// `corrected`: number and unit without the parentheses.
 pub fn unit_in_parentheses(span: Span, corrected: &str) -> Diagnostic {
-    Diagnostic::new(
-        Code::UnitWithoutBlank,
-        "a unit must not contain parentheses",
-    )
-    .at(span, "read as one unit")
-    .help(format!(
-        "write `{corrected}`: a unit is read from left to right, so `N/m*s` is (N/m)·s"
-    ))
+    Diagnostic::new(E104, "a unit must not contain parentheses")
+        .at(span, "read as one unit")
+        .help(format!(
+            "write `{corrected}`: a unit is read from left to right, so `N/m*s` is (N/m)·s"
+        ))
 }
 
 pub fn unit_without_blank(span: Span, corrected: &str) -> Diagnostic {
-    Diagnostic::new(Code::UnitWithoutBlank, "operator touches a unit")
+    Diagnostic::new(E104, "operator touches a unit")
         .at(span, "read as part of the unit")
         .help(format!("write spaces around the operator: `{corrected}`"))
 }
 
 pub fn nested_too_deep(span: Span) -> Diagnostic {
     Diagnostic::new(
-        Code::NestedTooDeep,
+        E105,
         "parentheses and brackets are nested more than 64 deep",
     )
     .at(span, "level 65")
@@ -276,18 +266,15 @@ pub fn bad_character(span: Span, shown: &str) -> Diagnostic {
         "\\u{d}" => "end lines with LF or CR LF, not with CR alone",
         _ => "remove it: it is invisible and hides the meaning of the plan",
     };
-    Diagnostic::new(
-        Code::BadText,
-        format!("a plan cannot contain the character {shown}"),
-    )
-    .at(span, "this character")
-    .help(help)
+    Diagnostic::new(E106, format!("a plan cannot contain the character {shown}"))
+        .at(span, "this character")
+        .help(help)
 }
 
 pub fn foreign_letter(span: Span, letters: &str, shown: &str) -> Diagnostic {
     let short: String = letters.chars().take(8).collect();
     Diagnostic::new(
-        Code::BadText,
+        E106,
         format!("invalid character `{short}` ({shown}) in a name"),
     )
     .at(span, "not a letter from a to z")
@@ -297,7 +284,7 @@ pub fn foreign_letter(span: Span, letters: &str, shown: &str) -> Diagnostic {
 pub fn stray(span: Span, found: &str) -> Diagnostic {
     let short: String = found.chars().take(8).collect();
     let diagnostic = Diagnostic::new(
-        Code::Syntax,
+        E101,
         format!("unexpected `{short}`: it has no meaning in a plan"),
     )
     .at(span, "no meaning here");
@@ -319,47 +306,35 @@ pub fn stray(span: Span, found: &str) -> Diagnostic {
 }
 
 pub fn unclosed_text(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::BadText, "this string is never closed")
+    Diagnostic::new(E106, "this string is never closed")
         .at(span, "opened here")
         .help("write the closing `\"` on the same line; a line end in a string is `\\n`")
 }
 
 pub fn bad_escape(span: Span, character: char) -> Diagnostic {
     let shown: String = character.escape_default().collect();
-    Diagnostic::new(
-        Code::BadText,
-        format!("unknown escape `\\{shown}` in a string"),
-    )
-    .at(span, "unknown escape")
-    .help("write `\\\"`, `\\\\`, `\\n` or `\\t`; a backslash itself is `\\\\`")
+    Diagnostic::new(E106, format!("unknown escape `\\{shown}` in a string"))
+        .at(span, "unknown escape")
+        .help("write `\\\"`, `\\\\`, `\\n` or `\\t`; a backslash itself is `\\\\`")
 }
 
 pub fn too_large(span: Span, what: &str, limit: usize, of: &str) -> Diagnostic {
-    Diagnostic::new(
-        Code::TooLarge,
-        format!("{what} is longer than {limit} {of}"),
-    )
-    .at(span, format!("at most {limit} {of}"))
-    .help("shorten it, or split it")
+    Diagnostic::new(E107, format!("{what} is longer than {limit} {of}"))
+        .at(span, format!("at most {limit} {of}"))
+        .help("shorten it, or split it")
 }
 
 pub fn too_many_operators(span: Span, limit: usize) -> Diagnostic {
-    Diagnostic::new(
-        Code::TooLarge,
-        format!("expression with more than {limit} operators"),
-    )
-    .at(span, format!("at most {limit} operators"))
-    .help("name parts of it with `let`, or write `sum([ … ])`")
+    Diagnostic::new(E107, format!("expression with more than {limit} operators"))
+        .at(span, format!("at most {limit} operators"))
+        .help("name parts of it with `let`, or write `sum([ … ])`")
 }
 
 /// A file in which every line ends with CR: other programs read it as one line.
 pub fn carriage_returns(span: Span) -> Diagnostic {
-    Diagnostic::new(
-        Code::BadText,
-        "lines of this file end with CR alone (U+000D)",
-    )
-    .at(span, "first such line end")
-    .help("save the file with LF or CR LF line ends")
+    Diagnostic::new(E106, "lines of this file end with CR alone (U+000D)")
+        .at(span, "first such line end")
+        .help("save the file with LF or CR LF line ends")
 }
 
 /// A confusable character or word, at the first of `count` positions.
@@ -377,7 +352,7 @@ pub fn confusable(found: Confusable, span: Span, count: usize, text: &str) -> Di
     let point = |c: char| format!("U+{:04X}", u32::from(c));
     match found {
         Confusable::ByteOrderMark => error(
-            Code::BadText,
+            E106,
             "the file begins with a byte order mark (U+FEFF)".to_owned(),
             "before the first character",
             "save the file as UTF-8 without a byte order mark".to_owned(),
@@ -390,7 +365,7 @@ pub fn confusable(found: Confusable, span: Span, count: usize, text: &str) -> Di
                 _ => "",
             };
             error(
-                Code::BadText,
+                E106,
                 format!("found {name}{}, expected an ordinary space", point(blank)),
                 "this character",
                 format!(
@@ -403,7 +378,7 @@ pub fn confusable(found: Confusable, span: Span, count: usize, text: &str) -> Di
             let code = written.chars().next().filter(|first| !first.is_ascii());
             let which = code.map_or_else(String::new, |first| format!(" ({})", point(first)));
             error(
-                Code::Syntax,
+                E101,
                 format!("`{written}`{which} is not a character of the language"),
                 "this character",
                 format!("write `{meant}`"),
@@ -413,7 +388,7 @@ pub fn confusable(found: Confusable, span: Span, count: usize, text: &str) -> Di
             let meant = "as in `mm^2` or `1/s`";
             let written: String = written.chars().take(12).collect();
             error(
-                Code::Syntax,
+                E101,
                 format!("`{written}` is not an exponent"),
                 "superscript digit",
                 format!("write the power with `^`, {meant}"),
@@ -434,20 +409,20 @@ pub fn confusable(found: Confusable, span: Span, count: usize, text: &str) -> Di
                 format!("`{open}` ({})", point(open))
             };
             error(
-                Code::Syntax,
+                E101,
                 format!("{which} is not a quotation mark of the language"),
                 "intended string",
                 format!("write \"{written}\" with the straight quote U+0022"),
             )
         }
         Confusable::Comment(opens) => error(
-            Code::Syntax,
+            E101,
             format!("`{opens}` does not begin a comment"),
             "intended comment",
             "write `#` before a comment; it ends with its line".to_owned(),
         ),
         Confusable::Semicolon => error(
-            Code::Syntax,
+            E101,
             "unexpected `;`: it has no meaning in a plan".to_owned(),
             "no meaning here",
             "remove the `;`: a field ends with its line".to_owned(),
@@ -493,7 +468,7 @@ fn foreign_word(word: &str, span: Span, often: &str) -> Diagnostic {
                     .to_owned()
             }
         };
-    Diagnostic::new(Code::BadText, format!("{message}{often}"))
+    Diagnostic::new(E106, format!("{message}{often}"))
         .at(at, label)
         .help(help)
 }

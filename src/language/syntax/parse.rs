@@ -3,11 +3,15 @@
 
 use std::collections::BTreeSet;
 
+use crate::codes::{E101, E103, E104};
 use pest::{
     Parser as _,
     error::{ErrorVariant, InputLocation},
     iterators::Pair,
 };
+use psd_text::diagnostic::Diagnostic;
+use psd_text::markdown::{self, Document};
+use psd_text::source::{FileId, Sources, Span, Spanned};
 
 use super::{
     ast::{Ast, Block, Entry, Ident, Item, ItemKind},
@@ -19,9 +23,6 @@ use super::{
     lower::{Lowering, unescape},
     messages, rule_names,
 };
-use psd_text::diagnostic::{Code, Diagnostic};
-use psd_text::markdown::{self, Document};
-use psd_text::source::{FileId, Sources, Span, Spanned};
 
 /// Parses one file: a text of the language, or the `psd` blocks of a Markdown document. Never panics; the valid parts of a file with
 /// errors are in the tree, with [`ExprKind::Faulty`](super::ast::ExprKind::Faulty) in place of an invalid value.
@@ -141,10 +142,7 @@ fn parse_text(text: &str, file: FileId) -> (Ast, Vec<Diagnostic>) {
 
 /// Whether an error states only that a line cannot be parsed, which may follow from a confusable on the same line.
 fn follows(error: &Diagnostic) -> bool {
-    matches!(
-        error.code,
-        Code::Syntax | Code::BadNumber | Code::UnitWithoutBlank
-    )
+    matches!(error.code, E101 | E103 | E104)
 }
 
 /// A valid file; `None` where there is any error.

@@ -9,3 +9,4 @@ pub(crate) mod loop_sampling;
 pub(crate) mod perturbed_inputs;
 pub(crate) mod reached;
 pub(crate) mod results;
+pub(crate) mod violations;

@@ -1,13 +1,42 @@
 //! `cycle NAME { … }`: amplitudes, or a protocol that gives them.
 
+use crate::codes::{E646, E647};
 use crate::language::check::checker::{Checker, Context};
 use crate::language::check::declarations::curve;
 use crate::language::check::expressions::fields::whole;
-use crate::language::check::messages::{cyclic as fault, names, values};
+use crate::language::check::violations::{MissingField, NoEffect};
+use crate::language::codes::E208;
 use crate::plan::formula::{Formula, Operator};
 use crate::plan::procedures::cycle::block as schema;
 use crate::plan::{BreakCount, Cycle, CycleInspection, Level, MOST_TARGETS, ProcedureKind, Sides};
+use crate::procedures::common::violations::TooManyInProcedure;
 use crate::schema::procedures::SPEED;
+use crate::text::diagnostic::Violation;
+use crate::text::source::Span;
+
+#[derive(Violation)]
+#[violation(E646, "`rate` requires `speed`: the actuator is read while it moves")]
+#[help("add a line such as `speed = 1 mm/s`, or remove `rate` for ramp-and-hold")]
+struct RateWithoutSpeed {
+    #[label("readings during motion")]
+    rate: Span,
+    #[label("`speed` is missing")]
+    head: Span,
+}
+
+#[derive(Violation)]
+#[violation(
+    E647,
+    "`{field}` has no effect with `rate`: the actuator does not stop between the ends"
+)]
+#[help("remove `{field}` or `rate`")]
+struct NoUseWithRate<'a> {
+    field: &'a str,
+    #[label("for ramp-and-hold only")]
+    span: Span,
+    #[label("motion without stops")]
+    rate: Span,
+}
 
 pub fn cycle(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let head = checker.scope.blocks[block].block.head;
@@ -24,15 +53,18 @@ pub fn cycle(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     );
     if let Some((_, rate)) = checker.field(block, schema::RATE.name) {
         if checker.field(block, SPEED.name).is_none() && !checker.misspelt(block, &[SPEED.name]) {
-            checker
-                .diagnostics
-                .push(fault::rate_without_speed(rate.span, head));
+            checker.report(RateWithoutSpeed {
+                rate: rate.span,
+                head,
+            });
         }
         for field in [schema::POINTS.name, schema::SAMPLES.name] {
             if let Some((_, entry)) = checker.field(block, field) {
-                checker
-                    .diagnostics
-                    .push(fault::no_use_with_rate(field, entry.span, rate.span));
+                checker.report(NoUseWithRate {
+                    field,
+                    span: entry.span,
+                    rate: rate.span,
+                });
             }
         }
     }
@@ -62,13 +94,13 @@ pub fn cycle(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let readings = cycle.targets() as f64 * f64::from(cycle.samples);
     if readings > MOST_TARGETS {
         let help = "write fewer `repeats`, `points` or `samples`";
-        return checker.fail(values::too_many(
-            "readings",
-            readings,
-            MOST_TARGETS,
-            head,
+        return checker.fail(TooManyInProcedure {
+            what: "readings",
+            found: readings,
+            most: MOST_TARGETS,
+            span: head,
             help,
-        ));
+        });
     }
     Some(ProcedureKind::Cycle(cycle))
 }
@@ -87,6 +119,16 @@ fn fit(checker: &mut Checker, block: usize) -> Option<Option<BreakCount>> {
     curve::breaks(checker, &chosen, context).map(Some)
 }
 
+#[derive(Violation)]
+#[violation(E208, "amplitudes given twice: by `amplitudes` and by `protocol`")]
+#[help("remove one of them")]
+struct AmplitudesTwice {
+    #[label("given again")]
+    span: Span,
+    #[label("first given here")]
+    first: Span,
+}
+
 /// The amplitudes in order, each with its number of cycles; None if an error was reported.
 fn levels(checker: &mut Checker, block: usize) -> Option<Vec<Level>> {
     let declared = &checker.scope.blocks[block];
@@ -98,10 +140,10 @@ fn levels(checker: &mut Checker, block: usize) -> Option<Vec<Level>> {
         checker.field(block, schema::GIVEN_AMPLITUDES.name),
         checker.field(block, schema::PROTOCOL.name),
     ) {
-        (Some((_, amplitudes)), Some((_, protocol))) => checker.fail(fault::amplitudes_twice(
-            protocol.key.span,
-            amplitudes.key.span,
-        )),
+        (Some((_, amplitudes)), Some((_, protocol))) => checker.fail(AmplitudesTwice {
+            span: protocol.key.span,
+            first: amplitudes.key.span,
+        }),
         (None, None)
             if checker.misspelt(
                 block,
@@ -112,13 +154,13 @@ fn levels(checker: &mut Checker, block: usize) -> Option<Vec<Level>> {
         }
         (None, None) => {
             let example = "amplitudes = [1, 2, 5] mm";
-            checker.fail(names::missing_field(
-                declared.kind,
-                declared.name,
-                declared.block.head,
-                schema::GIVEN_AMPLITUDES.name,
+            checker.fail(MissingField {
+                kind: declared.kind,
+                name: declared.name,
+                head: declared.block.head,
+                field: schema::GIVEN_AMPLITUDES.name,
                 example,
-            ))
+            })
         }
         (Some(_), None) => {
             let cycles = repeats.unwrap_or(1);
@@ -164,12 +206,12 @@ fn protocol(checker: &mut Checker, block: usize, context: Context) -> Option<(Ve
             );
             if let (1, Some(span)) = (levels, chosen.span(schema::LAST.name)) {
                 let message = "a ramp of one level has its first amplitude alone".to_owned();
-                checker.diagnostics.push(values::no_effect(
+                checker.report(NoEffect {
                     message,
                     span,
-                    "never reached",
-                    "write `levels` of 2 or more",
-                ));
+                    label: "never reached",
+                    help: "write `levels` of 2 or more",
+                });
             }
             let amplitude = |level: u32| {
                 // The ends are the stated values, without rounding.

@@ -3,7 +3,7 @@
 
 use crate::language::check::checker::Checker;
 use crate::language::check::declarations::limits::CheckedLimits;
-use crate::language::check::messages::{values as fault, whole};
+use crate::language::check::violations::{BeyondLimits, NoSuchEntry};
 use crate::plan::procedures::cycle::block as schema;
 use crate::plan::{Procedure, ProcedureKind};
 use crate::units::Dimension;
@@ -27,9 +27,11 @@ pub fn check_entries(checker: &mut Checker, procedures: &[(usize, Option<Procedu
         };
         let cycles = cycle.levels.iter().map(|level| level.cycles as usize).sum();
         if BY_CYCLE.contains(&reference.name) && entry >= cycles {
-            checker
-                .diagnostics
-                .push(fault::no_such_entry(span, entry, cycles));
+            checker.report(NoSuchEntry {
+                span,
+                entry,
+                length: cycles,
+            });
         }
     }
 }
@@ -73,13 +75,13 @@ pub fn check_cycles(
             .or_else(|| checker.field(*block, schema::PROTOCOL.name));
         let Some((_, entry)) = given else { continue };
         let (field, span) = (entry.key.node.as_str(), entry.value.span);
-        checker.diagnostics.push(whole::beyond_limits(
+        checker.report(BeyondLimits {
             field,
-            beyond,
-            Dimension::LENGTH,
+            value: beyond,
+            dimension: Dimension::LENGTH,
             span,
-            interval,
-            at,
-        ));
+            limit: interval,
+            limit_at: at,
+        });
     }
 }

@@ -1,14 +1,14 @@
 //! `damping sweep NAME { … }`
 
+use crate::codes::E654;
 use crate::language::check::checker::Checker;
 use crate::language::check::expressions::read_field::ReadField;
-use crate::language::check::messages::methods as fault;
-use crate::plan::damping_sweep_fields;
 use crate::plan::procedures::damping_sweep::block::NAMES;
-use crate::plan::reader;
-use crate::plan::{DampingSweep, ProcedureKind};
+use crate::plan::{DampingSweep, ProcedureKind, damping_sweep_fields, reader};
 use crate::procedures::stepping::check::mode_check::stops_at_targets;
 use crate::schema::rig;
+use crate::text::diagnostic::Violation;
+use crate::text::source::Span;
 
 pub fn damping_sweep(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     read_together(checker, block);
@@ -16,6 +16,22 @@ pub fn damping_sweep(checker: &mut Checker, block: usize) -> Option<ProcedureKin
 }
 
 damping_sweep_fields!(reader);
+
+#[derive(Violation)]
+#[violation(
+    E654,
+    "a damping sweep requires simultaneous readings of displacement and force"
+)]
+#[help(
+    "write a damping value, as in `damping = 6 N*s/m`, or use one `native` device for both readings"
+)]
+struct ReadApart {
+    #[label("read one after the other")]
+    sweep: Span,
+    #[label("{}", label)]
+    link: Span,
+    label: String,
+}
 
 /// Refuses a rig that does not read displacement and force at one instant. A sweep reads in motion: the travel between the two instants
 /// gives a force proportional to the velocity, which cannot be distinguished from damping.
@@ -38,8 +54,10 @@ fn read_together(checker: &mut Checker, block: usize) {
         (None, None) => None,
     };
     if let Some((link, reason)) = apart {
-        checker
-            .diagnostics
-            .push(fault::read_apart(at, link, reason));
+        checker.report(ReadApart {
+            sweep: at,
+            link,
+            label: reason,
+        });
     }
 }

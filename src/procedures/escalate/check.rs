@@ -1,14 +1,17 @@
 //! `escalate NAME { … }`: the fields of an impact, its levels, and the condition for the next impact.
 
+use crate::codes::{E648, W721};
 use crate::language::check::checker::{Checker, Context, Reads};
-use crate::language::check::messages::{cyclic as fault, names, values};
+use crate::language::check::violations::MissingField;
+use crate::language::codes::E208;
 use crate::plan::formula::{Formula, Function, Operator};
 use crate::plan::procedures::escalate::block as schema;
 use crate::plan::procedures::impact::block::STRIKER;
 use crate::plan::{Between, Condition, Escalate, MOST_IMPACTS, ProcedureKind};
+use crate::procedures::common::violations::TooManyInProcedure;
 use crate::procedures::impact;
-use crate::schema::Kind;
-use crate::schema::striker;
+use crate::schema::{Kind, striker};
+use crate::text::diagnostic::Violation;
 use crate::text::source::Span;
 use crate::units::unit::STANDARD_GRAVITY;
 
@@ -44,6 +47,27 @@ pub fn escalate(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     }))
 }
 
+#[derive(Violation)]
+#[violation(E208, "impacts given twice: by `{first_field}` and by `{again}`")]
+#[help("remove one of them")]
+struct LevelsTwice<'a> {
+    again: &'a str,
+    #[label("given again")]
+    span: Span,
+    first_field: &'a str,
+    #[label("first given here")]
+    first: Span,
+}
+
+#[derive(Violation)]
+#[violation(W721, "`{field}` do not increase from impact to impact")]
+#[help("sort them, so that the first failure has the lowest energy")]
+struct LevelsDoNotRise<'a> {
+    field: &'a str,
+    #[label("not in increasing order")]
+    span: Span,
+}
+
 /// The velocity of the striker in each impact: v, √(2·gn·h) or √(2E/Ms), and its energy where the plan gives energies.
 fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<Vec<Formula>>)> {
     let declared = &checker.scope.blocks[block];
@@ -60,21 +84,24 @@ fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<V
         [(field, _, span)] => (*field, *span),
         [] => {
             if !checker.misspelt(block, &LEVELS) {
-                checker.diagnostics.push(names::missing_field(
+                checker.report(MissingField {
                     kind,
                     name,
                     head,
-                    schema::SPEEDS.name,
-                    "speeds = [0.5, 1, 1.5] m/s",
-                ));
+                    field: schema::SPEEDS.name,
+                    example: "speeds = [0.5, 1, 1.5] m/s",
+                });
             }
             return None;
         }
         [(first, at, _), rest @ ..] => {
             for (again, span, _) in rest {
-                checker
-                    .diagnostics
-                    .push(fault::levels_twice(again, *span, first, *at));
+                checker.report(LevelsTwice {
+                    again,
+                    span: *span,
+                    first_field: first,
+                    first: *at,
+                });
             }
             return None;
         }
@@ -86,19 +113,17 @@ fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<V
             reason = "a list has at most 100,000 entries"
         )]
         let (found, most) = (levels.len() as f64, MOST_IMPACTS as f64);
-        return checker.fail(values::too_many(
-            "impacts",
+        return checker.fail(TooManyInProcedure {
+            what: "impacts",
             found,
             most,
             span,
-            "write fewer levels",
-        ));
+            help: "write fewer levels",
+        });
     }
     let known: Vec<f64> = levels.iter().filter_map(Formula::constant).collect();
     if known.windows(2).any(|pair| pair[1] <= pair[0]) {
-        checker
-            .diagnostics
-            .push(fault::levels_do_not_rise(field, span));
+        checker.report(LevelsDoNotRise { field, span });
     }
     let root = |twice: f64, of: Formula| {
         let product = Formula::Binary(
@@ -133,6 +158,18 @@ fn levels(checker: &mut Checker, block: usize) -> Option<(Vec<Formula>, Option<V
     })
 }
 
+#[derive(Violation)]
+#[violation(
+    E648,
+    "`{text}` reads no result of an impact: it is the same after every one"
+)]
+#[help("name a result of the impact, such as `max_displacement < 20 mm`")]
+struct ConditionWithoutResult<'a> {
+    text: &'a str,
+    #[label("constant condition")]
+    span: Span,
+}
+
 /// `while`: conditions on the results of an impact, by their own names.
 fn condition(checker: &mut Checker, block: usize) -> Option<Vec<Condition>> {
     let own = checker.scope.blocks[block].procedure?;
@@ -152,7 +189,10 @@ fn condition(checker: &mut Checker, block: usize) -> Option<Vec<Condition>> {
         .any(|reference| reference.procedure == own)
     {
         let text = checker.text(written.value.span);
-        return checker.fail(fault::condition_without_result(text, written.value.span));
+        return checker.fail(ConditionWithoutResult {
+            text,
+            span: written.value.span,
+        });
     }
     Some(conditions)
 }

@@ -1,19 +1,34 @@
 //! `shake NAME { … }`: the frame, the ground motion, damping, and a stable time step.
 
+use crate::codes::{E624, E639, W713};
 use crate::language::check::checker::{Checker, Shape};
 use crate::language::check::declarations::specimen::frame;
 use crate::language::check::declared::Declared;
-use crate::language::check::messages::{frames as fault, types};
+use crate::language::check::violations::ListForNumber;
+use crate::language::check::wording::shown;
 use crate::plan::formula::Formula;
 use crate::plan::procedures::shake::block as schema;
 use crate::plan::{Contact, ProcedureKind, Shake, ShakeDamping};
 use crate::procedures::stepping;
 use crate::procedures::stepping::check::frame_check;
 use crate::procedures::stepping::check::frame_check::FrameSteps;
-use crate::schema::Kind;
-use crate::schema::frames;
-use crate::schema::methods;
 use crate::schema::procedures::SPECIMEN;
+use crate::schema::{Kind, frames, methods};
+use crate::text::diagnostic::{Code, Diagnostic, Violation};
+use crate::text::source::Span;
+use crate::units::Dimension;
+use crate::units::display::significant;
+
+#[derive(Violation)]
+#[violation(E624, "specimen `{specimen}` has no storeys; `shake` requires a frame")]
+#[help("write `storeys = [storey(mass: 2 t, stiffness: 3 MN/m)]` instead of mass and behaviour")]
+struct NoStoreys<'a> {
+    specimen: &'a str,
+    #[label("requires storeys")]
+    span: Span,
+    #[label("no storeys")]
+    declared: Span,
+}
 
 pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let ground = checker.reference(block, schema::GROUND.name, Kind::Ground);
@@ -31,7 +46,11 @@ pub fn shake(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
             tested.block.head,
         );
         let at = checker.value_or_head(block, SPECIMEN.name);
-        return checker.fail(fault::no_storeys(name, at, declared));
+        return checker.fail(NoStoreys {
+            specimen: name,
+            span: at,
+            declared,
+        });
     }
     Some(ProcedureKind::Shake(Shake {
         specimen: checker.scope.index_in_kind(specimen),
@@ -55,8 +74,39 @@ pub fn damping(checker: &mut Checker, block: usize) -> Option<ShakeDamping> {
         Shape::List if matches!(typed.formula, Formula::List(_)) => {
             ShakeDamping::Modal(typed.parts())
         }
-        Shape::List => return checker.fail(types::list_for_number(written.value.span)),
+        Shape::List => {
+            return checker.fail(ListForNumber {
+                span: written.value.span,
+            });
+        }
     })
+}
+
+/// A damping ratio below 0 within its uncertainty.
+struct DampingTooUncertain {
+    uncertainty: f64,
+    least: f64,
+    span: Span,
+}
+
+impl Violation for DampingTooUncertain {
+    const CODE: Code = E639;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            uncertainty,
+            least,
+            span,
+        } = self;
+        let percent = |number: f64| format!("{} %", significant(100.0 * number, 2));
+        let of = format!(
+            "damping ratio minus its uncertainty is below 0: {}",
+            percent(least)
+        );
+        Diagnostic::new(Self::CODE, format!("minus its uncertainty, {of}"))
+        .at(span, format!("standard uncertainty: {}", percent(uncertainty)))
+        .help("write an uncertainty up to the damping ratio; for a rectangular distribution on 0 .. ζ it is ζ / (2 √3)")
+    }
 }
 
 /// Standard uncertainty of each ratio: no ratio minus its uncertainty is below 0.
@@ -78,9 +128,43 @@ pub fn damping_uncertainty(
     ) {
         (Some(least), Some((_, entry))) => {
             let at = entry.value.span;
-            checker.fail(fault::damping_too_uncertain(uncertainty, least, at))
+            checker.fail(DampingTooUncertain {
+                uncertainty,
+                least,
+                span: at,
+            })
         }
         _ => Some(uncertainty),
+    }
+}
+
+struct RecordFinerThanStep<'a> {
+    span: Span,
+    step: f64,
+    spacing: f64,
+    ground: &'a str,
+}
+
+impl Violation for RecordFinerThanStep<'_> {
+    const CODE: Code = W713;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            span,
+            step,
+            spacing,
+            ground,
+        } = self;
+        let (step, spacing) = (
+            shown(step, Dimension::TIME),
+            shown(spacing, Dimension::TIME),
+        );
+        Diagnostic::new(
+        Self::CODE,
+        format!("ground peaks may be missed: time step {step} exceeds the sample spacing {spacing} of `{ground}`"),
+    )
+    .at(span, format!("{step}, sample spacing is {spacing}"))
+    .help(format!("write `time_step = {spacing}` or less"))
     }
 }
 
@@ -123,11 +207,11 @@ pub(crate) fn check_declared(
     let spacing = ground.spacing().0;
     if step > spacing * (1.0 + 1e-9) {
         let at = checker.value_or_head(block, methods::TIME_STEP.name);
-        checker.diagnostics.push(fault::record_finer_than_step(
-            at,
+        checker.report(RecordFinerThanStep {
+            span: at,
             step,
             spacing,
-            &ground.name,
-        ));
+            ground: &ground.name,
+        });
     }
 }

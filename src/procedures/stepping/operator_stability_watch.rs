@@ -2,7 +2,7 @@
 //! specimen is not stiffer than `K_I`, and explicit Newmark up to 2/ω of its largest stiffness. In: the readings, step by step. Out: one
 //! observation. It stops nothing.
 
-use super::setting::Start;
+use crate::codes::W718;
 use crate::physics::impact::ImpactInput;
 use crate::physics::integrator::stability::{Met, longest_stable_step};
 use crate::physics::structure::{FrameMatrices, Matrices, drifts, shears, storeys_of};
@@ -11,9 +11,10 @@ use crate::procedures::damping_sweep::rate_separated_stiffness::RateSeparatedFit
 use crate::record::EventKind;
 use crate::rig::Reading;
 use crate::run::session::{Session, first};
-use crate::text::diagnostic::Code;
 use crate::units::Dimension;
 use crate::units::display::readable;
+
+use super::setting::Start;
 
 /// A secant counts if its change of displacement is this many standard deviations of the readings, and exceeds `K_I` by as many of its
 /// own. With fewer, the noise of many steps appears as a stiffness.
@@ -131,7 +132,7 @@ impl Stiffer {
             let limit = time(limit(measured));
             return Some(format!(
                 "{}: {name} reached {}: explicit Newmark is then stable up to {limit}, but the time step is {}",
-                Code::StifferThanOperator,
+                W718,
                 stiffness(measured),
                 time(time_step),
             ));
@@ -152,7 +153,7 @@ impl Stiffer {
         };
         Some(format!(
             "{}: {name} is stiffer than assumed in α-OS, {} measured, K_I = {}: time step stable up to {} only, {so} ({})",
-            Code::StifferThanOperator,
+            W718,
             stiffness(measured),
             stiffness(operator_stiffness),
             time(limit),

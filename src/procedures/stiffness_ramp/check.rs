@@ -1,16 +1,18 @@
 //! `stiffness ramp NAME { … }`
 
+use crate::codes::{E650, W726};
 use crate::language::check::checker::{Checker, Context};
 use crate::language::check::declarations::curve;
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::expressions::fields::whole;
-use crate::language::check::messages::{specimens, values};
 use crate::plan::procedures::stiffness_ramp::block as schema;
 use crate::plan::procedures::stiffness_ramp::block::NAMES;
 use crate::plan::{
     ProcedureKind, RampFit, RelaxationLaw, RelaxationModel, StiffnessRamp, WatchedHold,
     WatchedModel,
 };
+use crate::procedures::common::violations::TooManyInProcedure;
+use crate::text::diagnostic::Violation;
 use crate::text::source::Span;
 
 /// Readings of a pause that span two decades of time: the first comes after one hundredth of it.
@@ -32,13 +34,13 @@ pub fn stiffness_ramp(checker: &mut Checker, block: usize) -> Option<ProcedureKi
         * (f64::from(ramp.samples) * f64::from(ramp.repeats) + of_holds);
     if readings > MOST_READINGS {
         let head = checker.scope.blocks[block].block.head;
-        return checker.fail(values::too_many(
-            "readings",
-            readings,
-            MOST_READINGS,
-            head,
-            "write fewer `samples` or `repeats`",
-        ));
+        return checker.fail(TooManyInProcedure {
+            what: "readings",
+            found: readings,
+            most: MOST_READINGS,
+            span: head,
+            help: "write fewer `samples` or `repeats`",
+        });
     }
     Some(ProcedureKind::StiffnessRamp(ramp))
 }
@@ -67,12 +69,22 @@ fn read(checker: &mut Checker<'_>, block: usize) -> Option<StiffnessRamp> {
     })
 }
 
+#[derive(Violation)]
+#[violation(E650, "`relaxation` requires a `pause`")]
+#[help("add a line such as `pause = 5 s`")]
+struct RelaxationWithoutHold {
+    #[label("no readings without a pause")]
+    relaxation: Span,
+}
+
 /// Refuses a relaxation that is fitted to pauses of no duration.
 fn held(checker: &mut Checker, block: usize) -> Option<()> {
     let pause = checker.quantity(block, NAMES.pause);
     match checker.field(block, NAMES.relaxation) {
         Some((_, entry)) if pause.and_then(|pause| pause.constant()) == Some(0.0) => {
-            checker.fail(specimens::relaxation_without_hold(entry.value.span))
+            checker.fail(RelaxationWithoutHold {
+                relaxation: entry.value.span,
+            })
         }
         _ => Some(()),
     }
@@ -106,6 +118,22 @@ fn watched_hold(checker: &mut Checker<'_>, block: usize) -> Option<Option<Watche
         }
         None => Some(None),
     }
+}
+
+/// The time range of the readings of a dwell, last over first.
+#[derive(Violation)]
+#[violation(
+    W726,
+    "{readings} readings per pause cannot distinguish relaxation laws"
+)]
+#[help("write ten `readings` or more, which span two decades of time")]
+struct FewDecades {
+    readings: u32,
+    #[label(
+        "last reading at {spanned} × the first time",
+        spanned = u64::from(readings) * u64::from(readings)
+    )]
+    span: Span,
 }
 
 /// The model that is `chosen` at a span.
@@ -143,9 +171,7 @@ fn relaxation<'a>(
             .find(schema::READINGS.name)
             .and_then(|(_, given)| given)
             .map_or(span, |given| given.span);
-        checker
-            .diagnostics
-            .push(specimens::few_decades(readings, at));
+        checker.report(FewDecades { readings, span: at });
     }
     Some(WatchedHold {
         model: WatchedModel::Reached { law, rate },

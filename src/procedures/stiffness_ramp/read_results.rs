@@ -3,12 +3,16 @@
 
 use std::collections::BTreeSet;
 
+use crate::codes::{E655, W722};
 use crate::language::check::checker::Checker;
-use crate::language::check::messages::values as fault;
+use crate::physics::statistics::student_t::coverage;
 use crate::plan::formula::Formula;
 use crate::plan::procedures::stiffness_ramp::block as schema;
 use crate::plan::{BreakCount, Procedure, ProcedureKind, RampFit, StiffnessRamp};
+use crate::text::diagnostic::{Code, Diagnostic, Violation};
+use crate::text::source::Span;
 use crate::uncertainty::FEW;
+use crate::units::display::significant;
 
 /// Results of a ramp that its fit gives.
 const FITTED: [&str; 6] = [
@@ -28,6 +32,75 @@ const OF_A_KNEE: [&str; 4] = [
     schema::POST_YIELD_RATIO.name,
 ];
 
+/// `read` is a ramp result that an expression reads, `lacks` why it never exists, `help` the remedy.
+struct NeverGiven<'a> {
+    read: &'a str,
+    span: Span,
+    ramp: (&'a str, Span),
+    lacks: &'a str,
+    help: &'a str,
+}
+
+impl Violation for NeverGiven<'_> {
+    const CODE: Code = E655;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            read,
+            span,
+            ramp,
+            lacks,
+            help,
+        } = self;
+        Diagnostic::new(
+            Self::CODE,
+            format!("ramp `{}` never gives `{read}`: {lacks}", ramp.0),
+        )
+        .at(span, "read here")
+        .at(ramp.1, "from this ramp")
+        .help(help.to_owned())
+    }
+}
+
+struct FewDegreesOfFreedom<'a> {
+    ramp: &'a str,
+    points: usize,
+    degrees: usize,
+    displacements: Span,
+    required: Span,
+}
+
+impl Violation for FewDegreesOfFreedom<'_> {
+    const CODE: Code = W722;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            ramp,
+            points,
+            degrees,
+            displacements,
+            required,
+        } = self;
+        #[expect(clippy::cast_precision_loss, reason = "a few")]
+        let factor = significant(coverage(degrees as f64), 3);
+        let freedom = if degrees == 1 {
+            "1 degree of freedom".to_owned()
+        } else {
+            format!("{degrees} degrees of freedom")
+        };
+        let text = format!(
+            "uncertainty is large: {points} steps leave {freedom} in the fit of `{ramp}`, U = {factor} × standard error"
+        );
+        Diagnostic::new(Self::CODE, text)
+            .at(displacements, format!("{points} steps"))
+            .at(required, "fitted result read here")
+            .help(format!(
+                "write {} steps or more",
+                points + usize::from(FEW) - degrees
+            ))
+    }
+}
+
 /// Reported once for each ramp; called only if there is no error.
 pub fn check(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
     let (mut never, mut few) = (BTreeSet::new(), BTreeSet::new());
@@ -42,13 +115,13 @@ pub fn check(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
         if let Some((lacks, help)) = lacks(ramp, reference.name) {
             if never.insert(*block) {
                 let ramp = (procedure.name.as_str(), displacements);
-                checker.diagnostics.push(fault::never_given(
-                    reference.name,
+                checker.report(NeverGiven {
+                    read: reference.name,
                     span,
                     ramp,
-                    &lacks,
+                    lacks: &lacks,
                     help,
-                ));
+                });
             }
         } else if FITTED.contains(&reference.name)
             && let Some((points, degrees)) = ramp
@@ -56,13 +129,13 @@ pub fn check(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
                 .filter(|(_, degrees)| *degrees < usize::from(FEW))
             && few.insert(*block)
         {
-            checker.diagnostics.push(fault::few_degrees_of_freedom(
-                &procedure.name,
+            checker.report(FewDegreesOfFreedom {
+                ramp: &procedure.name,
                 points,
                 degrees,
                 displacements,
-                span,
-            ));
+                required: span,
+            });
         }
     }
 }

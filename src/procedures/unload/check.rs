@@ -2,9 +2,9 @@
 
 use crate::language::check::checker::Checker;
 use crate::language::check::declarations::specimen::frame;
-use crate::language::check::messages::frames as fault;
 use crate::plan::procedures::unload::block as schema;
 use crate::plan::{ProcedureKind, Unload};
+use crate::procedures::common::violations::NoUseOnAFrame;
 use crate::schema::procedures::{SPEED, STIFFNESS};
 
 pub fn unload(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
@@ -22,12 +22,12 @@ pub fn unload(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     );
     if let (true, Some((_, entry))) = (of_frame, checker.field(block, STIFFNESS.name)) {
         let help = "remove it: the storeys of the frame have stiffnesses";
-        return checker.fail(fault::no_use_on_a_frame(
-            STIFFNESS.name,
-            "the unloading of a frame",
-            entry.key.span,
+        return checker.fail(NoUseOnAFrame {
+            field: STIFFNESS.name,
+            of: "the unloading of a frame",
+            at: entry.key.span,
             help,
-        ));
+        });
     }
     Some(ProcedureKind::Unload(Unload {
         specimen: specimen?,

@@ -99,7 +99,7 @@ fn a_gap_is_measured_from_where_the_surface_now_is() {
 #[test]
 fn a_specimen_without_load_is_not_moved() {
     let record = run_unwatched(&perfectly_plastic(vec![unload()]));
-    let History::Move(moved) = &record.procedures[0].history else {
+    let History::Unload(moved) = &record.procedures[0].history else {
         panic!()
     };
     assert!(moved.is_empty());

@@ -4,10 +4,10 @@
 
 use std::ops::Range;
 
+use crate::sanitize::is_control_like;
 use miette::{LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
 use super::{Diagnostic, Label};
-use crate::sanitize::is_control_like;
 pub use crate::sanitize::{escape, one_line};
 use crate::source::{FileId, Position, SourceFile, Sources, Span};
 
@@ -284,7 +284,7 @@ mod tests {
         let text = "let a = 1 mm\n".repeat(80_000);
         let file = sources.add("large.psd", text.as_str());
         let at = |line: usize| Span::new(file, 13 * line + 4, 13 * line + 5);
-        let mut diagnostic = Diagnostic::new(Code::Syntax, "twice");
+        let mut diagnostic = Diagnostic::new(Code::new("E101"), "twice");
         diagnostic.labels = [70_000, 3, 70_002, 79_999]
             .map(|line| Label {
                 span: at(line),

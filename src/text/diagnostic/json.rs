@@ -1,12 +1,12 @@
 //! Diagnostics for an editor. In: diagnostics and their sources. Out: a JSON value, every diagnostic with file, line,
 //! column (characters, from 1) and byte span. Nothing is omitted and nothing is drawn.
 
+use crate::sanitize;
+use crate::source::{Position, Sources, Span};
 use serde_json::{Value, json};
 
 use super::render::severity_name;
 use super::{Code, Diagnostic, Label};
-use crate::sanitize;
-use crate::source::{Position, Sources, Span};
 
 /// Name of the format, in the document's `schema`.
 pub const SCHEMA: &str = "psd.diagnostics/1";
@@ -57,10 +57,10 @@ pub fn diagnostic(diagnostic: &Diagnostic, sources: &Sources, plan: &str, folder
 
 /// A plan that cannot be read: an error without a code, with a span only where the text is not valid UTF-8.
 #[must_use]
-pub fn unreadable(file: &str, message: &str, at: Option<Position>) -> Value {
-    let (line, column) = (at.map(|at| at.line), at.map(|at| at.column));
+pub fn unreadable(file: &str, message: &str, at: Option<(Code, Position)>) -> Value {
+    let (line, column) = (at.map(|(_, at)| at.line), at.map(|(_, at)| at.column));
     json!({
-        "code": at.map(|_| Code::BadText.id()), "severity": "error", "message": message, "file": file, "line": line, "column": column,
+        "code": at.map(|(code, _)| code.id()), "severity": "error", "message": message, "file": file, "line": line, "column": column,
         "end_line": line, "end_column": column, "span": null, "labels": [], "help": null,
     })
 }
@@ -102,7 +102,7 @@ mod tests {
     fn an_editor_gets_positions_in_characters_and_in_bytes() {
         let mut sources = Sources::default();
         let file = sources.add("a.psd", "# ä\nlet ä = 3 mx\n");
-        let fault = Diagnostic::new(Code::UnknownUnit, "no unit `mx`")
+        let fault = Diagnostic::new(Code::new("E204"), "no unit `mx`")
             .at(Span::new(file, 16, 18), "unknown")
             .help("`m`?");
         let value = diagnostic(&fault, &sources, "a.psd", "plans/");
@@ -124,7 +124,7 @@ mod tests {
 
     #[test]
     fn a_fault_of_the_command_line_has_no_line() {
-        let fault = Diagnostic::new(Code::UnknownParameter, "no parameter `v`");
+        let fault = Diagnostic::new(Code::new("E214"), "no parameter `v`");
         let value = diagnostic(&fault, &Sources::default(), "a.psd", "");
         assert_eq!(
             (&value["file"], &value["line"]),

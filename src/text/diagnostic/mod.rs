@@ -1,5 +1,5 @@
 //! Diagnostics as data. Every stage makes [`Diagnostic`]s; only [`render`] prints them for readers
-//! and [`json`] for editors. [`code`] lists each code once; [`page`] reads its page for `psd explain`.
+//! and [`json`] for editors. A check makes them from a [`Violation`], a struct beside it.
 
 pub mod code;
 pub mod excerpt;
@@ -8,6 +8,7 @@ pub mod page;
 pub mod render;
 
 pub use code::Code;
+pub use psd_violation::Violation;
 
 use crate::source::Span;
 
@@ -76,5 +77,20 @@ impl Diagnostic {
     #[must_use]
     pub fn is_error(&self) -> bool {
         self.severity == Severity::Error
+    }
+}
+
+/// What a check finds: a struct with the values of the message. The derive macro of this name writes the implementation where no text
+/// needs a computation of several lines.
+pub trait Violation: Sized {
+    const CODE: Code;
+
+    /// The violation in words.
+    fn diagnostic(self) -> Diagnostic;
+}
+
+impl<V: Violation> From<V> for Diagnostic {
+    fn from(violation: V) -> Self {
+        violation.diagnostic()
     }
 }

@@ -3,6 +3,7 @@
 
 use std::fmt;
 
+use crate::source::Sources;
 use miette::{
     GraphicalTheme, LabeledSpan, MietteHandlerOpts, ReportHandler as _, ThemeCharacters,
     ThemeStyles,
@@ -10,7 +11,6 @@ use miette::{
 
 use super::excerpt::{Excerpt, escape};
 use super::{Diagnostic, Severity};
-use crate::source::Sources;
 
 /// Number of diagnostics that are drawn; of the others only the count is given.
 pub const DRAWN: usize = 20;
@@ -253,7 +253,7 @@ mod tests {
             "beam.psd",
             "striker hammer {\r\n  mass = 20 kg\r\n  velocty = 1 m/s\r\n}\r\n",
         );
-        let diagnostic = Diagnostic::new(Code::UnknownField, "`striker` has no field `velocty`")
+        let diagnostic = Diagnostic::new(Code::new("E202"), "`striker` has no field `velocty`")
             .at(at(&sources, "beam.psd", "velocty"), "no such field")
             .help("did you mean `velocity`?");
         let appearance = Appearance {
@@ -279,7 +279,7 @@ mod tests {
         let mut sources = Sources::default();
         sources.add("beam.psd", "use \"lib/frame.psd\"\nlet k = 2\n");
         sources.add("lib/frame.psd", "# the frame\nlet k = 1\n");
-        let diagnostic = Diagnostic::new(Code::Duplicate, "`k` is declared twice")
+        let diagnostic = Diagnostic::new(Code::new("E208"), "`k` is declared twice")
             .at(at(&sources, "lib/frame.psd", "k = 1"), "again here")
             .at(at(&sources, "beam.psd", "k = 2"), "first here");
         insta::assert_snapshot!(render(&diagnostic, &sources, &Appearance::plain()), @r#"
@@ -304,7 +304,7 @@ mod tests {
     fn nothing_in_a_plan_reaches_the_terminal_as_a_command() {
         let mut sources = Sources::default();
         sources.add("a.psd", "let \u{1b}[31mx\u{202e} = \u{9b}2\n");
-        let diagnostic = Diagnostic::new(Code::Syntax, "what is `\u{1b}[31mx`")
+        let diagnostic = Diagnostic::new(Code::new("E101"), "what is `\u{1b}[31mx`")
             .at(at(&sources, "a.psd", "x\u{202e}"), "\u{7}here\u{2066}")
             .help("write \u{9b} otherwise");
         let text = render(&diagnostic, &sources, &Appearance::plain());
@@ -328,7 +328,7 @@ mod tests {
                 ", 1".repeat(5_000)
             ),
         );
-        let diagnostic = Diagnostic::new(Code::UnknownName, "no name `oops`")
+        let diagnostic = Diagnostic::new(Code::new("E203"), "no name `oops`")
             .at(at(&sources, "a.psd", "oops"), "here");
         let text = render(&diagnostic, &sources, &Appearance::plain());
         assert!(text.contains("a.psd:1:15010"), "{text}");
@@ -342,12 +342,12 @@ mod tests {
     fn a_span_past_the_last_line_is_drawn_at_its_end() {
         let mut sources = Sources::default();
         let file = sources.add("a.psd", "let a = 1\n");
-        let diagnostic =
-            Diagnostic::new(Code::Syntax, "the plan ends here").at(Span::new(file, 10, 10), "here");
+        let diagnostic = Diagnostic::new(Code::new("E101"), "the plan ends here")
+            .at(Span::new(file, 10, 10), "here");
         assert!(render(&diagnostic, &sources, &Appearance::plain()).contains("let a = 1"));
         let empty = sources.add("empty.psd", "");
         let diagnostic =
-            Diagnostic::new(Code::NothingRuns, "nothing runs").at(Span::new(empty, 0, 0), "here");
+            Diagnostic::new(Code::new("W705"), "nothing runs").at(Span::new(empty, 0, 0), "here");
         assert!(render(&diagnostic, &sources, &Appearance::plain()).contains("nothing runs"));
     }
 
@@ -355,7 +355,7 @@ mod tests {
     fn twenty_are_drawn_and_all_are_counted() {
         let sources = Sources::default();
         let many: Vec<Diagnostic> = (0..23)
-            .map(|i| Diagnostic::new(Code::Syntax, format!("fault {i}")))
+            .map(|i| Diagnostic::new(Code::new("E101"), format!("fault {i}")))
             .collect();
         let text = render_all(&many, &sources, &Appearance::plain());
         assert!(text.contains("fault 19") && !text.contains("fault 20"));

@@ -156,18 +156,18 @@ fn marks_name_the_position_of_every_span() {
     let file = sources.add("plan.psd", plan);
     let span = |start, end| Span::new(file, start, end);
     let found = [
-        Diagnostic::new(Code::Duplicate, "first")
+        Diagnostic::new(Code::new("E208"), "first")
             .at(span(4, 5), "here")
             .at(span(0, 3), "of this")
             .at(span(1, 3), "")
             .at(span(1, 1), "empty")
             .at(span(8, 8), "before 1")
             .help("write\nboth"),
-        Diagnostic::new(Code::Unused, "second").at(span(10, 11), ""),
-        Diagnostic::new(Code::Unused, "third")
+        Diagnostic::new(Code::new("W706"), "second").at(span(10, 11), ""),
+        Diagnostic::new(Code::new("W706"), "third")
             .at(span(18, 22), "to the end")
             .at(span(22, 22), "after it"),
-        Diagnostic::new(Code::UnknownRig, "fourth").help("name one"),
+        Diagnostic::new(Code::new("E603"), "fourth").help("name one"),
     ];
     let text = annotated(plan, 0, &found, &sources, "completed\n").expect("all is in the plan");
     insta::assert_snapshot!(text, @r"

@@ -4,7 +4,6 @@
 use std::fmt::Write as _;
 
 use psd::schema::{BLOCKS, FUNCTIONS};
-use psd::text::diagnostic::Code;
 use psd::text::diagnostic::page::Page;
 use psd::units::Dimension;
 use psd::units::display::si_unit;
@@ -45,8 +44,8 @@ pub fn reference() -> String {
 /// The generated part of `docs/reference/diagnostics.md`: every code with its title.
 pub fn codes() -> String {
     let mut text = "| code | |\n|---|---|\n".to_owned();
-    for code in Code::ALL {
-        let page = page_text(*code);
+    for code in psd::codes::all() {
+        let page = page_text(code);
         let title = Page::read(&page).title();
         let _ = writeln!(text, "| <b id={code}>{code}</b> | {title} |");
     }

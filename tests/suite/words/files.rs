@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use psd::text::diagnostic::Code;
-
 use super::literals::literals;
 use super::pages::commands;
 use crate::explain_pages::shown_text;
@@ -28,7 +26,7 @@ fn files_that_a_message_names_exist() {
     }
     commands(&[], &mut texts);
     texts.extend(
-        Code::ALL
+        psd::codes::all()
             .iter()
             .map(|code| (format!("psd explain {code}"), shown_text(*code))),
     );

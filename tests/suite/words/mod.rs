@@ -10,8 +10,6 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use psd::text::diagnostic::Code;
-
 use super::explain_pages::shown_text;
 use super::source_text::{none, rust_files};
 use literals::{is_silent, literals, message};
@@ -189,7 +187,7 @@ fn all() -> Vec<(String, String, String)> {
             .filter_map(|line| message(&line));
         all.extend(lines.map(|line| ("help".to_owned(), command.clone(), line)));
     }
-    for &code in Code::ALL {
+    for code in psd::codes::all() {
         let texts = paragraphs(&shown_text(code)).into_iter();
         let position = format!("psd explain {code}");
         all.extend(texts.map(|text| ("explain pages".to_owned(), position.clone(), text)));

@@ -3,9 +3,24 @@
 use crate::check::checker::{Checker, Context};
 use crate::check::expressions::choice::Chosen;
 use crate::check::expressions::fields::whole;
-use crate::check::messages::specimens as message;
+use crate::codes::E649;
 use psd_plan::BreakCount;
 use psd_plan::schema::curves::{BREAK_COUNT, LARGEST_BREAK_COUNT};
+use psd_text::diagnostic::Violation;
+use psd_text::source::Span;
+
+#[derive(Violation)]
+#[violation(
+    E649,
+    "`breaks` states the number of breakpoints: `most` has no effect"
+)]
+#[help("remove `most`, or remove `breaks` for an automatic choice")]
+struct BreaksCountedTwice {
+    #[label("bounds an automatic choice")]
+    most: Span,
+    #[label("number stated here")]
+    breaks: Span,
+}
 
 /// `breaks`, else the number up to `most` that the criterion chooses.
 pub fn breaks<'a>(
@@ -22,9 +37,7 @@ pub fn breaks<'a>(
         chosen.span(LARGEST_BREAK_COUNT.name),
         chosen.span(BREAK_COUNT.name),
     ) {
-        (Some(_), Some(most), Some(breaks)) => {
-            checker.fail(message::breaks_counted_twice(breaks, most))
-        }
+        (Some(_), Some(most), Some(breaks)) => checker.fail(BreaksCountedTwice { breaks, most }),
         (Some(breaks), ..) => Some(BreakCount::Exactly(whole(breaks)? as usize)),
         (None, ..) => Some(BreakCount::ByCriterion {
             most: most as usize,

@@ -3,18 +3,19 @@
 use crate::check::checker::{Checker, Context, Typed};
 use crate::check::expressions::choice::Chosen;
 use crate::check::expressions::read_field::ReadField;
-use crate::check::messages::{types, values, whole};
+use crate::check::violations::{BeyondLimits, NeedsTheRun};
+use crate::check::wording::shown;
+use crate::codes::{E304, E401, E402, E602, E604};
 use crate::syntax::ast::{Expr, ExprKind};
 use psd_plan::formula::Formula;
-use psd_plan::limits_fields;
 use psd_plan::procedures::damping_sweep::block as damping_sweep;
 use psd_plan::procedures::move_to::block as move_to;
 use psd_plan::procedures::stiffness_ramp::block as stiffness_ramp;
-use psd_plan::reader;
 use psd_plan::schema::limits::NAMES;
 use psd_plan::schema::procedures::SPEED;
 use psd_plan::schema::{Field, FieldType, Kind};
-use psd_plan::{Interval, Limits, Specimen};
+use psd_plan::{Interval, Limits, Specimen, limits_fields, reader};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 use psd_text::units::Dimension;
 
@@ -24,6 +25,88 @@ pub struct CheckedLimits {
     pub displacement_at: Option<Span>,
     pub force_at: Option<Span>,
     pub speed_at: Option<Span>,
+}
+
+#[derive(Violation)]
+#[violation(E304, "expected a range, found one value")]
+#[help("write both ends, as in `0 .. {text}`")]
+struct RangeWanted<'a> {
+    #[label("not a range")]
+    span: Span,
+    text: &'a str,
+}
+
+#[derive(Violation)]
+#[violation(E402, "a range of allowed values has no step")]
+#[help("remove `step`")]
+struct StepInBounds {
+    #[label("not allowed here")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(E401, "range in reverse order: `{low}` is more than `{high}`")]
+#[help("write `{high} .. {low}`")]
+struct BoundsReversed<'a> {
+    #[label("lower end must be first")]
+    span: Span,
+    low: &'a str,
+    high: &'a str,
+}
+
+struct NegativeBound<'a> {
+    field: &'a str,
+    span: Span,
+    text: &'a str,
+    symmetric: bool,
+}
+
+impl Violation for NegativeBound<'_> {
+    const CODE: Code = E401;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            field,
+            span,
+            text,
+            symmetric,
+        } = self;
+        let help = if symmetric {
+            "write both ends, as in `-2 mm .. 25 mm`, or one positive bound"
+        } else {
+            "write the absolute value"
+        };
+        Diagnostic::new(
+            Self::CODE,
+            format!("the bound on `{field}` must be at least 0"),
+        )
+        .at(span, format!("`{text}` is negative"))
+        .help(help)
+    }
+}
+
+/// A limit on the speed that allows none.
+#[derive(Violation)]
+#[violation(E401, "the bound on `{field}` must be greater than 0")]
+#[help("{}", help)]
+struct NoMotionAllowed<'a> {
+    field: &'a str,
+    help: &'a str,
+    #[label("no motion possible")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(E604, "the plan's limit on `{field}` exceeds the limit of the rig")]
+#[help("write the limit of the rig, or remove it")]
+struct LimitsWider<'a> {
+    field: &'a str,
+    #[label("plan: `{plan_text}`")]
+    plan: Span,
+    plan_text: &'a str,
+    #[label("rig: `{rig_text}`")]
+    rig: Span,
+    rig_text: &'a str,
 }
 
 impl<'a> Checker<'a> {
@@ -36,22 +119,28 @@ impl<'a> Checker<'a> {
         if !matches!(written.kind, ExprKind::Range { .. }) {
             return match written.kind {
                 ExprKind::Faulty => None,
-                _ => self.fail(types::range_wanted(written.span, self.text(written.span))),
+                _ => self.fail(RangeWanted {
+                    span: written.span,
+                    text: self.text(written.span),
+                }),
             };
         }
         let parts = self.range_parts(written, None, context)?;
         if let Some(step) = &parts.step {
-            return self.fail(values::step_in_bounds(step.span));
+            return self.fail(StepInBounds { span: step.span });
         }
         let (Some(low), Some(high)) = (parts.start.constant(), parts.end.constant()) else {
-            return self.fail(values::needs_the_run(written.span, self.text(written.span)));
+            return self.fail(NeedsTheRun {
+                span: written.span,
+                text: self.text(written.span),
+            });
         };
         if low > high {
-            return self.fail(values::bounds_reversed(
-                written.span,
-                self.text(parts.start.span),
-                self.text(parts.end.span),
-            ));
+            return self.fail(BoundsReversed {
+                span: written.span,
+                low: self.text(parts.start.span),
+                high: self.text(parts.end.span),
+            });
         }
         // A range with no unit at either end is the one whose unit may have been forgotten.
         if parts.start.bare && parts.end.bare {
@@ -110,12 +199,12 @@ impl<'a> Checker<'a> {
         let typed = self.expect(typed, dimension, field.name, written)?;
         let bound = typed.constant()?;
         if bound < 0.0 {
-            return self.fail(values::negative_bound(
-                field.name,
-                written.span,
-                self.text(written.span),
+            return self.fail(NegativeBound {
+                field: field.name,
+                span: written.span,
+                text: self.text(written.span),
                 symmetric,
-            ));
+            });
         }
         let interval = Interval {
             low: if symmetric { -bound } else { 0.0 },
@@ -134,7 +223,7 @@ impl<'a> Checker<'a> {
             _ if field == NAMES.force => "write the largest force, as in `12 kN`",
             _ => return Some(interval),
         };
-        self.fail(values::no_motion(field, help, span))
+        self.fail(NoMotionAllowed { field, help, span })
     }
 
     /// Every `limits` block; the intersection of those without a name and the one that the rig names. A plan that asks for
@@ -195,13 +284,13 @@ impl<'a> Checker<'a> {
                 (wider, self.field(plan, field), self.field(rig, field))
             {
                 let (plan_text, rig_text) = (self.text(plan.value.span), self.text(rig.value.span));
-                self.diagnostics.push(whole::limits_wider(
+                self.report(LimitsWider {
                     field,
-                    plan.value.span,
+                    plan: plan.value.span,
                     plan_text,
-                    rig.value.span,
+                    rig: rig.value.span,
                     rig_text,
-                ));
+                });
             }
         }
     }
@@ -230,6 +319,39 @@ fn intersection(one: &Limits, other: &Limits) -> Limits {
     }
 }
 
+/// Limits that stop a run before it begins.
+struct StartBeyondLimits<'a> {
+    name: &'a str,
+    limit: Interval,
+    dimension: Dimension,
+    at: Span,
+}
+
+impl Violation for StartBeyondLimits<'_> {
+    const CODE: Code = E602;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            name,
+            limit,
+            dimension,
+            at,
+        } = self;
+        let (low, high) = (shown(limit.low, dimension), shown(limit.high, dimension));
+        let (zero, wider) = if limit.low > 0.0 {
+            ("0", format!("0 .. {high}"))
+        } else {
+            ("0", format!("{low} .. 0"))
+        };
+        Diagnostic::new(
+            Self::CODE,
+            format!("the start is outside the limits: {name} {zero}, limits {low} .. {high}"),
+        )
+        .at(at, "excludes the start")
+        .help(format!("include the start: write `{name} = {wider}`"))
+    }
+}
+
 /// A virtual rig begins at rest, with displacement and force 0: limits that exclude them stop it before it moves. The initial
 /// position of a real rig is unknown here.
 pub fn check_start(checker: &mut Checker, limits: &CheckedLimits) {
@@ -251,10 +373,54 @@ pub fn check_start(checker: &mut Checker, limits: &CheckedLimits) {
         ),
     ] {
         if let (Some(at), false) = (at, interval.contains(0.0)) {
-            checker
-                .diagnostics
-                .push(whole::start_beyond_limits(name, interval, dimension, at));
+            checker.report(StartBeyondLimits {
+                name,
+                limit: interval,
+                dimension,
+                at,
+            });
         }
+    }
+}
+
+/// Targets \[m\] at which a specimen with a constant stiffness has a force beyond the limits.
+struct ForceBeyondLimits<'a> {
+    field: &'a str,
+    target: f64,
+    force: f64,
+    span: Span,
+    limit: Interval,
+    limit_at: Span,
+}
+
+impl Violation for ForceBeyondLimits<'_> {
+    const CODE: Code = E602;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            field,
+            target,
+            force,
+            span,
+            limit,
+            limit_at,
+        } = self;
+        let newtons = |value| shown(value, Dimension::FORCE);
+        let (low, high) = (newtons(limit.low), newtons(limit.high));
+        let target = shown(target, Dimension::LENGTH);
+        Diagnostic::new(
+            Self::CODE,
+            format!(
+                "`{field}` leads to {} at {target}, outside the limits {low} .. {high}",
+                newtons(force)
+            ),
+        )
+        .at(
+            span,
+            format!("{} by the specimen's stiffness", newtons(force)),
+        )
+        .at(limit_at, "limit")
+        .help("stay within the limits, or widen them if the rig and the specimen allow it")
     }
 }
 
@@ -288,9 +454,14 @@ pub fn check_forces(checker: &mut Checker, limits: &CheckedLimits, specimens: &[
                 .find(|target| !interval.contains(stiffness * target));
             if let Some(target) = beyond {
                 let force = stiffness * target;
-                checker.diagnostics.push(whole::force_beyond_limits(
-                    field, target, force, span, interval, at,
-                ));
+                checker.report(ForceBeyondLimits {
+                    field,
+                    target,
+                    force,
+                    span,
+                    limit: interval,
+                    limit_at: at,
+                });
             }
         }
     }
@@ -349,14 +520,15 @@ pub fn check_targets(checker: &mut Checker, limits: &CheckedLimits) {
             let beyond = values.iter().find(|value| !interval.contains(**value));
             let beyond = values.iter().find(visibly).or(beyond);
             if let Some(&value) = beyond {
-                let diagnostic = whole::beyond_limits(
-                    field.name,
+                let diagnostic = BeyondLimits {
+                    field: field.name,
                     value,
-                    typed.dimension,
-                    written.value.span,
-                    interval,
-                    at,
-                );
+                    dimension: typed.dimension,
+                    span: written.value.span,
+                    limit: interval,
+                    limit_at: at,
+                }
+                .diagnostic();
                 checker.diagnostics.push(diagnostic);
             }
         }

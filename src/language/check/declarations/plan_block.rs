@@ -2,16 +2,27 @@
 
 use crate::check::checker::Checker;
 use crate::check::expressions::calendar;
-use crate::check::messages::{rigs, values};
+use crate::check::violations::NotADay;
+use crate::codes::E408;
 use psd_plan::DecisionRule;
-use psd_plan::schema::plan_block as schema;
-use psd_plan::schema::{FieldType, Kind};
+use psd_plan::schema::{FieldType, Kind, plan_block as schema};
+use psd_text::diagnostic::Violation;
+use psd_text::source::Span;
 
 /// The edition that this version reads.
 const EDITION: f64 = 1.0;
 
 /// Fields whose value must be a day of the calendar.
 const DAYS: [&str; 2] = [schema::DATE.name, schema::ISSUED.name];
+
+#[derive(Violation)]
+#[violation(E408, "this version reads edition 1 of the language, not {text}")]
+#[help("write `edition = 1`, or use the version of psd for which the plan was written")]
+struct UnknownEdition<'a> {
+    #[label("unknown edition")]
+    span: Span,
+    text: &'a str,
+}
 
 /// Title, if given, and the administrative data in the schema's order.
 pub fn plan_block(
@@ -36,9 +47,10 @@ pub fn plan_block(
             && !calendar::is_day(day)
             && let Some((_, written)) = checker.field(block, field.name)
         {
-            checker
-                .diagnostics
-                .push(rigs::not_a_day(day, written.value.span));
+            checker.report(NotADay {
+                day,
+                span: written.value.span,
+            });
         }
         let text = if field.name == schema::DATE.name {
             date.map(str::to_owned).or(given)
@@ -55,10 +67,10 @@ pub fn plan_block(
         checker.field(block, schema::EDITION.name),
     ) && edition != EDITION
     {
-        checker.diagnostics.push(values::edition(
-            written.value.span,
-            checker.text(written.value.span),
-        ));
+        checker.report(UnknownEdition {
+            span: written.value.span,
+            text: checker.text(written.value.span),
+        });
     }
     let title = checker.scope.blocks[block]
         .block

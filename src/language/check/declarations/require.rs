@@ -1,11 +1,14 @@
 //! `require "label" condition`: comparisons and `within`, one condition for each part joined with `and`.
 
 use crate::check::checker::{Checker, Context, Reads, Typed};
-use crate::check::messages::{studies, types as message, values};
+use crate::check::violations::{DistributionMisplaced, Mismatched, StepsMisplaced};
+use crate::codes::{E304, E401};
 use crate::syntax::ast::{BinaryOperator, Expr, ExprKind};
 use psd_plan::formula::Formula;
 use psd_plan::procedures::escalate::block::WHILE;
 use psd_plan::{Comparison, Condition, Requirement, Test};
+use psd_text::diagnostic::Violation;
+use psd_text::source::Span;
 use psd_text::units::Dimension;
 
 const REQUIREMENT: Context = Context {
@@ -13,6 +16,26 @@ const REQUIREMENT: Context = Context {
     reads: Reads::All,
     critical: false,
 };
+
+/// For `A within TOLERANCE of B`: a tolerance must be positive.
+#[derive(Violation)]
+#[violation(E401, "the tolerance of `within` must be at least 0")]
+#[help("write the absolute value")]
+struct NegativeTolerance<'a> {
+    #[label("`{text}` is negative")]
+    span: Span,
+    text: &'a str,
+}
+
+#[derive(Violation)]
+#[violation(E304, "`{wanted_by}` requires a condition")]
+#[help("compare it, as in `{text} < …`")]
+struct ConditionWanted<'a> {
+    wanted_by: &'a str,
+    #[label("a value, not a condition")]
+    span: Span,
+    text: &'a str,
+}
 
 impl<'a> Checker<'a> {
     /// Every requirement; None if one has an error.
@@ -65,10 +88,11 @@ impl<'a> Checker<'a> {
             .join(" ");
         match &expr.kind {
             ExprKind::Faulty => None,
-            ExprKind::Stepped { .. } => self.fail(studies::steps_misplaced(expr.span)),
-            ExprKind::Binary { operator, .. } if operator.node == BinaryOperator::DrawnFrom => {
-                self.fail(studies::distribution_misplaced(operator.span))
-            }
+            ExprKind::Stepped { .. } => self.fail(StepsMisplaced { span: expr.span }),
+            ExprKind::Binary { operator, .. } if operator.node == BinaryOperator::DrawnFrom => self
+                .fail(DistributionMisplaced {
+                    span: operator.span,
+                }),
             ExprKind::Within {
                 value,
                 tolerance,
@@ -81,7 +105,11 @@ impl<'a> Checker<'a> {
                 );
                 let (value, width, target) = (value?, width?, target?);
                 if value.dimension != target.dimension {
-                    return self.fail(message::mismatched("within", &value, &target));
+                    return self.fail(Mismatched {
+                        operator: "within",
+                        left: &value,
+                        right: &target,
+                    });
                 }
                 // `%` is relative to the target; a plain number beside a quantity would be a forgotten unit.
                 let relative = width.percent
@@ -94,10 +122,10 @@ impl<'a> Checker<'a> {
                     self.expect(width, value.dimension, "within", tolerance)?
                 };
                 if width.formula.constant().is_some_and(|width| width < 0.0) {
-                    return self.fail(values::negative_tolerance(
-                        tolerance.span,
-                        self.text(tolerance.span),
-                    ));
+                    return self.fail(NegativeTolerance {
+                        span: tolerance.span,
+                        text: self.text(tolerance.span),
+                    });
                 }
                 let test = Test::Within {
                     target: target.formula,
@@ -120,7 +148,11 @@ impl<'a> Checker<'a> {
                 let (left, right) = (self.single(left, context), self.single(right, context));
                 let (left, right) = (left?, right?);
                 if left.dimension != right.dimension {
-                    return self.fail(message::mismatched(operator.node.symbol(), &left, &right));
+                    return self.fail(Mismatched {
+                        operator: operator.node.symbol(),
+                        left: &left,
+                        right: &right,
+                    });
                 }
                 let dimension = left.dimension;
                 let (value, comparison, limit) = value_first(left, comparison, right);
@@ -143,11 +175,11 @@ impl<'a> Checker<'a> {
                 } else {
                     key.unwrap_or("require")
                 };
-                self.fail(message::condition_wanted(
+                self.fail(ConditionWanted {
                     wanted_by,
-                    expr.span,
-                    self.text(expr.span),
-                ))
+                    span: expr.span,
+                    text: self.text(expr.span),
+                })
             }
         }
     }

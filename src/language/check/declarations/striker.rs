@@ -1,18 +1,41 @@
 //! `striker NAME { … }`: mass, gap, and velocity, which may be stated as a drop height or the swing of a pendulum.
 
 use crate::check::checker::Checker;
-use crate::check::messages::{names as message, values};
+use crate::check::violations::{MissingField, TooUncertain};
+use crate::codes::{E208, E407};
 use psd_plan::Striker;
 use psd_plan::formula::{Formula, Operator, Stated};
 use psd_plan::schema::striker::{
     ANGLE, ARM, DROP_HEIGHT, GAP, GRAVITY, MASS, MASS_UNCERTAINTY, VELOCITY, VELOCITY_UNCERTAINTY,
 };
 use psd_plan::uncertainty::Source;
+use psd_text::diagnostic::Violation;
 use psd_text::source::Span;
 use psd_text::units::unit::STANDARD_GRAVITY;
 
 /// The fields of which each gives the velocity; an angle requires its arm.
 const FORMS: [&str; 3] = [VELOCITY.name, DROP_HEIGHT.name, ANGLE.name];
+
+/// Both, by the fields that give them, as written.
+#[derive(Violation)]
+#[violation(E208, "velocity given twice: by `{first_field}` and by `{again}`")]
+#[help("remove one of them")]
+struct VelocityTwice<'a> {
+    again: &'a str,
+    #[label("given again")]
+    span: Span,
+    first_field: &'a str,
+    #[label("first given here")]
+    first: Span,
+}
+
+#[derive(Violation)]
+#[violation(E407, "the energy of the striker, ½ m v², is not a finite number")]
+#[help("reduce its velocity or its mass")]
+struct EnergyNotFinite {
+    #[label("velocity or mass too large")]
+    span: Span,
+}
 
 /// A striker whose entries are all valid; None where an error was reported.
 pub fn striker(checker: &mut Checker, block: usize) -> Option<Striker> {
@@ -31,19 +54,22 @@ pub fn striker(checker: &mut Checker, block: usize) -> Option<Striker> {
     forms.sort_by_key(|(_, span)| span.start);
     match forms.as_slice() {
         [] if checker.field(block, ARM.name).is_some() || checker.misspelt(block, &FORMS) => {}
-        [] => checker.diagnostics.push(message::missing_field(
+        [] => checker.report(MissingField {
             kind,
             name,
             head,
-            VELOCITY.name,
-            "velocity = 1 m/s",
-        )),
+            field: VELOCITY.name,
+            example: "velocity = 1 m/s",
+        }),
         [_] => {}
         [(first, first_span), rest @ ..] => {
             for (again, span) in rest {
-                checker
-                    .diagnostics
-                    .push(message::velocity_twice(again, *span, first, *first_span));
+                checker.report(VelocityTwice {
+                    again,
+                    span: *span,
+                    first_field: first,
+                    first: *first_span,
+                });
             }
         }
     }
@@ -55,9 +81,13 @@ pub fn striker(checker: &mut Checker, block: usize) -> Option<Striker> {
             checker.field(block, form).is_some() && checker.field(block, other).is_none();
         let missing = form == ANGLE.name || forms.is_empty();
         if pairless && missing && !checker.misspelt(block, &[other]) {
-            checker
-                .diagnostics
-                .push(message::missing_field(kind, name, head, other, example));
+            checker.report(MissingField {
+                kind,
+                name,
+                head,
+                field: other,
+                example,
+            });
         }
     }
     // Every entry is read, so that every error is reported.
@@ -74,9 +104,9 @@ pub fn striker(checker: &mut Checker, block: usize) -> Option<Striker> {
     if let (Some(mass), Some(velocity)) = (mass, velocity)
         && !(0.5 * mass * velocity * velocity).is_finite()
     {
-        return checker.fail(values::energy_not_finite(
-            forms.first().map_or(head, |(_, span)| *span),
-        ));
+        return checker.fail(EnergyNotFinite {
+            span: forms.first().map_or(head, |(_, span)| *span),
+        });
     }
     Some(Striker {
         name: name?.node.clone(),
@@ -101,13 +131,13 @@ pub fn uncertainty(
         (Some(value), Some((_, entry))) if uncertainty > MOST_UNCERTAIN * value => {
             let kind = checker.scope.blocks[block].kind;
             let dimension = kind.field(field)?.dimension()?;
-            checker.fail(values::too_uncertain(
+            checker.fail(TooUncertain {
                 field,
                 uncertainty,
                 value,
                 dimension,
-                entry.value.span,
-            ))
+                span: entry.value.span,
+            })
         }
         _ => Some(uncertainty),
     }

@@ -1,9 +1,11 @@
 //! A tolerance beside a number: absolute, or in percent of it. In: an expression of the plan. Out: the tolerance, in SI.
 
 use crate::check::checker::{Checker, Context, Reads};
-use crate::check::messages::golden as message;
+use crate::codes::E401;
 use crate::syntax::ast::Expr;
 use psd_plan::Tolerance;
+use psd_text::diagnostic::Violation;
+use psd_text::source::Span;
 use psd_text::units::Dimension;
 
 const CONSTANT: Context = Context {
@@ -11,6 +13,15 @@ const CONSTANT: Context = Context {
     reads: Reads::Nothing("a tolerance"),
     critical: false,
 };
+
+#[derive(Violation)]
+#[violation(E401, "a tolerance must be at least 0")]
+#[help("write its absolute value")]
+struct NegativeAcceptance<'a> {
+    #[label("`{text}` is negative")]
+    span: Span,
+    text: &'a str,
+}
 
 /// `1 us` is absolute, `0.1 %` is relative to the absolute value of the number.
 pub fn tolerance<'a>(
@@ -29,7 +40,10 @@ pub fn tolerance<'a>(
     };
     let value = typed.constant()?;
     if value < 0.0 {
-        return checker.fail(message::negative(written.span, checker.text(written.span)));
+        return checker.fail(NegativeAcceptance {
+            span: written.span,
+            text: checker.text(written.span),
+        });
     }
     Some(if relative {
         Tolerance::Relative(value)

@@ -1,12 +1,80 @@
 //! Functions: `abs(x)`, `max(a, b)`, `sqrt(area)`.
 
 use crate::check::checker::{Checker, Context, Shape, Typed};
-use crate::check::messages::{names, types as message};
+use crate::check::violations::{ExponentTooLarge, ListForNumber, Mismatched};
+use crate::check::wording::{article, suggestion};
+use crate::codes::{E207, E213, E301};
 use crate::syntax::ast::{Argument, Ident};
 use psd_plan::formula::{Formula, Function};
 use psd_plan::schema::{FUNCTIONS, FunctionKind};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 use psd_text::units::{Dimension, Exponent};
+
+#[derive(Violation)]
+#[violation(E207, "unknown function `{name}`")]
+#[help("{}", suggestion(
+            name,
+            FUNCTIONS.iter().map(|function| function.name),
+        ))]
+struct UnknownFunction<'a> {
+    name: &'a str,
+    #[label("unknown function")]
+    span: Span,
+}
+
+struct FunctionArgumentWithName<'a> {
+    function: &'a str,
+    name: &'a Ident,
+}
+
+impl Violation for FunctionArgumentWithName<'_> {
+    const CODE: Code = E213;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { function, name } = self;
+        Diagnostic::new(
+            Self::CODE,
+            format!("the arguments of `{function}` have no names"),
+        )
+        .at(name.span, "named argument")
+        .help(format!("remove `{}:`", name.node))
+    }
+}
+
+#[derive(Violation)]
+#[violation(E213, "`{}` requires {wanted}, found {found}", kind.name, wanted = if kind.many {
+        "at least one value"
+    } else {
+        "one value"
+    })]
+#[help("write it as in `{}(x)`", kind.name)]
+struct FunctionArguments<'a> {
+    kind: &'a FunctionKind,
+    found: usize,
+    #[label("{found} values")]
+    span: Span,
+}
+
+struct AngleWithUnit<'a> {
+    function: &'a str,
+    argument: &'a Typed,
+}
+
+impl Violation for AngleWithUnit<'_> {
+    const CODE: Code = E301;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { function, argument } = self;
+        let found = article(argument.dimension);
+        Diagnostic::new(
+            Self::CODE,
+            format!("`{function}` requires an angle in radians, found {found}"),
+        )
+        .at(argument.span, format!("this is {found}"))
+        .help("divide by a value of the same kind, so that a number remains")
+    }
+}
 
 impl<'a> Checker<'a> {
     pub fn call(
@@ -17,10 +85,16 @@ impl<'a> Checker<'a> {
         context: Context,
     ) -> Option<Typed> {
         let Some(kind) = FUNCTIONS.iter().find(|function| function.name == name.node) else {
-            return self.fail(names::unknown_function(&name.node, name.span));
+            return self.fail(UnknownFunction {
+                name: &name.node,
+                span: name.span,
+            });
         };
         if let Some(named) = arguments.iter().find_map(|argument| argument.name.as_ref()) {
-            return self.fail(names::function_argument_with_name(kind.name, named));
+            return self.fail(FunctionArgumentWithName {
+                function: kind.name,
+                name: named,
+            });
         }
         let checked: Vec<Option<Typed>> = arguments
             .iter()
@@ -33,16 +107,24 @@ impl<'a> Checker<'a> {
             checked.len() != 1
         };
         let Some(first) = checked.first().filter(|_| !wrong_count) else {
-            return self.fail(names::function_arguments(kind, checked.len(), span));
+            return self.fail(FunctionArguments {
+                kind,
+                found: checked.len(),
+                span,
+            });
         };
         if !kind.many && first.shape == Shape::List {
-            return self.fail(message::list_for_number(first.span));
+            return self.fail(ListForNumber { span: first.span });
         }
         if let Some(other) = checked
             .iter()
             .find(|other| other.dimension != first.dimension)
         {
-            return self.fail(message::mismatched(kind.name, first, other));
+            return self.fail(Mismatched {
+                operator: kind.name,
+                left: first,
+                right: other,
+            });
         }
         let dimension = self.result_dimension(kind, first, span)?;
         let bare = checked.iter().all(|argument| argument.bare);
@@ -66,12 +148,15 @@ impl<'a> Checker<'a> {
             Function::Sqrt => {
                 let root = Exponent::ratio(1, 2).and_then(|half| argument.dimension.to_power(half));
                 if root.is_none() {
-                    return self.fail(message::exponent_too_large(span));
+                    return self.fail(ExponentTooLarge { span });
                 }
                 root
             }
             Function::Sin | Function::Cos if argument.dimension != Dimension::NUMBER => {
-                self.fail(message::angle_with_unit(kind.name, argument))
+                self.fail(AngleWithUnit {
+                    function: kind.name,
+                    argument,
+                })
             }
             _ => Some(argument.dimension),
         }

@@ -2,12 +2,14 @@
 //! field. Out: a [`Chosen`], with its arguments in SI.
 
 use crate::check::checker::{Checker, Context, Typed};
-use crate::check::messages::values;
-use crate::check::messages::{names as message, types};
+use crate::check::violations::{NeedsTheRun, OutOfRange};
+use crate::check::wording::{all_of, one_of, suggestion};
+use crate::codes::{E205, E208, E213, E304};
 use crate::syntax::ast::{Argument, Expr, ExprKind};
 use psd_plan::Interval;
 use psd_plan::formula::Formula;
 use psd_plan::schema::{Field, FieldType, Presence, Variant};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 use psd_text::units::Dimension;
 
@@ -20,6 +22,160 @@ pub struct Chosen<'a> {
     rest: Vec<&'a Expr>,
     /// Number of arguments without a name.
     pub unnamed: usize,
+}
+
+struct ChoiceWanted<'a> {
+    field: &'a str,
+    variants: &'a [Variant],
+    span: Span,
+    text: &'a str,
+}
+
+impl Violation for ChoiceWanted<'_> {
+    const CODE: Code = E304;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            field,
+            variants,
+            span,
+            text,
+        } = self;
+        let known = one_of(variants.iter().map(|variant| variant.name));
+        Diagnostic::new(
+            Self::CODE,
+            format!("`{field}` requires one of its options, found `{text}`"),
+        )
+        .at(span, "unknown option")
+        .help(
+            match variants
+                .iter()
+                .find(|variant| variant.name == text.trim_matches('"'))
+            {
+                Some(meant) => format!("write it without quotes: `{}`", meant.name),
+                None => format!("write one of its options: {known}"),
+            },
+        )
+    }
+}
+
+struct UnknownVariant<'a> {
+    field: &'a str,
+    name: &'a str,
+    span: Span,
+    variants: &'a [Variant],
+}
+
+impl Violation for UnknownVariant<'_> {
+    const CODE: Code = E205;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            field,
+            name,
+            span,
+            variants,
+        } = self;
+        let known = variants.iter().map(|variant| variant.name);
+        Diagnostic::new(Self::CODE, format!("`{field}` has no option `{name}`"))
+            .at(span, "unknown option")
+            .help(suggestion(name, known))
+    }
+}
+
+struct UnknownArgument<'a> {
+    variant: &'a Variant,
+    name: Option<&'a str>,
+    span: Span,
+}
+
+impl Violation for UnknownArgument<'_> {
+    const CODE: Code = E213;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            variant,
+            name,
+            span,
+        } = self;
+        let known: Vec<&str> = variant
+            .arguments
+            .iter()
+            .map(|argument| argument.name)
+            .collect();
+        let (message, help) = match name {
+            Some(name) => (
+                format!("`{}` has no argument `{name}`", variant.name),
+                suggestion(name, known),
+            ),
+            None if known.is_empty() => (
+                format!("`{}` takes no arguments", variant.name),
+                format!("write `{}` alone", variant.name),
+            ),
+            None => {
+                let (arguments, they) = if known.len() == 1 {
+                    ("one argument".to_owned(), "it is")
+                } else {
+                    (format!("{} arguments", known.len()), "they are")
+                };
+                (
+                    format!("`{}` takes at most {arguments}", variant.name),
+                    format!("{they} {}", all_of(known)),
+                )
+            }
+        };
+        Diagnostic::new(Self::CODE, message)
+            .at(span, "unknown argument")
+            .help(help)
+    }
+}
+
+#[derive(Violation)]
+#[violation(E208, "argument `{name}` given twice")]
+#[help("remove one of them")]
+struct ArgumentTwice<'a> {
+    name: &'a str,
+    #[label("given again")]
+    span: Span,
+    #[label("first given here")]
+    first: Span,
+}
+
+/// The form of a missing argument: the whole call where it is short, `within(displacement: 0.01 mm, force_rate: 5 N/s)`,
+/// else the argument alone.
+fn argument_help(variant: &Variant, missing: &Field) -> String {
+    let required: Vec<&Field> = variant
+        .arguments
+        .iter()
+        .filter(|argument| argument.presence == Presence::Required)
+        .collect();
+    let written = |argument: &Field| {
+        let named = argument.example.starts_with(&format!("{}:", argument.name));
+        if named || required.len() == 1 {
+            argument.example.to_owned()
+        } else {
+            format!("{}: {}", argument.name, argument.example)
+        }
+    };
+    if required.len() > 2 {
+        return format!("add it in the parentheses, as in `{}`", written(missing));
+    }
+    let arguments: Vec<String> = required.iter().map(|argument| written(argument)).collect();
+    format!(
+        "write it as in `{}({})`",
+        variant.name,
+        arguments.join(", ")
+    )
+}
+
+#[derive(Violation)]
+#[violation(E213, "`{}` requires the argument `{}`", variant.name, field.name)]
+#[help("{}", argument_help(variant, field))]
+struct MissingArgument<'a> {
+    variant: &'a Variant,
+    field: &'a Field,
+    #[label("`{}` is missing", field.name)]
+    span: Span,
 }
 
 impl<'a> Checker<'a> {
@@ -77,16 +233,21 @@ impl<'a> Checker<'a> {
             ExprKind::Parenthesised(inner) => return self.chosen(field, variants, inner),
             ExprKind::Faulty => return None,
             _ => {
-                return self.fail(types::choice_wanted(
+                return self.fail(ChoiceWanted {
                     field,
                     variants,
-                    written.span,
-                    self.text(written.span),
-                ));
+                    span: written.span,
+                    text: self.text(written.span),
+                });
             }
         };
         let Some(variant) = variants.iter().find(|variant| variant.name == name) else {
-            return self.fail(message::unknown_variant(field, name, span, variants));
+            return self.fail(UnknownVariant {
+                field,
+                name,
+                span,
+                variants,
+            });
         };
         self.arguments_of(variant, arguments, written.span)
     }
@@ -140,11 +301,11 @@ impl<'a> Checker<'a> {
                     .name
                     .as_ref()
                     .map_or(argument.value.span, |name| name.span);
-                self.diagnostics.push(message::unknown_argument(
+                self.report(UnknownArgument {
                     variant,
-                    argument.name.as_ref().map(|name| name.node.as_str()),
-                    at,
-                ));
+                    name: argument.name.as_ref().map(|name| name.node.as_str()),
+                    span: at,
+                });
                 faulty = true;
                 continue;
             };
@@ -153,11 +314,11 @@ impl<'a> Checker<'a> {
                     .name
                     .as_ref()
                     .map_or(argument.value.span, |name| name.span);
-                self.diagnostics.push(message::argument_twice(
-                    variant.arguments[position].name,
-                    at,
-                    first.span,
-                ));
+                self.report(ArgumentTwice {
+                    name: variant.arguments[position].name,
+                    span: at,
+                    first: first.span,
+                });
                 faulty = true;
             }
         }
@@ -166,8 +327,11 @@ impl<'a> Checker<'a> {
         }
         for (field, given) in variant.arguments.iter().zip(&assigned) {
             if given.is_none() && field.presence == Presence::Required {
-                self.diagnostics
-                    .push(message::missing_argument(variant, field, span));
+                self.report(MissingArgument {
+                    variant,
+                    field,
+                    span,
+                });
                 faulty = true;
             }
         }
@@ -202,11 +366,22 @@ impl<'a> Checker<'a> {
         if value.is_none()
             && let Some((_, Some(written))) = chosen.find(name)
         {
-            self.diagnostics
-                .push(values::needs_the_run(written.span, self.text(written.span)));
+            self.report(NeedsTheRun {
+                span: written.span,
+                text: self.text(written.span),
+            });
         }
         value
     }
+}
+
+#[derive(Violation)]
+#[violation(E304, "`{}` requires a range, found one value", field.name)]
+#[help("write both ends, as in `{}`", field.example)]
+struct RangeWantedBy<'a> {
+    field: &'a Field,
+    #[label("not a range")]
+    span: Span,
 }
 
 /// Arguments other than one number. A required one always exists, because otherwise its variant had an error.
@@ -249,8 +424,10 @@ impl<'a> Checker<'a> {
             .map(Formula::constant)
             .collect();
         if values.is_none() {
-            self.diagnostics
-                .push(values::needs_the_run(written.span, self.text(written.span)));
+            self.report(NeedsTheRun {
+                span: written.span,
+                text: self.text(written.span),
+            });
         }
         values
     }
@@ -282,7 +459,10 @@ impl<'a> Checker<'a> {
         let ExprKind::Range { start, end, .. } = &written.kind else {
             return match written.kind {
                 ExprKind::Faulty => None,
-                _ => self.fail(types::range_wanted_by(field, written.span)),
+                _ => self.fail(RangeWantedBy {
+                    field,
+                    span: written.span,
+                }),
             };
         };
         let (interval, found) = self.interval(written, context)?;
@@ -293,13 +473,13 @@ impl<'a> Checker<'a> {
         self.expect(typed, dimension, field.name, written)?;
         let mut ends = [(interval.low, start.span), (interval.high, end.span)].into_iter();
         match ends.find(|(end, _)| !field.range.contains(*end)) {
-            Some((end, at)) => self.fail(values::out_of_range(
+            Some((end, at)) => self.fail(OutOfRange {
                 field,
                 dimension,
-                end,
-                self.text(at),
-                at,
-            )),
+                value: end,
+                text: self.text(at),
+                span: at,
+            }),
             None => Some(interval),
         }
     }

@@ -1,20 +1,47 @@
 //! Data files that a plan names: `file = "ground/quake.csv"`. In: the string and its span. Out: the file's
 //! text, which then belongs to the plan like a used file. The block that names the file interprets it.
 
-use super::data_file::DataFile;
 use crate::check::checker::Checker;
 use crate::check::imports::{MOST_FILES, refused, resolved};
-use crate::check::messages::files as message;
+use crate::check::violations::{FileMissing, TooManyFiles};
 use crate::check::{LoadError, imports};
+use crate::codes::{E501, E502};
 use psd_plan::PlanFile;
+use psd_text::diagnostic::Violation;
 use psd_text::source::Span;
+
+use super::data_file::DataFile;
+
+#[derive(Violation)]
+#[violation(E502, "`{path}` cannot be read: {reason}")]
+#[help("move the file into the plan's folder, or a folder in it")]
+struct BadDataPath<'a> {
+    path: &'a str,
+    #[label("not in the plan's folder")]
+    span: Span,
+    reason: &'a str,
+}
+
+#[derive(Violation)]
+#[violation(E501, "`{path}` cannot be read: {reason}")]
+#[help("name a UTF-8 text file, or a picture, in the plan's folder")]
+struct DataRefused<'a> {
+    path: &'a str,
+    reason: &'a str,
+    #[label("cannot be read")]
+    span: Span,
+}
 
 impl Checker<'_> {
     /// The text of the data file `written`, whose path is relative to the file that names it. Read once, however often it is
     /// requested.
     pub fn data_file(&mut self, written: &str, span: Span) -> Option<DataFile> {
         if let Some(reason) = refused(written) {
-            return self.fail(message::bad_data_path(written, span, reason));
+            return self.fail(BadDataPath {
+                path: written,
+                span,
+                reason,
+            });
         }
         let from = imports::own_path(self.sources, span.file);
         let name = resolved(&from, written);
@@ -22,7 +49,10 @@ impl Checker<'_> {
             return Some(known.clone());
         }
         if self.sources.iter().count() + self.data.len() >= MOST_FILES {
-            return self.fail(message::too_many_files(MOST_FILES, span));
+            return self.fail(TooManyFiles {
+                most: MOST_FILES,
+                span,
+            });
         }
         match (self.loader)(&name) {
             Ok(text) => {
@@ -33,10 +63,12 @@ impl Checker<'_> {
                 self.data.push(file.clone());
                 Some(file)
             }
-            Err(LoadError::NotFound) => self.fail(message::not_found(&name, span)),
-            Err(LoadError::Refused(reason)) => {
-                self.fail(message::data_refused(&name, &reason, span))
-            }
+            Err(LoadError::NotFound) => self.fail(FileMissing { path: &name, span }),
+            Err(LoadError::Refused(reason)) => self.fail(DataRefused {
+                path: &name,
+                reason: &reason,
+                span,
+            }),
         }
     }
 

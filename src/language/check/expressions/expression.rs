@@ -3,13 +3,269 @@
 
 use crate::check::checker::{Checker, Context, Shape, Typed, literal};
 use crate::check::declarations::specimen::frame;
-use crate::check::messages::{studies, types as message, values};
+use crate::check::violations::{
+    DistributionMisplaced, ExponentTooLarge, ListForNumber, Mismatched, NoSuchEntry, NotFinite,
+    ProbabilityMisplaced, StepsMisplaced,
+};
+use crate::check::wording::{article, example, shown};
+use crate::codes::{E301, E302, E304, E305};
 use crate::syntax::ast::{BinaryOperator, Expr, ExprKind};
 use psd_plan::ProcedureBlock;
 use psd_plan::formula::{Formula, Operator};
 use psd_plan::schema::{self, Kind};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
+use psd_text::units::unit::{PREFIXES, STANDARD_GRAVITY, UNITS};
 use psd_text::units::{Dimension, Exponent};
+
+#[derive(Violation)]
+#[violation(E304, "expected a number, found a string")]
+#[help("write the number without quotes")]
+struct TextForNumber {
+    #[label("a string")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(E304, "`{operator}` does not give a number")]
+#[help("write conditions in `require` only; join two of them with `and`")]
+struct ConditionForNumber<'a> {
+    #[label("a condition")]
+    span: Span,
+    operator: &'a str,
+}
+
+struct ExponentWithUnit<'a> {
+    exponent: &'a Typed,
+}
+
+impl Violation for ExponentWithUnit<'_> {
+    const CODE: Code = E305;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { exponent } = self;
+        let found = article(exponent.dimension);
+        Diagnostic::new(
+            Self::CODE,
+            format!("an exponent must be a number, found {found}"),
+        )
+        .at(exponent.span, format!("this is {found}"))
+        .help("write a number without a unit, as in `x^2`")
+    }
+}
+
+#[derive(Violation)]
+#[violation(E305, "the exponent of {} must be known before the run", article(base))]
+#[help("write a number, as in `x^2`")]
+struct ExponentNotConstant {
+    #[label("known only after the run")]
+    span: Span,
+    base: Dimension,
+}
+
+#[derive(Violation)]
+#[violation(E305, "the exponent of a quantity must be a simple fraction")]
+#[help("write it as in `x^1.5` or `x^(1 / 3)`")]
+struct ExponentNotRational {
+    #[label("not a fraction with a denominator up to 12")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(E304, "a number has no entries")]
+#[help("remove the index")]
+struct IndexOfNumber {
+    #[label("one number")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(E304, "a list index must be a whole number from 0")]
+#[help("write it as in `list[0]`")]
+struct IndexNotWhole {
+    #[label("invalid index")]
+    span: Span,
+}
+
+/// `entries`: a list or range, whose unit is written once, at its end.
+struct MissingUnitOfEntries<'a> {
+    entries: &'a str,
+    span: Span,
+    wanted: Dimension,
+    wanted_by: &'a str,
+}
+
+impl Violation for MissingUnitOfEntries<'_> {
+    const CODE: Code = E302;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            entries,
+            span,
+            wanted,
+            wanted_by,
+        } = self;
+        let unit = wanted.usual_unit();
+        let fits = entries.len() <= 48 && !entries.contains('\n');
+        let help = if fits {
+            format!("write the unit after the last number or the `]`: `{entries} {unit}`")
+        } else {
+            format!("write the unit after the last number or the `]`, as in `[1, 2, 5] {unit}`")
+        };
+        Diagnostic::new(
+            Self::CODE,
+            format!(
+                "`{wanted_by}` requires {}, found numbers without a unit",
+                article(wanted)
+            ),
+        )
+        .at(span, "no unit")
+        .help(help)
+    }
+}
+
+#[derive(Violation)]
+#[violation(
+    E302,
+    "`{wanted_by}` requires {}, found a number without a unit",
+    article(wanted)
+)]
+#[help("write the unit, such as `{}`", example(number, wanted))]
+struct MissingUnit<'a> {
+    text: &'a str,
+    #[label("`{text}` has no unit")]
+    span: Span,
+    number: Option<&'a str>,
+    wanted: Dimension,
+    wanted_by: &'a str,
+}
+
+/// `kN/m` for `kN`, where `N/m` is required: the suggestion must not be a thousandth of the intended value.
+fn of_the_same_size(written: &str, wanted: &str) -> Option<String> {
+    let first = |unit: &str| unit.find(['*', '/', '^']).unwrap_or(unit.len());
+    let parts = |name: &str| {
+        let whole = UNITS
+            .iter()
+            .find(|unit| unit.symbol == name)
+            .map(|unit| ("", unit.symbol));
+        let symbols = UNITS
+            .iter()
+            .filter(|unit| unit.prefixes)
+            .map(|unit| unit.symbol);
+        let prefixed =
+            symbols.flat_map(|symbol| PREFIXES.iter().map(move |(prefix, _)| (*prefix, symbol)));
+        whole.or_else(|| {
+            prefixed
+                .into_iter()
+                .find(|(prefix, symbol)| format!("{prefix}{symbol}") == name)
+        })
+    };
+    let (prefix, symbol) = parts(&written[..first(written)])?;
+    let (head, rest) = wanted.split_at(first(wanted));
+    parts(head)
+        .filter(|(_, base)| *base == symbol)
+        .map(|_| format!("{prefix}{symbol}{rest}"))
+}
+
+/// An expression as written; for a literal its number and its unit.
+struct WrittenValue<'t> {
+    text: &'t str,
+    span: Span,
+    number: Option<&'t str>,
+    unit: Option<&'t str>,
+    /// In SI units, if it is known before the run.
+    value: Option<f64>,
+}
+
+/// The mass of a weight, or the weight of a mass: what to write instead of `text`, which has the other dimension and this value in SI
+/// units.
+fn by_gravity(text: &str, value: f64, found: Dimension, wanted: Dimension) -> Option<String> {
+    match (found, wanted) {
+        (Dimension::FORCE, Dimension::MASS) => {
+            let mass = shown(value / STANDARD_GRAVITY, wanted);
+            Some(format!("write `{mass}`, the mass of a weight of {text}"))
+        }
+        (Dimension::MASS, Dimension::FORCE) => {
+            let weight = shown(value * STANDARD_GRAVITY, wanted);
+            Some(format!("write `{weight}`, the weight of {text}"))
+        }
+        _ => None,
+    }
+}
+
+struct WrongDimension<'a> {
+    written: &'a WrittenValue<'a>,
+    found: Dimension,
+    wanted: Dimension,
+    wanted_by: &'a str,
+}
+
+impl Violation for WrongDimension<'_> {
+    const CODE: Code = E301;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            written,
+            found,
+            wanted,
+            wanted_by,
+        } = self;
+        let WrittenValue {
+            text,
+            span,
+            number,
+            unit,
+            value,
+        } = *written;
+        let weighed = number.and(value);
+        let weighed = weighed.and_then(|value| by_gravity(text, value, found, wanted));
+        let help = match (number, wanted) {
+            _ if weighed.is_some() => weighed.unwrap_or_default(),
+            (Some(number), Dimension::ACCELERATION) if text == format!("{number} g") => {
+                format!(
+                    "write `{number} gn` for a multiple of standard gravity (9.80665 m/s^2); `g` is the gram"
+                )
+            }
+            (Some(_), Dimension::DAMPING) if found == Dimension::NUMBER => {
+                format!(
+                    "write a damping coefficient: `2 * {text} * sqrt(k * m)`, with the stiffness k and the mass m"
+                )
+            }
+            (Some(number), _) => {
+                // The number is kept with a unit of the same size only: beside another one it is a guess.
+                let fits = unit
+                    .and_then(|unit| of_the_same_size(unit, &wanted.usual_unit()))
+                    .map(|unit| format!("{number} {unit}"));
+                format!(
+                    "write {}, such as `{}`",
+                    article(wanted),
+                    fits.unwrap_or_else(|| example(None, wanted))
+                )
+            }
+            (None, Dimension::NUMBER) => format!(
+                "divide `{text}` by {}, so that a number remains",
+                article(found)
+            ),
+            (None, _) => {
+                format!(
+                    "change `{text}` so that it gives {}, with the unit `{}`",
+                    article(wanted),
+                    wanted.usual_unit()
+                )
+            }
+        };
+        Diagnostic::new(
+            Self::CODE,
+            format!(
+                "`{wanted_by}` requires {}, found {}",
+                article(wanted),
+                article(found)
+            ),
+        )
+        .at(span, format!("this is {}", article(found)))
+        .help(help)
+    }
+}
 
 impl<'a> Checker<'a> {
     /// The value of an expression.
@@ -23,7 +279,7 @@ impl<'a> Checker<'a> {
     pub fn single(&mut self, expr: &'a Expr, context: Context) -> Option<Typed> {
         let typed = self.value(expr, context)?;
         if typed.shape == Shape::List {
-            return self.fail(message::list_for_number(expr.span));
+            return self.fail(ListForNumber { span: expr.span });
         }
         Some(typed)
     }
@@ -32,7 +288,7 @@ impl<'a> Checker<'a> {
         match &expr.kind {
             ExprKind::Faulty => None,
             ExprKind::Number { value, unit, .. } => self.number(*value, unit.as_ref(), expr.span),
-            ExprKind::Text(_) => self.fail(message::text_for_number(expr.span)),
+            ExprKind::Text(_) => self.fail(TextForNumber { span: expr.span }),
             ExprKind::Name(name) => self.name(name, expr.span, context),
             ExprKind::Field { base, name } => self.field_of(base, name, expr.span, context),
             ExprKind::Parenthesised(inner) => self.value(inner, context),
@@ -52,13 +308,15 @@ impl<'a> Checker<'a> {
                 right,
             } => {
                 if operator.node == BinaryOperator::DrawnFrom {
-                    return self.fail(studies::distribution_misplaced(operator.span));
+                    return self.fail(DistributionMisplaced {
+                        span: operator.span,
+                    });
                 }
                 if is_logical(operator.node) {
-                    return self.fail(message::condition_for_number(
-                        expr.span,
-                        operator.node.symbol(),
-                    ));
+                    return self.fail(ConditionForNumber {
+                        span: expr.span,
+                        operator: operator.node.symbol(),
+                    });
                 }
                 let (left_value, right_value) =
                     (self.single(left, context), self.single(right, context));
@@ -75,11 +333,12 @@ impl<'a> Checker<'a> {
                     _ => self.product(Operator::Multiply, left_value, right_value, expr.span),
                 }
             }
-            ExprKind::Within { .. } => {
-                self.fail(message::condition_for_number(expr.span, "within"))
-            }
-            ExprKind::Member { .. } => self.fail(studies::probability_misplaced(expr.span)),
-            ExprKind::Stepped { .. } => self.fail(studies::steps_misplaced(expr.span)),
+            ExprKind::Within { .. } => self.fail(ConditionForNumber {
+                span: expr.span,
+                operator: "within",
+            }),
+            ExprKind::Member { .. } => self.fail(ProbabilityMisplaced { span: expr.span }),
+            ExprKind::Stepped { .. } => self.fail(StepsMisplaced { span: expr.span }),
         }
     }
 
@@ -91,7 +350,11 @@ impl<'a> Checker<'a> {
         right: Typed,
     ) -> Option<Typed> {
         if left.dimension != right.dimension {
-            return self.fail(message::mismatched(symbol, &left, &right));
+            return self.fail(Mismatched {
+                operator: symbol,
+                left: &left,
+                right: &right,
+            });
         }
         let (bare, percent) = (left.bare && right.bare, left.percent && right.percent);
         let formula = Formula::Binary(operator, Box::new(left.formula), Box::new(right.formula));
@@ -114,7 +377,7 @@ impl<'a> Checker<'a> {
             _ => left.dimension.times(right.dimension),
         };
         let Some(dimension) = dimension else {
-            return self.fail(message::exponent_too_large(span));
+            return self.fail(ExponentTooLarge { span });
         };
         let bare = left.bare && right.bare;
         let formula = Formula::Binary(operator, Box::new(left.formula), Box::new(right.formula));
@@ -126,18 +389,23 @@ impl<'a> Checker<'a> {
 
     fn power(&mut self, base: Typed, exponent: Typed, written: &Expr) -> Option<Typed> {
         if exponent.dimension != Dimension::NUMBER {
-            return self.fail(message::exponent_with_unit(&exponent));
+            return self.fail(ExponentWithUnit {
+                exponent: &exponent,
+            });
         }
         let dimension = if base.dimension == Dimension::NUMBER {
             Dimension::NUMBER
         } else {
             let Some(value) = exponent.constant() else {
-                return self.fail(message::exponent_not_constant(written.span, base.dimension));
+                return self.fail(ExponentNotConstant {
+                    span: written.span,
+                    base: base.dimension,
+                });
             };
             let power =
                 Exponent::from_decimal(value).and_then(|power| base.dimension.to_power(power));
             let Some(dimension) = power else {
-                return self.fail(message::exponent_not_rational(written.span));
+                return self.fail(ExponentNotRational { span: written.span });
             };
             dimension
         };
@@ -157,13 +425,13 @@ impl<'a> Checker<'a> {
         let (list, at) = (self.value(base, context), self.single(index, context));
         let (list, at) = (list?, at?);
         if list.shape == Shape::Number {
-            return self.fail(message::index_of_number(base.span));
+            return self.fail(IndexOfNumber { span: base.span });
         }
         let index_in_list = at
             .constant()
             .filter(|at| at.fract() == 0.0 && (0.0..1e6).contains(at));
         let (Some(index_in_list), Dimension::NUMBER) = (index_in_list, at.dimension) else {
-            return self.fail(message::index_not_whole(index.span));
+            return self.fail(IndexNotWhole { span: index.span });
         };
         #[expect(
             clippy::cast_possible_truncation,
@@ -173,11 +441,11 @@ impl<'a> Checker<'a> {
         let index_in_list = index_in_list as usize;
         if let Formula::List(parts) = &list.formula {
             let Some(part) = parts.get(index_in_list) else {
-                return self.fail(values::no_such_entry(
-                    index.span,
-                    index_in_list,
-                    parts.len(),
-                ));
+                return self.fail(NoSuchEntry {
+                    span: index.span,
+                    entry: index_in_list,
+                    length: parts.len(),
+                });
             };
             return Some(Typed {
                 shape: Shape::Number,
@@ -188,7 +456,11 @@ impl<'a> Checker<'a> {
         if let Some(length) = self.length_of(&list.formula)
             && index_in_list >= length
         {
-            return self.fail(values::no_such_entry(index.span, index_in_list, length));
+            return self.fail(NoSuchEntry {
+                span: index.span,
+                entry: index_in_list,
+                length,
+            });
         }
         if let Some(reference) = list.formula.as_result() {
             self.list_entries_read
@@ -240,7 +512,7 @@ impl<'a> Checker<'a> {
                 formula: Formula::Constant(value),
                 ..typed
             }),
-            None => self.fail(values::not_finite(typed.span)),
+            None => self.fail(NotFinite { span: typed.span }),
         }
     }
 
@@ -265,26 +537,40 @@ impl<'a> Checker<'a> {
         let text = self.text(written.span);
         let entries = matches!(written.kind, ExprKind::List { .. } | ExprKind::Range { .. });
         let diagnostic = if typed.bare && entries && dimension != Dimension::NUMBER {
-            message::missing_unit_of_entries(text, written.span, dimension, wanted_by)
+            MissingUnitOfEntries {
+                entries: text,
+                span: written.span,
+                wanted: dimension,
+                wanted_by,
+            }
+            .diagnostic()
         } else if typed.bare && dimension != Dimension::NUMBER {
-            message::missing_unit(text, written.span, number, dimension, wanted_by)
+            MissingUnit {
+                text,
+                span: written.span,
+                number,
+                wanted: dimension,
+                wanted_by,
+            }
+            .diagnostic()
         } else {
             let unit = literal(written).and_then(|expr| match &expr.kind {
                 ExprKind::Number { unit, .. } => unit.as_ref().map(|unit| unit.node.as_str()),
                 _ => None,
             });
-            message::wrong_dimension(
-                &message::WrittenValue {
+            WrongDimension {
+                written: &WrittenValue {
                     text,
                     span: written.span,
                     number,
                     unit,
                     value: typed.constant(),
                 },
-                typed.dimension,
-                dimension,
+                found: typed.dimension,
+                wanted: dimension,
                 wanted_by,
-            )
+            }
+            .diagnostic()
         };
         self.fail(diagnostic)
     }

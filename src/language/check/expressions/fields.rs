@@ -2,17 +2,139 @@
 //! schema. In: a declared block. Out: formulas and numbers in SI; an omitted field has its default.
 
 use crate::check::checker::{Checker, Context, Node, Reads, Typed};
-use crate::check::messages::{names as message, types, values};
 use crate::check::scope::Meaning;
-use crate::syntax::ast::{Entry, Expr, ExprKind};
+use crate::check::violations::{MissingField, NeedsTheRun, OutOfRange, UnknownBlockName};
+use crate::check::wording::{owner, suggestion};
+use crate::codes::{E202, E208, E209, E302, E304, E401};
+use crate::syntax::ast::{Entry, Expr, ExprKind, Ident};
 use psd_plan::ProcedureBlock;
 use psd_plan::formula::Formula;
 use psd_plan::schema::methods::TIME_STEP;
 use psd_plan::schema::procedures::STIFFNESS;
-use psd_plan::schema::{Field, FieldType, Kind, Presence, RigKind};
-use psd_plan::schema::{rig, specimen};
+use psd_plan::schema::{BlockKind, Field, FieldType, Kind, Presence, RigKind, rig, specimen};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 use psd_text::suggest;
+
+struct UnknownField<'a> {
+    kind: &'a BlockKind,
+    key: &'a Ident,
+}
+
+impl Violation for UnknownField<'_> {
+    const CODE: Code = E202;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { kind, key } = self;
+        let known = kind.fields.iter().map(|field| field.name);
+        Diagnostic::new(
+            Self::CODE,
+            format!("`{}` has no field `{}`", kind.words(), key.node),
+        )
+        .at(key.span, "unknown field")
+        .help(suggestion(&key.node, known))
+    }
+}
+
+struct FieldTwice<'a> {
+    key: &'a Ident,
+    first: Span,
+}
+
+impl Violation for FieldTwice<'_> {
+    const CODE: Code = E208;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { key, first } = self;
+        Diagnostic::new(Self::CODE, format!("field `{}` given twice", key.node))
+            .at(key.span, "given again")
+            .at(first, "first given here")
+            .help("remove one of them")
+    }
+}
+
+/// A field that only a rig of this kind needs.
+#[derive(Violation)]
+#[violation(
+    E209,
+    "{} requires the field `{}` on a {} rig",
+    owner(kind, name),
+    field.name,
+    rig.name()
+)]
+#[help("add a line such as `{}`", field.example)]
+struct MissingFieldOn<'a> {
+    rig: RigKind,
+    kind: &'a BlockKind,
+    name: Option<&'a Ident>,
+    #[label("`{}` is missing", field.name)]
+    head: Span,
+    field: &'a Field,
+}
+
+/// A plain number would be read as radians, but most users mean degrees.
+struct AngleWithoutUnit<'a> {
+    text: &'a str,
+    span: Span,
+}
+
+impl Violation for AngleWithoutUnit<'_> {
+    const CODE: Code = E302;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { text, span } = self;
+        let plain = text.parse::<f64>().is_ok();
+        let help = if plain {
+            format!("write `{text} deg`, or `{text} rad`")
+        } else {
+            "write `deg` or `rad`, as in `40 deg`".to_owned()
+        };
+        Diagnostic::new(Self::CODE, format!("angle `{text}` has no unit"))
+            .at(span, "`deg` or `rad` missing")
+            .help(help)
+    }
+}
+
+#[derive(Violation)]
+#[violation(E401, "`{field}` must be a whole number")]
+#[help("write it without decimals")]
+struct NotWhole<'a> {
+    field: &'a str,
+    #[label("`{text}` is not whole")]
+    span: Span,
+    text: &'a str,
+}
+
+#[derive(Violation)]
+#[violation(E304, "`{field}` requires a string in quotes")]
+#[help("write `\"{text}\"`")]
+struct TextWanted<'a> {
+    field: &'a str,
+    #[label("not a string")]
+    span: Span,
+    text: &'a str,
+}
+
+struct BlockWanted<'a> {
+    kind: Kind,
+    span: Span,
+    text: &'a str,
+}
+
+impl Violation for BlockWanted<'_> {
+    const CODE: Code = E304;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { kind, span, text } = self;
+        let words = psd_plan::schema::block(kind).words();
+        Diagnostic::new(
+            Self::CODE,
+            format!("expected the name of a {words}, found `{text}`"),
+        )
+        .at(span, format!("not a {words}"))
+        .help(format!("write the name of a `{words}` block"))
+    }
+}
 
 impl<'a> Checker<'a> {
     /// Reports errors of the set of entries. Each block reads their values itself.
@@ -28,16 +150,20 @@ impl<'a> Checker<'a> {
                         key,
                         kind.fields.iter().map(|field| field.name),
                     ));
-                    self.diagnostics
-                        .push(message::unknown_field(kind, &entry.key));
+                    self.report(UnknownField {
+                        kind,
+                        key: &entry.key,
+                    });
                 }
                 Some(_) => {
                     if let Some(first) = declared.block.fields[..index]
                         .iter()
                         .find(|other| other.key.node == key)
                     {
-                        self.diagnostics
-                            .push(message::field_twice(&entry.key, first.key.span));
+                        self.report(FieldTwice {
+                            key: &entry.key,
+                            first: first.key.span,
+                        });
                     }
                 }
             }
@@ -62,20 +188,22 @@ impl<'a> Checker<'a> {
             {
                 let example = self.example_of(block, field);
                 self.diagnostics.push(match field.presence {
-                    Presence::RequiredOn(rig, _) => message::missing_field_on(
+                    Presence::RequiredOn(rig, _) => MissingFieldOn {
                         rig,
                         kind,
-                        declared.name,
-                        declared.block.head,
+                        name: declared.name,
+                        head: declared.block.head,
                         field,
-                    ),
-                    _ => message::missing_field(
+                    }
+                    .diagnostic(),
+                    _ => MissingField {
                         kind,
-                        declared.name,
-                        declared.block.head,
-                        field.name,
+                        name: declared.name,
+                        head: declared.block.head,
+                        field: field.name,
                         example,
-                    ),
+                    }
+                    .diagnostic(),
                 });
             }
         }
@@ -217,10 +345,10 @@ impl<'a> Checker<'a> {
             None => (self.expect(own?, dimension, field.name, written)?, written),
         };
         if field.angle && self.is_plain(&typed, written) {
-            return self.fail(types::angle_without_unit(
-                self.text(written.span),
-                written.span,
-            ));
+            return self.fail(AngleWithoutUnit {
+                text: self.text(written.span),
+                span: written.span,
+            });
         }
         let parts = typed.parts();
         for (index, part) in parts.iter().enumerate() {
@@ -229,19 +357,28 @@ impl<'a> Checker<'a> {
             {
                 let at = entry_span(written, index, parts.len());
                 let text = self.text(at);
-                return self.fail(values::out_of_range(field, dimension, value, text, at));
+                return self.fail(OutOfRange {
+                    field,
+                    dimension,
+                    value,
+                    text,
+                    span: at,
+                });
             }
         }
         if matches!(field.ty, FieldType::Count) {
             let Some(value) = typed.constant() else {
-                return self.fail(values::needs_the_run(written.span, self.text(written.span)));
+                return self.fail(NeedsTheRun {
+                    span: written.span,
+                    text: self.text(written.span),
+                });
             };
             if value.fract() != 0.0 {
-                return self.fail(values::not_whole(
-                    field.name,
-                    written.span,
-                    self.text(written.span),
-                ));
+                return self.fail(NotWhole {
+                    field: field.name,
+                    span: written.span,
+                    text: self.text(written.span),
+                });
             }
         }
         Some(typed)
@@ -281,10 +418,10 @@ impl<'a> Checker<'a> {
         if value.is_none()
             && let Some((_, written)) = self.field(block, field)
         {
-            self.diagnostics.push(values::needs_the_run(
-                written.value.span,
-                self.text(written.value.span),
-            ));
+            self.report(NeedsTheRun {
+                span: written.value.span,
+                text: self.text(written.value.span),
+            });
         }
         value
     }
@@ -319,11 +456,11 @@ impl<'a> Checker<'a> {
         match &written.kind {
             ExprKind::Text(text) => Some(text.clone()),
             ExprKind::Faulty => None,
-            _ => self.fail(types::text_wanted(
+            _ => self.fail(TextWanted {
                 field,
-                written.span,
-                self.text(written.span),
-            )),
+                span: written.span,
+                text: self.text(written.span),
+            }),
         }
     }
 
@@ -351,7 +488,11 @@ impl<'a> Checker<'a> {
         let ExprKind::Name(name) = &written.value.kind else {
             return match written.value.kind {
                 ExprKind::Faulty => None,
-                _ => self.fail(types::block_wanted(kind, span, self.text(span))),
+                _ => self.fail(BlockWanted {
+                    kind,
+                    span,
+                    text: self.text(span),
+                }),
             };
         };
         match self.scope.meaning(name) {
@@ -361,7 +502,11 @@ impl<'a> Checker<'a> {
                 Some(index)
             }
             Some(crate::check::scope::Meaning::Poisoned) => None,
-            Some(_) => self.fail(types::block_wanted(kind, span, name)),
+            Some(_) => self.fail(BlockWanted {
+                kind,
+                span,
+                text: name,
+            }),
             None if self.may_be_lost(name)
                 || self
                     .scope
@@ -377,7 +522,12 @@ impl<'a> Checker<'a> {
                     .filter_map(|(_, block)| block.name)
                     .map(|name| name.node.as_str());
                 let known: Vec<&str> = declared.take(self.most_to_suggest()).collect();
-                self.fail(message::unknown_block_name(kind, name, span, &known))
+                self.fail(UnknownBlockName {
+                    kind,
+                    name,
+                    span,
+                    known: &known,
+                })
             }
         }
     }

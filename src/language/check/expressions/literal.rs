@@ -6,13 +6,17 @@
 )]
 
 use crate::check::checker::{Checker, Context, Shape, Typed, literal};
-use crate::check::messages::{names, types as message, values};
+use std::sync::LazyLock;
+
+use crate::check::violations::{EmptyList, ExponentTooLarge, Mismatched};
+use crate::check::wording::one_of;
+use crate::codes::{E204, E305, E402, E403, E405};
 use crate::syntax::ast::{Expr, ExprKind, UnitToken};
 use psd_plan::formula::Formula;
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
-use psd_text::units::unit;
-use psd_text::units::unit::UnitError;
-use psd_text::units::{Dimension, Unit};
+use psd_text::units::unit::{STANDARD_GRAVITY, UNITS, UnitError};
+use psd_text::units::{Dimension, Unit, display, unit};
 
 /// Most entries of a list, written one by one or as a range.
 pub const MOST_ENTRIES: usize = 100_000;
@@ -22,6 +26,266 @@ pub struct RangeParts {
     pub start: Typed,
     pub end: Typed,
     pub step: Option<Typed>,
+}
+
+#[derive(Violation)]
+#[violation(E204, "`{name}` is a name of the plan, not a unit")]
+#[help("write spaces around the operator: `{corrected}`")]
+struct NameGluedToUnit<'a> {
+    name: &'a str,
+    #[label("read as part of the unit")]
+    span: Span,
+    corrected: &'a str,
+}
+
+/// Units that psd does not know, with their size in a unit that it knows.
+const CONVERTED: &[(&str, f64, &str)] = &[
+    ("mph", 0.447_04, "m/s"),
+    ("kgf", STANDARD_GRAVITY, "N"),
+    ("bar", 1e5, "Pa"),
+];
+
+/// Units as words.
+const SPELT_OUT: &[(&str, &str)] = &[
+    ("percent pct", "%"),
+    ("meter metre meters metres", "m"),
+    ("millimeter millimetre millimeters millimetres", "mm"),
+    ("micron microns", "um"),
+    ("gram grams", "g"),
+    ("kilogram kilograms kgs", "kg"),
+    ("tonne tonnes ton tons", "t"),
+    ("sec secs second seconds", "s"),
+    ("msec millisecond milliseconds", "ms"),
+    ("minute minutes mins", "min"),
+    ("hour hours hr hrs", "h"),
+    ("newton newtons", "N"),
+    ("kilonewton kilonewtons", "kN"),
+    ("pascal pascals", "Pa"),
+    ("joule joules", "J"),
+    ("hertz cps", "Hz"),
+    ("inch inches", "in"),
+    ("foot feet", "ft"),
+    ("lbs pound pounds", "lb"),
+    ("degree degrees", "deg"),
+    ("mps", "m/s"),
+    ("kph kmh", "km/h"),
+];
+
+/// `kN*m` for `kNm`.
+fn unit_product(name: &str) -> Option<String> {
+    let dimension = |part: &str| psd_text::units::unit::lookup(part).map(|unit| unit.dimension);
+    // `mmm` is a typing error, and not an area.
+    let product = |(one, other): &(&str, &str)| {
+        dimension(one)
+            .zip(dimension(other))
+            .is_some_and(|(one, other)| one != other)
+    };
+    let (first, second) = (1..name.len())
+        .filter_map(|at| name.split_at_checked(at))
+        .find(product)?;
+    Some(format!("{first}*{second}"))
+}
+
+/// The prefixes that are usual with a unit in tests of structures. Only such units are suggested: a slip of the keyboard must not become
+/// a number that is a billion times too small, as `mPa` for `mpa`.
+const USUAL_PREFIXES: &[(&str, &[&str])] = &[
+    ("m", &["u", "m", "c", "k"]),
+    ("g", &["m", "k"]),
+    ("s", &["u", "m"]),
+    ("N", &["k", "M"]),
+    ("Pa", &["k", "M", "G"]),
+    ("J", &["m", "k"]),
+    ("Hz", &["k"]),
+];
+
+/// The units that are suggested.
+static USUAL: LazyLock<Vec<String>> = LazyLock::new(|| {
+    let plain = UNITS.iter().map(|unit| unit.symbol.to_owned());
+    let prefixed = USUAL_PREFIXES.iter().flat_map(|(symbol, prefixes)| {
+        prefixes
+            .iter()
+            .map(move |prefix| format!("{prefix}{symbol}"))
+    });
+    plain.chain(prefixed).collect()
+});
+
+/// `mm^2` for `mm2`.
+fn power(name: &str) -> Option<String> {
+    let unit = name.trim_end_matches(|digit: char| digit.is_ascii_digit());
+    let exponent = &name[unit.len()..];
+    let known = psd_text::units::unit::lookup(unit).is_some();
+    (known && !exponent.is_empty()).then(|| format!("{unit}^{exponent}"))
+}
+
+/// The unit that was meant.
+fn meant(name: &str) -> Option<String> {
+    let among = |words: &str| words.split(' ').any(|word| word.eq_ignore_ascii_case(name));
+    let spelt_out = SPELT_OUT.iter().find(|(words, _)| among(words));
+    spelt_out
+        .map(|(_, unit)| (*unit).to_owned())
+        .or_else(|| power(name))
+        .or_else(|| unit_product(name))
+        .or_else(|| {
+            USUAL
+                .iter()
+                .find(|unit| unit.eq_ignore_ascii_case(name))
+                .cloned()
+        })
+        .or_else(|| {
+            psd_text::suggest::nearest(name, USUAL.iter().map(String::as_str)).map(str::to_owned)
+        })
+}
+
+/// `number`: the number before the unit, if nothing but this unit is behind it.
+struct UnknownUnit<'a> {
+    name: &'a str,
+    number: Option<f64>,
+    span: Span,
+}
+
+impl Violation for UnknownUnit<'_> {
+    const CODE: Code = E204;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { name, number, span } = self;
+        let converted = CONVERTED.iter().find(|(unit, ..)| *unit == name);
+        let help = match (converted, meant(name)) {
+            (Some((_, factor, unit)), _) => {
+                let count = number.unwrap_or(1.0);
+                let size = display::significant(count * factor, 4);
+                format!("write it in `{unit}`: {count} {name} is `{size} {unit}`")
+            }
+            (None, Some(near)) => format!("did you mean `{near}`?"),
+            (None, None) => format!(
+                "known units: {}; SI units can have prefixes",
+                one_of(UNITS.iter().map(|unit| unit.symbol))
+            ),
+        };
+        Diagnostic::new(Self::CODE, format!("unknown unit `{name}`"))
+            .at(span, "unknown unit")
+            .help(help)
+    }
+}
+
+#[derive(Violation)]
+#[violation(E305, "invalid exponent `{text}` in a unit")]
+#[help("write it as in `mm^2` or `N/m^1.5`")]
+struct UnitExponent<'a> {
+    text: &'a str,
+    #[label("not a simple fraction")]
+    span: Span,
+}
+
+struct TooManyEntries {
+    span: Span,
+    found: f64,
+    most: usize,
+}
+
+impl Violation for TooManyEntries {
+    const CODE: Code = E405;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { span, found, most } = self;
+        let found = if found < 1e12 {
+            found.to_string()
+        } else {
+            format!("about {found:.0e}")
+        };
+        Diagnostic::new(
+            Self::CODE,
+            format!("too many entries in a list: {found} (at most {most})"),
+        )
+        .at(span, "too many")
+        .help("write a larger step")
+    }
+}
+
+#[derive(Violation)]
+#[violation(E402, "this range requires a step")]
+#[help("add one, as in `{text} step …`")]
+struct RangeWithoutStep<'a> {
+    #[label("list required")]
+    span: Span,
+    text: &'a str,
+}
+
+#[derive(Violation)]
+#[violation(E403, "both ends and the step of a range must be known before the run")]
+#[help("write numbers, or a `let` or `param` of numbers")]
+struct RangeNotConstant {
+    #[label("known only after the run")]
+    span: Span,
+}
+
+struct StepLeadsAway<'a> {
+    span: Span,
+    text: &'a str,
+    zero: bool,
+}
+
+impl Violation for StepLeadsAway<'_> {
+    const CODE: Code = E402;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { span, text, zero } = self;
+        let help = match text.strip_prefix('-') {
+            _ if zero => "a step must not be zero".to_owned(),
+            Some(size) => format!("write `step {}`: this range increases", size.trim_start()),
+            None => format!("write `step -{text}`: this range decreases"),
+        };
+        Diagnostic::new(
+            Self::CODE,
+            "the step does not lead from the start to the end",
+        )
+        .at(span, format!("`{text}` never reaches the end"))
+        .help(help)
+    }
+}
+
+struct StepDoesNotDivide {
+    range: Span,
+    step: Span,
+    length: f64,
+    count: f64,
+    dimension: Dimension,
+}
+
+impl Violation for StepDoesNotDivide {
+    const CODE: Code = E402;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            range,
+            step,
+            length,
+            count,
+            dimension,
+        } = self;
+        // Only sizes with few digits: a third of 1 mm is not suggested.
+        let size = |steps: &f64| {
+            let size = length / steps;
+            let short = display::plain(size, dimension, 6);
+            (short == display::plain(size, dimension, 14)).then_some(short)
+        };
+        let whole = |offset: u32| count.floor() + f64::from(offset);
+        let larger = (0..1000)
+            .map(|less| count.floor() - f64::from(less))
+            .take_while(|steps| *steps >= 1.0)
+            .find_map(|it| size(&it));
+        let smaller = (1..1000).map(whole).find_map(|it| size(&it));
+        let nearest = match (smaller, larger) {
+            (Some(smaller), Some(larger)) => format!("write `step {smaller}` or `step {larger}`"),
+            (Some(one), None) | (None, Some(one)) => format!("write `step {one}`"),
+            (None, None) => {
+                "change an end of the range by the remainder, or write another step".to_owned()
+            }
+        };
+        Diagnostic::new(Self::CODE, "the step does not divide the range")
+            .at(step, "remainder at the end")
+            .at(range, "both ends are part of the range")
+            .help(nearest)
+    }
 }
 
 impl<'a> Checker<'a> {
@@ -63,11 +327,11 @@ impl<'a> Checker<'a> {
                 let (head, tail) = before.split_at(before.len() - (token.node.len() - start));
                 let (head, operator) = head.split_at(head.len() - 1);
                 let corrected = format!("{head} {operator} {tail}");
-                self.fail(names::name_glued_to_unit(
-                    &name,
-                    at(start, name.len()),
-                    &corrected,
-                ))
+                self.fail(NameGluedToUnit {
+                    name: &name,
+                    span: at(start, name.len()),
+                    corrected: &corrected,
+                })
             }
             Err(UnitError::Unknown { name, start }) => {
                 let alone = name == token.node && number.start <= token.span.start;
@@ -77,12 +341,17 @@ impl<'a> Checker<'a> {
                 };
                 let value = self.text(before).trim().parse().ok();
                 let value = value.filter(|_| alone);
-                self.fail(names::unknown_unit(&name, value, at(start, name.len())))
+                self.fail(UnknownUnit {
+                    name: &name,
+                    number: value,
+                    span: at(start, name.len()),
+                })
             }
-            Err(UnitError::Exponent { text, start }) => {
-                self.fail(message::unit_exponent(&text, at(start, text.len())))
-            }
-            Err(UnitError::TooLarge) => self.fail(message::exponent_too_large(token.span)),
+            Err(UnitError::Exponent { text, start }) => self.fail(UnitExponent {
+                text: &text,
+                span: at(start, text.len()),
+            }),
+            Err(UnitError::TooLarge) => self.fail(ExponentTooLarge { span: token.span }),
         }
     }
 
@@ -125,13 +394,17 @@ impl<'a> Checker<'a> {
             .collect();
         let checked: Vec<Typed> = checked.into_iter().collect::<Option<_>>()?;
         let Some(first) = checked.first() else {
-            return self.fail(values::empty_list(span));
+            return self.fail(EmptyList { span });
         };
         if let Some(other) = checked
             .iter()
             .find(|other| other.dimension != first.dimension)
         {
-            return self.fail(message::mismatched("[ ]", first, other));
+            return self.fail(Mismatched {
+                operator: "[ ]",
+                left: first,
+                right: other,
+            });
         }
         let (dimension, bare, percent) = (
             first.dimension,
@@ -140,11 +413,11 @@ impl<'a> Checker<'a> {
         );
         let parts: Vec<Formula> = checked.iter().flat_map(Typed::parts).collect();
         if parts.len() > MOST_ENTRIES {
-            return self.fail(values::too_many_entries(
+            return self.fail(TooManyEntries {
                 span,
-                parts.len() as f64,
-                MOST_ENTRIES,
-            ));
+                found: parts.len() as f64,
+                most: MOST_ENTRIES,
+            });
         }
         Some(Typed {
             formula: Formula::List(parts),
@@ -201,7 +474,11 @@ impl<'a> Checker<'a> {
             .flatten()
         {
             if other.dimension != start_value.dimension {
-                return self.fail(message::mismatched("..", &start_value, other));
+                return self.fail(Mismatched {
+                    operator: "..",
+                    left: &start_value,
+                    right: other,
+                });
             }
         }
         Some(RangeParts {
@@ -220,7 +497,10 @@ impl<'a> Checker<'a> {
     ) -> Option<Typed> {
         let parts = self.range_parts(expr, unit, context)?;
         let Some(step) = &parts.step else {
-            return self.fail(values::range_without_step(expr.span, self.text(expr.span)));
+            return self.fail(RangeWithoutStep {
+                span: expr.span,
+                text: self.text(expr.span),
+            });
         };
         let known = (
             parts.start.constant(),
@@ -228,33 +508,33 @@ impl<'a> Checker<'a> {
             step.constant(),
         );
         let (Some(start), Some(end), Some(size)) = known else {
-            return self.fail(values::range_not_constant(expr.span));
+            return self.fail(RangeNotConstant { span: expr.span });
         };
         let count = (end - start) / size;
         if size == 0.0 || count < 0.0 {
-            return self.fail(values::step_leads_away(
-                step.span,
-                self.text(step.span),
-                size == 0.0,
-            ));
+            return self.fail(StepLeadsAway {
+                span: step.span,
+                text: self.text(step.span),
+                zero: size == 0.0,
+            });
         }
         // The range must be a multiple of the step, to 1e-9 of the number of steps.
         if (count - count.round()).abs() > 1e-9 * count.abs().max(1.0) {
-            return self.fail(values::step_does_not_divide(
-                expr.span,
-                step.span,
-                end - start,
+            return self.fail(StepDoesNotDivide {
+                range: expr.span,
+                step: step.span,
+                length: end - start,
                 count,
-                parts.start.dimension,
-            ));
+                dimension: parts.start.dimension,
+            });
         }
         let count = count.round();
         if count + 1.0 > MOST_ENTRIES as f64 {
-            return self.fail(values::too_many_entries(
-                expr.span,
-                count + 1.0,
-                MOST_ENTRIES,
-            ));
+            return self.fail(TooManyEntries {
+                span: expr.span,
+                found: count + 1.0,
+                most: MOST_ENTRIES,
+            });
         }
         #[expect(
             clippy::cast_possible_truncation,

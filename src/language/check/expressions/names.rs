@@ -4,15 +4,295 @@
 use crate::check::checker::{Checker, Context, Node, Reads, Shape, Typed};
 use crate::check::declarations::specimen::{self, frame};
 use crate::check::declarations::striker;
-use crate::check::messages::{frames, names as message, studies, types, values};
 use crate::check::scope::Meaning;
+use crate::check::violations::{EventWanted, NeedsTheRun};
+use crate::check::wording::{owner, suggestion};
+use crate::codes::{E203, E206, E304, E403, E641};
 use crate::syntax::ast::{Expr, ExprKind, Ident};
 use psd_plan::ProcedureBlock;
 use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference};
 use psd_plan::schema::study::PROBABILITY;
 use psd_plan::schema::{self, BlockKind, Kind};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 use psd_text::units::Dimension;
+
+/// A result of a run that does not unload, with the name that belongs to a run that does, or the reverse.
+struct LeftUnderAnotherName<'a> {
+    kind: &'a BlockKind,
+    name: &'a str,
+    now: &'a str,
+    span: Span,
+}
+
+impl Violation for LeftUnderAnotherName<'_> {
+    const CODE: Code = E206;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            kind,
+            name,
+            now,
+            span,
+        } = self;
+        let unloads = now.starts_with("residual");
+        let message = if unloads {
+            "unloads the specimen"
+        } else {
+            "ends under load"
+        };
+        let help = match (unloads, kind.kind) {
+            (true, _) => format!("read `{now}`"),
+            (false, Kind::Procedure(ProcedureBlock::Escalate)) => {
+                format!("read `{now}`, or write `between = unload`")
+            }
+            (false, _) => {
+                format!("read `{now}`, or unload first: `unload rest {{ }}`, then `rest.{name}`")
+            }
+        };
+        Diagnostic::new(
+            Self::CODE,
+            format!("`{name}` is `{now}` here: the `{}` {message}", kind.words()),
+        )
+        .at(span, format!("the `{}` has `{now}`", kind.words()))
+        .help(help)
+    }
+}
+
+struct BlockForNumber<'a> {
+    name: &'a str,
+    kind: &'a BlockKind,
+    span: Span,
+}
+
+impl Violation for BlockForNumber<'_> {
+    const CODE: Code = E304;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { name, kind, span } = self;
+        let member = kind.results.iter().chain(kind.exports).next().map_or_else(
+            || "a number".to_owned(),
+            |result| format!("`{name}.{}`", result.name),
+        );
+        let words = kind.words();
+        let article = if words.starts_with(['a', 'e', 'i', 'o', 'u']) {
+            "an"
+        } else {
+            "a"
+        };
+        Diagnostic::new(
+            Self::CODE,
+            format!("`{name}` is {article} {words}, not a number"),
+        )
+        .at(span, format!("{article} {words}"))
+        .help(format!("read one of its values, such as {member}"))
+    }
+}
+
+/// A result without its procedure.
+#[derive(Violation)]
+#[violation(E203, "unknown name `{name}`")]
+#[help("write the procedure before the result: did you mean `{procedure}.{name}`?")]
+struct ResultWithoutProcedure<'a> {
+    name: &'a str,
+    procedure: &'a str,
+    #[label("unknown name")]
+    span: Span,
+}
+
+/// `1 m/s` for `1 m / s`, and `10 mm` for `10 * mm`, where the last word is a unit.
+fn quantity_apart(name: &str, before: &str) -> Option<String> {
+    psd_text::units::unit::lookup(name)?;
+    let before = before.trim_end().trim_end_matches('(').trim_end();
+    let sign = before
+        .chars()
+        .next_back()
+        .filter(|sign| matches!(sign, '*' | '/'))?;
+    let before = before[..before.len() - 1].trim_end();
+    let is_number = |word: &str| word.parse::<f64>().is_ok();
+    let first = before
+        .rfind(|c: char| c.is_whitespace() || matches!(c, '(' | '[' | ',' | ':'))
+        .map_or(0, |at| at + 1);
+    let (head, last) = (before[..first].trim_end(), &before[first..]);
+    if is_number(last) {
+        return (sign == '*').then(|| format!("{last} {name}"));
+    }
+    let number = head
+        .rsplit(|c: char| c.is_whitespace() || matches!(c, '(' | '[' | ',' | ':'))
+        .next()?;
+    let unit = psd_text::units::unit::parse(last).is_ok() && is_number(number);
+    unit.then(|| format!("{number} {last}{sign}{name}"))
+}
+
+/// `before`: the text before the name on its line. The name of a unit may be separated from its number.
+struct UnknownName<'a, I: Iterator<Item = &'a str>> {
+    name: &'a str,
+    span: Span,
+    before: &'a str,
+    known: I,
+}
+
+impl<'a, I: Iterator<Item = &'a str>> Violation for UnknownName<'a, I> {
+    const CODE: Code = E203;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            name,
+            span,
+            before,
+            known,
+        } = self;
+        let help = if name == "g" {
+            "write `1 gn` for gravity, as in `sqrt(2 * 1 gn * height)`; `g` is the gram".to_owned()
+        } else if let Some(quantity) = quantity_apart(name, before) {
+            format!(
+                "write `{quantity}`: `{name}` is a unit, and a unit follows its number without spaces inside"
+            )
+        } else if name == "critical" {
+            "write `critical` in `time_step` only; after the run, read `critical_time_step`"
+                .to_owned()
+        } else if let Some(near) = psd_text::suggest::nearest(name, known) {
+            format!("did you mean `{near}`?")
+        } else {
+            format!("declare it, as in `let {name} = …`, or correct the name")
+        };
+        Diagnostic::new(Self::CODE, format!("unknown name `{name}`"))
+            .at(span, "unknown name")
+            .help(help)
+    }
+}
+
+#[derive(Violation)]
+#[violation(E206, "a number has no `{member}`")]
+#[help("write only `.u`, the standard uncertainty, after a result")]
+struct NoMemberOfNumber<'a> {
+    member: &'a str,
+    #[label("unknown here")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(E206, "`{text}` has no uncertainty")]
+#[help("write `.u` only after a measured result, such as `k0.stiffness.u`")]
+struct NoUncertainty<'a> {
+    text: &'a str,
+    #[label("not a measured result")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(E641, "`{result}` exists only for an impact on a frame")]
+#[help("write `storeys` in the specimen and `storey = 1` in the impact")]
+struct ResultOfAStorey<'a> {
+    result: &'a str,
+    #[label("not a result here")]
+    at: Span,
+    #[label("strikes one degree of freedom")]
+    head: Span,
+}
+
+#[derive(Violation)]
+#[violation(E641, "`{result}` exists only for the unloading of a frame")]
+#[help("read `residual_displacement` and `residual_force`")]
+struct ResultOfAFrame<'a> {
+    result: &'a str,
+    #[label("not a result here")]
+    at: Span,
+    #[label("unloads one degree of freedom")]
+    head: Span,
+}
+
+#[derive(Violation)]
+#[violation(E206, "{} has no `{field}`", owner(kind, name))]
+#[help("add the field `{field}` to it")]
+struct FieldNotGiven<'a> {
+    kind: &'a BlockKind,
+    name: Option<&'a Ident>,
+    field: &'a str,
+    #[label("field not given")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(E206, "`{written}` is a difference: `-` is a minus sign")]
+#[help("did you mean `{meant}`?")]
+struct MinusInName<'a> {
+    written: &'a str,
+    meant: &'a str,
+    #[label("`-` is not allowed in names")]
+    span: Span,
+}
+
+struct UnknownResult<'a> {
+    kind: &'a BlockKind,
+    name: Option<&'a Ident>,
+    member: &'a str,
+    span: Span,
+}
+
+impl Violation for UnknownResult<'_> {
+    const CODE: Code = E206;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            kind,
+            name,
+            member,
+            span,
+        } = self;
+        let known: Vec<&str> = kind
+            .results
+            .iter()
+            .chain(kind.exports)
+            .map(|result| result.name)
+            .collect();
+        let what = if kind.is_procedure() {
+            "result"
+        } else {
+            "value"
+        };
+        Diagnostic::new(
+            Self::CODE,
+            format!("{} has no {what} `{member}`", owner(kind, name)),
+        )
+        .at(span, format!("unknown {what}"))
+        .help(suggestion(member, known))
+    }
+}
+
+#[derive(Violation)]
+#[violation(E403, "`{text}` is a result, but {what} is fixed before the run")]
+#[help("read results only in fields of later procedures and in `require`")]
+struct ResultBeforeTheRun<'a> {
+    text: &'a str,
+    #[label("known only after the run")]
+    span: Span,
+    what: &'a str,
+    #[label("its procedure")]
+    procedure: Span,
+}
+
+#[derive(Violation)]
+#[violation(E403, "`{text}` is a result of the procedure that uses it")]
+#[help("read a result of an earlier procedure")]
+struct OwnResult<'a> {
+    text: &'a str,
+    #[label("known only after this procedure")]
+    span: Span,
+    #[label("this procedure")]
+    procedure: Span,
+}
+
+#[derive(Violation)]
+#[violation(E403, "`{text}` is used before its procedure runs")]
+#[help("move that procedure up: procedures run in the order written")]
+struct ResultOfLaterProcedure<'a> {
+    text: &'a str,
+    #[label("used here")]
+    span: Span,
+    #[label("runs later")]
+    procedure: Span,
+}
 
 impl<'a> Checker<'a> {
     /// The value of a bare name.
@@ -26,12 +306,12 @@ impl<'a> Checker<'a> {
             && (!result.of_storey || self.strikes_a_storey(procedure))
         {
             if result.name != name {
-                return self.fail(message::left_under_another_name(
-                    self.scope.blocks[block].kind,
+                return self.fail(LeftUnderAnotherName {
+                    kind: self.scope.blocks[block].kind,
                     name,
-                    result.name,
+                    now: result.name,
                     span,
-                ));
+                });
             }
             let formula = Formula::Result(ResultReference {
                 procedure,
@@ -77,7 +357,11 @@ impl<'a> Checker<'a> {
             }
             Some(Meaning::Block(index)) => {
                 let block = &self.scope.blocks[index];
-                self.fail(types::block_for_number(name, block.kind, span))
+                self.fail(BlockForNumber {
+                    name,
+                    kind: block.kind,
+                    span,
+                })
             }
             None if self.may_be_lost(name) => None,
             None => {
@@ -89,7 +373,11 @@ impl<'a> Checker<'a> {
                     .and_then(|(_, block)| block.name)
                     .filter(|_| matches!(context.reads, Reads::All))
                 {
-                    return self.fail(message::result_without_procedure(name, &owner.node, span));
+                    return self.fail(ResultWithoutProcedure {
+                        name,
+                        procedure: &owner.node,
+                        span,
+                    });
                 }
                 let siblings = context
                     .entry
@@ -112,12 +400,13 @@ impl<'a> Checker<'a> {
                     .iter()
                     .filter(|result| !result.of_storey || storey)
                     .map(|result| result.name);
-                let diagnostic = message::unknown_name(
+                let diagnostic = UnknownName {
                     name,
                     span,
-                    self.before(span),
-                    known.into_iter().chain(results),
-                );
+                    before: self.before(span),
+                    known: known.into_iter().chain(results),
+                }
+                .diagnostic();
                 self.fail(diagnostic)
             }
         }
@@ -175,12 +464,13 @@ impl<'a> Checker<'a> {
                 if self.may_be_lost(owner) || self.scope.nameless().any(has) {
                     return None;
                 }
-                let diagnostic = message::unknown_name(
-                    owner,
-                    base.span,
-                    self.before(base.span),
-                    self.names_to_suggest(),
-                );
+                let diagnostic = UnknownName {
+                    name: owner,
+                    span: base.span,
+                    before: self.before(base.span),
+                    known: self.names_to_suggest(),
+                }
+                .diagnostic();
                 return self.fail(diagnostic);
             }
         }
@@ -197,7 +487,10 @@ impl<'a> Checker<'a> {
     ) -> Option<Typed> {
         let typed = self.value(base, context)?;
         if name.node != "u" {
-            return self.fail(message::no_member_of_number(&name.node, name.span));
+            return self.fail(NoMemberOfNumber {
+                member: &name.node,
+                span: name.span,
+            });
         }
         let measured = typed
             .formula
@@ -211,7 +504,10 @@ impl<'a> Checker<'a> {
             });
         let Some(reference) = measured else {
             let text = self.text(base.span);
-            return self.fail(message::no_uncertainty(text, name.span));
+            return self.fail(NoUncertainty {
+                text,
+                span: name.span,
+            });
         };
         let formula = Formula::Result(ResultReference {
             part: Part::Uncertainty,
@@ -233,24 +529,32 @@ impl<'a> Checker<'a> {
     ) -> Option<Typed> {
         let declared = &self.scope.blocks[block];
         if let Some(now) = self.left_under_another_name(block, &name.node) {
-            return self.fail(message::left_under_another_name(
-                declared.kind,
-                &name.node,
-                now.name,
-                name.span,
-            ));
+            return self.fail(LeftUnderAnotherName {
+                kind: declared.kind,
+                name: &name.node,
+                now: now.name,
+                span: name.span,
+            });
         }
         let known = declared.kind.result(&name.node);
         if let (Some(result), Some(procedure)) = (known, declared.procedure) {
             let unloads = declared.kind.kind == Kind::Procedure(ProcedureBlock::Unload);
             if result.of_storey && !unloads && frame::struck_frame(self, block).is_none() {
-                let diagnostic =
-                    frames::result_of_a_storey(result.name, name.span, declared.block.head);
+                let diagnostic = ResultOfAStorey {
+                    result: result.name,
+                    at: name.span,
+                    head: declared.block.head,
+                }
+                .diagnostic();
                 return self.fail(diagnostic);
             }
             if result.of_storey && unloads && !self.tests_a_frame(block) {
-                let diagnostic =
-                    frames::result_of_a_frame(result.name, name.span, declared.block.head);
+                let diagnostic = ResultOfAFrame {
+                    result: result.name,
+                    at: name.span,
+                    head: declared.block.head,
+                }
+                .diagnostic();
                 return self.fail(diagnostic);
             }
             let reference = ResultReference {
@@ -297,19 +601,19 @@ impl<'a> Checker<'a> {
                 .iter()
                 .position(|entry| entry.key.node == name.node)
             else {
-                return self.fail(message::field_not_given(
-                    declared.kind,
-                    declared.name,
-                    &name.node,
-                    name.span,
-                ));
+                return self.fail(FieldNotGiven {
+                    kind: declared.kind,
+                    name: declared.name,
+                    field: &name.node,
+                    span: name.span,
+                });
             };
             let typed = self.entry(block, entry, span)?;
             if typed.formula.reads_critical_time_step() {
-                return self.fail(values::needs_the_run(
+                return self.fail(NeedsTheRun {
                     span,
-                    "a time step that depends on `critical`",
-                ));
+                    text: "a time step that depends on `critical`",
+                });
             }
             return self.reads_allowed(Typed { span, ..typed }, span, context);
         }
@@ -325,12 +629,22 @@ impl<'a> Checker<'a> {
             self.explained.push(whole);
             // The same however it is laid out.
             let written: String = text[..end].split_whitespace().collect();
-            return self.fail(message::minus_in_name(&written, &joined, whole));
+            return self.fail(MinusInName {
+                written: &written,
+                meant: &joined,
+                span: whole,
+            });
         }
         if kind.kind == Kind::Study && name.node == PROBABILITY.name {
-            return self.fail(studies::event_wanted(name.span));
+            return self.fail(EventWanted { span: name.span });
         }
-        let diagnostic = message::unknown_result(kind, owner, &name.node, name.span);
+        let diagnostic = UnknownResult {
+            kind,
+            name: owner,
+            member: &name.node,
+            span: name.span,
+        }
+        .diagnostic();
         self.fail(diagnostic)
     }
 
@@ -356,17 +670,30 @@ impl<'a> Checker<'a> {
             let text = self.text(span);
             match context.reads {
                 Reads::Nothing(what) => {
-                    return self.fail(values::result_before_the_run(text, span, what, head));
+                    return self.fail(ResultBeforeTheRun {
+                        text,
+                        span,
+                        what,
+                        procedure: head,
+                    });
                 }
                 Reads::Before(procedure) | Reads::Impact(procedure)
                     if reference.procedure == procedure =>
                 {
-                    return self.fail(values::own_result(text, span, head));
+                    return self.fail(OwnResult {
+                        text,
+                        span,
+                        procedure: head,
+                    });
                 }
                 Reads::Before(procedure) | Reads::Impact(procedure)
                     if reference.procedure > procedure =>
                 {
-                    return self.fail(values::result_of_later_procedure(text, span, head));
+                    return self.fail(ResultOfLaterProcedure {
+                        text,
+                        span,
+                        procedure: head,
+                    });
                 }
                 Reads::Before(_) | Reads::Impact(_) | Reads::All => {}
             }

@@ -1,17 +1,19 @@
 //! Inputs of a plan by name: a `param`, a field such as `beam.mass`, an argument such as `beam.behaviour.stiffness`. In: the name and the
 //! declarations. Out: the position at which the plan writes its value, or why there is none; and the values given from outside for such places.
 
-use psd_plan::ProcedureBlock;
 use std::collections::BTreeMap;
 
 use crate::check::checker::{Checker, Context, Reads, Typed};
-use crate::check::messages::inputs::{self as message, NoInput};
-use crate::check::messages::{types, values};
 use crate::check::rig;
 use crate::check::scope::{Meaning, Scope, Setting};
+use crate::check::violations::{NotFinite, OutOfRange, WrongDimensionOfQuantity};
+use crate::check::wording::{one_of, suggestion};
+use crate::codes::{E203, E206, E214, E656};
 use crate::syntax::ast::{Argument, Entry, Expr, ExprKind};
+use psd_plan::ProcedureBlock;
 use psd_plan::formula::{Formula, Part, ResultReference};
 use psd_plan::schema::{Field, FieldType, Kind, Presence, RigKind, Variant};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 use psd_text::units::{Dimension, Quantity};
 
@@ -32,6 +34,144 @@ pub enum InputLocation<'a> {
         reference: ResultReference,
         dimension: Dimension,
     },
+}
+
+/// An unknown first word.
+pub struct UnknownName {
+    pub name: String,
+    pub known: Vec<String>,
+}
+
+/// Why a field gives no number.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum NoField {
+    Unknown,
+    /// A known field that the plan does not write.
+    NotWritten,
+    /// Calculated from other fields.
+    Derived,
+    /// The result of a procedure.
+    Result,
+    List,
+    NotANumber,
+}
+
+fn one_of_inputs(inputs: &[String]) -> String {
+    match inputs {
+        [] => "write a `param`, use it in the block, and name it here".to_owned(),
+        _ => format!(
+            "write a field, {}",
+            one_of(inputs.iter().map(String::as_str))
+        ),
+    }
+}
+
+/// Why a name is not an input of the plan.
+pub enum NoInput {
+    Unknown(UnknownName),
+    /// The name of a `let`.
+    Let(String),
+    /// A block without a field.
+    Block {
+        name: String,
+        inputs: Vec<String>,
+    },
+    /// A name behind a number.
+    InsideANumber(String),
+    /// A field of a block that gives no number. `inputs`: the numbers that the block writes.
+    NoField {
+        path: String,
+        inputs: Vec<String>,
+        reason: NoField,
+    },
+    /// Its declaration has an error, which is reported.
+    Reported,
+}
+
+impl NoInput {
+    fn code(&self) -> Code {
+        match self {
+            Self::Unknown(_) => E203,
+            Self::NoField {
+                reason: NoField::Unknown,
+                ..
+            } => E206,
+            _ => E656,
+        }
+    }
+
+    fn message(&self) -> String {
+        match self {
+            Self::Unknown(unknown) => format!("unknown name `{}`", unknown.name),
+            Self::Let(name) => format!("`{name}` is a `let`, which is calculated"),
+            Self::Block { name, .. } => format!("`{name}` is a block, not a number"),
+            Self::InsideANumber(name) => format!("`{name}` is one number"),
+            Self::Reported => String::new(),
+            Self::NoField { path, reason, .. } => match reason {
+                NoField::Unknown => format!("the plan writes no `{path}`"),
+                NoField::NotWritten => format!("the plan does not write `{path}`"),
+                NoField::Derived => format!("`{path}` is calculated from other fields"),
+                NoField::Result => format!("`{path}` is a result, not an input"),
+                NoField::List => format!("`{path}` is a list, not one number"),
+                NoField::NotANumber => format!("`{path}` is not a number"),
+            },
+        }
+    }
+
+    fn label(&self) -> &'static str {
+        match self {
+            Self::Unknown(_) => "unknown name",
+            Self::Let(_) => "a `let`",
+            Self::Block { .. } => "a block",
+            Self::InsideANumber(_) | Self::Reported => "one number",
+            Self::NoField { reason, .. } => match reason {
+                NoField::Unknown => "unknown field",
+                NoField::NotWritten => "not written in the block",
+                NoField::Derived => "calculated",
+                NoField::Result => "a result",
+                NoField::List => "a list",
+                NoField::NotANumber => "not a number",
+            },
+        }
+    }
+
+    fn help(&self) -> String {
+        match self {
+            Self::Unknown(unknown) => {
+                suggestion(&unknown.name, unknown.known.iter().map(String::as_str))
+            }
+            Self::Let(name) => format!("write `param {name} = …` in the plan"),
+            Self::Block { inputs, .. } => one_of_inputs(inputs),
+            Self::InsideANumber(name) => format!("write `{name}` alone"),
+            Self::Reported => String::new(),
+            Self::NoField {
+                path,
+                inputs,
+                reason,
+            } => match reason {
+                NoField::Unknown | NoField::Derived if !inputs.is_empty() => {
+                    let last = path.rsplit('.').next().unwrap_or_default();
+                    match inputs.as_slice() {
+                        [only] if only.ends_with(&format!(".{last}")) => {
+                            format!("write `{only}`")
+                        }
+                        _ => suggestion(path, inputs.iter().map(String::as_str)),
+                    }
+                }
+                NoField::NotWritten => {
+                    let field = path.rsplit('.').next().unwrap_or_default();
+                    format!("write `{field} = …` in the block")
+                }
+                NoField::Result => {
+                    let name = path.replace('.', "_");
+                    format!(
+                        "write `param {name} = …`, use it in the plan instead, and name `{name}` here"
+                    )
+                }
+                _ => "write a `param`, use it in the field, and name it here".to_owned(),
+            },
+        }
+    }
 }
 
 /// The position of the input with this path.
@@ -59,7 +199,7 @@ pub fn find_input<'a>(scope: &Scope<'a>, path: &[&str]) -> Result<InputLocation<
             inputs: inputs_of(scope, block),
         });
     };
-    let no_field = |reason: message::NoField| {
+    let no_field = |reason: NoField| {
         Err(NoInput::NoField {
             path: path.join("."),
             inputs: near(inputs_of(scope, block), path),
@@ -90,15 +230,15 @@ pub fn find_input<'a>(scope: &Scope<'a>, path: &[&str]) -> Result<InputLocation<
     }
     let (Some(field), Some((entry, written))) = (field, written) else {
         return no_field(if declared.kind.result(name).is_some() {
-            message::NoField::Result
+            NoField::Result
         } else if field.is_some_and(|field| matches!(field.presence, Presence::Default { .. })) {
-            message::NoField::NotWritten
+            NoField::NotWritten
         } else if declared.kind.export(name).is_some() {
-            message::NoField::Derived
+            NoField::Derived
         } else if field.is_some() {
-            message::NoField::NotWritten
+            NoField::NotWritten
         } else {
-            message::NoField::Unknown
+            NoField::Unknown
         });
     };
     let mut at = Some((field, &written.value));
@@ -116,10 +256,10 @@ pub fn find_input<'a>(scope: &Scope<'a>, path: &[&str]) -> Result<InputLocation<
         Some((field, _))
             if matches!(field.ty, FieldType::Quantities(_) | FieldType::Choices(_)) =>
         {
-            no_field(message::NoField::List)
+            no_field(NoField::List)
         }
-        Some(_) => no_field(message::NoField::NotANumber),
-        None => no_field(message::NoField::Unknown),
+        Some(_) => no_field(NoField::NotANumber),
+        None => no_field(NoField::Unknown),
     }
 }
 
@@ -224,14 +364,31 @@ fn near(inputs: Vec<String>, path: &[&str]) -> Vec<String> {
 }
 
 /// An unknown first word, with the names that it may be.
-fn unknown(scope: &Scope, name: &str) -> message::UnknownName {
+fn unknown(scope: &Scope, name: &str) -> UnknownName {
     let values = scope.values.iter().filter(|value| value.keyword == "param");
     let values = values.map(|value| value.name.node.clone());
     let blocks = scope.blocks.iter().filter_map(|block| block.name);
-    message::UnknownName {
+    UnknownName {
         name: name.to_owned(),
         known: values.chain(blocks.map(|name| name.node.clone())).collect(),
     }
+}
+
+/// `--set bench.force_per_count=1N`
+#[derive(Violation)]
+#[violation(E214, "`--set {name}`: a number of a real rig is in the plan only")]
+#[help("change it in the rig's block")]
+struct SettingOfARealRig<'a> {
+    name: &'a str,
+}
+
+/// `--set beam.mas=2kg`
+#[derive(Violation)]
+#[violation(E214, "`--set {name}`: {}", reason.message())]
+#[help("{}", reason.help())]
+struct SettingWithoutInput<'a> {
+    name: &'a str,
+    reason: &'a NoInput,
 }
 
 impl<'a> Checker<'a> {
@@ -245,7 +402,7 @@ impl<'a> Checker<'a> {
                     if self.scope.blocks[block].kind.kind == Kind::Rig
                         && rig::kind(self, block) == Some(RigKind::Real) =>
                 {
-                    self.diagnostics.push(message::setting_of_a_real_rig(name));
+                    self.report(SettingOfARealRig { name });
                 }
                 Ok(InputLocation::Field { written, .. }) => {
                     self.overrides
@@ -256,9 +413,10 @@ impl<'a> Checker<'a> {
                     reference,
                     dimension,
                 }) => self.override_result(name, setting, reference, dimension),
-                Err(reason) => self
-                    .diagnostics
-                    .push(message::setting_without_input(name, &reason)),
+                Err(reason) => self.report(SettingWithoutInput {
+                    name,
+                    reason: &reason,
+                }),
             }
         }
     }
@@ -272,7 +430,7 @@ impl<'a> Checker<'a> {
         dimension: Dimension,
     ) {
         if self.real_rig.is_some() {
-            self.diagnostics.push(message::setting_of_a_real_rig(name));
+            self.report(SettingOfARealRig { name });
             return;
         }
         let Some(owner) = self.procedure(reference.procedure) else {
@@ -323,24 +481,39 @@ impl<'a> Checker<'a> {
     fn bound(&mut self, field: &'static Field, quantity: Quantity, span: Span) -> Option<Typed> {
         let dimension = field.dimension()?;
         if quantity.dimension != dimension {
-            return self.fail(types::wrong_dimension_of_quantity(
-                quantity, dimension, field.name, span,
-            ));
+            return self.fail(WrongDimensionOfQuantity {
+                bound: quantity,
+                wanted: dimension,
+                parameter: field.name,
+                declared_at: span,
+            });
         }
         if !quantity.value.is_finite() {
-            return self.fail(values::not_finite(span));
+            return self.fail(NotFinite { span });
         }
         if !field.range.contains(quantity.value) {
             let text = quantity.in_plan_syntax();
-            return self.fail(values::out_of_range(
+            return self.fail(OutOfRange {
                 field,
                 dimension,
-                quantity.value,
-                &text,
+                value: quantity.value,
+                text: &text,
                 span,
-            ));
+            });
         }
         let formula = Formula::Constant(quantity.value);
         Some(Typed::number(formula, dimension, span))
     }
+}
+
+/// An entry of `vary`, or an intensity. None if it is reported elsewhere.
+pub fn no_input(reason: &NoInput, span: Span) -> Option<Diagnostic> {
+    if matches!(reason, NoInput::Reported) {
+        return None;
+    }
+    Some(
+        Diagnostic::new(reason.code(), reason.message())
+            .at(span, reason.label())
+            .help(reason.help()),
+    )
 }

@@ -4,14 +4,34 @@
 use std::collections::BTreeMap;
 
 use crate::check::checker::{Checker, Context, Reads, Shape, Typed};
-use crate::check::messages::{names, types, values};
 use crate::check::scope::{DeclaredValue, Setting};
+use crate::check::violations::{Mismatched, NotFinite, UnknownParameter, WrongDimensionOfQuantity};
+use crate::check::wording::shown;
+use crate::codes::{E101, E401, E406};
 use crate::syntax;
 use crate::syntax::ast::{Ast, Expr, ItemKind};
 use psd_plan::formula::Formula;
 use psd_plan::{Interval, Parameter};
-use psd_text::diagnostic::Diagnostic;
-use psd_text::source::Sources;
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::{FileId, Sources, Span};
+use psd_text::units::Dimension;
+
+struct SettingIsNoValue<'a> {
+    name: &'a str,
+    file: FileId,
+    length: usize,
+}
+
+impl Violation for SettingIsNoValue<'_> {
+    const CODE: Code = E101;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { name, file, length } = self;
+        Diagnostic::new(Self::CODE, format!("`--set {name}` requires one value"))
+            .at(Span::new(file, 0, length), "more than a value")
+            .help(format!("write it as in `--set {name}=\"1.5 m/s\"`"))
+    }
+}
 
 /// Parses the values of `--set`, each as a source file of its own, so that an error in it can be shown. Later ones win.
 pub fn read_settings(
@@ -29,7 +49,13 @@ pub fn read_settings(
     for (name, value) in last {
         // `beam.mass`: the declarations decide whether there is such a field.
         if !known.contains(&name) && !name.contains('.') {
-            errors.push(names::unknown_parameter(name, &known));
+            errors.push(
+                UnknownParameter {
+                    name,
+                    known: &known,
+                }
+                .diagnostic(),
+            );
             continue;
         }
         let word = name.replace('.', "_");
@@ -46,11 +72,14 @@ pub fn read_settings(
                 read.insert(name.to_owned(), Setting::Written(value));
             }
             _ if broken => {}
-            _ => errors.push(names::setting_is_no_value(
-                name,
-                file,
-                sources.file(file).text.len(),
-            )),
+            _ => errors.push(
+                SettingIsNoValue {
+                    name,
+                    file,
+                    length: sources.file(file).text.len(),
+                }
+                .diagnostic(),
+            ),
         }
     }
     read
@@ -70,6 +99,47 @@ pub fn names_of_parameters(trees: &[Ast]) -> Vec<&str> {
 /// A value must be on one line.
 fn is_one_line(text: &str) -> bool {
     !text.contains(['\n', '\r'])
+}
+
+#[derive(Violation)]
+#[violation(
+    E401,
+    "`{name}` is outside its range {low} .. {high}",
+    low = shown(bounds.low, dimension),
+    high = shown(bounds.high, dimension)
+)]
+#[help("widen the range or change the value")]
+struct ParameterOutOfBounds<'a> {
+    name: &'a str,
+    text: &'a str,
+    #[label("`{text}` is outside")]
+    span: Span,
+    bounds: Interval,
+    dimension: Dimension,
+}
+
+/// `name`: as in `--set speed`, or the parameter alone where no text gives the value.
+#[derive(Violation)]
+#[violation(
+    E406,
+    "`{name}` is outside {low} .. {high}",
+    low = shown(bounds.low, dimension),
+    high = shown(bounds.high, dimension)
+)]
+#[help(
+    "write a value between {low} and {high}",
+    low = shown(bounds.low, dimension),
+    high = shown(bounds.high, dimension)
+)]
+struct SettingOutOfRange<'a> {
+    name: &'a str,
+    text: &'a str,
+    #[label("`{text}` is outside")]
+    span: Span,
+    bounds: Interval,
+    dimension: Dimension,
+    #[label("allowed range")]
+    bounds_at: Span,
 }
 
 impl<'a> Checker<'a> {
@@ -101,13 +171,13 @@ impl<'a> Checker<'a> {
         let value = own.constant()?;
         if !bounds.contains(value) {
             let span = declared.value.span;
-            return self.fail(values::parameter_out_of_bounds(
-                &declared.name.node,
-                self.text(span),
+            return self.fail(ParameterOutOfBounds {
+                name: &declared.name.node,
+                text: self.text(span),
                 span,
                 bounds,
-                own.dimension,
-            ));
+                dimension: own.dimension,
+            });
         }
         match declared.setting {
             None => Some(own),
@@ -133,15 +203,15 @@ impl<'a> Checker<'a> {
             Setting::Bound(quantity) => {
                 let span = declared.value.span;
                 if quantity.dimension != own.dimension {
-                    return self.fail(types::wrong_dimension_of_quantity(
-                        *quantity,
-                        own.dimension,
-                        name,
-                        span,
-                    ));
+                    return self.fail(WrongDimensionOfQuantity {
+                        bound: *quantity,
+                        wanted: own.dimension,
+                        parameter: name,
+                        declared_at: span,
+                    });
                 }
                 if !quantity.value.is_finite() {
-                    return self.fail(values::not_finite(span));
+                    return self.fail(NotFinite { span });
                 }
                 let formula = Formula::Constant(quantity.value);
                 Typed::number(formula, quantity.dimension, span)
@@ -156,14 +226,14 @@ impl<'a> Checker<'a> {
             let at = declared
                 .bounds
                 .map_or(declared.value.span, |bounds| bounds.span);
-            return self.fail(values::setting_out_of_range(
-                &name,
-                &text,
-                set.span,
+            return self.fail(SettingOutOfRange {
+                name: &name,
+                text: &text,
+                span: set.span,
                 bounds,
-                own.dimension,
-                at,
-            ));
+                dimension: own.dimension,
+                bounds_at: at,
+            });
         }
         Some(set)
     }
@@ -178,11 +248,11 @@ impl<'a> Checker<'a> {
         if let Some(own) = own
             && own.dimension != dimension
         {
-            return self.fail(types::mismatched(
-                "between",
-                own,
-                &Typed::number(own.formula.clone(), dimension, written.span),
-            ));
+            return self.fail(Mismatched {
+                operator: "between",
+                left: own,
+                right: &Typed::number(own.formula.clone(), dimension, written.span),
+            });
         }
         Some(interval)
     }

@@ -1,17 +1,20 @@
 //! `axes = [axis(…), …]` of a real rig: the entries of each actuator with its load cell. In: the block of a rig. Out:
 //! an [`AxisPlan`] each. It also compares their number with the storeys of the specimen; `device` reads the devices.
 
-use super::device::{Device, device};
-use super::probe::probe;
-use super::{CheckedRig, context_of};
 use crate::check::checker::{Checker, Context};
 use crate::check::expressions::calendar;
 use crate::check::expressions::choice::Chosen;
-use crate::check::messages::{axes as message, rigs, values};
-use psd_plan::schema::limits;
-use psd_plan::schema::rig as schema;
+use crate::check::violations::{DayOfNoCalibration, EmptyList, NotADay};
+use crate::check::wording::axes_of;
+use crate::codes::E615;
+use psd_plan::schema::{limits, rig as schema};
 use psd_plan::{AxisCalibration, AxisPlan, Specimen};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
+
+use super::device::{Device, device};
+use super::probe::probe;
+use super::{CheckedRig, context_of};
 
 /// One axis, with the spans of its separate devices.
 pub struct CheckedAxis {
@@ -31,7 +34,7 @@ pub fn axes(checker: &mut Checker, block: usize) -> Option<Vec<CheckedAxis>> {
     );
     let chosen = checker.choices(block, schema::AXES.name)?;
     if chosen.is_empty() {
-        return checker.fail(values::empty_list(at));
+        return checker.fail(EmptyList { span: at });
     }
     let axes: Vec<Option<CheckedAxis>> = chosen
         .iter()
@@ -126,7 +129,10 @@ fn calibration<'a>(
     context: Context,
 ) -> Option<AxisCalibration> {
     let mut day = |name: &str| match checker.text_argument(chosen, name)? {
-        Some((day, at)) if !calendar::is_day(&day) => checker.fail(rigs::not_a_day(&day, at)),
+        Some((day, at)) if !calendar::is_day(&day) => checker.fail(NotADay {
+            day: &day,
+            span: at,
+        }),
         day => Some(day),
     };
     let (due, displacement_due) = (
@@ -167,10 +173,10 @@ fn calibration<'a>(
         checker.field(block, schema::DISPLACEMENT_CALIBRATION.name),
         &displacement_due,
     ) {
-        return checker.fail(rigs::day_of_no_calibration(
-            schema::DISPLACEMENT_CALIBRATION_DUE.name,
-            *at,
-        ));
+        return checker.fail(DayOfNoCalibration {
+            field: schema::DISPLACEMENT_CALIBRATION_DUE.name,
+            at: *at,
+        });
     }
     let text = |given: Option<(String, Span)>| given.map(|(text, _)| text);
     Some(AxisCalibration {
@@ -190,6 +196,48 @@ fn calibration<'a>(
     })
 }
 
+struct AnotherNumberOfAxes<'a> {
+    rig: &'a str,
+    axes: usize,
+    specimen: &'a str,
+    storeys: usize,
+    at: Span,
+}
+
+impl Violation for AnotherNumberOfAxes<'_> {
+    const CODE: Code = E615;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            rig,
+            axes,
+            specimen,
+            storeys,
+            at,
+        } = self;
+        let needs = match storeys {
+            1 => format!("`{specimen}` has one degree of freedom"),
+            _ => format!("the frame `{specimen}` has {storeys} storeys"),
+        };
+        let help = match storeys {
+            1 => "remove `axes`: a rig without it has one axis".to_owned(),
+            _ => format!(
+                "list {storeys} axes, the lowest storey first: axes = [{}]",
+                vec!["axis"; storeys].join(", ")
+            ),
+        };
+        Diagnostic::new(
+            Self::CODE,
+            format!(
+                "number of axes differs: rig `{rig}` has {}, {needs}",
+                axes_of(axes)
+            ),
+        )
+        .at(at, axes_of(axes))
+        .help(help)
+    }
+}
+
 /// A rig must have as many axes as its specimen has storeys.
 pub fn check_specimen(checker: &mut Checker, rig: Option<&CheckedRig>, specimen: &Specimen) {
     let Some(CheckedRig {
@@ -206,12 +254,12 @@ pub fn check_specimen(checker: &mut Checker, rig: Option<&CheckedRig>, specimen:
     };
     let storeys = specimen.degrees_of_freedom();
     if axes != storeys {
-        checker.diagnostics.push(message::another_number(
-            &plan.name,
+        checker.report(AnotherNumberOfAxes {
+            rig: &plan.name,
             axes,
-            &specimen.name,
+            specimen: &specimen.name,
             storeys,
-            written.value.span,
-        ));
+            at: written.value.span,
+        });
     }
 }

@@ -1,15 +1,17 @@
 //! One device of a real rig: `serial(…)` or `tcp(…)`, its port and its time-out. In: a field that names one. Out: a
 //! [`Device`]. It opens nothing: whether the port exists is known when the run opens it.
 
-use super::dialect;
-use super::line_text::line_text;
 use crate::check::checker::{Checker, Context};
 use crate::check::expressions::choice::Chosen;
 use crate::check::expressions::fields::whole;
-use crate::check::messages::rigs as message;
+use crate::codes::E610;
 use psd_plan::schema::devices as schema;
 use psd_plan::{DeviceLink, PortPlan};
+use psd_text::diagnostic::Violation;
 use psd_text::source::Span;
+
+use super::dialect;
+use super::line_text::line_text;
 
 /// A device, with the spans of its parts.
 pub struct Device {
@@ -60,6 +62,15 @@ pub fn device<'a>(
     })
 }
 
+#[derive(Violation)]
+#[violation(E610, "invalid port name: {why}")]
+#[help("write the name that the system uses, such as `\"/dev/ttyUSB0\"`")]
+struct BadPortName<'a> {
+    #[label("invalid port name")]
+    span: Span,
+    why: &'a str,
+}
+
 fn serial_port<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
@@ -71,7 +82,7 @@ fn serial_port<'a>(
         .and_then(whole);
     let (path, span) = path?;
     match error_of_port(&path) {
-        Some(why) => checker.fail(message::bad_port(span, why)),
+        Some(why) => checker.fail(BadPortName { span, why }),
         None => Some(PortPlan::Serial { path, baud: baud? }),
     }
 }
@@ -89,6 +100,19 @@ fn error_of_port(path: &str) -> Option<&'static str> {
     }
 }
 
+#[derive(Violation)]
+#[violation(
+    E610,
+    "invalid address `{}`: a host, a colon and a port from 1 to 65535 are required",
+    address.escape_debug()
+)]
+#[help("write it as in `\"127.0.0.1:44000\"`")]
+struct BadAddress<'a> {
+    address: &'a str,
+    #[label("not `host:port`")]
+    span: Span,
+}
+
 fn tcp_address<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>) -> Option<PortPlan> {
     let (address, span) = checker
         .text_argument(chosen, schema::ADDRESS.name)
@@ -96,7 +120,10 @@ fn tcp_address<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>) -> Option<Por
     if is_host_and_port(&address) {
         return Some(PortPlan::Tcp { address });
     }
-    checker.fail(message::bad_address(&address, span))
+    checker.fail(BadAddress {
+        address: &address,
+        span,
+    })
 }
 
 /// `host:port`, or `[::1]:port`; the port is 1 to 65535.

@@ -1,11 +1,15 @@
 //! The protocol of a device: `native`, `scpi(1 N)`, `modbus(…)`. In: the chosen variant. Out: a [`Dialect`].
 
-use super::line_text::line_text;
 use crate::check::checker::{Checker, Context};
 use crate::check::expressions::choice::Chosen;
-use crate::check::messages::{names, rigs, values};
+use crate::check::violations::{BadLineText, ZeroFactor};
+use crate::codes::E213;
 use psd_plan::schema::devices as schema;
 use psd_plan::{Dialect, ModbusMap, ModbusNumber};
+use psd_text::diagnostic::Violation;
+use psd_text::source::Span;
+
+use super::line_text::line_text;
 
 pub fn dialect<'a>(
     checker: &mut Checker<'a>,
@@ -40,16 +44,17 @@ fn control_points<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>) -> Option<
         .enumerate()
         .any(|(at, name)| names[..at].contains(name));
     match chosen.span(schema::CONTROL_POINT.name) {
-        Some(span) if twice || !names.iter().all(is_name) => {
-            checker.fail(rigs::bad_line_text(schema::CONTROL_POINT.name, span))
-        }
+        Some(span) if twice || !names.iter().all(is_name) => checker.fail(BadLineText {
+            field: schema::CONTROL_POINT.name,
+            span,
+        }),
         _ => Some(names),
     }
 }
 
 fn not_zero(checker: &mut Checker, chosen: &Chosen, name: &str, value: f64) -> Option<()> {
     match chosen.span(name) {
-        Some(span) if value == 0.0 => checker.fail(values::zero(name, span)),
+        Some(span) if value == 0.0 => checker.fail(ZeroFactor { field: name, span }),
         _ => Some(()),
     }
 }
@@ -65,6 +70,17 @@ const TOGETHER: &[(&str, &str)] = &[
     (schema::COMMAND.name, schema::START_WORD.name),
     (schema::COMMAND.name, schema::STOP_WORD.name),
 ];
+
+#[derive(Violation)]
+#[violation(E213, "`{argument}` of `{variant}` requires `{other}`")]
+#[help("add `{other}: …`, or remove `{argument}`")]
+struct ArgumentNeeds<'a> {
+    variant: &'a str,
+    argument: &'a str,
+    other: &'a str,
+    #[label("`{other}` is missing")]
+    span: Span,
+}
 
 fn modbus<'a>(
     checker: &mut Checker<'a>,
@@ -109,7 +125,12 @@ fn modbus<'a>(
     if let Some((one, other)) = missing
         && let Some(span) = chosen.span(one)
     {
-        return checker.fail(names::argument_needs(chosen.variant.name, one, other, span));
+        return checker.fail(ArgumentNeeds {
+            variant: chosen.variant.name,
+            argument: one,
+            other,
+            span,
+        });
     }
     if let Some(force_unit) = force_unit? {
         not_zero(checker, chosen, schema::FORCE_UNIT.name, force_unit)?;

@@ -2,7 +2,7 @@
 
 use crate::check::checker::Checker;
 use crate::check::expressions::choice::Chosen;
-use crate::check::messages::rigs as message;
+use crate::check::violations::BadLineText;
 
 /// A string that is sent on a line of a protocol: `Some(None)` if it is omitted.
 pub fn line_text<'a>(
@@ -14,7 +14,7 @@ pub fn line_text<'a>(
         return Some(None);
     };
     if text.trim().is_empty() || text.chars().any(|c| c.is_control() || !c.is_ascii()) {
-        return checker.fail(message::bad_line_text(name, span));
+        return checker.fail(BadLineText { field: name, span });
     }
     Some(Some(text))
 }

@@ -11,16 +11,18 @@ pub mod real;
 pub mod real_warnings;
 pub mod zero_drift;
 
+use crate::check::violations::{DayOfNoCalibration, NotADay};
+use crate::check::wording::suggestion;
+use crate::codes::{E401, E603, E614};
+use crate::syntax::ast::{Expr, ExprKind, Ident};
+use psd_plan::schema::{Kind, RigKind, rig as schema};
+use psd_plan::{Calibration, Link, RigPlan, Settle, VirtualLink};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::{FileId, Span};
+
 use super::checker::{Checker, Context};
 use super::expressions::calendar;
 use super::expressions::choice::Chosen;
-use super::messages::rigs;
-use super::messages::whole as message;
-use crate::syntax::ast::{Expr, ExprKind};
-use psd_plan::schema::rig as schema;
-use psd_plan::schema::{Kind, RigKind};
-use psd_plan::{Calibration, Link, RigPlan, Settle, VirtualLink};
-use psd_text::source::{FileId, Span};
 
 /// An immediate move, for a settling time of up to ten seconds.
 const IMMEDIATE: Settle = Settle {
@@ -93,6 +95,25 @@ pub fn links_of_run(checker: &Checker, requested: Option<&str>) -> Vec<Span> {
         .collect()
 }
 
+struct UnknownRig<'a> {
+    name: &'a str,
+    known: &'a [&'a str],
+}
+
+impl Violation for UnknownRig<'_> {
+    const CODE: Code = E603;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { name, known } = self;
+        let help = if known.is_empty() {
+            "remove `--rig`: the plan declares no rig and runs on an ideal one".to_owned()
+        } else {
+            suggestion(name, known.iter().copied())
+        };
+        Diagnostic::new(Self::CODE, format!("`--rig {name}`: unknown rig")).help(help)
+    }
+}
+
 /// Checks every rig; returns the one named by `--rig`, else the first virtual one of the plan itself, else an ideal one.
 pub fn rig_of_run(checker: &mut Checker, requested: Option<&str>) -> Option<CheckedRig> {
     let rigs: Vec<(usize, bool)> = checker
@@ -121,7 +142,10 @@ pub fn rig_of_run(checker: &mut Checker, requested: Option<&str>) -> Option<Chec
             Some(position) => checked.swap_remove(position).1,
             None if requested == IDEAL => Some(ideal()),
             None if checker.names_lost => None,
-            None => checker.fail(message::unknown_rig(requested, &names)),
+            None => checker.fail(UnknownRig {
+                name: requested,
+                known: &names,
+            }),
         };
     }
     match checked.iter().position(|(is_default, _)| *is_default) {
@@ -232,6 +256,33 @@ fn rig(checker: &mut Checker, block: usize) -> Option<CheckedRig> {
     })
 }
 
+struct FieldOfRealRigs<'a> {
+    key: &'a Ident,
+}
+
+impl Violation for FieldOfRealRigs<'_> {
+    const CODE: Code = E614;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { key } = self;
+        let field = &key.node;
+        let help = match field.as_str() {
+            name if [schema::NOISE.name, schema::RESOLUTION.name].contains(&name) => {
+                format!(
+                    "write it inside the link, as in `link = virtual({field}: …)`, or remove it"
+                )
+            }
+            _ => format!("remove `{field}`"),
+        };
+        Diagnostic::new(
+            Self::CODE,
+            format!("`{field}` applies to real rigs only, but this rig is virtual"),
+        )
+        .at(key.span, "not used")
+        .help(help)
+    }
+}
+
 /// Fields of a real rig have no effect on a virtual one, which is reported.
 fn without_use(checker: &mut Checker, block: usize) {
     let declared = &checker.scope.blocks[block];
@@ -241,9 +292,7 @@ fn without_use(checker: &mut Checker, block: usize) {
             .field(&entry.key.node)
             .is_some_and(|field| field.real_rig_only)
         {
-            checker
-                .diagnostics
-                .push(rigs::field_of_real_rigs(&entry.key));
+            checker.report(FieldOfRealRigs { key: &entry.key });
         }
     }
 }
@@ -290,6 +339,18 @@ fn virtual_link<'a>(
     })
 }
 
+#[derive(Violation)]
+#[violation(
+    E401,
+    "`{field}` of a real rig must be greater than 0: readings always vary"
+)]
+#[help("write a tolerance of a few times the noise of the rig")]
+struct NeverSettles<'a> {
+    field: &'a str,
+    #[label("too small")]
+    span: Span,
+}
+
 fn settle<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
@@ -316,7 +377,7 @@ fn settle<'a>(
         if let (Some(RigKind::Real), Some(span)) = (kind, chosen.span(name))
             && bound == 0.0
         {
-            return checker.fail(rigs::never_settles(name, span));
+            return checker.fail(NeverSettles { field: name, span });
         }
     }
     Some(settle)
@@ -345,7 +406,10 @@ fn calibration(checker: &mut Checker, block: usize) -> Option<Calibration> {
         if let (Some(Some(day)), Some((_, entry))) = (due, checker.field(block, field))
             && !calendar::is_day(day)
         {
-            return checker.fail(rigs::not_a_day(day, entry.value.span));
+            return checker.fail(NotADay {
+                day,
+                span: entry.value.span,
+            });
         }
     }
     let newtons_per_count = match checker.field(block, schema::FORCE_PER_COUNT.name) {
@@ -359,7 +423,10 @@ fn calibration(checker: &mut Checker, block: usize) -> Option<Calibration> {
     if own.is_none()
         && let Some((_, entry)) = checker.field(block, schema::DISPLACEMENT_CALIBRATION_DUE.name)
     {
-        return checker.fail(rigs::day_of_no_calibration(&entry.key.node, entry.key.span));
+        return checker.fail(DayOfNoCalibration {
+            field: &entry.key.node,
+            at: entry.key.span,
+        });
     }
     let (force, displacement) = (
         checker.constant(block, schema::FORCE_UNCERTAINTY.name),

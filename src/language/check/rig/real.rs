@@ -1,25 +1,38 @@
 //! A rig that moves a real specimen: its devices fit together, and every entry that the safety of the specimen needs is there. In: the
 //! block of a rig, the limits of the run. Out: a [`RealLink`]. It opens no port.
 
-use super::axes::{self, CheckedAxis};
-use super::axis_devices;
-use super::device::{Device, device};
-use super::probe::probe;
-use super::{CheckedRig, context_of, kind};
 use crate::check::checker::Checker;
 use crate::check::declarations::limits::CheckedLimits;
 use crate::check::expressions::fields::whole as whole_number;
-use crate::check::messages::rigs as message;
-use crate::check::messages::{values, whole};
-use crate::syntax::ast::{Argument, Expr, ExprKind};
-use psd_plan::schema::rig as schema;
-use psd_plan::schema::{Field, Kind, Presence, RigKind};
-use psd_plan::schema::{limits as limits_block, plan_block};
+use crate::check::violations::{
+    BeyondLimits, DeviceCannotMeasureForce, DeviceCannotMove, ZeroFactor,
+};
+use crate::check::wording::shown;
+use crate::codes::{E401, E606, E607, E609, E613, E614, E619};
+use crate::syntax::ast::{Argument, Expr, ExprKind, Ident};
+use psd_plan::schema::{
+    Field, Kind, Presence, RigKind, limits, limits as limits_block, plan_block, rig as schema,
+};
 use psd_plan::{Datum, Dialect, Interval, Link, PretestCheck, ReadingRules, RealLink, SafeState};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::Span;
 use psd_text::units::Dimension;
+
+use super::axes::{self, CheckedAxis};
+use super::device::{Device, device};
+use super::probe::probe;
+use super::{CheckedRig, axis_devices, context_of, kind};
 
 /// A request is sent after 0, T and 3T, and abandoned after 7T.
 const PATIENCE: f64 = 7.0;
+
+#[derive(Violation)]
+#[violation(E619, "no operator is named: a real rig requires one")]
+#[help("add `--operator \"A. Tester\"`, or `operator` in the `plan` block")]
+struct NoOperatorNamed {
+    #[label("moves a real specimen")]
+    rig: Span,
+}
 
 /// A run on a real rig must name its operator, who is responsible for every move.
 pub fn check_operator(checker: &mut Checker, particulars: &[(&'static str, String)]) {
@@ -29,7 +42,7 @@ pub fn check_operator(checker: &mut Checker, particulars: &[(&'static str, Strin
     if let Some(block) = checker.real_rig.filter(|_| !named) {
         let declared = &checker.scope.blocks[block];
         let at = declared.name.map_or(declared.block.head, |name| name.span);
-        checker.diagnostics.push(message::no_operator_named(at));
+        checker.report(NoOperatorNamed { rig: at });
     }
 }
 
@@ -84,6 +97,42 @@ pub fn real_link(checker: &mut Checker, block: usize) -> Option<RealLink> {
     })
 }
 
+struct LinkAndDevice<'a> {
+    link: Span,
+    field: &'a str,
+    other: Span,
+}
+
+impl Violation for LinkAndDevice<'_> {
+    const CODE: Code = E607;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { link, field, other } = self;
+        let help = if field == schema::LOAD_CELL.name {
+            "write `actuator` instead of `link` for the device that moves"
+        } else {
+            "write `link` for one device that moves and measures force; write `actuator` and `load_cell` for two"
+        };
+        Diagnostic::new(
+        Self::CODE,
+        format!(
+            "a rig has a `link`, or an `actuator` and a `load_cell`, but not `link` and `{field}`"
+        ),
+    )
+    .at(other, "conflicts with `link`")
+    .at(link, "this")
+    .help(help)
+    }
+}
+
+#[derive(Violation)]
+#[violation(E607, "`load_cell` requires an `actuator`")]
+#[help("add a line such as\nactuator = serial(port: \"/dev/ttyUSB0\", dialect: grbl)")]
+struct LoadCellAlone {
+    #[label("no actuator")]
+    at: Span,
+}
+
 /// The device that moves, and the device that measures the force if it is a separate one.
 fn devices(
     checker: &mut Checker,
@@ -104,12 +153,12 @@ fn devices(
             .map(|at| (schema::ACTUATOR.name, at))
             .or(load_cell.map(|at| (schema::LOAD_CELL.name, at))),
     ) {
-        return checker.fail(message::link_and_device(link, field, other));
+        return checker.fail(LinkAndDevice { link, field, other });
     }
     if let (None, Some(at)) = (actuator, load_cell)
         && !checker.misspelt(block, &[schema::ACTUATOR.name])
     {
-        return checker.fail(message::load_cell_alone(at));
+        return checker.fail(LoadCellAlone { at });
     }
     let field = if link.is_some() {
         schema::LINK.name
@@ -150,22 +199,22 @@ fn fit(
     axes: &[CheckedAxis],
 ) -> Option<()> {
     if !moving.link.dialect.abilities().moves {
-        return checker.fail(message::cannot_move(
+        return checker.fail(DeviceCannotMove {
             field,
-            &moving.link.dialect,
-            moving.dialect_at,
-        ));
+            dialect: &moving.link.dialect,
+            at: moving.dialect_at,
+        });
     }
     let cell = load_cell_device.unwrap_or(moving);
     let all_apart = !axes.is_empty() && axes.iter().all(|axis| axis.load_cell.is_some());
     if !cell.link.dialect.abilities().measures_force && !all_apart {
         let own = load_cell_device.is_some();
-        return checker.fail(message::cannot_measure_force(
+        return checker.fail(DeviceCannotMeasureForce {
             own,
             field,
-            &cell.link.dialect,
-            cell.dialect_at,
-        ));
+            dialect: &cell.link.dialect,
+            at: cell.dialect_at,
+        });
     }
     let unstated = axes.iter().find(|axis| {
         let cell = axis.load_cell.as_ref().unwrap_or(cell);
@@ -191,6 +240,39 @@ fn fit(
     }
 }
 
+struct NothingCounts<'a> {
+    key: &'a Ident,
+    dialect: &'a Dialect,
+}
+
+impl Violation for NothingCounts<'_> {
+    const CODE: Code = E614;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { key, dialect } = self;
+        let (field, name) = (&key.node, dialect.name());
+        Diagnostic::new(
+            Self::CODE,
+            format!("`{field}` has no effect: `{name}` gives the force in newtons"),
+        )
+        .at(key.span, "not used")
+        .help(format!("remove `{field}`"))
+    }
+}
+
+#[derive(Violation)]
+#[violation(
+    E609,
+    "`{}` gives raw counts, but the rig has no scale factor for them",
+    dialect.name()
+)]
+#[help("add to the rig, from its calibration,\nforce_per_count = 0.0123 N\nzero_offset = 8123")]
+struct CountsWithoutForce<'a> {
+    dialect: &'a Dialect,
+    #[label("counts, not newtons")]
+    at: Span,
+}
+
 /// Raw counts need a scale factor; a force in newtons must have none.
 fn counts(checker: &mut Checker, block: usize, dialect: &Dialect, cell: &Device) -> Option<()> {
     if !dialect.abilities().counts {
@@ -198,17 +280,67 @@ fn counts(checker: &mut Checker, block: usize, dialect: &Dialect, cell: &Device)
             .into_iter()
             .find_map(|field| checker.field(block, field));
         return match given {
-            Some((_, entry)) => checker.fail(message::nothing_counts(&entry.key, dialect)),
+            Some((_, entry)) => checker.fail(NothingCounts {
+                key: &entry.key,
+                dialect,
+            }),
             None => Some(()),
         };
     }
     match checker.field(block, schema::FORCE_PER_COUNT.name) {
         None if checker.misspelt(block, &[schema::FORCE_PER_COUNT.name]) => None,
-        None => checker.fail(message::counts_without_force(dialect, cell.dialect_at)),
+        None => checker.fail(CountsWithoutForce {
+            dialect,
+            at: cell.dialect_at,
+        }),
         Some((_, entry)) => match checker.constant(block, schema::FORCE_PER_COUNT.name)? {
-            0.0 => checker.fail(values::zero(schema::FORCE_PER_COUNT.name, entry.value.span)),
+            0.0 => checker.fail(ZeroFactor {
+                field: schema::FORCE_PER_COUNT.name,
+                span: entry.value.span,
+            }),
             _ => Some(()),
         },
+    }
+}
+
+/// `given`: the watchdog is specified at `at`; otherwise the device with the longest request is.
+struct WatchdogTooShort {
+    watchdog: f64,
+    silence: f64,
+    given: bool,
+    at: Span,
+}
+
+impl Violation for WatchdogTooShort {
+    const CODE: Code = E613;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            watchdog,
+            silence,
+            given,
+            at,
+        } = self;
+        let time = |value: f64| shown(value, Dimension::TIME);
+        // Rounded down to a whole millisecond, so that seven of it are inside the watchdog time.
+        let shorter = (watchdog / 7.0 * 1e3).floor() / 1e3;
+        let (watchdog, silence) = (time(watchdog), time(silence));
+        let label = if given {
+            format!("{watchdog}, one request takes up to {silence}")
+        } else {
+            format!("a request takes up to {silence}")
+        };
+        let other = if shorter > 0.0 {
+            format!(", or a `reply_timeout` of at most {}", time(shorter))
+        } else {
+            String::new()
+        };
+        Diagnostic::new(
+        Self::CODE,
+        format!("the watchdog of {watchdog} is shorter than one request: {silence} (7 × `reply_timeout`)"),
+    )
+    .at(at, label)
+    .help(format!("write `watchdog = {silence}` or more{other}"))
     }
 }
 
@@ -229,12 +361,12 @@ fn check_watchdog<'d>(
     let given = checker
         .field(block, schema::WATCHDOG.name)
         .map(|(_, entry)| entry.value.span);
-    checker.fail(message::watchdog_too_short(
+    checker.fail(WatchdogTooShort {
         watchdog,
         silence,
-        given.is_some(),
-        given.unwrap_or(slowest.at),
-    ))
+        given: given.is_some(),
+        at: given.unwrap_or(slowest.at),
+    })
 }
 
 /// The pre-test check of the rig; not needed if each axis has a separate one.
@@ -253,16 +385,26 @@ fn pretest_check(
     probe(checker, &chosen, context)
 }
 
+#[derive(Violation)]
+#[violation(E401, "`{field}` must be odd, so that one reading is the median")]
+#[help("write {} or {}", value.saturating_sub(1), value + 1)]
+struct EvenCount<'a> {
+    field: &'a str,
+    #[label("even")]
+    span: Span,
+    value: u32,
+}
+
 fn readings(checker: &mut Checker, block: usize) -> Option<ReadingRules> {
     let samples = checker.count(block, schema::SAMPLES.name);
     if let (Some(samples), Some((_, entry))) = (samples, checker.field(block, schema::SAMPLES.name))
         && samples.is_multiple_of(2)
     {
-        return checker.fail(values::even(
-            schema::SAMPLES.name,
-            entry.value.span,
-            samples,
-        ));
+        return checker.fail(EvenCount {
+            field: schema::SAMPLES.name,
+            span: entry.value.span,
+            value: samples,
+        });
     }
     let (rate, resolution, noise) = (
         checker.constant(block, schema::RATE.name),
@@ -281,6 +423,77 @@ fn readings(checker: &mut Checker, block: usize) -> Option<ReadingRules> {
         force_range: force_range?,
         frozen_after: frozen_after?,
     })
+}
+
+/// `a`, `b` and `c`
+fn all_of(words: &[&str]) -> String {
+    let quoted: Vec<String> = words.iter().map(|word| format!("`{word}`")).collect();
+    match quoted.as_slice() {
+        [most @ .., last] if !most.is_empty() => format!("{} and {last}", most.join(", ")),
+        other => other.concat(),
+    }
+}
+
+fn example_of_limit(field: &str) -> &'static str {
+    match field {
+        _ if field == limits::NAMES.displacement => "displacement = -2 mm .. 25 mm",
+        _ if field == limits::NAMES.force => "force = -2 kN .. 12 kN",
+        _ => "speed = 10 mm/s",
+    }
+}
+
+struct RealRigIncomplete<'a> {
+    name: Option<&'a Ident>,
+    head: Span,
+    missing: &'a [&'a Field],
+    unbounded: &'a [&'a str],
+}
+
+impl Violation for RealRigIncomplete<'_> {
+    const CODE: Code = E606;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            name,
+            head,
+            missing,
+            unbounded,
+        } = self;
+        let name = name.map_or("", |name| name.node.as_str());
+        let fields: Vec<&str> = missing.iter().map(|field| field.name).collect();
+        let mut lacks = Vec::new();
+        let mut help = Vec::new();
+        if !fields.is_empty() {
+            lacks.push(all_of(&fields));
+            help.push("add to the rig".to_owned());
+            help.extend(missing.iter().map(|field| field.example.to_owned()));
+        }
+        if !unbounded.is_empty() {
+            lacks.push(format!("limits on {}", all_of(unbounded)));
+            help.push(
+                if unbounded.len() > 1 {
+                    "write them in `limits`, as in"
+                } else {
+                    "write it in `limits`, as in"
+                }
+                .to_owned(),
+            );
+            help.extend(
+                unbounded
+                    .iter()
+                    .map(|field| example_of_limit(field).to_owned()),
+            );
+        }
+        Diagnostic::new(
+            Self::CODE,
+            format!(
+                "real rig `{name}` is incomplete: it lacks {}",
+                lacks.join(", and ")
+            ),
+        )
+        .at(head, "real rig")
+        .help(help.join("\n"))
+    }
 }
 
 /// Reports the missing entries of each real rig; for the rig of the run also whether it is limited, and allows its own moves.
@@ -316,12 +529,12 @@ pub fn complete(
             .filter(|_| of_run == Some(block))
             .map_or_else(Vec::new, |limits| unbounded(checker, limits));
         if !missing.is_empty() || !unbounded.is_empty() {
-            checker.diagnostics.push(message::incomplete(
-                declared.name,
-                declared.block.head,
-                &missing,
-                &unbounded,
-            ));
+            checker.report(RealRigIncomplete {
+                name: declared.name,
+                head: declared.block.head,
+                missing: &missing,
+                unbounded: &unbounded,
+            });
         }
     }
     if let (
@@ -393,26 +606,27 @@ fn check_own_moves(
         (given, limits.displacement_at, beyond)
     {
         let interval = limits.limits.displacement;
-        checker.diagnostics.push(whole::beyond_limits(
-            schema::PRETEST_CHECK.name,
-            probe,
-            Dimension::LENGTH,
-            pretest_check.value.span,
-            interval,
-            at,
-        ));
+        checker.report(BeyondLimits {
+            field: schema::PRETEST_CHECK.name,
+            value: probe,
+            dimension: Dimension::LENGTH,
+            span: pretest_check.value.span,
+            limit: interval,
+            limit_at: at,
+        });
     }
     let interval = limits.limits.speed;
     match (checker.field(block, schema::SPEED.name), limits.speed_at) {
         (Some((_, speed)), Some(at)) if !interval.contains(link.own_speed) => {
-            let diagnostic = whole::beyond_limits(
-                schema::SPEED.name,
-                link.own_speed,
-                Dimension::VELOCITY,
-                speed.value.span,
-                interval,
-                at,
-            );
+            let diagnostic = BeyondLimits {
+                field: schema::SPEED.name,
+                value: link.own_speed,
+                dimension: Dimension::VELOCITY,
+                span: speed.value.span,
+                limit: interval,
+                limit_at: at,
+            }
+            .diagnostic();
             checker.diagnostics.push(diagnostic);
         }
         // The default does not exceed the limit.

@@ -1,16 +1,30 @@
 //! `zero_drift = within(…)` of a rig: the allowed zero drift in a run, and how the zero is read. In: the block of a rig. Out: a
 //! [`DriftCheck`]. It reads nothing.
 
-use super::{CheckedRig, context_of};
 use crate::check::checker::Checker;
-use crate::check::messages::rigs as message;
-use psd_plan::schema::RigKind;
-use psd_plan::schema::rig as schema;
+use crate::check::wording::shown;
+use crate::codes::{E652, W709};
+use psd_plan::schema::{RigKind, rig as schema};
 use psd_plan::{DriftCheck, Link, ZeroAfter};
+use psd_text::diagnostic::Violation;
+use psd_text::source::Span;
 use psd_text::units::Dimension;
+
+use super::{CheckedRig, context_of};
 
 /// Number of standard deviations of one reading that the difference of two readings rarely exceeds by chance, in a long run.
 const CHANCE: f64 = 5.0;
+
+#[derive(Violation)]
+#[violation(
+    E652,
+    "the specimen of a virtual rig cannot be taken off its load cell"
+)]
+#[help("write `after: start`: the rig returns to its start position and reads the zero there")]
+struct NoOperatorToFreeIt {
+    #[label("requires an operator")]
+    at: Span,
+}
 
 /// The zero-drift check of a rig: `Some(None)` if it has none, None if it has an error.
 pub fn zero_drift(
@@ -35,9 +49,7 @@ pub fn zero_drift(
             .variant
             .name
         {
-            "free" if kind == Some(RigKind::Virtual) => {
-                checker.fail(message::no_operator_to_free_it(at))
-            }
+            "free" if kind == Some(RigKind::Virtual) => checker.fail(NoOperatorToFreeIt { at }),
             "free" => Some(ZeroAfter::Free),
             "nowhere" => Some(ZeroAfter::Nowhere),
             _ => Some(ZeroAfter::Start),
@@ -49,6 +61,40 @@ pub fn zero_drift(
         over: over?,
         after: after?,
     }))
+}
+
+/// A source of random changes of a reading.
+#[derive(Clone, Copy)]
+struct ReadingScatter {
+    name: &'static str,
+    /// In SI units.
+    size: f64,
+    /// The largest change that it may cause, in SI units.
+    reach: f64,
+}
+
+#[derive(Violation)]
+#[violation(
+    W709,
+    "{what} drift tolerance {allowed} is within the scatter of the readings",
+    allowed = shown(allowed, dimension)
+)]
+#[help(
+    "write at least {reach}, or reduce the {name}",
+    name = scatter.name,
+    reach = shown(scatter.reach, dimension)
+)]
+struct DriftWithinNoise<'a> {
+    what: &'a str,
+    allowed: f64,
+    scatter: ReadingScatter,
+    dimension: Dimension,
+    #[label(
+        "{name} of one reading: {size}",
+        name = scatter.name,
+        size = shown(scatter.size, dimension)
+    )]
+    at: Span,
 }
 
 /// A tolerance that noise or resolution alone may exceed.
@@ -69,34 +115,35 @@ pub fn warn(checker: &mut Checker, rig: &CheckedRig) {
             }),
     };
     if check.force < CHANCE * noise {
-        let diagnostic = message::drift_within_noise(
-            schema::FORCE_DRIFT.name,
-            check.force,
-            message::ReadingScatter {
+        let diagnostic = DriftWithinNoise {
+            what: schema::FORCE_DRIFT.name,
+            allowed: check.force,
+            scatter: ReadingScatter {
                 name: schema::NOISE.name,
                 size: noise,
                 reach: CHANCE * noise,
             },
-            Dimension::FORCE,
+            dimension: Dimension::FORCE,
             at,
-        );
+        }
+        .diagnostic();
         checker.diagnostics.push(diagnostic);
     }
     if let Some(displacement) = check
         .displacement
         .filter(|displacement| *displacement < resolution)
     {
-        let scatter = message::ReadingScatter {
+        let scatter = ReadingScatter {
             name: schema::RESOLUTION.name,
             size: resolution,
             reach: resolution,
         };
-        checker.diagnostics.push(message::drift_within_noise(
-            schema::DISPLACEMENT_DRIFT.name,
-            displacement,
+        checker.report(DriftWithinNoise {
+            what: schema::DISPLACEMENT_DRIFT.name,
+            allowed: displacement,
             scatter,
-            Dimension::LENGTH,
+            dimension: Dimension::LENGTH,
             at,
-        ));
+        });
     }
 }

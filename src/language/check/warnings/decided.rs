@@ -4,13 +4,15 @@
 use std::collections::BTreeMap;
 
 use crate::check::checker::Checker;
-use crate::check::messages::whole as message;
+use crate::check::wording::shown;
+use crate::codes::{E667, W732};
 use crate::syntax::ast::{Expr, ExprKind};
 use psd_plan::formula::{Formula, Function, Part, ProcedureId, ResultReference};
 use psd_plan::schema::Possible;
 use psd_plan::{Comparison, Condition, Limits, Procedure, ProcedureKind, Requirement, Test};
-use psd_text::diagnostic::Diagnostic;
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 /// One end of an interval: the value, and whether it is excluded.
 type End = (f64, bool);
@@ -139,6 +141,46 @@ struct Together {
     high: Span,
 }
 
+/// A requirement on numbers of the plan alone. `met`: whether they meet it.
+fn without_result(condition: &str, met: bool, span: Span) -> Diagnostic {
+    let (code, always) = if met {
+        (W732, "always")
+    } else {
+        (E667, "never")
+    };
+    Diagnostic::new(
+        code,
+        format!("`{condition}` is {always} met: it reads no result"),
+    )
+    .at(span, "decided before the run")
+    .help("compare a result with a limit, as in `hit.max_displacement < 45 mm`")
+}
+
+/// `other`: the requirement that excludes the one at `span`.
+struct ContradictoryConditions {
+    span: Span,
+    other: Span,
+}
+
+impl Violation for ContradictoryConditions {
+    const CODE: Code = E667;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { span, other } = self;
+        let diagnostic = Diagnostic::new(
+            Self::CODE,
+            "no run meets these conditions together: no value is within both",
+        )
+        .at(span, "excludes the other condition");
+        let diagnostic = if other == span {
+            diagnostic
+        } else {
+            diagnostic.at(other, "the other condition")
+        };
+        diagnostic.help("change one of the limits, or remove one of the conditions")
+    }
+}
+
 /// Reports requirements that are decided before the run. `stays_positive`: whether a procedure
 /// certainly moves the specimen to no negative displacement.
 pub fn check(
@@ -161,7 +203,7 @@ pub fn check(
                     let met = allowed.contains(Values::closed(value, value));
                     checker
                         .diagnostics
-                        .push(message::without_result(&condition.text, met, span));
+                        .push(without_result(&condition.text, met, span));
                 }
                 continue;
             }
@@ -197,9 +239,7 @@ pub fn check(
                     })
                     .is_empty();
                 let other = if against_low { before.low } else { before.high };
-                checker
-                    .diagnostics
-                    .push(message::contradictory(span, other));
+                checker.report(ContradictoryConditions { span, other });
                 continue;
             }
             if both.low != before.values.low {
@@ -265,6 +305,42 @@ struct Found {
     limit: f64,
 }
 
+#[derive(Violation)]
+#[violation(E667, "no run meets `{condition}`: this result is never below 0")]
+#[help("write a limit that a run can meet")]
+struct NeverNegative<'a> {
+    condition: &'a str,
+    #[label("never met")]
+    span: Span,
+}
+
+/// `limit`: the largest displacement \[m\] that the limits allow.
+#[derive(Violation)]
+#[violation(
+    E667,
+    "no run meets `{condition}`: a run that exceeds {limit} is stopped",
+    limit = shown(limit, Dimension::LENGTH)
+)]
+#[help(
+    "write a value below {limit}, or widen `displacement` in `limits` if the rig and the specimen allow it",
+    limit = shown(limit, Dimension::LENGTH)
+)]
+struct BeyondTheLimit<'a> {
+    condition: &'a str,
+    limit: f64,
+    #[label("never met")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(W732, "every run meets `{condition}`: this result is never below 0")]
+#[help("write a limit that a run can miss, or remove the requirement")]
+struct AlwaysMet<'a> {
+    condition: &'a str,
+    #[label("always met")]
+    span: Span,
+}
+
 /// A condition that no run, or every run, meets. A run that a limit stops meets none.
 fn alone(condition: &Condition, allowed: Values, found: Found, span: Span) -> Option<Diagnostic> {
     let limited = Values {
@@ -272,12 +348,31 @@ fn alone(condition: &Condition, allowed: Values, found: Found, span: Span) -> Op
         ..Values::ALL
     };
     if allowed.and(found.by_nature).is_empty() {
-        return Some(message::never_negative(&condition.text, span));
+        return Some(
+            NeverNegative {
+                condition: &condition.text,
+                span,
+            }
+            .diagnostic(),
+        );
     }
     if allowed.and(limited).is_empty() {
         let limit = found.limit;
-        return Some(message::beyond_the_limit(&condition.text, limit, span));
+        return Some(
+            BeyondTheLimit {
+                condition: &condition.text,
+                limit,
+                span,
+            }
+            .diagnostic(),
+        );
     }
     let some = found.by_nature != Values::ALL;
-    (some && allowed.contains(found.by_nature)).then(|| message::always_met(&condition.text, span))
+    (some && allowed.contains(found.by_nature)).then(|| {
+        AlwaysMet {
+            condition: &condition.text,
+            span,
+        }
+        .diagnostic()
+    })
 }

@@ -1,16 +1,18 @@
 //! Requirements to which the guarded rule cannot apply: they read a result that never has an uncertainty (W729), or the rig does not declare
 //! its calibrations (W736). In: procedures, requirements, the rule, the rig. Out: warnings. It knows no run.
 
-use psd_plan::procedures::escalate::block as escalate;
-use psd_plan::procedures::impact::block as impact;
 use std::collections::BTreeSet;
 
 use crate::check::checker::Checker;
-use crate::check::messages::values as message;
+use crate::codes::{W729, W736};
 use psd_plan::formula::Part;
+use psd_plan::procedures::escalate::block as escalate;
+use psd_plan::procedures::impact::block as impact;
 use psd_plan::report::undeclared::{DISPLACEMENT_CALIBRATION, FORCE_CALIBRATION};
 use psd_plan::schema::{block_of_words, rig};
 use psd_plan::{DecisionRule, Plan, Procedure, Requirement};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::Span;
 
 /// Exact results that are not measured: those from the plan, and the closure of the energy balance.
 const EXACT: [&str; 3] = [
@@ -18,6 +20,28 @@ const EXACT: [&str; 3] = [
     impact::ENERGY_ERROR.name,
     escalate::ENERGY_ERRORS.name,
 ];
+
+/// Under the guarded rule, and on a rig that does not declare these `fields`, no measured result is decided.
+struct PartialUnderGuard<'a> {
+    rig: &'a str,
+    fields: &'a [&'a str],
+    head: Span,
+}
+
+impl Violation for PartialUnderGuard<'_> {
+    const CODE: Code = W736;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { rig, fields, head } = self;
+        let fields: Vec<String> = fields.iter().map(|field| format!("`{field}`")).collect();
+        Diagnostic::new(
+            Self::CODE,
+            format!("under `guarded` nothing that is measured can be decided on rig `{rig}`"),
+        )
+        .at(head, format!("without {}", fields.join(" and ")))
+        .help(format!("declare {}", fields.join(" and ")))
+    }
+}
 
 /// Warns if every requirement on a measured result will be inconclusive, because the real rig of the run declares no calibration.
 pub fn warn_of_partial(checker: &mut Checker, plan: &Plan, rig_block: Option<usize>) {
@@ -48,10 +72,25 @@ pub fn warn_of_partial(checker: &mut Checker, plan: &Plan, rig_block: Option<usi
     .collect();
     if !fields.is_empty() && plan.requirements.iter().any(measured) {
         let head = checker.scope.blocks[block].block.head;
-        checker
-            .diagnostics
-            .push(message::partial_under_guard(&plan.rig.name, &fields, head));
+        checker.report(PartialUnderGuard {
+            rig: &plan.rig.name,
+            fields: &fields,
+            head,
+        });
     }
+}
+
+/// `result` is read by a requirement under the guarded rule, and never has an uncertainty.
+#[derive(Violation)]
+#[violation(
+    W729,
+    "`{result}` never has an uncertainty: guarded acceptance has no guard band for it"
+)]
+#[help("write a limit that includes a margin, or require a measured result")]
+struct NothingToGuard<'a> {
+    result: &'a str,
+    #[label("simple acceptance is used")]
+    required: Span,
 }
 
 pub fn warn(
@@ -83,9 +122,10 @@ pub fn warn(
             {
                 let required = checker.scope.requirements[index].condition.span;
                 let read = format!("{}.{}", procedure.name, reference.name);
-                checker
-                    .diagnostics
-                    .push(message::nothing_to_guard(&read, required));
+                checker.report(NothingToGuard {
+                    result: &read,
+                    required,
+                });
             }
         }
     }

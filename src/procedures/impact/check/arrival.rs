@@ -1,18 +1,40 @@
 //! Whether a striker arrives at all: the time to cross its gap against the duration of the impact. In: striker and duration, SI. Out: an
 //! error if the impact is over before the contact begins. It knows neither specimen nor contact.
 
+use crate::codes::E638;
 use crate::language::check::checker::Checker;
-use crate::language::check::messages::whole as fault;
+use crate::language::check::wording::{shown, time};
 use crate::plan::Striker;
-use crate::schema::Kind;
-use crate::schema::methods;
-use crate::schema::striker;
+use crate::schema::{Kind, methods, striker};
+use crate::text::diagnostic::Violation;
+use crate::text::source::Span;
+use crate::units::Dimension;
 
 /// The time in which a striker crosses its gap, s: t of gap = v t + g t²/2.
 fn time_to_arrive(striker: &Striker) -> f64 {
     let reached =
         (striker.velocity * striker.velocity + 2.0 * striker.gravity * striker.gap).sqrt();
     2.0 * striker.gap / (striker.velocity + reached)
+}
+
+/// `gap` and `velocity` as text, `arrives` and `duration` in \[s\].
+#[derive(Violation)]
+#[violation(
+    E638,
+    "`{striker}` never arrives: it takes {} for its gap of {gap}",
+    time(arrives),
+    gap = shown(gap, Dimension::LENGTH)
+)]
+#[help("reduce the `gap`, or increase the `duration`")]
+struct NeverArrives<'a> {
+    striker: &'a str,
+    gap: f64,
+    #[label("ends after {}", time(duration))]
+    duration_at: Span,
+    arrives: f64,
+    duration: f64,
+    #[label("{gap} before the specimen", gap = shown(gap, Dimension::LENGTH))]
+    gap_at: Span,
 }
 
 /// Refuses a striker that does not cross its gap within the `duration` \[s\] of the impact `block`.
@@ -30,14 +52,14 @@ pub(crate) fn check(checker: &mut Checker, block: usize, striker: &Striker, dura
         .find(|(_, it)| it.name.is_some_and(|name| name.node == striker.name));
     let gap = declared.and_then(|(declared, _)| checker.field(declared, striker::GAP.name));
     let Some((_, gap)) = gap else { return };
-    checker.diagnostics.push(fault::never_arrives(
-        &striker.name,
-        striker.gap,
-        gap.span,
+    checker.report(NeverArrives {
+        striker: &striker.name,
+        gap: striker.gap,
+        gap_at: gap.span,
         arrives,
         duration,
-        at.span,
-    ));
+        duration_at: at.span,
+    });
 }
 
 #[cfg(test)]

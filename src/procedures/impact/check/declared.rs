@@ -1,11 +1,10 @@
 //! The check of an impact against striker and specimen: its time step, its end, whether the striker arrives. In: an impact and the
 //! declarations of the plan. Out: errors and warnings.
 
-use super::time_step::predicted_critical;
-use super::{arrival, warnings};
+use crate::codes::W712;
 use crate::language::check::checker::Checker;
 use crate::language::check::declared::Declared;
-use crate::language::check::messages::values;
+use crate::language::check::violations::NoEffect;
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::plan::formula::{Formula, NoResults};
 use crate::plan::procedures::impact::block as schema;
@@ -13,12 +12,15 @@ use crate::plan::{
     Contact, Frame, Impact, ImpactTarget, MOST_STEPS, PointTarget, Specimen, StoreyTarget, Striker,
     Until, steps_in,
 };
-use crate::procedures::stepping::check::beyond_duration;
-use crate::procedures::stepping::check::frame_check;
+use crate::procedures::common::violations::TooManyInProcedure;
 use crate::procedures::stepping::check::frame_check::FrameSteps;
-use crate::procedures::stepping::check::{integrator_check, mode_check};
+use crate::procedures::stepping::check::{
+    beyond_duration, frame_check, integrator_check, mode_check,
+};
 use crate::schema::methods;
-use crate::text::diagnostic::Code;
+
+use super::time_step::predicted_critical;
+use super::{arrival, warnings};
 
 /// The slowest striker must arrive, the time step must follow the fastest.
 pub(crate) struct Strikers<'a> {
@@ -89,9 +91,13 @@ fn on_point(
         let at = checker.value_or_head(block, methods::DURATION.name);
         let steps = steps_in(duration, time_step);
         let help = "reduce `duration` or increase `time_step`";
-        checker
-            .diagnostics
-            .push(values::too_many("steps", steps, MOST_STEPS, at, help));
+        checker.report(TooManyInProcedure {
+            what: "steps",
+            found: steps,
+            most: MOST_STEPS,
+            span: at,
+            help,
+        });
         return;
     }
     returns(checker, block, impact.until, striker);
@@ -101,7 +107,7 @@ fn on_point(
     integrator_check::stable(checker, block, impact, point, striker, specimen);
     let allowed = checker.diagnostics[before..]
         .iter()
-        .any(|fault| fault.code == Code::BeyondStability);
+        .any(|fault| fault.code == W712);
     warnings::time_step(checker, block, impact, striker, specimen, allowed);
     warnings::mechanism(checker, block, impact, specimen);
 }
@@ -155,11 +161,11 @@ fn returns(checker: &mut Checker, block: usize, until: Until, striker: &Striker)
     ) {
         let message = "`rebound` never ends this run: a falling striker always returns".to_owned();
         let help = "write `until = striker_stop` or `until = duration`, or remove `gravity`";
-        checker.diagnostics.push(values::no_effect(
+        checker.report(NoEffect {
             message,
-            entry.value.span,
-            "continues to its `duration`",
+            span: entry.value.span,
+            label: "continues to its `duration`",
             help,
-        ));
+        });
     }
 }

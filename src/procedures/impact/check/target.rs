@@ -1,18 +1,22 @@
 //! The structure that a striker hits: the fields of one degree of freedom, or of one floor of a frame. In: a block. Out: the target, or
 //! errors if a field belongs to the other one.
 
-use crate::plan::procedures::impact::block as impact;
-use crate::schema::frames;
-use crate::schema::procedures::STIFFNESS;
 use std::rc::Rc;
 
+use crate::codes::E640;
 use crate::language::check::checker::Checker;
 use crate::language::check::declarations::specimen;
 use crate::language::check::expressions::fields::whole;
-use crate::language::check::messages::frames as fault;
+use crate::language::codes::E641;
 use crate::plan::formula::Formula;
+use crate::plan::procedures::impact::block as impact;
 use crate::plan::{Frame, ImpactTarget, PointTarget, StoreyTarget};
+use crate::procedures::common::violations::NoUseOnAFrame;
 use crate::procedures::shake;
+use crate::schema::frames;
+use crate::schema::procedures::STIFFNESS;
+use crate::text::diagnostic::{Code, Diagnostic, Violation};
+use crate::text::source::Span;
 use crate::units::{Dimension, display};
 
 /// One degree of freedom, of the specimen at the block `tested`.
@@ -70,12 +74,12 @@ pub(crate) fn storey(
     for (field, help) in own {
         if let Some((_, entry)) = checker.field(block, field) {
             let at = entry.key.span;
-            checker.diagnostics.push(fault::no_use_on_a_frame(
+            checker.report(NoUseOnAFrame {
                 field,
-                "an impact on a storey",
+                of: "an impact on a storey",
                 at,
                 help,
-            ));
+            });
             foreign = true;
         }
     }
@@ -89,6 +93,56 @@ pub(crate) fn storey(
         damping: damping?,
         damping_uncertainty: damping_uncertainty?,
     }))
+}
+
+/// A frame without the floor that the striker hits.
+#[derive(Violation)]
+#[violation(
+    E640,
+    "struck storey missing: the frame `{specimen}` has {storeys} storeys"
+)]
+#[help("add a line `storey = {storeys}`; the lowest is 1")]
+struct WhichStorey<'a> {
+    specimen: &'a str,
+    storeys: usize,
+    #[label("storey missing")]
+    at: Span,
+    #[label("{storeys} storeys")]
+    declared: Span,
+}
+
+struct NoSuchStorey<'a> {
+    specimen: &'a str,
+    storeys: usize,
+    at: Span,
+    declared: Span,
+}
+
+impl Violation for NoSuchStorey<'_> {
+    const CODE: Code = E640;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            specimen,
+            storeys,
+            at,
+            declared,
+        } = self;
+        let has = if storeys == 1 {
+            "one storey".to_owned()
+        } else {
+            format!("{storeys} storeys")
+        };
+        Diagnostic::new(
+            Self::CODE,
+            format!(
+                "storey does not exist: frame `{specimen}` has {has}, counted from the ground up"
+            ),
+        )
+        .at(at, "no such storey")
+        .at(declared, has)
+        .help(format!("write `storey = {storeys}` for the top one"))
+    }
 }
 
 /// The struck floor, from 0.
@@ -108,13 +162,23 @@ fn struck_storey(
     );
     let storeys = frame.map(|frame| frame.degrees_of_freedom());
     let Some((_, entry)) = checker.field(block, impact::STOREY.name) else {
-        return checker.fail(fault::which_storey(name, storeys?, head, declared));
+        return checker.fail(WhichStorey {
+            specimen: name,
+            storeys: storeys?,
+            at: head,
+            declared,
+        });
     };
     let at = entry.value.span;
     let storey = whole(checker.constant(block, impact::STOREY.name)?)?;
     let storey = usize::try_from(storey).ok()?;
     if storey > storeys? {
-        return checker.fail(fault::no_such_storey(name, storeys?, at, declared));
+        return checker.fail(NoSuchStorey {
+            specimen: name,
+            storeys: storeys?,
+            at,
+            declared,
+        });
     }
     storey.checked_sub(1)
 }
@@ -143,6 +207,35 @@ fn coefficient(
     })
 }
 
+#[derive(Violation)]
+#[violation(
+    E641,
+    "`{field}` requires a frame, but this impact strikes one degree of freedom"
+)]
+#[help("{}", help)]
+struct OnlyOnAFrame<'a> {
+    field: &'a str,
+    #[label("no effect here")]
+    at: Span,
+    help: &'a str,
+}
+
+#[derive(Violation)]
+#[violation(
+    E640,
+    "specimen `{specimen}` has no storeys, but the impact has `storey`"
+)]
+#[help(
+    "remove `storey`, or write `storeys = [storey(mass: 2 t, stiffness: 3 MN/m)]` in the specimen"
+)]
+struct StoreyOfNone<'a> {
+    specimen: &'a str,
+    #[label("no storeys to strike")]
+    at: Span,
+    #[label("no storeys")]
+    declared: Span,
+}
+
 /// Refuses the fields of a frame in an impact on one degree of freedom. `coefficient`: what to write instead of a damping ratio.
 fn no_frame(
     checker: &mut Checker,
@@ -164,7 +257,11 @@ fn no_frame(
     for (field, hint) in hints {
         if let Some((_, entry)) = checker.field(block, field) {
             let at = entry.key.span;
-            sound = checker.fail(fault::of_a_frame_only(field, at, hint));
+            sound = checker.fail(OnlyOnAFrame {
+                field,
+                at,
+                help: hint,
+            });
         }
     }
     if let (Some((_, entry)), Some(specimen)) =
@@ -175,7 +272,11 @@ fn no_frame(
             tested.name.map_or("", |name| name.node.as_str()),
             tested.block.head,
         );
-        sound = checker.fail(fault::storey_of_none(name, at, declared));
+        sound = checker.fail(StoreyOfNone {
+            specimen: name,
+            at,
+            declared,
+        });
     }
     sound
 }

@@ -1,15 +1,22 @@
 //! The check of the steps of a frame. In: a block, its frame, damping and stepping. Out: errors and warnings, or the properties of the
 //! frame and its time step. It knows no striker and no ground.
 
-use super::beyond_duration;
-use super::mode_check::warn_of_damping_twice;
+use crate::codes::E627;
 use crate::language::check::checker::Checker;
-use crate::language::check::messages::{frames as fault, methods as stability, values, whole};
+use crate::language::check::violations::NoEffect;
 use crate::physics::structure::frame_properties::FrameProperties;
 use crate::physics::structure::storeys_of;
 use crate::plan::formula::NoResults;
 use crate::plan::{Frame, Integrator, MOST_STEPS, Mode, ShakeDamping, Stepping, steps_in};
+use crate::procedures::common::violations::{
+    StepAboveCritical, TooManyInProcedure, UnstableAsAllowed, UnstableStep,
+};
 use crate::schema::{frames, methods, specimen};
+use crate::text::diagnostic::Violation;
+use crate::text::source::Span;
+
+use super::beyond_duration;
+use super::mode_check::warn_of_damping_twice;
 
 /// The steps of a frame, and their duration \[s\], if it is known before the run.
 pub struct FrameSteps<'a> {
@@ -18,6 +25,25 @@ pub struct FrameSteps<'a> {
     pub damping: &'a ShakeDamping,
     pub stepping: &'a Stepping,
     pub duration: Option<f64>,
+}
+
+#[derive(Violation)]
+#[violation(E627, "number of damping ratios differs: {found} for {modes} modes")]
+#[help("write one ratio per mode, the longest period first, or one number for Rayleigh damping")]
+struct DampingRatios {
+    found: usize,
+    modes: usize,
+    #[label("one per mode required")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(E627, "no damping matrix has these ratios: {reason}")]
+#[help("write one ratio per mode: `damping_ratio = [2, 3] %`")]
+struct DampingImpossible<'a> {
+    reason: &'a str,
+    #[label("not possible")]
+    span: Span,
 }
 
 /// Checks the time step of a frame as far as it is known before the run: stability, the critical step (of the modes, or `critical`'s),
@@ -42,15 +68,20 @@ pub fn check(
     if let ShakeDamping::Modal(given) = damping
         && given.len() != frame.degrees_of_freedom()
     {
-        return checker.fail(fault::damping_ratios(
-            given.len(),
-            frame.degrees_of_freedom(),
-            ratios,
-        ));
+        return checker.fail(DampingRatios {
+            found: given.len(),
+            modes: frame.degrees_of_freedom(),
+            span: ratios,
+        });
     }
     let properties = match FrameProperties::of(frame, &known) {
         Ok(properties) => properties,
-        Err(reason) => return checker.fail(fault::damping_impossible(&reason.to_string(), ratios)),
+        Err(reason) => {
+            return checker.fail(DampingImpossible {
+                reason: &reason.to_string(),
+                span: ratios,
+            });
+        }
     };
     if let (Integrator::Tangent, None, Some((_, entry))) = (
         stepping.integrator,
@@ -58,12 +89,12 @@ pub fn check(
         checker.field(block, methods::MAX_TANGENT_RATIO.name),
     ) {
         let message = "`max_tangent_ratio` has no effect: full matrices keep the initial stiffness";
-        checker.diagnostics.push(values::no_effect(
-            message.to_owned(),
-            entry.key.span,
-            "no effect",
-            "remove it",
-        ));
+        checker.report(NoEffect {
+            message: message.to_owned(),
+            span: entry.key.span,
+            label: "no effect",
+            help: "remove it",
+        });
     }
     let critical = critical(&properties);
     let step = stepping
@@ -80,29 +111,42 @@ pub fn check(
     let limit = properties.longest_stable_step(stepping.integrator, behaves);
     if step > limit {
         return checker.fail(if stepping.allow_unstable {
-            fault::unstable_though(step_at, step, limit)
+            UnstableAsAllowed {
+                span: step_at,
+                step,
+                limit,
+            }
+            .diagnostic()
         } else {
-            stability::unstable(step_at, stepping.integrator, step, limit)
+            UnstableStep {
+                span: step_at,
+                integrator: stepping.integrator,
+                step,
+                limit,
+            }
+            .diagnostic()
         });
     }
     beyond_duration(checker, block, Some(step), duration);
     if let Some(critical) = critical.filter(|critical| step > *critical) {
-        checker
-            .diagnostics
-            .push(whole::step_above_critical(step_at, step, critical));
+        checker.report(StepAboveCritical {
+            span: step_at,
+            step,
+            critical,
+        });
     }
     #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
     let rows =
         duration.map(|duration| steps_in(duration, step) * frame.degrees_of_freedom() as f64);
     if let Some(rows) = rows.filter(|rows| *rows > MOST_STEPS) {
         let help = "reduce `duration` or increase `time_step`";
-        checker.diagnostics.push(values::too_many(
-            "steps of its storeys",
-            rows,
-            MOST_STEPS,
-            at(checker, methods::DURATION.name),
+        checker.report(TooManyInProcedure {
+            what: "steps of its storeys",
+            found: rows,
+            most: MOST_STEPS,
+            span: at(checker, methods::DURATION.name),
             help,
-        ));
+        });
     }
     Some((properties, step))
 }

@@ -1,14 +1,19 @@
 //! `integrator = …` of a procedure that integrates, and the stability of its time step. In: a block. Out: the integrator, or an error.
 
+use crate::codes::{E642, W718};
 use crate::language::check::checker::Checker;
-use crate::language::check::messages::{frames, methods as fault};
+use crate::language::check::wording::shown;
 use crate::physics::integrator::stability::{Met, longest_stable_step};
 use crate::physics::structure::Matrices;
 use crate::plan::procedures::impact::block as impact;
 use crate::plan::{Behaviour, Contact, Impact, Integrator, Mode, PointTarget, Specimen, Striker};
+use crate::procedures::common::violations::{UnstableAsAllowed, UnstableStep};
 use crate::procedures::impact::check::time_step::time_step_before_the_run;
 use crate::schema::methods;
 use crate::schema::procedures::STIFFNESS;
+use crate::text::diagnostic::{Code, Diagnostic, Violation};
+use crate::text::source::Span;
+use crate::units::Dimension;
 
 /// The integrator that a block names, else the tangent form. In continuous mode the secant of two readings would include the force of a
 /// damper: there the default is explicit Newmark, if the contact law does not need the tangent.
@@ -38,6 +43,21 @@ pub fn integrator(
     })
 }
 
+#[derive(Violation)]
+#[violation(
+    E642,
+    "`{law}` requires the tangent stiffness within a step, which `{integrator}` does not have"
+)]
+#[help("write `integrator = tangent`, or `contact = rigid`, or `contact = limit(1500 N)`")]
+struct LawNeedsTheTangent<'a> {
+    integrator: &'a str,
+    #[label("requires a tangent")]
+    struck: Span,
+    law: &'a str,
+    #[label("`{integrator}` has the force only at the end")]
+    named: Span,
+}
+
 /// Refuses a contact law that finds the instant of contact inside a step by the tangent's prediction of the force, with an integrator
 /// that imposes the displacement before it solves.
 pub fn meets_the_contact(
@@ -51,12 +71,75 @@ pub fn meets_the_contact(
     }
     let at = |field| checker.value_or_head(block, field);
     let (named, struck) = (at(methods::INTEGRATOR.name), at(impact::CONTACT.name));
-    checker.fail(fault::law_needs_the_tangent(
-        integrator.name(),
+    checker.fail(LawNeedsTheTangent {
+        integrator: integrator.name(),
         named,
-        contact.name(),
+        law: contact.name(),
         struck,
-    ))
+    })
+}
+
+/// α-OS with a `K_I` \[N/m\] below the specimen's stiffness, within the limit \[s\] that follows.
+struct StifferThanOperator {
+    specimen: f64,
+    operator: f64,
+    span: Span,
+    limit: f64,
+}
+
+impl Violation for StifferThanOperator {
+    const CODE: Code = W718;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            specimen,
+            operator,
+            span,
+            limit,
+        } = self;
+        let (specimen, operator) = (
+            shown(specimen, Dimension::STIFFNESS),
+            shown(operator, Dimension::STIFFNESS),
+        );
+        let limit = shown(limit, Dimension::TIME);
+        let message = format!(
+            "motion may grow: specimen stiffness {specimen} exceeds the {operator} of α-OS, which is then stable up to {limit} only"
+        );
+        Diagnostic::new(Self::CODE, message)
+        .at(span, format!("K_I = {operator}"))
+        .help("write the high end of the ramp's interval: a `stiffness` above the specimen's is stable at every step")
+    }
+}
+
+/// The tangent form with a bound on its tangent \[N/m\] below the specimen's stiffness.
+struct StifferThanTangent {
+    span: Span,
+    specimen: f64,
+    bound: f64,
+}
+
+impl Violation for StifferThanTangent {
+    const CODE: Code = W718;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            span,
+            specimen,
+            bound,
+        } = self;
+        let (specimen, bound) = (
+            shown(specimen, Dimension::STIFFNESS),
+            shown(bound, Dimension::STIFFNESS),
+        );
+        let message = format!(
+            "motion may grow: specimen stiffness {specimen} exceeds the upper bound {bound} of the tangent"
+        );
+        Diagnostic::new(Self::CODE, message)
+        .at(span, "tangent limited to `max_tangent_ratio` times this")
+        .help(
+            "write the stiffness of the specimen at its stiffest, or a larger `max_tangent_ratio`",
+        )
+    }
 }
 
 /// Compares the time step with the longest stable one, as far as both are known before the run: for the initial stiffness of the
@@ -98,9 +181,12 @@ pub fn stable(
         && step <= limit
     {
         let at = checker.value_or_head(block, STIFFNESS.name);
-        checker
-            .diagnostics
-            .push(fault::stiffer_than_operator(behaves, assumed, at, limit));
+        checker.report(StifferThanOperator {
+            specimen: behaves,
+            operator: assumed,
+            span: at,
+            limit,
+        });
     }
     if let (Integrator::Tangent, Some(assumed), Some(ratio)) = (
         impact.stepping.integrator,
@@ -109,17 +195,30 @@ pub fn stable(
     ) && behaves > assumed * ratio * (1.0 + 1e-9)
     {
         let at = checker.value_or_head(block, STIFFNESS.name);
-        checker
-            .diagnostics
-            .push(fault::stiffer_than_tangent(at, behaves, assumed * ratio));
+        checker.report(StifferThanTangent {
+            span: at,
+            specimen: behaves,
+            bound: assumed * ratio,
+        });
     }
     if step <= limit {
         return;
     }
     let at = checker.value_or_head(block, methods::TIME_STEP.name);
     checker.diagnostics.push(if impact.stepping.allow_unstable {
-        frames::unstable_though(at, step, limit)
+        UnstableAsAllowed {
+            span: at,
+            step,
+            limit,
+        }
+        .diagnostic()
     } else {
-        fault::unstable(at, impact.stepping.integrator, step, limit)
+        UnstableStep {
+            span: at,
+            integrator: impact.stepping.integrator,
+            step,
+            limit,
+        }
+        .diagnostic()
     });
 }

@@ -7,10 +7,14 @@ pub(crate) mod mode_check;
 use crate::language::check::checker::{Checker, Context};
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::expressions::fields::whole as whole_number;
-use crate::language::check::messages::{methods as fault, values};
+use crate::language::check::violations::NoEffect;
+use crate::language::codes::E401;
 use crate::plan::formula::{Formula, Operator};
 use crate::plan::{Contact, InspectTrigger, Integrator, Mode, Stepping};
 use crate::schema::methods;
+use crate::text::diagnostic::{Code, Diagnostic, Violation};
+use crate::text::source::Span;
+use crate::units::{Dimension, display};
 
 /// The fields of a block that steps; where it gives no time step, the critical one over `finer`.
 pub fn stepping(
@@ -48,12 +52,12 @@ pub fn stepping(
     ) {
         let name = integrator.map_or("", Integrator::name);
         let message = format!("`max_tangent_ratio` has no effect: `{name}` measures no tangent");
-        checker.diagnostics.push(values::no_effect(
+        checker.report(NoEffect {
             message,
-            entry.key.span,
-            "no effect",
-            "remove it, or write `integrator = tangent`",
-        ));
+            span: entry.key.span,
+            label: "no effect",
+            help: "remove it, or write `integrator = tangent`",
+        });
     }
     let inspect = triggers(checker, block);
     Some(Stepping {
@@ -66,6 +70,43 @@ pub fn stepping(
         max_tangent_ratio: max_tangent_ratio?,
         inspect: inspect?,
     })
+}
+
+/// `step` and `duration` in \[s\]. `written`: whether the plan states the time step, which otherwise follows from the period.
+struct StepBeyondDuration {
+    at: Span,
+    written: bool,
+    step: f64,
+    duration_at: Span,
+    duration: f64,
+}
+
+impl Violation for StepBeyondDuration {
+    const CODE: Code = E401;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            at,
+            written,
+            step,
+            duration_at,
+            duration,
+        } = self;
+        let stated = |time| display::stated(time, Dimension::TIME);
+        let message = format!(
+            "time step {} is longer than the run, {}",
+            stated(step),
+            stated(duration)
+        );
+        Diagnostic::new(Self::CODE, message)
+        .at(at, "less than one step")
+        .at(duration_at, "length of the run")
+        .help(if written {
+            "write a shorter `time_step`, or a longer `duration`"
+        } else {
+            "check mass and stiffness: the time step is a fraction of the period; or write a longer `duration`"
+        })
+    }
 }
 
 /// Refuses a time step that is longer than the run; both times in s.
@@ -83,13 +124,13 @@ pub(crate) fn beyond_duration(
     };
     let at = |field| checker.value_or_head(block, field);
     let written = checker.field(block, methods::TIME_STEP.name).is_some();
-    checker.diagnostics.push(fault::step_beyond_duration(
-        at(methods::TIME_STEP.name),
+    checker.report(StepBeyondDuration {
+        at: at(methods::TIME_STEP.name),
         written,
         step,
-        at(methods::DURATION.name),
+        duration_at: at(methods::DURATION.name),
         duration,
-    ));
+    });
 }
 
 /// The inspection triggers of a block.

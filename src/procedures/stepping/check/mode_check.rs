@@ -1,15 +1,47 @@
 //! `mode = …` of a procedure that integrates: whether the actuator stops at every target. In: a block. Out: the mode, or an error, and a
 //! warning where damping would count twice.
 
+use crate::codes::{E644, E645, W716};
 use crate::language::check::checker::Checker;
-use crate::language::check::messages::methods as fault;
 use crate::language::syntax::ast::{Argument, ExprKind};
 use crate::plan::procedures::impact::block as impact;
 use crate::plan::{Dialect, Impact, Mode, PointTarget, Specimen};
-use crate::schema::Kind;
 use crate::schema::devices::DIALECT;
-use crate::schema::methods;
-use crate::schema::{rig, specimen};
+use crate::schema::{Kind, methods, rig, specimen};
+use crate::text::diagnostic::{Code, Diagnostic, Violation};
+use crate::text::source::Span;
+
+struct ContinuousOnARealRig<'a> {
+    dialect: &'a str,
+    span: Span,
+}
+
+impl Violation for ContinuousOnARealRig<'_> {
+    const CODE: Code = E644;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { dialect, span } = self;
+        let message =
+            format!("continuous mode requires a rig that follows a path; `{dialect}` does not");
+        Diagnostic::new(Self::CODE, message)
+        .at(span, format!("`{dialect}` stops at every target"))
+        .help("write `mode = ramp_and_hold`; or use a `native` controller with `GLIDE`, or a virtual rig")
+    }
+}
+
+#[derive(Violation)]
+#[violation(
+    E645,
+    "`{field}` has no effect in continuous mode: the actuator never stops"
+)]
+#[help("remove `{field}`, or write `mode = ramp_and_hold`")]
+struct StopsBetweenReadings<'a> {
+    field: &'a str,
+    #[label("requires a stop")]
+    span: Span,
+    #[label("does not stop")]
+    mode: Span,
+}
 
 /// The mode that a block names, otherwise `ramp_and_hold`.
 pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
@@ -26,13 +58,17 @@ pub fn mode(checker: &mut Checker, block: usize) -> Option<Mode> {
         .real_rig
         .and_then(|rig| stops_at_targets(checker, rig))
     {
-        return checker.fail(fault::continuous_on_a_real_rig(dialect, at));
+        return checker.fail(ContinuousOnARealRig { dialect, span: at });
     }
     let stops = [methods::PAUSE.name, methods::INSPECT.name]
         .into_iter()
         .find_map(|field| checker.field(block, field).map(|(_, entry)| (field, entry)));
     if let Some((field, entry)) = stops {
-        return checker.fail(fault::stops_between_readings(field, entry.span, at));
+        return checker.fail(StopsBetweenReadings {
+            field,
+            span: entry.span,
+            mode: at,
+        });
     }
     Some(Mode::Continuous { time_scale })
 }
@@ -75,6 +111,21 @@ pub fn damping_twice(
     }
 }
 
+#[derive(Violation)]
+#[violation(
+    W716,
+    "damping is counted twice: in continuous mode the measured force already contains the specimen's damping"
+)]
+#[help(
+    "remove the procedure's damping, or write only the part that is not measured: measured damping is divided by the time scale"
+)]
+struct DampingTwice {
+    #[label("computed here")]
+    computed: Span,
+    #[label("already measured here")]
+    measured: Span,
+}
+
 /// Warns at the field of the block whose damping is computed, and at the field of the specimen with this index whose damping is measured.
 pub fn warn_of_damping_twice(
     checker: &mut Checker,
@@ -92,8 +143,6 @@ pub fn warn_of_damping_twice(
         at(block, computed),
         of_specimen.and_then(|index| at(index, measured)),
     ) {
-        checker
-            .diagnostics
-            .push(fault::damping_twice(computed, measured));
+        checker.report(DampingTwice { computed, measured });
     }
 }

@@ -3,9 +3,57 @@
 pub mod record;
 
 use crate::check::checker::Checker;
-use crate::check::messages::frames as message;
+use crate::codes::{E401, E620};
 use psd_plan::Ground;
 use psd_plan::schema::ground::{FILE, RECORD_NUMBER, SCALE, SCALE_UNCERTAINTY, UNIT};
+use psd_text::diagnostic::Violation;
+use psd_text::source::Span;
+
+/// `files`: where the list is.
+#[derive(Violation)]
+#[violation(E401, "record {number} does not exist: the list has {count}")]
+#[help("write a number from 1 to {count}")]
+struct NoSuchRecord {
+    number: usize,
+    count: usize,
+    #[label("number of the record")]
+    span: Span,
+    #[label("{count} in the list")]
+    files: Span,
+}
+
+#[derive(Violation)]
+#[violation(E620, "cannot read `{file}` as a ground motion: {reason}")]
+#[help(
+    "write the header `time_s,acceleration_m_per_s2` and times that increase from 0, or use a PEER file with NPTS and DT"
+)]
+struct BadGroundRecord<'a> {
+    file: &'a str,
+    reason: &'a str,
+    #[label("invalid record")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(
+    E620,
+    "unit given twice: the header of `{file}` states the unit of its accelerations"
+)]
+#[help("remove `unit`; write a factor as `scale = 1.5`")]
+struct AccelerationUnitTwice<'a> {
+    file: &'a str,
+    #[label("given again")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(E620, "`{file}` does not state the unit of its accelerations")]
+#[help("add a line `unit = 1 m/s^2`, or `unit = 1 gn` for fractions of gravity")]
+struct RecordWithoutUnit<'a> {
+    file: &'a str,
+    #[label("unit missing")]
+    span: Span,
+}
 
 /// A ground motion with a valid record; None if an error was reported.
 pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {
@@ -36,20 +84,39 @@ pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {
     let Some(file) = files.into_iter().nth(chosen - 1) else {
         let entry = checker.field(block, RECORD_NUMBER.name);
         let span = entry.map_or(at, |(_, entry)| entry.value.span);
-        return checker.fail(message::no_such_record(chosen, count, span, at));
+        return checker.fail(NoSuchRecord {
+            number: chosen,
+            count,
+            span,
+            files: at,
+        });
     };
     let file = file?;
     let record = match record::read(&file.name, &file.text) {
         Ok(record) => record,
-        Err(reason) => return checker.fail(message::bad_record(&file.name, &reason, at)),
+        Err(reason) => {
+            return checker.fail(BadGroundRecord {
+                file: &file.name,
+                reason: &reason,
+                span: at,
+            });
+        }
     };
     let (scale, scale_uncertainty, unit) = (scale?, scale_uncertainty?, unit?);
     let unit = match (record.unit, unit, stated) {
         (Some(_), Some(_), Some(stated)) => {
-            return checker.fail(message::unit_twice(&file.name, stated.span));
+            return checker.fail(AccelerationUnitTwice {
+                file: &file.name,
+                span: stated.span,
+            });
         }
         (Some(unit), ..) | (None, Some(unit), _) => unit,
-        (None, None, _) => return checker.fail(message::record_without_unit(&file.name, at)),
+        (None, None, _) => {
+            return checker.fail(RecordWithoutUnit {
+                file: &file.name,
+                span: at,
+            });
+        }
     };
     let accelerations: Vec<f64> = record
         .values
@@ -64,7 +131,11 @@ pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {
             "sample {} is not finite after unit and scale are applied",
             sample + 1
         );
-        return checker.fail(message::bad_record(&file.name, &reason, at));
+        return checker.fail(BadGroundRecord {
+            file: &file.name,
+            reason: &reason,
+            span: at,
+        });
     }
     Some(Ground {
         name: name?.node.clone(),

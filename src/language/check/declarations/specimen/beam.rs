@@ -2,7 +2,7 @@
 
 use crate::check::checker::{Checker, Context};
 use crate::check::expressions::choice::Chosen;
-use crate::check::messages::specimens as message;
+use crate::check::violations::MissingPartner;
 use psd_physics::structure::beam::{self, Span};
 use psd_plan::schema::behaviours::argument;
 use psd_plan::{Beam, Behaviour, Ends};
@@ -35,18 +35,18 @@ pub fn beam<'a>(
         (Some(modulus), Some(area)) => Some(modulus * area),
         (None, None) => None,
         (Some(_), None) => {
-            return checker.fail(message::missing_partner(
-                argument::SHEAR_MODULUS,
-                argument::SHEAR_AREA,
-                chosen.span(argument::SHEAR_MODULUS)?,
-            ));
+            return checker.fail(MissingPartner {
+                given: argument::SHEAR_MODULUS,
+                missing: argument::SHEAR_AREA,
+                span: chosen.span(argument::SHEAR_MODULUS)?,
+            });
         }
         (None, Some(_)) => {
-            return checker.fail(message::missing_partner(
-                argument::SHEAR_AREA,
-                argument::SHEAR_MODULUS,
-                chosen.span(argument::SHEAR_AREA)?,
-            ));
+            return checker.fail(MissingPartner {
+                given: argument::SHEAR_AREA,
+                missing: argument::SHEAR_MODULUS,
+                span: chosen.span(argument::SHEAR_AREA)?,
+            });
         }
     };
     let span = Span {

@@ -1,17 +1,21 @@
 //! `behaviour = series(…)`: the restoring-force model of a specimen. In: its expression. Out: a [`Behaviour`] in SI.
 
-use super::backbone::{check_capping, multilinear, table};
-use super::{beam, portal};
 use crate::check::checker::{Checker, Context};
 use crate::check::expressions::choice::Chosen;
-use crate::check::messages::{shown, specimens as message, values};
+use crate::check::violations::{NoEffect, OneFormOnly};
+use crate::check::wording::shown;
+use crate::codes::{E401, E632, E633};
 use crate::syntax::ast::{Expr, ExprKind};
 use psd_physics::relaxation::logarithmic::LogarithmicRelaxation;
 use psd_plan::schema::behaviours::{STIFFNESS, argument};
 use psd_plan::schema::{Presence, Variant};
 use psd_plan::{Behaviour, Breaks};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 use psd_text::units::Dimension;
+
+use super::backbone::{check_capping, multilinear, table};
+use super::{beam, portal};
 
 /// Most springs of one model.
 pub const MOST_PARTS: usize = 16;
@@ -41,22 +45,32 @@ pub struct Material {
     pub own_mass: Option<f64>,
 }
 
+#[derive(Violation)]
+#[violation(E633, "a behaviour can have at most {most} {what}")]
+#[help("combine springs into one")]
+struct TooManyParts<'a> {
+    most: usize,
+    what: &'a str,
+    #[label("too many")]
+    span: Span,
+}
+
 /// The complete model, within its size limit.
 pub fn behaviour<'a>(checker: &mut Checker<'a>, written: &Written<'a>) -> Option<Behaviour> {
     let found = part(checker, written, written.expr, Position::Outermost)?;
     if count(&found) > MOST_PARTS {
-        return checker.fail(message::too_many_parts(
-            MOST_PARTS,
-            "springs",
-            written.expr.span,
-        ));
+        return checker.fail(TooManyParts {
+            most: MOST_PARTS,
+            what: "springs",
+            span: written.expr.span,
+        });
     }
     if in_series(&found) > MOST_IN_SERIES {
-        return checker.fail(message::too_many_parts(
-            MOST_IN_SERIES,
-            "springs in series",
-            written.expr.span,
-        ));
+        return checker.fail(TooManyParts {
+            most: MOST_IN_SERIES,
+            what: "springs in series",
+            span: written.expr.span,
+        });
     }
     Some(found)
 }
@@ -83,6 +97,31 @@ enum Position {
     Inside,
 }
 
+/// `variant` is `rate` or `maxwell`.
+struct MustBeOutermost<'a> {
+    variant: &'a str,
+    span: Span,
+}
+
+impl Violation for MustBeOutermost<'_> {
+    const CODE: Code = E633;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { variant, span } = self;
+        let message = format!("`{variant}` acts on the load cell: it must be the outermost model");
+        let help = match variant {
+            "rate" => "move it outside: `rate(of: series(…), reference_velocity: …)`",
+            "logarithmic" => {
+                "move it outside: `logarithmic(of: series(…), share: …, reference_time: …)`"
+            }
+            _ => "move it outside: `maxwell(of: series(…), stiffness: …, time_constant: …)`",
+        };
+        Diagnostic::new(Self::CODE, message)
+            .at(span, "inside")
+            .help(help)
+    }
+}
+
 fn part<'a>(
     checker: &mut Checker<'a>,
     written: &Written<'a>,
@@ -99,7 +138,10 @@ fn part<'a>(
                 number(argument::EXPONENT),
             );
             if position != Position::Outermost {
-                return checker.fail(message::must_be_outermost("rate", expr.span));
+                return checker.fail(MustBeOutermost {
+                    variant: "rate",
+                    span: expr.span,
+                });
             }
             let of = Box::new(inner(checker, written, &chosen)?);
             Some(Behaviour::Rate {
@@ -112,7 +154,10 @@ fn part<'a>(
             let (stiffness, time_constant) =
                 (number(STIFFNESS.name), number(argument::TIME_CONSTANT));
             if position == Position::Inside {
-                return checker.fail(message::must_be_outermost("maxwell", expr.span));
+                return checker.fail(MustBeOutermost {
+                    variant: "maxwell",
+                    span: expr.span,
+                });
             }
             let (_, beside) = chosen.find(argument::OF)?;
             let of = Box::new(part(checker, written, beside?, Position::BesideBranch)?);
@@ -174,6 +219,71 @@ fn numbers<'a>(
     read.into_iter().collect()
 }
 
+/// The law ends before it begins.
+struct RelaxesTooShort {
+    longest: f64,
+    reference_time: f64,
+    span: Span,
+}
+
+impl Violation for RelaxesTooShort {
+    const CODE: Code = E401;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            longest,
+            reference_time,
+            span,
+        } = self;
+        let times = [longest, reference_time].map(|time| shown(time, Dimension::TIME));
+        Diagnostic::new(
+            Self::CODE,
+            format!(
+                "relaxation that ends after {} is too short for the logarithmic law",
+                times[0]
+            ),
+        )
+        .at(span, format!("`reference_time` is {}", times[1]))
+        .help(format!(
+            "write a `longest` of {} or more",
+            shown(10.0 * reference_time, Dimension::TIME)
+        ))
+    }
+}
+
+/// The loss of force of a logarithmic relaxation.
+#[derive(Clone, Copy)]
+struct RelaxationLoss {
+    /// a of a·ln(1 + t/t₀): fraction of the force that is lost each time 1 + t/t₀ grows e-fold.
+    share: f64,
+    /// Fraction of the force that is lost at the end.
+    lost: f64,
+    /// Duration of the relaxation \[s\].
+    longest: f64,
+}
+
+struct RelaxesAway {
+    loss: RelaxationLoss,
+    span: Span,
+}
+
+impl Violation for RelaxesAway {
+    const CODE: Code = E401;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { loss, span } = self;
+        let RelaxationLoss { share, lost, .. } = loss;
+        let longest = shown(loss.longest, Dimension::TIME);
+        let percent = |number: f64| psd_text::units::display::significant(100.0 * number, 3);
+        Diagnostic::new(Self::CODE, "relaxation would exceed the force itself")
+            .at(span, format!("loses {} % until {longest}", percent(lost)))
+            .help(format!(
+                "write a `share` below {} %, or a shorter `longest`",
+                percent(0.99 * share / lost)
+            ))
+    }
+}
+
 /// The instantaneous force relaxes with the logarithm of time, at most to zero.
 fn logarithmic<'a>(
     checker: &mut Checker<'a>,
@@ -188,13 +298,20 @@ fn logarithmic<'a>(
     );
     let longest = checker.optional_argument(chosen, argument::LONGEST, written.context)?;
     if position == Position::Inside {
-        return checker.fail(message::must_be_outermost("logarithmic", span));
+        return checker.fail(MustBeOutermost {
+            variant: "logarithmic",
+            span,
+        });
     }
     let of = Box::new(inner(checker, written, chosen)?);
     let (share, reference_time) = (share?, time?);
     let longest = longest.unwrap_or(LONGEST_OF_REFERENCE * reference_time);
     if longest < LEAST_OF_REFERENCE * reference_time {
-        return checker.fail(message::relaxes_too_short(longest, reference_time, span));
+        return checker.fail(RelaxesTooShort {
+            longest,
+            reference_time,
+            span,
+        });
     }
     let law = LogarithmicRelaxation {
         share,
@@ -203,14 +320,14 @@ fn logarithmic<'a>(
     };
     let lost = law.lost_after_long();
     if lost >= 1.0 {
-        return checker.fail(message::relaxes_away(
-            message::RelaxationLoss {
+        return checker.fail(RelaxesAway {
+            loss: RelaxationLoss {
                 share,
                 lost,
                 longest,
             },
             span,
-        ));
+        });
     }
     Some(Behaviour::Logarithmic {
         of,
@@ -229,6 +346,15 @@ fn inner<'a>(
     part(checker, written, expr?, Position::Inside)
 }
 
+#[derive(Violation)]
+#[violation(E632, "`{variant}` requires two models or more")]
+#[help("add another model, or remove `{variant}`")]
+struct TooFewParts<'a> {
+    variant: &'a str,
+    #[label("only one")]
+    span: Span,
+}
+
 /// The models that a variant combines, with the position of each.
 fn parts<'a>(
     checker: &mut Checker<'a>,
@@ -238,17 +364,37 @@ fn parts<'a>(
 ) -> Option<Vec<(Behaviour, Span)>> {
     let exprs = chosen.several(argument::OF);
     if exprs.len() < 2 {
-        return checker.fail(message::too_few_parts(chosen.variant.name, span));
+        return checker.fail(TooFewParts {
+            variant: chosen.variant.name,
+            span,
+        });
     }
     // The size of a list is checked before its entries, so that its length is bounded.
     if exprs.len() > MOST_PARTS {
-        return checker.fail(message::too_many_parts(MOST_PARTS, "springs", span));
+        return checker.fail(TooManyParts {
+            most: MOST_PARTS,
+            what: "springs",
+            span,
+        });
     }
     let found: Vec<_> = exprs
         .into_iter()
         .map(|expr| Some((part(checker, written, expr, Position::Inside)?, expr.span)))
         .collect();
     found.into_iter().collect()
+}
+
+#[derive(Violation)]
+#[violation(
+    E633,
+    "a model that softens to a falling force is not allowed in `series`: its displacement is undetermined"
+)]
+#[help("move it outside: `fracture(of: series(…), force: …)`")]
+struct FallsInSeries {
+    #[label("force may fall")]
+    span: Span,
+    #[label("in this series")]
+    series: Span,
 }
 
 fn series<'a>(
@@ -259,7 +405,10 @@ fn series<'a>(
 ) -> Option<Behaviour> {
     let found = parts(checker, written, chosen, span)?;
     if let Some((_, falls)) = found.iter().find(|(part, _)| !part.never_falls()) {
-        return checker.fail(message::falls_in_series(*falls, span));
+        return checker.fail(FallsInSeries {
+            span: *falls,
+            series: span,
+        });
     }
     Some(Behaviour::Series(
         found.into_iter().map(|(part, _)| part).collect(),
@@ -281,7 +430,12 @@ fn fracture<'a>(
         (displacement, _) => {
             let given = if displacement.is_some() { 2 } else { 0 };
             let takes = "a `fracture` requires a `displacement` or a `force`";
-            return checker.fail(message::one_form_only(takes, "force: 5 kN", span, given));
+            return checker.fail(OneFormOnly {
+                takes,
+                example: "force: 5 kN",
+                span,
+                given,
+            });
         }
     };
     let of = of?;
@@ -294,12 +448,12 @@ fn fracture<'a>(
         );
         let message =
             format!("fracture at {force} is never reached: the force of `of` is at most {most}");
-        checker.diagnostics.push(values::no_effect(
+        checker.report(NoEffect {
             message,
             span,
-            "never reached",
-            "write a `displacement`, or a lower force",
-        ));
+            label: "never reached",
+            help: "write a `displacement`, or a lower force",
+        });
     }
     Some(Behaviour::Fracture {
         of: Box::new(of),

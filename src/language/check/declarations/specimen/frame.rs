@@ -3,20 +3,23 @@
 
 use std::rc::Rc;
 
-use super::behaviour::{self, Material, Written};
-use super::matrix;
 use crate::check::checker::{Checker, Context};
 use crate::check::declarations::striker::MOST_UNCERTAIN;
 use crate::check::expressions::choice::Chosen;
-use crate::check::messages::{frames as message, values};
-use crate::syntax::ast::ExprKind;
+use crate::check::violations::{EmptyList, TooUncertain};
+use crate::check::wording::shown;
+use crate::codes::{E405, E409, E621, E622, E623};
+use crate::syntax::ast::{ExprKind, Ident};
 use psd_plan::procedures::impact::block as impact;
 use psd_plan::schema::frames::storey;
-use psd_plan::schema::specimen as fields;
-use psd_plan::schema::{Field, FieldType};
+use psd_plan::schema::{Field, FieldType, specimen as fields};
 use psd_plan::{Behaviour, Frame, MOST_STOREYS, Storey};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::{Span, Spanned};
 use psd_text::units::Dimension;
+
+use super::behaviour::{self, Material, Written};
+use super::matrix;
 
 /// Fields that make a specimen a frame.
 pub const FIELDS: [&str; 3] = [
@@ -73,6 +76,48 @@ pub fn frame(checker: &mut Checker, block: usize) -> Option<Rc<Frame>> {
     frame
 }
 
+struct SpecimenTwice<'a> {
+    first: &'a Ident,
+    other: &'a Ident,
+}
+
+impl Violation for SpecimenTwice<'_> {
+    const CODE: Code = E623;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { first, other } = self;
+        Diagnostic::new(
+            Self::CODE,
+            format!(
+                "structure given twice: by `{}` and by `{}`",
+                first.node, other.node
+            ),
+        )
+        .at(other.span, "given again")
+        .at(first.span, "first given here")
+        .help(format!("remove `{}`, or `{}`", other.node, first.node))
+    }
+}
+
+struct MatrixAlone<'a> {
+    given: &'a Ident,
+    missing: &'a str,
+}
+
+impl Violation for MatrixAlone<'_> {
+    const CODE: Code = E623;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { given, missing } = self;
+        Diagnostic::new(Self::CODE, format!("`{}` requires `{missing}`", given.node))
+            .at(given.span, "one matrix only")
+            .help(format!(
+                "add a line `{missing} = \"{}.csv\"`",
+                &missing[..1]
+            ))
+    }
+}
+
 /// A specimen is either storeys, or two matrices, or one degree of freedom.
 fn report_once(checker: &mut Checker, block: usize) -> Option<()> {
     let storeys = checker.field(block, fields::STOREYS.name);
@@ -93,18 +138,39 @@ fn report_once(checker: &mut Checker, block: usize) -> Option<()> {
         .map(|(_, entry)| &entry.key)
         .next();
     if let Some(other) = other {
-        return checker.fail(message::specimen_twice(&first.key, other));
+        return checker.fail(SpecimenTwice {
+            first: &first.key,
+            other,
+        });
     }
     match (storeys, matrices) {
-        (None, [Some((_, mass)), None]) => checker.fail(message::matrix_alone(
-            &mass.key,
-            fields::STIFFNESS_MATRIX.name,
-        )),
-        (None, [None, Some((_, stiffness))]) => checker.fail(message::matrix_alone(
-            &stiffness.key,
-            fields::MASS_MATRIX.name,
-        )),
+        (None, [Some((_, mass)), None]) => checker.fail(MatrixAlone {
+            given: &mass.key,
+            missing: fields::STIFFNESS_MATRIX.name,
+        }),
+        (None, [None, Some((_, stiffness))]) => checker.fail(MatrixAlone {
+            given: &stiffness.key,
+            missing: fields::MASS_MATRIX.name,
+        }),
         _ => Some(()),
+    }
+}
+
+struct MatrixUncertaintyAlone<'a> {
+    given: &'a Ident,
+    matrix: &'a str,
+}
+
+impl Violation for MatrixUncertaintyAlone<'_> {
+    const CODE: Code = E623;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { given, matrix } = self;
+        Diagnostic::new(Self::CODE, format!("`{}` requires `{matrix}`", given.node))
+            .at(given.span, "matrix missing")
+            .help(format!(
+                "remove it, or read the frame's `{matrix}` from a file"
+            ))
     }
 }
 
@@ -115,10 +181,23 @@ pub fn no_matrix_uncertainties(checker: &mut Checker, block: usize) -> Option<()
         .zip([fields::MASS_MATRIX.name, fields::STIFFNESS_MATRIX.name])
     {
         if let Some((_, entry)) = checker.field(block, field) {
-            return checker.fail(message::matrix_uncertainty_alone(&entry.key, matrix));
+            return checker.fail(MatrixUncertaintyAlone {
+                given: &entry.key,
+                matrix,
+            });
         }
     }
     Some(())
+}
+
+#[derive(Violation)]
+#[violation(E405, "too many storeys: {found} (at most {most})")]
+#[help("combine storeys; each one requires an actuator")]
+struct TooManyStoreys {
+    found: usize,
+    most: usize,
+    #[label("too many")]
+    span: Span,
 }
 
 fn storeys(checker: &mut Checker, block: usize) -> Option<Vec<Storey>> {
@@ -127,10 +206,14 @@ fn storeys(checker: &mut Checker, block: usize) -> Option<Vec<Storey>> {
     let chosen = checker.choices(block, fields::STOREYS.name)?;
     let span = written.value.span;
     if chosen.is_empty() {
-        return checker.fail(values::empty_list(span));
+        return checker.fail(EmptyList { span });
     }
     if chosen.len() > MOST_STOREYS {
-        return checker.fail(message::too_many_storeys(chosen.len(), MOST_STOREYS, span));
+        return checker.fail(TooManyStoreys {
+            found: chosen.len(),
+            most: MOST_STOREYS,
+            span,
+        });
     }
     let at = |index: usize| match &written.value.kind {
         ExprKind::List { items, .. } => items.get(index).map_or(span, |item| item.span),
@@ -142,6 +225,67 @@ fn storeys(checker: &mut Checker, block: usize) -> Option<Vec<Storey>> {
         .map(|(index, chosen)| storey(checker, chosen, index + 1, at(index), context))
         .collect();
     storeys.into_iter().collect()
+}
+
+#[derive(Violation)]
+#[violation(E622, "storey {number} has two stiffnesses")]
+#[help("keep `stiffness` (whole storey) or `column_stiffness` (one of its two columns)")]
+struct StoreyStiffnessTwice {
+    number: usize,
+    #[label("given again")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(E622, "storey {number} has no stiffness")]
+#[help(
+    "add `stiffness: 3 MN/m`, or `column_stiffness: 1.5 MN/m` for one of its two columns, or a `behaviour`"
+)]
+struct StoreyWithoutStiffness {
+    number: usize,
+    #[label("stiffness missing")]
+    span: Span,
+}
+
+/// A stiffness \[N/m\], by the name of its field, beside a model with a different initial stiffness \[N/m\].
+struct StoreyBendsOtherwise<'a> {
+    number: usize,
+    field: &'a str,
+    stated: Spanned<f64>,
+    model: Spanned<f64>,
+}
+
+impl Violation for StoreyBendsOtherwise<'_> {
+    const CODE: Code = E409;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            number,
+            field,
+            stated,
+            model,
+        } = self;
+        let (stated_at, model_at) = (stated.span, model.span);
+        let (stated, initial) = (
+            shown(stated.node, Dimension::STIFFNESS),
+            shown(model.node, Dimension::STIFFNESS),
+        );
+        Diagnostic::new(
+            Self::CODE,
+            format!(
+                "storey {number}: stated stiffness {stated} differs from the \
+     model's initial stiffness {initial}"
+            ),
+        )
+        .at(stated_at, format!("stated stiffness: {stated}"))
+        .at(
+            model_at,
+            format!("initial stiffness of the model: {initial}"),
+        )
+        .help(format!(
+            "remove `{field}`, or set `stiffness_uncertainty` to a third of the difference or more"
+        ))
+    }
 }
 
 fn storey<'a>(
@@ -184,12 +328,15 @@ fn storey<'a>(
     let stiffness = match (total?, column?, &behaviour) {
         (Some(_), Some(_), _) => {
             let again = chosen.span(storey::COLUMN_STIFFNESS).unwrap_or(at);
-            return checker.fail(message::storey_stiffness_twice(number, again));
+            return checker.fail(StoreyStiffnessTwice {
+                number,
+                span: again,
+            });
         }
         (Some(stiffness), None, _) => stiffness,
         (None, Some(column), _) => 2.0 * column,
         (None, None, Some(behaviour)) => behaviour.initial_stiffness(),
-        (None, None, None) => return checker.fail(message::storey_without_stiffness(number, at)),
+        (None, None, None) => return checker.fail(StoreyWithoutStiffness { number, span: at }),
     };
     let (mass_uncertainty, stiffness_uncertainty) = (mass_uncertainty?, stiffness_uncertainty?);
     if let Some(initial) = behaviour.as_ref().map(Behaviour::initial_stiffness)
@@ -201,12 +348,12 @@ fn storey<'a>(
             .find_map(|field| Some((field, chosen.span(field)?)));
         let (field, given) = given.unwrap_or((storey::STIFFNESS, at));
         let bends = chosen.span(storey::BEHAVIOUR).unwrap_or(at);
-        return checker.fail(message::storey_bends_otherwise(
+        return checker.fail(StoreyBendsOtherwise {
             number,
             field,
-            Spanned::new(stiffness, given),
-            Spanned::new(initial, bends),
-        ));
+            stated: Spanned::new(stiffness, given),
+            model: Spanned::new(initial, bends),
+        });
     }
     let behaviour = behaviour.unwrap_or(Behaviour::Elastic { stiffness });
     let stated = [
@@ -226,13 +373,13 @@ fn storey<'a>(
     for (field, uncertainty, value, dimension) in stated {
         if uncertainty > MOST_UNCERTAIN * value {
             let at = chosen.span(field).unwrap_or(at);
-            return checker.fail(values::too_uncertain(
+            return checker.fail(TooUncertain {
                 field,
                 uncertainty,
                 value,
                 dimension,
-                at,
-            ));
+                span: at,
+            });
         }
     }
     Some(Storey {
@@ -247,6 +394,20 @@ fn storey<'a>(
     })
 }
 
+#[derive(Violation)]
+#[violation(
+    E621,
+    "matrix sizes differ: `{file}` has {stiffness} rows, the mass matrix has {mass}"
+)]
+#[help("write both matrices with one row and one column per floor")]
+struct MatricesOfTwoSizes<'a> {
+    file: &'a str,
+    stiffness: usize,
+    mass: usize,
+    #[label("different size")]
+    span: Span,
+}
+
 /// The frame from the files of its matrices, with the files.
 fn matrices(checker: &mut Checker, block: usize) -> Option<Frame> {
     let mass = matrix_of(checker, block, fields::MASS_MATRIX.name);
@@ -254,12 +415,13 @@ fn matrices(checker: &mut Checker, block: usize) -> Option<Frame> {
     let ((mass_file, mass), (stiffness_file, stiffness)) = (mass?, stiffness?);
     if mass.len() != stiffness.len() {
         let (_, written) = checker.field(block, fields::STIFFNESS_MATRIX.name)?;
-        let diagnostic = message::matrices_of_two_sizes(
-            &stiffness_file,
-            stiffness.len(),
-            mass.len(),
-            written.value.span,
-        );
+        let diagnostic = MatricesOfTwoSizes {
+            file: &stiffness_file,
+            stiffness: stiffness.len(),
+            mass: mass.len(),
+            span: written.value.span,
+        }
+        .diagnostic();
         return checker.fail(diagnostic);
     }
     let matrix_uncertainty = MATRIX_UNCERTAINTIES.map(|field| checker.constant(block, field));
@@ -276,6 +438,18 @@ fn matrices(checker: &mut Checker, block: usize) -> Option<Frame> {
     })
 }
 
+#[derive(Violation)]
+#[violation(E621, "cannot read `{file}` as a structural matrix: {reason}")]
+#[help(
+    "write one row per line, comma-separated; the matrix must be square, symmetric and positive definite"
+)]
+struct BadMatrix<'a> {
+    file: &'a str,
+    reason: &'a str,
+    #[label("invalid matrix")]
+    span: Span,
+}
+
 fn matrix_of(checker: &mut Checker, block: usize, field: &str) -> Option<(String, Vec<Vec<f64>>)> {
     let (_, written) = checker.field(block, field)?;
     let span = written.value.span;
@@ -283,7 +457,11 @@ fn matrix_of(checker: &mut Checker, block: usize, field: &str) -> Option<(String
     let file = checker.data_file(&name, span)?;
     match matrix::read(&file.text) {
         Ok(matrix) => Some((file.name, matrix)),
-        Err(reason) => checker.fail(message::bad_matrix(&file.name, &reason, span)),
+        Err(reason) => checker.fail(BadMatrix {
+            file: &file.name,
+            reason: &reason,
+            span,
+        }),
     }
 }
 

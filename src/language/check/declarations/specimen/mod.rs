@@ -8,18 +8,23 @@ mod matrix;
 mod portal;
 mod table_file;
 
-use super::limits::CheckedLimits;
-use super::striker::uncertainty;
 use crate::check::checker::Checker;
-use crate::check::messages::{frames, names as message, specimens};
-use crate::syntax::ast::{Expr, ExprKind};
+use crate::check::violations::MissingField;
+use crate::check::wording::shown;
+use crate::codes::{E206, E209, E628, E634, W715};
+use crate::syntax::ast::{Expr, ExprKind, Ident};
 use behaviour::{Material, Written};
 use psd_physics::structure::portal::limit::mechanism_limit;
 use psd_plan::formula::{Formula, Function, Stated};
 use psd_plan::schema::{FieldType, Kind, specimen as fields};
 use psd_plan::uncertainty::Source;
 use psd_plan::{Behaviour, Interval, Mechanism, Specimen, Storey};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
+use psd_text::units::Dimension;
+
+use super::limits::CheckedLimits;
+use super::striker::uncertainty;
 
 /// Standard uncertainty of the mass that an impact takes from its specimen \[kg\].
 pub fn mass_uncertainty(checker: &mut Checker, block: usize) -> Option<f64> {
@@ -27,6 +32,36 @@ pub fn mass_uncertainty(checker: &mut Checker, block: usize) -> Option<f64> {
         return frame::frame(checker, block).map(|frame| frame.total_mass_uncertainty());
     }
     checker.constant(block, fields::MASS_UNCERTAINTY.name)
+}
+
+/// Neither a mass nor a weight that moves with the load.
+#[derive(Violation)]
+#[violation(
+    E209,
+    "specimen `{name}` has no mass: no moving part of its portal has one",
+    name = name.map_or("", |name| name.node.as_str())
+)]
+#[help(
+    "add the mass of the members, such as `mass_per_length: 12 kg/m` in `portal(…)`, or a line such as `mass = 25 kg`"
+)]
+struct PortalWithoutMass<'a> {
+    name: Option<&'a Ident>,
+    #[label("`mass` is missing")]
+    head: Span,
+}
+
+#[derive(Violation)]
+#[violation(
+    E209,
+    "mass of specimen `{name}` unknown: {missing} missing",
+    name = name.map_or("", |name| name.node.as_str())
+)]
+#[help("add `{missing}`, or the `mass` itself: density * area * length / 2 is the mass")]
+struct MassIncomplete<'a> {
+    name: Option<&'a Ident>,
+    #[label("`{missing}` is missing")]
+    head: Span,
+    missing: &'a str,
 }
 
 /// A specimen whose entries are all valid; None where an error was reported.
@@ -60,26 +95,26 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
         && names_portal(checker, block)
         && checker.field(block, fields::LENGTH.name).is_none()
     {
-        checker
-            .diagnostics
-            .push(specimens::portal_without_mass(name, head));
+        checker.report(PortalWithoutMass { name, head });
     } else if mass.is_none() && !any_given(checker, block) {
-        checker.diagnostics.push(message::missing_field(
-            declared.kind,
+        checker.report(MissingField {
+            kind: declared.kind,
             name,
             head,
-            fields::MASS.name,
-            "mass = 0.73 kg",
-        ));
+            field: fields::MASS.name,
+            example: "mass = 0.73 kg",
+        });
     } else if mass.is_none()
         && checker.field(block, fields::MASS.name).is_none()
         && let Some(missing) = [fields::DENSITY.name, fields::AREA.name, fields::LENGTH.name]
             .into_iter()
             .find(|field| checker.field(block, field).is_none())
     {
-        checker
-            .diagnostics
-            .push(message::mass_incomplete(name, head, missing));
+        checker.report(MassIncomplete {
+            name,
+            head,
+            missing,
+        });
     }
     beam_has_mass(checker, block, mass);
     // Every number is evaluated, also those without effect on the mass, so that all errors are reported in one pass.
@@ -109,6 +144,47 @@ pub fn specimen(checker: &mut Checker, block: usize) -> Option<Specimen> {
     })
 }
 
+/// `half` is q·A·L/2, `elastic` the mass from its own ends \[kg\]; None where the beam is only a part of its model.
+struct BeamWithoutMass<'a> {
+    name: &'a str,
+    head: Span,
+    half: f64,
+    elastic: Option<f64>,
+}
+
+impl Violation for BeamWithoutMass<'_> {
+    const CODE: Code = E209;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            name,
+            head,
+            half,
+            elastic,
+        } = self;
+        let kg = |mass| shown(mass, Dimension::MASS);
+        let half = format!(
+            "`mass = density * area * length / 2`, {}, which is for a beam on two supports",
+            kg(half)
+        );
+        let help = match elastic {
+            Some(elastic) => format!(
+                "write `mass = {name}.elastic_mass`, {}, from its ends, or {half}",
+                kg(elastic)
+            ),
+            None => format!("write the moving mass, as in `mass = 0.9 kg`, or {half}"),
+        };
+        Diagnostic::new(
+        Self::CODE,
+        format!(
+            "specimen `{name}` requires the field `mass`, which depends on the ends of its `beam`"
+        ),
+    )
+    .at(head, "`mass` is missing")
+    .help(help)
+    }
+}
+
 /// A `beam` has ends, and q·A·L/2 applies to two supports: the plan must state which of its masses applies.
 fn beam_has_mass(checker: &mut Checker, block: usize, half: Option<f64>) {
     let declared = &checker.scope.blocks[block];
@@ -124,12 +200,12 @@ fn beam_has_mass(checker: &mut Checker, block: usize, half: Option<f64>) {
     }
     let masses = behaviour(checker, block, declared.block.head)
         .and_then(|behaviour| behaviour.equivalent_masses());
-    checker.diagnostics.push(specimens::beam_without_mass(
-        &name.node,
-        declared.block.head,
+    checker.report(BeamWithoutMass {
+        name: &name.node,
+        head: declared.block.head,
         half,
-        masses.map(|masses| masses.elastic),
-    ));
+        elastic: masses.map(|masses| masses.elastic),
+    });
 }
 
 fn any_given(checker: &Checker, block: usize) -> bool {
@@ -267,6 +343,52 @@ pub fn exported(
     )
 }
 
+#[derive(Violation)]
+#[violation(
+    E628,
+    "`{name}` is a frame: it has no single `{property}`",
+    name = name.map_or("the frame", |name| name.node.as_str())
+)]
+#[help("declare the value of one storey with `let`, and read that")]
+struct NoOneOfItsKind<'a> {
+    name: Option<&'a Ident>,
+    property: &'a str,
+    #[label("several storeys")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(
+    E206,
+    "specimen `{name}` has no `{property}` without a `behaviour`",
+    name = name.map_or("", |name| name.node.as_str())
+)]
+#[help(
+    "read the result of a `stiffness ramp`, such as `k0.stiffness`, or add the expected `behaviour`"
+)]
+struct PropertyWithoutBehaviour<'a> {
+    name: Option<&'a Ident>,
+    property: &'a str,
+    #[label("unknown before the run")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(
+    E634,
+    "specimen `{name}` has no `{property}`: {reason}",
+    name = name.map_or("", |name| name.node.as_str())
+)]
+#[help("{}", help)]
+struct NoSuchProperty<'a> {
+    name: Option<&'a Ident>,
+    property: &'a str,
+    reason: &'a str,
+    help: &'static str,
+    #[label("not available")]
+    span: Span,
+}
+
 /// The value of `beam.mass`, `beam.stiffness` or another; None where the specimen has an error that is reported there.
 pub fn export(checker: &mut Checker, block: usize, name: &str, requested_at: Span) -> Option<f64> {
     let declared = &checker.scope.blocks[block];
@@ -275,11 +397,11 @@ pub fn export(checker: &mut Checker, block: usize, name: &str, requested_at: Spa
             _ if name == fields::MASS.name => {
                 frame::frame(checker, block).map(|frame| frame.total_mass())
             }
-            _ => checker.fail(frames::no_one_of_its_kind(
-                declared.name,
-                name,
-                requested_at,
-            )),
+            _ => checker.fail(NoOneOfItsKind {
+                name: declared.name,
+                property: name,
+                span: requested_at,
+            }),
         };
     }
     if name == fields::MASS.name {
@@ -287,11 +409,11 @@ pub fn export(checker: &mut Checker, block: usize, name: &str, requested_at: Spa
     }
     // MeasurementUncertainty only with a model; a missing model of a virtual specimen has a separate diagnostic.
     if checker.real_rig.is_some() && checker.field(block, fields::BEHAVIOUR.name).is_none() {
-        return checker.fail(message::property_without_behaviour(
-            declared.name,
-            name,
-            requested_at,
-        ));
+        return checker.fail(PropertyWithoutBehaviour {
+            name: declared.name,
+            property: name,
+            span: requested_at,
+        });
     }
     let behaviour = behaviour(checker, block, requested_at)?;
     let (value, reason) = match (name, &behaviour) {
@@ -330,13 +452,13 @@ pub fn export(checker: &mut Checker, block: usize, name: &str, requested_at: Spa
     if value.is_finite() {
         Some(value)
     } else {
-        checker.fail(specimens::no_such_property(
-            declared.name,
-            name,
+        checker.fail(NoSuchProperty {
+            name: declared.name,
+            property: name,
             reason,
-            help_without(name, &behaviour),
-            requested_at,
-        ))
+            help: help_without(name, &behaviour),
+            span: requested_at,
+        })
     }
 }
 
@@ -407,6 +529,43 @@ pub fn behaviour(checker: &mut Checker, block: usize, requested_at: Span) -> Opt
     behaviour
 }
 
+/// Limits that let the specimen exceed its table.
+struct TableTooShort<'a> {
+    file: &'a str,
+    table: Interval,
+    limit: Interval,
+    named_at: Span,
+    limit_at: Span,
+}
+
+impl Violation for TableTooShort<'_> {
+    const CODE: Code = W715;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            file,
+            table,
+            limit,
+            named_at,
+            limit_at,
+        } = self;
+        let range = |interval: Interval| {
+            format!(
+                "{} .. {}",
+                shown(interval.low, Dimension::LENGTH),
+                shown(interval.high, Dimension::LENGTH)
+            )
+        };
+        Diagnostic::new(
+            Self::CODE,
+            format!("the limits exceed the points of `{file}`: the last force is used beyond them"),
+        )
+        .at(named_at, format!("points over {}", range(table)))
+        .at(limit_at, format!("allows {}", range(limit)))
+        .help("narrow the limits to the measured range, or measure further")
+    }
+}
+
 /// Warns if the limits allow a specimen to exceed the points of its table.
 pub fn warn_of_short_tables(
     checker: &mut Checker,
@@ -451,13 +610,13 @@ pub fn warn_of_short_tables(
         };
         let allowed = limits.limits.displacement;
         if allowed.low < reach.low || allowed.high > reach.high {
-            checker.diagnostics.push(specimens::table_too_short(
-                &table.file,
-                reach,
-                allowed,
-                *named_at,
+            checker.report(TableTooShort {
+                file: &table.file,
+                table: reach,
+                limit: allowed,
+                named_at: *named_at,
                 limit_at,
-            ));
+            });
         }
     }
 }

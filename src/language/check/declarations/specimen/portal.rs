@@ -3,7 +3,7 @@
 
 use crate::check::checker::{Checker, Context};
 use crate::check::expressions::choice::Chosen;
-use crate::check::messages::specimens as message;
+use crate::check::violations::{MissingPartner, OneFormOnly};
 use psd_plan::schema::behaviours::{STIFFNESS, argument};
 use psd_plan::{Behaviour, FrameMasses, Loads, Portal, Sections};
 use psd_text::source::Span;
@@ -48,11 +48,11 @@ pub fn portal<'a>(
     };
     let (second_moment, column_second) = (second_moment?, column_second?);
     if let (Some(_), None) = (column_second, second_moment) {
-        return checker.fail(message::missing_partner(
-            argument::COLUMN_SECOND_MOMENT,
-            argument::SECOND_MOMENT,
-            chosen.span(argument::COLUMN_SECOND_MOMENT)?,
-        ));
+        return checker.fail(MissingPartner {
+            given: argument::COLUMN_SECOND_MOMENT,
+            missing: argument::SECOND_MOMENT,
+            span: chosen.span(argument::COLUMN_SECOND_MOMENT)?,
+        });
     }
     let portal = match (modulus?, second_moment, stiffness?) {
         (Some(modulus), Some(beam), None) => {
@@ -72,29 +72,29 @@ pub fn portal<'a>(
             masses: None,
         },
         (Some(_), None, None) => {
-            return checker.fail(message::missing_partner(
-                argument::YOUNGS_MODULUS,
-                argument::SECOND_MOMENT,
-                chosen.span(argument::YOUNGS_MODULUS)?,
-            ));
+            return checker.fail(MissingPartner {
+                given: argument::YOUNGS_MODULUS,
+                missing: argument::SECOND_MOMENT,
+                span: chosen.span(argument::YOUNGS_MODULUS)?,
+            });
         }
         (None, Some(_), None) => {
-            return checker.fail(message::missing_partner(
-                argument::SECOND_MOMENT,
-                argument::YOUNGS_MODULUS,
-                chosen.span(argument::SECOND_MOMENT)?,
-            ));
+            return checker.fail(MissingPartner {
+                given: argument::SECOND_MOMENT,
+                missing: argument::YOUNGS_MODULUS,
+                span: chosen.span(argument::SECOND_MOMENT)?,
+            });
         }
         (modulus, second_moment, _) => {
             let given = usize::from(modulus.is_some() || second_moment.is_some()) * 2;
             let takes =
                 "a `portal` requires either `youngs_modulus` with `second_moment`, or `stiffness`";
-            return checker.fail(message::one_form_only(
+            return checker.fail(OneFormOnly {
                 takes,
-                "stiffness: 2 kN/mm",
+                example: "stiffness: 2 kN/mm",
                 span,
                 given,
-            ));
+            });
         }
     };
     Some(Behaviour::Portal(portal.with_masses(masses?)))
@@ -118,11 +118,11 @@ fn masses<'a>(
     let (beam, column, midspan, corner) = (beam?.or(of_specimen), column?, midspan?, corner?);
     if let (None, Some(_)) = (beam, column) {
         let span = chosen.span(argument::COLUMN_MASS_PER_LENGTH)?;
-        return checker.fail(message::missing_partner(
-            argument::COLUMN_MASS_PER_LENGTH,
-            argument::MASS_PER_LENGTH,
+        return checker.fail(MissingPartner {
+            given: argument::COLUMN_MASS_PER_LENGTH,
+            missing: argument::MASS_PER_LENGTH,
             span,
-        ));
+        });
     }
     let beam = beam.unwrap_or(0.0);
     let has_mass = beam + midspan + corner > 0.0;

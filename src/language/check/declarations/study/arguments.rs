@@ -1,20 +1,33 @@
 //! Arguments of a distribution that have the unit of the input. In: the option as written. Out: numbers and ranges in SI.
 
-use super::known;
 use crate::check::checker::{Checker, Context, Reads, Typed};
 use crate::check::expressions::choice::Chosen;
-use crate::check::messages::{studies as message, values};
+use crate::check::violations::OutOfRange;
+use crate::codes::E657;
 use psd_plan::Interval;
 use psd_plan::formula::Formula;
-use psd_plan::schema::Field;
-use psd_plan::schema::study as schema;
+use psd_plan::schema::{Field, study as schema};
+use psd_text::diagnostic::Violation;
+use psd_text::source::Span;
 use psd_text::units::Dimension;
+
+use super::known;
 
 const CONTEXT: Context = Context {
     entry: None,
     reads: Reads::Nothing("a study"),
     critical: false,
 };
+
+/// `sd: 5 %` of a quantity.
+#[derive(Violation)]
+#[violation(E657, "`sd` has the unit of the input: a relative scatter is `cv`")]
+#[help("write `cv: {text}`")]
+struct RelativeDeviation<'a> {
+    text: &'a str,
+    #[label("relative")]
+    span: Span,
+}
 
 /// An argument in the unit of the input: `Some(None)` if it is omitted, None if it has an error.
 #[expect(
@@ -33,18 +46,21 @@ pub(super) fn number<'a>(
     let typed = checker.single(written, CONTEXT)?;
     if typed.percent && dimension != Dimension::NUMBER && field.name == schema::SD.name {
         let text = checker.text(written.span);
-        return checker.fail(message::relative_deviation(text, written.span));
+        return checker.fail(RelativeDeviation {
+            text,
+            span: written.span,
+        });
     }
     let typed = checker.expect(typed, dimension, field.name, written)?;
     let value = known(checker, typed.constant(), written.span)?;
     if !field.range.contains(value) {
-        return checker.fail(values::out_of_range(
+        return checker.fail(OutOfRange {
             field,
             dimension,
             value,
-            checker.text(written.span),
-            written.span,
-        ));
+            text: checker.text(written.span),
+            span: written.span,
+        });
     }
     Some(Some(value))
 }

@@ -1,13 +1,16 @@
 //! The ends of the inputs of studies: the plan must be valid there too. In: distributions with limits, columns of files, the values of an
 //! intensity. Out: values to be bound once the plan has no error.
 
-use super::target::Target;
-use super::varied::{Law, Varied};
 use crate::check::checker::{Checker, End};
-use crate::check::messages::studies::intensity::INSIDE;
 use psd_physics::study::distribution::Tails;
 use psd_text::source::Span;
 use psd_text::units::Quantity;
+
+use super::target::Target;
+use super::varied::{Law, Varied};
+
+/// The help for a distribution that reaches an invalid value.
+const INSIDE: &str = "write limits inside the valid range: `uniform(a .. b)`, or `between: a .. b` of another distribution";
 
 /// Notes the smallest and the largest value of every input that has both.
 pub(super) fn note(checker: &mut Checker, varied: &[Varied]) {

@@ -1,11 +1,9 @@
 //! `vary = [impact_speed ~ normal(sd: 0.05 m/s), beam.mass]`: the inputs of a study with their distributions. In: the list. Out: a
 //! [`Variation`], in which the columns of one file are next to each other.
 
-use super::target::{Target, target};
-use super::varied::{Law, Varied, source_of};
-use super::{correlation, distribution, ends, items, sampling, seed, spaced};
 use crate::check::checker::{Checker, Context};
-use crate::check::messages::{inputs as names, studies as message};
+use crate::check::violations::VariesNothing;
+use crate::codes::{E208, E304, E405};
 use crate::syntax::ast::{BinaryOperator, Expr, ExprKind};
 use psd_physics::study::distribution::{Distribution, Spread};
 use psd_physics::study::inputs::{InputError, Source, StudyInputs};
@@ -13,7 +11,33 @@ use psd_physics::study::sampling::sobol::MOST_INPUTS;
 use psd_physics::study::sampling::{Design, DesignError};
 use psd_plan::schema::study as schema;
 use psd_plan::study::{Measured, REPLICATES, Sampling, Variation};
+use psd_text::diagnostic::Violation;
 use psd_text::source::Span;
+
+use super::target::{Target, target};
+use super::varied::{Law, Varied, source_of};
+use super::{correlation, distribution, ends, items, sampling, seed, spaced};
+
+#[derive(Violation)]
+#[violation(E208, "`{name}` is varied twice")]
+#[help("remove one of them")]
+struct VariedTwice<'a> {
+    name: &'a str,
+    #[label("varied again")]
+    span: Span,
+    #[label("first varied here")]
+    first: Span,
+}
+
+#[derive(Violation)]
+#[violation(E405, "{found} inputs: a Sobol' study has at most {most}")]
+#[help("write `sampling = random`, which takes any number of inputs")]
+struct TooManyInputs {
+    found: usize,
+    most: usize,
+    #[label("{found} inputs")]
+    span: Span,
+}
 
 /// The inputs of a field, with their correlations and points. `stepped`: the intensity of a fragility, which is not varied as well.
 pub(super) fn variation(
@@ -29,7 +53,7 @@ pub(super) fn variation(
     let context = checker.context_of(block, entry);
     let list = items(&written.value);
     if list.is_empty() {
-        return checker.fail(message::varies_nothing(head));
+        return checker.fail(VariesNothing { head });
     }
     let mut named: Vec<(String, Span)> = stepped
         .iter()
@@ -41,7 +65,11 @@ pub(super) fn variation(
             let varied = varied(checker, item, context)?;
             let (name, span) = (&varied.target.name, varied.target.span);
             if let Some((_, first)) = named.iter().find(|(before, _)| before == name) {
-                return checker.fail(names::varied_twice(name, span, *first));
+                return checker.fail(VariedTwice {
+                    name,
+                    span,
+                    first: *first,
+                });
             }
             named.push((name.clone(), span));
             Some(varied)
@@ -59,10 +87,14 @@ pub(super) fn variation(
         }
         Err(InputError::Design(DesignError::TooManyInputs { inputs })) => {
             let span = written.value.span;
-            return checker.fail(message::too_many_inputs(inputs, MOST_INPUTS, span));
+            return checker.fail(TooManyInputs {
+                found: inputs,
+                most: MOST_INPUTS,
+                span,
+            });
         }
         // Lists, tables and numbers of runs were checked before.
-        Err(_) => return checker.fail(message::varies_nothing(head)),
+        Err(_) => return checker.fail(VariesNothing { head }),
     }
     ends::note(checker, &varied);
     let measured = varied.iter().enumerate().filter_map(|(input, one)| {
@@ -143,6 +175,15 @@ fn sources(varied: &[Varied]) -> Vec<Source> {
     sources
 }
 
+#[derive(Violation)]
+#[violation(E304, "`{text}` is not a distribution")]
+#[help("write one, such as `normal(cv: 2 %)` or `uniform(0.9 .. 1.1)`")]
+struct DistributionWanted<'a> {
+    text: &'a str,
+    #[label("not a distribution")]
+    span: Span,
+}
+
 fn varied<'a>(checker: &mut Checker<'a>, item: &'a Expr, context: Context) -> Option<Varied<'a>> {
     if let ExprKind::Binary {
         operator,
@@ -157,10 +198,10 @@ fn varied<'a>(checker: &mut Checker<'a>, item: &'a Expr, context: Context) -> Op
                 checker.chosen(schema::VARY.name, schema::DISTRIBUTIONS, right)
             }
             ExprKind::Faulty => None,
-            _ => checker.fail(message::distribution_wanted(
-                checker.text(right.span),
-                right.span,
-            )),
+            _ => checker.fail(DistributionWanted {
+                text: checker.text(right.span),
+                span: right.span,
+            }),
         };
         let (target, chosen) = (target?, chosen?);
         let law = distribution::law(checker, &chosen, &target, right.span, context)?;

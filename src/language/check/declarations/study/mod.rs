@@ -17,19 +17,28 @@ mod varied;
 pub use samples_file::MOST_ROWS as MOST_SAMPLE_ROWS;
 
 use crate::check::checker::{Checker, Context, Reads, Shape};
-use crate::check::messages::{studies as message, values};
+use crate::check::violations::{NeedsTheRun, ReadsNoResult};
+use crate::codes::{E304, E660, E665};
 use crate::syntax::ast::{Expr, ExprKind};
 use psd_physics::study::Confidence;
-use psd_plan::schema::Kind;
-use psd_plan::schema::study as schema;
+use psd_plan::schema::{Kind, study as schema};
 use psd_plan::study::{Collected, MOST_RUNS, Runs, Sampling, Studies, Study};
+use psd_text::diagnostic::Violation;
 use psd_text::source::Span;
+
+#[derive(Violation)]
+#[violation(E665, "a study is simulated: it cannot run on a real rig")]
+#[help("remove `--rig`, or name a virtual rig")]
+struct StudyOnARealRig {
+    #[label("a real rig")]
+    head: Span,
+}
 
 /// The studies of the plan; None if one has an error.
 pub fn studies(checker: &mut Checker) -> Option<Studies> {
     if let Some(rig) = checker.real_rig.filter(|_| checker.for_studies) {
         let head = checker.scope.blocks[rig].block.head;
-        checker.diagnostics.push(message::on_a_real_rig(head));
+        checker.report(StudyOnARealRig { head });
     }
     let blocks = |checker: &Checker, kind| {
         let of_kind = checker.scope.of_kind(kind);
@@ -104,6 +113,43 @@ fn as_whole(value: f64) -> Option<u64> {
         .then_some(value as u64)
 }
 
+/// `stated`: `runs` or `until`.
+#[derive(Violation)]
+#[violation(
+    E660,
+    "a subset simulation ends by its levels and has no number of runs"
+)]
+#[help("remove `runs` or `until`; `points` and `replicates` of `subset` state the size")]
+struct RunsOfSubset {
+    #[label("number of runs")]
+    stated: Span,
+    #[label("ends once its levels reach the limit")]
+    sampling: Span,
+}
+
+#[derive(Violation)]
+#[violation(E660, "the number of runs is stated twice")]
+#[help("remove `runs`; `at_most` of `until` limits the number of runs")]
+struct RunsAndUntil {
+    #[label("ends by its results")]
+    until: Span,
+    #[label("ends after these runs")]
+    runs: Span,
+}
+
+#[derive(Violation)]
+#[violation(
+    E660,
+    "a Latin hypercube has a fixed number of runs and cannot end by its results"
+)]
+#[help("write `runs = 10000` instead of `until`, or `sampling = {}`", Sampling::Random.name())]
+struct HypercubeCannotGrow {
+    #[label("unknown number of runs")]
+    until: Span,
+    #[label("fixed number of runs")]
+    sampling: Span,
+}
+
 /// The end of a study: a number of runs, or a rule.
 fn runs(checker: &mut Checker, block: usize, confidence: Option<Confidence>) -> Option<Runs> {
     let key = |checker: &Checker, field: &str| {
@@ -119,7 +165,7 @@ fn runs(checker: &mut Checker, block: usize, confidence: Option<Confidence>) -> 
         key(checker, schema::SAMPLING.name),
     ) {
         if let Some(stated) = runs.or(until) {
-            return checker.fail(message::rare::runs_of_subset(sampling, stated));
+            return checker.fail(RunsOfSubset { sampling, stated });
         }
         return rare::levels(checker, block).map(Runs::Rare);
     }
@@ -127,13 +173,13 @@ fn runs(checker: &mut Checker, block: usize, confidence: Option<Confidence>) -> 
         return whole(checker, block, schema::RUNS.name).map(Runs::Fixed);
     };
     if let Some(runs) = runs {
-        return checker.fail(message::runs_and_until(runs, until));
+        return checker.fail(RunsAndUntil { runs, until });
     }
     if let (Some(Sampling::LatinHypercube), Some(sampling)) = (
         sampling(checker, block),
         key(checker, schema::SAMPLING.name),
     ) {
-        return checker.fail(message::cannot_grow(sampling, until));
+        return checker.fail(HypercubeCannotGrow { sampling, until });
     }
     let chosen = checker.choice(block, schema::UNTIL.name)?;
     let (entry, _) = checker.field(block, schema::UNTIL.name)?;
@@ -188,19 +234,32 @@ fn collect(checker: &mut Checker, block: usize) -> Option<Vec<Collected>> {
     Some(collect)
 }
 
+/// `exceeds` with a list, a list result or a result that is not a number.
+#[derive(Violation)]
+#[violation(E304, "`{text}` is a list: a study keeps one number for each run")]
+#[help("write `max({text})`, or one entry: `{text}[0]`")]
+struct NumberPerRunWanted<'a> {
+    text: &'a str,
+    #[label("a list")]
+    span: Span,
+}
+
 fn collected<'a>(checker: &mut Checker<'a>, item: &'a Expr, context: Context) -> Option<Collected> {
     let typed = checker.value(item, context)?;
     let text = spaced(checker.text(item.span));
     if typed.shape == Shape::List {
-        return checker.fail(message::number_wanted(&text, item.span));
+        return checker.fail(NumberPerRunWanted {
+            text: &text,
+            span: item.span,
+        });
     }
     // A result that is an input of the study is a number in each run.
     if !reads_a_result(&typed.formula) && checker.results.is_empty() {
-        return checker.fail(message::reads_no_result(
-            &text,
-            "hit.max_displacement",
-            item.span,
-        ));
+        return checker.fail(ReadsNoResult {
+            text: &text,
+            example: "hit.max_displacement",
+            span: item.span,
+        });
     }
     Some(Collected {
         text,
@@ -237,6 +296,9 @@ fn seed(checker: &mut Checker, block: usize) -> Option<u64> {
 fn known(checker: &mut Checker, value: Option<f64>, span: Span) -> Option<f64> {
     match value {
         Some(value) => Some(value),
-        None => checker.fail(values::needs_the_run(span, checker.text(span))),
+        None => checker.fail(NeedsTheRun {
+            span,
+            text: checker.text(span),
+        }),
     }
 }

@@ -1,19 +1,21 @@
 //! `require "rarely too far" scatter.probability(fails: "stays in travel") < 2 %`: requirements that a study decides. In: those
 //! requirements of the plan, and its studies. Out: [`StudyRequirement`]s, and whether the runs can show their limits at all.
 
-use super::{known, spaced};
 use crate::check::checker::{Checker, Context, Reads};
-use crate::check::messages::{names, studies as message, types};
 use crate::check::scope::Meaning;
+use crate::check::violations::{EventWanted, ProbabilityMisplaced, UnknownBlockName};
+use crate::codes::{E203, E206, E304, E401, E663, E664, W731};
 use crate::syntax::ast::{BinaryOperator, Expr, ExprKind};
 use psd_physics::study::Confidence;
 use psd_physics::study::probability::clopper_pearson::fewest_clean_runs;
 use psd_plan::Comparison;
-use psd_plan::schema::study as schema;
-use psd_plan::schema::{Field, Kind};
+use psd_plan::schema::{Field, Kind, study as schema};
 use psd_plan::study::{Runs, Study, StudyEvent, StudyRequirement};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 use psd_text::units::Dimension;
+
+use super::{known, spaced};
 
 const LIMIT: Context = Context {
     entry: None,
@@ -38,6 +40,43 @@ pub(super) fn requirements(
     Some(requirements)
 }
 
+/// `until` without a requirement that could end the study. `rule`: its word.
+struct NothingToDecide<'a> {
+    rule: &'a str,
+    study: &'a str,
+    any: bool,
+    span: Span,
+}
+
+impl Violation for NothingToDecide<'_> {
+    const CODE: Code = E664;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            rule,
+            study,
+            any,
+            span,
+        } = self;
+        let (message, help) = if any {
+            (
+                "the plan has no requirement whose probability could end this study",
+                "add a requirement on the results of a run, or write `runs = 10000`".to_owned(),
+            )
+        } else {
+            (
+                "no requirement is about a probability of this study",
+                format!(
+                    "add one, such as `require \"rarely fails\" {study}.probability(fails: \"…\") < 2 %`, or write `runs = 10000`"
+                ),
+            )
+        };
+        Diagnostic::new(Self::CODE, message)
+            .at(span, format!("`{rule}` never ends it"))
+            .help(help)
+    }
+}
+
 /// Whether the rule of a study has a requirement that can end it.
 fn rule_ends(checker: &mut Checker, index: usize, study: &Study, own: bool) {
     let any = match study.runs {
@@ -51,13 +90,26 @@ fn rule_ends(checker: &mut Checker, index: usize, study: &Study, own: bool) {
         let span = entry.value.span;
         let rule = checker.text(span).split('(').next().unwrap_or_default();
         let half_width = matches!(study.runs, Runs::HalfWidth { .. });
-        checker.diagnostics.push(message::nothing_to_decide(
+        checker.report(NothingToDecide {
             rule,
-            &study.name,
-            half_width,
+            study: &study.name,
+            any: half_width,
             span,
-        ));
+        });
     }
+}
+
+#[derive(Violation)]
+#[violation(
+    E401,
+    "a limit of a probability is between 0 and 1, both excluded, here {value}"
+)]
+#[help("write a limit such as `2 %`")]
+struct ImpossibleProbability<'a> {
+    value: f64,
+    text: &'a str,
+    #[label("`{text}` is always or never met")]
+    span: Span,
 }
 
 fn requirement(
@@ -82,7 +134,11 @@ fn requirement(
     let limit = known(checker, limit.constant(), written)?;
     if !(limit > 0.0 && limit < 1.0) {
         let text = checker.text(written);
-        return checker.fail(message::impossible_limit(limit, text, written));
+        return checker.fail(ImpossibleProbability {
+            value: limit,
+            text,
+            span: written,
+        });
     }
     let (study, event) = event?;
     if let Some(Some(of)) = studies.get(study) {
@@ -96,6 +152,15 @@ fn requirement(
         comparison,
         limit,
     })
+}
+
+/// `and`, `==`, `within`, two probabilities.
+#[derive(Violation)]
+#[violation(E663, "a probability is compared with one limit")]
+#[help("write `<`, `<=`, `>` or `>=` and a limit such as `2 %`; write one `require` for each")]
+struct ProbabilityCompared {
+    #[label("not such a comparison")]
+    span: Span,
 }
 
 /// The probability, how it is compared, and its limit: `2 % > p` is `p < 2 %`.
@@ -129,13 +194,38 @@ fn compared<'a>(
                     _ => {}
                 }
                 if !is_probability(left) {
-                    return checker.fail(message::probability_misplaced(condition.span));
+                    return checker.fail(ProbabilityMisplaced {
+                        span: condition.span,
+                    });
                 }
             }
         }
         _ => {}
     }
-    checker.fail(message::probability_compared(condition.span))
+    checker.fail(ProbabilityCompared {
+        span: condition.span,
+    })
+}
+
+#[derive(Violation)]
+#[violation(E206, "study `{study}` has no `{member}`")]
+#[help("write `probability(fails: \"…\")`, with the name of a requirement")]
+struct NoSuchStudyMember<'a> {
+    study: &'a str,
+    member: &'a str,
+    #[label("unknown")]
+    span: Span,
+}
+
+/// A condition in place of the name of a requirement. `required`: the requirement that it stands for.
+#[derive(Violation)]
+#[violation(E304, "`{field}` requires the name of a requirement")]
+#[help("add `require \"stays within\" {required}`, then write `{field}: \"stays within\"`")]
+struct RequirementWanted<'a> {
+    field: &'a str,
+    #[label("a condition")]
+    span: Span,
+    required: &'a str,
 }
 
 /// `scatter.probability(fails: "stays in travel")`: the study, and the event.
@@ -149,11 +239,15 @@ fn event<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option<(usize, Stu
         return None;
     };
     let ExprKind::Name(owner) = &base.kind else {
-        return checker.fail(message::probability_misplaced(base.span));
+        return checker.fail(ProbabilityMisplaced { span: base.span });
     };
     let study = study(checker, owner, base.span)?;
     if name.node != schema::PROBABILITY.name {
-        return checker.fail(message::no_such_member(owner, &name.node, name.span));
+        return checker.fail(NoSuchStudyMember {
+            study: owner,
+            member: &name.node,
+            span: name.span,
+        });
     }
     let chosen = checker.arguments_of(&schema::PROBABILITY, arguments, written.span)?;
     let mut label = |field: Field| {
@@ -161,7 +255,11 @@ fn event<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option<(usize, Stu
             && let Some(required) = required(checker, field, written)
         {
             let span = written.span;
-            return checker.fail(types::requirement_wanted(field.name, span, &required));
+            return checker.fail(RequirementWanted {
+                field: field.name,
+                span,
+                required: &required,
+            });
         }
         let (text, span) = checker.text_argument(&chosen, field.name)??;
         run_requirement(checker, &text, span).map(Some)
@@ -176,7 +274,7 @@ fn event<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option<(usize, Stu
             let requirement = label(schema::HOLDS)??;
             Some((study, StudyEvent::Holds { requirement }))
         }
-        _ => checker.fail(message::event_wanted(written.span)),
+        _ => checker.fail(EventWanted { span: written.span }),
     }
 }
 
@@ -221,8 +319,53 @@ fn study(checker: &mut Checker, owner: &str, span: Span) -> Option<usize> {
                 .filter_map(|(_, block)| block.name)
                 .map(|name| name.node.as_str())
                 .collect();
-            checker.fail(names::unknown_block_name(Kind::Study, owner, span, &known))
+            checker.fail(UnknownBlockName {
+                kind: Kind::Study,
+                name: owner,
+                span,
+                known: &known,
+            })
         }
+    }
+}
+
+/// A requirement that a study itself decides.
+#[derive(Violation)]
+#[violation(E203, "\"{label}\" is itself a requirement on a study")]
+#[help("write the name of a requirement on the results of a run")]
+struct RequirementOfAStudy<'a> {
+    label: &'a str,
+    #[label("not decided by a run")]
+    span: Span,
+}
+
+struct UnknownRequirement<'a> {
+    label: &'a str,
+    span: Span,
+    known: &'a [&'a str],
+}
+
+impl Violation for UnknownRequirement<'_> {
+    const CODE: Code = E203;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { label, span, known } = self;
+        let help = match psd_text::suggest::nearest(label, known.iter().copied()) {
+            Some(near) => format!("did you mean \"{near}\"?"),
+            None if known.is_empty() => "add a requirement on the results of a run".to_owned(),
+            None => format!(
+                "write one of: {}",
+                known
+                    .iter()
+                    .take(10)
+                    .map(|name| format!("\"{name}\""))
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            ),
+        };
+        Diagnostic::new(Self::CODE, format!("no requirement is named \"{label}\""))
+            .at(span, "unknown requirement")
+            .help(help)
     }
 }
 
@@ -239,9 +382,57 @@ fn run_requirement(checker: &mut Checker, label: &str, span: Span) -> Option<usi
     }
     let mut others = scope.study_requirements.iter();
     if others.any(|one| one.label.node == label) {
-        return checker.fail(message::requirement_of_a_study(label, span));
+        return checker.fail(RequirementOfAStudy { label, span });
     }
-    checker.fail(message::unknown_requirement(label, span, &known))
+    checker.fail(UnknownRequirement {
+        label,
+        span,
+        known: &known,
+    })
+}
+
+/// To one or two digits.
+fn rounded_up(count: u64) -> u64 {
+    let mut unit = 1_u64;
+    while count / unit >= 100 {
+        unit *= 10;
+    }
+    count.div_ceil(unit) * unit
+}
+
+struct TooFewRuns {
+    most: u64,
+    limit: Span,
+    fewest: u64,
+    at: Option<Span>,
+}
+
+impl Violation for TooFewRuns {
+    const CODE: Code = W731;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            most,
+            limit,
+            fewest,
+            at,
+        } = self;
+        let diagnostic = Diagnostic::new(
+        Self::CODE,
+        format!(
+            "{most} runs cannot show this limit, even if none is against it: that takes {fewest}"
+        ),
+    )
+    .at(limit, "always undecided, or not met");
+        let diagnostic = at.into_iter().fold(diagnostic, |diagnostic, span| {
+            diagnostic.at(span, "too few runs")
+        });
+        diagnostic.help(format!(
+            "write `runs = {}` or more, `until = decided(at_most: {})`, or `sampling = subset`",
+            rounded_up(fewest),
+            rounded_up(fewest.saturating_mul(10))
+        ))
+    }
 }
 
 /// A limit so near to 0 or 1 that not even runs without an exception show it.
@@ -270,8 +461,11 @@ fn warn_of_few_runs(
                 .map(|(_, entry)| entry.value.span)
         };
         let at = field(schema::RUNS.name).or_else(|| field(schema::UNTIL.name));
-        checker
-            .diagnostics
-            .push(message::too_few_runs(most, span, fewest, at));
+        checker.report(TooFewRuns {
+            most,
+            limit: span,
+            fewest,
+            at,
+        });
     }
 }

@@ -2,11 +2,21 @@
 //! with the one requirement of the plan that it is about.
 
 use crate::check::checker::{Checker, Context, Reads};
-use crate::check::messages::studies::rare as message;
-use psd_plan::schema::Kind;
-use psd_plan::schema::study as schema;
+use crate::codes::{E401, E664};
+use psd_plan::schema::{Kind, study as schema};
 use psd_plan::study::{RareEvent, Runs, Study, StudyEvent, StudyRequirement};
 use psd_plan::{Comparison, Test};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::Span;
+
+#[derive(Violation)]
+#[violation(E401, "a level has a multiple of ten points, here {points}")]
+#[help("write `points: 1000`")]
+struct PointsOfALevel {
+    points: u32,
+    #[label("a tenth of the points begins the next level")]
+    span: Span,
+}
 
 /// Points and replicates; the requirement is known only once all of them are read.
 pub(super) fn levels(checker: &mut Checker, block: usize) -> Option<RareEvent> {
@@ -27,7 +37,7 @@ pub(super) fn levels(checker: &mut Checker, block: usize) -> Option<RareEvent> {
     let (points, replicates) = (count(schema::POINTS), count(schema::LEVEL_REPLICATES));
     let (points, replicates) = (points?, replicates?);
     if points % 10 != 0 {
-        return checker.fail(message::points_of_a_level(points, span));
+        return checker.fail(PointsOfALevel { points, span });
     }
     Some(RareEvent {
         points,
@@ -36,6 +46,47 @@ pub(super) fn levels(checker: &mut Checker, block: usize) -> Option<RareEvent> {
         requirement: 0,
         falls: false,
     })
+}
+
+struct OneRareFailure<'a> {
+    study: &'a str,
+    found: usize,
+    span: Span,
+}
+
+impl Violation for OneRareFailure<'_> {
+    const CODE: Code = E664;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self { study, found, span } = self;
+        let message = if found == 0 {
+            "no requirement is about a probability of this study".to_owned()
+        } else {
+            format!("a subset simulation is about one requirement of the plan, here {found}")
+        };
+        let help = if found == 0 {
+            format!(
+                "add one, such as `require \"rarely fails\" {study}.probability(fails: \"…\") < 0.001 %`"
+            )
+        } else {
+            "write a study for each requirement".to_owned()
+        };
+        Diagnostic::new(Self::CODE, message)
+            .at(span, "no distance from a limit")
+            .help(help)
+    }
+}
+
+/// A requirement without a distance from its limit.
+#[derive(Violation)]
+#[violation(E664, "\"{label}\" does not compare one result with a constant")]
+#[help("write one comparison, such as `hit.max_displacement < 50 mm`, or `sampling = random`")]
+struct NoDistance<'a> {
+    label: &'a str,
+    #[label("no single limit")]
+    condition: Span,
+    #[label("its levels approach one limit")]
+    sampling: Span,
 }
 
 /// The study with the requirement that it is about: one result of a run, compared with a constant.
@@ -60,7 +111,11 @@ pub(super) fn completed(
         .collect();
     of_runs.dedup();
     let [requirement] = of_runs[..] else {
-        return checker.fail(message::one_rare_failure(&study.name, of_runs.len(), span));
+        return checker.fail(OneRareFailure {
+            study: &study.name,
+            found: of_runs.len(),
+            span,
+        });
     };
     let declared = &checker.scope.requirements[requirement];
     let (label, condition) = (declared.label.node.clone(), declared.condition);
@@ -86,7 +141,11 @@ pub(super) fn completed(
         _ => None,
     };
     let Some(falls) = falls else {
-        return checker.fail(message::no_distance(&label, condition.span, span));
+        return checker.fail(NoDistance {
+            label: &label,
+            condition: condition.span,
+            sampling: span,
+        });
     };
     let numbers = u32::try_from(study.variation.sources.len()).ok()?;
     Some(Study {

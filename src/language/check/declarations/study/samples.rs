@@ -1,16 +1,48 @@
 //! `from("measured.csv", column: "mass_kg")`: measured values of an input. In: the arguments and the input. Out: the column in SI. The file
 //! belongs to the plan.
 
-use super::arguments;
-use super::samples_file;
-use super::target::Target;
-use super::varied::Law;
 use crate::check::checker::Checker;
 use crate::check::expressions::choice::Chosen;
-use crate::check::messages::studies as message;
+use crate::codes::E659;
 use psd_plan::schema::study as schema;
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::Span;
 use psd_text::units::Dimension;
 use psd_text::units::display::si_unit;
+
+use super::target::Target;
+use super::varied::Law;
+use super::{arguments, samples_file};
+
+/// A file of measured values: the row, if one row has the error, with its text.
+struct BadSamplesFile<'a> {
+    file: &'a str,
+    row: Option<(usize, String)>,
+    reason: &'a str,
+    help: &'a str,
+    span: Span,
+}
+
+impl Violation for BadSamplesFile<'_> {
+    const CODE: Code = E659;
+
+    fn diagnostic(self) -> Diagnostic {
+        let Self {
+            file,
+            row,
+            reason,
+            help,
+            span,
+        } = self;
+        let message = match row {
+            Some((line, text)) => format!("`{file}`, line {line}, `{text}`: {reason}"),
+            None => format!("`{file}`: {reason}"),
+        };
+        Diagnostic::new(Self::CODE, message)
+            .at(span, "cannot be read as measured values")
+            .help(help)
+    }
+}
 
 pub(super) fn column<'a>(
     checker: &mut Checker<'a>,
@@ -26,18 +58,24 @@ pub(super) fn column<'a>(
         Ok(values) => values,
         Err(bad) => {
             let span = if bad.of_the_column { column_at } else { at };
-            return checker.fail(message::samples(
-                &file.name,
-                bad.row,
-                &bad.reason,
-                &bad.help,
+            return checker.fail(BadSamplesFile {
+                file: &file.name,
+                row: bad.row,
+                reason: &bad.reason,
+                help: &bad.help,
                 span,
-            ));
+            });
         }
     };
     let named = samples_file::unit_of(&column);
     let problem = |checker: &mut Checker, reason: &str, help: &str, span| {
-        checker.fail(message::samples(&file.name, None, reason, help, span))
+        checker.fail(BadSamplesFile {
+            file: &file.name,
+            row: None,
+            reason,
+            help,
+            span,
+        })
     };
     let factor = match (unit, named) {
         (Some(unit), None) => unit,

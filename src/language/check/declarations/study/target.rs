@@ -1,14 +1,16 @@
 //! An input as a study names it: `impact_speed`, `beam.mass`. In: the expression. Out: its position, dimension and value in the plan.
 
 use crate::check::checker::{Checker, Shape, literal};
-use crate::check::expressions::overrides::{self, InputLocation};
-use crate::check::messages::{inputs as names, studies as message};
+use crate::check::expressions::overrides::{self, InputLocation, no_input};
 use crate::check::rig;
+use crate::check::violations::InputWanted;
+use crate::codes::{E656, E665};
 use crate::syntax::ast::{Expr, ExprKind};
 use psd_plan::formula::ResultReference;
 use psd_plan::schema::ground::RECORD_NUMBER;
 use psd_plan::schema::{Field, FieldType, Kind, RigKind};
 use psd_plan::study::Input;
+use psd_text::diagnostic::Violation;
 use psd_text::source::Span;
 use psd_text::units::Dimension;
 
@@ -64,13 +66,28 @@ pub(super) fn path_of(written: &Expr) -> Option<Vec<&str>> {
     }
 }
 
+/// A number that a study cannot vary, for another reason than its name.
+#[derive(Violation)]
+#[violation(E656, "`{name}` {why}")]
+#[help("{}", help)]
+struct CannotVary<'a> {
+    name: &'a str,
+    why: &'a str,
+    #[label("cannot be varied")]
+    span: Span,
+    help: &'a str,
+}
+
 /// The input that an expression names.
 pub(super) fn target<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option<Target<'a>> {
     let span = written.span;
     let Some(path) = path_of(written) else {
         return match written.kind {
             ExprKind::Faulty => None,
-            _ => checker.fail(names::input_wanted(checker.text(span), span)),
+            _ => checker.fail(InputWanted {
+                text: checker.text(span),
+                span,
+            }),
         };
     };
     let name = path.join(".");
@@ -78,7 +95,7 @@ pub(super) fn target<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option
         Ok(location) => location,
         Err(_) if checker.may_be_lost(path[0]) => return None,
         Err(reason) => {
-            checker.diagnostics.extend(names::no_input(&reason, span));
+            checker.diagnostics.extend(no_input(&reason, span));
             return None;
         }
     };
@@ -100,15 +117,20 @@ pub(super) fn target<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option
             let typed = typed?;
             if typed.shape == Shape::List {
                 let help = "write a `param`, use it in the list, and name it here";
-                return checker.fail(names::cannot_vary(&name, "is a list", span, help));
+                return checker.fail(CannotVary {
+                    name: &name,
+                    why: "is a list",
+                    span,
+                    help,
+                });
             }
             let Some(nominal) = typed.constant() else {
-                return checker.fail(names::cannot_vary(
-                    &name,
-                    "is known only in the run",
+                return checker.fail(CannotVary {
+                    name: &name,
+                    why: "is known only in the run",
                     span,
-                    "vary the inputs from which it is calculated",
-                ));
+                    help: "vary the inputs from which it is calculated",
+                });
             };
             (typed.dimension, nominal, field.angle)
         }
@@ -141,6 +163,16 @@ fn of_parameter(checker: &mut Checker, index: usize) -> Option<(Dimension, f64, 
     Some((typed.dimension, typed.constant()?, angle))
 }
 
+/// A value of a rig that moves a specimen.
+#[derive(Violation)]
+#[violation(E665, "`{name}` belongs to a real rig, and a study is simulated")]
+#[help("remove it, or vary a field of a virtual rig")]
+struct InputOfARealRig<'a> {
+    name: &'a str,
+    #[label("no effect in a study")]
+    span: Span,
+}
+
 /// Fields that a simulated run does not scatter.
 fn refuse(
     checker: &mut Checker,
@@ -151,17 +183,22 @@ fn refuse(
 ) -> Option<()> {
     if matches!(field.ty, FieldType::Count) && field.name != RECORD_NUMBER.name {
         let help = "vary a number that is not a count";
-        return checker.fail(names::cannot_vary(name, "is a whole number", span, help));
+        return checker.fail(CannotVary {
+            name,
+            why: "is a whole number",
+            span,
+            help,
+        });
     }
     match checker.scope.blocks[block].kind.kind {
-        Kind::Study | Kind::Fragility => checker.fail(names::cannot_vary(
+        Kind::Study | Kind::Fragility => checker.fail(CannotVary {
             name,
-            "describes a study, not a run",
+            why: "describes a study, not a run",
             span,
-            "vary a field of a specimen, a striker, a ground motion or a procedure",
-        )),
+            help: "vary a field of a specimen, a striker, a ground motion or a procedure",
+        }),
         Kind::Rig if rig::kind(checker, block) == Some(RigKind::Real) => {
-            checker.fail(message::of_a_real_rig(name, span))
+            checker.fail(InputOfARealRig { name, span })
         }
         _ => Some(()),
     }

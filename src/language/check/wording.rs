@@ -1,70 +1,17 @@
-//! The wording of the diagnostics of the check, one file per subject. In: names, values and spans.
-//! Out: diagnostics. They make no decision.
+//! Parts of messages that several violations have in common: names, lists and values in words.
 
 use crate::syntax::ast::Ident;
-use crate::syntax::limits::ERRORS;
 use psd_plan::procedures::stiffness_ramp::block as stiffness_ramp;
 use psd_plan::schema::BlockKind;
-use psd_text::diagnostic::{Code, Diagnostic, Severity};
 use psd_text::units::{Dimension, display};
 
-pub mod axes;
-pub mod cyclic;
-pub mod files;
-pub mod frames;
-pub mod golden;
-pub mod inputs;
-pub mod methods;
-pub mod names;
-pub mod rigs;
-pub mod specimens;
-pub mod studies;
-pub mod types;
-pub mod values;
-pub mod whole;
-
-/// Keeps the first diagnostics of many, errors before warnings, and counts the others.
-pub fn cap(diagnostics: &mut Vec<Diagnostic>) {
-    let errors = diagnostics
-        .iter()
-        .filter(|diagnostic| diagnostic.is_error())
-        .count();
-    let mut left = [ERRORS, ERRORS.saturating_sub(errors)];
-    let mut out: Vec<Diagnostic> = Vec::new();
-    for diagnostic in std::mem::take(diagnostics) {
-        let left = &mut left[usize::from(!diagnostic.is_error())];
-        if *left > 0 {
-            *left -= 1;
-            diagnostics.push(diagnostic);
-        } else {
-            out.push(diagnostic);
-        }
-    }
-    let Some(first) = out
-        .iter()
-        .find(|diagnostic| diagnostic.is_error())
-        .or(out.first())
-    else {
-        return;
-    };
-    let one = if first.is_error() {
-        Severity::Error
+/// `one axis`, `3 axes`
+pub fn axes_of(count: usize) -> String {
+    if count == 1 {
+        "one axis".to_owned()
     } else {
-        Severity::Warning
-    };
-    let message = format!(
-        "{} more errors are not listed (at most {ERRORS})",
-        out.len()
-    );
-    let more = Diagnostic {
-        severity: one,
-        ..Diagnostic::new(Code::TooLarge, message)
-    };
-    let more = first
-        .span()
-        .into_iter()
-        .fold(more, |more, span| more.at(span, "first unlisted error"));
-    diagnostics.push(more.help("correct the listed errors first"));
+        format!("{count} axes")
+    }
 }
 
 /// The name of a block in a message: ``specimen `beam` ``.
@@ -78,16 +25,6 @@ pub fn owner(kind: &BlockKind, name: Option<&Ident>) -> String {
 /// A value as it is usually written: `16 mm`, not `16.00 mm`.
 pub fn shown(value: f64, dimension: Dimension) -> String {
     display::plain(value, dimension, 4)
-}
-
-/// `a`, `b` or `c`
-pub fn one_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
-    joined(words, "or")
-}
-
-/// `a`, `b` and `c`
-pub fn all_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
-    joined(words, "and")
 }
 
 /// Most names of one list: a plan may declare any number.
@@ -111,6 +48,16 @@ fn joined<'a>(words: impl IntoIterator<Item = &'a str>, by: &str) -> String {
     }
 }
 
+/// `a`, `b` or `c`
+pub fn one_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+    joined(words, "or")
+}
+
+/// `a`, `b` and `c`
+pub fn all_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+    joined(words, "and")
+}
+
 /// Terms of the field for which psd has another name, and that name.
 const SYNONYMS: &[(&str, &str)] = &[("hardening", stiffness_ramp::POST_YIELD_RATIO.name)];
 
@@ -126,4 +73,32 @@ pub fn suggestion<'a>(written: &str, known: impl IntoIterator<Item = &'a str>) -
         None if known.is_empty() => "remove it".to_owned(),
         None => format!("known here: {}", one_of(known)),
     }
+}
+
+/// "a length", "an energy", "a value in kg/m"
+pub fn article(dimension: Dimension) -> String {
+    let name = dimension.describe();
+    if dimension.name().is_none() {
+        return format!("a value in {name}");
+    }
+    let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) {
+        "an"
+    } else {
+        "a"
+    };
+    format!("{article} {name}")
+}
+
+/// `3 kg`: the number as it is written, in a suitable unit.
+pub fn example(number: Option<&str>, dimension: Dimension) -> String {
+    let number = number.unwrap_or("1");
+    if dimension == Dimension::NUMBER {
+        number.to_owned()
+    } else {
+        format!("{number} {}", dimension.usual_unit())
+    }
+}
+
+pub fn time(value: f64) -> String {
+    shown(value, Dimension::TIME)
 }
