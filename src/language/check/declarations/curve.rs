@@ -37,7 +37,7 @@ pub fn breaks<'a>(
         chosen.span(LARGEST_BREAK_COUNT.name),
         chosen.span(BREAK_COUNT.name),
     ) {
-        (Some(_), Some(most), Some(breaks)) => checker.fail(BreaksCountedTwice { breaks, most }),
+        (Some(_), Some(most), Some(breaks)) => checker.fail(BreaksCountedTwice { most, breaks }),
         (Some(breaks), ..) => Some(BreakCount::Exactly(whole(breaks)? as usize)),
         (None, ..) => Some(BreakCount::ByCriterion {
             most: most as usize,

@@ -165,7 +165,7 @@ fn runs(checker: &mut Checker, block: usize, confidence: Option<Confidence>) -> 
         key(checker, schema::SAMPLING.name),
     ) {
         if let Some(stated) = runs.or(until) {
-            return checker.fail(RunsOfSubset { sampling, stated });
+            return checker.fail(RunsOfSubset { stated, sampling });
         }
         return rare::levels(checker, block).map(Runs::Rare);
     }
@@ -173,13 +173,13 @@ fn runs(checker: &mut Checker, block: usize, confidence: Option<Confidence>) -> 
         return whole(checker, block, schema::RUNS.name).map(Runs::Fixed);
     };
     if let Some(runs) = runs {
-        return checker.fail(RunsAndUntil { runs, until });
+        return checker.fail(RunsAndUntil { until, runs });
     }
     if let (Some(Sampling::LatinHypercube), Some(sampling)) = (
         sampling(checker, block),
         key(checker, schema::SAMPLING.name),
     ) {
-        return checker.fail(HypercubeCannotGrow { sampling, until });
+        return checker.fail(HypercubeCannotGrow { until, sampling });
     }
     let chosen = checker.choice(block, schema::UNTIL.name)?;
     let (entry, _) = checker.field(block, schema::UNTIL.name)?;
