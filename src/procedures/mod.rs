@@ -24,7 +24,7 @@ use crate::plan::{
     ProcedureKind,
 };
 use crate::record::{
-    CycleStep, History, NamedResult, ProcedureRecord, StiffnessRampHistory, SweepStep,
+    CycleStep, History, MoveStep, NamedResult, ProcedureRecord, RampStep, SweepStep,
 };
 use crate::report::Run;
 use crate::report::document::Block;
@@ -177,7 +177,7 @@ pub(crate) fn recorded(history: &History) -> Recorded {
         History::Cycle(_) => cycle::facts::recorded(),
         History::Escalate(_) => escalate::facts::recorded(),
         History::FrameUnload(_) => unload::facts::recorded_frame(),
-        History::Move(_) | History::Inspect => Recorded::default(),
+        History::Move(_) | History::Unload(_) | History::Inspect => Recorded::default(),
     }
 }
 
@@ -241,6 +241,7 @@ pub(crate) fn attribute(
         | History::Shake(_)
         | History::Escalate(_)
         | History::Move(_)
+        | History::Unload(_)
         | History::FrameUnload(_)
         | History::Inspect => return,
     }
@@ -320,7 +321,7 @@ pub(crate) fn chart(
         History::Cycle(history) => cycle::figures::chart(name, history, kind),
         History::Escalate(history) => escalate::figures::chart(run, name, history, figure),
         History::FrameUnload(steps) => shake::figures::unloading_chart(name, steps, kind),
-        History::Move(_) | History::Inspect => None,
+        History::Move(_) | History::Unload(_) | History::Inspect => None,
     }
 }
 
@@ -334,6 +335,7 @@ pub(crate) fn shared_curve(kind: FigureKind, history: &History) -> Option<Shared
         | History::Cycle(_)
         | History::Escalate(_)
         | History::Move(_)
+        | History::Unload(_)
         | History::FrameUnload(_)
         | History::Inspect => None,
     }
@@ -349,7 +351,8 @@ pub(crate) fn tables(procedure: &ProcedureRecord) -> Vec<Table<'_>> {
         History::Shake(history) => vec![shake::tables::table(name, history)],
         History::Cycle(history) => cycle::tables::tables(name, history),
         History::Escalate(history) => escalate::tables::tables(name, history),
-        History::Move(steps) => vec![stiffness_ramp::tables::of_moves(name, steps)],
+        History::Move(steps) => vec![move_to::tables::table(name, steps)],
+        History::Unload(steps) => vec![unload::tables::of_moves(name, steps)],
         History::FrameUnload(steps) => vec![unload::tables::of_floors(name, steps)],
         History::Inspect => Vec::new(),
     }
@@ -362,7 +365,7 @@ pub fn columns(kind: Kind) -> impl Iterator<Item = Column> {
     };
     let all = match procedure {
         ProcedureBlock::StiffnessRamp => stiffness_ramp::tables::columns(),
-        ProcedureBlock::Move => numeric(stiffness_ramp::tables::STEPS),
+        ProcedureBlock::Move => move_to::tables::columns(),
         ProcedureBlock::Unload => unload::tables::columns(),
         ProcedureBlock::DampingSweep => numeric(damping_sweep::tables::STEPS),
         ProcedureBlock::Impact => impact::tables::columns(),
@@ -400,7 +403,7 @@ pub(crate) fn report(
         History::FrameUnload(steps) => {
             shake::report::unloaded(run, index, procedure, steps, body);
         }
-        History::Move(_) | History::Inspect => {}
+        History::Move(_) | History::Unload(_) | History::Inspect => {}
     }
 }
 
@@ -421,12 +424,13 @@ pub(crate) fn self_tested(kind: &ProcedureKind) -> Vec<Vec<SelfTestPart>> {
 /// Report: gives displacement \[m\] and force \[N\] of every axis, row by row of a procedure's table.
 pub(crate) fn readings(history: &History, give: &mut dyn FnMut(&[f64], &[f64])) {
     match history {
-        History::StiffnessRamp(StiffnessRampHistory { steps, .. }) | History::Move(steps) => {
-            common::reached::of_axis(
-                steps,
-                |step| (step.displacement, step.restoring_force),
-                give,
-            );
+        History::StiffnessRamp(ramp) => {
+            let read = |step: &RampStep| (step.displacement, step.restoring_force);
+            common::reached::of_axis(&ramp.steps, read, give);
+        }
+        History::Move(steps) => {
+            let read = |step: &MoveStep| (step.displacement, step.restoring_force);
+            common::reached::of_axis(steps, read, give);
         }
         History::DampingSweep(sweep) => {
             let read = |step: &SweepStep| (step.displacement, step.restoring_force);
@@ -446,7 +450,7 @@ pub(crate) fn readings(history: &History, give: &mut dyn FnMut(&[f64], &[f64])) 
             let steps = shake.steps.iter();
             steps.for_each(|step| give(&step.floors.displacement, &step.floors.restoring_force));
         }
-        History::FrameUnload(steps) => {
+        History::Unload(steps) | History::FrameUnload(steps) => {
             let steps = steps.iter();
             steps.for_each(|step| give(&step.displacement, &step.restoring_force));
         }

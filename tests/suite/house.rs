@@ -47,6 +47,8 @@ const KNOWS: &[(&[&str], &[&str])] = &[
     (
         &[
             "plotters",
+            "plotters_backend",
+            "resvg",
             "maud",
             "typst",
             "typst_layout",

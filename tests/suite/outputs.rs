@@ -187,7 +187,7 @@ fn parquet_reads_back_as_the_record() {
 #[test]
 fn the_committed_schema_is_the_generated_one_and_holds_for_a_summary() {
     let generated = Summary::json_schema();
-    // If the types were changed intentionally, SNAPSHOTS=overwrite regenerates the file.
+    // If the types were changed intentionally, `cargo xtask generate schema` writes the file.
     snapbox::assert_data_eq!(
         generated.clone(),
         snapbox::file!["../../grammar/summary.schema.json": Text].raw()

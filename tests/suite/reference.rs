@@ -1,5 +1,5 @@
-//! The language reference, `grammar/LANGUAGE.md`: its generated part equals that of the schema, its plans are valid. `PSD_BLESS=1 cargo
-//! test` regenerates the generated part.
+//! The language reference, `grammar/LANGUAGE.md`: its generated part equals that of the schema, its plans are valid. `cargo xtask
+//! generate reference` writes the generated part.
 
 use std::fs;
 use std::path::PathBuf;
@@ -49,7 +49,7 @@ fn compare(name: &str, part: &str, text: &str) {
         .find(|(left, right)| left != right);
     assert!(
         generated == wanted,
-        "{name} is behind the schema ({differs:?}): run PSD_BLESS=1 cargo test reference"
+        "{name} is behind the schema ({differs:?}): cargo xtask generate reference"
     );
 }
 

@@ -1,5 +1,5 @@
 //! The page of specimen models: every plan on it runs and passes. Its loop equals the figure beside it, drawn by the program, and every
-//! model of the schema has one. `PSD_BLESS=1 cargo test --test suite specimens_page` regenerates the figures.
+//! model of the schema has one. `cargo xtask generate specimens` draws the figures again.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -103,7 +103,7 @@ fn every_plan_of_the_page_passes_and_its_loop_is_the_figure() {
         let kept = fs::read(&path).unwrap_or_default();
         assert!(
             kept == svg,
-            "docs/specimens/{name}.svg is not what the plan draws: PSD_BLESS=1 cargo test specimens_page"
+            "docs/specimens/{name}.svg is not what the plan draws: cargo xtask generate specimens"
         );
     }
 }

@@ -158,7 +158,6 @@ fn a_reading_of_another_rig_is_malformed() {
         "rig_drift.psd",
         "specimen_table.psd",
         "uncertain_matrices.psd",
-        "w709_drift_within_noise.psd",
     ] {
         let journal = of_case(name);
         assert_eq!(replayed(&journal), Ok(()), "{name}");

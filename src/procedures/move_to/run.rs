@@ -2,7 +2,7 @@
 
 use crate::plan::Move;
 use crate::procedures::stiffness_ramp::points::secant;
-use crate::record::{History, RampStep};
+use crate::record::{History, MoveStep};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::{Session, first};
@@ -27,7 +27,7 @@ fn go(
     plan: &Move,
     inputs: &mut Inputs<'_>,
     session: &mut Session<'_>,
-    steps: &mut Vec<RampStep>,
+    steps: &mut Vec<MoveStep>,
 ) -> Result<(), Stop> {
     let to = inputs.number("to", &plan.to, Dimension::LENGTH)?;
     let speed = inputs.speed(plan.speed.as_ref())?;
@@ -36,16 +36,13 @@ fn go(
         let (reading, broken) = session.read_after(moved)?;
         let (displacement, restoring_force) = first(&reading);
         let wall_time = session.guard.time();
-        steps.push(RampStep {
+        steps.push(MoveStep {
             step,
             wall_time,
             command: target[0],
             displacement,
             restoring_force,
-            force_scatter: 0.0,
-            relaxation: 0.0,
             tangent_stiffness: tangent(steps.last(), displacement, restoring_force),
-            returning: false,
         });
         if let Some(stop) = broken {
             return Err(stop);
@@ -55,7 +52,7 @@ fn go(
     Ok(())
 }
 
-fn tangent(before: Option<&RampStep>, displacement: f64, restoring_force: f64) -> Option<f64> {
+fn tangent(before: Option<&MoveStep>, displacement: f64, restoring_force: f64) -> Option<f64> {
     let before = before?;
     secant(
         (before.displacement, before.restoring_force),

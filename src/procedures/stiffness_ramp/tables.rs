@@ -7,8 +7,8 @@ use crate::report::tables::TableColumn::{self, Flag, Integer, Number, Optional};
 use crate::report::tables::{Table, numeric, written};
 use crate::schema::{Column, columns};
 
-/// The columns of the steps, also of a `move`.
-pub(crate) const STEPS: &[TableColumn<RampStep>] = &[
+/// The columns of the steps.
+const STEPS: &[TableColumn<RampStep>] = &[
     Integer(columns::STEP, |step| step.step),
     Number(columns::WALL_TIME, |step| step.wall_time),
     Number(columns::COMMAND, |step| step.command),
@@ -60,11 +60,6 @@ pub(crate) fn tables(name: String, history: &StiffnessRampHistory) -> Vec<Table<
     }))
     .chain(holds)
     .collect()
-}
-
-/// The table of moves, under this name.
-pub(crate) fn of_moves(name: String, steps: &[RampStep]) -> Table<'_> {
-    Table::of(name, steps, |steps| written(STEPS, steps))
 }
 
 /// The readings of these holds after each other.

@@ -8,7 +8,7 @@ use crate::plan::procedures::unload::block as schema;
 use crate::plan::{Frame, Plan, Unload};
 use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::stepping::setting::frame_of;
-use crate::record::{EventKind, History, NamedResult, RampStep, Rest, UnloadStep};
+use crate::record::{EventKind, History, NamedResult, Rest, UnloadStep};
 use crate::rig::Reading;
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
@@ -40,7 +40,7 @@ pub(crate) fn perform(
     let (history, results) = match plan.stiffness {
         // The start is not a move.
         Some(_) => (
-            History::Move(steps.iter().skip(1).map(of_one).collect()),
+            History::Unload(steps.into_iter().skip(1).collect()),
             of_farthest(rest),
         ),
         None => (History::FrameUnload(steps), frame_results(rest)),
@@ -49,20 +49,6 @@ pub(crate) fn perform(
         history,
         results,
         stop: outcome.err(),
-    }
-}
-
-fn of_one(step: &UnloadStep) -> RampStep {
-    RampStep {
-        step: step.step,
-        wall_time: step.wall_time,
-        command: step.command[0],
-        displacement: step.displacement[0],
-        restoring_force: step.restoring_force[0],
-        force_scatter: 0.0,
-        relaxation: 0.0,
-        tangent_stiffness: step.tangent_stiffness[0],
-        returning: true,
     }
 }
 

@@ -1,17 +1,29 @@
-//! The table of an unloading: that of the moves of one degree of freedom, or of the floors of a frame. In: steps. Out: columns.
+//! The table of an unloading: a row a move of one degree of freedom, or a row a floor of a frame. In: steps. Out: columns.
 
-use crate::procedures::{shake, stiffness_ramp};
+use crate::procedures::shake;
 use crate::record::UnloadStep;
-use crate::report::tables::{Table, numeric};
-use crate::schema::Column;
+use crate::report::tables::TableColumn::{self, Integer, Number, Optional};
+use crate::report::tables::{Table, numeric, written};
+use crate::schema::{Column, columns};
+
+/// The columns of the moves of one degree of freedom.
+const MOVES: &[TableColumn<UnloadStep>] = &[
+    Integer(columns::STEP, |step| step.step),
+    Number(columns::WALL_TIME, |step| step.wall_time),
+    Number(columns::COMMAND, |step| step.command[0]),
+    Number(columns::DISPLACEMENT, |step| step.displacement[0]),
+    Number(columns::RESTORING_FORCE, |step| step.restoring_force[0]),
+    Optional(columns::TANGENT_STIFFNESS, |step| step.tangent_stiffness[0]),
+];
 
 /// The numeric columns of both tables.
 pub(crate) fn columns() -> Vec<Column> {
-    [
-        numeric(stiffness_ramp::tables::STEPS),
-        numeric(&shake::tables::unloaded()),
-    ]
-    .concat()
+    [numeric(MOVES), numeric(&shake::tables::unloaded())].concat()
+}
+
+/// The table of the moves of one degree of freedom, under this name.
+pub(crate) fn of_moves(name: String, steps: &[UnloadStep]) -> Table<'_> {
+    Table::of(name, steps, |steps| written(MOVES, steps))
 }
 
 /// The table of the floors of a frame, under this name.

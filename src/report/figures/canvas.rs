@@ -1,31 +1,91 @@
-//! The surface of a chart: shapes and text in reference pixels, 96 to the inch, y downward. There are two canvases: a raster
-//! and a vector drawing. Both use the same font, so that text has the same width on each.
+//! The surface of a chart: shapes and text in reference pixels, 96 to the inch, y downward. plotters draws them, in fractions of a
+//! reference pixel, on a vector drawing.
 
 use std::sync::Once;
 
-use plotters::prelude::{IntoFont as _, RGBColor};
+use plotters::coord::Shift;
+use plotters::element::{Drawable, PointCollection};
+use plotters::prelude::{
+    Circle, DrawingArea, IntoDrawingArea as _, IntoFont as _, Polygon, RGBColor, Rectangle, Text,
+};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color as _, FontStyle, FontTransform, TextStyle, register_font};
+use plotters_backend::BackendCoord;
 
 use super::super::document::fonts::{SANS, SANS_BOLD};
 use super::chart::{Colour, Line};
+use super::vector::{Drawing, Polyline, UNITS};
 
 /// A point in reference pixels, y downward.
 pub(super) type Point = (f64, f64);
 
 /// A surface to draw on.
-pub(super) trait Canvas {
-    fn rectangle(&self, from: Point, to: Point, colour: Colour);
+pub(super) struct Canvas(DrawingArea<Drawing, Shift>);
 
-    fn disc(&self, centre: Point, radius: f64, colour: Colour);
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "clamped to a few times any sheet"
+)]
+fn units((x, y): Point) -> BackendCoord {
+    let scale = |value: f64| (value.clamp(-1e5, 1e5) * UNITS).round() as i32;
+    (scale(x), scale(y))
+}
+
+const fn rgb((red, green, blue): Colour) -> RGBColor {
+    RGBColor(red, green, blue)
+}
+
+/// Draws on `width × height` reference pixels.
+pub(super) fn svg(width: u32, height: u32, paint: impl FnOnce(&Canvas)) -> String {
+    let drawing = Drawing::new(width, height);
+    paint(&Canvas(drawing.clone().into_drawing_area()));
+    drawing.svg()
+}
+
+impl Canvas {
+    fn draw<E: Drawable<Drawing>>(&self, element: &E)
+    where
+        for<'b> &'b E: PointCollection<'b, BackendCoord>,
+    {
+        self.0
+            .draw(element)
+            .expect("a drawing in memory takes every shape");
+    }
+
+    pub fn rectangle(&self, from: Point, to: Point, colour: Colour) {
+        self.draw(&Rectangle::new(
+            [units(from), units(to)],
+            rgb(colour).filled(),
+        ));
+    }
+
+    pub fn disc(&self, centre: Point, radius: f64, colour: Colour) {
+        let (radius, _) = units((radius, 0.0));
+        self.draw(&Circle::new(units(centre), radius, rgb(colour).filled()));
+    }
 
     /// A filled area; its corners in order.
-    fn polygon(&self, corners: &[Point], colour: Colour);
+    pub fn polygon(&self, corners: &[Point], colour: Colour) {
+        let corners: Vec<BackendCoord> = corners.iter().copied().map(units).collect();
+        self.draw(&Polygon::new(corners, rgb(colour).filled()));
+    }
 
     /// A line of several segments with round joins.
-    fn polyline(&self, points: &[Point], line: Line, colour: Colour);
+    pub fn polyline(&self, points: &[Point], line: Line, colour: Colour) {
+        self.draw(&Polyline {
+            points: points.iter().copied().map(units).collect(),
+            line,
+            colour,
+        });
+    }
 
-    fn text(&self, text: &str, anchor: Point, style: &Lettering);
+    pub fn text(&self, text: &str, anchor: Point, style: &Lettering) {
+        self.draw(&Text::new(
+            text.to_owned(),
+            units(anchor),
+            style.scaled(UNITS),
+        ));
+    }
 }
 
 /// Position of a text relative to its anchor point.
@@ -61,8 +121,8 @@ impl Lettering {
         f64::from(width) / MEASURED_AT
     }
 
-    /// The style for the font library, `scale` times as large.
-    pub fn scaled(&self, scale: f64) -> TextStyle<'static> {
+    /// The style for plotters, `scale` times as large.
+    fn scaled(&self, scale: f64) -> TextStyle<'static> {
         const FAMILY: &str = "psd";
         static FONTS: Once = Once::new();
         FONTS.call_once(|| {
@@ -83,12 +143,37 @@ impl Lettering {
         if self.upright {
             font = font.transform(FontTransform::Rotate270);
         }
-        let (red, green, blue) = self.colour;
-        let color = RGBColor(red, green, blue).to_backend_color();
         TextStyle {
             font,
-            color,
+            color: rgb(self.colour).to_backend_color(),
             pos: Pos::new(self.anchor.horizontal, self.anchor.vertical),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_label_is_never_markup() {
+        let anchor = Anchor {
+            horizontal: HPos::Left,
+            vertical: VPos::Top,
+        };
+        let style = Lettering {
+            size: 13.0,
+            bold: false,
+            colour: (0, 0, 0),
+            anchor,
+            upright: false,
+        };
+        let drawn = svg(10, 10, |canvas| {
+            canvas.text("</text><script>&\u{1b}", (1.0, 2.0), &style);
+        });
+        assert!(
+            drawn.contains(">&lt;/text&gt;&lt;script&gt;&amp;\u{fffd}</text>"),
+            "{drawn}"
+        );
     }
 }

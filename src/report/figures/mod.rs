@@ -21,8 +21,9 @@ use crate::record::ProcedureRecord;
 use chart::Chart;
 
 pub use data::{FIGURE_DATA, FigureAxis, FigureBand, FigureCurve, FigureData, Figures};
-pub(crate) use draw::{png, svg};
+pub(crate) use draw::svg;
 pub use plain::{Curve, Curves, PlainAxis};
+pub(crate) use raster::png;
 
 /// A figure, drawn in vectors.
 pub(super) struct Drawn {
@@ -34,6 +35,17 @@ pub(super) struct Drawn {
     pub kind: FigureKind,
     /// The name of the procedure that it shows, the first one of several.
     pub procedure: String,
+}
+
+impl Drawn {
+    /// The figure as PNG.
+    pub fn png(&self) -> Result<Vec<u8>, OutputError> {
+        raster::png(&self.svg).map_err(|reason| OutputError::Figure {
+            figure: self.kind.name(),
+            procedure: self.procedure.clone(),
+            reason,
+        })
+    }
 }
 
 /// A figure that is not drawn yet.
@@ -58,15 +70,6 @@ impl Undrawn {
             caption,
             kind: figure.kind,
             procedure: procedure.name.clone(),
-        })
-    }
-
-    /// The figure as PNG.
-    pub fn png(&self) -> Result<Vec<u8>, OutputError> {
-        draw::png(&self.chart).map_err(|reason| OutputError::Figure {
-            figure: self.kind.name(),
-            procedure: self.procedure.clone(),
-            reason,
         })
     }
 

@@ -6,7 +6,7 @@ use super::chart::{
     Chart, Colour, DASH_DOT, DASHED, DOTTED, End, LONG, Marker, Quantity, SOLID, Series, Style,
     palette,
 };
-use super::draw;
+use super::{draw, raster};
 use crate::units::Dimension;
 
 /// The quantity of an axis.
@@ -82,10 +82,10 @@ impl Curves {
                 style,
             }
         };
-        draw::png(&Chart::of(
+        raster::png(&draw::svg(&Chart::of(
             axis(&self.x, x_end),
             axis(&self.y, End::Tick),
             self.curves.iter().map(series).collect(),
-        ))
+        )))
     }
 }

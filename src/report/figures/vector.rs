@@ -1,34 +1,86 @@
-//! The vector canvas. In: shapes in reference pixels. Out: SVG, which names its font and loads no file; every text is escaped.
-//! Coordinates are rounded to a hundredth of a pixel.
+//! The drawing backend of plotters that writes SVG, which names its font and loads no file; every text is escaped. In: shapes in
+//! hundredths of a reference pixel. Out: SVG.
 
 use std::cell::RefCell;
+use std::convert::Infallible;
 use std::fmt::Write as _;
+use std::rc::Rc;
 
+use plotters::element::{Drawable, PointCollection};
 use plotters::style::text_anchor::{HPos, VPos};
+use plotters::style::{FontStyle, FontTransform};
+use plotters_backend::{
+    BackendColor, BackendCoord, BackendStyle, BackendTextStyle, DrawingBackend, DrawingErrorKind,
+};
 
 use super::super::document::fonts::FIGURE_FAMILIES;
-use super::canvas::{Canvas, Lettering, Point};
 use super::chart::{Colour, Line};
+
+/// Units of a shape per reference pixel: the coordinates of plotters are integers.
+pub(super) const UNITS: f64 = 100.0;
 
 /// The line height of DejaVu Sans, ascent and descent, over its em: (1901 + 483)/2048, from its `hhea` table.
 const LINE_OVER_EM: f64 = 2384.0 / 2048.0;
 
-struct Drawing {
-    shapes: RefCell<String>,
+/// A sheet that plotters draws on; a clone is the same sheet.
+#[derive(Clone)]
+pub(super) struct Drawing {
+    /// Reference pixels.
+    width: u32,
+    height: u32,
+    shapes: Rc<RefCell<String>>,
 }
 
-/// Draws on `width × height` reference pixels. The background is white in a browser and transparent in the PDF.
-pub(super) fn svg(width: u32, height: u32, paint: impl FnOnce(&dyn Canvas)) -> String {
-    let drawing = Drawing {
-        shapes: RefCell::new(String::new()),
-    };
-    paint(&drawing);
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
-         font-family=\"{FIGURE_FAMILIES}\" fill=\"none\" stroke-linejoin=\"round\" style=\"background:#ffffff\">\n\
-         {}</svg>\n",
-        drawing.shapes.into_inner()
-    )
+impl Drawing {
+    /// An empty sheet of `width × height` reference pixels.
+    pub fn new(width: u32, height: u32) -> Self {
+        Self {
+            width,
+            height,
+            shapes: Rc::default(),
+        }
+    }
+
+    /// What is drawn so far. The background is white in a browser and transparent in the PDF.
+    pub fn svg(&self) -> String {
+        let (width, height) = (self.width, self.height);
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+             font-family=\"{FIGURE_FAMILIES}\" fill=\"none\" stroke-linejoin=\"round\" style=\"background:#ffffff\">\n\
+             {}</svg>\n",
+            self.shapes.borrow()
+        )
+    }
+}
+
+type Drawn = Result<(), DrawingErrorKind<Infallible>>;
+
+/// A line of several segments. The styles of plotters have no dashes.
+pub(super) struct Polyline {
+    pub points: Vec<BackendCoord>,
+    pub line: Line,
+    pub colour: Colour,
+}
+
+impl<'a> PointCollection<'a, BackendCoord> for &'a Polyline {
+    type Point = &'a BackendCoord;
+    type IntoIter = &'a [BackendCoord];
+
+    fn point_iter(self) -> Self::IntoIter {
+        &self.points
+    }
+}
+
+impl Drawable<Drawing> for Polyline {
+    fn draw<I: Iterator<Item = BackendCoord>>(
+        &self,
+        points: I,
+        drawing: &mut Drawing,
+        _: (u32, u32),
+    ) -> Drawn {
+        drawing.line(points, self.line, self.colour);
+        Ok(())
+    }
 }
 
 impl Drawing {
@@ -37,54 +89,12 @@ impl Drawing {
         shapes.push_str(shape);
         shapes.push('\n');
     }
-}
 
-impl Canvas for Drawing {
-    fn rectangle(&self, from: Point, to: Point, colour: Colour) {
-        let (left, top) = (from.0.min(to.0), from.1.min(to.1));
-        let (width, height) = ((to.0 - from.0).abs(), (to.1 - from.1).abs());
-        self.add(&format!(
-            "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>",
-            number(left),
-            number(top),
-            number(width),
-            number(height),
-            hex(colour)
-        ));
-    }
-
-    fn disc(&self, centre: Point, radius: f64, colour: Colour) {
-        self.add(&format!(
-            "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{}\"/>",
-            number(centre.0),
-            number(centre.1),
-            number(radius),
-            hex(colour)
-        ));
-    }
-
-    fn polygon(&self, corners: &[Point], colour: Colour) {
-        let corners: Vec<String> = corners
-            .iter()
-            .map(|(x, y)| format!("{},{}", number(*x), number(*y)))
-            .collect();
-        self.add(&format!(
-            "<polygon points=\"{}\" fill=\"{}\"/>",
-            corners.join(" "),
-            hex(colour)
-        ));
-    }
-
-    fn polyline(&self, points: &[Point], line: Line, colour: Colour) {
+    fn line(&self, points: impl IntoIterator<Item = BackendCoord>, line: Line, colour: Colour) {
         let mut path = String::new();
-        for (index, (x, y)) in points.iter().enumerate() {
-            let _ = write!(
-                path,
-                "{}{} {}",
-                if index == 0 { "M" } else { " L" },
-                number(*x),
-                number(*y)
-            );
+        for (index, (x, y)) in points.into_iter().enumerate() {
+            let start = if index == 0 { "M" } else { " L" };
+            let _ = write!(path, "{start}{} {}", pixels(x), pixels(y));
         }
         let dash: Vec<String> = line.dash.iter().map(|length| number(*length)).collect();
         let dash = if dash.is_empty() {
@@ -97,50 +107,175 @@ impl Canvas for Drawing {
             "<path d=\"{path}\" stroke=\"{stroke}\" stroke-width=\"{width}\"{dash}/>"
         ));
     }
+}
 
-    fn text(&self, text: &str, anchor: Point, style: &Lettering) {
-        // From the anchor down to the baseline, as on the raster.
-        let down = style.size
-            * match style.anchor.vertical {
+/// The attributes of an area or of its outline.
+fn ink<S: BackendStyle>(style: &S, fill: bool) -> String {
+    let colour = hex(style.color().rgb);
+    if fill {
+        format!("fill=\"{colour}\"")
+    } else {
+        let width = number(f64::from(style.stroke_width()) / UNITS);
+        format!("stroke=\"{colour}\" stroke-width=\"{width}\"")
+    }
+}
+
+impl DrawingBackend for Drawing {
+    type ErrorType = Infallible;
+
+    fn get_size(&self) -> (u32, u32) {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a hundred"
+        )]
+        let units = UNITS as u32;
+        (self.width * units, self.height * units)
+    }
+
+    fn ensure_prepared(&mut self) -> Drawn {
+        Ok(())
+    }
+
+    fn present(&mut self) -> Drawn {
+        Ok(())
+    }
+
+    fn draw_pixel(&mut self, (x, y): BackendCoord, colour: BackendColor) -> Drawn {
+        self.draw_rect((x, y), (x + 1, y + 1), &colour, true)
+    }
+
+    fn draw_line<S: BackendStyle>(
+        &mut self,
+        from: BackendCoord,
+        to: BackendCoord,
+        style: &S,
+    ) -> Drawn {
+        self.draw_path([from, to], style)
+    }
+
+    fn draw_path<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(
+        &mut self,
+        points: I,
+        style: &S,
+    ) -> Drawn {
+        let line = Line {
+            width: f64::from(style.stroke_width()) / UNITS,
+            dash: &[],
+        };
+        self.line(points, line, style.color().rgb);
+        Ok(())
+    }
+
+    fn draw_rect<S: BackendStyle>(
+        &mut self,
+        (left, top): BackendCoord,
+        (right, bottom): BackendCoord,
+        style: &S,
+        fill: bool,
+    ) -> Drawn {
+        self.add(&format!(
+            "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" {}/>",
+            pixels(left),
+            pixels(top),
+            pixels(right - left),
+            pixels(bottom - top),
+            ink(style, fill)
+        ));
+        Ok(())
+    }
+
+    fn draw_circle<S: BackendStyle>(
+        &mut self,
+        (x, y): BackendCoord,
+        radius: u32,
+        style: &S,
+        fill: bool,
+    ) -> Drawn {
+        self.add(&format!(
+            "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" {}/>",
+            pixels(x),
+            pixels(y),
+            number(f64::from(radius) / UNITS),
+            ink(style, fill)
+        ));
+        Ok(())
+    }
+
+    fn fill_polygon<S: BackendStyle, I: IntoIterator<Item = BackendCoord>>(
+        &mut self,
+        corners: I,
+        style: &S,
+    ) -> Drawn {
+        let corners: Vec<String> = corners
+            .into_iter()
+            .map(|(x, y)| format!("{},{}", pixels(x), pixels(y)))
+            .collect();
+        self.add(&format!(
+            "<polygon points=\"{}\" {}/>",
+            corners.join(" "),
+            ink(style, true)
+        ));
+        Ok(())
+    }
+
+    fn draw_text<T: BackendTextStyle>(
+        &mut self,
+        text: &str,
+        style: &T,
+        (x, y): BackendCoord,
+    ) -> Drawn {
+        let upright = matches!(style.transform(), FontTransform::Rotate270);
+        let size = style.size() / UNITS;
+        // From the anchor down to the baseline. A text on its side is centred on its line, any other on its letters.
+        let down = size
+            * match style.anchor().v_pos {
                 VPos::Top => 0.5,
-                VPos::Center if style.upright => 0.097,
+                VPos::Center if upright => 0.097,
                 VPos::Center => 0.267,
                 VPos::Bottom => -0.306,
             };
+        let (x, y) = (f64::from(x) / UNITS, f64::from(y) / UNITS);
         // For text read from bottom to top, down is to the right.
-        let (x, y) = if style.upright {
-            (anchor.0 + down, anchor.1)
+        let (x, y) = if upright {
+            (x + down, y)
         } else {
-            (anchor.0, anchor.1 + down)
+            (x, y + down)
         };
-        let text_anchor = match style.anchor.horizontal {
+        let text_anchor = match style.anchor().h_pos {
             HPos::Left => "start",
             HPos::Center => "middle",
             HPos::Right => "end",
         };
         let (x, y) = (number(x), number(y));
-        let turn = if style.upright {
+        let turn = if upright {
             format!(" transform=\"rotate(-90 {x} {y})\"")
         } else {
             String::new()
         };
-        let weight = if style.bold {
+        let weight = if matches!(style.style(), FontStyle::Bold) {
             " font-weight=\"bold\""
         } else {
             ""
         };
         self.add(&format!(
             "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\"{weight} text-anchor=\"{text_anchor}\" fill=\"{}\"{turn}>{}</text>",
-            number(style.size / LINE_OVER_EM),
-            hex(style.colour),
+            number(size / LINE_OVER_EM),
+            hex(style.color().rgb),
             escaped(text)
         ));
+        Ok(())
     }
+}
+
+/// Units in reference pixels.
+fn pixels(units: i32) -> String {
+    number(f64::from(units) / UNITS)
 }
 
 /// To a hundredth, without trailing zeros and without a negative zero.
 fn number(value: f64) -> String {
-    let text = format!("{:.2}", value.clamp(-1e5, 1e5));
+    let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" {
         "0".to_owned()
@@ -153,7 +288,7 @@ fn hex((red, green, blue): Colour) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// A text between tags: escaped, without control characters, and with code points for missing glyphs as on the raster.
+/// A text between tags: escaped, without control characters, and with code points for missing glyphs.
 fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in crate::text::glyphs::shown(&crate::report::document::printable(text)).chars() {
@@ -170,30 +305,7 @@ fn escaped(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::canvas::Anchor;
     use super::*;
-
-    #[test]
-    fn a_label_is_never_markup() {
-        let anchor = Anchor {
-            horizontal: HPos::Left,
-            vertical: VPos::Top,
-        };
-        let style = Lettering {
-            size: 13.0,
-            bold: false,
-            colour: (0, 0, 0),
-            anchor,
-            upright: false,
-        };
-        let drawn = svg(10, 10, |canvas| {
-            canvas.text("</text><script>&\u{1b}", (1.0, 2.0), &style);
-        });
-        assert!(
-            drawn.contains(">&lt;/text&gt;&lt;script&gt;&amp;\u{fffd}</text>"),
-            "{drawn}"
-        );
-    }
 
     #[test]
     fn numbers_are_short() {

@@ -87,12 +87,12 @@ fn put_figures(
         };
         used.make_unique(&mut figure.path);
         let path = figure.path.clone();
+        let figure = figure.in_vectors();
         let png = OutputFile {
             path: format!("{path}.png"),
             bytes: figure.png()?,
         };
         digests.push(put_file(sink, &png)?);
-        let figure = figure.in_vectors();
         let svg = OutputFile {
             path: format!("{path}.svg"),
             bytes: figure.svg.clone().into_bytes(),

@@ -59,8 +59,8 @@ pub fn put(
             procedure: figure.name.clone(),
             reason,
         };
-        let png = drawing::png(&figure.chart).map_err(failed)?;
         let svg = drawing::svg(&figure.chart);
+        let png = drawing::png(&svg).map_err(failed)?;
         let path = format!("figures/{}", sanitize::file_part(&figure.name));
         keep(sink, &format!("{path}.png"), &png)?;
         keep(sink, &format!("{path}.svg"), svg.as_bytes())?;

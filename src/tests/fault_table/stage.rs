@@ -311,18 +311,21 @@ impl Ended {
 
     /// Command \[m\] and force \[N\] of the steps of ramps and moves.
     pub(super) fn forces(&self) -> Vec<(f64, f64)> {
-        let steps = self
-            .record
-            .procedures
-            .iter()
-            .flat_map(|procedure| match &procedure.history {
-                History::StiffnessRamp(history) => history.steps.clone(),
-                History::Move(steps) => steps.clone(),
-                _ => Vec::new(),
-            });
-        steps
-            .map(|step| (step.command, step.restoring_force))
-            .collect()
+        let mut forces = Vec::new();
+        for procedure in &self.record.procedures {
+            match &procedure.history {
+                History::StiffnessRamp(ramp) => {
+                    let steps = ramp.steps.iter();
+                    forces.extend(steps.map(|step| (step.command, step.restoring_force)));
+                }
+                History::Move(steps) => {
+                    let steps = steps.iter();
+                    forces.extend(steps.map(|step| (step.command, step.restoring_force)));
+                }
+                _ => {}
+            }
+        }
+        forces
     }
 
     pub(super) fn events(&self, kind: EventKind) -> Vec<&str> {

@@ -9,7 +9,7 @@ use crate::plan::{
     VirtualLink,
 };
 use crate::procedures::unload::run::{of_frame, to_rest};
-use crate::record::{History, RampStep, Record};
+use crate::record::{History, Record, UnloadStep};
 use crate::rig::virtual_rig;
 use crate::run::Unwatched;
 use crate::run::session::Session;
@@ -61,9 +61,9 @@ fn unloaded(
     run_unwatched(&plan)
 }
 
-fn moves(record: &Record) -> &[RampStep] {
+fn moves(record: &Record) -> &[UnloadStep] {
     match &record.procedures[1].history {
-        History::Move(moves) => moves,
+        History::Unload(moves) => moves,
         other => panic!("{other:?}"),
     }
 }
@@ -115,7 +115,7 @@ fn the_unloaded_position_does_not_depend_on_the_stated_stiffness() {
             assert!(
                 moves
                     .iter()
-                    .all(|step| step.restoring_force > -1e-3 * start),
+                    .all(|step| step.restoring_force[0] > -1e-3 * start),
                 "by {stiffness} N/m: {behaviour:?}: {moves:?}"
             );
             assert!(
@@ -191,7 +191,7 @@ fn a_soft_unloading_branch_is_followed_to_its_end() {
             assert!(
                 moves(&record)
                     .iter()
-                    .all(|step| step.restoring_force > -3.0),
+                    .all(|step| step.restoring_force[0] > -3.0),
                 "{stiffness} N/m, seed {seed}: {:?}",
                 moves(&record)
             );

@@ -79,7 +79,7 @@ fn every_figure_is_what_its_plan_draws() {
             );
             assert!(
                 fs::read(&file).unwrap_or_default() == *svg,
-                "{} is not what the plan draws: PSD_BLESS=1 cargo test --test suite book",
+                "{} is not what the plan draws: cargo xtask generate book",
                 file.display()
             );
         }

@@ -23,10 +23,7 @@ fn hold(page: &str, wanted: &str) {
         fs::write(&path, format!("{before}{START}{wanted}{END}{after}")).expect("a writable page");
         return;
     }
-    assert!(
-        part == wanted,
-        "docs/{page}: PSD_BLESS=1 cargo test --test suite book"
-    );
+    assert!(part == wanted, "docs/{page}: cargo xtask generate book");
 }
 
 /// The names in the first cells of the hand-written table of a page.

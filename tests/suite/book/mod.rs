@@ -1,6 +1,5 @@
 //! The book in `docs/`: every page is in the summary, every link leads to a page and a heading, every plan passes its check. Every
-//! console block shows the output of psd. `PSD_BLESS=1 cargo test --test suite book` regenerates console blocks, figures and generated
-//! parts.
+//! console block shows the output of psd. `cargo xtask generate book` writes console blocks, figures and generated parts.
 
 mod console;
 mod figures;

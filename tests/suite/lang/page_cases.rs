@@ -1,5 +1,5 @@
-//! The cases below `## Cases` on the pages of `psd explain`: each is a plan with what psd finds in it. `PSD_BLESS=1 cargo test --test suite
-//! lang` writes what psd finds now into the pages.
+//! The cases below `## Cases` on the pages of `psd explain`: each is a plan with what psd finds in it. `cargo xtask
+//! generate language` writes what psd finds now into the pages.
 
 use std::fs;
 use std::ops::Range;
@@ -134,7 +134,7 @@ fn the_cases_of_a_page_have_what_psd_finds_below_the_lines_where_it_finds_it() {
     }
     assert!(
         differences.is_empty() || writes,
-        "PSD_BLESS=1 cargo test --test suite lang accepts what psd finds:\n\n{}",
+        "cargo xtask generate language accepts what psd finds:\n\n{}",
         differences.join("\n")
     );
 }

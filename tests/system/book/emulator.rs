@@ -1,6 +1,6 @@
 //! The tutorial page about the rig emulator, from the start of the emulator to a signed report. In: the page, and its commands with
-//! a port of this test. psd prints the outputs on the page, apart from readings and digests. `PSD_BLESS=1` writes the outputs
-//! into the page.
+//! a port of this test. psd prints the outputs on the page, apart from readings and digests. `cargo xtask generate emulator` writes the
+//! outputs into the page.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};

@@ -1,4 +1,5 @@
-//! What the stages before the run know of `move`: its block and its parameters.
+//! What the stages before the run know of `move`: its block, its parameters and its history.
 
 pub mod block;
+pub mod history;
 pub mod parameters;

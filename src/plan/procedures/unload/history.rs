@@ -1,9 +1,9 @@
-//! The history of the unloading of a frame: the floors after every move. In: numbers of a run, SI. It moves nothing.
+//! The history of an unloading: the floors after every move; one degree of freedom is one floor. In: numbers of a run, SI. It moves nothing.
 
 use crate::record::history::floors::{Floors, FloorsAt, drift_of, shear_of};
 use crate::uncertainty::{Contribution, share};
 
-/// All floors after one move, from the ground up; step 0 is the start of the unloading.
+/// All floors after one move, from the ground up; step 0 is the start of the unloading of a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnloadStep {
     pub step: u64,

@@ -5,7 +5,7 @@ pub mod floors;
 
 use crate::procedures::stiffness_ramp::block as stiffness_ramp;
 use crate::record::{
-    CycleHistory, DampingSweepHistory, EscalateHistory, ImpactHistory, RampStep, ShakeHistory,
+    CycleHistory, DampingSweepHistory, EscalateHistory, ImpactHistory, MoveStep, ShakeHistory,
     StiffnessRampHistory, UnloadStep,
 };
 
@@ -18,7 +18,9 @@ pub enum History {
     Shake(ShakeHistory),
     Cycle(CycleHistory),
     Escalate(EscalateHistory),
-    Move(Vec<RampStep>),
+    Move(Vec<MoveStep>),
+    /// The moves that unload one degree of freedom.
+    Unload(Vec<UnloadStep>),
     /// The floors of a frame during the unloading.
     FrameUnload(Vec<UnloadStep>),
     Inspect,
@@ -60,6 +62,7 @@ impl History {
             | Self::DampingSweep(_)
             | Self::Cycle(_)
             | Self::Move(_)
+            | Self::Unload(_)
             | Self::FrameUnload(_)
             | Self::Inspect => Vec::new(),
         };

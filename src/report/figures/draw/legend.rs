@@ -72,7 +72,7 @@ pub(super) fn rows<'a, 'b>(entries: &'b [Entry<'a>]) -> Vec<Vec<(&'b Entry<'a>, 
 }
 
 /// Draws one entry from its left end, about the middle of its line.
-pub(super) fn draw(canvas: &dyn Canvas, entry: &Entry<'_>, (left, middle): Point) {
+pub(super) fn draw(canvas: &Canvas, entry: &Entry<'_>, (left, middle): Point) {
     let sample = entry.sample();
     match entry {
         Entry::Series(series) if series.style.fill => {
@@ -105,7 +105,7 @@ pub(super) fn draw(canvas: &dyn Canvas, entry: &Entry<'_>, (left, middle): Point
 }
 
 /// A sample of an area with a thin outline.
-fn draw_area(canvas: &dyn Canvas, (left, middle): Point, width: f64, colour: Colour) {
+fn draw_area(canvas: &Canvas, (left, middle): Point, width: f64, colour: Colour) {
     canvas.rectangle(
         (left, middle - 6.0),
         (left + width, middle + 6.0),

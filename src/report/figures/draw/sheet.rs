@@ -10,7 +10,7 @@ use super::{BOTTOM, GRID, INK, RIGHT, THINNEST, draw_marker, lettering};
 
 /// The area of the data with its axes.
 pub(super) struct Sheet<'a> {
-    pub canvas: &'a dyn Canvas,
+    pub canvas: &'a Canvas,
     pub x: &'a Axis,
     pub y: &'a Axis,
     /// Upper edge of the frame, reference pixels.

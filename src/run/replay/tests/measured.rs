@@ -55,7 +55,7 @@ pub(super) fn measured(record: &Record) -> String {
                 steps.iter().map(|step| step.command).collect::<Vec<_>>()
             )
             .unwrap(),
-            History::FrameUnload(steps) => {
+            History::Unload(steps) | History::FrameUnload(steps) => {
                 for step in steps {
                     writeln!(
                         text,

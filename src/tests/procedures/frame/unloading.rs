@@ -200,7 +200,7 @@ fn one_storey_is_unloaded_as_one_degree_of_freedom() {
         );
     }
     let (frame, single) = (run_unwatched(&frame), run_unwatched(&single));
-    let (History::FrameUnload(floors), History::Move(moves)) =
+    let (History::FrameUnload(floors), History::Unload(moves)) =
         (&frame.procedures[1].history, &single.procedures[1].history)
     else {
         panic!()
@@ -208,12 +208,12 @@ fn one_storey_is_unloaded_as_one_degree_of_freedom() {
     assert!(moves.len() > 2 && floors.len() == moves.len() + 1);
     for (floor, step) in floors[1..].iter().zip(moves) {
         assert_eq!(
-            (floor.command[0], floor.displacement[0]),
-            (step.command, step.displacement)
+            (&floor.command, &floor.displacement),
+            (&step.command, &step.displacement)
         );
         assert_eq!(
-            (floor.restoring_force[0], floor.tangent_stiffness[0]),
-            (step.restoring_force, step.tangent_stiffness)
+            (&floor.restoring_force, &floor.tangent_stiffness),
+            (&step.restoring_force, &step.tangent_stiffness)
         );
     }
     for name in ["residual_displacement", "residual_force"] {
