@@ -33,7 +33,7 @@ fn withhold(result: &mut NamedResult, impacts: &[SeriesImpact], left: &Left) {
     } else if is(left.displacements) {
         impacts.iter().find_map(incomplete)
     } else {
-        let of_impact = schema::BLOCK.result(&result.name);
+        let of_impact = schema::BLOCK.result(result.name);
         of_impact.and_then(|kind| kind.made_of).and_then(|kind| {
             let own = |impact: &SeriesImpact| impact.result(kind.name)?.withheld.clone();
             impacts.iter().find_map(own)
