@@ -2,7 +2,6 @@
 //! it, `run` and `report` read it. It contains text only where a report prints it.
 
 pub mod contribution;
-pub mod declaration;
 pub mod formula;
 pub mod procedures;
 pub mod record;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::DeclaredNoise;
 use crate::record::Identity;
-use crate::rig::limits::NAMES;
+use crate::schema::limits;
 use crate::{Dialect, Interval, Limits, Link, Plan, RigPlan};
 use psd_text::units::Dimension;
 use psd_text::units::display::stated;
@@ -157,7 +157,8 @@ impl Equipment {
     /// The limit of speed, of all axes \[m/s\].
     #[must_use]
     pub fn speed_limit(&self) -> Interval {
-        let of_speed = |limit: &&HeldLimit| limit.quantity == NAMES.speed && limit.axis.is_none();
+        let of_speed =
+            |limit: &&HeldLimit| limit.quantity == limits::SPEED.name && limit.axis.is_none();
         let limit = self.limits.iter().find(of_speed);
         limit.map_or(Interval::ALL, HeldLimit::interval)
     }

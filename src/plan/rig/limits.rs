@@ -1,7 +1,6 @@
-//! The limits of a rig, declared once: the parameters here, the schema in `schema::limits`, the reader in
-//! `language::check::declarations::limits`; and the intervals that express them. It enforces nothing: that is done by the guard.
+//! The limits of a rig, and the intervals that express them. It enforces nothing: that is done by the guard.
 
-use crate::{names, parameters};
+use crate::schema::limits;
 use psd_physics::tracking::monitor;
 use psd_text::units::Dimension;
 
@@ -40,44 +39,26 @@ impl Interval {
     }
 }
 
-#[macro_export]
-macro_rules! limits_fields {
-    ($into:ident) => {
-        $into! {
-            /// The limits that no command may exceed.
-            #[derive(Clone, Copy, Debug, PartialEq)]
-            struct Limits {
-                /// Every target and every displacement reading \[m\].
-                displacement: Interval = bounds(Dimension::LENGTH, true, "displacement of all targets and readings"),
-                /// Every force reading \[N\].
-                force: Interval = bounds(Dimension::FORCE, true, "force of all readings"),
-                /// Speed of the actuator \[m/s\]; 0 ≤ speed ≤ high.
-                speed: Interval = bounds(Dimension::VELOCITY, false, "speed of the actuator"),
-                /// Largest change of target in one step, absolute value \[m\].
-                increment: Interval = bounds(Dimension::LENGTH, false, "largest change of the target in one step"),
-                /// abs(measured − target) after settling \[m\].
-                tracking_error: Interval =
-                    bounds(Dimension::LENGTH, false, "absolute tracking error after settling"),
-                /// abs(energy error) over the input energy.
-                energy_error: Interval =
-                    bounds(Dimension::NUMBER, false, "absolute energy error relative to the input energy"),
-                /// abs(tracking-error energy) over the input energy; without a bound the default applies.
-                tracking_energy_error: Interval = bounds(
-                    Dimension::NUMBER,
-                    false,
-                    "absolute tracking-error energy relative to the input energy"
-                )
-                .default_in_words("5 %"),
-                /// Root mean square of the tracking error over that of the command.
-                nrms_error: Interval =
-                    bounds(Dimension::NUMBER, false, "rms tracking error relative to rms command, of the run"),
-            }
-        }
-    };
+/// The limits that no command may exceed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Every target and every displacement reading \[m\].
+    pub displacement: Interval,
+    /// Every force reading \[N\].
+    pub force: Interval,
+    /// Speed of the actuator \[m/s\]; 0 ≤ speed ≤ high.
+    pub speed: Interval,
+    /// Largest change of target in one step, absolute value \[m\].
+    pub increment: Interval,
+    /// abs(measured − target) after settling \[m\].
+    pub tracking_error: Interval,
+    /// abs(energy error) over the input energy.
+    pub energy_error: Interval,
+    /// abs(tracking-error energy) over the input energy; without a bound the default applies.
+    pub tracking_energy_error: Interval,
+    /// Root mean square of the tracking error over that of the command.
+    pub nrms_error: Interval,
 }
-
-limits_fields!(parameters);
-limits_fields!(names);
 
 impl Limits {
     pub const NONE: Self = Self {
@@ -110,18 +91,30 @@ impl Limits {
     #[must_use]
     pub const fn named(&self) -> [(&'static str, Interval, Dimension); 8] {
         [
-            (NAMES.displacement, self.displacement, Dimension::LENGTH),
-            (NAMES.force, self.force, Dimension::FORCE),
-            (NAMES.speed, self.speed, Dimension::VELOCITY),
-            (NAMES.increment, self.increment, Dimension::LENGTH),
-            (NAMES.tracking_error, self.tracking_error, Dimension::LENGTH),
-            (NAMES.energy_error, self.energy_error, Dimension::NUMBER),
             (
-                NAMES.tracking_energy_error,
+                limits::DISPLACEMENT.name,
+                self.displacement,
+                Dimension::LENGTH,
+            ),
+            (limits::FORCE.name, self.force, Dimension::FORCE),
+            (limits::SPEED.name, self.speed, Dimension::VELOCITY),
+            (limits::INCREMENT.name, self.increment, Dimension::LENGTH),
+            (
+                limits::TRACKING_ERROR.name,
+                self.tracking_error,
+                Dimension::LENGTH,
+            ),
+            (
+                limits::ENERGY_ERROR.name,
+                self.energy_error,
+                Dimension::NUMBER,
+            ),
+            (
+                limits::TRACKING_ENERGY_ERROR.name,
                 self.tracking_energy_error,
                 Dimension::NUMBER,
             ),
-            (NAMES.nrms_error, self.nrms_error, Dimension::NUMBER),
+            (limits::NRMS_ERROR.name, self.nrms_error, Dimension::NUMBER),
         ]
     }
 }

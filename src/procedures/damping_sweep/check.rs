@@ -2,9 +2,8 @@
 
 use crate::codes::E654;
 use crate::language::check::checker::Checker;
-use crate::language::check::expressions::read_field::ReadField;
-use crate::plan::procedures::damping_sweep::block::NAMES;
-use crate::plan::{DampingSweep, ProcedureKind, damping_sweep_fields, reader};
+use crate::plan::procedures::damping_sweep::block as schema;
+use crate::plan::{DampingSweep, ProcedureKind};
 use crate::procedures::stepping::check::mode_check::stops_at_targets;
 use crate::schema::rig;
 use crate::text::diagnostic::Violation;
@@ -12,10 +11,22 @@ use crate::text::source::Span;
 
 pub fn damping_sweep(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     read_together(checker, block);
-    read(checker, block).map(ProcedureKind::DampingSweep)
+    // All fields are read before one fails, so that all errors are reported at once.
+    let specimen = checker.specimen_of(block);
+    let velocities = checker.quantities(block, schema::VELOCITIES.name);
+    let stroke = checker.quantity(block, schema::STROKE.name);
+    let about = checker.optional(block, schema::ABOUT.name);
+    let stiffness = checker.quantity(block, schema::STIFFNESS.name);
+    let rate = checker.optional(block, schema::RATE.name);
+    Some(ProcedureKind::DampingSweep(DampingSweep {
+        specimen: specimen?,
+        velocities: velocities?,
+        stroke: stroke?,
+        about: about?,
+        stiffness: stiffness?,
+        rate: rate?,
+    }))
 }
-
-damping_sweep_fields!(reader);
 
 #[derive(Violation)]
 #[violation(

@@ -203,10 +203,10 @@ impl Sweep {
         inputs: &mut Inputs<'_>,
         session: &mut Session<'_>,
     ) -> Result<(), Stop> {
-        let velocities = inputs.list(schema::NAMES.velocities, &plan.velocities)?;
+        let velocities = inputs.list(schema::VELOCITIES.name, &plan.velocities)?;
         let stroke = inputs.number("stroke", &plan.stroke, Dimension::LENGTH)?;
         let stiffness = inputs.positive_estimate(
-            schema::NAMES.stiffness,
+            schema::STIFFNESS.name,
             &plan.stiffness,
             Dimension::STIFFNESS,
             None,
@@ -214,7 +214,7 @@ impl Sweep {
         let rate = plan
             .rate
             .as_ref()
-            .map(|rate| inputs.positive(schema::NAMES.rate, rate, Dimension::FREQUENCY))
+            .map(|rate| inputs.positive(schema::RATE.name, rate, Dimension::FREQUENCY))
             .transpose()?;
         if stroke == 0.0 {
             return Err(Stop::bad_input(
@@ -226,7 +226,7 @@ impl Sweep {
         }
         self.stiffness = Some(stiffness);
         if let Some(about) = &plan.about {
-            let middle = inputs.number(schema::NAMES.about, about, Dimension::LENGTH)?;
+            let middle = inputs.number(schema::ABOUT.name, about, Dimension::LENGTH)?;
             // Plastic deformation of the first stroke occurs before anything is read.
             session.go_to(middle + 0.5 * stroke, None)?;
             session.go_to(middle - 0.5 * stroke, None)?;
@@ -235,7 +235,7 @@ impl Sweep {
         for velocity in velocities {
             if velocity == 0.0 {
                 return Err(Stop::bad_input(
-                    schema::NAMES.velocities,
+                    schema::VELOCITIES.name,
                     velocity,
                     Dimension::VELOCITY,
                     "other than 0",
@@ -284,7 +284,7 @@ impl Sweep {
         let wanted = wanted(seconds, self.lag, rate);
         if wanted > MOST_SAMPLES {
             return Err(Stop::bad_input(
-                schema::NAMES.rate,
+                schema::RATE.name,
                 wanted,
                 Dimension::NUMBER,
                 format!("at most {MOST_SAMPLES} readings a stroke"),

@@ -6,12 +6,12 @@ use crate::language::check::declarations::curve;
 use crate::language::check::expressions::choice::Chosen;
 use crate::language::check::expressions::fields::whole;
 use crate::plan::procedures::stiffness_ramp::block as schema;
-use crate::plan::procedures::stiffness_ramp::block::NAMES;
 use crate::plan::{
     ProcedureKind, RampFit, RelaxationLaw, RelaxationModel, StiffnessRamp, WatchedHold,
     WatchedModel,
 };
 use crate::procedures::common::violations::TooManyInProcedure;
+use crate::schema::procedures::SPEED;
 use crate::text::diagnostic::Violation;
 use crate::text::source::Span;
 
@@ -48,14 +48,14 @@ pub fn stiffness_ramp(checker: &mut Checker, block: usize) -> Option<ProcedureKi
 /// Reads every field before it fails, so that all errors are reported at once.
 fn read(checker: &mut Checker<'_>, block: usize) -> Option<StiffnessRamp> {
     let specimen = checker.specimen_of(block);
-    let displacements = checker.quantities(block, NAMES.displacements);
-    let pause = checker.quantity(block, NAMES.pause);
-    let samples = checker.count(block, NAMES.samples);
-    let repeats = checker.count(block, NAMES.repeats);
-    let return_path = checker.word(block, NAMES.return_path, "false");
+    let displacements = checker.quantities(block, schema::DISPLACEMENTS.name);
+    let pause = checker.quantity(block, schema::PAUSE.name);
+    let samples = checker.count(block, schema::SAMPLES.name);
+    let repeats = checker.count(block, schema::REPEATS.name);
+    let return_path = checker.word(block, schema::RETURN.name, "false");
     let fit = fit(checker, block);
     let relaxation = watched_hold(checker, block);
-    let speed = checker.optional(block, NAMES.speed);
+    let speed = checker.optional(block, SPEED.name);
     Some(StiffnessRamp {
         specimen: specimen?,
         displacements: displacements?,
@@ -79,8 +79,8 @@ struct RelaxationWithoutHold {
 
 /// Refuses a relaxation that is fitted to pauses of no duration.
 fn held(checker: &mut Checker, block: usize) -> Option<()> {
-    let pause = checker.quantity(block, NAMES.pause);
-    match checker.field(block, NAMES.relaxation) {
+    let pause = checker.quantity(block, schema::PAUSE.name);
+    match checker.field(block, schema::WATCHED_RELAXATION.name) {
         Some((_, entry)) if pause.and_then(|pause| pause.constant()) == Some(0.0) => {
             checker.fail(RelaxationWithoutHold {
                 relaxation: entry.value.span,
@@ -92,11 +92,11 @@ fn held(checker: &mut Checker, block: usize) -> Option<()> {
 
 /// The curve that is fitted; a line if nothing is stated.
 fn fit(checker: &mut Checker<'_>, block: usize) -> Option<RampFit> {
-    let Some((entry, _)) = checker.field(block, NAMES.fit) else {
+    let Some((entry, _)) = checker.field(block, schema::FIT.name) else {
         return Some(RampFit::Linear);
     };
     let context = checker.context_of(block, entry);
-    let chosen = checker.choice(block, NAMES.fit)?;
+    let chosen = checker.choice(block, schema::FIT.name)?;
     match chosen.variant.name {
         "multilinear" => curve::breaks(checker, &chosen, context).map(RampFit::Multilinear),
         "bilinear" => Some(RampFit::Bilinear),
@@ -110,10 +110,10 @@ fn fit(checker: &mut Checker<'_>, block: usize) -> Option<RampFit> {
     reason = "left out and faulty are different things here"
 )]
 fn watched_hold(checker: &mut Checker<'_>, block: usize) -> Option<Option<WatchedHold>> {
-    match checker.field(block, NAMES.relaxation) {
+    match checker.field(block, schema::WATCHED_RELAXATION.name) {
         Some((entry, written)) => {
             let context = checker.context_of(block, entry);
-            let chosen = checker.choice(block, NAMES.relaxation)?;
+            let chosen = checker.choice(block, schema::WATCHED_RELAXATION.name)?;
             relaxation(checker, &chosen, context, written.value.span).map(Some)
         }
         None => Some(None),

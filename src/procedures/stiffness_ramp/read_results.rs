@@ -111,7 +111,7 @@ pub fn check(checker: &mut Checker, procedures: &[(usize, Option<Procedure>)]) {
         let ProcedureKind::StiffnessRamp(ramp) = &procedure.kind else {
             continue;
         };
-        let displacements = checker.value_or_head(*block, schema::NAMES.displacements);
+        let displacements = checker.value_or_head(*block, schema::DISPLACEMENTS.name);
         if let Some((lacks, help)) = lacks(ramp, reference.name) {
             if never.insert(*block) {
                 let ramp = (procedure.name.as_str(), displacements);

@@ -166,10 +166,10 @@ impl Ramp {
         inputs: &mut Inputs<'_>,
         session: &mut Session<'_>,
     ) -> Result<(), Stop> {
-        let displacements = inputs.list(schema::NAMES.displacements, &plan.displacements)?;
+        let displacements = inputs.list(schema::DISPLACEMENTS.name, &plan.displacements)?;
         let manner = Manner {
             samples: plan.samples,
-            pause: inputs.not_negative(schema::NAMES.pause, &plan.pause, Dimension::TIME)?,
+            pause: inputs.not_negative(schema::PAUSE.name, &plan.pause, Dimension::TIME)?,
             speed: inputs.speed(plan.speed.as_ref())?,
         };
         let home = session.commanded();

@@ -7,7 +7,7 @@ use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::report::summary::{PredictedLimit, PredictedProcedure, PredictedZeros};
 use crate::report::wording::{common, prediction as wording};
-use crate::schema::limits::NAMES;
+use crate::schema::limits;
 use crate::units::Dimension;
 
 /// Returns nothing if the run has no prediction.
@@ -62,7 +62,7 @@ fn limit(limit: &PredictedLimit) -> Vec<Text> {
     let reached = limit.reached.map_or_else(no_value, |[low, high]| {
         wording::range(value(low), value(high))
     });
-    let name = if limit.quantity == NAMES.nrms_error {
+    let name = if limit.quantity == limits::NRMS_ERROR.name {
         common::NRMS_TRACKING_ERROR.to_owned()
     } else {
         with_spaces(&limit.quantity)

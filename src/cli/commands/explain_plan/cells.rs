@@ -1,7 +1,7 @@
 //! Cells of the tables of `check --explain`. In: SI values. Out: strings.
 
 use crate::plan::Interval;
-use crate::schema::limits::NAMES;
+use crate::schema::limits;
 use crate::units::Dimension;
 use crate::units::display::{digits, join, readable, unit};
 
@@ -33,7 +33,7 @@ pub(super) fn margin(
 ) -> String {
     let above = allowed.high - reached.high;
     let below = reached.low - allowed.low;
-    let is_size = ![NAMES.displacement, NAMES.force].contains(&name);
+    let is_size = ![limits::DISPLACEMENT.name, limits::FORCE.name].contains(&name);
     let rests = |allowed: f64, reached: f64| allowed == 0.0 && reached == 0.0;
     let (low, high) = (
         !is_size && rests(allowed.low, reached.low),
@@ -41,7 +41,7 @@ pub(super) fn margin(
     );
     match (low, high) {
         // Without a lower command the rig moves at its maximum speed.
-        _ if name == NAMES.speed && above == 0.0 => "none: at the speed limit".to_owned(),
+        _ if name == limits::SPEED.name && above == 0.0 => "none: at the speed limit".to_owned(),
         (true, true) => "none: at rest at the limit".to_owned(),
         (true, false) => format!("{}; starts at 0", readable(above, dimension)),
         (false, true) if !is_size => format!("{}; starts at 0", readable(below, dimension)),
@@ -53,7 +53,7 @@ pub(super) fn margin(
 /// The distance to the nearer end as a number, negative beyond it. An absolute value has an upper end only.
 pub(super) fn distance(name: &str, allowed: Interval, reached: Interval) -> f64 {
     let above = allowed.high - reached.high;
-    if [NAMES.displacement, NAMES.force].contains(&name) {
+    if [limits::DISPLACEMENT.name, limits::FORCE.name].contains(&name) {
         above.min(reached.low - allowed.low)
     } else {
         above

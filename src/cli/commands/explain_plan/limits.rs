@@ -6,7 +6,7 @@ use super::dry_rig::Reach;
 use crate::plan::formula::ResultValue;
 use crate::plan::{Interval, Limits};
 use crate::report::PredictedLimit;
-use crate::schema::limits::NAMES;
+use crate::schema::limits;
 use crate::units::Dimension;
 use crate::units::display::si_unit;
 
@@ -41,11 +41,11 @@ impl DryRun<'_> {
         };
         limits.named().map(|(name, allowed, dimension)| {
             let reached = match name {
-                _ if name == NAMES.displacement => range(|reach| reach.displacement),
-                _ if name == NAMES.force => range(|reach| reach.force),
-                _ if name == NAMES.speed => absolute(|reach| reach.speed),
-                _ if name == NAMES.increment => absolute(|reach| reach.increment),
-                _ if name == NAMES.tracking_error => absolute(|reach| reach.tracking_error),
+                _ if name == limits::DISPLACEMENT.name => range(|reach| reach.displacement),
+                _ if name == limits::FORCE.name => range(|reach| reach.force),
+                _ if name == limits::SPEED.name => absolute(|reach| reach.speed),
+                _ if name == limits::INCREMENT.name => absolute(|reach| reach.increment),
+                _ if name == limits::TRACKING_ERROR.name => absolute(|reach| reach.tracking_error),
                 // The name of such a limit is that of the result that it bounds.
                 error => self.largest(error),
             };
@@ -93,7 +93,7 @@ impl DryRun<'_> {
                 reached,
             } = limit;
             if allowed.is_bounded() {
-                let name = if name == NAMES.nrms_error {
+                let name = if name == limits::NRMS_ERROR.name {
                     "NRMS tracking error".to_owned()
                 } else {
                     name.replace('_', " ")

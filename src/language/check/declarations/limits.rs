@@ -2,7 +2,6 @@
 
 use crate::check::checker::{Checker, Context, Typed};
 use crate::check::expressions::choice::Chosen;
-use crate::check::expressions::read_field::ReadField;
 use crate::check::violations::{BeyondLimits, NeedsTheRun};
 use crate::check::wording::shown;
 use crate::codes::{E304, E401, E402, E602, E604};
@@ -11,10 +10,10 @@ use psd_plan::formula::Formula;
 use psd_plan::procedures::damping_sweep::block as damping_sweep;
 use psd_plan::procedures::move_to::block as move_to;
 use psd_plan::procedures::stiffness_ramp::block as stiffness_ramp;
-use psd_plan::schema::limits::NAMES;
 use psd_plan::schema::procedures::SPEED;
 use psd_plan::schema::{Field, FieldType, Kind};
-use psd_plan::{Interval, Limits, Specimen, limits_fields, reader};
+use psd_plan::schema::limits;
+use psd_plan::{Interval, Limits, Specimen};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 use psd_text::units::Dimension;
@@ -218,9 +217,11 @@ impl<'a> Checker<'a> {
         let nothing = interval.low >= 0.0 && interval.high <= 0.0;
         let help = match field {
             _ if !nothing => return Some(interval),
-            _ if field == NAMES.speed => "write the largest speed of the actuator, as in `10 mm/s`",
-            _ if field == NAMES.displacement => "write the travel, as in `-5 mm .. 60 mm`",
-            _ if field == NAMES.force => "write the largest force, as in `12 kN`",
+            _ if field == limits::SPEED.name => {
+                "write the largest speed of the actuator, as in `10 mm/s`"
+            }
+            _ if field == limits::DISPLACEMENT.name => "write the travel, as in `-5 mm .. 60 mm`",
+            _ if field == limits::FORCE.name => "write the largest force, as in `12 kN`",
             _ => return Some(interval),
         };
         self.fail(NoMotionAllowed { field, help, span })
@@ -254,15 +255,15 @@ impl<'a> Checker<'a> {
             }
             all = intersection(&all, limits);
             displacement_at = self
-                .field(*index, NAMES.displacement)
+                .field(*index, limits::DISPLACEMENT.name)
                 .map(|(_, entry)| entry.span)
                 .or(displacement_at);
             force_at = self
-                .field(*index, NAMES.force)
+                .field(*index, limits::FORCE.name)
                 .map(|(_, entry)| entry.span)
                 .or(force_at);
             speed_at = self
-                .field(*index, NAMES.speed)
+                .field(*index, limits::SPEED.name)
                 .map(|(_, entry)| entry.span)
                 .or(speed_at);
         }
@@ -296,12 +297,27 @@ impl<'a> Checker<'a> {
     }
 }
 
-limits_fields!(reader);
-
-impl ReadField for Interval {
-    fn read(checker: &mut Checker<'_>, block: usize, field: &'static str) -> Option<Self> {
-        checker.bounds(block, field)
-    }
+/// The limits of one block. All are read before one fails, so that all errors are reported at once.
+fn read(checker: &mut Checker<'_>, block: usize) -> Option<Limits> {
+    let mut bounds = |field: Field| checker.bounds(block, field.name);
+    let displacement = bounds(limits::DISPLACEMENT);
+    let force = bounds(limits::FORCE);
+    let speed = bounds(limits::SPEED);
+    let increment = bounds(limits::INCREMENT);
+    let tracking_error = bounds(limits::TRACKING_ERROR);
+    let energy_error = bounds(limits::ENERGY_ERROR);
+    let tracking_energy_error = bounds(limits::TRACKING_ENERGY_ERROR);
+    let nrms_error = bounds(limits::NRMS_ERROR);
+    Some(Limits {
+        displacement: displacement?,
+        force: force?,
+        speed: speed?,
+        increment: increment?,
+        tracking_error: tracking_error?,
+        energy_error: energy_error?,
+        tracking_energy_error: tracking_energy_error?,
+        nrms_error: nrms_error?,
+    })
 }
 
 fn intersection(one: &Limits, other: &Limits) -> Limits {
@@ -360,13 +376,13 @@ pub fn check_start(checker: &mut Checker, limits: &CheckedLimits) {
     }
     for (name, interval, dimension, at) in [
         (
-            NAMES.displacement,
+            limits::DISPLACEMENT.name,
             limits.limits.displacement,
             Dimension::LENGTH,
             limits.displacement_at,
         ),
         (
-            NAMES.force,
+            limits::FORCE.name,
             limits.limits.force,
             Dimension::FORCE,
             limits.force_at,
@@ -433,7 +449,7 @@ pub fn check_forces(checker: &mut Checker, limits: &CheckedLimits, specimens: &[
     let interval = limits.limits.force;
     let procedures: Vec<usize> = checker.scope.procedures().map(|(index, _)| index).collect();
     for block in procedures {
-        for field in [stiffness_ramp::NAMES.displacements, move_to::NAMES.to] {
+        for field in [stiffness_ramp::DISPLACEMENTS.name, move_to::TO.name] {
             let Some((entry, written)) = checker.field(block, field) else {
                 continue;
             };
@@ -476,23 +492,23 @@ pub fn check_targets(checker: &mut Checker, limits: &CheckedLimits) {
     for block in procedures {
         for (field, interval, at) in [
             (
-                stiffness_ramp::NAMES.displacements,
+                stiffness_ramp::DISPLACEMENTS.name,
                 limits.limits.displacement,
                 limits.displacement_at,
             ),
             (
-                move_to::NAMES.to,
+                move_to::TO.name,
                 limits.limits.displacement,
                 limits.displacement_at,
             ),
             (
-                damping_sweep::NAMES.stroke,
+                damping_sweep::STROKE.name,
                 limits.limits.displacement,
                 limits.displacement_at,
             ),
             (SPEED.name, limits.limits.speed, limits.speed_at),
             (
-                damping_sweep::NAMES.velocities,
+                damping_sweep::VELOCITIES.name,
                 limits.limits.speed,
                 limits.speed_at,
             ),

@@ -12,4 +12,3 @@ pub mod literal;
 pub mod names;
 pub mod overrides;
 pub mod parameters;
-pub mod read_field;

@@ -69,8 +69,8 @@ fn axis<'a>(
         None => Some(None),
     };
     let (displacement, force) = (
-        checker.bounds_argument(chosen, limits::NAMES.displacement, context),
-        checker.bounds_argument(chosen, limits::NAMES.force, context),
+        checker.bounds_argument(chosen, limits::DISPLACEMENT.name, context),
+        checker.bounds_argument(chosen, limits::FORCE.name, context),
     );
     let (resolution, noise) = (
         checker.optional_argument(chosen, schema::RESOLUTION.name, context),

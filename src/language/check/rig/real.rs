@@ -436,8 +436,8 @@ fn all_of(words: &[&str]) -> String {
 
 fn example_of_limit(field: &str) -> &'static str {
     match field {
-        _ if field == limits::NAMES.displacement => "displacement = -2 mm .. 25 mm",
-        _ if field == limits::NAMES.force => "force = -2 kN .. 12 kN",
+        _ if field == limits::DISPLACEMENT.name => "displacement = -2 mm .. 25 mm",
+        _ if field == limits::FORCE.name => "force = -2 kN .. 12 kN",
         _ => "speed = 10 mm/s",
     }
 }
@@ -578,9 +578,9 @@ fn unbounded(checker: &Checker, limits: &CheckedLimits) -> Vec<&'static str> {
     };
     let finite = |interval: Interval| interval.low.is_finite() && interval.high.is_finite();
     let all = [
-        (limits_block::NAMES.displacement, limits.limits.displacement),
-        (limits_block::NAMES.force, limits.limits.force),
-        (limits_block::NAMES.speed, limits.limits.speed),
+        (limits_block::DISPLACEMENT.name, limits.limits.displacement),
+        (limits_block::FORCE.name, limits.limits.force),
+        (limits_block::SPEED.name, limits.limits.speed),
     ];
     all.into_iter()
         .filter(|(field, interval)| !finite(*interval) && !has_error(field))

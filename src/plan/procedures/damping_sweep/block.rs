@@ -1,9 +1,8 @@
 //! `damping sweep`: its block and its results.
 
 use crate::ProcedureBlock;
-use crate::damping_sweep_fields;
+use crate::schema::procedures::SPECIMEN;
 use crate::schema::{BlockKind, Field, Kind, Naming, ResultKind};
-use crate::{fields, names};
 use psd_text::units::Dimension;
 
 pub const DAMPING: ResultKind = ResultKind::measured(
@@ -45,13 +44,38 @@ pub const RESULTS: &[ResultKind] = &[
     MAX_VELOCITY,
 ];
 
-damping_sweep_fields!(names);
+pub const VELOCITIES: Field = Field::quantities(
+    "velocities",
+    Dimension::VELOCITY,
+    "velocities of the strokes",
+)
+.required("velocities = [0.5, 1, 2, 5, 10] mm/s")
+.above_zero();
+
+pub const STROKE: Field = Field::quantity("stroke", Dimension::LENGTH, "length of each stroke")
+    .required("stroke = 1 mm")
+    .above_zero();
+
+pub const ABOUT: Field = Field::quantity("about", Dimension::LENGTH, "centre of the strokes")
+    .default_in_words("the start position of the actuator");
+
+pub const STIFFNESS: Field = Field::quantity(
+    "stiffness",
+    Dimension::STIFFNESS,
+    "K of the damping force R − K·X",
+)
+.required("stiffness = 300 kN/m")
+.above_zero();
+
+pub const RATE: Field = Field::quantity("rate", Dimension::FREQUENCY, "sampling rate")
+    .above_zero()
+    .default_in_words("at least 50 samples on the steady part");
 
 pub const BLOCK: BlockKind = BlockKind {
     kind: Kind::Procedure(ProcedureBlock::DampingSweep),
     keyword: &["damping", "sweep"],
     naming: Naming::Named,
-    fields: damping_sweep_fields!(fields),
+    fields: &[SPECIMEN, VELOCITIES, STROKE, ABOUT, STIFFNESS, RATE],
     exports: &[],
     results: RESULTS,
     example: "damping sweep c {\n  velocities = [1, 2, 5] mm/s\n  stroke = 1 mm\n  stiffness = 300 kN/m\n}",

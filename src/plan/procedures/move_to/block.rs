@@ -1,18 +1,18 @@
 //! `move`: its block.
 
 use crate::ProcedureBlock;
-use crate::move_fields;
+use crate::schema::procedures::SPEED;
 use crate::schema::{BlockKind, Field, Kind, Naming};
-use crate::{fields, names};
 use psd_text::units::Dimension;
 
-move_fields!(names);
+pub const TO: Field =
+    Field::quantity("to", Dimension::LENGTH, "absolute target").required("to = 0 mm");
 
 pub const BLOCK: BlockKind = BlockKind {
     kind: Kind::Procedure(ProcedureBlock::Move),
     keyword: &["move"],
     naming: Naming::Named,
-    fields: move_fields!(fields),
+    fields: &[TO, SPEED],
     exports: &[],
     results: &[],
     example: "move home { to = 0 mm }",

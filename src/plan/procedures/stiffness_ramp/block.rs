@@ -3,9 +3,8 @@
 use crate::ProcedureBlock;
 use crate::schema::curves;
 use crate::schema::methods::TRUTH;
+use crate::schema::procedures::{SPECIMEN, SPEED};
 use crate::schema::{BlockKind, Field, Kind, Naming, Possible, ResultKind, Variant};
-use crate::stiffness_ramp_fields;
-use crate::{fields, names};
 use psd_text::units::Dimension;
 
 pub const ACCURACY: Field = Field::quantity(
@@ -232,13 +231,52 @@ pub const RESULTS: &[ResultKind] = &[
     BIC_MARGIN,
 ];
 
-stiffness_ramp_fields!(names);
+pub const DISPLACEMENTS: Field =
+    Field::quantities("displacements", Dimension::LENGTH, "targets in order")
+        .required("displacements = 0.1 mm .. 1 mm step 0.1 mm");
+
+pub const PAUSE: Field = Field::quantity(
+    "pause",
+    Dimension::TIME,
+    "dwell at each target before the samples",
+)
+.or(0.0, "s")
+.at_least_zero();
+
+pub const SAMPLES: Field =
+    Field::count("samples", 1.0, 1e5, "readings averaged at each target").or(1.0, "");
+
+pub const REPEATS: Field =
+    Field::count("repeats", 1.0, 1e5, "number of repetitions of the ramp").or(1.0, "");
+
+pub const RETURN: Field =
+    Field::choice("return", TRUTH, "returns through the same targets").default_in_words("false");
+
+pub const FIT: Field = Field::choice("fit", FITS, "curve fitted to force against displacement")
+    .default_in_words("linear");
+
+pub const WATCHED_RELAXATION: Field = Field::choice(
+    "relaxation",
+    RELAXATION_MODELS,
+    "relaxation law fitted to the forces in the pauses of the first repeat",
+)
+.default_in_words("nothing");
 
 pub const BLOCK: BlockKind = BlockKind {
     kind: Kind::Procedure(ProcedureBlock::StiffnessRamp),
     keyword: &["stiffness", "ramp"],
     naming: Naming::Named,
-    fields: stiffness_ramp_fields!(fields),
+    fields: &[
+        SPECIMEN,
+        DISPLACEMENTS,
+        PAUSE,
+        SAMPLES,
+        REPEATS,
+        RETURN,
+        FIT,
+        WATCHED_RELAXATION,
+        SPEED,
+    ],
     exports: &[],
     results: RESULTS,
     example: "stiffness ramp k0 { displacements = 0.1 mm .. 1 mm step 0.1 mm }",

@@ -1,50 +1,31 @@
-//! The fields of a `stiffness ramp`, declared once: its parameters here, its schema in `block.rs`, its reader in
-//! `procedures::stiffness_ramp::check`. It fits nothing itself.
+//! The parameters of a `stiffness ramp`, in SI. It fits nothing itself.
 
 use crate::formula::Formula;
-use crate::parameters;
 pub use psd_physics::identification::multilinear_fit::BreakCount;
 pub use psd_physics::relaxation::law::RelaxationLaw;
 pub use psd_physics::relaxation::time_constant::RelaxationModel;
 
-#[macro_export]
-macro_rules! stiffness_ramp_fields {
-    ($into:ident) => {
-        $into! {
-            /// Sec. 5 step 1: prescribed displacements, a dwell at each, the mean of several samples.
-            #[derive(Clone, Debug)]
-            struct StiffnessRamp {
-                /// Index into `Plan::specimens`.
-                specimen: usize = specimen(),
-                /// \[m\]
-                displacements: Vec<Formula> = quantities(Dimension::LENGTH, "targets in order")
-                    .required("displacements = 0.1 mm .. 1 mm step 0.1 mm"),
-                /// \[s\]
-                pause: Formula = quantity(Dimension::TIME, "dwell at each target before the samples")
-                    .or(0.0, "s")
-                    .at_least_zero(),
-                /// Readings averaged at each dwell, at least 1.
-                samples: u32 = count(1.0, 1e5, "readings averaged at each target").or(1.0, ""),
-                /// Number of repetitions of the whole ramp, at least 1.
-                repeats: u32 = count(1.0, 1e5, "number of repetitions of the ramp").or(1.0, ""),
-                /// Also returns to the start through the same displacements.
-                return_path as "return": bool = choice(TRUTH, "returns through the same targets")
-                    .default_in_words("false"),
-                fit: RampFit = choice(FITS, "curve fitted to force against displacement").default_in_words("linear"),
-                /// Readings during the dwells of the first repetition.
-                relaxation: Option<WatchedHold> = choice(
-                    RELAXATION_MODELS,
-                    "relaxation law fitted to the forces in the pauses of the first repeat"
-                )
-                .default_in_words("nothing"),
-                /// Actuator speed \[m/s\].
-                speed: Option<Formula> = speed(),
-            }
-        }
-    };
+/// Sec. 5 step 1: prescribed displacements, a dwell at each, the mean of several samples.
+#[derive(Clone, Debug)]
+pub struct StiffnessRamp {
+    /// Index into `Plan::specimens`.
+    pub specimen: usize,
+    /// \[m\]
+    pub displacements: Vec<Formula>,
+    /// \[s\]
+    pub pause: Formula,
+    /// Readings averaged at each dwell, at least 1.
+    pub samples: u32,
+    /// Number of repetitions of the whole ramp, at least 1.
+    pub repeats: u32,
+    /// Also returns to the start through the same displacements.
+    pub return_path: bool,
+    pub fit: RampFit,
+    /// Readings during the dwells of the first repetition.
+    pub relaxation: Option<WatchedHold>,
+    /// Actuator speed \[m/s\].
+    pub speed: Option<Formula>,
 }
-
-stiffness_ramp_fields!(parameters);
 
 impl StiffnessRamp {
     /// Number of targets, on all its paths out and back.

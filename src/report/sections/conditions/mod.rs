@@ -13,7 +13,7 @@ use crate::report::number;
 use crate::report::run::Run;
 use crate::report::status::particulars::{FRONT, stated};
 use crate::report::wording::{common, conditions as wording, specimen as specimen_text};
-use crate::schema::limits::NAMES;
+use crate::schema::limits;
 use crate::schema::plan_block as schema;
 use crate::units::Dimension;
 
@@ -234,7 +234,7 @@ pub(super) fn settling(settle: Settle) -> String {
 fn limits(run: &Run<'_>) -> Block {
     let equipment = run.equipment();
     let row = |limit: &HeldLimit| {
-        let name = if limit.quantity == NAMES.nrms_error {
+        let name = if limit.quantity == limits::NRMS_ERROR.name {
             common::NRMS_TRACKING_ERROR.to_owned()
         } else {
             with_spaces(&limit.quantity)

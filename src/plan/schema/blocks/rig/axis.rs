@@ -50,13 +50,13 @@ pub(super) const AXIS: &[Variant] = &[Variant::with(
         Field::quantity(ZERO_OFFSET.name, Dimension::NUMBER, "count at zero force")
             .default_in_words("the rig's"),
         Field::bounds(
-            limits::NAMES.displacement,
+            limits::DISPLACEMENT.name,
             Dimension::LENGTH,
             true,
             "limit of its targets and readings, in addition to the limits of the run",
         ),
         Field::bounds(
-            limits::NAMES.force,
+            limits::FORCE.name,
             Dimension::FORCE,
             true,
             "limit of its readings, in addition to the limits of the run",
