@@ -6,15 +6,15 @@ use std::hint::black_box;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use psd::physics::integrator::input::FrameInput;
-use psd::physics::integrator::solver::FrameSolver;
-use psd::physics::integrator::tangents::Tangents;
-use psd::physics::specimen::{Bilinear, BilinearCurve, Elastic, RestoringForce};
-use psd::physics::statistics::DeclaredNoise;
-use psd::physics::structure::{
+use psd_physics::integrator::input::FrameInput;
+use psd_physics::integrator::solver::FrameSolver;
+use psd_physics::integrator::tangents::Tangents;
+use psd_physics::specimen::{Bilinear, BilinearCurve, Elastic, RestoringForce};
+use psd_physics::statistics::DeclaredNoise;
+use psd_physics::structure::{
     FrameMatrices, SymmetricBand, drifts, floor_forces, storey_stiffness,
 };
-use psd::plan::Integrator;
+use psd_plan::Integrator;
 
 const STOREYS: [usize; 5] = [1, 2, 10, 100, 1000];
 const STIFFNESS: f64 = 2e6;

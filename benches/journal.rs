@@ -3,7 +3,7 @@
 use std::io;
 
 use divan::counter::{BytesCount, ItemsCount};
-use psd::rig::journal::{Durability, EntryKind, FileStorage, Journal, LogText, Storage, recover};
+use psd_rig::journal::{Durability, EntryKind, FileStorage, Journal, LogText, Storage, recover};
 use serde::Serialize;
 
 fn main() {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use psd::check::{Options, ParsedPlan, check, no_files};
-use psd::units::{Dimension, Quantity};
+use psd_text::units::{Dimension, Quantity};
 
 fn main() {
     divan::main();
@@ -60,11 +60,11 @@ fn many_lines(bencher: divan::Bencher, lines: usize) {
 
 #[divan::bench]
 fn format_two_thousand_lines(bencher: divan::Bencher) {
-    let mut sources = psd::text::source::Sources::default();
+    let mut sources = psd_text::source::Sources::default();
     let text = long_plan(2000);
     let file = sources.add("plan.psd", text.clone());
-    let (ast, _) = psd::language::syntax::parse(&sources, file);
-    bencher.bench(|| psd::language::syntax::format(divan::black_box(&ast), &text));
+    let (ast, _) = psd_language::syntax::parse(&sources, file);
+    bencher.bench(|| psd_language::syntax::format(divan::black_box(&ast), &text));
 }
 
 /// The work of a study for each of its runs: other values of the parameters, without parsing.

@@ -6,9 +6,9 @@ mod common;
 use common::{SPECIMEN, STEPS, example_1};
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use psd::physics::impact::batch::{self, Impact};
-use psd::physics::impact::{ImpactInput, ImpactSolver, StepRow, Until, simulate};
-use psd::physics::specimen::{RestoringForce, SpecimenModel};
+use psd_physics::impact::batch::{self, Impact};
+use psd_physics::impact::{ImpactInput, ImpactSolver, StepRow, Until, simulate};
+use psd_physics::specimen::{RestoringForce, SpecimenModel};
 
 fn main() {
     divan::main();

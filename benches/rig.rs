@@ -11,17 +11,17 @@ use std::time::{Duration, Instant};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use psd::check::{Options, check, no_files};
-use psd::emulator::lines::real_time::Carrier as _;
-use psd::emulator::{Log, PseudoTerminal, RigEmulator, Script, of_plan};
-use psd::plan::{Plan, RealLink};
-use psd::record::{History, Outcome, Record};
-use psd::rig::StopRequest;
-use psd::rig::controllers;
-use psd::rig::controllers::Device;
-use psd::rig::journal::{Durability, EntryKind, Journal, Storage};
-use psd::rig::real::RealRig;
-use psd::rig::transport::{Clock, Emergency, MonotonicClock, Port, SerialPort, TcpPort};
 use psd::run::{Unwatched, replay};
+use psd_plan::record::{History, Outcome, Record};
+use psd_plan::{Plan, RealLink};
+use psd_rig::StopRequest;
+use psd_rig::controllers;
+use psd_rig::controllers::Device;
+use psd_rig::emulator::lines::real_time::Carrier as _;
+use psd_rig::emulator::{Log, PseudoTerminal, RigEmulator, Script, of_plan};
+use psd_rig::journal::{Durability, EntryKind, Journal, Storage};
+use psd_rig::real::RealRig;
+use psd_rig::transport::{Clock, Emergency, MonotonicClock, Port, SerialPort, TcpPort};
 
 const PLAN: &str = r#"
 specimen beam {

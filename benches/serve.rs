@@ -8,11 +8,11 @@ use std::time::Instant;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use psd::plan::{Behaviour, Interval, Limits, Settle, Specimen as PlanSpecimen, VirtualLink};
 use psd::remote::{Protocol, serve};
-use psd::rig::{Guard, StopRequest, VirtualRig};
 use psd::run::Unwatched;
 use psd::run::remote_control::Specimen;
+use psd_plan::{Behaviour, Interval, Limits, Settle, Specimen as PlanSpecimen, VirtualLink};
+use psd_rig::{Guard, StopRequest, VirtualRig};
 
 const STIFFNESS: f64 = 3e5;
 const WORDS: usize = 256;

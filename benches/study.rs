@@ -1,9 +1,9 @@
 //! Runs of a study: bound and simulated, in batches and one by one, and the share of the binding. The goal is runs per second on one core.
 
 use psd::check::{Options, ParsedPlan, no_files};
-use psd::plan::Plan;
 use psd::study::definition::Definition;
 use psd::study::simulation::Simulation;
+use psd_plan::Plan;
 
 fn main() {
     divan::main();
@@ -47,7 +47,7 @@ fn binding_alone(bencher: divan::Bencher) {
     let (parsed, ..) = checked();
     let values = std::collections::BTreeMap::from([(
         "speed".to_owned(),
-        psd::units::Quantity::new(1.1, psd::units::Dimension::VELOCITY),
+        psd_text::units::Quantity::new(1.1, psd_text::units::Dimension::VELOCITY),
     )]);
     bencher.bench_local(|| parsed.bind(&values).is_ok());
 }

@@ -7,10 +7,10 @@ use std::hint::black_box;
 use std::process::{Command, Stdio};
 
 use common::{SPECIMEN, STEPS, example_1};
-use psd::physics::contact::ContactLaw;
-use psd::physics::impact::batch::{self, Impact};
-use psd::physics::impact::{ImpactInput, StepRow, Until, simulate};
-use psd::physics::specimen::{Bilinear, BilinearCurve, SpecimenModel};
+use psd_physics::contact::ContactLaw;
+use psd_physics::impact::batch::{self, Impact};
+use psd_physics::impact::{ImpactInput, StepRow, Until, simulate};
+use psd_physics::specimen::{Bilinear, BilinearCurve, SpecimenModel};
 use rustix::time::{ClockId, clock_gettime};
 
 const RUNS: u32 = 10_000;

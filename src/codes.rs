@@ -1,9 +1,8 @@
 //! The codes that this crate raises, and every code of the program.
 
-use crate::language;
-use crate::text::diagnostic::Code;
+use psd_text::diagnostic::Code;
 
-crate::text::codes! {
+psd_text::codes! {
     // 6: the test as a whole
     E605 E617 E618 E624 E625 E626 E627 E629 E638 E639 E640 E642 E643 E644 E645 E646 E647 E648
     E650 E651 E653 E654 E655 E666
@@ -15,7 +14,7 @@ crate::text::codes! {
 /// Every code of the program, in order.
 #[must_use]
 pub fn all() -> Vec<Code> {
-    let mut all = [language::codes::ALL, ALL].concat();
+    let mut all = [psd_language::codes::ALL, ALL].concat();
     all.sort_unstable();
     all
 }

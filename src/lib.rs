@@ -5,34 +5,21 @@
 //! ```
 //!
 //! Each arrow is one public function. No stage calls back, and no stage after `check` reads text. The stages are engines:
-//! everything that concerns one procedure only is in its folder of `procedures`.
-
-pub use psd_language as language;
-pub use psd_physics as physics;
-pub use psd_plan::{self as plan, record, schema, uncertainty};
-pub use psd_rig::{self as rig, emulator};
-pub use psd_text::{self as text, units};
+//! everything that concerns one procedure only is in its folder of `procedures`. Text, physics, plan, language and rigs are crates of their
+//! own, which this one joins.
 
 pub mod check;
-
-pub mod run;
-
-pub mod procedures;
-
-pub mod verdict;
-
-pub mod report;
-
-pub mod remote;
-
+pub mod cli;
 pub mod codes;
 pub(crate) mod evidence;
 pub(crate) mod files;
 pub mod golden;
-
+pub mod procedures;
+pub mod remote;
+pub mod report;
+pub mod run;
 pub mod study;
-
-pub mod cli;
+pub mod verdict;
 
 #[cfg(test)]
 mod tests;

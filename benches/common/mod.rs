@@ -2,11 +2,11 @@
 
 use std::hint::black_box;
 
-use psd::physics::contact::ContactLaw;
-use psd::physics::impact::ImpactInput;
-use psd::physics::specimen::Elastic;
-use psd::physics::statistics::DeclaredNoise;
-use psd::plan::Integrator;
+use psd_physics::contact::ContactLaw;
+use psd_physics::impact::ImpactInput;
+use psd_physics::specimen::Elastic;
+use psd_physics::statistics::DeclaredNoise;
+use psd_plan::Integrator;
 
 pub const SPECIMEN: Elastic = Elastic { stiffness: 327.65 };
 pub const STEPS: u64 = 100_000;

@@ -1,16 +1,16 @@
 //! The order of a check: every block in turn, then conditions on several of them, then the warnings. In: the syntax trees and a loader of
 //! data files. Out: the plan, or diagnostics with the reasons why it is missing. It does not depend on any particular procedure.
 
-use crate::language::check::checker::Checker;
-use crate::language::check::declared::Declared;
-use crate::language::check::{declarations, rig, warnings as of_the_language};
-use crate::language::codes::E203;
-use crate::plan::{Plan, PlanFile, Procedure, Studies};
 use crate::procedures as slices;
-use crate::schema::Kind;
-use crate::text::diagnostic::Diagnostic;
-use crate::text::markdown::is_document;
-use crate::text::source::{FileId, Sources, Span};
+use psd_language::check::checker::Checker;
+use psd_language::check::declared::Declared;
+use psd_language::check::{declarations, rig, warnings as of_the_language};
+use psd_language::codes::E203;
+use psd_plan::schema::Kind;
+use psd_plan::{Plan, PlanFile, Procedure, Studies};
+use psd_text::diagnostic::Diagnostic;
+use psd_text::markdown::is_document;
+use psd_text::source::{FileId, Sources, Span};
 
 use super::{Options, golden, procedures, report, warnings};
 

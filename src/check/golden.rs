@@ -2,21 +2,21 @@
 //! the absolute value of the number, as in `require … within`.
 
 use crate::codes::{E617, E618, W710};
-use crate::language::check::checker::{Checker, Context, Reads};
-use crate::language::check::declarations::tolerance::tolerance;
-use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::scope::Meaning;
-use crate::language::check::violations::UnknownProcedure;
-use crate::language::check::wording::{shown, suggestion};
-use crate::language::codes::E304;
-use crate::language::syntax::ast::{Expr, ExprKind};
-use crate::plan::formula::{Part, ProcedureId};
-use crate::plan::{ColumnTolerance, Golden, ResultTolerance, Tolerance};
 use crate::procedures;
-use crate::schema::{BlockKind, Column, Kind, golden as schema};
-use crate::text::diagnostic::Violation;
-use crate::text::source::Span;
-use crate::units::Dimension;
+use psd_language::check::checker::{Checker, Context, Reads};
+use psd_language::check::declarations::tolerance::tolerance;
+use psd_language::check::expressions::choice::Chosen;
+use psd_language::check::scope::Meaning;
+use psd_language::check::violations::UnknownProcedure;
+use psd_language::check::wording::{shown, suggestion};
+use psd_language::codes::E304;
+use psd_language::syntax::ast::{Expr, ExprKind};
+use psd_plan::formula::{Part, ProcedureId};
+use psd_plan::schema::{BlockKind, Column, Kind, golden as schema};
+use psd_plan::{ColumnTolerance, Golden, ResultTolerance, Tolerance};
+use psd_text::diagnostic::Violation;
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 /// A tolerance of 0.1 or more has little effect.
 const WIDE: f64 = 0.1;

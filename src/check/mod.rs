@@ -13,9 +13,9 @@ mod warnings;
 pub use parsed_plan::{ParsedPlan, check};
 pub use psd_language::check::{LoadError, Loader, no_files};
 
-use crate::plan::Plan;
-use crate::text::diagnostic::Diagnostic;
-use crate::text::source::{Sources, Span};
+use psd_plan::Plan;
+use psd_text::diagnostic::Diagnostic;
+use psd_text::source::{Sources, Span};
 
 /// The options of the command line that affect the plan.
 #[derive(Clone, Debug, Default)]

@@ -4,20 +4,20 @@
 use std::collections::BTreeMap;
 
 use crate::codes::E666;
-use crate::language::check::checker::{Checker, End};
-use crate::language::check::expressions::data_file::DataFile;
-use crate::language::check::expressions::parameters::{names_of_parameters, read_settings};
-use crate::language::check::scope::{Scope, Setting};
-use crate::language::check::violations::UnknownParameter;
-use crate::language::check::wording::shown;
-use crate::language::check::{imports, rig};
-use crate::language::codes::{E107, W733};
-use crate::language::syntax::ast::Ast;
-use crate::language::syntax::limits::ERRORS;
-use crate::plan::{Plan, PlanFile};
-use crate::text::diagnostic::{Code, Diagnostic, Severity, Violation};
-use crate::text::source::{Sources, Span};
-use crate::units::Quantity;
+use psd_language::check::checker::{Checker, End};
+use psd_language::check::expressions::data_file::DataFile;
+use psd_language::check::expressions::parameters::{names_of_parameters, read_settings};
+use psd_language::check::scope::{Scope, Setting};
+use psd_language::check::violations::UnknownParameter;
+use psd_language::check::wording::shown;
+use psd_language::check::{imports, rig};
+use psd_language::codes::{E107, W733};
+use psd_language::syntax::ast::Ast;
+use psd_language::syntax::limits::ERRORS;
+use psd_plan::{Plan, PlanFile};
+use psd_text::diagnostic::{Code, Diagnostic, Severity, Violation};
+use psd_text::source::{Sources, Span};
+use psd_text::units::Quantity;
 
 use super::driver::{self, Findings, PlanText};
 use super::{Checked, Loader, Options, no_files};

@@ -1,16 +1,16 @@
 //! The procedures in the order of the plan, and the specimen that they test.
 
 use crate::codes::{E605, E625, E626};
-use crate::language::check::checker::Checker;
-use crate::language::check::rig::{CheckedRig, axes};
-use crate::plan::{Procedure, Specimen};
 use crate::procedures;
 use crate::procedures::facts::Tests;
-use crate::schema::Kind;
-use crate::schema::procedures::SPECIMEN;
-use crate::schema::rig::AXES;
-use crate::text::diagnostic::{Code, Diagnostic, Violation};
-use crate::text::source::Span;
+use psd_language::check::checker::Checker;
+use psd_language::check::rig::{CheckedRig, axes};
+use psd_plan::schema::Kind;
+use psd_plan::schema::procedures::SPECIMEN;
+use psd_plan::schema::rig::AXES;
+use psd_plan::{Procedure, Specimen};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::Span;
 
 /// Every procedure; None for those with an error.
 pub fn procedures(checker: &mut Checker) -> Vec<(usize, Option<Procedure>)> {

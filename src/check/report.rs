@@ -1,22 +1,22 @@
 //! `report { … }`: results, annexes, figures, formats, signatories. Without it: the headline results, every table and figure.
 
 use crate::codes::E651;
-use crate::language::check::checker::{Checker, Context, Reads};
-use crate::language::check::scope::Meaning;
-use crate::language::check::violations::UnknownProcedure;
-use crate::language::check::wording::{one_of, suggestion};
-use crate::language::codes::{E205, E304, E501, E502, E504};
-use crate::language::syntax::ast::{Argument, Expr, ExprKind};
-use crate::plan::formula::{Part, ProcedureId, ResultReference};
-use crate::plan::{
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use psd_language::check::checker::{Checker, Context, Reads};
+use psd_language::check::scope::Meaning;
+use psd_language::check::violations::UnknownProcedure;
+use psd_language::check::wording::{one_of, suggestion};
+use psd_language::codes::{E205, E304, E501, E502, E504};
+use psd_language::syntax::ast::{Argument, Expr, ExprKind};
+use psd_plan::formula::{Part, ProcedureId, ResultReference};
+use psd_plan::schema::{BlockKind, Kind, report as schema};
+use psd_plan::{
     Annex, Figure, FigureKind, Format, MOST_PHOTOS, MOST_TOGETHER, Picture, PictureKind, Procedure,
     Report,
 };
-use crate::schema::{BlockKind, Kind, report as schema};
-use crate::text::diagnostic::{Code, Diagnostic, Violation};
-use crate::text::source::{Span, Spanned};
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::{Span, Spanned};
 
 const EVERY_FORMAT: [Format; 4] = [Format::Html, Format::Pdf, Format::Csv, Format::Parquet];
 

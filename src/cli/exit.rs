@@ -6,9 +6,9 @@ use std::process::ExitCode;
 use super::settings::Settings;
 use crate::files::failure::DiskSpaceFault;
 pub use crate::files::failure::Failure;
-use crate::rig::RigFault;
-use crate::text::diagnostic::excerpt::escape;
 use crate::verdict::{Assessment, ReproductionOutcome, Verdict};
+use psd_rig::RigFault;
+use psd_text::diagnostic::excerpt::escape;
 
 /// An exit code, worst last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -9,7 +9,7 @@ use rustix::io::Errno;
 
 use super::exit::Failure;
 use super::settings::Settings;
-use crate::text::sanitize;
+use psd_text::sanitize;
 
 /// Prints a message to the operator. A closed stream is not an error. Control sequences other than colours are removed.
 pub fn print_message(text: &str) {

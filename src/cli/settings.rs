@@ -4,7 +4,7 @@ use std::io::IsTerminal as _;
 use std::path::Path;
 
 use super::args::Color;
-use crate::text::diagnostic::render::Appearance;
+use psd_text::diagnostic::render::Appearance;
 
 /// The day by the clock of the computer, UTC, `YYYY-MM-DD`.
 pub fn today() -> String {

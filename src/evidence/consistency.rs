@@ -3,9 +3,9 @@
 
 use crate::files::provenance::recorded_id;
 use crate::files::recorded_run::{ReadRecord, plan_of};
-use crate::plan::Plan;
-use crate::rig::journal::{EntryKind, Recovered};
 use crate::run::replay::{self, LoggedRun};
+use psd_plan::Plan;
+use psd_rig::journal::{EntryKind, Recovered};
 
 /// Compares the entries of a run log with each other.
 ///

@@ -13,8 +13,8 @@ use sha2::{Digest as _, Sha256};
 use crate::files::failure::Failure;
 use crate::files::failure::plain;
 use crate::files::recorded_run::JOURNAL;
-use crate::rig::journal::{LogText, MOST_BYTES, is_part_of_a_reserve};
-use crate::text::digest::{hex, sha256};
+use psd_rig::journal::{LogText, MOST_BYTES, is_part_of_a_reserve};
+use psd_text::digest::{hex, sha256};
 
 use super::names::{ISSUE, MANIFEST, PAPER, is_sidecar, is_signature};
 

@@ -2,20 +2,20 @@
 //! Out: the file, its report id, and plan and provenance with the stated data. It changes only particulars of the `plan` block: the run
 //! log in the issued folder is unchanged, and every number comes from it.
 
-use crate::schema::plan_block;
+use psd_plan::schema::plan_block;
 use serde::{Deserialize, Serialize};
 
 use super::folder::Folder;
 use super::names::ISSUE;
-use crate::language::syntax::limits::TEXT_BYTES;
-use crate::plan::Plan;
 use crate::report::status::days::{day, days_after, last_day};
 use crate::report::{Change, Issue, IssueKind, Issues, Provenance};
-use crate::schema::{self, FieldType, Kind};
-use crate::text::digest::sha256;
-use crate::text::sanitize;
-use crate::text::sanitize::one_line;
-use crate::text::suggest::nearest;
+use psd_language::syntax::limits::TEXT_BYTES;
+use psd_plan::Plan;
+use psd_plan::schema::{self, FieldType, Kind};
+use psd_text::digest::sha256;
+use psd_text::sanitize;
+use psd_text::sanitize::one_line;
+use psd_text::suggest::nearest;
 
 /// Name and version of the format.
 const SCHEMA: &str = "psd.issue/1";

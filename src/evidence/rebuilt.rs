@@ -9,18 +9,18 @@ use crate::files::provenance::BUILD;
 use crate::files::recorded_run;
 use crate::files::recorded_run::{JOURNAL, ReadRecord};
 use crate::files::results::put_results;
-use crate::plan::Plan;
-use crate::record::remote::DrivenStep;
-use crate::record::{Outcome, Record};
 use crate::report::{
     FileDigest, Issue, IssueKind, NullSink, OutputError, OutputSink, Prediction, Provenance,
     ReportStatus, Run,
 };
-use crate::rig::journal::EntryKind;
 use crate::run::replay;
 use crate::run::replay::{CUT_OFF, Mismatch, Replayed};
-use crate::schema::plan_block::ISSUED;
 use crate::verdict::{self, Assessment};
+use psd_plan::Plan;
+use psd_plan::record::remote::DrivenStep;
+use psd_plan::record::{Outcome, Record};
+use psd_plan::schema::plan_block::ISSUED;
+use psd_rig::journal::EntryKind;
 
 /// Predicts a whole run from the record of its low-level check run; None for any other run.
 pub type Predict<'a> = &'a dyn Fn(&Plan, &Record) -> Option<Prediction>;

@@ -7,7 +7,7 @@ use sha2::{Digest as _, Sha384, Sha512};
 use super::finding::Finding;
 use super::folder::{Content, Folder};
 use super::names::{SidecarKind, sidecar};
-use crate::text::digest::unhex;
+use psd_text::digest::unhex;
 
 /// The first bytes of an OpenTimestamps proof.
 const OPEN_TIMESTAMPS: &[u8] =

@@ -14,7 +14,7 @@ use super::folder::Folder;
 use super::keys::{self, KnownKey};
 use super::names::{MANIFEST, SUFFIX};
 use super::rebuilt::Report;
-use crate::text::diagnostic::excerpt::one_line;
+use psd_text::diagnostic::excerpt::one_line;
 
 /// The line that no signature covers is one of these, so that a change to it is also detected.
 const UNTRUSTED: &[&str] = &[

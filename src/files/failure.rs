@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use crate::codes::E629;
-use crate::text::diagnostic::Code;
-use crate::text::source::Position;
+use psd_text::diagnostic::Code;
+use psd_text::source::Position;
 
 /// Why a command failed. Errors in a plan are diagnostics, not these.
 #[derive(Debug, thiserror::Error)]
@@ -31,16 +31,16 @@ pub enum Failure {
     #[error("standard output: {0}")]
     Stdout(std::io::Error),
     #[error(transparent)]
-    Record(#[from] crate::rig::journal::FileFault),
+    Record(#[from] psd_rig::journal::FileFault),
     #[error(transparent)]
-    Journal(#[from] crate::rig::journal::JournalFault),
+    Journal(#[from] psd_rig::journal::JournalFault),
     #[error("{0}")]
-    Rig(#[from] crate::rig::RigFault),
+    Rig(#[from] psd_rig::RigFault),
     #[error(transparent)]
     DiskSpace(#[from] DiskSpaceFault),
     #[error("{fault}")]
     NotOpened {
-        fault: crate::rig::RigFault,
+        fault: psd_rig::RigFault,
         location: String,
     },
     #[error("no check run: {0}")]

@@ -1,15 +1,15 @@
 //! The provenance of a run. In: the checked plan. Out: [`Provenance`], a function of the plan and the version of this
 //! program only: the same plan has the same id everywhere.
 
-use crate::schema::plan_block::DATE;
+use psd_plan::schema::plan_block::DATE;
 use sha2::{Digest as _, Sha256};
 
 use super::circumstances::Circumstances;
-use crate::plan::Plan;
 use crate::report::{Build, Provenance, RealRun};
 use crate::run::check_run;
 use crate::run::replay::Header;
-use crate::text::digest::{hex, sha256};
+use psd_plan::Plan;
+use psd_text::digest::{hex, sha256};
 
 /// Digest of the sources of this program, and its toolchain.
 pub const BUILD: &str = env!("PSD_BUILD");
@@ -195,8 +195,8 @@ fn run_id(plan: &Plan, version: &str, date: Option<&str>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{Link, PlanFile, VirtualLink};
     use crate::tests::testing::empty_plan;
+    use psd_plan::{Link, PlanFile, VirtualLink};
 
     fn plan(files: &[(&str, &str)], settings: &[(&str, &str)], seed: u64) -> Plan {
         let own = |(name, text): &(&str, &str)| (String::from(*name), String::from(*text));

@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 
 use super::failure::{Failure, plain};
 use crate::check::{LoadError, Options, check};
-use crate::plan::Plan;
-use crate::record::equipment::{Device, Equipment};
 use crate::report::{Build, Provenance, RealRun};
-use crate::rig::journal::{Line, LogText, Recovered, Unreadable, recover};
 use crate::run::check_run;
 use crate::run::replay;
 use crate::run::replay::{Header, LoggedRun};
-use crate::text::digest::sha256;
+use psd_plan::Plan;
+use psd_plan::record::equipment::{Device, Equipment};
+use psd_rig::journal::{Line, LogText, Recovered, Unreadable, recover};
+use psd_text::digest::sha256;
 
 /// Name of the run log in its run folder.
 pub const JOURNAL: &str = "journal.psdj";

@@ -1,11 +1,11 @@
 //! Every file of the results of a run. In: the record and its assessment. Out: files.
 
-use crate::plan::Plan;
-use crate::record::remote::DrivenStep;
-use crate::record::{Outcome, Record};
 use crate::report;
 use crate::report::{FileDigest, OutputError, OutputSink, Provenance, Run};
 use crate::verdict::Assessment;
+use psd_plan::Plan;
+use psd_plan::record::remote::DrivenStep;
+use psd_plan::record::{Outcome, Record};
 
 /// Puts every result of a run into a sink, without the manifest, which also lists the other files. A run that a client controlled has
 /// only the table of its steps.

@@ -4,7 +4,7 @@
 use jiff::Timestamp;
 
 use crate::report::ClockJump;
-use crate::rig::journal::{EntryKind, Line};
+use psd_rig::journal::{EntryKind, Line};
 
 /// A smaller difference is the slow correction of a clock, or the time between the two time stamps of an entry \[s\].
 const SMALL: f64 = 10.0;

@@ -5,7 +5,7 @@ use super::finding::{Change, Finding, Part, RowRef};
 use super::tolerance::{Rule, Tolerances};
 use super::{Truth, number};
 use crate::report::{FigureCurve, FigureData};
-use crate::units::{Dimension, unit};
+use psd_text::units::{Dimension, unit};
 
 pub(super) fn compare(
     accepted: &Truth,

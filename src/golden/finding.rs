@@ -1,7 +1,7 @@
 //! The differences between a run and its accepted results, as data. The printing modules choose the text.
 
 use super::tolerance::Rule;
-use crate::units::Dimension;
+use psd_text::units::Dimension;
 
 /// The part of the results that a finding is about, the most important first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

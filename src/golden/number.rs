@@ -2,7 +2,7 @@
 
 use super::finding::{Change, Count, Moved, RowRef};
 use super::tolerance::Rule;
-use crate::units::Dimension;
+use psd_text::units::Dimension;
 
 /// One number; None if both are within the tolerance.
 pub(super) fn single(

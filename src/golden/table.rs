@@ -4,9 +4,9 @@ use super::finding::{Change, Count, Finding, Part, RowRef};
 use super::tolerance::Tolerances;
 use super::{Truth, number};
 use crate::procedures;
-use crate::schema;
-use crate::schema::columns;
-use crate::units::Dimension;
+use psd_plan::schema;
+use psd_plan::schema::columns;
+use psd_text::units::Dimension;
 
 /// A table as it was read.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,8 +1,8 @@
 //! Tolerances of a comparison. In: the plan's `golden` block. Out: a [`Rule`] for each result, column and figure.
 
-use crate::plan::formula::ProcedureId;
-use crate::plan::{Golden, Plan, Tolerance};
-use crate::units::Dimension;
+use psd_plan::formula::ProcedureId;
+use psd_plan::{Golden, Plan, Tolerance};
+use psd_text::units::Dimension;
 
 /// Smallest difference that is detected, SI: a picometre, a piconewton, a picosecond, and 10⁻¹² for a plain number. A value that should
 /// be 0 is rarely exactly 0. With `tolerance = 0` there is no such floor.
@@ -165,7 +165,7 @@ impl Tolerances {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{ColumnTolerance, ResultTolerance};
+    use psd_plan::{ColumnTolerance, ResultTolerance};
 
     fn tolerances(tolerance: f64) -> Tolerances {
         let force = |procedure, tolerance| ColumnTolerance {

@@ -2,8 +2,8 @@
 //! Out: types.
 
 use super::unload;
-use crate::plan::{Condition, Contact, Dependence, FigureKind, Impact, ShakeDamping, Stepping};
-use crate::record::BroughtTogether;
+use psd_plan::record::BroughtTogether;
+use psd_plan::{Condition, Contact, Dependence, FigureKind, Impact, ShakeDamping, Stepping};
 
 /// The structure that a procedure tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -122,15 +122,15 @@ impl Delay {
 
 #[cfg(test)]
 mod tests {
-    use crate::plan::{Plan, ProcedureKind};
+    use psd_plan::{Plan, ProcedureKind};
     use psd_testing::plans::ChangeTarget as _;
 
     /// An impact also names striker and specimen, and a plan that declares everything names nothing.
     #[test]
     fn what_is_not_declared_of_striker_and_specimen_is_named() {
-        use crate::plan::formula::Formula;
         use crate::procedures::facts_of;
         use crate::tests::testing::{elastic_plan, impact, ramp, struck_frame};
+        use psd_plan::formula::Formula;
         let struck = ProcedureKind::Impact(impact(Formula::Constant(300.0)));
         let mut plan = elastic_plan(
             300.0,

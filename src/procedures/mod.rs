@@ -14,18 +14,6 @@ pub mod stepping;
 pub mod stiffness_ramp;
 pub mod unload;
 
-use crate::language::check::checker::Checker;
-use crate::language::check::declarations::limits::CheckedLimits;
-use crate::language::check::declared::Declared;
-use crate::physics::self_test::SelfTestPart;
-use crate::plan::formula::Formula;
-use crate::plan::{
-    DeclaredNoise, Figure, FigureKind, Ground, Impact, Plan, Procedure, ProcedureBlock,
-    ProcedureKind,
-};
-use crate::record::{
-    CycleStep, History, MoveStep, NamedResult, ProcedureRecord, RampStep, SweepStep,
-};
 use crate::report::Run;
 use crate::report::document::Block;
 use crate::report::figures::chart::{Chart, SharedCurve};
@@ -33,11 +21,23 @@ use crate::report::tables::{Table, each_once, numeric};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
-use crate::schema::{Column, Kind};
-use crate::uncertainty::{InstrumentUncertainty, Source};
 use common::calibrated_range;
 use common::fit_uncertainty::Fits;
 use facts::{Delay, Facts, Leaves, Recorded, Tests};
+use psd_language::check::checker::Checker;
+use psd_language::check::declarations::limits::CheckedLimits;
+use psd_language::check::declared::Declared;
+use psd_physics::self_test::SelfTestPart;
+use psd_plan::formula::Formula;
+use psd_plan::record::{
+    CycleStep, History, MoveStep, NamedResult, ProcedureRecord, RampStep, SweepStep,
+};
+use psd_plan::schema::{Column, Kind};
+use psd_plan::uncertainty::{InstrumentUncertainty, Source};
+use psd_plan::{
+    DeclaredNoise, Figure, FigureKind, Ground, Impact, Plan, Procedure, ProcedureBlock,
+    ProcedureKind,
+};
 
 /// Check: the procedure that a block specifies; None after an error, and for a block that does not declare a procedure.
 pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {

@@ -14,8 +14,8 @@ use rustix::net::sockopt::set_tcp_quickack;
 use rustix::net::{RecvFlags, recv};
 
 use super::{Ended, LOOK};
-use crate::rig::{RigFault, StopRequest};
 use crate::run::remote_control::Specimen;
+use psd_rig::{RigFault, StopRequest};
 
 /// A client that accepts no bytes for this long is disconnected.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(2);

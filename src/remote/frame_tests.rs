@@ -2,13 +2,13 @@
 
 use super::tests::{Element, LIMITS, served_on};
 use super::*;
-use crate::physics::integrator::input::FrameInput;
-use crate::physics::integrator::solver::FrameSolver;
-use crate::physics::integrator::tangents::Tangents;
-use crate::physics::structure::{FrameMatrices, SymmetricBand};
-use crate::plan::{Behaviour, Frame, Integrator, Limits, Settle, Storey, VirtualLink};
-use crate::rig::DeclaredNoise;
-use crate::rig::VirtualRig;
+use psd_physics::integrator::input::FrameInput;
+use psd_physics::integrator::solver::FrameSolver;
+use psd_physics::integrator::tangents::Tangents;
+use psd_physics::structure::{FrameMatrices, SymmetricBand};
+use psd_plan::{Behaviour, Frame, Integrator, Limits, Settle, Storey, VirtualLink};
+use psd_rig::DeclaredNoise;
+use psd_rig::VirtualRig;
 
 const MASSES: [f64; 2] = [2000.0, 1500.0];
 

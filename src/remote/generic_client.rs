@@ -18,8 +18,8 @@ use std::time::Duration;
 
 use super::Ended;
 use super::connection::{Broken, Connection};
-use crate::rig::protocols::generic_header::{self, HEADER, Layout};
 use crate::run::remote_control::Specimen;
+use psd_rig::protocols::generic_header::{self, HEADER, Layout};
 
 /// The first word of a message: the requested action.
 mod action {

@@ -18,12 +18,12 @@ use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
-use crate::rig::{RigFault, StopRequest};
 use crate::run::Disconnect;
 pub use crate::run::remote_control::Driven;
 use crate::run::remote_control::Specimen;
 use connection::{Broken, Connection};
 pub use nees::usual_names;
+use psd_rig::{RigFault, StopRequest};
 
 /// Interval at which a wait checks whether it must end.
 const LOOK: Duration = Duration::from_millis(100);

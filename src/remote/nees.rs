@@ -8,9 +8,9 @@
 
 use super::Ended;
 use super::connection::Connection;
-use crate::rig::RigFault;
-use crate::rig::protocols::nees_message::{self, Refusal, Request, Why};
 use crate::run::remote_control::Specimen;
+use psd_rig::RigFault;
+use psd_rig::protocols::nees_message::{self, Refusal, Request, Why};
 
 /// Longest line accepted, bytes.
 const LONGEST: usize = 4096;

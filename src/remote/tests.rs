@@ -4,10 +4,10 @@ use std::io::{Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
 
 use super::*;
-use crate::plan::{Behaviour, Interval, Limits, Settle, Specimen as PlanSpecimen, VirtualLink};
-use crate::rig::transport::{Clock as _, MonotonicClock};
-use crate::rig::{Guard, Rig, VirtualRig};
 use crate::run::Unwatched;
+use psd_plan::{Behaviour, Interval, Limits, Settle, Specimen as PlanSpecimen, VirtualLink};
+use psd_rig::transport::{Clock as _, MonotonicClock};
+use psd_rig::{Guard, Rig, VirtualRig};
 
 const STIFFNESS: f64 = 3e5;
 

@@ -7,11 +7,11 @@ use super::run::Run;
 use super::status::{ReportStatus, deviations};
 use super::wording::reproductions as wording;
 use super::{number, summary};
-use crate::plan::DecisionRule;
-use crate::record::Outcome;
-use crate::text::columns::columns;
-use crate::text::sanitize::one_line;
 use crate::verdict::{ConditionOutcome, ReproductionOutcome, Verdict};
+use psd_plan::DecisionRule;
+use psd_plan::record::Outcome;
+use psd_text::columns::columns;
+use psd_text::sanitize::one_line;
 
 /// The verdict, each requirement with value, limit and margin, the decision rule and the deviations.
 #[must_use]

@@ -5,11 +5,11 @@ use std::borrow::Cow;
 
 use super::status::Issues;
 use super::summary::Prediction;
-use crate::plan::{Link, Plan};
-use crate::record::Record;
-use crate::record::equipment::{Device, Equipment};
-use crate::rig::DeclaredNoise;
 use crate::verdict::Assessment;
+use psd_plan::record::Record;
+use psd_plan::record::equipment::{Device, Equipment};
+use psd_plan::{Link, Plan};
+use psd_rig::DeclaredNoise;
 
 /// One run, complete or stopped, with its assessment.
 #[derive(Clone, Copy)]

@@ -2,10 +2,10 @@
 //! record of its pre-test check and leading stiffness ramps. Out: the plan of those alone, and the whole plan on a virtual specimen with
 //! the measured stiffness. It moves nothing.
 
-use crate::plan::procedures::stiffness_ramp::block::STIFFNESS;
-use crate::plan::{Behaviour, Link, Plan, ProcedureKind, Specimen, VirtualLink};
-use crate::record::{History, Record, StiffnessRampHistory};
-use crate::rig::VirtualRig;
+use psd_plan::procedures::stiffness_ramp::block::STIFFNESS;
+use psd_plan::record::{History, Record, StiffnessRampHistory};
+use psd_plan::{Behaviour, Link, Plan, ProcedureKind, Specimen, VirtualLink};
+use psd_rig::VirtualRig;
 
 /// The administrative field of a plan that marks it as a check run.
 const FIELD: &str = "check_run";
@@ -57,7 +57,7 @@ pub fn measured_part(plan: &Plan) -> Result<Plan, NoCheckRun> {
     }
     let mut part = plan.clone();
     let left = part.procedures.split_off(ramps);
-    let names = |procedures: &[crate::plan::Procedure]| {
+    let names = |procedures: &[psd_plan::Procedure]| {
         procedures
             .iter()
             .map(|procedure| procedure.name.as_str())
@@ -203,11 +203,11 @@ fn scatter(measured: &Record) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::formula::Formula::Constant;
-    use crate::plan::{BreakCount, InspectTrigger, Move, RampFit};
     use crate::tests::testing::{
         elastic_plan, impact, ramp, result_of, run_unwatched, struck_frame,
     };
+    use psd_plan::formula::Formula::Constant;
+    use psd_plan::{BreakCount, InspectTrigger, Move, RampFit};
 
     /// A frame has the models of its storeys: none is measured first, and the impact is predicted with them.
     #[test]

@@ -3,14 +3,14 @@
 
 use std::time::Duration;
 
-use crate::plan::{DriftCheck, Plan, ZeroAfter};
-use crate::record::remote::DrivenStep;
-use crate::record::{Drift, EventKind, Outcome, Record};
-use crate::rig::Rig;
 use crate::run::remote_control::Specimen;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::run::{Observer, pretest_check, zero_drift};
+use psd_plan::record::remote::DrivenStep;
+use psd_plan::record::{Drift, EventKind, Outcome, Record};
+use psd_plan::{DriftCheck, Plan, ZeroAfter};
+use psd_rig::Rig;
 
 /// The record and the steps of a driven rig.
 pub struct ClientRunRecord {

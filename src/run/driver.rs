@@ -3,12 +3,12 @@
 
 use super::session::Session;
 use super::{Observer, Performed, Settings, pretest_check, zero_drift};
-use crate::plan::formula::ProcedureId;
-use crate::plan::{DriftCheck, Plan, ZeroAfter};
 use crate::procedures;
-use crate::record::{EventKind, Outcome, ProcedureRecord, Record};
-use crate::rig::Rig;
 use crate::run::inputs::Inputs;
+use psd_plan::formula::ProcedureId;
+use psd_plan::record::{EventKind, Outcome, ProcedureRecord, Record};
+use psd_plan::{DriftCheck, Plan, ZeroAfter};
+use psd_rig::Rig;
 
 /// Runs every procedure of the plan in order on the rig. Never fails: a fault is the outcome of the record.
 #[must_use]

@@ -1,13 +1,13 @@
 //! Inputs of a procedure: formulas of the plan, evaluated when all earlier results are known. In: formulas. Out: numbers in SI, inside
 //! their domain, and the list of them for the record.
 
-use crate::plan::formula::{Estimate, Formula, ProcedureId, Results};
 use crate::run::stop::Stop;
-use crate::schema::Field;
-use crate::schema::procedures::SPEED;
-use crate::uncertainty::measurement_uncertainty;
-use crate::units::Dimension;
-use crate::units::display::readable;
+use psd_plan::formula::{Estimate, Formula, ProcedureId, Results};
+use psd_plan::schema::Field;
+use psd_plan::schema::procedures::SPEED;
+use psd_plan::uncertainty::measurement_uncertainty;
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 
 /// Evaluates inputs and keeps their values.
 pub(crate) struct Inputs<'record> {

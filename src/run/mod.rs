@@ -16,14 +16,14 @@ pub mod start;
 pub(crate) mod stop;
 pub(crate) mod zero_drift;
 
-pub use crate::record::remote::{Disconnect, Request};
 pub use driver::{run, run_with};
 pub use motion::{Extent, Motion};
+pub use psd_plan::record::remote::{Disconnect, Request};
 
 use serde::{Deserialize, Serialize};
 
-use crate::physics::tracking::monitor::Tracking;
-use crate::record::{Event, History, NamedResult};
+use psd_physics::tracking::monitor::Tracking;
+use psd_plan::record::{Event, History, NamedResult};
 use stop::Stop;
 
 /// An observer of a run: a progress bar, a live screen, a run log, the operator.

@@ -1,10 +1,10 @@
 //! The motion of a rig after its release, as the operator must read it before. In: the rig, the plan's limits, the known facts of the
 //! motion. Out: lines of text. It has no side effects: every prompt for motion states the same facts in the same order.
 
-use crate::plan::{Interval, Limits, Plan};
-use crate::rig::Identity;
-use crate::units::Dimension;
-use crate::units::display::{plain, readable, readable_beside, stated, stated_beside};
+use psd_plan::{Interval, Limits, Plan};
+use psd_rig::Identity;
+use psd_text::units::Dimension;
+use psd_text::units::display::{plain, readable, readable_beside, stated, stated_beside};
 
 /// A motion that waits for its release.
 #[derive(Clone, Debug, PartialEq)]

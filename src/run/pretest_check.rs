@@ -7,13 +7,13 @@ use super::session::Session;
 use super::start;
 use super::start::remedy;
 use super::stop::Stop;
-use crate::plan::{Plan, PretestCheck, RealLink};
-use crate::record::EventKind;
-use crate::rig::safety::failpoint;
-use crate::rig::safety::failpoint::Guarding;
-use crate::rig::{Reading, named_axis, of_axis};
-use crate::units::Dimension;
-use crate::units::display::{readable, stated};
+use psd_plan::record::EventKind;
+use psd_plan::{Plan, PretestCheck, RealLink};
+use psd_rig::safety::failpoint;
+use psd_rig::safety::failpoint::Guarding;
+use psd_rig::{Reading, named_axis, of_axis};
+use psd_text::units::Dimension;
+use psd_text::units::display::{readable, stated};
 
 /// Time between the two readings at rest \[s\].
 const REST: f64 = 1.0;
@@ -174,7 +174,7 @@ fn refuse<T>(reason: String) -> Result<T, Stop> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::Interval;
+    use psd_plan::Interval;
 
     #[test]
     fn a_loaded_specimen_is_distinguished_from_a_cell_with_a_zero_offset() {

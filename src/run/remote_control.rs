@@ -6,11 +6,11 @@
 
 use std::time::Duration;
 
-use crate::record::remote::{Disconnect, DrivenStep, Request};
-use crate::record::{Event, EventKind, Outcome};
-use crate::rig::{Guard, RigFault};
 use crate::run::stop::Stop;
 use crate::run::{Observer, StepReport};
+use psd_plan::record::remote::{Disconnect, DrivenStep, Request};
+use psd_plan::record::{Event, EventKind, Outcome};
+use psd_rig::{Guard, RigFault};
 
 /// Summary of a session, SI.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -3,10 +3,10 @@
 
 use super::stop::Stop;
 use super::{Inspection, Motion, Next, Observer, Settings, StepReport};
-use crate::plan::{Plan, Procedure};
-use crate::record::{Event, EventKind, NamedResult};
-use crate::rig::{Guard, Identity, LineStatistics, Reading, Rig, RigFault};
-use crate::uncertainty::engine::{Progress, Unknown};
+use psd_plan::record::{Event, EventKind, NamedResult};
+use psd_plan::uncertainty::engine::{Progress, Unknown};
+use psd_plan::{Plan, Procedure};
+use psd_rig::{Guard, Identity, LineStatistics, Reading, Rig, RigFault};
 
 /// A reading, the time of the last move \[s\], and the fault that ends the run.
 pub(super) type MovedReading = (Reading, Option<[f64; 2]>, Option<Stop>);

@@ -5,11 +5,11 @@
 use super::session::{Session, signed};
 use super::stop::Stop;
 use super::{Extent, Inspection, Motion, UNLOADING};
-use crate::plan::{Interval, Limits, Plan, RealLink, SafeState};
-use crate::record::{EventKind, Outcome};
-use crate::rig::{FinalHold, RigFault};
-use crate::units::Dimension;
-use crate::units::display::{plain, readable};
+use psd_plan::record::{EventKind, Outcome};
+use psd_plan::{Interval, Limits, Plan, RealLink, SafeState};
+use psd_rig::{FinalHold, RigFault};
+use psd_text::units::Dimension;
+use psd_text::units::display::{plain, readable};
 
 impl Session<'_> {
     /// Holds the rig, and unloads it if unloading is its safe state and the operator is not at the rig. Also unloads it if the operator

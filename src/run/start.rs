@@ -4,13 +4,13 @@
 use super::replay::Bands;
 use super::session::Session;
 use super::stop::Stop;
-use crate::plan::{Datum, Plan, PretestCheck, RealLink};
-use crate::record::EventKind;
-use crate::rig::safety::failpoint;
-use crate::rig::safety::failpoint::Guarding;
-use crate::rig::{named_axis, position_and_force};
-use crate::units::Dimension;
-use crate::units::display::{plain, readable, stated};
+use psd_plan::record::EventKind;
+use psd_plan::{Datum, Plan, PretestCheck, RealLink};
+use psd_rig::safety::failpoint;
+use psd_rig::safety::failpoint::Guarding;
+use psd_rig::{named_axis, position_and_force};
+use psd_text::units::Dimension;
+use psd_text::units::display::{plain, readable, stated};
 
 /// Displacements of every axis \[m\], and forces \[N\].
 pub(super) type AtRest<'a> = (&'a [f64], &'a [f64]);

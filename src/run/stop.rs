@@ -1,13 +1,13 @@
 //! The reasons for an early end of a run, and the outcome of each.
 
-use crate::schema::procedures::SPECIMEN;
+use psd_plan::schema::procedures::SPECIMEN;
 use std::borrow::Cow;
 
-use crate::plan::formula::FormulaError;
-use crate::record::{EventKind, Outcome};
-use crate::rig::RigFault;
-use crate::units::Dimension;
-use crate::units::display::stated;
+use psd_plan::formula::FormulaError;
+use psd_plan::record::{EventKind, Outcome};
+use psd_rig::RigFault;
+use psd_text::units::Dimension;
+use psd_text::units::display::stated;
 
 /// The reason for an early end of a run. The rig holds by then.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,13 +3,13 @@
 
 use super::session::Session;
 use super::stop::Stop;
-use crate::physics::identification::fit_line;
-use crate::physics::statistics::samples::mean;
-use crate::plan::{DriftCheck, ZeroAfter};
-use crate::record::{AxisDrift, Drift, EventKind, Zero};
-use crate::rig::{Held, Reading, named_axis};
-use crate::units::Dimension;
-use crate::units::display::readable;
+use psd_physics::identification::fit_line;
+use psd_physics::statistics::samples::mean;
+use psd_plan::record::{AxisDrift, Drift, EventKind, Zero};
+use psd_plan::{DriftCheck, ZeroAfter};
+use psd_rig::{Held, Reading, named_axis};
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 
 /// Number of readings of a zero.
 pub(crate) const READINGS: u32 = 10;

@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 
 use super::answers::{Answers, Probability, RequirementAnswer, ResultAnswer, StudiedAnswer};
 use super::data_set::{Kind, Metadata};
-use crate::physics::study::probability::Decision;
-use crate::schema::readable_result;
-use crate::text::sanitize::one_line;
-use crate::units::display;
+use psd_physics::study::probability::Decision;
+use psd_plan::schema::readable_result;
+use psd_text::sanitize::one_line;
+use psd_text::units::display;
 
 /// Worst runs that are shown; the summary has more.
 const WORST: usize = 3;
@@ -279,10 +279,10 @@ fn percent(fraction: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::study::sampling::Design;
     use crate::study::answers::testing::{
         answers, fragility_metadata, fragility_rows, metadata, normals, rows,
     };
+    use psd_physics::study::sampling::Design;
 
     #[test]
     fn the_answers_name_probability_scatter_causes_and_the_worst_runs() {

@@ -2,7 +2,7 @@
 //! probability.
 
 use super::data_set::{Event, Outcome, Row};
-use crate::physics::study::probability::Outcomes;
+use psd_physics::study::probability::Outcomes;
 
 /// Counts of the runs so far.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -1,9 +1,9 @@
 //! The input values of every run of a study. In: a study or a fragility of the plan, its number of runs. Out: the values of run i, which
 //! depend on the seed and i alone. It knows no plan text and no result.
 
-use crate::physics::study::inputs::{InputError, StudyInputs};
-use crate::physics::study::sampling::Design;
-use crate::plan::study::{REPLICATES, Sampling, Variation};
+use psd_physics::study::inputs::{InputError, StudyInputs};
+use psd_physics::study::sampling::Design;
+use psd_plan::study::{REPLICATES, Sampling, Variation};
 
 /// Difference of the seeds of two stripes: the odd number nearest to 2⁶⁴ over the golden ratio, so that near seeds give unrelated streams.
 const BETWEEN_STRIPES: u64 = 0x9e37_79b9_7f4a_7c15;
@@ -139,8 +139,8 @@ mod tests {
         };
         let draws = Draws::of_fragility(&[1.0, 2.0], Some(&variation), 10).unwrap();
         let law = match &variation.sources[0] {
-            crate::physics::study::inputs::Source::Distribution(law) => *law,
-            rows @ crate::physics::study::inputs::Source::Rows(_) => panic!("{rows:?}"),
+            psd_physics::study::inputs::Source::Distribution(law) => *law,
+            rows @ psd_physics::study::inputs::Source::Rows(_) => panic!("{rows:?}"),
         };
         for stripe in 0..2 {
             let mut tenths: Vec<u32> = values(&draws, 20)
@@ -151,7 +151,7 @@ mod tests {
                     (0..10)
                         .take_while(|tenth| {
                             let edge = f64::from(tenth + 1) / 10.0;
-                            law.quantile(crate::physics::study::distribution::Tails::of_uniform(
+                            law.quantile(psd_physics::study::distribution::Tails::of_uniform(
                                 edge.min(1.0 - f64::EPSILON),
                             )) <= run[1]
                         })

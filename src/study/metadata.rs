@@ -4,10 +4,10 @@ use super::data_set::{Column, Event, Kind, Metadata, Setting, StudiedRequirement
 use super::definition::Definition;
 use super::simulation::readout::Readout;
 use crate::files::provenance::BUILD;
-use crate::physics::study::inputs::Source;
-use crate::plan::study::{Input, REPLICATES, Sampling, StudyEvent, Variation};
-use crate::plan::{Plan, StudyRequirement};
-use crate::text::digest::sha256;
+use psd_physics::study::inputs::Source;
+use psd_plan::study::{Input, REPLICATES, Sampling, StudyEvent, Variation};
+use psd_plan::{Plan, StudyRequirement};
+use psd_text::digest::sha256;
 
 /// The build of psd that simulates the runs: runs of two builds are not mixed.
 #[must_use]

@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use crate::check::{Options, ParsedPlan, no_files};
-use crate::physics::study::Confidence;
-use crate::physics::study::correlation::Pair;
-use crate::physics::study::distribution::{Distribution, Spread};
-use crate::physics::study::inputs::Source;
-use crate::plan::Plan;
-use crate::plan::study::{Input, Runs, Sampling, Study, Variation};
 use crate::study::definition::Definition;
-use crate::units::Dimension;
+use psd_physics::study::Confidence;
+use psd_physics::study::correlation::Pair;
+use psd_physics::study::distribution::{Distribution, Spread};
+use psd_physics::study::inputs::Source;
+use psd_plan::Plan;
+use psd_plan::study::{Input, Runs, Sampling, Study, Variation};
+use psd_text::units::Dimension;
 
 /// Impact speed and a mass, correlated.
 pub fn variation() -> Variation {

@@ -9,11 +9,11 @@ use super::simulation::Simulation;
 use super::stopping::rare::RareRuns;
 use super::testing::bytes;
 use crate::check::{LoadError, Options, ParsedPlan};
-use crate::physics::study::Confidence;
-use crate::physics::study::distribution::normal;
-use crate::plan::Plan;
-use crate::rig::transport::MonotonicClock;
 use crate::study::answers::Answers;
+use psd_physics::study::Confidence;
+use psd_physics::study::distribution::normal;
+use psd_plan::Plan;
+use psd_rig::transport::MonotonicClock;
 
 /// A pulse of 1 m/s² and one of half of it: the response of an elastic frame to the second is half that to the first.
 fn pulses(path: &str) -> Result<String, LoadError> {
@@ -91,7 +91,7 @@ fn a_fragility_knows_its_record() {
 fn a_rare_drift_of_a_frame_has_its_probability_in_closed_form() {
     let of = parsed(&frame("require \"usual\" max(quake.max_drift) < 1 m"));
     let record = {
-        let mut rig = crate::rig::virtual_rig(&of.plan);
+        let mut rig = psd_rig::virtual_rig(&of.plan);
         let settings = crate::run::Settings { uncertainty: false };
         crate::run::run_with(&of.plan, rig.as_mut(), &mut crate::run::Unwatched, settings)
     };
@@ -114,7 +114,7 @@ fn a_rare_drift_of_a_frame_has_its_probability_in_closed_form() {
     assert!(answers.complete && answers.runs < 3 * 400);
     assert_eq!(
         answers.studied[0].decision,
-        crate::physics::study::probability::Decision::Met
+        psd_physics::study::probability::Decision::Met
     );
     assert!(answers.results.is_empty() && answers.requirements[0].probability.is_none());
     assert_eq!(answers.requirements[0].worst.len(), 10);

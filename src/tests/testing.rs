@@ -2,11 +2,11 @@
 
 pub(crate) use psd_testing::plans::*;
 
-use crate::plan::Plan;
-use crate::record::Record;
-use crate::record::equipment::{Device, Equipment};
-use crate::rig::virtual_rig;
 use crate::run::replay::{Header, HeaderFile, RULES};
+use psd_plan::Plan;
+use psd_plan::record::Record;
+use psd_plan::record::equipment::{Device, Equipment};
+use psd_rig::virtual_rig;
 
 pub(crate) fn run_unwatched(plan: &Plan) -> Record {
     crate::run::run(plan, &mut *virtual_rig(plan), &mut crate::run::Unwatched)

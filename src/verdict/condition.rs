@@ -1,12 +1,12 @@
 //! One condition. In: its value, its bound and the decision rule. Out: a verdict with margin, guard band and probability of conformity.
 
 use super::{Bound, ConditionOutcome, Verdict};
-use crate::physics::statistics::student_t;
-use crate::plan::formula::{Formula, FormulaError, Operator, Part, Results, UncertaintyStatus};
-use crate::plan::{Comparison, Condition, DecisionRule, Test};
-use crate::schema::is_in_percent;
-use crate::uncertainty::{FEW, MeasurementUncertainty, measurement_uncertainty};
-use crate::units::Dimension;
+use psd_physics::statistics::student_t;
+use psd_plan::formula::{Formula, FormulaError, Operator, Part, Results, UncertaintyStatus};
+use psd_plan::schema::is_in_percent;
+use psd_plan::uncertainty::{FEW, MeasurementUncertainty, measurement_uncertainty};
+use psd_plan::{Comparison, Condition, DecisionRule, Test};
+use psd_text::units::Dimension;
 
 /// In the steps of these results. Value and bound are evaluated separately, so that a report shows the one that exists.
 pub(super) fn decide(
@@ -186,7 +186,7 @@ fn margin_uncertainty(
                 difference(&condition.value, target)
             };
             let tolerance = if *relative {
-                let size = Formula::Call(crate::plan::formula::Function::Abs, vec![target.clone()]);
+                let size = Formula::Call(psd_plan::formula::Function::Abs, vec![target.clone()]);
                 Formula::Binary(
                     Operator::Multiply,
                     Box::new(tolerance.clone()),

@@ -2,10 +2,10 @@
 
 use super::tests::{compare, condition, outcome_of, record, result};
 use super::*;
-use crate::plan::formula::{Formula, ResultValue};
-use crate::plan::{Comparison, DecisionRule, Requirement, Test};
-use crate::record::{NamedResult, Outcome, Record};
-use crate::units::Dimension;
+use psd_plan::formula::{Formula, ResultValue};
+use psd_plan::record::{NamedResult, Outcome, Record};
+use psd_plan::{Comparison, DecisionRule, Requirement, Test};
+use psd_text::units::Dimension;
 
 /// A condition on 8.0 with u = 0.125: w = 0.25, and every number here is exact in binary.
 fn guarded(test: Test) -> ConditionOutcome {
@@ -312,9 +312,9 @@ fn a_partial_budget_of_a_real_rig_gives_no_guard_band() {
         )],
     }];
     let record = record(Outcome::Completed);
-    plan.rig.calibration = crate::plan::Calibration {
+    plan.rig.calibration = psd_plan::Calibration {
         force_uncertainty: 0.01,
-        ..crate::plan::Calibration::default()
+        ..psd_plan::Calibration::default()
     };
     let partial = assess(&plan, &record);
     assert_eq!(partial.verdict, Verdict::Inconclusive);
@@ -334,7 +334,7 @@ fn a_partial_budget_of_a_real_rig_gives_no_guard_band() {
 fn a_limit_that_was_measured_widens_the_band_and_the_same_result_on_both_sides_does_not() {
     let limit = |factor: f64| {
         let product = Formula::Binary(
-            crate::plan::formula::Operator::Multiply,
+            psd_plan::formula::Operator::Multiply,
             Box::new(Formula::Constant(factor)),
             Box::new(result("max_displacement")),
         );

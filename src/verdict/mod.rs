@@ -9,11 +9,11 @@ mod time_step;
 mod undecided;
 mod unfinished_peaks;
 
-use crate::plan::formula::{ProcedureId, Results, UncertaintyStatus};
-use crate::plan::{Comparison, Condition, DecisionRule, Plan, Requirement};
-use crate::record::{ImpactHistory, Outcome, Record};
-use crate::units::Dimension;
 pub(crate) use partial::Declared;
+use psd_plan::formula::{ProcedureId, Results, UncertaintyStatus};
+use psd_plan::record::{ImpactHistory, Outcome, Record};
+use psd_plan::{Comparison, Condition, DecisionRule, Plan, Requirement};
+use psd_text::units::Dimension;
 pub use reproduction::ReproductionOutcome;
 pub(crate) use time_step::assess_condition;
 use undecided::{beyond, longer_than_critical, unless_undecided};

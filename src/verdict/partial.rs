@@ -2,9 +2,9 @@
 //! partial. It gives no expanded uncertainty, and therefore no guard band. In: a plan and its results. Out: the same results, each with
 //! what is known of its uncertainty.
 
-use crate::plan::Plan;
-use crate::plan::formula::{ResultReference, ResultValue, Results, UncertaintyStatus};
-use crate::uncertainty::{Contribution, Source};
+use psd_plan::Plan;
+use psd_plan::formula::{ResultReference, ResultValue, Results, UncertaintyStatus};
+use psd_plan::uncertainty::{Contribution, Source};
 
 /// Results of a run on the rig of a plan.
 pub(crate) struct Declared<'a> {

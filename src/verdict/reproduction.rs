@@ -3,9 +3,9 @@
 
 use super::undecided::unless_undecided;
 use super::{Bound, ConditionOutcome, Verdict, assess_condition};
-use crate::plan::formula::Results;
-use crate::plan::{DecisionRule, Reproduction};
-use crate::record::Record;
+use psd_plan::formula::Results;
+use psd_plan::record::Record;
+use psd_plan::{DecisionRule, Reproduction};
 
 /// A number of the run beside a published one.
 #[derive(Clone, Debug)]
@@ -83,9 +83,9 @@ pub(super) fn compare(
 mod tests {
     use super::super::tests::{condition, record, result};
     use super::super::{Verdict, assess};
-    use crate::plan::formula::Formula;
-    use crate::plan::{DecisionRule, Reproduction, Test};
-    use crate::record::Outcome;
+    use psd_plan::formula::Formula;
+    use psd_plan::record::Outcome;
+    use psd_plan::{DecisionRule, Reproduction, Test};
 
     fn reproduction(value: &'static str, published: f64, tolerance: f64) -> Reproduction {
         Reproduction {

@@ -1,11 +1,11 @@
 //! Verdicts at and near their limits, under both decision rules.
 
 use super::*;
-use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
-use crate::plan::{Comparison, Condition, DecisionRule, Requirement, Test};
-use crate::record::{History, NamedResult, Outcome, ProcedureRecord, Record};
-use crate::rig::Identity;
-use crate::units::Dimension;
+use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
+use psd_plan::record::{History, NamedResult, Outcome, ProcedureRecord, Record};
+use psd_plan::{Comparison, Condition, DecisionRule, Requirement, Test};
+use psd_rig::Identity;
+use psd_text::units::Dimension;
 
 pub(super) fn record(outcome: Outcome) -> Record {
     let number = |name, value, uncertainty| NamedResult {

@@ -3,13 +3,13 @@
 
 use super::condition::{decide, is_equality};
 use super::{ConditionOutcome, Verdict};
-use crate::plan::formula::{Part, ResultReference, Results};
-use crate::plan::procedures::impact::block::TIME_STEP;
-use crate::plan::time_step::{FINER, in_finer_steps};
-use crate::plan::{Condition, DecisionRule};
-use crate::uncertainty::sources_of;
-use crate::units::Dimension;
-use crate::units::display::{readable, stated};
+use psd_plan::formula::{Part, ResultReference, Results};
+use psd_plan::procedures::impact::block::TIME_STEP;
+use psd_plan::time_step::{FINER, in_finer_steps};
+use psd_plan::uncertainty::sources_of;
+use psd_plan::{Condition, DecisionRule};
+use psd_text::units::Dimension;
+use psd_text::units::display::{readable, stated};
 
 /// The smallest time step that is recommended, as a fraction of that of the run.
 const FINEST: f64 = 1024.0;

@@ -2,10 +2,10 @@
 
 use super::tests::{compare, condition, record, result};
 use super::*;
-use crate::plan::formula::{Formula, Operator};
-use crate::plan::{Comparison, Test};
-use crate::record::NamedResult;
-use crate::uncertainty::{Contribution, Refinement, Source};
+use psd_plan::formula::{Formula, Operator};
+use psd_plan::record::NamedResult;
+use psd_plan::uncertainty::{Contribution, Refinement, Source};
+use psd_plan::{Comparison, Test};
 
 /// 8 m with u = 1/16 m in own steps; the time step has an effect of first order, −0.5 and −0.75 m. So the ends are −1.5 m and 0.
 fn stepped(size: f64) -> Record {
@@ -21,7 +21,7 @@ fn stepped(size: f64) -> Record {
     step.name = "time_step";
     step.dimension = Dimension::TIME;
     step.contributions.clear();
-    step.value = crate::plan::formula::ResultValue::Number {
+    step.value = psd_plan::formula::ResultValue::Number {
         value: Some(1e-3),
         uncertainty: None,
     };

@@ -3,19 +3,19 @@
 //! reason.
 
 use super::{ConditionOutcome, unfinished_peaks};
-use crate::physics::impact::energy::WORTHLESS;
-use crate::plan::formula::{ResultReference, ResultValue, Results};
-use crate::plan::procedures::damping_sweep::block as damping_sweep;
-use crate::plan::procedures::escalate::block as escalate;
-use crate::plan::procedures::impact::block as impact;
-use crate::plan::procedures::stiffness_ramp::block as stiffness_ramp;
-use crate::plan::{Condition, DecisionRule};
-use crate::record::{Beyond, ProcedureRecord, Record};
-use crate::rig::safety::failpoint;
-use crate::rig::safety::failpoint::Guarding;
-use crate::schema::ResultKind;
-use crate::units::Dimension;
-use crate::units::display::stated;
+use psd_physics::impact::energy::WORTHLESS;
+use psd_plan::formula::{ResultReference, ResultValue, Results};
+use psd_plan::procedures::damping_sweep::block as damping_sweep;
+use psd_plan::procedures::escalate::block as escalate;
+use psd_plan::procedures::impact::block as impact;
+use psd_plan::procedures::stiffness_ramp::block as stiffness_ramp;
+use psd_plan::record::{Beyond, ProcedureRecord, Record};
+use psd_plan::schema::ResultKind;
+use psd_plan::{Condition, DecisionRule};
+use psd_rig::safety::failpoint;
+use psd_rig::safety::failpoint::Guarding;
+use psd_text::units::Dimension;
+use psd_text::units::display::stated;
 
 /// A result that a condition reads: its procedure, and its name.
 type Read<'a> = (&'a ProcedureRecord, &'static str);

@@ -4,15 +4,15 @@
 
 use super::ConditionOutcome;
 use super::assess_condition;
-use crate::plan::formula::{
+use psd_plan::formula::{
     Part, ProcedureId, ResultReference, ResultValue, Results, UncertaintyStatus,
 };
-use crate::plan::procedures::escalate::block as series;
-use crate::plan::procedures::impact::block as schema;
-use crate::plan::{Condition, DecisionRule};
-use crate::record::{EscalateHistory, FloorStep, Floors, History, ImpactHistory, SeriesImpact};
-use crate::schema::ResultKind;
-use crate::uncertainty::{Contribution, Source};
+use psd_plan::procedures::escalate::block as series;
+use psd_plan::procedures::impact::block as schema;
+use psd_plan::record::{EscalateHistory, FloorStep, Floors, History, ImpactHistory, SeriesImpact};
+use psd_plan::schema::ResultKind;
+use psd_plan::uncertainty::{Contribution, Source};
+use psd_plan::{Condition, DecisionRule};
 
 /// The part of one result that may have grown further, and the reason.
 #[derive(Clone, Debug, PartialEq)]
@@ -271,7 +271,7 @@ const PUSHED: [ResultKind; 6] = [
 
 fn drift_rate(floor: &FloorStep) -> Vec<f64> {
     let mut rate = vec![0.0; floor.floors.velocity.len()];
-    crate::physics::structure::drifts(&floor.floors.velocity, &mut rate);
+    psd_physics::structure::drifts(&floor.floors.velocity, &mut rate);
     rate
 }
 

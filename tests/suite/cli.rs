@@ -372,25 +372,25 @@ fn limits_lists_the_bounds_of_every_stage() {
     };
     assert!(
         has(
-            psd::language::syntax::limits::FILE_BYTES.to_string(),
+            psd_language::syntax::limits::FILE_BYTES.to_string(),
             "one file"
         ),
         "{listed}"
     );
     assert!(
         has(
-            psd::language::check::MOST_FILES.to_string(),
+            psd_language::check::MOST_FILES.to_string(),
             "files of one plan"
         ),
         "{listed}"
     );
     assert!(
-        has(psd::language::check::DEEPEST.to_string(), "use files"),
+        has(psd_language::check::DEEPEST.to_string(), "use files"),
         "{listed}"
     );
     assert!(
         has(
-            psd::language::check::MOST_ENTRIES.to_string(),
+            psd_language::check::MOST_ENTRIES.to_string(),
             "one list or range"
         ),
         "{listed}"
@@ -410,19 +410,19 @@ fn limits_lists_the_bounds_of_every_stage() {
         "{listed}"
     );
     assert!(
-        has(format!("{:.0}", psd::plan::MOST_STEPS), "one impact"),
+        has(format!("{:.0}", psd_plan::MOST_STEPS), "one impact"),
         "{listed}"
     );
     assert!(
         has(
-            psd::plan::MOST_RECORDED_STEPS.to_string(),
+            psd_plan::MOST_RECORDED_STEPS.to_string(),
             "steps of all procedures of one run"
         ),
         "{listed}"
     );
     assert!(
         has(
-            psd::rig::journal::MOST_BYTES.to_string(),
+            psd_rig::journal::MOST_BYTES.to_string(),
             "the run log of one run"
         ),
         "{listed}"

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use psd::procedures::columns;
-use psd::schema::{BLOCKS, Field, FieldType};
+use psd_plan::schema::{BLOCKS, Field, FieldType};
 
 use super::import_graph::{is_of_tests, without_comments_and_tests};
 use super::source_text::{SourceText, none, rust_files};

@@ -5,11 +5,11 @@
 
 use psd::check::{Checked, LoadError, check};
 use psd::codes::E629;
-use psd::language::syntax::{format, format_document, parse};
-use psd::text::diagnostic::page::{Page, PagePlan};
-use psd::text::diagnostic::{Code, Severity};
-use psd::text::markdown::is_document;
-use psd::text::source::Sources;
+use psd_language::syntax::{format, format_document, parse};
+use psd_text::diagnostic::page::{Page, PagePlan};
+use psd_text::diagnostic::{Code, Severity};
+use psd_text::markdown::is_document;
+use psd_text::source::Sources;
 
 use super::explain_pages::{options_of, page_text};
 

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use psd::check::Options;
-use psd::text::diagnostic::Code;
-use psd::text::diagnostic::page::{Page, PagePlan};
+use psd_text::diagnostic::Code;
+use psd_text::diagnostic::page::{Page, PagePlan};
 
 /// The folder of the pages in the repository.
 pub const FOLDER: &str = "src/text/diagnostic/explain";

@@ -6,7 +6,7 @@ mod annotated;
 mod page_cases;
 
 use psd::codes::E629;
-use psd::language::codes::E504;
+use psd_language::codes::E504;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,14 +14,14 @@ use std::path::{Path, PathBuf};
 use super::source_text::files_in;
 use page_cases::PAGE_CASES;
 use psd::check::{Checked, Options, check};
-use psd::record::{Outcome, Record};
-use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
-use psd::schema::{BLOCKS, Field, FieldType, Kind, Presence, RigKind, Variant};
-use psd::text::diagnostic::render::{Appearance, render_all};
-use psd::text::diagnostic::{Code, Diagnostic, Severity};
-use psd::units::display::readable;
 use psd::verdict::{Assessment, Verdict, assess};
+use psd_plan::record::{Outcome, Record};
+use psd_plan::schema::{BLOCKS, Field, FieldType, Kind, Presence, RigKind, Variant};
+use psd_rig::virtual_rig;
+use psd_text::diagnostic::render::{Appearance, render_all};
+use psd_text::diagnostic::{Code, Diagnostic, Severity};
+use psd_text::units::display::readable;
 
 /// The stage at which a plan ends, and its exit code.
 const STAGES: &[(&str, u8)] = &[

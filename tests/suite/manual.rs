@@ -5,15 +5,15 @@ use std::fs;
 use std::path::Path;
 
 use psd::check::{LoadError, Options, check};
-use psd::language::syntax::{format, parse};
-use psd::plan::Interval;
-use psd::rig::controllers::native;
-use psd::rig::controllers::native::codec::{
+use psd_language::syntax::{format, parse};
+use psd_plan::Interval;
+use psd_rig::controllers::native;
+use psd_rig::controllers::native::codec::{
     AxisBounds, Bounds, End, LONGEST_FRAME, ReplyKind, Request,
 };
-use psd::rig::journal::EntryKind;
-use psd::text::diagnostic::render::{Appearance, render_all};
-use psd::text::source::Sources;
+use psd_rig::journal::EntryKind;
+use psd_text::diagnostic::render::{Appearance, render_all};
+use psd_text::source::Sources;
 
 /// The plans of the manual use no file but a ground motion.
 fn ground(path: &str) -> Result<String, LoadError> {

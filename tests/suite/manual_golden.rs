@@ -6,7 +6,7 @@ use std::process::Command;
 
 use psd::check::{Options, check, no_files};
 use psd::procedures::columns;
-use psd::schema;
+use psd_plan::schema;
 
 fn page() -> String {
     fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/golden.md"))

@@ -10,11 +10,11 @@ use std::sync::LazyLock;
 
 use fixture::{Finished, finished};
 use polars::prelude::{ParquetReader, SerReader as _};
-use psd::plan::{Comparison, Format};
-use psd::record::{History, ImpactStep, Outcome, StiffnessRampHistory};
 use psd::report::summary::Summary;
 use psd::report::{OutputFile, console, manifest_with, put_everything};
 use psd::verdict::{Bound, Verdict};
+use psd_plan::record::{History, ImpactStep, Outcome, StiffnessRampHistory};
+use psd_plan::{Comparison, Format};
 
 const IMPACT_COLUMNS: &str = "step,time_s,wall_time_s,state,command_m,computed_m,displacement_m,velocity_m_per_s,acceleration_m_per_s2,\
 restoring_force_n,contact_force_n,striker_displacement_m,striker_velocity_m_per_s,tangent_stiffness_n_per_m,indentation_m,\

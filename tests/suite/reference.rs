@@ -5,10 +5,10 @@ use std::fs;
 use std::path::PathBuf;
 
 use psd::check::{Options, check, no_files};
-use psd::language::syntax::{format, parse};
-use psd::schema::BLOCKS;
-use psd::text::diagnostic::render::{Appearance, render_all};
-use psd::text::source::Sources;
+use psd_language::syntax::{format, parse};
+use psd_plan::schema::BLOCKS;
+use psd_text::diagnostic::render::{Appearance, render_all};
+use psd_text::source::Sources;
 
 mod text;
 

@@ -6,10 +6,10 @@ use std::path::Path;
 use std::process::Command;
 
 use psd::check::{LoadError, Options, check};
-use psd::plan::formula::ResultValue;
-use psd::record::{Outcome, Record};
-use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
+use psd_plan::formula::ResultValue;
+use psd_plan::record::{Outcome, Record};
+use psd_rig::virtual_rig;
 
 /// Largest acceleration of the ground \[m/s²\], its angular frequency \[rad/s\], and the damping ratio of both modes.
 const GROUND: f64 = 0.5;

@@ -5,11 +5,11 @@ use std::fs;
 use std::path::Path;
 
 use psd::check::{LoadError, Options, check};
-use psd::plan::Plan;
-use psd::plan::formula::ResultValue;
-use psd::record::{Floors as _, History, Outcome, Record, ShakeStep};
-use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
+use psd_plan::Plan;
+use psd_plan::formula::ResultValue;
+use psd_plan::record::{Floors as _, History, Outcome, Record, ShakeStep};
+use psd_rig::virtual_rig;
 
 /// Largest acceleration of the ground \[m/s²\], its angular frequency \[rad/s\], and a stiffness \[N/m\]. With this stiffness the
 /// frequency is the first of two equal storeys of 1 t.

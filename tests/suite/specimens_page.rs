@@ -6,15 +6,15 @@ use std::path::{Path, PathBuf};
 
 use super::source_text::files_in;
 use psd::check::{Options, check};
-use psd::language::syntax::{format, parse};
-use psd::plan::FigureKind;
 use psd::report::{Provenance, Run, vectors};
-use psd::rig::VirtualRig;
 use psd::run::{Unwatched, run};
-use psd::schema::{BLOCKS, FieldType, Kind};
-use psd::text::diagnostic::render::{Appearance, render_all};
-use psd::text::source::Sources;
 use psd::verdict::{Verdict, assess};
+use psd_language::syntax::{format, parse};
+use psd_plan::FigureKind;
+use psd_plan::schema::{BLOCKS, FieldType, Kind};
+use psd_rig::VirtualRig;
+use psd_text::diagnostic::render::{Appearance, render_all};
+use psd_text::source::Sources;
 
 fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("docs")

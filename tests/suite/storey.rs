@@ -7,10 +7,10 @@ use std::path::Path;
 use std::process::Command;
 
 use psd::check::{Options, check, no_files};
-use psd::plan::formula::ResultValue;
-use psd::record::{History, ImpactStep, Outcome, Record, StruckFrame};
-use psd::rig::virtual_rig;
 use psd::run::{Unwatched, run};
+use psd_plan::formula::ResultValue;
+use psd_plan::record::{History, ImpactStep, Outcome, Record, StruckFrame};
+use psd_rig::virtual_rig;
 
 fn record(text: &str) -> Record {
     let checked = check("plan.psd", text, &no_files, &Options::default());

@@ -4,10 +4,10 @@ use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use crate::check::{Options, ParsedPlan};
-use crate::language::codes::{E214, E301, E401, E406, E407};
-use crate::plan::Plan;
-use crate::text::diagnostic::Code;
-use crate::units::{Dimension, Quantity};
+use psd_language::codes::{E214, E301, E401, E406, E407};
+use psd_plan::Plan;
+use psd_text::diagnostic::Code;
+use psd_text::units::{Dimension, Quantity};
 
 use super::{checked, files};
 

@@ -1,7 +1,7 @@
 //! Bounds on the depth and the size of values: the cost of a small file is limited.
 
 use super::{checked, no_files};
-use crate::language::check::{DEEPEST_VALUES, MOST_TERMS};
+use psd_language::check::{DEEPEST_VALUES, MOST_TERMS};
 
 const IMPACT: &str = "specimen beam {\n  mass = 1 kg\n  behaviour = elastic(stiffness: 300 N/m)\n}\n\
                     striker hammer {\n  mass = 10 kg\n  velocity = 1 m/s\n}\n\

@@ -36,7 +36,7 @@ fn checked(text: &str, files: &Loader<'_>, settings: &[(&str, &str)]) -> (Checke
             ..Options::default()
         },
     );
-    let line = |diagnostic: &crate::text::diagnostic::Diagnostic| {
+    let line = |diagnostic: &psd_text::diagnostic::Diagnostic| {
         format!(
             "{} {}",
             diagnostic.code,

@@ -1,8 +1,8 @@
 //! The whole plan of the language reference.
 
 use super::{checked, files};
-use crate::plan::formula::Formula;
-use crate::plan::{Contact, InspectTrigger, Interval, ProcedureKind};
+use psd_plan::formula::Formula;
+use psd_plan::{Contact, InspectTrigger, Interval, ProcedureKind};
 
 const FRAME: &str = "rig frame { link = virtual(noise: 1 N)\n limits = frame_limits }\nlimits frame_limits { force = 20 kN }\n";
 const WHOLE: &str = r#"plan "Pultruded GFRP beam, midspan impact" {

@@ -1,12 +1,12 @@
 //! The checked form of a real rig, and the choice of the rig of a run.
 
 use super::{Options, check, files, no_files};
-use crate::plan::{
+use psd_plan::record::equipment::{Device, Equipment};
+use psd_plan::{
     DeviceLink, Dialect, Interval, Link, ModbusMap, ModbusNumber, Plan, PortPlan, PretestCheck,
     RealLink, SafeState,
 };
-use crate::record::equipment::{Device, Equipment};
-use crate::rig::DeclaredNoise;
+use psd_rig::DeclaredNoise;
 
 /// A specimen without a model, a rig with these lines, and limits of both.
 fn text(rig: &str) -> String {
@@ -290,7 +290,7 @@ fn an_axis_states_its_own_certificates_and_uncertainties_and_leaves_the_rest_to_
         ),
         (Some("1"), Some("0.5"))
     );
-    let identity = crate::rig::virtual_rig(&plan).identity();
+    let identity = psd_rig::virtual_rig(&plan).identity();
     let equipment = Equipment::of(&plan, Device::of(&identity, DeclaredNoise::NONE));
     let rows = equipment.channels.iter().map(|channel| {
         (

@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 
 use crate::check::{Options, ParsedPlan};
 use crate::codes::E666;
-use crate::language::codes::E665;
-use crate::physics::study::distribution::{Distribution, Spread};
-use crate::physics::study::inputs::{Source, StudyInputs};
-use crate::physics::study::sampling::Design;
-use crate::plan::study::{RareEvent, Runs, Sampling, Study, StudyEvent};
-use crate::plan::{Comparison, Plan};
-use crate::text::diagnostic::Code;
-use crate::units::{Dimension, Quantity};
+use psd_language::codes::E665;
+use psd_physics::study::distribution::{Distribution, Spread};
+use psd_physics::study::inputs::{Source, StudyInputs};
+use psd_physics::study::sampling::Design;
+use psd_plan::study::{RareEvent, Runs, Sampling, Study, StudyEvent};
+use psd_plan::{Comparison, Plan};
+use psd_text::diagnostic::Code;
+use psd_text::units::{Dimension, Quantity};
 
 use super::{checked, files};
 

@@ -4,12 +4,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::codes::W730;
-use crate::language::check::checker::Checker;
-use crate::language::check::warnings::left::LEFT;
-use crate::plan::formula::{Formula, Part, ResultReference};
-use crate::plan::{Condition, Procedure, Requirement};
-use crate::text::diagnostic::{Code, Diagnostic, Violation};
-use crate::text::source::Span;
+use psd_language::check::checker::Checker;
+use psd_language::check::warnings::left::LEFT;
+use psd_plan::formula::{Formula, Part, ResultReference};
+use psd_plan::{Condition, Procedure, Requirement};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::Span;
 
 /// `read` is a position at the last step of a run; `row`: of an impact series.
 struct FinalIsNotResidual<'a> {

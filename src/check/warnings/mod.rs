@@ -6,15 +6,15 @@ pub(crate) mod recorded_steps;
 pub mod tracking;
 
 use crate::codes::{W702, W704, W705, W706, W714, W720};
-use crate::language::check::checker::Checker;
-use crate::plan::procedures::escalate::block::WHILE;
-use crate::plan::{Condition, Contact, Ground, Procedure, Reproduction, Requirement};
 use crate::procedures::facts::{Leaves, Motion};
-use crate::schema::specimen::MASS_UNCERTAINTY;
-use crate::schema::{Kind, reproduces};
-use crate::text::diagnostic::{Code, Diagnostic, Violation};
-use crate::text::source::{FileId, Span, Spanned};
-use crate::uncertainty::Source;
+use psd_language::check::checker::Checker;
+use psd_plan::procedures::escalate::block::WHILE;
+use psd_plan::schema::specimen::MASS_UNCERTAINTY;
+use psd_plan::schema::{Kind, reproduces};
+use psd_plan::uncertainty::Source;
+use psd_plan::{Condition, Contact, Ground, Procedure, Reproduction, Requirement};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::{FileId, Span, Spanned};
 
 /// What a plan states about the numbers of its run.
 #[derive(Clone, Copy)]

@@ -2,12 +2,12 @@
 //! an error at the first procedure whose steps exceed the limit of one run.
 
 use crate::codes::E653;
-use crate::language::check::checker::Checker;
-use crate::plan::{MOST_RECORDED_STEPS, Plan};
 use crate::procedures;
-use crate::schema::methods::DURATION;
-use crate::text::diagnostic::Violation;
-use crate::text::source::Span;
+use psd_language::check::checker::Checker;
+use psd_plan::schema::methods::DURATION;
+use psd_plan::{MOST_RECORDED_STEPS, Plan};
+use psd_text::diagnostic::Violation;
+use psd_text::source::Span;
 
 /// `all` steps up to the end of this procedure, which has `steps` of them; the procedures before it leave `remaining`.
 #[derive(Violation)]

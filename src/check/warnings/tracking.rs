@@ -2,17 +2,17 @@
 //! warnings.
 
 use crate::codes::W719;
-use crate::language::check::checker::Checker;
-use crate::language::check::wording::shown;
-use crate::physics::tracking::monitor;
-use crate::plan::{Link, Mode, Plan, Stepping, VirtualLink};
 use crate::procedures;
 use crate::procedures::facts::Delay;
-use crate::schema::rig::LINK;
-use crate::text::diagnostic::{Code, Diagnostic, Violation};
-use crate::text::source::Span;
-use crate::units::Dimension;
-use crate::units::display::{minus, significant};
+use psd_language::check::checker::Checker;
+use psd_language::check::wording::shown;
+use psd_physics::tracking::monitor;
+use psd_plan::schema::rig::LINK;
+use psd_plan::{Link, Mode, Plan, Stepping, VirtualLink};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
+use psd_text::units::display::{minus, significant};
 
 /// A change that would keep a run below its bound.
 enum Remedy {

@@ -3,7 +3,7 @@
 
 use clap::{Args, ValueEnum};
 
-use crate::text::diagnostic::excerpt::{escape, one_line};
+use psd_text::diagnostic::excerpt::{escape, one_line};
 
 /// The longest reason, characters.
 const REASON: usize = 1000;

@@ -7,10 +7,10 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::plan_file;
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
-use crate::language::codes::E106;
-use crate::text::diagnostic::excerpt::one_line;
-use crate::text::diagnostic::json;
 use clap::Args;
+use psd_language::codes::E106;
+use psd_text::diagnostic::excerpt::one_line;
+use psd_text::diagnostic::json;
 
 use super::explain_plan;
 

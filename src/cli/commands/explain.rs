@@ -7,10 +7,10 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::print_result;
 use crate::cli::settings::Settings;
 use crate::codes;
-use crate::text::diagnostic::Code;
-use crate::text::diagnostic::page::{Page, PagePlan};
-use crate::text::suggest::nearest;
 use clap::Args;
+use psd_text::diagnostic::Code;
+use psd_text::diagnostic::page::{Page, PagePlan};
+use psd_text::suggest::nearest;
 use similar::{Algorithm, DiffOp, capture_diff_slices};
 
 /// Each code with its page, without the cases of the page.

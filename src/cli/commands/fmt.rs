@@ -13,11 +13,11 @@ use crate::cli::files::plan_file::name_of;
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::files::failure::plain;
-use crate::language::syntax;
-use crate::text::diagnostic::excerpt::one_line;
-use crate::text::diagnostic::render::render_all;
-use crate::text::markdown::is_document;
-use crate::text::source::Sources;
+use psd_language::syntax;
+use psd_text::diagnostic::excerpt::one_line;
+use psd_text::diagnostic::render::render_all;
+use psd_text::markdown::is_document;
+use psd_text::source::Sources;
 
 #[derive(Debug, Args)]
 pub struct FmtArguments {
@@ -84,7 +84,7 @@ fn canonical(path: &Path, text: &str, settings: Settings) -> Option<String> {
     let (ast, faults) = syntax::parse(&sources, file);
     if faults
         .iter()
-        .any(crate::text::diagnostic::Diagnostic::is_error)
+        .any(psd_text::diagnostic::Diagnostic::is_error)
     {
         print_message(&render_all(&faults, &sources, &settings.appearance(path)));
         return None;

@@ -4,12 +4,11 @@ use std::fmt::Write as _;
 
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::print_result;
-use crate::language::check;
-use crate::language::syntax::limits as syntax;
-use crate::plan;
 use crate::procedures::{damping_sweep, stiffness_ramp};
-use crate::rig::journal;
-use crate::text::diagnostic::render;
+use psd_language::check;
+use psd_language::syntax::limits as syntax;
+use psd_rig::journal;
+use psd_text::diagnostic::render;
 
 /// Prints every limit of the language.
 pub fn limits() -> Result<Exit, Failure> {
@@ -49,7 +48,7 @@ pub fn limits() -> Result<Exit, Failure> {
         ),
         (check::MOST_ENTRIES, "entries of one list or range"),
         (check::MOST_GROUND_SAMPLES, "samples of one ground motion"),
-        (plan::MOST_STOREYS, "storeys of one frame"),
+        (psd_plan::MOST_STOREYS, "storeys of one frame"),
     ]
     .map(|(bound, what)| (bound.to_string(), what));
     let calculated = [
@@ -62,14 +61,14 @@ pub fn limits() -> Result<Exit, Failure> {
             "readings of one stroke of a damping sweep",
         ),
         (
-            plan::MOST_STEPS,
+            psd_plan::MOST_STEPS,
             "steps of one impact, or of a shake times its storeys",
         ),
     ]
     .map(|(bound, what)| (format!("{bound:.0}"), what));
     let record = [
         (
-            plan::MOST_RECORDED_STEPS.to_string(),
+            psd_plan::MOST_RECORDED_STEPS.to_string(),
             "steps of all procedures of one run",
         ),
         (
@@ -80,7 +79,7 @@ pub fn limits() -> Result<Exit, Failure> {
             check::MOST_SAMPLE_ROWS.to_string(),
             "rows of one file of measured inputs",
         ),
-        (plan::study::MOST_RUNS.to_string(), "runs of one study"),
+        (psd_plan::study::MOST_RUNS.to_string(), "runs of one study"),
     ];
     print_result(&counted.iter().chain(&calculated).chain(&record).fold(
         String::new(),

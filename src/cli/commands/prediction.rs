@@ -2,14 +2,14 @@
 //! prediction, from a dry run on a simulated specimen with the measured properties.
 
 use super::explain_plan::DryRun;
-use crate::plan::{Behaviour, Frame, Plan};
-use crate::record::{Outcome, Record};
 use crate::report::Prediction;
-use crate::rig::VirtualRig;
 use crate::run::check_run;
-use crate::text::diagnostic::excerpt::escape;
-use crate::units::Dimension;
-use crate::units::display::readable;
+use psd_plan::record::{Outcome, Record};
+use psd_plan::{Behaviour, Frame, Plan};
+use psd_rig::VirtualRig;
+use psd_text::diagnostic::excerpt::escape;
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 
 /// The prediction of the whole run from the record of its low-level check run alone. None if the record is of a different kind, or if the
 /// check run is not complete.

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use crate::files::failure::{DiskSpaceFault, LEAST_FREE_BYTES};
-use crate::rig::safety::failpoint::{Guarding, on};
+use psd_rig::safety::failpoint::{Guarding, on};
 
 /// Compares the free space of a disk \[bytes\] with [`LEAST_FREE_BYTES`].
 ///
@@ -25,12 +25,12 @@ pub fn compare(folder: &Path, free: u64) -> Result<(), DiskSpaceFault> {
 mod tests {
     use super::*;
     use crate::files::failure::amount;
-    use crate::plan::ProcedureKind;
-    use crate::rig::journal::{Durability, Journal, Storage};
-    use crate::rig::safety::failpoint::without;
-    use crate::rig::virtual_rig;
     use crate::run::{Unwatched, replay};
     use crate::tests::testing::{elastic_plan, ramp};
+    use psd_plan::ProcedureKind;
+    use psd_rig::journal::{Durability, Journal, Storage};
+    use psd_rig::safety::failpoint::without;
+    use psd_rig::virtual_rig;
     use std::io;
 
     /// A disk with this free space \[bytes\].
@@ -73,10 +73,8 @@ mod tests {
             journal,
             Box::new(|| None),
         );
-        Ok(
-            recorded.fault.is_none()
-                && recorded.record.outcome == crate::record::Outcome::Completed,
-        )
+        Ok(recorded.fault.is_none()
+            && recorded.record.outcome == psd_plan::record::Outcome::Completed)
     }
 
     #[test]

@@ -16,13 +16,13 @@ use crate::evidence::Folder;
 use crate::files::failure::plain;
 use crate::files::provenance;
 use crate::files::results::put_results;
-use crate::plan::Plan;
-use crate::record::{EventKind, Outcome, Record};
 use crate::report;
 use crate::report::{FileDigest, OutputError, OutputSink, Provenance, Run};
 use crate::run::replay::Recorded;
-use crate::text::diagnostic::excerpt::escape;
 use crate::verdict;
+use psd_plan::Plan;
+use psd_plan::record::{EventKind, Outcome, Record};
+use psd_text::diagnostic::excerpt::escape;
 
 /// Prints the verdict and writes every result into the run folder.
 pub fn finish_run(

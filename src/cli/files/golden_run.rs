@@ -2,7 +2,7 @@
 //! the diagnostics if the plan has errors. The rig is simulated, every question is answered as by `--yes`, and no run log is kept: the
 //! same plan gives the same files everywhere.
 
-use crate::schema::plan_block::OPERATOR;
+use psd_plan::schema::plan_block::OPERATOR;
 use std::path::Path;
 
 use super::finish_run::numbered;
@@ -12,14 +12,14 @@ use crate::cli::args::PlanSettings;
 use crate::files::failure::Failure;
 use crate::files::results::put_results;
 use crate::golden::{DIAGNOSTICS, Tolerances};
-use crate::plan::Plan;
-use crate::record::Outcome;
 use crate::report::{OutputFile, Provenance, Run, figure_data, numbers};
-use crate::rig::virtual_rig;
 use crate::run::replay;
 use crate::run::{Inspection, Observer};
-use crate::text::diagnostic::render::{Appearance, render_all};
 use crate::verdict;
+use psd_plan::Plan;
+use psd_plan::record::Outcome;
+use psd_rig::virtual_rig;
+use psd_text::diagnostic::render::{Appearance, render_all};
 
 /// The results of a plan.
 pub struct Trial {

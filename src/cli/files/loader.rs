@@ -10,10 +10,10 @@ use base64::engine::general_purpose::STANDARD;
 
 use crate::check::LoadError;
 use crate::files::failure::{Failure, plain};
-use crate::language::syntax::limits::FILE_BYTES;
-use crate::plan::{PICTURE_BYTES, PictureKind};
-use crate::text::markdown::{Document, is_document};
-use crate::text::source::Position;
+use psd_language::syntax::limits::FILE_BYTES;
+use psd_plan::{PICTURE_BYTES, PictureKind};
+use psd_text::markdown::{Document, is_document};
+use psd_text::source::Position;
 
 /// Loads files of one folder and of the folders below it.
 #[derive(Debug)]

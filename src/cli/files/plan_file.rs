@@ -10,8 +10,8 @@ use crate::cli::args::PlanSettings;
 use crate::cli::output::print_message;
 use crate::cli::settings::{Settings, folder_of, today};
 use crate::files::failure::Failure;
-use crate::text::diagnostic::{json, render};
-use crate::text::source::{Position, Span};
+use psd_text::diagnostic::{json, render};
+use psd_text::source::{Position, Span};
 
 /// Reads and checks a plan. Inside the program it has the name of its file; its folder is not recorded.
 pub fn open(path: &Path, settings: &PlanSettings) -> Result<Checked, Failure> {

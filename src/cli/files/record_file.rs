@@ -5,15 +5,15 @@ use std::path::Path;
 use super::disk_space;
 use crate::cli::args::PlanSettings;
 use crate::files::failure::Failure;
-use crate::plan::Plan;
-use crate::record::equipment::{Device, Equipment};
 use crate::report::Provenance;
-use crate::rig::Rig;
-use crate::rig::journal::{Durability, FileStorage, Journal, Storage};
 use crate::run::check_run;
 use crate::run::replay;
 use crate::run::replay::{Header, HeaderFile, RULES};
-use crate::text::digest::sha256;
+use psd_plan::Plan;
+use psd_plan::record::equipment::{Device, Equipment};
+use psd_rig::Rig;
+use psd_rig::journal::{Durability, FileStorage, Journal, Storage};
+use psd_text::digest::sha256;
 
 pub use crate::files::circumstances::Circumstances;
 pub use crate::files::recorded_run::{JOURNAL, ReadRecord, journal_of, of_text, read};
@@ -26,7 +26,7 @@ pub fn header(
     provenance: &Provenance,
     circumstances: Circumstances,
 ) -> Header {
-    let file = |file: &crate::plan::PlanFile| HeaderFile {
+    let file = |file: &psd_plan::PlanFile| HeaderFile {
         name: file.name.clone(),
         sha256: sha256(file.text.as_bytes()),
     };

@@ -9,7 +9,7 @@ use std::path::{Component, Path, PathBuf};
 use crate::files::failure::Failure;
 use crate::files::failure::plain;
 use crate::report::{OutputError, OutputFile, OutputSink};
-use crate::text::sanitize;
+use psd_text::sanitize;
 
 /// An empty folder for one run.
 #[derive(Debug)]

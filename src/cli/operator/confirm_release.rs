@@ -3,12 +3,12 @@
 
 use super::watch::Watcher;
 use crate::cli::exit::Failure;
-use crate::plan::Plan;
-use crate::rig::{Reading, Rig, RigFault, position_and_force};
 use crate::run::replay::{Assurance, ResumeDecision, TargetStatus};
 use crate::run::{Inspection, Motion, Observer as _};
-use crate::units::Dimension;
-use crate::units::display::readable;
+use psd_plan::Plan;
+use psd_rig::{Reading, Rig, RigFault, position_and_force};
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 
 /// Time between two checks for the operator's decision \[s\]. The rig is not polled in between.
 const BREATH: f64 = 0.05;

@@ -2,12 +2,12 @@
 //! Out: the extent of a dry run on an ideal copy of the specimen, and its steps. It moves nothing.
 
 use crate::cli::commands::explain_plan::dry_rig::{Reach, Watched};
-use crate::plan::{Interval, Link, Plan, VirtualLink};
-use crate::rig::RigFault;
-use crate::rig::real::RealRig;
 use crate::run::Extent;
-use crate::units::Dimension;
-use crate::units::display::plain;
+use psd_plan::{Interval, Link, Plan, VirtualLink};
+use psd_rig::RigFault;
+use psd_rig::real::RealRig;
+use psd_text::units::Dimension;
+use psd_text::units::display::plain;
 
 /// The extent of the whole plan, and its number of steps. Both are unknown if only the real rig has the specimen.
 pub fn of(plan: &Plan) -> (Extent, u64) {

@@ -4,9 +4,9 @@
 use super::hold_status::{can_go_on, is_held};
 use super::question::Stay;
 use super::watch::Watcher;
-use crate::record::{Event, EventKind, Outcome, Record};
-use crate::rig::Rig;
 use crate::run::Observer as _;
+use psd_plan::record::{Event, EventKind, Outcome, Record};
+use psd_rig::Rig;
 
 /// Time between two checks for the operator's choice \[s\]. The rig is not polled in between.
 const BREATH: f64 = 0.05;

@@ -5,9 +5,9 @@
 use std::time::Duration;
 
 use crate::run::{Inspection, Motion};
-use crate::text::diagnostic::excerpt::escape;
-use crate::units::Dimension;
-use crate::units::display::readable;
+use psd_text::diagnostic::excerpt::escape;
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 
 /// Input within this time after a question appears does not count: the operator cannot have read it yet.
 pub const DEAF: Duration = Duration::from_secs(1);

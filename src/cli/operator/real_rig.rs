@@ -11,9 +11,9 @@ use crate::cli::files::plan_file;
 use crate::cli::files::record_file::Circumstances;
 use crate::cli::output::print_message;
 use crate::cli::settings::Settings;
-use crate::plan::Plan;
-use crate::rig::{Connected, Rig as _, StopRequest, connect};
 use crate::run::replay::Wall;
+use psd_plan::Plan;
+use psd_rig::{Connected, Rig as _, StopRequest, connect};
 
 /// Reads and checks the plan of a command that may move a rig, and prints its diagnostics. The plan is checked as unattended if the
 /// command line names no operator, and none can be asked.

@@ -7,7 +7,7 @@ use crate::files::provenance::{BUILD, TOOLCHAIN};
 use crate::files::recorded_run;
 use crate::files::recorded_run::JOURNAL;
 use crate::report::OutputFile;
-use crate::rig::journal::{Durability, EntryKind, FileStorage, Journal};
+use psd_rig::journal::{Durability, EntryKind, FileStorage, Journal};
 use psd_testing::journal::recover;
 
 /// The run log as a different program would have begun it.

@@ -11,19 +11,19 @@ use crate::check::{LoadError, Options, check};
 use crate::cli::args::PlanSettings;
 use crate::cli::commands::prediction::prediction;
 use crate::cli::files::record_file;
-use crate::emulator::Log;
 use crate::evidence::consistency;
 use crate::evidence::rebuilt::ReplayedRun;
 use crate::files::provenance;
 use crate::files::recorded_run::JOURNAL;
-use crate::record::Outcome;
 use crate::report;
-use crate::rig::Reading;
-use crate::rig::journal::{Durability, EntryKind, Journal};
 use crate::run::Unwatched;
 use crate::run::replay;
 use crate::run::replay::Bands;
 use crate::tests::fault_table::stage;
+use psd_plan::record::Outcome;
+use psd_rig::Reading;
+use psd_rig::emulator::Log;
+use psd_rig::journal::{Durability, EntryKind, Journal};
 use psd_testing::journal::{PowerLoss, Vandal, records, written};
 
 /// A change to the entries of a run log.

@@ -11,8 +11,8 @@ use crate::evidence::names::MANIFEST;
 use crate::evidence::rebuilt::Rebuilt;
 use crate::files::recorded_run::JOURNAL;
 use crate::report::manifest_with;
-use crate::rig::journal::{EntryKind, FORMAT};
 use crate::run::replay::RULES;
+use psd_rig::journal::{EntryKind, FORMAT};
 use psd_testing::journal::{forged, recover};
 
 /// The folder of the run with a different first line. All check values and the manifest are consistent with it.

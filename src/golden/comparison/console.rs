@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{Comparison, Row, table};
-use crate::text::columns::columns;
+use psd_text::columns::columns;
 
 /// Largest number of runs that have separate columns.
 const COLUMNS: usize = 6;

@@ -3,7 +3,7 @@
 
 use super::{Side, Spread};
 use crate::report::{Curve, Curves, FigureAxis, FigureCurve, PlainAxis};
-use crate::units::{Dimension, unit};
+use psd_text::units::{Dimension, unit};
 
 /// One sheet.
 #[derive(Clone, Debug)]

@@ -16,7 +16,7 @@ pub use statistics::{Difference, Spread};
 pub use table::{TITLES, cells, csv, heads};
 
 use crate::report::Figures;
-use crate::units::{Dimension, unit};
+use psd_text::units::{Dimension, unit};
 
 /// One run in a comparison.
 #[derive(Clone, Debug)]

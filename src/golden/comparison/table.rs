@@ -1,10 +1,10 @@
 //! Results as rows of text, for the terminal and as CSV. In: a comparison. Out: cells; readable units on the terminal, SI in the CSV.
 
 use super::{Cell, Comparison, Difference, Row, Spread};
-use crate::schema::{printed_unit, readable_result};
-use crate::text::sanitize::cell;
-use crate::units::Dimension;
-use crate::units::display::{digits, is_rounding, join, minus, si_unit, significant};
+use psd_plan::schema::{printed_unit, readable_result};
+use psd_text::sanitize::cell;
+use psd_text::units::Dimension;
+use psd_text::units::display::{digits, is_rounding, join, minus, si_unit, significant};
 
 /// The titles of the results that all runs have, and of those that only some have.
 pub const TITLES: [&str; 2] = [

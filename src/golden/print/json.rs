@@ -4,8 +4,8 @@ use serde_json::{Value, json};
 
 use crate::golden::finding::{Change, Finding, Moved, RowRef};
 use crate::golden::tested::{Outcome, Report};
-use crate::text::sanitize;
-use crate::units::display::si_unit;
+use psd_text::sanitize;
+use psd_text::units::display::si_unit;
 
 /// Name and version of the format; an incompatible change increases the number.
 pub const SCHEMA: &str = "psd.test/1";

@@ -5,7 +5,7 @@ use quick_junit::{NonSuccessKind, Report as Junit, TestCase, TestCaseStatus, Tes
 
 use super::words::Words;
 use crate::golden::tested::{Outcome, Report, Tested};
-use crate::text::sanitize::one_line;
+use psd_text::sanitize::one_line;
 
 /// The report.
 ///

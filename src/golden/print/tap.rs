@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::words::Words;
 use crate::golden::tested::{Outcome, Report};
-use crate::text::sanitize;
+use psd_text::sanitize;
 
 /// The report, with one line per plan.
 #[must_use]

@@ -2,8 +2,8 @@
 //! units.
 
 use crate::golden::finding::{Change, Count, Finding, Moved, RowRef};
-use crate::units::Dimension;
-use crate::units::display::{join, minus, readable, significant, trimmed, unit};
+use psd_text::units::Dimension;
+use psd_text::units::display::{join, minus, readable, significant, trimmed, unit};
 
 /// A finding, ready to be arranged in columns.
 #[derive(Clone, Debug, PartialEq, Eq)]

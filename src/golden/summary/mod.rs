@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 use crate::golden::finding::{Change, Finding, Part};
 use crate::golden::tolerance::{Rule, Tolerances};
 use crate::golden::{SUMMARY, number};
-use crate::units::{Dimension, unit};
+use psd_text::units::{Dimension, unit};
 
 /// Fields that identify the run, the program, the day and the machine.
 const NOT_COMPARED: &[&str] = &[

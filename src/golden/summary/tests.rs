@@ -199,7 +199,7 @@ fn every_number_has_its_own_unit() {
             let Change::Moved(moved) = &finding.change else {
                 panic!("{finding:?}")
             };
-            let unit = crate::units::display::si_unit(moved.dimension);
+            let unit = psd_text::units::display::si_unit(moved.dimension);
             format!("{} [{unit}]", finding.name)
         })
         .collect();

@@ -1,11 +1,11 @@
 //! Calibrated ranges. In: the readings of a procedure, and the ranges for which the rig is calibrated. Out: its results, those from a
 //! reading outside of its range without uncertainty. It changes no value.
 
-use crate::plan::{Interval, RigPlan, named_axis, of_axis};
-use crate::record::NamedResult;
-use crate::uncertainty::Source;
-use crate::units::Dimension;
-use crate::units::display::{readable, stated};
+use psd_plan::record::NamedResult;
+use psd_plan::uncertainty::Source;
+use psd_plan::{Interval, RigPlan, named_axis, of_axis};
+use psd_text::units::Dimension;
+use psd_text::units::display::{readable, stated};
 
 /// Gives displacement \[m\] and force \[N\] of every axis, reading by reading.
 pub(crate) type Readings<'a> = &'a dyn Fn(&mut dyn FnMut(&[f64], &[f64]));
@@ -96,10 +96,10 @@ fn outside_of(
 
 #[cfg(test)]
 mod tests {
-    use crate::plan::formula::Formula::Constant;
-    use crate::plan::{Calibration, Contact, Impact, Interval, Plan, ProcedureKind};
-    use crate::record::{EventKind, Record};
     use crate::tests::testing::{elastic_plan, impact, ramp, result_of, run_unwatched};
+    use psd_plan::formula::Formula::Constant;
+    use psd_plan::record::{EventKind, Record};
+    use psd_plan::{Calibration, Contact, Impact, Interval, Plan, ProcedureKind};
 
     /// A ramp of ten steps of 2 mm at 1 kN/m, so to 20 N, and an impact with the stiffness that it finds.
     fn plan(force: Interval) -> Plan {

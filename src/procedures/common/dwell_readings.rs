@@ -1,10 +1,10 @@
 //! The readings of one dwell at a target. In: a rig at rest behind the guard. Out: their means, the scatter of the forces and the
 //! relaxation since the rig settled. It moves nothing.
 
-use crate::physics::statistics::samples::{mean, scatter};
-use crate::rig::Reading;
 use crate::run::session::{Session, first};
 use crate::run::stop::Stop;
+use psd_physics::statistics::samples::{mean, scatter};
+use psd_rig::Reading;
 
 /// The readings of one dwell.
 pub(crate) struct DwellReadings {

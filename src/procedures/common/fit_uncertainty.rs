@@ -2,18 +2,18 @@
 //! readings. In: results with the standard errors of their fits. Out: the same with contributions, so that later results know the
 //! sources that they share.
 
-use crate::physics::identification::bilinear_fit::BilinearShares;
-use crate::physics::identification::multilinear_fit::{CurveShares, MultilinearFit};
-use crate::physics::reintegration::perturbation::{Perturbation, ReadingErrors};
-use crate::plan::formula::{ProcedureId, ResultValue};
-use crate::plan::procedures::damping_sweep::block as sweep;
-use crate::plan::procedures::stiffness_ramp::block as ramp;
-use crate::plan::{Calibration, Plan};
 use crate::procedures::common::results::{VANISHES, values};
-use crate::record::{BilinearFit, LineFit, NamedResult};
-use crate::schema::{ResultKind, curves};
-use crate::uncertainty::{Contribution, InstrumentUncertainty, Source, combined};
-use crate::units::Dimension;
+use psd_physics::identification::bilinear_fit::BilinearShares;
+use psd_physics::identification::multilinear_fit::{CurveShares, MultilinearFit};
+use psd_physics::reintegration::perturbation::{Perturbation, ReadingErrors};
+use psd_plan::formula::{ProcedureId, ResultValue};
+use psd_plan::procedures::damping_sweep::block as sweep;
+use psd_plan::procedures::stiffness_ramp::block as ramp;
+use psd_plan::record::{BilinearFit, LineFit, NamedResult};
+use psd_plan::schema::{ResultKind, curves};
+use psd_plan::uncertainty::{Contribution, InstrumentUncertainty, Source, combined};
+use psd_plan::{Calibration, Plan};
+use psd_text::units::Dimension;
 
 /// Pairs of fitted results of one line, slope first.
 const LINES: [(ResultKind, ResultKind); 2] = [

@@ -1,14 +1,14 @@
 //! Bounds of requirements, and of the condition of a series, as lines of a chart. In: a run, a result of a procedure. Out: reference lines
 //! with their labels. It draws nothing.
 
-use crate::plan::formula::{Formula, Function, Part, ProcedureId};
-use crate::plan::{Condition, Test};
 use crate::procedures;
 use crate::report::Run;
 use crate::report::figures::chart::Reference;
 use crate::report::number;
-use crate::schema::ResultKind;
 use crate::verdict::Bound;
+use psd_plan::formula::{Formula, Function, Part, ProcedureId};
+use psd_plan::schema::ResultKind;
+use psd_plan::{Condition, Test};
 
 /// Bounds that a requirement sets on a result of one procedure, for that result's figure.
 pub(crate) fn limits_on(
@@ -129,7 +129,7 @@ fn reads(value: &Formula, procedure: ProcedureId, result: &str) -> bool {
 fn short(label: &str) -> String {
     const LONGEST: usize = 40;
     // The width of the label is that of the text as drawn.
-    let label = crate::text::glyphs::shown(label);
+    let label = psd_text::glyphs::shown(label);
     let mut text: String = label
         .chars()
         .take(LONGEST)
@@ -144,7 +144,7 @@ fn short(label: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::formula::ResultReference;
+    use psd_plan::formula::ResultReference;
 
     #[test]
     fn a_bound_on_an_uncertainty_is_no_line_among_the_values() {

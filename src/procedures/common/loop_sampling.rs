@@ -1,7 +1,7 @@
 //! The energy of a loop between its points: how much of it the readings leave open. In: the points of a loop. Out: energies \[J\].
 
-use crate::physics::identification::loop_sampling::left_open;
-use crate::physics::reintegration::perturbation::ReadingErrors;
+use psd_physics::identification::loop_sampling::left_open;
+use psd_physics::reintegration::perturbation::ReadingErrors;
 
 /// The part of the energy that these points of a loop of this stiffness \[N/m\] leave undetermined \[J\]; each is the mean of so many
 /// samples.

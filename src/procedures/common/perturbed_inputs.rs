@@ -1,12 +1,14 @@
 //! A run whose inputs are perturbed, for every procedure that is re-integrated. In: formulas, results, perturbed sources. Out: the
 //! uncertain sources of the formulas, inputs with those sources perturbed, contributions.
 
-use crate::plan::formula::{Formula, ProcedureId, Results, UncertaintyStatus};
-use crate::plan::{DeclaredNoise, Plan};
 use crate::run::inputs::Inputs;
 use crate::run::stop::Stop;
-use crate::uncertainty::engine::{Contributions, Evaluate, Progress, Propagation, Shifts, Unknown};
-use crate::uncertainty::{InstrumentUncertainty, Source, sources_of, with_shifts};
+use psd_plan::formula::{Formula, ProcedureId, Results, UncertaintyStatus};
+use psd_plan::uncertainty::engine::{
+    Contributions, Evaluate, Progress, Propagation, Shifts, Unknown,
+};
+use psd_plan::uncertainty::{InstrumentUncertainty, Source, sources_of, with_shifts};
+use psd_plan::{DeclaredNoise, Plan};
 
 /// The reason why no uncertainty of a run is reported.
 pub(crate) const LEADS_ELSEWHERE: &str =

@@ -1,6 +1,6 @@
 //! The peak absolute displacement and force of the channels of a run, from its tables. In: a record. Out: numbers.
 
-use crate::record::ImpactHistory;
+use psd_plan::record::ImpactHistory;
 
 /// Gives displacement \[m\] and force \[N\] of every axis of an impact, row by row of its table.
 pub(crate) fn of_impact(history: &ImpactHistory, give: &mut dyn FnMut(&[f64], &[f64])) {

@@ -1,10 +1,10 @@
 //! The results of one evaluation of a procedure in a fixed order, and the contributions to each. A number that is not finite does not
 //! exist in the run.
 
-use crate::plan::formula::ResultValue;
-use crate::record::NamedResult;
-use crate::schema::ResultKind;
-use crate::uncertainty::{Contribution, Source, combined};
+use psd_plan::formula::ResultValue;
+use psd_plan::record::NamedResult;
+use psd_plan::schema::ResultKind;
+use psd_plan::uncertainty::{Contribution, Source, combined};
 
 /// The largest of some sizes; None of nothing.
 pub(crate) fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {

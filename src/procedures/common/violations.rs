@@ -1,12 +1,12 @@
 //! Violations that the checks of several procedures find.
 
 use crate::codes::{E643, W701, W712};
-use crate::language::check::wording::{shown, time};
-use crate::language::codes::{E405, E641};
-use crate::plan::Integrator;
-use crate::text::diagnostic::{Code, Diagnostic, Violation};
-use crate::text::source::Span;
-use crate::units::Dimension;
+use psd_language::check::wording::{shown, time};
+use psd_language::codes::{E405, E641};
+use psd_plan::Integrator;
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 /// A field of the other kind of impact.
 #[derive(Violation)]

@@ -1,18 +1,18 @@
 //! `cycle NAME { … }`: amplitudes, or a protocol that gives them.
 
 use crate::codes::{E646, E647};
-use crate::language::check::checker::{Checker, Context};
-use crate::language::check::declarations::curve;
-use crate::language::check::expressions::fields::whole;
-use crate::language::check::violations::{MissingField, NoEffect};
-use crate::language::codes::E208;
-use crate::plan::formula::{Formula, Operator};
-use crate::plan::procedures::cycle::block as schema;
-use crate::plan::{BreakCount, Cycle, CycleInspection, Level, MOST_TARGETS, ProcedureKind, Sides};
 use crate::procedures::common::violations::TooManyInProcedure;
-use crate::schema::procedures::SPEED;
-use crate::text::diagnostic::Violation;
-use crate::text::source::Span;
+use psd_language::check::checker::{Checker, Context};
+use psd_language::check::declarations::curve;
+use psd_language::check::expressions::fields::whole;
+use psd_language::check::violations::{MissingField, NoEffect};
+use psd_language::codes::E208;
+use psd_plan::formula::{Formula, Operator};
+use psd_plan::procedures::cycle::block as schema;
+use psd_plan::schema::procedures::SPEED;
+use psd_plan::{BreakCount, Cycle, CycleInspection, Level, MOST_TARGETS, ProcedureKind, Sides};
+use psd_text::diagnostic::Violation;
+use psd_text::source::Span;
 
 #[derive(Violation)]
 #[violation(E646, "`rate` requires `speed`: the actuator is read while it moves")]

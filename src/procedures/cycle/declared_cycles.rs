@@ -1,12 +1,12 @@
 //! Checks of the cycles that the plan declares: the entries that are read from them, and their ends against the limits. In: procedures.
 //! Out: E401 if an entry past the last cycle is read; an error if a cycle exceeds the limits.
 
-use crate::language::check::checker::Checker;
-use crate::language::check::declarations::limits::CheckedLimits;
-use crate::language::check::violations::{BeyondLimits, NoSuchEntry};
-use crate::plan::procedures::cycle::block as schema;
-use crate::plan::{Procedure, ProcedureKind};
-use crate::units::Dimension;
+use psd_language::check::checker::Checker;
+use psd_language::check::declarations::limits::CheckedLimits;
+use psd_language::check::violations::{BeyondLimits, NoSuchEntry};
+use psd_plan::procedures::cycle::block as schema;
+use psd_plan::{Procedure, ProcedureKind};
+use psd_text::units::Dimension;
 
 /// Lists of a `cycle` with one entry for each of its cycles.
 const BY_CYCLE: [&str; 4] = [

@@ -1,8 +1,8 @@
 //! The facts about a `cycle` that check and report need without running it. In: the `cycle`. Out: facts.
 
 use super::{figures, report};
-use crate::plan::procedures::cycle::block as schema;
 use crate::procedures::facts::{Facts, Recorded};
+use psd_plan::procedures::cycle::block as schema;
 
 pub(crate) fn facts() -> Facts<'static> {
     Facts {

@@ -1,13 +1,13 @@
 //! The figures of a `cycle`: their list, captions and charts: loops, backbone, energy and stiffness cycle by cycle. In: the history. Out:
 //! [`Chart`]s in SI with their captions.
 
-use crate::plan::FigureKind;
-use crate::record::{CycleHistory, MultilinearFit, WholeCycle};
 use crate::report::figures::chart::{
     Chart, DASHED, LONG, Marker, Quantity, SOLID, Series, Style, palette,
 };
 use crate::report::figures::points::Points;
-use crate::units::Dimension;
+use psd_plan::FigureKind;
+use psd_plan::record::{CycleHistory, MultilinearFit, WholeCycle};
+use psd_text::units::Dimension;
 
 /// In the order of a report.
 pub(crate) const FIGURES: &[FigureKind] = &[
@@ -53,7 +53,7 @@ pub(crate) fn chart(
 
 /// Every loop, the last one on top.
 pub(crate) fn loops(history: &CycleHistory) -> Chart {
-    let point = |step: &crate::record::CycleStep| (step.displacement, step.restoring_force);
+    let point = |step: &psd_plan::record::CycleStep| (step.displacement, step.restoring_force);
     let last = history.cycles.last().map_or(u64::MAX, |cycle| cycle.cycle);
     let all = history.steps.iter().map(point).collect();
     // Its own readings, and the one at which it begins.

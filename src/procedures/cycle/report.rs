@@ -1,10 +1,10 @@
 //! The cycles of a `cycle`, one row each, and the meaning of the numbers. In: the history. Out: a table.
 
 use crate::procedures::stiffness_ramp::curve::curve_report;
-use crate::record::{CycleHistory, WholeCycle};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
-use crate::units::Dimension;
+use psd_plan::record::{CycleHistory, WholeCycle};
+use psd_text::units::Dimension;
 
 /// How the contributions to its uncertainty were found.
 pub(crate) const UNCERTAINTY: &str = "Each input was perturbed by its standard uncertainty, one at a time, and the \

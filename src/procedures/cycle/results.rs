@@ -1,10 +1,10 @@
 //! The results of displacement cycles. In: the recorded loops. Out: results in the order of the reference.
 
-use crate::physics::statistics::noisy_largest::NoisyLargest;
-use crate::plan::procedures::cycle::block as schema;
 use crate::procedures::stiffness_ramp::curve;
-use crate::record::{CycleHistory, NamedResult, WholeCycle};
-use crate::schema::ResultKind;
+use psd_physics::statistics::noisy_largest::NoisyLargest;
+use psd_plan::procedures::cycle::block as schema;
+use psd_plan::record::{CycleHistory, NamedResult, WholeCycle};
+use psd_plan::schema::ResultKind;
 
 /// In the order of the reference; `noise` is the standard deviation of a force at its position \[N\].
 pub(crate) fn results(history: &CycleHistory, noise: f64) -> Vec<NamedResult> {

@@ -4,21 +4,21 @@
 
 use super::results::results;
 use super::uncertainty::{ENDS, RecordedLoops};
-use crate::physics::identification::cyclic::{LoopPoint, loop_of, work};
-use crate::physics::identification::loop_sampling::spaced;
-use crate::plan::procedures::cycle::block as schema;
-use crate::plan::{Cycle, CycleInspection, MOST_TARGETS, Plan};
 use crate::procedures::common::dwell_readings::DwellReadings;
 use crate::procedures::stiffness_ramp::curve;
-use crate::record::{CycleHistory, CycleStep, EventKind, History, WholeCycle};
-use crate::rig::RigFault;
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::{Session, first};
 use crate::run::stop::Stop;
-use crate::uncertainty::InstrumentUncertainty;
-use crate::units::Dimension;
-use crate::units::display::readable;
+use psd_physics::identification::cyclic::{LoopPoint, loop_of, work};
+use psd_physics::identification::loop_sampling::spaced;
+use psd_plan::procedures::cycle::block as schema;
+use psd_plan::record::{CycleHistory, CycleStep, EventKind, History, WholeCycle};
+use psd_plan::uncertainty::InstrumentUncertainty;
+use psd_plan::{Cycle, CycleInspection, MOST_TARGETS, Plan};
+use psd_rig::RigFault;
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 
 pub(crate) fn perform(
     plan: &Cycle,

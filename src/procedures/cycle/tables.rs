@@ -1,11 +1,11 @@
 //! Tables of cycles: one row a reading, and one row a whole cycle. In: the history. Out: columns.
 
-use crate::record::{CycleHistory, CycleStep, WholeCycle};
 use crate::report::tables::TableColumn::{self, Integer, Number, Optional};
 use crate::report::tables::{Table, numeric, written};
-use crate::schema::Column;
-use crate::schema::columns::{self, column};
-use crate::units::Dimension;
+use psd_plan::record::{CycleHistory, CycleStep, WholeCycle};
+use psd_plan::schema::Column;
+use psd_plan::schema::columns::{self, column};
+use psd_text::units::Dimension;
 
 const CYCLE: Column = column("cycle", Dimension::NUMBER);
 const AMPLITUDE: Column = column("amplitude_m", Dimension::LENGTH);

@@ -1,22 +1,22 @@
 //! The uncertainty of the results of a `cycle`. In: the recorded loops. Out: the contributions of each source, and of the unknown curve
 //! between the points of each loop. The backbone fit has its own scatter, and is not touched here.
 
-use crate::schema::ResultKind;
+use psd_plan::schema::ResultKind;
 use std::convert::Infallible;
 
 use super::results::results;
-use crate::physics::identification::cyclic::{LoopPoint, loop_of};
-use crate::physics::reintegration::perturbation::{Perturbation, ReadingErrors};
-use crate::plan::Cycle;
-use crate::plan::formula::ProcedureId;
-use crate::plan::procedures::cycle::block as schema;
 use crate::procedures::common::fit_uncertainty::Fits;
 use crate::procedures::common::loop_sampling::{left_open_by, of_open};
 use crate::procedures::common::results::{Layout, give, index_of, values};
 use crate::procedures::stiffness_ramp::curve;
-use crate::record::{CycleHistory, CycleStep, NamedResult, WholeCycle};
-use crate::uncertainty::engine::{Evaluate, Evaluation, Propagation, Shifts};
-use crate::uncertainty::{Contribution, InstrumentUncertainty, Source};
+use psd_physics::identification::cyclic::{LoopPoint, loop_of};
+use psd_physics::reintegration::perturbation::{Perturbation, ReadingErrors};
+use psd_plan::Cycle;
+use psd_plan::formula::ProcedureId;
+use psd_plan::procedures::cycle::block as schema;
+use psd_plan::record::{CycleHistory, CycleStep, NamedResult, WholeCycle};
+use psd_plan::uncertainty::engine::{Evaluate, Evaluation, Propagation, Shifts};
+use psd_plan::uncertainty::{Contribution, InstrumentUncertainty, Source};
 
 /// Results with one entry per cycle.
 const LISTS: [&str; 4] = [

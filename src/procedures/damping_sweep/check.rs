@@ -1,13 +1,13 @@
 //! `damping sweep NAME { … }`
 
 use crate::codes::E654;
-use crate::language::check::checker::Checker;
-use crate::plan::procedures::damping_sweep::block as schema;
-use crate::plan::{DampingSweep, ProcedureKind};
 use crate::procedures::stepping::check::mode_check::stops_at_targets;
-use crate::schema::rig;
-use crate::text::diagnostic::Violation;
-use crate::text::source::Span;
+use psd_language::check::checker::Checker;
+use psd_plan::procedures::damping_sweep::block as schema;
+use psd_plan::schema::rig;
+use psd_plan::{DampingSweep, ProcedureKind};
+use psd_text::diagnostic::Violation;
+use psd_text::source::Span;
 
 pub fn damping_sweep(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     read_together(checker, block);

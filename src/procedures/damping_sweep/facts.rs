@@ -1,10 +1,10 @@
 //! The facts about a damping sweep that check and report need without running it. In: the sweep. Out: facts.
 
 use super::figures;
-use crate::plan::procedures::damping_sweep::block as schema;
 use crate::procedures::facts::{Facts, Recorded};
 use crate::procedures::stiffness_ramp;
-use crate::record::DampingSweepHistory;
+use psd_plan::procedures::damping_sweep::block as schema;
+use psd_plan::record::DampingSweepHistory;
 
 pub(crate) fn facts() -> Facts<'static> {
     Facts {

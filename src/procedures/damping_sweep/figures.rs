@@ -1,9 +1,9 @@
 //! The figure of a damping sweep and its content. In: a history. Out: a [`Chart`] in SI with its caption.
 
-use crate::plan::FigureKind;
 use crate::procedures::stiffness_ramp;
-use crate::record::DampingSweepHistory;
 use crate::report::figures::chart::Chart;
+use psd_plan::FigureKind;
+use psd_plan::record::DampingSweepHistory;
 
 /// In the order of a report.
 pub(crate) const FIGURES: &[FigureKind] = &[FigureKind::DampingFit];

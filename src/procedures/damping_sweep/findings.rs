@@ -3,9 +3,9 @@
 
 use super::pairing::{Paired, velocity_of};
 use super::sweep::{Stroke, Sweep};
-use crate::physics::identification::damping_strokes::{OutAndBack, change_along, own_stiffness};
-use crate::units::Dimension;
-use crate::units::display::readable;
+use psd_physics::identification::damping_strokes::{OutAndBack, change_along, own_stiffness};
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 
 /// A stroke with fewer pairs of steady readings than this has an observation.
 const FEW: usize = 3;

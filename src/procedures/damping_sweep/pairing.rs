@@ -2,9 +2,9 @@
 //! It moves nothing.
 
 use super::sweep::Stroke;
-use crate::physics::identification::damping_strokes::OutAndBack;
-use crate::physics::identification::fit_line;
-use crate::record::{LineFit, SweepStep};
+use psd_physics::identification::damping_strokes::OutAndBack;
+use psd_physics::identification::fit_line;
+use psd_plan::record::{LineFit, SweepStep};
 
 /// A stroke with its pairs of readings.
 pub(super) type Paired<'a> = (&'a Stroke, Vec<OutAndBack>);

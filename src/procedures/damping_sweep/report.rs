@@ -1,9 +1,9 @@
 //! A damping sweep as a report gives it: the line through its pairs. In: a history. Out: a block.
 
-use crate::record::DampingSweepHistory;
 use crate::report::document::Block;
 use crate::report::sections::results::line_fit::{Coefficient, fitted};
-use crate::units::Dimension;
+use psd_plan::record::DampingSweepHistory;
+use psd_text::units::Dimension;
 
 /// The block below its results.
 pub(crate) fn report(history: &DampingSweepHistory, body: &mut Vec<Block>) {

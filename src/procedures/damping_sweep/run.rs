@@ -17,23 +17,23 @@ use std::ops::Range;
 use super::findings::{Findings, RatioOf};
 use super::pairing::{Paired, paired_by_position, paired_by_time};
 use super::sweep::{Stroke, Sweep};
-use crate::physics::identification::damping_strokes::OutAndBack;
-use crate::physics::identification::{StatedVariance, damping_ratio, fit_damping, fit_line};
-use crate::physics::structure::Matrices;
-use crate::plan::formula::Estimate;
-use crate::plan::procedures::damping_sweep::block as schema;
-use crate::plan::{DampingSweep, Plan};
 use crate::procedures::common::results::largest;
-use crate::record::{
-    BroughtTogether, DampingSweepHistory, EventKind, History, LineFit, NamedResult, SweepStep,
-};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::{Session, first};
 use crate::run::stop::Stop;
-use crate::uncertainty::InstrumentUncertainty;
-use crate::units::Dimension;
-use crate::units::display::readable;
+use psd_physics::identification::damping_strokes::OutAndBack;
+use psd_physics::identification::{StatedVariance, damping_ratio, fit_damping, fit_line};
+use psd_physics::structure::Matrices;
+use psd_plan::formula::Estimate;
+use psd_plan::procedures::damping_sweep::block as schema;
+use psd_plan::record::{
+    BroughtTogether, DampingSweepHistory, EventKind, History, LineFit, NamedResult, SweepStep,
+};
+use psd_plan::uncertainty::InstrumentUncertainty;
+use psd_plan::{DampingSweep, Plan};
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 
 /// Part of the stroke left out at either end: the actuator starts and stops there.
 const END: f64 = 0.1;

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use crate::plan::formula::Estimate;
-use crate::record::SweepStep;
+use psd_plan::formula::Estimate;
+use psd_plan::record::SweepStep;
 
 /// Steps of one stroke, out and back.
 pub(super) struct Stroke {

@@ -1,10 +1,10 @@
 //! The table of a damping sweep, a row a reading. In: its steps. Out: columns.
 
-use crate::record::{DampingSweepHistory, SweepStep};
 use crate::report::tables::TableColumn::{self, Flag, Integer, Number};
 use crate::report::tables::{Table, written};
-use crate::schema::columns::{self, column};
-use crate::units::Dimension;
+use psd_plan::record::{DampingSweepHistory, SweepStep};
+use psd_plan::schema::columns::{self, column};
+use psd_text::units::Dimension;
 
 pub(crate) const STEPS: &[TableColumn<SweepStep>] = &[
     Integer(columns::STEP, |step| step.step),

@@ -1,13 +1,13 @@
 //! The uncertainty of the results of a damping sweep. In: the fit of its strokes, the stiffness that corrected them. Out: the
 //! contributions to the damping, the friction and the damping ratio.
 
-use crate::plan::formula::Formula;
-use crate::plan::procedures::damping_sweep::block as schema;
-use crate::plan::{DampingSweep, DeclaredNoise, Plan};
 use crate::procedures::common::fit_uncertainty::{Fits, attribute};
-use crate::record::{BroughtTogether, DampingSweepHistory, NamedResult};
 use crate::run::inputs::Inputs;
-use crate::uncertainty::{Contribution, InstrumentUncertainty, Source, share};
+use psd_plan::formula::Formula;
+use psd_plan::procedures::damping_sweep::block as schema;
+use psd_plan::record::{BroughtTogether, DampingSweepHistory, NamedResult};
+use psd_plan::uncertainty::{Contribution, InstrumentUncertainty, Source, share};
+use psd_plan::{DampingSweep, DeclaredNoise, Plan};
 
 /// Gives the results their contributions.
 pub(crate) fn propagate(

@@ -1,19 +1,19 @@
 //! `escalate NAME { … }`: the fields of an impact, its levels, and the condition for the next impact.
 
 use crate::codes::{E648, W721};
-use crate::language::check::checker::{Checker, Context, Reads};
-use crate::language::check::violations::MissingField;
-use crate::language::codes::E208;
-use crate::plan::formula::{Formula, Function, Operator};
-use crate::plan::procedures::escalate::block as schema;
-use crate::plan::procedures::impact::block::STRIKER;
-use crate::plan::{Between, Condition, Escalate, MOST_IMPACTS, ProcedureKind};
 use crate::procedures::common::violations::TooManyInProcedure;
 use crate::procedures::impact;
-use crate::schema::{Kind, striker};
-use crate::text::diagnostic::Violation;
-use crate::text::source::Span;
-use crate::units::unit::STANDARD_GRAVITY;
+use psd_language::check::checker::{Checker, Context, Reads};
+use psd_language::check::violations::MissingField;
+use psd_language::codes::E208;
+use psd_plan::formula::{Formula, Function, Operator};
+use psd_plan::procedures::escalate::block as schema;
+use psd_plan::procedures::impact::block::STRIKER;
+use psd_plan::schema::{Kind, striker};
+use psd_plan::{Between, Condition, Escalate, MOST_IMPACTS, ProcedureKind};
+use psd_text::diagnostic::Violation;
+use psd_text::source::Span;
+use psd_text::units::unit::STANDARD_GRAVITY;
 
 /// The fields that give the levels; exactly one of them is given.
 const LEVELS: [&str; 3] = [

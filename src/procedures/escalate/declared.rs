@@ -1,13 +1,13 @@
 //! The check of a series of impacts against striker and specimen: the slowest must arrive, the time step must follow the fastest. In: a
 //! series and the declarations of the plan. Out: errors and warnings.
 
-use crate::language::check::checker::Checker;
-use crate::language::check::declared::Declared;
-use crate::plan::{Between, Escalate};
 use crate::procedures::facts::Motion;
 use crate::procedures::impact;
 use crate::procedures::impact::check::declared::Strikers;
 use crate::procedures::impact::facts::PEAK;
+use psd_language::check::checker::Checker;
+use psd_language::check::declared::Declared;
+use psd_plan::{Between, Escalate};
 
 pub(crate) fn check_declared(
     checker: &mut Checker,

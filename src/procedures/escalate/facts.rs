@@ -2,10 +2,10 @@
 //! Out: facts.
 
 use super::figures;
-use crate::plan::procedures::escalate::block as schema;
-use crate::plan::{Escalate, ImpactTarget};
 use crate::procedures::facts::{Facts, Recorded};
 use crate::procedures::{impact, stepping};
+use psd_plan::procedures::escalate::block as schema;
+use psd_plan::{Escalate, ImpactTarget};
 
 pub(crate) fn facts(series: &Escalate) -> Facts<'_> {
     let figures = match &series.impact.target {

@@ -3,18 +3,18 @@
 
 use std::borrow::Cow;
 
-use crate::plan::procedures::impact::block as schema;
-use crate::plan::{Figure, FigureKind};
 use crate::procedures::common::limit_lines::conditions_on;
 use crate::procedures::shake;
-use crate::record::{EscalateHistory, FloorStep, ImpactStep, SeriesImpact};
 use crate::report::Run;
 use crate::report::figures::chart::{
     Chart, Colour, DASHED, Marker, Quantity, SOLID, Series, Style, palette,
 };
 use crate::report::figures::points::Points;
-use crate::units::Dimension;
-use crate::units::display::stated;
+use psd_plan::procedures::impact::block as schema;
+use psd_plan::record::{EscalateHistory, FloorStep, ImpactStep, SeriesImpact};
+use psd_plan::{Figure, FigureKind};
+use psd_text::units::Dimension;
+use psd_text::units::display::stated;
 
 /// Figures of impacts on one degree of freedom, in the order of a report.
 pub(crate) const FIGURES: &[FigureKind] = &[

@@ -1,10 +1,6 @@
 //! The impact that a series repeats, on one degree of freedom or on one storey of a frame. In: the impact of the plan, evaluated once; a
 //! velocity for each repetition. Out: each repetition as a separate impact. It decides nothing about the next one.
 
-use crate::physics::impact::ImpactInput;
-use crate::physics::structure::Unloading;
-use crate::plan::procedures::escalate::block::SPEEDS;
-use crate::plan::{Escalate, Impact, ImpactTarget, Plan, Striker};
 use crate::procedures::impact::run::{ImpactRun, strike};
 use crate::procedures::impact::setting::Setting;
 use crate::procedures::impact::uncertainty::UncertaintyInputs;
@@ -13,7 +9,11 @@ use crate::procedures::unload;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use crate::units::Dimension;
+use psd_physics::impact::ImpactInput;
+use psd_physics::structure::Unloading;
+use psd_plan::procedures::escalate::block::SPEEDS;
+use psd_plan::{Escalate, Impact, ImpactTarget, Plan, Striker};
+use psd_text::units::Dimension;
 
 pub(crate) struct RepeatedImpact<'a> {
     plan: &'a Impact,

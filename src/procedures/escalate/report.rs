@@ -1,15 +1,17 @@
 //! The impacts of a series, one row each, and the storeys of a frame. In: plan and history. Out: blocks.
 
-use crate::plan::procedures::escalate::block as schema;
-use crate::plan::procedures::impact::block as impact;
-use crate::plan::{Frame, Impact, ProcedureKind, StoreyTarget};
 use crate::procedures::shake;
-use crate::record::{EscalateHistory, ImpactHistory, ProcedureRecord, SeriesImpact, StruckFrame};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::percent;
 use crate::report::{Run, number};
-use crate::schema::ResultKind;
-use crate::units::Dimension;
+use psd_plan::procedures::escalate::block as schema;
+use psd_plan::procedures::impact::block as impact;
+use psd_plan::record::{
+    EscalateHistory, ImpactHistory, ProcedureRecord, SeriesImpact, StruckFrame,
+};
+use psd_plan::schema::ResultKind;
+use psd_plan::{Frame, Impact, ProcedureKind, StoreyTarget};
+use psd_text::units::Dimension;
 
 /// Impacts printed; the tables hold every one.
 const PRINTED: usize = 40;

@@ -1,12 +1,12 @@
 //! The results of a series of impacts: those of each impact, their maxima and sums. In: its history. Out: results in the order of the
 //! reference, with their contributions. It moves nothing.
 
-use crate::plan::Between;
-use crate::plan::procedures::escalate::block as schema;
-use crate::plan::procedures::impact::block as impact;
-use crate::record::{EscalateHistory, NamedResult, SeriesImpact};
-use crate::schema::ResultKind;
-use crate::uncertainty::{Contribution, Source, share};
+use psd_plan::Between;
+use psd_plan::procedures::escalate::block as schema;
+use psd_plan::procedures::impact::block as impact;
+use psd_plan::record::{EscalateHistory, NamedResult, SeriesImpact};
+use psd_plan::schema::ResultKind;
+use psd_plan::uncertainty::{Contribution, Source, share};
 
 /// In the order of the reference.
 pub(crate) fn results(history: &EscalateHistory, between: Between) -> Vec<NamedResult> {

@@ -3,25 +3,25 @@
 
 use super::repeated_impact::{RepeatedImpact, velocities};
 use super::results::{Left, results};
-use crate::physics::structure::Unloading;
-use crate::plan::formula::{ProcedureId, ResultReference, ResultValue, Results, UncertaintyStatus};
-use crate::plan::procedures::escalate::block as schema;
-use crate::plan::{Between, Escalate, Plan};
 use crate::procedures::common::calibrated_range;
 use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::common::reached::of_impact;
 use crate::procedures::impact::run::ImpactRun;
 use crate::procedures::stepping::setting::above_critical;
 use crate::procedures::unload::run::{MOST_TARGETS, to_rest, withhold_position};
-use crate::record::{EscalateHistory, EventKind, History, NamedResult, Rest, SeriesImpact};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use crate::uncertainty::{Contribution, Source};
-use crate::units::Dimension;
-use crate::units::display::readable;
 use crate::verdict::{Declared, Verdict, assess_on_impact};
+use psd_physics::structure::Unloading;
+use psd_plan::formula::{ProcedureId, ResultReference, ResultValue, Results, UncertaintyStatus};
+use psd_plan::procedures::escalate::block as schema;
+use psd_plan::record::{EscalateHistory, EventKind, History, NamedResult, Rest, SeriesImpact};
+use psd_plan::uncertainty::{Contribution, Source};
+use psd_plan::{Between, Escalate, Plan};
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 
 pub(crate) fn perform(
     plan: &Escalate,

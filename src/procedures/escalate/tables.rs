@@ -2,14 +2,14 @@
 
 use std::iter::once;
 
-use crate::plan::procedures::impact::block as results;
 use crate::procedures::impact;
-use crate::record::{EscalateHistory, Rest, SeriesImpact};
 use crate::report::tables::TableColumn::{self, Flag, Integer, Number, Optional};
 use crate::report::tables::{Table, numeric, written};
-use crate::schema::columns::{self, column};
-use crate::schema::{Column, ResultKind};
-use crate::units::Dimension;
+use psd_plan::procedures::impact::block as results;
+use psd_plan::record::{EscalateHistory, Rest, SeriesImpact};
+use psd_plan::schema::columns::{self, column};
+use psd_plan::schema::{Column, ResultKind};
+use psd_text::units::Dimension;
 
 const IMPACT_NUMBER: Column = column("impact", Dimension::NUMBER);
 const REST_DISPLACEMENT: Column = column("rest_displacement_m", Dimension::LENGTH);

@@ -4,16 +4,16 @@
 //! On an ideal rig every reading is its target and the force there, so the steps of `physics::impact::batch` are those of the run. An
 //! impact that a limit would stop, or whose peaks were not reached, runs on the rig: its outcome depends on its steps.
 
-use crate::physics::impact::batch::{self, Batched, Reach};
-use crate::physics::specimen::SpecimenModel;
-use crate::plan::formula::{NoResults, ProcedureId};
-use crate::plan::procedures::impact::block as schema;
-use crate::plan::{Impact, Interval, Limits, Mode, Plan, Procedure, Until};
 use crate::procedures::impact::results::{of_impact, of_steps};
 use crate::procedures::impact::setting::Setting;
-use crate::record::{History, ImpactHistory, ProcedureRecord};
-use crate::rig::DeclaredNoise;
 use crate::run::inputs::Inputs;
+use psd_physics::impact::batch::{self, Batched, Reach};
+use psd_physics::specimen::SpecimenModel;
+use psd_plan::formula::{NoResults, ProcedureId};
+use psd_plan::procedures::impact::block as schema;
+use psd_plan::record::{History, ImpactHistory, ProcedureRecord};
+use psd_plan::{Impact, Interval, Limits, Mode, Plan, Procedure, Until};
+use psd_rig::DeclaredNoise;
 
 /// An impact that can run in a batch.
 #[derive(Clone, Debug)]

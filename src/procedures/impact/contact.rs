@@ -2,14 +2,14 @@
 //! numbers, and the part of a report that depends on it. It knows no law: the words are in `plan::procedures::impact::block`, the laws in
 //! `physics::contact`.
 
-use crate::language::check::checker::Checker;
-use crate::physics::contact::{ContactLaw, ContactSpring};
-use crate::plan::Contact;
-use crate::plan::formula::Formula;
-use crate::plan::procedures::impact::block as schema;
 use crate::run::inputs::Inputs;
 use crate::run::stop::Stop;
-use crate::schema::ResultKind;
+use psd_language::check::checker::Checker;
+use psd_physics::contact::{ContactLaw, ContactSpring};
+use psd_plan::Contact;
+use psd_plan::formula::Formula;
+use psd_plan::procedures::impact::block as schema;
+use psd_plan::schema::ResultKind;
 
 /// The contact law that a block specifies.
 pub(crate) fn check(checker: &mut Checker, block: usize) -> Option<Contact> {

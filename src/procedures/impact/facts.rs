@@ -3,16 +3,16 @@
 
 use super::check::time_step::time_step_before_the_run;
 use super::{figures, report, results};
-use crate::physics::self_test::SelfTestPart;
-use crate::plan::formula::Formula;
-use crate::plan::{
-    Dependence, Escalate, Impact, ImpactTarget, Plan, PointTarget, StoreyTarget, Striker, Until,
-};
 use crate::procedures::facts::{Delay, Facts, Motion, Recorded, Tests};
 use crate::procedures::stepping;
 use crate::procedures::stepping::self_tested::stepped;
 use crate::procedures::stepping::tracking::{delay as actuator_delay, frame_delay};
-use crate::record::ImpactHistory;
+use psd_physics::self_test::SelfTestPart;
+use psd_plan::formula::Formula;
+use psd_plan::record::ImpactHistory;
+use psd_plan::{
+    Dependence, Escalate, Impact, ImpactTarget, Plan, PointTarget, StoreyTarget, Striker, Until,
+};
 
 pub(crate) fn facts(impact: &Impact) -> Facts<'_> {
     let shared = Facts {

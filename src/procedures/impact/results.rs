@@ -1,28 +1,28 @@
 //! The results of an impact, and the observations on how it ended. In: the ends of its steps, one by one, and its history. Out: results in
 //! the order of the reference; for a frame also the peaks of every floor and storey. It moves nothing.
 
-use crate::physics::contact::ContactLaw;
-use crate::physics::contact::state::StepState;
-use crate::physics::impact::energy::Energies;
-use crate::physics::impact::summary::{ImpactSummary, SummaryBuilder};
-use crate::physics::impact::{ImpactInput, ImpactState};
-use crate::physics::integrator::state::State;
-use crate::physics::reintegration::impact::ImpactValues;
-use crate::physics::statistics::noisy_largest::NoisyLargest;
-use crate::physics::structure::matrix::Vector;
-use crate::physics::structure::{drifts, shears, widen};
-use crate::plan::Until;
-use crate::plan::procedures::impact::block as schema;
 use crate::procedures::common::results::Evaluated;
 use crate::procedures::stepping::energy;
 use crate::procedures::stepping::tracking::{TrackingSummary, tracking_results};
-use crate::record::history::floors::drift_of;
-use crate::record::{EventKind, ImpactHistory, NamedResult, StruckFrame};
-use crate::rig::Reading;
 use crate::run::session::Session;
-use crate::schema::ResultKind;
-use crate::units::Dimension;
-use crate::units::display::readable;
+use psd_physics::contact::ContactLaw;
+use psd_physics::contact::state::StepState;
+use psd_physics::impact::energy::Energies;
+use psd_physics::impact::summary::{ImpactSummary, SummaryBuilder};
+use psd_physics::impact::{ImpactInput, ImpactState};
+use psd_physics::integrator::state::State;
+use psd_physics::reintegration::impact::ImpactValues;
+use psd_physics::statistics::noisy_largest::NoisyLargest;
+use psd_physics::structure::matrix::Vector;
+use psd_physics::structure::{drifts, shears, widen};
+use psd_plan::Until;
+use psd_plan::procedures::impact::block as schema;
+use psd_plan::record::history::floors::drift_of;
+use psd_plan::record::{EventKind, ImpactHistory, NamedResult, StruckFrame};
+use psd_plan::schema::ResultKind;
+use psd_rig::Reading;
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 
 /// In the order of the reference; every number is missing if not even the start was read.
 pub(crate) fn results(

@@ -6,23 +6,23 @@
 use super::results::{StruckSummary, observe, results};
 use super::setting::{Setting, StruckStructure};
 use super::uncertainty::UncertaintyInputs;
-use crate::physics::impact::{FrameImpactSolver, ImpactSetup, ImpactSolver};
-use crate::physics::integrator::tangents::HasTangents;
-use crate::physics::structure::frame_properties::FrameProperties;
-use crate::physics::tracking::monitor::Tracking;
-use crate::plan::{Impact, ImpactTarget, Plan, StoreyTarget, Until};
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::setting::{FrameSteps, Start, above_critical, not_stepped};
 use crate::procedures::stepping::step_loop::{self, AxesState, Balance, Stepped};
 use crate::procedures::stepping::tracking::TrackingSummary;
-use crate::record::{
-    FloorMotion, FloorStep, History, ImpactHistory, ImpactStep, NamedResult, StruckFrame,
-};
-use crate::rig::Reading;
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::{Session, of_base_shear};
 use crate::run::stop::Stop;
+use psd_physics::impact::{FrameImpactSolver, ImpactSetup, ImpactSolver};
+use psd_physics::integrator::tangents::HasTangents;
+use psd_physics::structure::frame_properties::FrameProperties;
+use psd_physics::tracking::monitor::Tracking;
+use psd_plan::record::{
+    FloorMotion, FloorStep, History, ImpactHistory, ImpactStep, NamedResult, StruckFrame,
+};
+use psd_plan::{Impact, ImpactTarget, Plan, StoreyTarget, Until};
+use psd_rig::Reading;
 
 pub(crate) fn perform(
     plan: &Impact,

@@ -2,25 +2,23 @@
 //! each inside its domain, and the steps that they lead to. It moves nothing.
 
 use super::contact;
-use crate::physics::contact::ContactLaw;
-use crate::physics::contact::contact_time_step::Approach;
-use crate::physics::impact::ImpactInput;
-use crate::physics::integrator::stability::{Met, longest_stable_step};
-use crate::physics::structure::Matrices;
-use crate::plan::formula::Estimate;
-use crate::plan::procedures::impact::block as schema;
-use crate::plan::{
-    Frame, Impact, ImpactTarget, Plan, PointTarget, Stepping, StoreyTarget, Striker,
-};
 use crate::procedures::stepping;
 use crate::procedures::stepping::setting::{FrameSteps, Steps, Times, frame_of, stable};
-use crate::rig::DeclaredNoise;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use crate::schema::methods;
-use crate::schema::procedures::STIFFNESS;
-use crate::units::Dimension;
+use psd_physics::contact::ContactLaw;
+use psd_physics::contact::contact_time_step::Approach;
+use psd_physics::impact::ImpactInput;
+use psd_physics::integrator::stability::{Met, longest_stable_step};
+use psd_physics::structure::Matrices;
+use psd_plan::formula::Estimate;
+use psd_plan::procedures::impact::block as schema;
+use psd_plan::schema::methods;
+use psd_plan::schema::procedures::STIFFNESS;
+use psd_plan::{Frame, Impact, ImpactTarget, Plan, PointTarget, Stepping, StoreyTarget, Striker};
+use psd_rig::DeclaredNoise;
+use psd_text::units::Dimension;
 
 /// Everything known before the first step.
 pub(crate) struct Setting {

@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use crate::procedures::shake;
-use crate::record::{ImpactHistory, ImpactStep, StruckFrame};
 use crate::report::tables::TableColumn::{self, Integer, Number, Text};
 use crate::report::tables::{Table, numeric, written};
-use crate::schema::{Column, columns};
+use psd_plan::record::{ImpactHistory, ImpactStep, StruckFrame};
+use psd_plan::schema::{Column, columns};
 
 /// The columns of an impact on one degree of freedom.
 pub(crate) const STEPS: &[TableColumn<ImpactStep>] = &[

@@ -1,8 +1,8 @@
 //! `inspect NAME { … }`
 
-use crate::language::check::checker::Checker;
-use crate::plan::ProcedureKind;
-use crate::plan::procedures::inspect::block::NOTE;
+use psd_language::check::checker::Checker;
+use psd_plan::ProcedureKind;
+use psd_plan::procedures::inspect::block::NOTE;
 
 pub fn inspect(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     checker

@@ -1,9 +1,9 @@
 //! `move NAME { … }`
 
-use crate::language::check::checker::Checker;
-use crate::plan::procedures::move_to::block as schema;
-use crate::plan::{Move, ProcedureKind};
-use crate::schema::procedures::SPEED;
+use psd_language::check::checker::Checker;
+use psd_plan::procedures::move_to::block as schema;
+use psd_plan::schema::procedures::SPEED;
+use psd_plan::{Move, ProcedureKind};
 
 pub fn move_block(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     checker.specimen_needed(block);

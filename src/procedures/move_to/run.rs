@@ -1,13 +1,13 @@
 //! `move`: to an absolute displacement. A limited increment makes it several equal ones, each a step of the record.
 
-use crate::plan::Move;
 use crate::procedures::stiffness_ramp::points::secant;
-use crate::record::{History, MoveStep};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::{Session, first};
 use crate::run::stop::Stop;
-use crate::units::Dimension;
+use psd_plan::Move;
+use psd_plan::record::{History, MoveStep};
+use psd_text::units::Dimension;
 
 pub(crate) fn perform(
     plan: &Move,

@@ -1,9 +1,9 @@
 //! The table of a move: a row an increment. In: steps. Out: columns.
 
-use crate::record::MoveStep;
 use crate::report::tables::TableColumn::{self, Integer, Number, Optional};
 use crate::report::tables::{Table, numeric, written};
-use crate::schema::{Column, columns};
+use psd_plan::record::MoveStep;
+use psd_plan::schema::{Column, columns};
 
 const STEPS: &[TableColumn<MoveStep>] = &[
     Integer(columns::STEP, |step| step.step),

@@ -1,23 +1,23 @@
 //! `shake NAME { … }`: the frame, the ground motion, damping, and a stable time step.
 
 use crate::codes::{E624, E639, W713};
-use crate::language::check::checker::{Checker, Shape};
-use crate::language::check::declarations::specimen::frame;
-use crate::language::check::declared::Declared;
-use crate::language::check::violations::ListForNumber;
-use crate::language::check::wording::shown;
-use crate::plan::formula::Formula;
-use crate::plan::procedures::shake::block as schema;
-use crate::plan::{Contact, ProcedureKind, Shake, ShakeDamping};
 use crate::procedures::stepping;
 use crate::procedures::stepping::check::frame_check;
 use crate::procedures::stepping::check::frame_check::FrameSteps;
-use crate::schema::procedures::SPECIMEN;
-use crate::schema::{Kind, frames, methods};
-use crate::text::diagnostic::{Code, Diagnostic, Violation};
-use crate::text::source::Span;
-use crate::units::Dimension;
-use crate::units::display::significant;
+use psd_language::check::checker::{Checker, Shape};
+use psd_language::check::declarations::specimen::frame;
+use psd_language::check::declared::Declared;
+use psd_language::check::violations::ListForNumber;
+use psd_language::check::wording::shown;
+use psd_plan::formula::Formula;
+use psd_plan::procedures::shake::block as schema;
+use psd_plan::schema::procedures::SPECIMEN;
+use psd_plan::schema::{Kind, frames, methods};
+use psd_plan::{Contact, ProcedureKind, Shake, ShakeDamping};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
+use psd_text::units::display::significant;
 
 #[derive(Violation)]
 #[violation(E624, "specimen `{specimen}` has no storeys; `shake` requires a frame")]

@@ -1,12 +1,12 @@
 //! The facts about a ground-motion test that check and report need without running it. In: a test, or its history. Out: facts.
 
 use super::figures;
-use crate::plan::procedures::shake::block as schema;
-use crate::plan::{Dependence, Plan, Shake};
 use crate::procedures::facts::{Delay, Facts, Recorded, Tests};
 use crate::procedures::stepping;
 use crate::procedures::stepping::tracking::frame_delay;
-use crate::record::ShakeHistory;
+use psd_plan::procedures::shake::block as schema;
+use psd_plan::record::ShakeHistory;
+use psd_plan::{Dependence, Plan, Shake};
 
 pub(crate) fn facts(shake: &Shake) -> Facts<'_> {
     Facts {

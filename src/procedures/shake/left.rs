@@ -1,10 +1,10 @@
 //! The motion at the end of a ground-motion test, for the next procedure. In: the test and the ground motions. Out: a description and the
 //! help.
 
-use crate::physics::structure::Damping;
-use crate::plan::formula::Formula;
-use crate::plan::{Ground, Shake};
 use crate::procedures::facts::Motion;
+use psd_physics::structure::Damping;
+use psd_plan::formula::Formula;
+use psd_plan::{Ground, Shake};
 
 /// A damped frame comes to rest if the ground is at rest for long enough.
 pub(crate) fn left(shake: &Shake, grounds: &[Option<Ground>]) -> Motion<'static> {

@@ -1,19 +1,19 @@
 //! A frame on moving ground, as a report states it: its storeys, the ground-motion record, the modes, the response of each storey, the
 //! energy. In: a plan and a record. Out: blocks.
 
-use crate::physics::structure::{SymmetricBand, storeys_of, widen};
-use crate::plan::procedures::shake::block as schema;
-use crate::plan::procedures::unload::block as unload;
-use crate::plan::{Frame, Ground, Integrator, Link, ProcedureKind, Shake, ShakeDamping};
 use crate::procedures::stepping::energy;
-use crate::record::{Floors, Modes, NamedResult, ProcedureRecord, ShakeHistory, UnloadStep};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::percent;
 use crate::report::sections::results::{actuators, budget_table, tracking};
 use crate::report::{Run, number};
-use crate::schema::ResultKind;
-use crate::units::Dimension;
-use crate::units::display::significant;
+use psd_physics::structure::{SymmetricBand, storeys_of, widen};
+use psd_plan::procedures::shake::block as schema;
+use psd_plan::procedures::unload::block as unload;
+use psd_plan::record::{Floors, Modes, NamedResult, ProcedureRecord, ShakeHistory, UnloadStep};
+use psd_plan::schema::ResultKind;
+use psd_plan::{Frame, Ground, Integrator, Link, ProcedureKind, Shake, ShakeDamping};
+use psd_text::units::Dimension;
+use psd_text::units::display::significant;
 
 /// The blocks below the results of a ground-motion test: its integration, the modes, the storeys, the energy.
 pub(crate) fn shaken(
@@ -159,7 +159,7 @@ pub(crate) fn mode_table(modes: &Modes, ratios: &[f64]) -> Block {
     let row = |mode: usize| -> Vec<Text> {
         let shape: Vec<String> = modes.shapes[mode]
             .iter()
-            .map(|entry| crate::units::display::minus(&significant(*entry, 4)))
+            .map(|entry| psd_text::units::display::minus(&significant(*entry, 4)))
             .collect();
         vec![
             (mode + 1).to_string().into(),

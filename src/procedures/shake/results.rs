@@ -1,13 +1,13 @@
 //! The results of a ground-motion test: peaks of every floor and storey, collected step by step. In: the ends of steps. Out: results in
 //! the schema's order. It moves nothing.
 
-use crate::physics::integrator::state::FrameState;
-use crate::physics::statistics::noisy_largest::NoisyLargest;
-use crate::physics::structure::{Modes, drifts, widen};
-use crate::plan::procedures::shake::block as schema;
 use crate::procedures::stepping::tracking::TrackingSummary;
-use crate::record::NamedResult;
-use crate::schema::ResultKind;
+use psd_physics::integrator::state::FrameState;
+use psd_physics::statistics::noisy_largest::NoisyLargest;
+use psd_physics::structure::{Modes, drifts, widen};
+use psd_plan::procedures::shake::block as schema;
+use psd_plan::record::NamedResult;
+use psd_plan::schema::ResultKind;
 
 /// Peaks over the computed displacements and the measured forces.
 pub(crate) struct ShakeSummary {

@@ -6,16 +6,16 @@ use super::results::{ShakeSummary, results};
 use super::setting::Setting;
 use super::steps::Shaking;
 use super::uncertainty::{self, ShakeUncertainty};
-use crate::plan::{Plan, Shake};
 use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::stepping::energy::observe_imbalance;
 use crate::procedures::stepping::frame_uncertainty::FrameUncertainty;
 use crate::procedures::stepping::setting::{FrameSteps, above_critical, frame_of};
 use crate::procedures::stepping::tracking::TrackingSummary;
-use crate::record::{History, ShakeHistory};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::{Session, of_base_shear};
+use psd_plan::record::{History, ShakeHistory};
+use psd_plan::{Plan, Shake};
 
 pub(crate) fn perform(
     plan: &Shake,

@@ -1,17 +1,17 @@
 //! The inputs of a base excitation, evaluated before its first time step. In: the plan, its frame and ground motion. Out: the time
 //! steps of the frame, the scale of the ground motion, its energy.
 
-use crate::physics::structure::ground::peak_velocity;
-use crate::plan::formula::Formula;
-use crate::plan::procedures::shake::block as schema;
-use crate::plan::{Frame, Ground, Shake};
 use crate::procedures::stepping;
 use crate::procedures::stepping::setting::{FrameSteps, Times};
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use crate::schema::methods;
-use crate::units::Dimension;
+use psd_physics::structure::ground::peak_velocity;
+use psd_plan::formula::Formula;
+use psd_plan::procedures::shake::block as schema;
+use psd_plan::schema::methods;
+use psd_plan::{Frame, Ground, Shake};
+use psd_text::units::Dimension;
 
 /// Everything known before the first step.
 pub(crate) struct Setting {

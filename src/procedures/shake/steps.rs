@@ -3,18 +3,18 @@
 
 use super::results::ShakeSummary;
 use super::setting::Setting;
-use crate::physics::integrator::solver::FrameSolver;
-use crate::physics::structure::ground::acceleration_at;
-use crate::physics::tracking::monitor::Tracking;
-use crate::plan::{Ground, Shake};
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::setting::{Start, not_stepped};
 use crate::procedures::stepping::step_loop::{self, AxesState, Balance, Stepped};
 use crate::procedures::stepping::tracking::TrackingSummary;
-use crate::record::{FloorMotion, ShakeHistory, ShakeStep};
-use crate::rig::Reading;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
+use psd_physics::integrator::solver::FrameSolver;
+use psd_physics::structure::ground::acceleration_at;
+use psd_physics::tracking::monitor::Tracking;
+use psd_plan::record::{FloorMotion, ShakeHistory, ShakeStep};
+use psd_plan::{Ground, Shake};
+use psd_rig::Reading;
 
 pub(crate) struct Shaking<'a> {
     pub(crate) setting: &'a Setting,

@@ -2,11 +2,13 @@
 //! and for an unloading. In: steps. Out: columns in SI. Quantities of the whole frame are the same in every row of a step; the tracking
 //! energy is that of each floor.
 
-use crate::record::{FloorStep, Floors, FloorsAt, ImpactStep, ShakeHistory, ShakeStep, UnloadStep};
 use crate::report::tables::TableColumn::{self, Integer, Number, Optional, Text};
 use crate::report::tables::{Column, Table, written};
-use crate::schema::columns::{self, column};
-use crate::units::Dimension;
+use psd_plan::record::{
+    FloorStep, Floors, FloorsAt, ImpactStep, ShakeHistory, ShakeStep, UnloadStep,
+};
+use psd_plan::schema::columns::{self, column};
+use psd_text::units::Dimension;
 
 /// A storey at the end of a step.
 pub(crate) struct FloorRow<'a, S> {

@@ -2,23 +2,23 @@
 //! the contributions of each source to each number. The frame is re-integrated along its recorded path, under the same ground motion.
 
 use super::setting::Setting;
-use crate::physics::integrator::input::FrameError;
-use crate::physics::reintegration::frame::{Floors, FloorsOutcome, FrameRun};
-use crate::physics::reintegration::frame_path::FramePath;
-use crate::physics::reintegration::perturbation::Perturbation;
-use crate::physics::structure::ground::acceleration_at;
-use crate::plan::procedures::shake::block as schema;
-use crate::plan::{Ground, Shake};
 use crate::procedures::common::perturbed_inputs::LEADS_ELSEWHERE;
 use crate::procedures::common::results::{Evaluated, flat, give, index_of, layout_of, values};
 use crate::procedures::stepping;
 use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there};
 use crate::procedures::stepping::setting::Steps;
-use crate::record::{NamedResult, ShakeHistory};
 use crate::run::stop::Stop;
-use crate::uncertainty::engine::{Evaluate, Evaluation, Progress, Shifts, Unknown};
-use crate::uncertainty::{Refinement, Source};
-use crate::units::Dimension;
+use psd_physics::integrator::input::FrameError;
+use psd_physics::reintegration::frame::{Floors, FloorsOutcome, FrameRun};
+use psd_physics::reintegration::frame_path::FramePath;
+use psd_physics::reintegration::perturbation::Perturbation;
+use psd_physics::structure::ground::acceleration_at;
+use psd_plan::procedures::shake::block as schema;
+use psd_plan::record::{NamedResult, ShakeHistory};
+use psd_plan::uncertainty::engine::{Evaluate, Evaluation, Progress, Shifts, Unknown};
+use psd_plan::uncertainty::{Refinement, Source};
+use psd_plan::{Ground, Shake};
+use psd_text::units::Dimension;
 
 /// Steps of the finest run for each of the record.
 const FINEST: u8 = Refinement::Quarter.finer();

@@ -8,10 +8,10 @@
 //! divided by the time scale. Position and velocity are continuous everywhere (the guard refuses a path that does not join). The last
 //! reading is made at the target.
 
-use crate::physics::tracking::trajectory::{ActuatorMotion, Path};
-use crate::rig::{Reading, RigFault};
 use crate::run::session::Session;
 use crate::run::stop::Stop;
+use psd_physics::tracking::trajectory::{ActuatorMotion, Path};
+use psd_rig::{Reading, RigFault};
 
 /// Readings while the targets are not known, and on the path to them: each is compared with the limits.
 const READINGS: (usize, usize) = (1, 4);

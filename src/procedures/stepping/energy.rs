@@ -1,15 +1,15 @@
 //! The energy balance of a procedure that integrates: an observation if it does not close, its curves, its table. In: energies. Out: an
 //! event, series of a chart, a table of a report. It knows no procedure.
 
-use crate::physics::impact::energy::UNBALANCED;
-use crate::record::EventKind;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::figures::chart::{DASH_DOT, LONG, Series, Style, palette};
 use crate::report::number;
 use crate::report::number::percent;
 use crate::run::session::Session;
-use crate::units::Dimension;
-use crate::units::display::significant;
+use psd_physics::impact::energy::UNBALANCED;
+use psd_plan::record::EventKind;
+use psd_text::units::Dimension;
+use psd_text::units::display::significant;
 
 /// Records an energy error, over the input energy, that is large enough to be mistaken for a property of the specimen.
 pub(crate) fn observe_imbalance(energy_error: f64, session: &mut Session<'_>) {

@@ -3,18 +3,18 @@
 //! run itself does not change, and no rig moves.
 
 use super::setting::FrameSteps;
-use crate::physics::reintegration::frame::{Floors, FrameRun};
-use crate::physics::reintegration::frame_path::{FramePath, FrameReading};
-use crate::physics::reintegration::recorded_path::ContinuousMotion;
-use crate::plan::formula::{Formula, Operator};
-use crate::plan::procedures::shake::block as schema;
-use crate::plan::{Frame, Mode, ShakeDamping, Stepping};
 use crate::procedures::common::perturbed_inputs::{UncertainRun, out_of_bounds, uncertain_inputs};
-use crate::record::{FloorMotion, NamedResult};
 use crate::run::stop::Stop;
-use crate::schema::ResultKind;
-use crate::uncertainty::Source;
-use crate::uncertainty::engine::{CLOSE, Shifts};
+use psd_physics::reintegration::frame::{Floors, FrameRun};
+use psd_physics::reintegration::frame_path::{FramePath, FrameReading};
+use psd_physics::reintegration::recorded_path::ContinuousMotion;
+use psd_plan::formula::{Formula, Operator};
+use psd_plan::procedures::shake::block as schema;
+use psd_plan::record::{FloorMotion, NamedResult};
+use psd_plan::schema::ResultKind;
+use psd_plan::uncertainty::Source;
+use psd_plan::uncertainty::engine::{CLOSE, Shifts};
+use psd_plan::{Frame, Mode, ShakeDamping, Stepping};
 
 /// The uncertain inputs of a frame.
 #[derive(Clone, Copy)]

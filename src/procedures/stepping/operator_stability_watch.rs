@@ -3,16 +3,16 @@
 //! observation. It stops nothing.
 
 use crate::codes::W718;
-use crate::physics::impact::ImpactInput;
-use crate::physics::integrator::stability::{Met, longest_stable_step};
-use crate::physics::structure::{FrameMatrices, Matrices, drifts, shears, storeys_of};
-use crate::plan::{Integrator, Mode, Stepping};
 use crate::procedures::damping_sweep::rate_separated_stiffness::RateSeparatedFit;
-use crate::record::EventKind;
-use crate::rig::Reading;
 use crate::run::session::{Session, first};
-use crate::units::Dimension;
-use crate::units::display::readable;
+use psd_physics::impact::ImpactInput;
+use psd_physics::integrator::stability::{Met, longest_stable_step};
+use psd_physics::structure::{FrameMatrices, Matrices, drifts, shears, storeys_of};
+use psd_plan::record::EventKind;
+use psd_plan::{Integrator, Mode, Stepping};
+use psd_rig::Reading;
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 
 use super::setting::Start;
 

@@ -1,7 +1,7 @@
 //! Constants that the reports of all procedures that integrate share.
 
-use crate::plan::procedures::shake::block as schema;
-use crate::schema::procedures::tracking;
+use psd_plan::procedures::shake::block as schema;
+use psd_plan::schema::procedures::tracking;
 
 /// The method by which the contributions to the uncertainty were found.
 pub(crate) const UNCERTAINTY: &str = "Each input was perturbed by ± its standard uncertainty, one at a time, and the \

@@ -1,7 +1,7 @@
 //! The parts of the self-test that a procedure that integrates uses. In: its stepping. Out: parts.
 
-use crate::physics::self_test::SelfTestPart;
-use crate::plan::{Integrator, Mode, Stepping};
+use psd_physics::self_test::SelfTestPart;
+use psd_plan::{Integrator, Mode, Stepping};
 
 /// The integrator with the contact law; the I-modification and continuous motion separately.
 pub(crate) fn stepped(

@@ -4,21 +4,21 @@
 
 use std::fmt::Display;
 
-use crate::physics::integrator::input::FrameInput;
-use crate::physics::integrator::tangents::Tangents;
-use crate::physics::structure::frame_properties::FrameProperties;
-use crate::physics::structure::{Damping, storeys_of};
-use crate::plan::{
-    Frame, Integrator, MOST_STEPS, Plan, ShakeDamping, Stepping, rayleigh, step_count, steps_in,
-};
-use crate::record::EventKind;
-use crate::rig::{DeclaredNoise, Reading};
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use crate::schema::{frames, methods};
-use crate::units::Dimension;
-use crate::units::display::stated;
+use psd_physics::integrator::input::FrameInput;
+use psd_physics::integrator::tangents::Tangents;
+use psd_physics::structure::frame_properties::FrameProperties;
+use psd_physics::structure::{Damping, storeys_of};
+use psd_plan::record::EventKind;
+use psd_plan::schema::{frames, methods};
+use psd_plan::{
+    Frame, Integrator, MOST_STEPS, Plan, ShakeDamping, Stepping, rayleigh, step_count, steps_in,
+};
+use psd_rig::{DeclaredNoise, Reading};
+use psd_text::units::Dimension;
+use psd_text::units::display::stated;
 
 /// The steps of a procedure, as many as its duration needs.
 #[derive(Clone, Copy)]

@@ -11,14 +11,14 @@ use super::continuous_motion::{ContinuousMotion, Waypoint};
 use super::operator_stability_watch::StifferSprings;
 use super::setting::{Start, Steps};
 use super::tracking::{Monitors, TrackingSummary};
-use crate::physics::integrator::state::State;
-use crate::physics::structure::matrix::Vector;
-use crate::physics::tracking::monitor::Tracking;
-use crate::plan::{InspectTrigger, Mode, Stepping};
-use crate::rig::Reading;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::run::{AxisReport, StepReport};
+use psd_physics::integrator::state::State;
+use psd_physics::structure::matrix::Vector;
+use psd_physics::tracking::monitor::Tracking;
+use psd_plan::{InspectTrigger, Mode, Stepping};
+use psd_rig::Reading;
 
 /// The energy of a test at the end of a step \[J\].
 pub(crate) struct Balance {

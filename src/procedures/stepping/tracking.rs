@@ -2,17 +2,17 @@
 //! before a run; in it the tracking of each axis, an observation where the tracking energy is large, results of all axes together and of
 //! each. It stops nothing: the guard does.
 
-use crate::physics::structure::frame_properties::FrameProperties;
-use crate::physics::tracking::monitor::{Monitor, TrackedStep, Tracking, WARN};
-use crate::plan::formula::NoResults;
-use crate::plan::{Frame, Link, Mode, Plan, ShakeDamping, Stepping, VirtualLink};
 use crate::procedures::facts::Delay;
-use crate::record::{EventKind, NamedResult};
-use crate::rig::Reading;
 use crate::run::session::Session;
-use crate::schema::ResultKind;
-use crate::schema::procedures::tracking as schema;
-use crate::units::display::significant;
+use psd_physics::structure::frame_properties::FrameProperties;
+use psd_physics::tracking::monitor::{Monitor, TrackedStep, Tracking, WARN};
+use psd_plan::formula::NoResults;
+use psd_plan::record::{EventKind, NamedResult};
+use psd_plan::schema::ResultKind;
+use psd_plan::schema::procedures::tracking as schema;
+use psd_plan::{Frame, Link, Mode, Plan, ShakeDamping, Stepping, VirtualLink};
+use psd_rig::Reading;
+use psd_text::units::display::significant;
 
 /// A tracking monitor for every axis.
 pub(crate) struct Monitors(Vec<Monitor>);

@@ -1,19 +1,19 @@
 //! `stiffness ramp NAME { … }`
 
 use crate::codes::{E650, W726};
-use crate::language::check::checker::{Checker, Context};
-use crate::language::check::declarations::curve;
-use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::expressions::fields::whole;
-use crate::plan::procedures::stiffness_ramp::block as schema;
-use crate::plan::{
+use crate::procedures::common::violations::TooManyInProcedure;
+use psd_language::check::checker::{Checker, Context};
+use psd_language::check::declarations::curve;
+use psd_language::check::expressions::choice::Chosen;
+use psd_language::check::expressions::fields::whole;
+use psd_plan::procedures::stiffness_ramp::block as schema;
+use psd_plan::schema::procedures::SPEED;
+use psd_plan::{
     ProcedureKind, RampFit, RelaxationLaw, RelaxationModel, StiffnessRamp, WatchedHold,
     WatchedModel,
 };
-use crate::procedures::common::violations::TooManyInProcedure;
-use crate::schema::procedures::SPEED;
-use crate::text::diagnostic::Violation;
-use crate::text::source::Span;
+use psd_text::diagnostic::Violation;
+use psd_text::source::Span;
 
 /// Readings of a pause that span two decades of time: the first comes after one hundredth of it.
 const ENOUGH_READINGS: u32 = 10;

@@ -1,11 +1,11 @@
 //! The facts about a stiffness ramp that check and report need without running it. In: the ramp. Out: facts.
 
 use super::{figures, report};
-use crate::physics::self_test::SelfTestPart;
-use crate::plan::procedures::stiffness_ramp::block as schema;
-use crate::plan::{RampFit, StiffnessRamp};
 use crate::procedures::facts::{Facts, Recorded};
-use crate::record::StiffnessRampHistory;
+use psd_physics::self_test::SelfTestPart;
+use psd_plan::procedures::stiffness_ramp::block as schema;
+use psd_plan::record::StiffnessRampHistory;
+use psd_plan::{RampFit, StiffnessRamp};
 
 pub(crate) fn facts() -> Facts<'static> {
     Facts {

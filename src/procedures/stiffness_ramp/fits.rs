@@ -2,11 +2,11 @@
 
 use super::run::fitted;
 use super::uncertainty::Readings;
-use crate::plan::StiffnessRamp;
-use crate::plan::procedures::stiffness_ramp::block as schema;
 use crate::procedures::common::fit_uncertainty::Fits;
-use crate::record::StiffnessRampHistory;
-use crate::uncertainty::InstrumentUncertainty;
+use psd_plan::StiffnessRamp;
+use psd_plan::procedures::stiffness_ramp::block as schema;
+use psd_plan::record::StiffnessRampHistory;
+use psd_plan::uncertainty::InstrumentUncertainty;
 
 /// Results of a ramp that are fitted to its holds.
 const OF_HOLDS: [&str; 8] = [

@@ -2,20 +2,20 @@
 //! dwells the fit, its results and observations. It fits nothing itself.
 
 use super::points::{Point, secant};
-use crate::physics::identification::StatedVariance;
-use crate::physics::relaxation::hold::{Hold, Unrelaxed};
-use crate::physics::relaxation::law::RelaxationLaw;
-use crate::physics::relaxation::superposition::{SuperpositionFit, fit_superposition};
-use crate::physics::relaxation::time_constant::{RelaxationFit, RelaxationModel, fit_relaxation};
-use crate::plan::WatchedModel;
-use crate::plan::procedures::stiffness_ramp::block as schema;
-use crate::record::NamedResult;
-use crate::rig::Reading;
 use crate::run::session::{Session, first};
 use crate::run::stop::Stop;
-use crate::schema::ResultKind;
-use crate::units::Dimension;
-use crate::units::display::readable;
+use psd_physics::identification::StatedVariance;
+use psd_physics::relaxation::hold::{Hold, Unrelaxed};
+use psd_physics::relaxation::law::RelaxationLaw;
+use psd_physics::relaxation::superposition::{SuperpositionFit, fit_superposition};
+use psd_physics::relaxation::time_constant::{RelaxationFit, RelaxationModel, fit_relaxation};
+use psd_plan::WatchedModel;
+use psd_plan::procedures::stiffness_ramp::block as schema;
+use psd_plan::record::NamedResult;
+use psd_plan::schema::ResultKind;
+use psd_rig::Reading;
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 
 /// The readings of a pause.
 pub(crate) struct Watched {

@@ -1,6 +1,6 @@
 //! Points of a force–displacement curve.
 
-use crate::record::RampStep;
+use psd_plan::record::RampStep;
 
 /// A displacement \[m\] and the force there \[N\].
 pub(crate) type Point = (f64, f64);

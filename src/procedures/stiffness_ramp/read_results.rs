@@ -4,15 +4,15 @@
 use std::collections::BTreeSet;
 
 use crate::codes::{E655, W722};
-use crate::language::check::checker::Checker;
-use crate::physics::statistics::student_t::coverage;
-use crate::plan::formula::Formula;
-use crate::plan::procedures::stiffness_ramp::block as schema;
-use crate::plan::{BreakCount, Procedure, ProcedureKind, RampFit, StiffnessRamp};
-use crate::text::diagnostic::{Code, Diagnostic, Violation};
-use crate::text::source::Span;
-use crate::uncertainty::FEW;
-use crate::units::display::significant;
+use psd_language::check::checker::Checker;
+use psd_physics::statistics::student_t::coverage;
+use psd_plan::formula::Formula;
+use psd_plan::procedures::stiffness_ramp::block as schema;
+use psd_plan::uncertainty::FEW;
+use psd_plan::{BreakCount, Procedure, ProcedureKind, RampFit, StiffnessRamp};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::Span;
+use psd_text::units::display::significant;
 
 /// Results of a ramp that its fit gives.
 const FITTED: [&str; 6] = [

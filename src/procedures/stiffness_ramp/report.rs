@@ -1,12 +1,12 @@
 //! The report of a stiffness ramp: its curve, the relaxation in its pauses, the line through its readings. In: a history. Out: blocks.
 
 use super::curve::curve_report;
-use crate::plan::{RelaxationLaw, RelaxationModel};
-use crate::record::{Hold, RelaxationFit, StiffnessRampHistory, SuperpositionFit};
 use crate::report::document::Block;
 use crate::report::number;
 use crate::report::sections::results::line_fit::{Coefficient, fitted};
-use crate::units::Dimension;
+use psd_plan::record::{Hold, RelaxationFit, StiffnessRampHistory, SuperpositionFit};
+use psd_plan::{RelaxationLaw, RelaxationModel};
+use psd_text::units::Dimension;
 
 /// How the contributions to its uncertainty were found; also for every other fitted line.
 pub(crate) const UNCERTAINTY: &str = "Scatter of its readings: covariance of the fit; calibration: by the powers of \

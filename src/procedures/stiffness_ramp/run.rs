@@ -6,21 +6,21 @@ use super::hold::Arriving;
 use super::points::{Point, point, secant};
 use super::uncertainty::{Direct, Readings};
 use super::{curve, hold};
-use crate::physics::identification::bilinear_fit::fit_bilinear;
-use crate::physics::identification::{StatedVariance, fit_line};
-use crate::plan::procedures::stiffness_ramp::block as schema;
-use crate::plan::{Plan, RampFit, StiffnessRamp, WatchedHold};
 use crate::procedures::common::dwell_readings::DwellReadings;
-use crate::record::{
-    BilinearFit, EventKind, History, Hold, LineFit, MultilinearFit, NamedResult, RampStep,
-    StiffnessRampHistory,
-};
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use crate::uncertainty::InstrumentUncertainty;
-use crate::units::Dimension;
+use psd_physics::identification::bilinear_fit::fit_bilinear;
+use psd_physics::identification::{StatedVariance, fit_line};
+use psd_plan::procedures::stiffness_ramp::block as schema;
+use psd_plan::record::{
+    BilinearFit, EventKind, History, Hold, LineFit, MultilinearFit, NamedResult, RampStep,
+    StiffnessRampHistory,
+};
+use psd_plan::uncertainty::InstrumentUncertainty;
+use psd_plan::{Plan, RampFit, StiffnessRamp, WatchedHold};
+use psd_text::units::Dimension;
 
 pub(crate) fn perform(
     plan: &StiffnessRamp,

@@ -2,10 +2,10 @@
 
 use std::iter::once;
 
-use crate::record::{Hold, RampStep, StiffnessRampHistory};
 use crate::report::tables::TableColumn::{self, Flag, Integer, Number, Optional};
 use crate::report::tables::{Table, numeric, written};
-use crate::schema::{Column, columns};
+use psd_plan::record::{Hold, RampStep, StiffnessRampHistory};
+use psd_plan::schema::{Column, columns};
 
 /// The columns of the steps.
 const STEPS: &[TableColumn<RampStep>] = &[

@@ -1,23 +1,23 @@
 //! The direct readings of a `stiffness ramp`, beside its fits, and their uncertainty. In: the readings of the ramp. Out: forces,
 //! displacements, secants and the energy of its loops, with the contributions of each source. It fits nothing.
 
-use crate::schema::ResultKind;
+use psd_plan::schema::ResultKind;
 use std::convert::Infallible;
 
 use super::points::{Point, point, secant};
-use crate::physics::identification::loop_energy;
-use crate::physics::reintegration::perturbation::{Perturbation, ReadingErrors};
-use crate::physics::statistics::noisy_largest::NoisyLargest;
-use crate::physics::statistics::samples::mean;
-use crate::plan::StiffnessRamp;
-use crate::plan::formula::ProcedureId;
-use crate::plan::procedures::stiffness_ramp::block as schema;
 use crate::procedures::common::loop_sampling::{left_open_by, of_open};
 use crate::procedures::common::results::{give, index_of, largest};
-use crate::record::{NamedResult, RampStep};
-use crate::rig::DeclaredNoise;
-use crate::uncertainty::engine::{Evaluate, Evaluation, Propagation, Shifts};
-use crate::uncertainty::{Contribution, InstrumentUncertainty, Source};
+use psd_physics::identification::loop_energy;
+use psd_physics::reintegration::perturbation::{Perturbation, ReadingErrors};
+use psd_physics::statistics::noisy_largest::NoisyLargest;
+use psd_physics::statistics::samples::mean;
+use psd_plan::StiffnessRamp;
+use psd_plan::formula::ProcedureId;
+use psd_plan::procedures::stiffness_ramp::block as schema;
+use psd_plan::record::{NamedResult, RampStep};
+use psd_plan::uncertainty::engine::{Evaluate, Evaluation, Propagation, Shifts};
+use psd_plan::uncertainty::{Contribution, InstrumentUncertainty, Source};
+use psd_rig::DeclaredNoise;
 
 /// The results that are read directly, SI; None for a result that does not exist.
 #[derive(Default)]
@@ -204,14 +204,18 @@ pub(crate) fn propagate(
 
 #[cfg(test)]
 mod tests {
-    use crate::plan::formula::Formula::Constant;
-    use crate::plan::{Behaviour, Calibration, Link, ProcedureKind, StiffnessRamp, VirtualLink};
     use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
-    use crate::uncertainty::Source;
+    use psd_plan::formula::Formula::Constant;
+    use psd_plan::uncertainty::Source;
+    use psd_plan::{Behaviour, Calibration, Link, ProcedureKind, StiffnessRamp, VirtualLink};
 
     const STIFFNESS: f64 = 1000.0;
 
-    fn record(link: VirtualLink, calibration: Calibration, samples: u32) -> crate::record::Record {
+    fn record(
+        link: VirtualLink,
+        calibration: Calibration,
+        samples: u32,
+    ) -> psd_plan::record::Record {
         let out = StiffnessRamp {
             return_path: true,
             samples,

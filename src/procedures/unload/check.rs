@@ -1,11 +1,11 @@
 //! `unload NAME { … }`: of one degree of freedom, or of all floors of a frame together.
 
-use crate::language::check::checker::Checker;
-use crate::language::check::declarations::specimen::frame;
-use crate::plan::procedures::unload::block as schema;
-use crate::plan::{ProcedureKind, Unload};
 use crate::procedures::common::violations::NoUseOnAFrame;
-use crate::schema::procedures::{SPEED, STIFFNESS};
+use psd_language::check::checker::Checker;
+use psd_language::check::declarations::specimen::frame;
+use psd_plan::procedures::unload::block as schema;
+use psd_plan::schema::procedures::{SPEED, STIFFNESS};
+use psd_plan::{ProcedureKind, Unload};
 
 pub fn unload(checker: &mut Checker, block: usize) -> Option<ProcedureKind> {
     let tested = checker.specimen_block(block);

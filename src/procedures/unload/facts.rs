@@ -1,10 +1,10 @@
 //! The facts about an unloading that the drivers of check and report need without carrying it out. In: an unloading of the plan.
 //! Out: facts.
 
-use crate::plan::Unload;
-use crate::plan::procedures::unload::block as schema;
 use crate::procedures::facts::{Facts, Recorded, Tests};
 use crate::procedures::shake::figures;
+use psd_plan::Unload;
+use psd_plan::procedures::unload::block as schema;
 
 pub(crate) fn facts(unload: &Unload) -> Facts<'static> {
     let shared = Facts {

@@ -2,24 +2,24 @@
 //! forces are expected to fall. Out: the unloading path, and the unloaded position. Each target is before the position of zero force, by
 //! the slopes of the moves before it (`physics/structure/unloading/path.rs`); the guard compares every one with the limits.
 
-use crate::physics::structure::frame_properties::FrameProperties;
-use crate::physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
-use crate::plan::procedures::unload::block as schema;
-use crate::plan::{Frame, Plan, Unload};
 use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::stepping::setting::frame_of;
-use crate::record::{EventKind, History, NamedResult, Rest, UnloadStep};
-use crate::rig::Reading;
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use crate::schema::ResultKind;
-use crate::schema::procedures::SPECIMEN;
-use crate::schema::procedures::STIFFNESS;
-use crate::uncertainty::{Contribution, NOISE};
-use crate::units::Dimension;
-use crate::units::display::readable;
+use psd_physics::structure::frame_properties::FrameProperties;
+use psd_physics::structure::{Damping, Loaded, Unloading, UnloadingPath};
+use psd_plan::procedures::unload::block as schema;
+use psd_plan::record::{EventKind, History, NamedResult, Rest, UnloadStep};
+use psd_plan::schema::ResultKind;
+use psd_plan::schema::procedures::SPECIMEN;
+use psd_plan::schema::procedures::STIFFNESS;
+use psd_plan::uncertainty::{Contribution, NOISE};
+use psd_plan::{Frame, Plan, Unload};
+use psd_rig::Reading;
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 
 /// Targets of the unloading path, at most: a specimen with the expected stiffness needs three.
 pub(crate) const MOST_TARGETS: u64 = 50;

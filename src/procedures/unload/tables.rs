@@ -1,10 +1,10 @@
 //! The table of an unloading: a row a move of one degree of freedom, or a row a floor of a frame. In: steps. Out: columns.
 
 use crate::procedures::shake;
-use crate::record::UnloadStep;
 use crate::report::tables::TableColumn::{self, Integer, Number, Optional};
 use crate::report::tables::{Table, numeric, written};
-use crate::schema::{Column, columns};
+use psd_plan::record::UnloadStep;
+use psd_plan::schema::{Column, columns};
 
 /// The columns of the moves of one degree of freedom.
 const MOVES: &[TableColumn<UnloadStep>] = &[

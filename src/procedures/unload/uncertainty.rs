@@ -6,11 +6,11 @@
 //! −K⁻¹f. The stiffness that was assumed for the moves does not change the position: to first order it is not a source. The event that
 //! left the specimen there, for example an impact, is not measured by the position and is not a source either.
 
-use crate::physics::integrator::tangent::NOISE_MULTIPLE;
-use crate::physics::structure::{Loaded, Unloading};
 use crate::procedures::common::perturbed_inputs::UncertainRun;
-use crate::record::{Rest, UnloadStep};
-use crate::uncertainty::{Contribution, NOISE, Source};
+use psd_physics::integrator::tangent::NOISE_MULTIPLE;
+use psd_physics::structure::{Loaded, Unloading};
+use psd_plan::record::{Rest, UnloadStep};
+use psd_plan::uncertainty::{Contribution, NOISE, Source};
 
 /// A storey shows a stiffness if its storey drift changes by more than this fraction of the largest change on the path; less is rounding.
 const SIGNIFICANT_FRACTION: f64 = 1e-6;

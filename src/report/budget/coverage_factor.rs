@@ -1,9 +1,9 @@
 //! The printed coverage factor k of U = k·u and the effective degrees of freedom. In: combined uncertainties. Out: strings. The
 //! module `uncertainty` calculates both.
 
-use crate::uncertainty::MeasurementUncertainty;
-use crate::units::display::trimmed;
 use crate::verdict::Assessment;
+use psd_plan::uncertainty::MeasurementUncertainty;
+use psd_text::units::display::trimmed;
 
 /// From this number of effective degrees of freedom on they are not printed: k is 2 to three digits.
 const UNLIMITED: f64 = 1e4;

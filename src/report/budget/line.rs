@@ -1,16 +1,16 @@
 //! One line of an uncertainty budget: its input with value, uncertainty and origin. In: a run and a contribution. Out: a line.
 
-use crate::plan::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
-use crate::plan::{BelowRange, Plan, ShakeDamping, Specimen, Storey, Striker};
 use crate::procedures;
-use crate::record::ProcedureRecord;
 use crate::report::run::Run;
 use crate::report::wording::budget as wording;
-use crate::rig::named_axis;
-use crate::schema::frames::{DAMPING_RATIO, MASS_MATRIX, STIFFNESS_MATRIX};
-use crate::uncertainty::{Contribution, Source};
-use crate::units::Dimension;
-use crate::units::display::stated;
+use psd_plan::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
+use psd_plan::record::ProcedureRecord;
+use psd_plan::schema::frames::{DAMPING_RATIO, MASS_MATRIX, STIFFNESS_MATRIX};
+use psd_plan::uncertainty::{Contribution, Source};
+use psd_plan::{BelowRange, Plan, ShakeDamping, Specimen, Storey, Striker};
+use psd_rig::named_axis;
+use psd_text::units::Dimension;
+use psd_text::units::display::stated;
 
 /// One input of a budget.
 #[derive(Clone, Debug)]

@@ -7,9 +7,9 @@ mod line;
 pub(super) use line::{Line, Origin};
 
 use super::run::Run;
-use crate::plan::formula::{ProcedureId, ResultValue};
-use crate::record::{NamedResult, ProcedureRecord};
-use crate::uncertainty::{
+use psd_plan::formula::{ProcedureId, ResultValue};
+use psd_plan::record::{NamedResult, ProcedureRecord};
+use psd_plan::uncertainty::{
     Contribution, MeasurementUncertainty, Source, StepInterval, measurement_uncertainty,
 };
 

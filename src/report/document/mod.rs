@@ -12,7 +12,7 @@ mod world;
 use serde::Serialize;
 
 use super::wording::Labels;
-use crate::plan::Picture;
+use psd_plan::Picture;
 
 pub(crate) use text::{Style, Text, printable};
 

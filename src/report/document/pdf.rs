@@ -13,7 +13,7 @@ use typst_pdf::{PdfOptions, PdfStandard, PdfStandards};
 use super::Document;
 use super::fonts::{FIGURE_FAMILIES, PAGE_FAMILIES, PAGE_OVER_FIGURE};
 use super::world::Sealed;
-use crate::text::glyphs;
+use psd_text::glyphs;
 
 const TEMPLATE: &str = include_str!("report.typ");
 /// Stack size of the threads that set a report: enough for the deepest nesting of the template, also in a build without optimisation.

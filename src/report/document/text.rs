@@ -4,7 +4,7 @@
 use serde::Serialize;
 
 use crate::report::wording::common::NOT_GIVEN;
-use crate::text::sanitize;
+use psd_text::sanitize;
 
 /// The role of a piece of text; the renderer chooses its style.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

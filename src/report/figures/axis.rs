@@ -4,7 +4,7 @@
 use std::ops::RangeInclusive;
 
 use super::chart::{End, Quantity};
-use crate::units::display::{minus, typeset, unit};
+use psd_text::units::display::{minus, typeset, unit};
 
 /// A scaled axis; `low..high` and the ticks are in the unit of the axis.
 pub(super) struct Axis {
@@ -141,7 +141,7 @@ fn ticks(range: RangeInclusive<f64>, step: f64) -> Vec<(f64, String)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::units::Dimension;
+    use psd_text::units::Dimension;
 
     fn labels(quantity: &Quantity, low: f64, high: f64) -> Vec<String> {
         Axis::over(quantity, [low, high].into_iter(), 5)

@@ -116,7 +116,7 @@ impl Lettering {
         let (width, _) = self
             .scaled(MEASURED_AT)
             .font
-            .box_size(&crate::text::glyphs::shown(text))
+            .box_size(&psd_text::glyphs::shown(text))
             .expect("the embedded font reads");
         f64::from(width) / MEASURED_AT
     }

@@ -6,7 +6,7 @@ use std::borrow::Cow;
 use super::points::Points;
 use crate::report::number;
 use crate::report::wording::figures as wording;
-use crate::units::Dimension;
+use psd_text::units::Dimension;
 
 /// A chart of two quantities.
 pub(crate) struct Chart {

@@ -5,7 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::chart::{Band, Chart, Quantity, Series};
-use crate::units::display::si_unit;
+use psd_text::units::display::si_unit;
 
 /// Name of the file in a folder of accepted results.
 pub const FIGURE_DATA: &str = "figures.json";

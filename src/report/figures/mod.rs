@@ -14,11 +14,11 @@ mod vector;
 
 use super::output::file::OutputError;
 use super::run::Run;
-use crate::plan::formula::ProcedureId;
-use crate::plan::{Figure, FigureKind};
 use crate::procedures;
-use crate::record::ProcedureRecord;
 use chart::Chart;
+use psd_plan::formula::ProcedureId;
+use psd_plan::record::ProcedureRecord;
+use psd_plan::{Figure, FigureKind};
 
 pub use data::{FIGURE_DATA, FigureAxis, FigureBand, FigureCurve, FigureData, Figures};
 pub(crate) use draw::svg;

@@ -7,7 +7,7 @@ use super::chart::{
     palette,
 };
 use super::{draw, raster};
-use crate::units::Dimension;
+use psd_text::units::Dimension;
 
 /// The quantity of an axis.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@
 use super::chart::{
     Chart, Colour, DASH_DOT, DOTTED, LONG, SOLID, SPARSE, Series, SharedCurve, Style, palette,
 };
-use crate::plan::{FigureKind, MOST_TOGETHER};
+use psd_plan::{FigureKind, MOST_TOGETHER};
 
 /// Curves that coincide remain visible: a narrow dashed line on a broad one shows both.
 const STYLES: [(Colour, f64, &[f64]); MOST_TOGETHER] = [

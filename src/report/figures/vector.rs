@@ -291,7 +291,7 @@ fn hex((red, green, blue): Colour) -> String {
 /// A text between tags: escaped, without control characters, and with code points for missing glyphs.
 fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
-    for c in crate::text::glyphs::shown(&crate::report::document::printable(text)).chars() {
+    for c in psd_text::glyphs::shown(&crate::report::document::printable(text)).chars() {
         match c {
             '&' => escaped.push_str("&amp;"),
             '<' => escaped.push_str("&lt;"),

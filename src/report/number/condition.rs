@@ -2,13 +2,13 @@
 
 use super::join;
 use super::uncertain::{decimals_of, joined, parts_in, power_of, tens, with_standard};
-use crate::plan::Comparison;
-#[cfg(test)]
-use crate::plan::formula::UncertaintyStatus;
-#[cfg(test)]
-use crate::units::Dimension;
-use crate::units::display::{self, is_rounding, minus, significant, trimmed, unit};
 use crate::verdict::{Bound, ConditionOutcome, ReproductionOutcome};
+use psd_plan::Comparison;
+#[cfg(test)]
+use psd_plan::formula::UncertaintyStatus;
+#[cfg(test)]
+use psd_text::units::Dimension;
+use psd_text::units::display::{self, is_rounding, minus, significant, trimmed, unit};
 
 /// The value of a condition with its expanded uncertainty U, in percent if the plan specifies percent; with u in parentheses if its
 /// budget gives no U.

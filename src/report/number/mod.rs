@@ -11,9 +11,9 @@ pub(crate) use condition::{bound_alone, comparison_sign};
 pub(crate) use uncertain::with_uncertainty;
 pub(super) use uncertain::{of_result, parts_of_result, plus_minus, with_expanded};
 
-use crate::units::Dimension;
-use crate::units::display;
-use crate::units::display::{digits, minus, unit};
+use psd_text::units::Dimension;
+use psd_text::units::display;
+use psd_text::units::display::{digits, minus, unit};
 
 /// A value in its readable unit: `7.922 mm`, `−2.000 kN`, `20` for a count.
 pub(crate) fn text(value: f64, dimension: Dimension) -> String {

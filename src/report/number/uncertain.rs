@@ -2,11 +2,11 @@
 //! strings.
 
 use super::{join_typeset, text, without_sign_of_zero};
-use crate::plan::procedures::stiffness_ramp::block::R_SQUARED;
-use crate::schema::printed_unit;
-use crate::uncertainty::MeasurementUncertainty;
-use crate::units::Dimension;
-use crate::units::display::{digits, is_rounding, minus, significant, typeset, unit};
+use psd_plan::procedures::stiffness_ramp::block::R_SQUARED;
+use psd_plan::schema::printed_unit;
+use psd_plan::uncertainty::MeasurementUncertainty;
+use psd_text::units::Dimension;
+use psd_text::units::display::{digits, is_rounding, minus, significant, typeset, unit};
 
 /// A number and its uncertainties in one unit: value and U to the second digit of U, u to its own (JCGM 100:2008, 7.2.6).
 pub(in crate::report) struct Parts {

@@ -1,6 +1,6 @@
 //! A file of the run folder, and the errors of making one. It knows no run.
 
-use crate::plan::{Format, Plan};
+use psd_plan::{Format, Plan};
 
 /// Name of the summary.
 pub const SUMMARY: &str = "summary.json";

@@ -3,7 +3,7 @@
 
 use super::file::OutputFile;
 use super::sink::FileDigest;
-use crate::text::digest::sha256;
+use psd_text::digest::sha256;
 
 /// Name of the manifest, which does not list itself.
 pub(super) const NAME: &str = "manifest.sha256";

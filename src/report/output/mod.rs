@@ -11,11 +11,11 @@ pub use sink::{FileDigest, NullSink, OutputPart, OutputPiece, OutputSink};
 
 use super::run::Run;
 use super::{document, figures, sections, summary, tables};
-use crate::plan::Format;
-use crate::text::sanitize;
 use figures::{Drawn, Undrawn};
 use file::wants;
 use paths::{UsedPaths, plan_files};
+use psd_plan::Format;
+use psd_text::sanitize;
 
 /// Writes every file of the run folder except the manifest, each immediately after it is made. The order is: summary and tables, the
 /// figures one by one, the report, which states the digests of the tables, and the files of the plan.

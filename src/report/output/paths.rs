@@ -4,8 +4,8 @@
 use std::collections::BTreeSet;
 
 use super::file::OutputFile;
-use crate::plan::{Plan, PlanFile};
-use crate::text::sanitize;
+use psd_plan::{Plan, PlanFile};
+use psd_text::sanitize;
 
 /// The texts of the plan and of the files it uses, under their names in the run folder.
 pub(in crate::report) fn plan_files(plan: &Plan) -> Vec<OutputFile> {

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use sha2::{Digest as _, Sha256};
 
 use super::file::OutputFile;
-use crate::text::digest::hex;
+use psd_text::digest::hex;
 
 /// Path and SHA-256 (hex) of a file that was put into a sink.
 pub type FileDigest = (String, String);
@@ -128,7 +128,7 @@ impl Write for Digesting<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::text::digest::sha256;
+    use psd_text::digest::sha256;
 
     #[test]
     fn a_file_in_chunks_has_the_digest_of_the_whole_in_every_sink() {

@@ -3,15 +3,15 @@
 
 use super::results::budget_table::Scope;
 use super::{Source, capitalised, with_spaces};
-use crate::plan::formula::{Part, ProcedureId, ResultReference};
 use crate::procedures;
-use crate::record::{EventKind, NO_OPERATOR_ASKED, ProcedureRecord};
 use crate::report::document::{Block, Text};
 use crate::report::number;
 use crate::report::run::Run;
 use crate::report::status::deviations;
 use crate::report::wording::deviations as wording;
-use crate::uncertainty::measurement_uncertainty;
+use psd_plan::formula::{Part, ProcedureId, ResultReference};
+use psd_plan::record::{EventKind, NO_OPERATOR_ASKED, ProcedureRecord};
+use psd_plan::uncertainty::measurement_uncertainty;
 
 /// Every deviation. A simulation without any has no such section.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
@@ -97,7 +97,7 @@ fn of_kind(run: &Run<'_>, is_printed: impl Fn(EventKind, &str) -> bool) -> Vec<S
         .events
         .iter()
         .filter(|event| is_printed(event.kind, &event.text));
-    let text = |event: &crate::record::Event| {
+    let text = |event: &psd_plan::record::Event| {
         let position = deviations::position(event.procedure.as_deref(), event.step);
         let position = position.strip_prefix(' ').unwrap_or(&position);
         let text = event.text.trim_end_matches('.');

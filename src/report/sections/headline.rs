@@ -3,17 +3,17 @@
 use super::results::budget_table::{self, Scope};
 use super::results::read::{ReadResult, exists, read_by_requirements};
 use super::{Source, capitalised, entry_name, with_spaces};
-use crate::plan::formula::{Part, ProcedureId, ResultReference, ResultValue};
 use crate::procedures;
 use crate::report::budget::coverage_factor;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::report::run::Run;
 use crate::report::wording::{common, headline as wording};
-use crate::uncertainty::{
+use psd_plan::formula::{Part, ProcedureId, ResultReference, ResultValue};
+use psd_plan::uncertainty::{
     MeasurementUncertainty, measurement_uncertainties, measurement_uncertainty,
 };
-use crate::units::display::is_rounding;
+use psd_text::units::display::is_rounding;
 
 /// Headline results of a plan that names none.
 const MOST: usize = 6;

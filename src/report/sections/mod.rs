@@ -20,7 +20,7 @@ use super::figures::Drawn;
 use super::output::sink::FileDigest;
 use super::run::Run;
 use super::wording;
-use crate::plan::Annex;
+use psd_plan::Annex;
 
 /// The parts of a report, in order, with their sections. A section without content writes nothing, and neither does an annex of
 /// such sections. The first two pages decide; the annexes prove.

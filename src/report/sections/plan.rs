@@ -1,13 +1,13 @@
 //! The plan as it was run, and its files as attachments. In: a run. Out: blocks; files.
 
 use super::Source;
-use crate::plan::{PictureKind, PlanFile};
 use crate::report::document::{Attachment, Block, Text};
 use crate::report::output::paths::plan_files;
 use crate::report::run::Run;
 use crate::report::wording::plan as wording;
-use crate::text::markdown::{Document, is_document};
-use crate::text::sanitize;
+use psd_plan::{PictureKind, PlanFile};
+use psd_text::markdown::{Document, is_document};
+use psd_text::sanitize;
 
 /// Every file of the plan.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {

@@ -2,13 +2,13 @@
 //! run with a prediction. Out: blocks; none for any other run.
 
 use super::{Source, capitalised, with_spaces};
-use crate::plan::Limits;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::report::summary::{PredictedLimit, PredictedProcedure, PredictedZeros};
 use crate::report::wording::{common, prediction as wording};
-use crate::schema::limits;
-use crate::units::Dimension;
+use psd_plan::Limits;
+use psd_plan::schema::limits;
+use psd_text::units::Dimension;
 
 /// Returns nothing if the run has no prediction.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {

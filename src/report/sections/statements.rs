@@ -4,7 +4,7 @@ use super::Source;
 use crate::report::document::{Block, Text};
 use crate::report::status::particulars::stated;
 use crate::report::wording::{opinions as opinions_wording, statements as wording};
-use crate::schema::plan_block::{OPINIONS, SAMPLING};
+use psd_plan::schema::plan_block::{OPINIONS, SAMPLING};
 
 /// Opinions and interpretations of the issuer, marked as such (ISO/IEC 17025, 7.8.7). Returns nothing if none is stated.
 pub(super) fn opinions(source: &Source<'_>, body: &mut Vec<Block>) {

@@ -2,15 +2,15 @@
 //! each, in the order of their occurrence.
 
 use crate::procedures;
-use crate::record::equipment::{Channel, Measures};
-use crate::record::{Drift, EventKind, Outcome, Record};
 use crate::report::number;
 use crate::report::run::{ClockJump, Run};
 use crate::report::wording::deviations as wording;
 use crate::run::{UNLOADING, check_run};
-use crate::schema::plan_block::DEVIATIONS;
-use crate::units::Dimension;
-use crate::units::display::trimmed;
+use psd_plan::record::equipment::{Channel, Measures};
+use psd_plan::record::{Drift, EventKind, Outcome, Record};
+use psd_plan::schema::plan_block::DEVIATIONS;
+use psd_text::units::Dimension;
+use psd_text::units::display::trimmed;
 
 /// Every deviation and interruption of the run. The first page of a report has the reason why the run ended above its deviations.
 pub(in crate::report) fn of_run(run: &Run<'_>, with_reason: bool) -> Vec<String> {

@@ -2,7 +2,7 @@
 //! only, never a measured number.
 
 use crate::report::wording::{amendment as wording, common};
-use crate::schema::plan_block::{AUTHORISED_BY, ISSUED};
+use psd_plan::schema::plan_block::{AUTHORISED_BY, ISSUED};
 
 /// Every issue of the report of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -4,8 +4,8 @@
 use super::days::{days_after, first_day, last_day};
 use crate::report::run::Run;
 use crate::report::wording::particulars as wording;
-use crate::schema::plan_block as schema;
-use crate::text::sanitize;
+use psd_plan::schema::plan_block as schema;
+use psd_text::sanitize;
 
 /// A particular of the first page.
 pub(in crate::report) struct Particular {

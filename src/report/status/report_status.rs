@@ -5,13 +5,13 @@ use std::collections::BTreeSet;
 
 use super::days::last_day;
 use super::particulars;
-use crate::physics::self_test;
-use crate::plan::Plan;
-use crate::record::Outcome;
-use crate::record::equipment::{Channel, Equipment};
 use crate::report::run::Run;
 use crate::report::wording::status as wording;
 use crate::run::check_run;
+use psd_physics::self_test;
+use psd_plan::Plan;
+use psd_plan::record::Outcome;
+use psd_plan::record::equipment::{Channel, Equipment};
 
 /// Whether a report is the report of a test. A test that was stopped is one, and its report says so.
 #[derive(Clone, Debug, PartialEq, Eq)]

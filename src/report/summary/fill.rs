@@ -6,18 +6,18 @@ use super::{
     ProcedureSummary, Quantity, RecordSummary, ReproductionSummary, RequirementSummary, RigSummary,
     SCHEMA, StepSummary, Summary, Uncertainty, Value, ZeroDriftSummary, finite,
 };
-use crate::plan::formula::{Estimate, Part, ProcedureId, ResultReference, ResultValue};
-use crate::record::{NamedResult, Outcome, ProcedureRecord};
 use crate::report::budget::{Budget, Line, budgets, coverage_factor};
 use crate::report::run::Run;
 use crate::report::status::{Change, Issues, ReportStatus, deviations, report_status};
-use crate::schema;
-use crate::uncertainty::{
+use crate::verdict::{Bound, ConditionOutcome, ReproductionOutcome, RequirementOutcome};
+use psd_plan::formula::{Estimate, Part, ProcedureId, ResultReference, ResultValue};
+use psd_plan::record::{NamedResult, Outcome, ProcedureRecord};
+use psd_plan::schema;
+use psd_plan::uncertainty::{
     MeasurementUncertainty, StepInterval, measurement_uncertainties, measurement_uncertainty,
 };
-use crate::units::Dimension;
-use crate::units::display::si_unit;
-use crate::verdict::{Bound, ConditionOutcome, ReproductionOutcome, RequirementOutcome};
+use psd_text::units::Dimension;
+use psd_text::units::display::si_unit;
 
 impl Summary {
     /// The summary of a run.

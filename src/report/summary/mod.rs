@@ -12,7 +12,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
 use serde::ser::SerializeMap as _;
 
-use crate::text::sanitize;
+use psd_text::sanitize;
 
 pub(super) use fill::governing;
 pub(in crate::report) use prediction::file as prediction_file;

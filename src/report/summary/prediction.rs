@@ -4,7 +4,7 @@
 use serde::Serialize;
 
 use crate::report::output::file::OutputFile;
-use crate::text::sanitize;
+use psd_text::sanitize;
 
 /// Name of the file in the run folder.
 pub const CHECK_RUN_FILE: &str = "check_run.json";

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::finite;
-use crate::record::{AxisDrift, Drift, Zero};
+use psd_plan::record::{AxisDrift, Drift, Zero};
 
 /// Zero drift of the rig in the run, and its limits.
 #[derive(Clone, Debug, Serialize, JsonSchema)]

@@ -3,8 +3,8 @@
 
 use polars::prelude::Column as Written;
 
-use crate::schema::Column;
-use crate::text::sanitize;
+use psd_plan::schema::Column;
+use psd_text::sanitize;
 
 /// A column of a table whose rows are `T`.
 pub(crate) enum TableColumn<T> {

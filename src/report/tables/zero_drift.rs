@@ -4,9 +4,9 @@ use polars::prelude::Column;
 
 use super::TableColumn::{self, Integer, Number, Text};
 use super::written;
-use crate::record::{Drift, Zero};
-use crate::schema::columns::{self, column};
-use crate::units::Dimension;
+use psd_plan::record::{Drift, Zero};
+use psd_plan::schema::columns::{self, column};
+use psd_text::units::Dimension;
 
 /// One zero reading of one axis.
 struct Row {

@@ -1,16 +1,16 @@
 //! The description of a virtual specimen: one text per restoring-force model, with its parameters. In: a model, and a function that
 //! prints a number. Out: labelled strings, for the report and for `psd check --explain`.
 
-use crate::physics::structure::beam::EquivalentMasses;
-use crate::physics::structure::beam::first_mode_mass_factor;
-use crate::physics::structure::portal::limit::mechanism_limit;
-use crate::physics::structure::portal::mass::equivalent_masses;
-use crate::plan::{
+use psd_physics::structure::beam::EquivalentMasses;
+use psd_physics::structure::beam::first_mode_mass_factor;
+use psd_physics::structure::portal::limit::mechanism_limit;
+use psd_physics::structure::portal::mass::equivalent_masses;
+use psd_plan::schema::behaviours;
+use psd_plan::{
     Beam, Behaviour, Breaks, Deterioration, Ends, FrameMasses, Loads, Mechanism, Pinching, Portal,
     Sections, Unloading,
 };
-use crate::schema::behaviours;
-use crate::units::Dimension;
+use psd_text::units::Dimension;
 
 /// Prints a stated number, or one that follows from stated numbers.
 pub type Printed<'s> = &'s dyn Fn(f64, Dimension) -> String;

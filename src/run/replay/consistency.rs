@@ -10,12 +10,12 @@ use super::entry::{
     RecoverBody, ResumeBody, RigBody, SampleBody, StepBody, StrokeBody, unescaped,
 };
 use super::logged_run::{LoggedRun, body};
-use crate::plan::{Datum, Plan};
-use crate::record::Event;
-use crate::rig::LineStatistics;
-use crate::rig::controllers::metres;
-use crate::rig::journal::{EntryKind, Line, Recovered, is_written_as};
-use crate::rig::real::{LoggedReading, check_replies};
+use psd_plan::record::Event;
+use psd_plan::{Datum, Plan};
+use psd_rig::LineStatistics;
+use psd_rig::controllers::metres;
+use psd_rig::journal::{EntryKind, Line, Recovered, is_written_as};
+use psd_rig::real::{LoggedReading, check_replies};
 
 /// In a resumed run the time is a sum of two clocks.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;

@@ -8,9 +8,9 @@ use super::entry::{Call, IntentBody, StrokeBody, TargetStatus};
 use super::entry_of::{append_sample, bits, in_log_time, intent, target_text};
 use super::recorded_rig::RecordedRig;
 use super::state::ended;
-use crate::physics::tracking::trajectory::Path;
-use crate::rig::journal::EntryKind;
-use crate::rig::{CutOff, EachReading, EncodedMove, Rig, RigFault};
+use psd_physics::tracking::trajectory::Path;
+use psd_rig::journal::EntryKind;
+use psd_rig::{CutOff, EachReading, EncodedMove, Rig, RigFault};
 
 impl ContinuousMove<'_> {
     fn intent(&self, samples: usize) -> IntentBody {

@@ -1,6 +1,6 @@
 //! A move with readings during the motion.
 
-use crate::physics::tracking::trajectory::Path;
+use psd_physics::tracking::trajectory::Path;
 
 /// A move as requested.
 pub(super) enum ContinuousMove<'a> {

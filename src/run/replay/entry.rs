@@ -3,10 +3,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::physics::tracking::trajectory::Path;
-use crate::record::equipment::Equipment;
-use crate::rig::{DeclaredNoise, FinalHold, Identity, LastMove, RigFault};
 use crate::run::{Inspection, Request};
+use psd_physics::tracking::trajectory::Path;
+use psd_plan::record::equipment::Equipment;
+use psd_rig::{DeclaredNoise, FinalHold, Identity, LastMove, RigFault};
 
 /// Written instead of a protocol if the operator drives by hand.
 pub const BY_HAND: &str = "by hand";

@@ -2,9 +2,9 @@
 
 use super::entry::{IntentBody, RigBody, SampleBody, escaped};
 use super::state::State;
-use crate::rig::controllers::metres;
-use crate::rig::journal::EntryKind;
-use crate::rig::{DeclaredNoise, EncodedMove, Identity, Reading, Rig, RigFault};
+use psd_rig::controllers::metres;
+use psd_rig::journal::EntryKind;
+use psd_rig::{DeclaredNoise, EncodedMove, Identity, Reading, Rig, RigFault};
 
 impl RigBody {
     /// The RIG entry of a rig.

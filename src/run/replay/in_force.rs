@@ -3,8 +3,8 @@
 //! resumption on.
 
 use super::entry::{Header, RigBody};
-use crate::plan::Interval;
-use crate::rig::safety::failpoint::{Guarding, on};
+use psd_plan::Interval;
+use psd_rig::safety::failpoint::{Guarding, on};
 
 /// A rig that answered, and the entries to which it applies.
 #[derive(Clone, Debug)]

@@ -7,9 +7,9 @@ use serde::de::DeserializeOwned;
 
 use super::entry::{AmendBody, Header, PlanBody, RULES, ResumeBody, RigBody, TargetStatus};
 use super::in_force::Rigs;
-use crate::record::{Event, EventKind};
-use crate::rig::journal::{EntryKind, Line, Recovered};
-use crate::rig::{LineStatistics, position_and_force};
+use psd_plan::record::{Event, EventKind};
+use psd_rig::journal::{EntryKind, Line, Recovered};
+use psd_rig::{LineStatistics, position_and_force};
 
 /// The content of a run log.
 #[derive(Clone, Debug)]

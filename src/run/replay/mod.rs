@@ -40,17 +40,17 @@ pub use state::{CUT_OFF, Continuation};
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use crate::plan::Plan;
-use crate::record::{Event, Outcome, Record};
-use crate::rig::Rig;
-use crate::rig::journal::{EntryKind, Journal, JournalFault};
 use entry::PlanBody;
+use psd_plan::Plan;
+use psd_plan::record::{Event, Outcome, Record};
+use psd_rig::Rig;
+use psd_rig::journal::{EntryKind, Journal, JournalFault};
 use state::{Begin, State};
 
 use super::{Observer, Request, Unwatched, run};
-use crate::record::remote::DrivenStep;
 use crate::run::client_run::{ClientRunRecord, Driver, Requests, drive};
 use crate::run::remote_control::Specimen;
+use psd_plan::record::remote::DrivenStep;
 
 /// Gives the time of day, as text; None for a virtual run.
 pub type Wall = Box<dyn Fn() -> Option<String>>;

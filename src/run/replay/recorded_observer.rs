@@ -6,9 +6,9 @@ use std::rc::Rc;
 
 use super::entry::{AxisBody, OperatorBody, OperatorEntry, StepBody};
 use super::state::State;
-use crate::record::Event;
-use crate::rig::journal::EntryKind;
 use crate::run::{AxisReport, Inspection, Motion, Next, Observer, Request, StepReport};
+use psd_plan::record::Event;
+use psd_rig::journal::EntryKind;
 
 /// An observer of a run whose answers are all logged.
 pub struct RecordedObserver<'run, 'rig> {

@@ -8,12 +8,12 @@ use super::continuous_move::ContinuousMove;
 use super::entry::{Call, FaultBody, HeldBody, IntentBody, RigBody, SampleBody, StrokeBody};
 use super::entry_of::{append_sample, in_log_time, intent, same_bits, target_text, unknown_rig};
 use super::state::{State, ended};
-use crate::physics::tracking::trajectory::Path;
-use crate::plan::{Interval, Limits};
-use crate::rig::journal::EntryKind;
-use crate::rig::safety::failpoint;
-use crate::rig::safety::failpoint::Guarding;
-use crate::rig::{
+use psd_physics::tracking::trajectory::Path;
+use psd_plan::{Interval, Limits};
+use psd_rig::journal::EntryKind;
+use psd_rig::safety::failpoint;
+use psd_rig::safety::failpoint::Guarding;
+use psd_rig::{
     DeclaredNoise, EachReading, EncodedMove, FinalHold, Identity, LastMove, LineStatistics,
     Reading, Rig, RigFault,
 };

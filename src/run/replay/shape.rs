@@ -7,8 +7,8 @@ use serde::de::DeserializeOwned;
 use super::entry::{
     Call, FaultBody, HeldBody, IntentBody, ResumeBody, RigBody, SampleBody, StepBody, TargetStatus,
 };
-use crate::plan::Plan;
-use crate::rig::journal::{EntryKind, Line, Recovered};
+use psd_plan::Plan;
+use psd_rig::journal::{EntryKind, Line, Recovered};
 
 /// An entry that no run of its plan can have written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

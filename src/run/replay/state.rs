@@ -13,10 +13,10 @@ use super::entry::{
 };
 use super::in_force::{InForce, Rigs};
 use super::logged_run::{LoggedRun, Mismatch, body};
-use crate::record::Event;
-use crate::rig::journal::{EntryKind, Journal, JournalFault, Line};
-use crate::rig::{LineStatistics, Reading, Rig, RigFault};
 use crate::run::Request;
+use psd_plan::record::Event;
+use psd_rig::journal::{EntryKind, Journal, JournalFault, Line};
+use psd_rig::{LineStatistics, Reading, Rig, RigFault};
 
 /// The rig and the run log with which a run is continued after its replay.
 pub struct Continuation<'rig> {

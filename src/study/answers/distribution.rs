@@ -8,10 +8,10 @@ use super::kept::Kept;
 use super::moments::{Moments, number};
 use super::sensitivity::{self, Sensitivity};
 use super::{Ends, ends};
-use crate::physics::study::quantile::{Quantile, quantile};
-use crate::physics::study::{Confidence, mean};
-use crate::plan::study::Sampling;
 use crate::study::data_set::{Metadata, Row};
+use psd_physics::study::quantile::{Quantile, quantile};
+use psd_physics::study::{Confidence, mean};
+use psd_plan::study::Sampling;
 
 /// Quantiles of a result.
 const QUANTILES: [f64; 3] = [0.05, 0.5, 0.95];

@@ -7,12 +7,12 @@ use serde::Serialize;
 
 use super::ends;
 use super::moments::number;
-use crate::physics::study::Confidence;
-use crate::physics::study::fragility::{Fit, NoFit, NoResult, Split, Stripe};
-use crate::physics::study::probability::Outcomes;
 use crate::study::counts::Counts;
 use crate::study::data_set::{Column, Event, Kind, Metadata, Row, Stripes};
-use crate::units::display;
+use psd_physics::study::Confidence;
+use psd_physics::study::fragility::{Fit, NoFit, NoResult, Split, Stripe};
+use psd_physics::study::probability::Outcomes;
+use psd_text::units::display;
 
 /// Points of a curve.
 const POINTS: u64 = 121;

@@ -1,13 +1,13 @@
 //! Outcomes counted, and the counts at every look of the stopping rule. In: rows in the order of their runs. Out: counts for each
 //! requirement. A run without a result is a count of its own.
 
-use crate::physics::study::Confidence;
-use crate::physics::study::probability::stopping::Look;
-use crate::plan::study::Runs;
 use crate::study::counts::Counts;
 use crate::study::data_set::{Kind, Metadata, Row, Stopping};
 use crate::study::stopping::Looks;
 use crate::study::stopping::rare::RareRuns;
+use psd_physics::study::Confidence;
+use psd_physics::study::probability::stopping::Look;
+use psd_plan::study::Runs;
 
 /// Counts so far.
 pub struct CountsWithLooks {

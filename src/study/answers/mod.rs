@@ -23,12 +23,12 @@ mod worst;
 
 use serde::Serialize;
 
-use crate::physics::study::{Confidence, Interval};
-use crate::plan::study::Sampling;
 use crate::study::data_set::{DataSetFault, Kind, Metadata, Reader, Row, Stopping};
 use distribution::Distributions;
 use kept::Kept;
 use looks::CountsWithLooks;
+use psd_physics::study::{Confidence, Interval};
+use psd_plan::study::Sampling;
 use worst::WorstRuns;
 
 pub use distribution::{Histogram, QuantileAnswer, ResultAnswer};

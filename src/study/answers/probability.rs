@@ -5,10 +5,10 @@ use serde::Serialize;
 
 use super::worst::{WorstRun, WorstRuns};
 use super::{ends, is_a_sample, is_independent};
-use crate::physics::study::Confidence;
-use crate::physics::study::probability::Outcomes;
 use crate::study::counts::Counts;
 use crate::study::data_set::{Event, Metadata};
+use psd_physics::study::Confidence;
+use psd_physics::study::probability::Outcomes;
 
 /// What the runs say about a requirement of the plan.
 #[derive(Clone, Debug, Serialize)]

@@ -6,9 +6,9 @@ use serde::Serialize;
 use super::RANKED;
 use super::ends;
 use super::kept::Kept;
-use crate::physics::study::Confidence;
-use crate::physics::study::sensitivity::{Index, first_order, spearman};
 use crate::study::data_set::Metadata;
+use psd_physics::study::Confidence;
+use psd_physics::study::sensitivity::{Index, first_order, spearman};
 
 /// The influence of one input on one result.
 #[derive(Clone, Debug, Serialize)]

@@ -10,11 +10,11 @@ use super::looks::{CountsAtLook, CountsWithLooks};
 use super::probability::Probability;
 use super::subset::SubsetAnswer;
 use super::{ends, is_independent};
-use crate::physics::study::probability::Decision;
-use crate::physics::study::{Confidence, Interval};
 use crate::study::counts::Counts;
 use crate::study::data_set::{Metadata, StudiedRequirement};
 use crate::study::stopping::{decide, probabilities};
+use psd_physics::study::probability::Decision;
+use psd_physics::study::{Confidence, Interval};
 
 /// A requirement on a probability.
 #[derive(Clone, Debug, Serialize)]

@@ -5,9 +5,9 @@ use serde::Serialize;
 
 use super::looks::CountsWithLooks;
 use super::probability::Probability;
-use crate::physics::study::Confidence;
-use crate::physics::study::subset_simulation::{Answer, Level, Replicate};
 use crate::study::data_set::Event;
+use psd_physics::study::Confidence;
+use psd_physics::study::subset_simulation::{Answer, Level, Replicate};
 
 /// What a subset simulation found.
 #[derive(Clone, Debug, Serialize)]
@@ -80,7 +80,7 @@ fn level(at: usize, replicates: &[Replicate]) -> LevelAnswer {
         .filter_map(|replicate| replicate.levels.get(at).copied())
         .collect();
     let mean =
-        |of: fn(&Level) -> f64| crate::physics::statistics::samples::mean(levels.iter().map(of));
+        |of: fn(&Level) -> f64| psd_physics::statistics::samples::mean(levels.iter().map(of));
     let thresholds = levels.iter().map(|level| level.threshold);
     LevelAnswer {
         level: at + 1,

@@ -3,14 +3,14 @@
 use tempfile::TempDir;
 
 use super::Answers;
-use crate::physics::study::distribution::{Distribution, Spread};
-use crate::physics::study::inputs::{Source, StudyInputs};
-use crate::physics::study::sampling::Design;
 use crate::study::data_set::testing::{metadata as any_metadata, written};
 use crate::study::data_set::{
     Column, Decision, Kind, Limit, Metadata, Outcome, Reader, Row, Stripes,
 };
-use crate::units::Dimension;
+use psd_physics::study::distribution::{Distribution, Spread};
+use psd_physics::study::inputs::{Source, StudyInputs};
+use psd_physics::study::sampling::Design;
+use psd_text::units::Dimension;
 
 /// y = a + 2b with a, b ~ N(1, 0.1): mean 3, standard deviation 0.1√5, first-order indices 0.2 and 0.8.
 pub fn normals(design: Design, seed: u64) -> StudyInputs {

@@ -7,15 +7,15 @@ use super::testing::{
     CAPACITY, answers, fragility_metadata, fragility_rows, metadata, normals, rows, scatter,
 };
 use super::*;
-use crate::physics::study::distribution::normal;
-use crate::physics::study::probability::Decision;
-use crate::physics::study::sampling::Design;
-use crate::plan::Comparison;
-use crate::plan::study::Input;
 use crate::study::data_set::testing::written;
 use crate::study::data_set::{Column, Event, Outcome, Stopping, Stripes, StudiedRequirement};
 use crate::study::metadata::column;
-use crate::units::Dimension;
+use psd_physics::study::distribution::normal;
+use psd_physics::study::probability::Decision;
+use psd_physics::study::sampling::Design;
+use psd_plan::Comparison;
+use psd_plan::study::Input;
+use psd_text::units::Dimension;
 
 fn contains(interval: [f64; 2], value: f64) -> bool {
     interval[0] <= value && value <= interval[1]

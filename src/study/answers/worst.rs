@@ -5,7 +5,7 @@
 use serde::Serialize;
 
 use crate::study::data_set::{Column, Kind, Metadata, Outcome, Row};
-use crate::units::{Dimension, Quantity};
+use psd_text::units::{Dimension, Quantity};
 
 /// Runs that are listed.
 const MOST: usize = 10;

@@ -18,13 +18,13 @@ use std::path::{Path, PathBuf};
 use rustix::fs::{FlockOperation, flock};
 use thiserror::Error;
 
-use crate::plan::study::Runs;
-use crate::rig::transport::Clock;
 use crate::study::cluster::shard::Shard;
 use crate::study::counts::Counts;
 use crate::study::data_set::{DataSetFault, Metadata, Reader, Row, Writer};
 use crate::study::simulation::Simulation;
 use crate::study::stopping::Looks;
+use psd_plan::study::Runs;
+use psd_rig::transport::Clock;
 
 use folder::DataSetFiles;
 use same::{Difference, grown, same};

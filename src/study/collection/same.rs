@@ -2,8 +2,8 @@
 
 use thiserror::Error;
 
-use crate::plan::study::Sampling;
 use crate::study::data_set::{Kind, Metadata};
+use psd_plan::study::Sampling;
 
 /// Why runs cannot be put together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]

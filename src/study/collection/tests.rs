@@ -5,10 +5,6 @@ use super::merge::{MergeFault, merge};
 use super::same::Difference;
 use super::status::status;
 use super::{Collection, CollectionFault, Ended};
-use crate::physics::study::Confidence;
-use crate::plan::Comparison;
-use crate::plan::study::{Runs, Sampling, StudyEvent, StudyRequirement, Variation};
-use crate::rig::transport::MonotonicClock;
 use crate::study::cluster::shard::Shard;
 use crate::study::data_set::{Metadata, Reader, Row};
 use crate::study::definition::{Definition, DefinitionError};
@@ -16,6 +12,10 @@ use crate::study::metadata;
 use crate::study::simulation::Simulation;
 use crate::study::stopping::Looks;
 use crate::study::testing::{Studied, bytes, plan, usual, variation};
+use psd_physics::study::Confidence;
+use psd_plan::Comparison;
+use psd_plan::study::{Runs, Sampling, StudyEvent, StudyRequirement, Variation};
+use psd_rig::transport::MonotonicClock;
 use std::path::Path;
 
 const RUNS: u64 = 200;
@@ -327,7 +327,7 @@ fn a_study_without_runs_is_an_error() {
         Some(DefinitionError::Unknown { .. })
     ));
     assert_eq!(
-        Definition::of(&crate::plan::Studies::default(), None, None).err(),
+        Definition::of(&psd_plan::Studies::default(), None, None).err(),
         Some(DefinitionError::NoStudy)
     );
 }

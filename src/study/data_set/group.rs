@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
-use crate::text::digest::hex;
+use psd_text::digest::hex;
 
 /// A row group as the footer describes it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -3,10 +3,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::plan::Comparison;
-use crate::plan::study::{RareEvent, Sampling};
-use crate::units::Dimension;
-use crate::units::display::si_unit;
+use psd_plan::Comparison;
+use psd_plan::study::{RareEvent, Sampling};
+use psd_text::units::Dimension;
+use psd_text::units::display::si_unit;
 
 /// Number of the format; a reader refuses others.
 pub(super) const FORMAT: u32 = 1;
@@ -193,7 +193,7 @@ mod exponents {
     use serde::de::Error as _;
     use serde::{Deserialize as _, Deserializer, Serialize as _, Serializer};
 
-    use crate::units::{Dimension, Exponent};
+    use psd_text::units::{Dimension, Exponent};
 
     pub fn serialize<S: Serializer>(
         dimension: &Dimension,
@@ -228,7 +228,7 @@ mod keywords {
     }
 
     pub mod sampling {
-        use crate::plan::study::Sampling;
+        use psd_plan::study::Sampling;
 
         const ALL: [Sampling; 4] = [
             Sampling::Random,
@@ -253,7 +253,7 @@ mod keywords {
     }
 
     pub mod comparison {
-        use crate::plan::Comparison;
+        use psd_plan::Comparison;
 
         const ALL: [Comparison; 4] = [
             Comparison::Less,

@@ -18,7 +18,7 @@ use super::frame;
 use super::group::Group;
 use super::metadata::{FORMAT, Metadata};
 use super::writer::{KEY_FORMAT, KEY_GROUPS, KEY_STUDY};
-use crate::text::digest::hex;
+use psd_text::digest::hex;
 
 /// Bytes that are digested together.
 const CHUNK: usize = 1 << 16;

@@ -6,9 +6,9 @@ use super::{
     Column, Decision, Event, Kind, Limit, Metadata, Outcome, Row, Stopping, StudiedRequirement,
     Writer,
 };
-use crate::plan::Comparison;
-use crate::plan::study::Sampling;
-use crate::units::Dimension;
+use psd_plan::Comparison;
+use psd_plan::study::Sampling;
+use psd_text::units::Dimension;
 
 /// Two inputs, two results, two requirements; runs from `first` on.
 pub fn metadata(first: u64) -> Metadata {

@@ -3,14 +3,14 @@
 
 use thiserror::Error;
 
-use crate::physics::study::distribution::{Distribution, Spread};
-use crate::physics::study::inputs::Source;
-use crate::plan::Plan;
-use crate::plan::formula::{ResultValue, Results as _};
-use crate::plan::study::{Measured, Variation};
-use crate::record::Record;
-use crate::rig::virtual_rig;
 use crate::run::{Settings, Unwatched, run_with};
+use psd_physics::study::distribution::{Distribution, Spread};
+use psd_physics::study::inputs::Source;
+use psd_plan::Plan;
+use psd_plan::formula::{ResultValue, Results as _};
+use psd_plan::record::Record;
+use psd_plan::study::{Measured, Variation};
+use psd_rig::virtual_rig;
 
 /// An uncertainty below this fraction of the value is only rounding: nothing of the run is uncertain.
 const ROUNDING: f64 = 1e-9;

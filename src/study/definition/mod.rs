@@ -5,12 +5,12 @@ pub mod measured;
 
 use thiserror::Error;
 
-use crate::physics::study::Confidence;
-use crate::physics::study::inputs::InputError;
-use crate::plan::Studies;
-use crate::plan::study::{Collected, Fragility, Input, MOST_RUNS, Runs, Sampling, Study};
 use crate::study::data_set::{Kind, Stopping, Stripes};
 use crate::study::draws::Draws;
+use psd_physics::study::Confidence;
+use psd_physics::study::inputs::InputError;
+use psd_plan::Studies;
+use psd_plan::study::{Collected, Fragility, Input, MOST_RUNS, Runs, Sampling, Study};
 
 /// A study or a fragility of a plan.
 #[derive(Clone, Debug)]

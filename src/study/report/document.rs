@@ -1,15 +1,15 @@
 //! The report of a study as a document. In: metadata, answers and drawn figures. Out: the document that HTML and PDF print. The first page
 //! states what was decided; the rest shows from what.
 
-use crate::physics::study::probability::Decision;
-use crate::plan::Comparison;
-use crate::plan::study::Sampling;
 use crate::report::document::{Block, Column, Document, Style, Table, Text, Tone, Verdict};
 use crate::report::number::comparison_sign;
 use crate::report::wording::study::in_the_box;
 use crate::report::wording::{LABELS, study as wording, verdict};
 use crate::study::answers::{Answers, LookAnswer, StudiedAnswer};
 use crate::study::data_set::{Kind, Metadata, Stopping};
+use psd_physics::study::probability::Decision;
+use psd_plan::Comparison;
+use psd_plan::study::Sampling;
 
 use super::figures::{FigureKind, percent};
 use super::numbers::{estimate, percents, probability, range};

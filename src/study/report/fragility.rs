@@ -7,7 +7,7 @@ use crate::report::document::{Block, Column, Table, Text};
 use crate::report::wording::study as wording;
 use crate::study::answers::{Answers, FitAnswer, StripeAnswer};
 use crate::study::data_set::{Kind, Metadata};
-use crate::units::{Dimension, display};
+use psd_text::units::{Dimension, display};
 
 /// Below this the fitted curve is doubtful.
 const LEAST_GOODNESS: f64 = 0.05;

@@ -20,9 +20,9 @@ use crate::report::wording::study as wording;
 use crate::report::{OutputError, OutputPart, OutputPiece, OutputSink, SUMMARY};
 use crate::study::answers::Answers;
 use crate::study::data_set::Metadata;
-use crate::text::digest::sha256;
-use crate::text::sanitize;
 use figures::StudyFigure;
+use psd_text::digest::sha256;
+use psd_text::sanitize;
 use source::{DrawnFigure, Source};
 
 pub use summary::{SCHEMA, summary};

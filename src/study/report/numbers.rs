@@ -3,9 +3,9 @@
 use super::figures::percent;
 use crate::report::document::Text;
 use crate::report::wording::study as wording;
-use crate::schema::{printed_unit, readable_result};
 use crate::study::answers::{Ends, Probability};
-use crate::units::{Dimension, display};
+use psd_plan::schema::{printed_unit, readable_result};
+use psd_text::units::{Dimension, display};
 
 /// The estimate, or both bounds; without failures an upper bound.
 pub fn probability(found: Option<&Probability>) -> Text {

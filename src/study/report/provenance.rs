@@ -3,11 +3,11 @@
 use super::figures::percent;
 use super::numbers::percents;
 use super::source::Source;
-use crate::plan::study::Sampling;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::wording::study as wording;
 use crate::study::data_set::Kind;
-use crate::units::display;
+use psd_plan::study::Sampling;
+use psd_text::units::display;
 
 /// Every look with its intervals.
 pub fn looks(source: &Source<'_>, body: &mut Vec<Block>) {

@@ -3,12 +3,12 @@
 use super::figures::{FigureKind, percent};
 use super::numbers::{decimals, index, with_interval};
 use super::source::{DrawnFigure, Source};
-use crate::plan::study::Sampling;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::wording::study as wording;
-use crate::schema::readable_result;
 use crate::study::answers::{IndexAnswer, KEPT, RANKED, ResultAnswer, Sensitivity};
 use crate::study::data_set::Column as DataColumn;
+use psd_plan::schema::readable_result;
+use psd_plan::study::Sampling;
 
 /// Mean, scatter and quantiles, with their figures.
 pub fn section(source: &Source<'_>, body: &mut Vec<Block>) {

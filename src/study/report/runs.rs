@@ -5,8 +5,8 @@ use super::numbers::{probability, range};
 use super::source::Source;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::wording::study as wording;
-use crate::schema::readable_result;
 use crate::study::answers::{RequirementAnswer, WorstRun};
+use psd_plan::schema::readable_result;
 
 /// Requirements of the plan with their counts.
 pub fn requirements(source: &Source<'_>, body: &mut Vec<Block>) {

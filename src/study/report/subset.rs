@@ -6,7 +6,7 @@ use crate::report::document::{Block, Column, Table, Text};
 use crate::report::wording::study as wording;
 use crate::study::answers::LevelAnswer;
 use crate::study::data_set::{Kind, Stopping};
-use crate::units::display;
+use psd_text::units::display;
 
 /// The section; nothing for another study.
 pub fn section(source: &Source<'_>, body: &mut Vec<Block>) {

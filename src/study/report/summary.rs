@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::study::answers::Answers;
 use crate::study::data_set::Metadata;
-use crate::text::sanitize;
+use psd_text::sanitize;
 
 /// Name and version of the format; a change that breaks a reader raises the number.
 pub const SCHEMA: &str = "psd.study/1";

@@ -1,13 +1,13 @@
 //! Tests of the report of a study: what it states, and what it must never state.
 
 use super::*;
-use crate::physics::study::sampling::Design;
-use crate::plan::Comparison;
 use crate::report::OutputFile;
 use crate::study::answers::testing::{
     answers, fragility_metadata, fragility_rows, metadata, normals, rows,
 };
 use crate::study::data_set::{Event, Metadata, StudiedRequirement};
+use psd_physics::study::sampling::Design;
+use psd_plan::Comparison;
 
 /// A study of 1000 runs with a requirement on its probability.
 fn study(limit: f64, runs: u64) -> (Metadata, Answers) {

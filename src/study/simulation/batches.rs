@@ -1,12 +1,12 @@
 //! Runs of a study whose plan is one impact, many at once. In: plans with the values of their runs. Out: the record of each, without
 //! steps; None for a run that has to go through the rig.
 
-use crate::plan::Plan;
-use crate::plan::formula::{Part, ResultReference};
 use crate::procedures;
 use crate::procedures::impact::batched::{self, BatchedImpact};
-use crate::record::{Outcome, Record};
-use crate::rig::virtual_rig;
+use psd_plan::Plan;
+use psd_plan::formula::{Part, ResultReference};
+use psd_plan::record::{Outcome, Record};
+use psd_rig::virtual_rig;
 
 /// The impact that is the whole plan, if it can run in a batch.
 pub fn impact(plan: &Plan) -> Option<BatchedImpact> {

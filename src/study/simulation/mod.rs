@@ -15,10 +15,10 @@ use rayon::prelude::*;
 use super::data_set::Row;
 use super::definition::Definition;
 use crate::check::ParsedPlan;
-use crate::plan::Plan;
-use crate::text::diagnostic::Diagnostic;
-use crate::units::Quantity;
 use batches::Batch;
+use psd_plan::Plan;
+use psd_text::diagnostic::Diagnostic;
+use psd_text::units::Quantity;
 use readout::{Kept, Readout};
 
 /// Runs that one thread takes at a time.

@@ -4,14 +4,14 @@
 //! A requirement is decided on its value alone: the scatter of the runs replaces the uncertainty of one run. What a run calls inconclusive has no result
 //! here: a stop by a limit, a result that does not exist, a peak that was not reached.
 
-use crate::plan::formula::{Formula, Part, ResultReference};
-use crate::plan::study::Collected;
-use crate::plan::{Condition, DecisionRule, Plan, Requirement, Test};
-use crate::record::{Outcome as Ended, Record};
-use crate::schema::block_of_words;
 use crate::study::data_set::{Column, Decision, Kind, Limit, Outcome};
 use crate::study::definition::Definition;
 use crate::verdict::{self, Verdict};
+use psd_plan::formula::{Formula, Part, ResultReference};
+use psd_plan::record::{Outcome as Ended, Record};
+use psd_plan::schema::block_of_words;
+use psd_plan::study::Collected;
+use psd_plan::{Condition, DecisionRule, Plan, Requirement, Test};
 
 /// The columns of results and the requirements of a study.
 #[derive(Clone, Debug)]

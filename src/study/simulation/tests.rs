@@ -2,16 +2,16 @@
 
 use super::*;
 use crate::check::{LoadError, Options, check};
-use crate::physics::study::distribution::{Distribution, Spread};
-use crate::physics::study::inputs::Source;
-use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
-use crate::plan::study::{Collected, Fragility, Variation};
-use crate::plan::{Comparison, Condition, Test};
 use crate::study::answers::setting;
 use crate::study::data_set::Outcome;
 use crate::study::metadata::column;
 use crate::study::testing::{Studied, checked, plan, usual, variation};
-use crate::units::Dimension;
+use psd_physics::study::distribution::{Distribution, Spread};
+use psd_physics::study::inputs::Source;
+use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference};
+use psd_plan::study::{Collected, Fragility, Variation};
+use psd_plan::{Comparison, Condition, Test};
+use psd_text::units::Dimension;
 
 /// Files beside the examples.
 fn folder(path: &str) -> Result<String, LoadError> {
@@ -110,7 +110,7 @@ fn every_example_that_a_batch_takes_has_the_same_results_in_it() {
             .filter(|name| crate::procedures::impact::batched::gives(name))
             .collect();
         for name in names {
-            let number = |record: &crate::record::Record| {
+            let number = |record: &psd_plan::record::Record| {
                 record.procedures[0].number(name).map(f64::to_bits)
             };
             assert_eq!(number(&found), number(&alone), "{}: {name}", path.display());
@@ -262,13 +262,13 @@ fn a_fragility_decides_its_condition_at_each_stripe() {
     let mut studied = Studied::of(&usual(), 1);
     let displacement = Formula::Result(ResultReference {
         procedure: ProcedureId(0),
-        name: crate::plan::procedures::impact::block::MAX_DISPLACEMENT.name,
+        name: psd_plan::procedures::impact::block::MAX_DISPLACEMENT.name,
         part: Part::Value,
     });
     studied.plan.studies.studies[0].collect = vec![Collected {
         text: "2 * hit.max_displacement".to_owned(),
         value: Formula::Binary(
-            crate::plan::formula::Operator::Multiply,
+            psd_plan::formula::Operator::Multiply,
             Box::new(Formula::Constant(2.0)),
             Box::new(displacement.clone()),
         ),

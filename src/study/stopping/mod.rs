@@ -6,13 +6,13 @@
 
 pub mod rare;
 
-use crate::physics::study::Interval;
-use crate::physics::study::probability::Decision;
-use crate::physics::study::probability::stopping::{self, Look};
-use crate::plan::Comparison;
-use crate::plan::study::Runs;
 use crate::study::counts::Counts;
 use crate::study::data_set::{Event, Metadata, Row, StudiedRequirement};
+use psd_physics::study::Interval;
+use psd_physics::study::probability::Decision;
+use psd_physics::study::probability::stopping::{self, Look};
+use psd_plan::Comparison;
+use psd_plan::study::Runs;
 use rare::RareRuns;
 
 /// A probability that a study is run for.

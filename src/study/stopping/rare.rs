@@ -1,10 +1,10 @@
 //! The subset simulation of a study. In: its metadata, then its rows in the order of their runs. Out: the points of the next runs, and the
 //! probability of the rare event. It runs nothing: the rows of a data set give the same answer as those of the process that made them.
 
-use crate::physics::study::Confidence;
-use crate::physics::study::subset_simulation::{Answer, Progress};
-use crate::plan::study::RareEvent;
 use crate::study::data_set::{Kind, Limit, Metadata, Outcome, Row, Stopping};
+use psd_physics::study::Confidence;
+use psd_physics::study::subset_simulation::{Answer, Progress};
+use psd_plan::study::RareEvent;
 
 /// A subset simulation of runs of the plan.
 #[derive(Clone, Debug)]

@@ -1,10 +1,10 @@
 //! The guarantee of the stopping rule, on the counts and looks of a study itself.
 
 use super::*;
-use crate::physics::study::Confidence;
-use crate::physics::study::sampling::philox::{Philox, Purpose};
 use crate::study::data_set::Outcome;
 use crate::study::data_set::testing::metadata as any_metadata;
+use psd_physics::study::Confidence;
+use psd_physics::study::sampling::philox::{Philox, Purpose};
 
 /// A study whose only requirement fails with a probability below `limit`.
 fn metadata(limit: f64) -> Metadata {

@@ -5,15 +5,15 @@
 
 use crate::check::{Checked, LoadError, Options, check};
 use crate::codes::E654;
-use crate::emulator::Log;
-use crate::plan::Plan;
-use crate::plan::formula::ResultValue;
-use crate::record::{Outcome, Record};
-use crate::rig::journal::{Durability, Journal};
-use crate::rig::virtual_rig;
 use crate::run::{Unwatched, replay, run};
-use crate::text::diagnostic::Code;
+use psd_plan::Plan;
+use psd_plan::formula::ResultValue;
+use psd_plan::record::{Outcome, Record};
+use psd_rig::emulator::Log;
+use psd_rig::journal::{Durability, Journal};
+use psd_rig::virtual_rig;
 use psd_testing::journal::PowerLoss;
+use psd_text::diagnostic::Code;
 
 use super::stage::{emulator, header, open};
 

@@ -2,10 +2,10 @@
 //! such reading is integrated.
 
 use super::stage::{STIFFNESS, link, plan, run, run_without};
-use crate::plan::Interval;
-use crate::record::Outcome;
-use crate::rig::journal::EntryKind;
-use crate::rig::safety::failpoint::Guarding;
+use psd_plan::Interval;
+use psd_plan::record::Outcome;
+use psd_rig::journal::EntryKind;
+use psd_rig::safety::failpoint::Guarding;
 
 #[test]
 fn what_is_no_number_is_never_integrated() {

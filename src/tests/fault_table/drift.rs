@@ -2,16 +2,16 @@
 //! drift. Out: a run with more zero drift is completed, and no statement of conformity uses its readings.
 
 use super::stage::{Ended, STIFFNESS, plan, plan_of, run, run_without, to};
-use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
-use crate::plan::{
+use crate::tests::testing::ramp;
+use crate::verdict::{Assessment, Verdict, assess};
+use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference};
+use psd_plan::record::EventKind;
+use psd_plan::{
     Comparison, Condition, DriftCheck, Plan, ProcedureKind, Requirement, StiffnessRamp, Test,
     ZeroAfter,
 };
-use crate::record::EventKind;
-use crate::rig::safety::failpoint::{Guarding, without};
-use crate::tests::testing::ramp;
-use crate::units::Dimension;
-use crate::verdict::{Assessment, Verdict, assess};
+use psd_rig::safety::failpoint::{Guarding, without};
+use psd_text::units::Dimension;
 
 /// A ramp with pauses of 2 s, with requirements on its stiffness and its displacement.
 fn drifting(check: DriftCheck) -> Plan {
@@ -194,7 +194,7 @@ fn a_free_cell_is_read_where_it_is() {
         after: ZeroAfter::Free,
         ..CHECK
     });
-    plan.procedures.push(crate::plan::Procedure {
+    plan.procedures.push(psd_plan::Procedure {
         name: "out".to_owned(),
         kind: to(2e-4),
     });

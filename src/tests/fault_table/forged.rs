@@ -5,10 +5,10 @@ use serde_json::{Value, json};
 
 use super::axes::two_axes::base_excited_plan;
 use super::stage::{Ended, link, plan, run};
-use crate::plan::Plan;
-use crate::rig::journal::{EntryKind, Recovered};
 use crate::run::replay;
 use crate::run::replay::LoggedRun;
+use psd_plan::Plan;
+use psd_rig::journal::{EntryKind, Recovered};
 use psd_testing::journal::AlterEntry as _;
 
 /// Alters the `nth` entry of a kind in the run log, and returns the first finding of `psd verify`.

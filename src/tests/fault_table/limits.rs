@@ -4,15 +4,15 @@
 
 use super::motion::impact_plan;
 use super::stage::{Ended, STIFFNESS, emulator, header, link, open, plan_of, run, run_watched, to};
-use crate::emulator::Log;
-use crate::plan::{Limits, Plan, ProcedureKind, SafeState};
-use crate::record::{EventKind, History, Outcome, Record};
-use crate::rig::journal::{Durability, EntryKind, Journal};
-use crate::rig::real::RealRig;
-use crate::rig::{Rig, RigFault};
 use crate::run::replay::LoggedRun;
 use crate::run::{Inspection, Motion, Observer, UNLOADING, Unwatched, replay};
 use crate::tests::testing::{number, ramp};
+use psd_plan::record::{EventKind, History, Outcome, Record};
+use psd_plan::{Limits, Plan, ProcedureKind, SafeState};
+use psd_rig::emulator::Log;
+use psd_rig::journal::{Durability, EntryKind, Journal};
+use psd_rig::real::RealRig;
+use psd_rig::{Rig, RigFault};
 use psd_testing::forwarded;
 use psd_testing::journal::PowerLoss;
 use psd_testing::journal::recover;

@@ -2,11 +2,11 @@
 
 use super::stage::{emulator, header, open};
 use crate::check::{LoadError, Options, check};
-use crate::emulator::Log;
-use crate::plan::Plan;
-use crate::record::Outcome;
-use crate::rig::journal::{Durability, Journal};
 use crate::run::{Unwatched, replay};
+use psd_plan::Plan;
+use psd_plan::record::Outcome;
+use psd_rig::emulator::Log;
+use psd_rig::journal::{Durability, Journal};
 use psd_testing::journal::PowerLoss;
 
 /// The plans of the manual use no file but a ground motion.

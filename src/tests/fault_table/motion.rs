@@ -2,12 +2,12 @@
 //! at that point, and a fracture that is an event.
 
 use super::stage::{STIFFNESS, plan, plan_of, run, run_without};
-use crate::plan::formula::Formula;
-use crate::plan::{Impact, InspectTrigger, Interval, Plan, ProcedureKind, Stepping};
-use crate::record::{EventKind, Outcome};
-use crate::rig::journal::EntryKind;
-use crate::rig::safety::failpoint::Guarding;
 use crate::tests::testing::{every, impact};
+use psd_plan::formula::Formula;
+use psd_plan::record::{EventKind, Outcome};
+use psd_plan::{Impact, InspectTrigger, Interval, Plan, ProcedureKind, Stepping};
+use psd_rig::journal::EntryKind;
+use psd_rig::safety::failpoint::Guarding;
 use psd_testing::plans::ChangeTarget as _;
 
 #[test]

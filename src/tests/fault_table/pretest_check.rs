@@ -2,8 +2,8 @@
 //! with such an error from the start. Out: only the small move of the check is made.
 
 use super::stage::{Ended, plan, run, run_without};
-use crate::record::{EventKind, Outcome};
-use crate::rig::safety::failpoint::Guarding;
+use psd_plan::record::{EventKind, Outcome};
+use psd_rig::safety::failpoint::Guarding;
 
 /// The pre-test check refuses the rig; no procedure of the plan was started.
 fn refused(script: &str, why: &str, most_moves: usize) {

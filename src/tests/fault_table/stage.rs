@@ -1,23 +1,23 @@
 //! A whole run on a rig emulator. In: a plan and a script of faults. Out: the outputs of the run, with the checks that the fault tests
 //! make on them.
 
-use crate::emulator::{Log, Script, of_plan};
-use crate::plan::formula::Formula;
-use crate::plan::{
-    Behind, Datum, DeviceLink, Dialect, Interval, Limits, Link, Move, Plan, PortPlan, PretestCheck,
-    ProcedureKind, ReadingRules, RealLink, SafeState, Settle,
-};
-use crate::record::{EventKind, History, Outcome, Record};
-use crate::rig::journal::{Durability, EntryKind, Journal, Line, Recovered};
-use crate::rig::real::RealRig;
-use crate::rig::safety::failpoint::{Guarding, without};
-use crate::rig::transport::Port;
-use crate::rig::{LineStatistics, Rig as _, RigFault, StopRequest, controllers};
 use crate::run::replay;
 use crate::run::replay::LoggedRun;
 use crate::run::{Observer, Unwatched};
 pub(super) use crate::tests::testing::header;
 use crate::tests::testing::{elastic_plan, ramp};
+use psd_plan::formula::Formula;
+use psd_plan::record::{EventKind, History, Outcome, Record};
+use psd_plan::{
+    Behind, Datum, DeviceLink, Dialect, Interval, Limits, Link, Move, Plan, PortPlan, PretestCheck,
+    ProcedureKind, ReadingRules, RealLink, SafeState, Settle,
+};
+use psd_rig::emulator::{Log, Script, of_plan};
+use psd_rig::journal::{Durability, EntryKind, Journal, Line, Recovered};
+use psd_rig::real::RealRig;
+use psd_rig::safety::failpoint::{Guarding, without};
+use psd_rig::transport::Port;
+use psd_rig::{LineStatistics, Rig as _, RigFault, StopRequest, controllers};
 use psd_testing::emulator::{InProcess, SharedText, SimulatedPort};
 use psd_testing::journal::PowerLoss;
 use psd_testing::journal::recover;
@@ -164,7 +164,7 @@ pub(super) fn run_watched(
     let (line_statistics, trusted) = (rig.line_statistics(), rig.trusted());
     assert!(
         emulator.lock().rig().violations().is_empty()
-            || !crate::rig::safety::failpoint::on(Guarding::TargetLimits)
+            || !psd_rig::safety::failpoint::on(Guarding::TargetLimits)
     );
     Ok(Ended {
         record: recorded.record,

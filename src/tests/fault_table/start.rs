@@ -8,12 +8,12 @@ use super::line::unnumbered::{grbl, modbus};
 use super::stage::{
     Ended, STIFFNESS, device_link, emulator, link, open, plan, plan_of, run, run_without, to,
 };
-use crate::emulator::Log;
-use crate::plan::{Datum, Dialect, ModbusMap, ModbusNumber, Plan};
-use crate::record::{EventKind, Outcome};
-use crate::rig::Rig as _;
-use crate::rig::journal::EntryKind;
-use crate::rig::safety::failpoint::{Guarding, without};
+use psd_plan::record::{EventKind, Outcome};
+use psd_plan::{Datum, Dialect, ModbusMap, ModbusNumber, Plan};
+use psd_rig::Rig as _;
+use psd_rig::emulator::Log;
+use psd_rig::journal::EntryKind;
+use psd_rig::safety::failpoint::{Guarding, without};
 use psd_testing::journal::PowerLoss;
 
 const AT_3_MM: &str = "stands at 3 mm";

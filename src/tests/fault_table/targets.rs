@@ -4,9 +4,9 @@
 use proptest::prelude::*;
 
 use super::stage::{device_link, link, plan_of, run, run_without, to};
-use crate::plan::{Dialect, Interval, Plan};
-use crate::record::Outcome;
-use crate::rig::safety::failpoint::Guarding;
+use psd_plan::record::Outcome;
+use psd_plan::{Dialect, Interval, Plan};
+use psd_rig::safety::failpoint::Guarding;
 
 /// A plan that moves to these positions within these limits \[m\].
 fn going(positions: &[f64], displacement: Interval, increment: f64) -> Plan {

@@ -1,9 +1,9 @@
 //! A run whose energy balance does not close reports it, for every procedure.
 
-use crate::plan::{Behaviour, ProcedureKind, ShakeDamping, Storey};
-use crate::record::{EventKind, Record};
 use crate::tests::testing::{number, run_unwatched};
 use crate::tests::uncertainty::frame::{base_excited_plan, constant};
+use psd_plan::record::{EventKind, Record};
+use psd_plan::{Behaviour, ProcedureKind, ShakeDamping, Storey};
 
 /// Two storeys that yield, by the tangent form, under ground motion of 20 s followed by a rest of 40 s.
 fn yielding(time_step: f64) -> Record {

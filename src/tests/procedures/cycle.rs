@@ -1,9 +1,9 @@
 //! Cycles as run on virtual rigs.
 
-use crate::plan::formula::Formula::Constant;
-use crate::plan::{Behaviour, Cycle, CycleInspection, Level, Plan, ProcedureKind, Sides};
-use crate::record::{CycleHistory, EventKind, History, Outcome, Record};
 use crate::tests::testing::{elastic_plan, list, number, run_unwatched};
+use psd_plan::formula::Formula::Constant;
+use psd_plan::record::{CycleHistory, EventKind, History, Outcome, Record};
+use psd_plan::{Behaviour, Cycle, CycleInspection, Level, Plan, ProcedureKind, Sides};
 
 fn cycle(amplitudes: &[f64], cycles: u32) -> Cycle {
     Cycle {
@@ -124,7 +124,7 @@ fn friction_costs_its_force_times_the_travel() {
         let even = 0.01 / f64::from(points);
         let step = 2.0
             * 0.01
-            * crate::physics::identification::loop_sampling::spaced(0.5 / f64::from(points));
+            * psd_physics::identification::loop_sampling::spaced(0.5 / f64::from(points));
         assert!(0.25 * even < step && step < 0.5 * even, "{step} m");
         let lost = 2.0 * 3.0 * step;
         assert!(
@@ -210,7 +210,7 @@ fn a_person_looks_between_amplitudes_and_when_the_force_has_fallen() {
 #[test]
 fn a_limit_stops_it_with_what_was_recorded() {
     let mut plan = plan(cycle(&[0.001, 0.004], 1));
-    plan.limits.force = crate::plan::Interval {
+    plan.limits.force = psd_plan::Interval {
         low: -2.0,
         high: 2.0,
     };

@@ -1,10 +1,10 @@
 //! Several impacts on one specimen that keeps its damage.
 
-use crate::plan::formula::Formula;
-use crate::plan::formula::Formula::Constant;
-use crate::plan::{Behaviour, Contact, Impact, Plan, ProcedureKind, Unload, Until};
-use crate::record::{History, ImpactStep, Record, StepState};
 use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched};
+use psd_plan::formula::Formula;
+use psd_plan::formula::Formula::Constant;
+use psd_plan::record::{History, ImpactStep, Record, StepState};
+use psd_plan::{Behaviour, Contact, Impact, Plan, ProcedureKind, Unload, Until};
 
 /// K 20 kN/m; yields at 200 N, 10 mm, without post-yield stiffness.
 fn perfectly_plastic(procedures: Vec<ProcedureKind>) -> Plan {

@@ -1,20 +1,20 @@
 //! Unloaded position of a specimen, compared with its model moved back in steps of a hundred-thousandth of the distance.
 
 use super::frame::three;
-use crate::physics::specimen::{RestoringForce, SpecimenModel};
-use crate::plan::formula::Formula::Constant;
-use crate::plan::formula::ProcedureId;
-use crate::plan::{
-    Behaviour, Between, Bolted, Escalate, Impact, Link, Move, Plan, ProcedureKind, Unload,
-    VirtualLink,
-};
 use crate::procedures::unload::run::{of_frame, to_rest};
-use crate::record::{History, Record, UnloadStep};
-use crate::rig::virtual_rig;
 use crate::run::Unwatched;
 use crate::run::session::Session;
 use crate::tests::testing;
 use crate::tests::testing::{elastic_plan, impact, number, run_unwatched};
+use psd_physics::specimen::{RestoringForce, SpecimenModel};
+use psd_plan::formula::Formula::Constant;
+use psd_plan::formula::ProcedureId;
+use psd_plan::record::{History, Record, UnloadStep};
+use psd_plan::{
+    Behaviour, Between, Bolted, Escalate, Impact, Link, Move, Plan, ProcedureKind, Unload,
+    VirtualLink,
+};
+use psd_rig::virtual_rig;
 
 /// End supports of a beam: 40 kN/m that carry 400 N after 3 mm, and faces that slip at 90 N.
 fn bolted() -> Behaviour {

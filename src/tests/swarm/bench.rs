@@ -3,15 +3,15 @@
 use super::case::{Amendment, Case, Devices, Registers};
 use super::fault::Fault;
 use super::laws::{Obeys, Witness};
-use crate::emulator::script::{Script, ScriptedFault, What, When};
-use crate::emulator::{Log, RigEmulator, of_plan};
-use crate::plan::formula::Formula;
-use crate::plan::{
+use crate::tests::testing::elastic_plan;
+use psd_plan::formula::Formula;
+use psd_plan::{
     Calibration, Datum, DeviceLink, Dialect, Interval, Limits, Link, ModbusMap, ModbusNumber, Move,
     Plan, PortPlan, PretestCheck, Procedure, ProcedureKind, ReadingRules, RealLink, SafeState,
     Settle,
 };
-use crate::tests::testing::elastic_plan;
+use psd_rig::emulator::script::{Script, ScriptedFault, What, When};
+use psd_rig::emulator::{Log, RigEmulator, of_plan};
 
 /// Stiffness of the specimen \[N/m\].
 const STIFFNESS: f64 = 1e5;

@@ -3,9 +3,9 @@
 
 use super::draw::Draw;
 use super::fault::{Change, CommandFault, DiskFault, Fault, Kill};
-use crate::emulator::MechanicalFault;
-use crate::emulator::script::{GarbagePosition, LineFault, ReplyFault};
-use crate::plan::ModbusNumber;
+use psd_plan::ModbusNumber;
+use psd_rig::emulator::MechanicalFault;
+use psd_rig::emulator::script::{GarbagePosition, LineFault, ReplyFault};
 
 /// The devices of the rig.
 #[derive(Clone, Copy, Debug, PartialEq)]

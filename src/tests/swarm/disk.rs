@@ -6,7 +6,7 @@ use std::panic::resume_unwind;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::fault::{DiskFault, Fault, Kill};
-use crate::rig::journal::Storage;
+use psd_rig::journal::Storage;
 use psd_testing::journal::PowerLoss;
 
 /// psd was killed: the panic of a kill, which is no fault.

@@ -1,7 +1,7 @@
 //! What can befall a test, as data, and the names under which it is counted.
 
-use crate::emulator::MechanicalFault;
-use crate::emulator::script::{LineFault, ReplyFault};
+use psd_rig::emulator::MechanicalFault;
+use psd_rig::emulator::script::{LineFault, ReplyFault};
 
 /// A fault within a session. Calls of the disk and commands to the rig are counted from the start of the session, replies and moves from
 /// the power-up of the rig.

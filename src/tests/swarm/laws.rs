@@ -2,10 +2,10 @@
 //! every release and at the end of every session. In: what the rig received, what was released, what the run log says. Out: the breaches.
 
 use super::disk::{Disk, Logged};
-use crate::emulator::EmulatedRig;
-use crate::plan::{Interval, Plan};
-use crate::record::{EventKind, Outcome, Record};
 use crate::run::replay::ResumeDecision;
+use psd_plan::record::{EventKind, Outcome, Record};
+use psd_plan::{Interval, Plan};
+use psd_rig::emulator::EmulatedRig;
 
 /// A law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -96,9 +96,9 @@ impl Released {
             .procedures
             .iter()
             .filter_map(|procedure| match &procedure.kind {
-                crate::plan::ProcedureKind::Move(leg) => {
-                    let number = |formula: &crate::plan::formula::Formula| match formula {
-                        crate::plan::formula::Formula::Constant(number) => *number,
+                psd_plan::ProcedureKind::Move(leg) => {
+                    let number = |formula: &psd_plan::formula::Formula| match formula {
+                        psd_plan::formula::Formula::Constant(number) => *number,
                         _ => f64::NAN,
                     };
                     let speed = leg.speed.as_ref().map_or(link.own_speed, number);

@@ -11,15 +11,15 @@ use super::laws::{Breach, Law, Released};
 use super::operator::Operator;
 use super::tally::Tally;
 use super::world::{Endless, World};
-use crate::emulator::Log;
-use crate::emulator::script::LineFault;
-use crate::plan::{Behind, Plan};
-use crate::record::{Outcome, Record};
-use crate::rig::journal::{Durability, EntryKind, Journal, Recovered};
-use crate::rig::real::RealRig;
-use crate::rig::{RigFault, StopRequest, controllers};
 use crate::run::replay::{self, LoggedRun, Recorded, ResumeBody, TargetStatus};
 use crate::tests::testing::header;
+use psd_plan::record::{Outcome, Record};
+use psd_plan::{Behind, Plan};
+use psd_rig::emulator::Log;
+use psd_rig::emulator::script::LineFault;
+use psd_rig::journal::{Durability, EntryKind, Journal, Recovered};
+use psd_rig::real::RealRig;
+use psd_rig::{RigFault, StopRequest, controllers};
 use psd_testing::journal::recover;
 
 /// What a life left behind.
@@ -183,7 +183,7 @@ impl<'a> Life<'a> {
             Change::ForceGone => {}
         }
         if force_gone || change == Change::ForceGone {
-            let nothing = crate::emulator::MechanicalFault::ScaleForce(0.0);
+            let nothing = psd_rig::emulator::MechanicalFault::ScaleForce(0.0);
             self.world.lock().bench.rig_mut().strike(0, nothing);
         }
     }

@@ -24,11 +24,11 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-use crate::emulator::Log;
-use crate::record::failpoint::{Guarding, without};
 use case::Case;
 use laws::{Breach, Law};
 use life::{live, live_logged};
+use psd_plan::record::failpoint::{Guarding, without};
+use psd_rig::emulator::Log;
 use shrink::shrunk;
 use tally::Tally;
 

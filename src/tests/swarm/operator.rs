@@ -5,9 +5,9 @@ use std::cell::Cell;
 use super::case::Operator as Answers;
 use super::laws::Released;
 use super::world::World;
-use crate::record::Event;
-use crate::rig::StopRequest;
 use crate::run::{Inspection, Motion, Next, Observer};
+use psd_plan::record::Event;
+use psd_rig::StopRequest;
 
 pub(super) struct Operator {
     answers: Answers,

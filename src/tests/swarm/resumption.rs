@@ -8,14 +8,14 @@ use super::case::Session;
 use super::laws::{Law, Released};
 use super::life::{Ended, Life, open, read};
 use crate::cli::operator::watch::Shared;
-use crate::plan::Plan;
-use crate::rig::journal::{Durability, EntryKind, Journal, Storage as _};
-use crate::rig::{Reading, Rig as _, RigFault, StopRequest};
 use crate::run::replay::{
     self, AmendBody, Assurance, Bands, Continuation, HeldBody, IntentBody, LoggedRun, RecoverBody,
     ResumeBody, ResumeDecision, ResumeRefusal, RigBody, SampleBody,
 };
 use crate::run::{Inspection, Motion, Observer};
+use psd_plan::Plan;
+use psd_rig::journal::{Durability, EntryKind, Journal, Storage as _};
+use psd_rig::{Reading, Rig as _, RigFault, StopRequest};
 
 impl Life<'_> {
     /// The same steps in the same order as `psd resume`.

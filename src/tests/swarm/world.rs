@@ -9,9 +9,9 @@ use std::time::Duration;
 use super::disk::{Disk, Killed};
 use super::fault::{CommandFault, Fault, Kill};
 use super::laws::Witness;
-use crate::emulator::RigEmulator;
-use crate::rig::StopRequest;
-use crate::rig::transport::{Clock, Emergency, Port};
+use psd_rig::StopRequest;
+use psd_rig::emulator::RigEmulator;
+use psd_rig::transport::{Clock, Emergency, Port};
 
 /// Interval between two checks of the controllers while time passes \[s\].
 const SLICE: f64 = 0.02;

@@ -1,10 +1,10 @@
 //! Readings below the lower end of a calibrated range: their contribution by hand.
 
 use super::impact::{MASS, STIFFNESS, STRIKER, from, plan, sticking};
-use crate::plan::formula::Formula::Constant;
-use crate::plan::{Calibration, Interval, Link, Plan, ProcedureKind, StiffnessRamp, VirtualLink};
 use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
-use crate::uncertainty::Source;
+use psd_plan::formula::Formula::Constant;
+use psd_plan::uncertainty::Source;
+use psd_plan::{Calibration, Interval, Link, Plan, ProcedureKind, StiffnessRamp, VirtualLink};
 
 /// Four steps of 10 mm at 1 kN/m: 10, 20, 30 and 40 N.
 fn ramp_to_40_newtons(calibration: Calibration) -> Plan {

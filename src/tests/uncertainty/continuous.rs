@@ -3,15 +3,15 @@
 
 use super::frame::{base_excited_plan, constant, entry};
 use super::rest::{Misread, RIGHT};
-use crate::physics::impact::peaks::{Peak, PeakDisplacements};
-use crate::plan::{
+use crate::run::Unwatched;
+use psd_physics::impact::peaks::{Peak, PeakDisplacements};
+use psd_plan::record::{History, Record};
+use psd_plan::uncertainty::{Contribution, Source};
+use psd_plan::{
     Behaviour, Calibration, Frame, Integrator, Link, Mode, Plan, ProcedureKind, Settle, Shake,
     ShakeDamping, Stepping, Storey, VirtualLink,
 };
-use crate::record::{History, Record};
-use crate::rig::virtual_rig;
-use crate::run::Unwatched;
-use crate::uncertainty::{Contribution, Source};
+use psd_rig::virtual_rig;
 
 const TIME_SCALE: f64 = 50.0;
 /// C/K of the dampers in the time of the frame \[s\].
@@ -120,7 +120,7 @@ const SOURCES: [Source; 6] = [
         storey: 1,
     },
     Source::DampingRatio {
-        procedure: crate::plan::formula::ProcedureId(0),
+        procedure: psd_plan::formula::ProcedureId(0),
         mode: 0,
     },
     Source::GroundScale(0),

@@ -1,10 +1,10 @@
 //! Effect of rounding on the loops of a `cycle`. It is compared with replays on rigs that differ in the zero of their quantization grid.
 
-use crate::plan::formula::Formula;
-use crate::plan::{Behaviour, Cycle, Level, Link, Plan, ProcedureKind, Sides, VirtualLink};
 use crate::tests::noise::uniform;
 use crate::tests::testing::{elastic_plan, number, run_unwatched};
-use crate::uncertainty::Source;
+use psd_plan::formula::Formula;
+use psd_plan::uncertainty::Source;
+use psd_plan::{Behaviour, Cycle, Level, Link, Plan, ProcedureKind, Sides, VirtualLink};
 
 const NAMES: [&str; 6] = [
     "dissipated_energy",

@@ -1,16 +1,16 @@
 //! Coverage of expanded uncertainties: of hundreds of ramps of few points with simulated noise, U covers the stiffness as stated.
 
-use crate::physics::statistics::student_t::LEVEL;
-use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue, Results};
-use crate::plan::{
+use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
+use crate::verdict::{Verdict, assess};
+use psd_physics::statistics::student_t::LEVEL;
+use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue, Results};
+use psd_plan::record::Record;
+use psd_plan::uncertainty::{MeasurementUncertainty, measurement_uncertainty};
+use psd_plan::{
     Comparison, Condition, DecisionRule, Link, Plan, ProcedureKind, Requirement, StiffnessRamp,
     Test, VirtualLink,
 };
-use crate::record::Record;
-use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
-use crate::uncertainty::{MeasurementUncertainty, measurement_uncertainty};
-use crate::units::Dimension;
-use crate::verdict::{Verdict, assess};
+use psd_text::units::Dimension;
 
 const STIFFNESS: f64 = 3e5;
 
@@ -150,9 +150,9 @@ fn what_follows_from_a_fit_has_its_degrees_of_freedom() {
             .unwrap()
             .degrees
     };
-    let root = Formula::Call(crate::plan::formula::Function::Sqrt, vec![of(0)]);
+    let root = Formula::Call(psd_plan::formula::Function::Sqrt, vec![of(0)]);
     assert!((degrees(&root) - 4.0).abs() < 1e-6);
-    let mean = Formula::Call(crate::plan::formula::Function::Mean, vec![of(0), of(1)]);
+    let mean = Formula::Call(psd_plan::formula::Function::Mean, vec![of(0), of(1)]);
     let [one, other] = [0, 1].map(|procedure| {
         match record.procedures[procedure]
             .result("stiffness")

@@ -1,14 +1,14 @@
 //! Standard uncertainties of fits as predicted by a simulation, compared with those of runs with other noise.
 
-use crate::physics::identification::multilinear_fit::BreakCount;
-use crate::physics::relaxation::time_constant::RelaxationModel;
-use crate::plan::formula::Formula;
-use crate::plan::{
+use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
+use psd_physics::identification::multilinear_fit::BreakCount;
+use psd_physics::relaxation::time_constant::RelaxationModel;
+use psd_plan::formula::Formula;
+use psd_plan::record::History;
+use psd_plan::{
     Behaviour, Cycle, DampingSweep, Level, Link, Plan, ProcedureKind, RampFit, Sides,
     StiffnessRamp, VirtualLink, WatchedHold, WatchedModel,
 };
-use crate::record::History;
-use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
 
 const STIFFNESS: f64 = 3e5;
 

@@ -1,16 +1,16 @@
 //! Effect of rounding on holds and on secants. It is compared with replays on rigs that differ in the zero of their quantization grid.
 
-use crate::physics::relaxation::law::RelaxationLaw;
-use crate::physics::relaxation::time_constant::RelaxationModel;
-use crate::plan::formula::Formula;
-use crate::plan::{
+use crate::tests::noise::uniform;
+use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
+use psd_physics::relaxation::law::RelaxationLaw;
+use psd_physics::relaxation::time_constant::RelaxationModel;
+use psd_plan::formula::Formula;
+use psd_plan::record::Record;
+use psd_plan::uncertainty::{MeasurementUncertainty, Source, measurement_uncertainty};
+use psd_plan::{
     Behaviour, Calibration, Link, Plan, ProcedureKind, StiffnessRamp, VirtualLink, WatchedHold,
     WatchedModel,
 };
-use crate::record::Record;
-use crate::tests::noise::uniform;
-use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
-use crate::uncertainty::{MeasurementUncertainty, Source, measurement_uncertainty};
 
 const STIFFNESS: f64 = 3e5;
 

@@ -1,15 +1,15 @@
 //! Results under the rigid law, whose contacts follow the time step: the stop time jumps when another contact is the last. Compared
 //! with the same impact in steps of 0.5 µs.
 
-use crate::physics::contact::Approaching;
-use crate::physics::impact::{ImpactInput, Until};
-use crate::physics::reintegration::impact::{ImpactValues, integrate};
-use crate::physics::reintegration::recorded_path::Reading;
-use crate::plan::formula::Formula;
-use crate::plan::{Contact, Impact, Link, Plan, ProcedureKind, VirtualLink};
-use crate::record::{NamedResult, Record};
 use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched};
-use crate::uncertainty::StepInterval;
+use psd_physics::contact::Approaching;
+use psd_physics::impact::{ImpactInput, Until};
+use psd_physics::reintegration::impact::{ImpactValues, integrate};
+use psd_physics::reintegration::recorded_path::Reading;
+use psd_plan::formula::Formula;
+use psd_plan::record::{NamedResult, Record};
+use psd_plan::uncertainty::StepInterval;
+use psd_plan::{Contact, Impact, Link, Plan, ProcedureKind, VirtualLink};
 use psd_testing::plans::ChangeTarget as _;
 
 /// The beam of `plans/beam.psd`.

@@ -2,16 +2,14 @@
 //! the virtual rig with one input perturbed.
 
 use super::frame::{base_excited_plan, constant, entry, from, storey};
-use crate::plan::formula::ResultValue;
-use crate::plan::{
-    Behaviour, Between, Contact, Frame, Plan, ProcedureKind, ShakeDamping, Stepping,
-};
-use crate::record::Record;
-use crate::rig::virtual_rig;
 use crate::run::Unwatched;
 use crate::tests::procedures::frame::escalate::rising;
 use crate::tests::testing::{every, number, run_unwatched};
-use crate::uncertainty::{Contribution, Source, combined};
+use psd_plan::formula::ResultValue;
+use psd_plan::record::Record;
+use psd_plan::uncertainty::{Contribution, Source, combined};
+use psd_plan::{Behaviour, Between, Contact, Frame, Plan, ProcedureKind, ShakeDamping, Stepping};
+use psd_rig::virtual_rig;
 
 /// Two storeys by their matrices, damped, on ground that jumps to 1 m/s².
 fn of_matrices() -> Plan {

@@ -1,22 +1,22 @@
 //! Uncertainty of an impact, for every pair of specimen and contact law: a re-run of the virtual specimen with one input perturbed is
 //! compared with the re-integration along the recorded path.
 
-use crate::physics::impact::ImpactInput;
-use crate::physics::reintegration::impact::integrate;
-use crate::physics::reintegration::recorded_path::Reading;
-use crate::physics::specimen::{RestoringForce, SpecimenModel};
-use crate::plan::formula::{Formula, ProcedureId};
-use crate::plan::{
-    Behaviour, Bolted, Calibration, Contact, Impact, Link, Pinching, Plan, ProcedureKind, Until,
-    VirtualLink,
-};
 use crate::procedures::common::results::Evaluated;
 use crate::procedures::impact::results::re_integrated;
 use crate::procedures::impact::setting::Setting;
-use crate::rig::DeclaredNoise;
 use crate::run::inputs::Inputs;
 use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched};
-use crate::uncertainty::{Contribution, Source};
+use psd_physics::impact::ImpactInput;
+use psd_physics::reintegration::impact::integrate;
+use psd_physics::reintegration::recorded_path::Reading;
+use psd_physics::specimen::{RestoringForce, SpecimenModel};
+use psd_plan::formula::{Formula, ProcedureId};
+use psd_plan::uncertainty::{Contribution, Source};
+use psd_plan::{
+    Behaviour, Bolted, Calibration, Contact, Impact, Link, Pinching, Plan, ProcedureKind, Until,
+    VirtualLink,
+};
+use psd_rig::DeclaredNoise;
 
 const SOURCES: [Source; 4] = [
     Source::StrikerVelocity(0),

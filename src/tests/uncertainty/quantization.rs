@@ -1,13 +1,13 @@
 //! Effect of rounding on a fit. It is compared with replays on rigs that differ in the zero of their quantization grid.
 
-use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue, Results};
-use crate::plan::{
-    Behaviour, DampingSweep, Link, Plan, ProcedureKind, RampFit, StiffnessRamp, VirtualLink,
-};
-use crate::record::{History, Record};
 use crate::tests::noise::uniform;
 use crate::tests::testing::{elastic_plan, ramp, result_of, run_unwatched};
-use crate::uncertainty::{MeasurementUncertainty, Source, measurement_uncertainty};
+use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue, Results};
+use psd_plan::record::{History, Record};
+use psd_plan::uncertainty::{MeasurementUncertainty, Source, measurement_uncertainty};
+use psd_plan::{
+    Behaviour, DampingSweep, Link, Plan, ProcedureKind, RampFit, StiffnessRamp, VirtualLink,
+};
 
 const STIFFNESS: f64 = 3e5;
 /// \[m\]
@@ -292,7 +292,7 @@ fn rounding_is_a_source_like_any_other() {
     };
     let record = run_unwatched(&ramp_plan(10, 0.0, STIFFNESS, link));
     let of = || Box::new(result_of(0, "stiffness"));
-    let nothing = Formula::Binary(crate::plan::formula::Operator::Subtract, of(), of());
+    let nothing = Formula::Binary(psd_plan::formula::Operator::Subtract, of(), of());
     assert_eq!(
         nothing.evaluate(&record, None).unwrap().uncertainty,
         Some(0.0)

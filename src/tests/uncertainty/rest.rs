@@ -1,19 +1,19 @@
 //! Unloaded position of a specimen on rigs with calibration errors, compared with the prediction of one run.
 
-use crate::physics::structure::Unloading;
-use crate::physics::tracking::trajectory::Path;
-use crate::plan::formula::{NoResults, ProcedureId};
-use crate::plan::{Behaviour, Calibration, Link, Plan, VirtualLink};
 use crate::procedures::common::perturbed_inputs::UncertainRun;
 use crate::procedures::unload::run::{of_frame, to_rest};
-use crate::record::Rest;
-use crate::rig::{EachReading, EncodedMove, Reading, Rig, RigFault, virtual_rig};
 use crate::run::Unwatched;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::tests::procedures::frame::{close, three};
 use crate::tests::testing::elastic_plan;
-use crate::uncertainty::{Contribution, Source, combined};
+use psd_physics::structure::Unloading;
+use psd_physics::tracking::trajectory::Path;
+use psd_plan::formula::{NoResults, ProcedureId};
+use psd_plan::record::Rest;
+use psd_plan::uncertainty::{Contribution, Source, combined};
+use psd_plan::{Behaviour, Calibration, Link, Plan, VirtualLink};
+use psd_rig::{EachReading, EncodedMove, Reading, Rig, RigFault, virtual_rig};
 use psd_testing::forwarded;
 
 /// Force factor of the cell, its zero error \[N\], and displacement factor of the transducer, for each axis.

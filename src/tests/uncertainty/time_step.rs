@@ -1,14 +1,14 @@
 //! Effect of the length of the time step on the results: closed forms, and the same runs with much smaller steps. Also inputs that cannot
 //! be perturbed by ±u in both directions.
 
-pub(crate) use crate::plan::formula::{Formula, Stated};
-use crate::plan::{
+use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched};
+pub(crate) use psd_plan::formula::{Formula, Stated};
+use psd_plan::record::{EventKind, Outcome, Record};
+use psd_plan::uncertainty::{Source, StepInterval};
+use psd_plan::{
     Behaviour, Contact, Frame, Ground, Impact, Link, Plan, ProcedureKind, Shake, ShakeDamping,
     Specimen, Stepping, Storey, VirtualLink,
 };
-use crate::record::{EventKind, Outcome, Record};
-use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched};
-use crate::uncertainty::{Source, StepInterval};
 use psd_testing::plans::ChangeTarget as _;
 
 const STIFFNESS: f64 = 327.65;
@@ -140,7 +140,7 @@ fn base_excited_plan(time_step: f64) -> Record {
 fn a_frame_is_known_no_better_than_its_time_step_lets_it_be() {
     let drifts = |record: &Record| {
         let result = record.procedures[0].result("max_drift").unwrap();
-        let crate::plan::formula::ResultValue::List(values) = result.value.clone() else {
+        let psd_plan::formula::ResultValue::List(values) = result.value.clone() else {
             panic!("no list")
         };
         let ends = |storey: usize| {

@@ -1,11 +1,11 @@
 //! Results of a ramp and a sweep: the specimen itself, within the standard errors, in the order of the reference.
 
 use super::{constant, link, ramp_steps, ramp_then_sweep, sweep_steps};
-use crate::plan::{ProcedureKind, StiffnessRamp, VirtualLink};
-use crate::record::Outcome;
-use crate::rig::{Rig, VirtualRig};
 use crate::run::{Unwatched, run};
 use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
+use psd_plan::record::Outcome;
+use psd_plan::{ProcedureKind, StiffnessRamp, VirtualLink};
+use psd_rig::{Rig, VirtualRig};
 
 /// ζ = c/(2√(KM)) with only M uncertain: u(ζ) = ζ u(M)/(2M).
 #[test]

@@ -3,10 +3,10 @@
 mod identification;
 mod stops;
 
-use crate::plan::formula::Formula;
-use crate::plan::{DampingSweep, Link, Plan, ProcedureKind, VirtualLink};
-use crate::record::{History, RampStep, SweepStep};
 use crate::tests::testing::{elastic_plan, ramp, result_of};
+use psd_plan::formula::Formula;
+use psd_plan::record::{History, RampStep, SweepStep};
+use psd_plan::{DampingSweep, Link, Plan, ProcedureKind, VirtualLink};
 
 pub(super) fn constant(value: f64) -> Formula {
     Formula::Constant(value)

@@ -1,11 +1,11 @@
 //! Runs that end early or pause: limits, a rig that does not settle, an operator.
 
 use super::{constant, link, ramp_steps, ramp_then_sweep, sweep, sweep_steps};
-use crate::plan::{Interval, Move, ProcedureKind, StiffnessRamp, VirtualLink};
-use crate::record::{Event, EventKind, History, Outcome};
-use crate::rig::{LimitedQuantity, RigFault, VirtualRig};
 use crate::run::{Inspection, Next, Observer, StepReport, Unwatched, run};
 use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
+use psd_plan::record::{Event, EventKind, History, Outcome};
+use psd_plan::{Interval, Move, ProcedureKind, StiffnessRamp, VirtualLink};
+use psd_rig::{LimitedQuantity, RigFault, VirtualRig};
 
 #[test]
 fn a_violated_limit_holds_the_rig_and_keeps_the_record() {
@@ -29,12 +29,12 @@ fn a_violated_limit_holds_the_rig_and_keeps_the_record() {
     let last = record.events.last().unwrap();
     assert_eq!((last.kind, last.step), (EventKind::LimitBreach, Some(5)));
     // The force limit is detected by reading.
-    plan.limits = crate::plan::Limits {
+    plan.limits = psd_plan::Limits {
         force: Interval {
             low: -1e3,
             high: 200.0,
         },
-        ..crate::plan::Limits::NONE
+        ..psd_plan::Limits::NONE
     };
     let record = run_unwatched(&plan);
     let by_hand = RigFault::LimitBreached {
@@ -92,7 +92,7 @@ fn a_violated_limit_inside_a_stroke_keeps_the_readings_before_it() {
 #[test]
 fn a_rig_that_does_not_settle_aborts_the_run() {
     let mut plan = ramp_then_sweep();
-    plan.rig.settle = crate::plan::Settle {
+    plan.rig.settle = psd_plan::Settle {
         band: 1e-6,
         force_rate: 0.0,
         dwell: 0.1,

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use crate::source_text::files_in;
 use psd::check::{Options, check};
 use psd::report::{Provenance, Run, vectors};
-use psd::rig::VirtualRig;
 use psd::run::{Unwatched, run};
 use psd::verdict::assess;
+use psd_rig::VirtualRig;
 
 /// The pictures of a plan by their file name.
 fn drawn(name: &str) -> BTreeMap<String, Vec<u8>> {

@@ -6,8 +6,8 @@ use std::fs;
 use std::path::Path;
 
 use psd::procedures::columns;
-use psd::schema::BLOCKS;
-use psd::units::display::si_unit;
+use psd_plan::schema::BLOCKS;
+use psd_text::units::display::si_unit;
 use serde_json::Value;
 
 const START: &str = "<!-- generated -->\n";

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::source_text::files_in;
 use psd::check::{Options, check};
-use psd::text::diagnostic::render::{Appearance, render_all};
+use psd_text::diagnostic::render::{Appearance, render_all};
 
 /// The rig to select for a plan that has only real rigs.
 fn real_rig(plan: &str) -> Option<String> {

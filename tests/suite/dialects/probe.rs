@@ -195,7 +195,7 @@ fn a_rig_with_another_protocol_is_not_accepted() {
                 write_plan(by_name(ours), folder, SILENT);
                 // A separate load cell has a silent line: the actuator is addressed first.
                 let _nobody =
-                    psd::emulator::PseudoTerminal::linked(&folder.join("b")).expect("a line");
+                    psd_rig::emulator::PseudoTerminal::linked(&folder.join("b")).expect("a line");
                 let ended = psd(folder, &["rig", "probe", "plan.psd", "--rig", "real"]);
                 not_understood(&ended, plan_text);
                 assert_eq!(moves(folder), 0, "{there} for {ours}");

@@ -18,10 +18,10 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use psd::text::diagnostic::Diagnostic;
-use psd::text::diagnostic::excerpt::one_line;
-use psd::text::diagnostic::render::severity_name;
-use psd::text::source::{Position, Sources, Span};
+use psd_text::diagnostic::Diagnostic;
+use psd_text::diagnostic::excerpt::one_line;
+use psd_text::diagnostic::render::severity_name;
+use psd_text::source::{Position, Sources, Span};
 
 /// Whether a line is a comment that [`annotated`] writes.
 fn is_found(line: &str) -> bool {
@@ -149,7 +149,7 @@ fn marks(start: Position, span: Span, sources: &Sources) -> String {
 
 #[test]
 fn marks_name_the_position_of_every_span() {
-    use psd::text::diagnostic::Code;
+    use psd_text::diagnostic::Code;
 
     let plan = "let a = 1\nx\nlet b = 2\n";
     let mut sources = Sources::default();

@@ -6,8 +6,8 @@ use std::ops::Range;
 use std::sync::LazyLock;
 
 use psd::check::{Checked, check, no_files};
-use psd::text::diagnostic::page::{Page, PagePlan};
-use psd::text::diagnostic::{Code, Severity};
+use psd_text::diagnostic::page::{Page, PagePlan};
+use psd_text::diagnostic::{Code, Severity};
 use similar::TextDiff;
 
 use super::annotated::{annotated, plain};

@@ -1,28 +1,28 @@
 //! A finished run made by hand: a ramp, a sweep and a rigid impact by the paper's eqs. 2–5 on a linear structure. Outputs are thus tested
 //! without a rig.
 
-use psd::physics::contact::state::StepState;
-use psd::physics::identification::LineFit;
-use psd::physics::impact::energy::Energies;
-use psd::physics::tracking::monitor::Tracking;
-use psd::plan::formula::{
+use psd::report::{Provenance, Run};
+use psd::verdict::{Assessment, Bound, ConditionOutcome, RequirementOutcome, Verdict};
+use psd_physics::contact::state::StepState;
+use psd_physics::identification::LineFit;
+use psd_physics::impact::energy::Energies;
+use psd_physics::tracking::monitor::Tracking;
+use psd_plan::formula::{
     Estimate, Formula, Part, ProcedureId, ResultReference, ResultValue, UncertaintyStatus,
 };
-use psd::plan::{
+use psd_plan::record::{
+    BroughtTogether, DampingSweepHistory, Event, EventKind, History, ImpactHistory, ImpactStep,
+    NamedResult, Outcome, ProcedureRecord, RampStep, Record, StiffnessRampHistory, SweepStep,
+};
+use psd_plan::{
     Annex, Behaviour, Calibration, Comparison, Condition, Contact, DampingSweep, DecisionRule,
     Figure, FigureKind, Impact, ImpactTarget, InspectTrigger, Integrator, Interval, Limits, Link,
     Mode, Parameter, Plan, PlanFile, PointTarget, Procedure, ProcedureKind, RampFit, Report,
     Requirement, RigPlan, Settle, Specimen, Stepping, StiffnessRamp, Striker, Test, Until,
     VirtualLink,
 };
-use psd::record::{
-    BroughtTogether, DampingSweepHistory, Event, EventKind, History, ImpactHistory, ImpactStep,
-    NamedResult, Outcome, ProcedureRecord, RampStep, Record, StiffnessRampHistory, SweepStep,
-};
-use psd::report::{Provenance, Run};
-use psd::rig::Identity;
-use psd::units::Dimension;
-use psd::verdict::{Assessment, Bound, ConditionOutcome, RequirementOutcome, Verdict};
+use psd_rig::Identity;
+use psd_text::units::Dimension;
 
 /// Owns the data that a [`Run`] borrows.
 pub struct Finished {
@@ -557,9 +557,9 @@ fn plan() -> Plan {
             logo: None,
             photos: Vec::new(),
         },
-        golden: psd::plan::Golden::default(),
+        golden: psd_plan::Golden::default(),
         check_run_of: None,
-        studies: psd::plan::Studies::default(),
+        studies: psd_plan::Studies::default(),
         files: vec![
             PlanFile {
                 name: "beam.psd".into(),

@@ -6,12 +6,12 @@ use psd::golden::comparison::page;
 use psd::golden::comparison::{Comparison, Side, csv};
 use psd::golden::print::json as golden_json;
 use psd::golden::{Change, Finding, Outcome as TestOutcome, Part, Report, Tested, junit, tap};
-use psd::plan::Format;
-use psd::record::{EventKind, Outcome};
 use psd::report::{Figures, OutputFile, console};
-use psd::rig::journal::{Durability, EntryKind, FileStorage, Journal, recover};
-use psd::text::diagnostic::{json, render};
-use psd::text::sanitize;
+use psd_plan::Format;
+use psd_plan::record::{EventKind, Outcome};
+use psd_rig::journal::{Durability, EntryKind, FileStorage, Journal, recover};
+use psd_text::diagnostic::{json, render};
+use psd_text::sanitize;
 use rayon::prelude::*;
 
 use super::fixture::{Finished, finished};

@@ -1,6 +1,6 @@
 //! The test report as a PDF: made from the same document as the page, without access to the clock.
 
-use psd::plan::Format;
+use psd_plan::Format;
 use rayon::prelude::*;
 
 use super::fixture::finished;

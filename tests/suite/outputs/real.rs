@@ -1,12 +1,12 @@
 //! Statements of the outputs about a run on a real rig: its status, its equipment, its record.
 
-use psd::plan::{
+use psd::report::{Change, Issue, IssueKind, Issues, RealRun, console};
+use psd::report::{ReportStatus, report_status};
+use psd_plan::record::{Event, EventKind, Outcome};
+use psd_plan::{
     Calibration, Datum, DeviceLink, Dialect, Format, Interval, Link, PortPlan, PretestCheck,
     ReadingRules, RealLink, SafeState,
 };
-use psd::record::{Event, EventKind, Outcome};
-use psd::report::{Change, Issue, IssueKind, Issues, RealRun, console};
-use psd::report::{ReportStatus, report_status};
 
 use super::fixture::{Finished, finished};
 use super::{files, text};

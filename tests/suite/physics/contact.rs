@@ -1,11 +1,11 @@
 //! The contact laws, compared with closed forms and exact collisions.
 
-use psd::physics::contact::ContactLaw;
+use psd_physics::contact::ContactLaw;
 
-use psd::physics::contact::state::StepState;
-use psd::physics::impact::ImpactInput;
-use psd::physics::specimen::{Bilinear, BilinearCurve, Elastic, RestoringForce};
-use psd::physics::statistics::DeclaredNoise;
+use psd_physics::contact::state::StepState;
+use psd_physics::impact::ImpactInput;
+use psd_physics::specimen::{Bilinear, BilinearCurve, Elastic, RestoringForce};
+use psd_physics::statistics::DeclaredNoise;
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;

@@ -1,10 +1,10 @@
 //! Strikers that fall, Ms Ẍs = Ms g − F: compared with the flight of a ball, the pair on a spring and the energy balance.
 
-use psd::physics::contact::ContactLaw;
+use psd_physics::contact::ContactLaw;
 
-use psd::physics::contact::state::StepState;
-use psd::physics::impact::ImpactInput;
-use psd::physics::specimen::Elastic;
+use psd_physics::contact::state::StepState;
+use psd_physics::impact::ImpactInput;
+use psd_physics::specimen::Elastic;
 
 use super::support::{impact, run, run_while};
 
@@ -91,7 +91,7 @@ fn a_weight_falls_back_and_strikes_again() {
         gravity: G,
         ..impact(1.0, 1.0, law, time_step)
     };
-    let mut solver = psd::physics::impact::ImpactSolver::new(&input, 0.0, 0.0).expect("an impact");
+    let mut solver = psd_physics::impact::ImpactSolver::new(&input, 0.0, 0.0).expect("an impact");
     let mut impact_times = Vec::new();
     let mut before = StepState::Free;
     while solver.state().time < 0.45 {

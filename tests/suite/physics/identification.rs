@@ -1,6 +1,6 @@
 //! Coverage of standard errors: over many seeds, the true value lies within one and two of them as often as it should.
 
-use psd::physics::identification::{LineFit, fit_damping, fit_line};
+use psd_physics::identification::{LineFit, fit_damping, fit_line};
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64Mcg;

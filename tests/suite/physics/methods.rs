@@ -1,11 +1,11 @@
 //! Every integrator, compared with the same closed forms: free vibration, the paper's examples with decreasing step, energy.
 
-use psd::physics::contact::ContactLaw;
-use psd::physics::impact::{ImpactInput, ImpactSolver};
-use psd::physics::integrator::stability::{Met, longest_stable_step};
-use psd::physics::specimen::{RestoringForce, SpecimenModel};
-use psd::physics::structure::Matrices;
-use psd::plan::{Behaviour, Integrator};
+use psd_physics::contact::ContactLaw;
+use psd_physics::impact::{ImpactInput, ImpactSolver};
+use psd_physics::integrator::stability::{Met, longest_stable_step};
+use psd_physics::specimen::{RestoringForce, SpecimenModel};
+use psd_physics::structure::Matrices;
+use psd_plan::{Behaviour, Integrator};
 
 use super::support::{impact, run};
 

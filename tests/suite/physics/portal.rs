@@ -3,7 +3,7 @@
 //! The last two share no code with the product.
 
 use nalgebra::{DMatrix, DVector};
-use psd::plan::{Loads, Mechanism, Portal, Sections};
+use psd_plan::{Loads, Mechanism, Portal, Sections};
 
 const SPAN: f64 = 4.0;
 const HEIGHT: f64 = 3.0;

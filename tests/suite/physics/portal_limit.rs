@@ -1,8 +1,8 @@
 //! The load up to which the mechanism of a portal is valid. It is compared with the closed form of single mechanisms, and with the
 //! moments along the members. These are summed here from the inertia point by point. The sums share no code with the product.
 
-use psd::physics::structure::portal::limit::mechanism_limit;
-use psd::plan::{FrameMasses, Loads, Portal, Sections};
+use psd_physics::structure::portal::limit::mechanism_limit;
+use psd_plan::{FrameMasses, Loads, Portal, Sections};
 
 const SPAN: f64 = 4.0;
 const HEIGHT: f64 = 3.0;

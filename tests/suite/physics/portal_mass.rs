@@ -3,9 +3,9 @@
 //! point. Both are compared with published factors of beams. The finite elements and the rigid bodies share no code with the product.
 
 use nalgebra::{DMatrix, DVector};
-use psd::physics::structure::beam::EquivalentMasses;
-use psd::physics::structure::portal::mass::equivalent_masses;
-use psd::plan::{FrameMasses, Loads, Mechanism, Portal, Sections};
+use psd_physics::structure::beam::EquivalentMasses;
+use psd_physics::structure::portal::mass::equivalent_masses;
+use psd_plan::{FrameMasses, Loads, Mechanism, Portal, Sections};
 
 const SPAN: f64 = 4.0;
 const HEIGHT: f64 = 3.0;

@@ -1,8 +1,8 @@
 //! The reference results: each a case of the paper, at its step and converged.
 
-use psd::physics::contact::ContactLaw;
-use psd::physics::critical_time_step;
-use psd::physics::impact::ImpactInput;
+use psd_physics::contact::ContactLaw;
+use psd_physics::critical_time_step;
+use psd_physics::impact::ImpactInput;
 
 use super::support::{Run, event_driven, impact, run};
 

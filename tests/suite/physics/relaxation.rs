@@ -1,13 +1,13 @@
 //! Relaxation of force on the virtual rig: the standard linear solid compared with its closed form, for any rig, and the energy of its
 //! cycles.
 
-use psd::physics::relaxation::law::RelaxationLaw;
-use psd::physics::relaxation::maxwell::{MaxwellBranch, Motion};
-use psd::physics::relaxation::relaxation_state::{Deformed, RelaxationState};
-use psd::physics::specimen::SpecimenModel;
-use psd::physics::tracking::trajectory::Path;
-use psd::plan::{Behaviour, Settle, Specimen, VirtualLink};
-use psd::rig::{Rig, VirtualRig};
+use psd_physics::relaxation::law::RelaxationLaw;
+use psd_physics::relaxation::maxwell::{MaxwellBranch, Motion};
+use psd_physics::relaxation::relaxation_state::{Deformed, RelaxationState};
+use psd_physics::specimen::SpecimenModel;
+use psd_physics::tracking::trajectory::Path;
+use psd_plan::{Behaviour, Settle, Specimen, VirtualLink};
+use psd_rig::{Rig, VirtualRig};
 
 /// 300 kN/m in parallel with 200 kN/m that relax with 1.5 s.
 const K: f64 = 3e5;
@@ -102,7 +102,7 @@ fn a_lagging_piston_is_followed_in_closed_form() {
         seconds: 0.6,
     };
     let mut forces = Vec::new();
-    let mut take = |reading: psd::rig::Reading| {
+    let mut take = |reading: psd_rig::Reading| {
         forces.push(reading.force[0]);
         Ok(())
     };

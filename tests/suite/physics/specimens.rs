@@ -2,8 +2,8 @@
 //! move ends at the same force as many small ones.
 
 use proptest::prelude::*;
-use psd::physics::specimen::{RestoringForce, SpecimenModel};
-use psd::plan::{Behaviour, Bolted, Breaks, Capping, Deterioration, Pinching, Table, Unloading};
+use psd_physics::specimen::{RestoringForce, SpecimenModel};
+use psd_plan::{Behaviour, Bolted, Breaks, Capping, Deterioration, Pinching, Table, Unloading};
 
 /// Stiffness 1 N/m to 3 N/m and yield near 1 m: the models have no absolute scale.
 fn simple() -> impl Strategy<Value = Behaviour> {

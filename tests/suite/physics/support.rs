@@ -1,11 +1,11 @@
 //! Runs of an impact, and an exact solution of hard collisions that shares no code with the product.
 
-use psd::physics::contact::ContactLaw;
-use psd::physics::impact::summary::{ImpactSummary, SummaryBuilder};
-use psd::physics::impact::{ImpactInput, ImpactSolver, ImpactState};
-use psd::physics::specimen::{Elastic, RestoringForce};
-use psd::physics::statistics::DeclaredNoise;
-use psd::plan::Integrator;
+use psd_physics::contact::ContactLaw;
+use psd_physics::impact::summary::{ImpactSummary, SummaryBuilder};
+use psd_physics::impact::{ImpactInput, ImpactSolver, ImpactState};
+use psd_physics::specimen::{Elastic, RestoringForce};
+use psd_physics::statistics::DeclaredNoise;
+use psd_plan::Integrator;
 
 /// A striker of 10 kg at 1 m/s that touches an undamped structure at t = 0.
 pub fn impact(mass: f64, stiffness: f64, law: ContactLaw, time_step: f64) -> ImpactInput {

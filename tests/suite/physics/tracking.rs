@@ -1,9 +1,9 @@
 //! Effect of an actuator that misses its target on a run, through the solver: the amplitudes of the physics reference (section 11), the
 //! I-modification, and the energy that the monitor sees.
 
-use psd::physics::impact::{ImpactInput, ImpactSolver};
-use psd::physics::tracking::monitor::{Monitor, TrackedStep, Tracking};
-use psd::plan::Integrator;
+use psd_physics::impact::{ImpactInput, ImpactSolver};
+use psd_physics::tracking::monitor::{Monitor, TrackedStep, Tracking};
+use psd_plan::Integrator;
 
 use super::methods::vibration;
 

@@ -3,11 +3,11 @@
 
 use std::fmt::Write as _;
 
-use psd::schema::{BLOCKS, FUNCTIONS};
-use psd::text::diagnostic::page::Page;
-use psd::units::Dimension;
-use psd::units::display::si_unit;
-use psd::units::unit::{PREFIXES, UNITS};
+use psd_plan::schema::{BLOCKS, FUNCTIONS};
+use psd_text::diagnostic::page::Page;
+use psd_text::units::Dimension;
+use psd_text::units::display::si_unit;
+use psd_text::units::unit::{PREFIXES, UNITS};
 
 use crate::explain_pages::page_text;
 

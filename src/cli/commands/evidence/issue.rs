@@ -22,8 +22,8 @@ use crate::files::failure::plain;
 use crate::files::recorded_run::JOURNAL;
 use crate::report::status::days::days_after;
 use crate::report::{OutputFile, ReportStatus, Run, report_status};
-use crate::schema::plan_block::{AUTHORISED_BY, ISSUED};
-use crate::text::diagnostic::excerpt::one_line;
+use psd_plan::schema::plan_block::{AUTHORISED_BY, ISSUED};
+use psd_text::diagnostic::excerpt::one_line;
 
 /// The largest file of particulars \[bytes\].
 const PARTICULARS_BYTES: u64 = 1 << 20;

@@ -17,7 +17,7 @@ use crate::cli::files::run_folder::{RunFolder, copy};
 use crate::cli::output::print_result;
 use crate::cli::settings::Settings;
 use crate::evidence::{Folder, IssueFile, MANIFEST, ReplayedRun, check_consistency};
-use crate::rig::journal::FileStorage;
+use psd_rig::journal::FileStorage;
 
 #[derive(Debug, Args)]
 #[command(

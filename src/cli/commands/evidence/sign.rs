@@ -16,7 +16,7 @@ use crate::evidence::keys;
 use crate::evidence::keys::Protection;
 use crate::evidence::{Folder, MANIFEST, Rebuilt, Statement, examine, file_name, sign_manifest};
 use crate::report::OutputFile;
-use crate::text::diagnostic::excerpt::one_line;
+use psd_text::diagnostic::excerpt::one_line;
 
 #[derive(Debug, Args)]
 #[command(

@@ -12,8 +12,8 @@ use crate::cli::files::record_file::{JOURNAL, journal_of};
 use crate::cli::output::print_result;
 use crate::cli::settings::Settings;
 use crate::evidence::{Finding, Folder, Rebuilt, examine, keys};
-use crate::rig::journal::{FileFault, FileStorage};
-use crate::text::diagnostic::excerpt::one_line;
+use psd_rig::journal::{FileFault, FileStorage};
+use psd_text::diagnostic::excerpt::one_line;
 
 #[derive(Debug, Args)]
 #[command(

@@ -1,9 +1,9 @@
 //! Cells of the tables of `check --explain`. In: SI values. Out: strings.
 
-use crate::plan::Interval;
-use crate::schema::limits;
-use crate::units::Dimension;
-use crate::units::display::{digits, join, readable, unit};
+use psd_plan::Interval;
+use psd_plan::schema::limits;
+use psd_text::units::Dimension;
+use psd_text::units::display::{digits, join, readable, unit};
 
 /// A row of fixed strings.
 pub(super) fn row<const N: usize>(cells: [&str; N]) -> Vec<String> {

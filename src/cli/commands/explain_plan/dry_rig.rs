@@ -4,14 +4,14 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use crate::physics::tracking::trajectory::Path;
-use crate::plan::{Interval, Plan};
-use crate::record::Record;
-use crate::rig::{
+use crate::run::{self, Inspection, Observer, StepReport};
+use psd_physics::tracking::trajectory::Path;
+use psd_plan::record::Record;
+use psd_plan::{Interval, Plan};
+use psd_rig::{
     DeclaredNoise, EachReading, EncodedMove, Identity, OWN_SPEED, Reading, Rig, RigFault,
     virtual_rig,
 };
-use crate::run::{self, Inspection, Observer, StepReport};
 
 /// The demand of one procedure on the rig, SI.
 #[derive(Clone, Debug)]

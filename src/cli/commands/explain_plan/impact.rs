@@ -1,9 +1,9 @@
 //! Rows of an impact in `check --explain`: time step, duration and predicted peaks. In: its history. Out: rows.
 
 use super::cells::row;
-use crate::record::{ImpactHistory, ImpactStep};
-use crate::units::Dimension;
-use crate::units::display::{readable, significant};
+use psd_plan::record::{ImpactHistory, ImpactStep};
+use psd_text::units::Dimension;
+use psd_text::units::display::{readable, significant};
 
 /// Time steps and predicted peaks of an impact.
 pub(super) fn rows(history: &ImpactHistory) -> Vec<Vec<String>> {

@@ -3,12 +3,12 @@
 use super::DryRun;
 use super::cells::{distance, margin, row, span};
 use super::dry_rig::Reach;
-use crate::plan::formula::ResultValue;
-use crate::plan::{Interval, Limits};
 use crate::report::PredictedLimit;
-use crate::schema::limits;
-use crate::units::Dimension;
-use crate::units::display::si_unit;
+use psd_plan::formula::ResultValue;
+use psd_plan::schema::limits;
+use psd_plan::{Interval, Limits};
+use psd_text::units::Dimension;
+use psd_text::units::display::si_unit;
 
 /// A limit with the range of the dry run.
 struct LimitRange {

@@ -17,18 +17,18 @@ use std::fmt::Write as _;
 use super::explain_plan::dry_rig::{Reach, Watched};
 use crate::cli::exit::Exit;
 use crate::cli::settings::Settings;
-use crate::plan::{
-    Condition, DecisionRule, Interval, Link, Plan, ProcedureKind, ReadingErrors, VirtualLink,
-};
-use crate::record::{History, Outcome, Record};
 use crate::report::wording::specimen as specimen_text;
 use crate::report::{PredictedProcedure, PredictedRequirement, Prediction};
-use crate::text::columns::columns;
-use crate::text::diagnostic::excerpt::escape;
-use crate::units::Dimension;
-use crate::units::display::{readable, stated};
 use crate::verdict::{self, Assessment, ConditionOutcome, Declared, ReproductionOutcome, Verdict};
 use cells::{row, span};
+use psd_plan::record::{History, Outcome, Record};
+use psd_plan::{
+    Condition, DecisionRule, Interval, Link, Plan, ProcedureKind, ReadingErrors, VirtualLink,
+};
+use psd_text::columns::columns;
+use psd_text::diagnostic::excerpt::escape;
+use psd_text::units::Dimension;
+use psd_text::units::display::{readable, stated};
 
 /// The prediction of a run.
 pub enum Explained<'a> {

@@ -1,10 +1,10 @@
 //! Rows of `psd check --explain` for a frame: its modes, its time step, and the peaks of the dry run. In: the steps of a ground-motion
 //! test, or of an impact on a storey. Out: rows of text.
 
-use crate::physics::structure::widen;
-use crate::record::{Floors, Modes, ShakeHistory};
-use crate::units::Dimension;
-use crate::units::display::{digits, join, readable, significant, unit};
+use psd_physics::structure::widen;
+use psd_plan::record::{Floors, Modes, ShakeHistory};
+use psd_text::units::Dimension;
+use psd_text::units::display::{digits, join, readable, significant, unit};
 
 /// One row per mode: period, damping, effective modal mass, and its shape from the lowest floor up.
 pub fn modes(modes: Option<&Modes>, ratios: &[f64]) -> Vec<Vec<String>> {

@@ -1,10 +1,10 @@
 //! The start of a run on a real rig in `psd check --explain`. In: the plan. Out: rows: the zero of the plan, the required start position
 //! of the rig, the first move. It opens no rig.
 
-use crate::plan::{Datum, Plan};
 use crate::run::start;
-use crate::units::Dimension;
-use crate::units::display::{plain, stated};
+use psd_plan::{Datum, Plan};
+use psd_text::units::Dimension;
+use psd_text::units::display::{plain, stated};
 
 /// No rows for a simulated rig, which starts at 0.
 pub fn rows(plan: &Plan) -> Vec<Vec<String>> {

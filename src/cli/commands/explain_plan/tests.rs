@@ -1,17 +1,17 @@
 //! Dry runs of example 1 of Melo et al. 2006: its numbers, its stop at a limit, its specimen without a restoring-force model.
 
 use super::*;
-use crate::plan::{Interval, Limits, Link, VirtualLink};
 use crate::tests::testing::empty_plan;
+use psd_plan::{Interval, Limits, Link, VirtualLink};
 
 /// Example 1 of Melo et al. 2006, with the actuator allowed to go to `farthest`.
 fn example(farthest: f64) -> Plan {
-    use crate::plan::formula::Formula::Constant;
-    use crate::plan::{
+    use crate::tests::testing::every;
+    use psd_plan::formula::Formula::Constant;
+    use psd_plan::{
         Behaviour, Contact, Impact, ImpactTarget, PointTarget, Procedure, ProcedureKind, RigPlan,
         Settle, Specimen, Stepping, Striker, Until,
     };
-    use crate::tests::testing::every;
     let specimen = Specimen::new("beam", 1.0, Some(Behaviour::Elastic { stiffness: 327.65 }));
     let impact = Impact {
         specimen: 0,
@@ -123,9 +123,9 @@ fn predicted(plan: &Plan) -> (String, String) {
 
 /// Example 1 with a requirement that is met by far.
 fn required(rule: DecisionRule) -> Plan {
-    use crate::plan::formula::Formula::Constant;
-    use crate::plan::{Comparison, Requirement, Test};
     use crate::tests::testing::result_of;
+    use psd_plan::formula::Formula::Constant;
+    use psd_plan::{Comparison, Requirement, Test};
     let condition = Condition {
         text: "hit.max_displacement < 1 m".to_owned(),
         value: result_of(0, "max_displacement"),
@@ -174,8 +174,8 @@ fn a_rig_without_declared_calibrations_is_predicted_inconclusive() {
 /// the prediction.
 #[test]
 fn an_uncertainty_that_the_noise_of_the_rig_lets_grow_is_predicted_withheld() {
-    use crate::plan::formula::Formula::Constant;
-    use crate::plan::{Contact, Until};
+    use psd_plan::formula::Formula::Constant;
+    use psd_plan::{Contact, Until};
     let with_duration = |seconds: f64, until: Until| {
         let mut plan = required(DecisionRule::Guarded);
         plan.limits = Limits::NONE;

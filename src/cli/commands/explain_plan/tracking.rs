@@ -5,18 +5,18 @@
 //! settling band or the resolution may oppose the motion at every step. The sum of these errors is δ. In the worst case an amplitude A
 //! grows by 4δ in each cycle.
 
-use crate::plan::procedures::impact::block::MASS;
-use crate::plan::{Impact, Link, Mode, Plan, Shake, Stepping, VirtualLink};
 use crate::procedures::stepping::tracking::delay;
-use crate::record::{
+use crate::run::{self, Settings, Unwatched};
+use psd_plan::procedures::impact::block::MASS;
+use psd_plan::record::{
     Floors, ImpactHistory, Modes, Outcome, ProcedureRecord, Record, ShakeHistory, StruckFrame,
 };
-use crate::rig::virtual_rig;
-use crate::run::{self, Settings, Unwatched};
-use crate::schema::procedures::STIFFNESS;
-use crate::schema::procedures::tracking::TRACKING_ENERGY_ERROR;
-use crate::units::Dimension;
-use crate::units::display::{minus, readable, significant};
+use psd_plan::schema::procedures::STIFFNESS;
+use psd_plan::schema::procedures::tracking::TRACKING_ENERGY_ERROR;
+use psd_plan::{Impact, Link, Mode, Plan, Shake, Stepping, VirtualLink};
+use psd_rig::virtual_rig;
+use psd_text::units::Dimension;
+use psd_text::units::display::{minus, readable, significant};
 
 /// The predicted growth of one impact; empty if the rig declares no tracking error.
 pub(crate) fn rows(

@@ -1,11 +1,11 @@
 //! Zero drift of a rig that checks its zeros, in `psd check --explain`. In: the plan, the record of its dry run. Out: rows: times of the
 //! zero readings, time between them, allowed zero drift, and the effect of a declared zero drift.
 
-use crate::plan::{DriftCheck, Plan, ZeroAfter};
-use crate::record::{Drift, Record};
 use crate::report::PredictedZeros;
-use crate::units::Dimension;
-use crate::units::display::{readable, stated};
+use psd_plan::record::{Drift, Record};
+use psd_plan::{DriftCheck, Plan, ZeroAfter};
+use psd_text::units::Dimension;
+use psd_text::units::display::{readable, stated};
 
 /// No rows for a rig that does not specify its allowed zero drift.
 pub fn rows(plan: &Plan, record: &Record) -> Vec<Vec<String>> {
@@ -125,8 +125,8 @@ fn time_between(found: &Drift) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::check::{Options, check, no_files};
-    use crate::rig::virtual_rig;
     use crate::run::{Unwatched, run};
+    use psd_rig::virtual_rig;
 
     /// Ten dwells of 5 s, and 8 s of zero readings.
     fn zero_drift_text(declared: &str, check_of: &str) -> String {

@@ -4,11 +4,11 @@
 use clap::{Args, ValueEnum};
 
 use crate::cli::exit::Failure;
-use crate::plan::Plan;
 use crate::remote;
 use crate::remote::Protocol;
-use crate::rig::VirtualRig;
-use crate::units::{Dimension, unit};
+use psd_plan::Plan;
+use psd_rig::VirtualRig;
+use psd_text::units::{Dimension, unit};
 
 /// The client, as the command line describes it.
 #[derive(Debug, Args)]
@@ -71,7 +71,7 @@ pub fn protocol(arguments: &ClientArguments, plan: &Plan) -> Result<Protocol, Fa
                 });
             }
             let behaviour = specimen.and_then(|specimen| specimen.behaviour.as_ref());
-            let known = given.or_else(|| behaviour.map(crate::plan::Behaviour::initial_stiffness));
+            let known = given.or_else(|| behaviour.map(psd_plan::Behaviour::initial_stiffness));
             let stiffness = known.ok_or_else(|| {
                 Failure::command_line(
                     "the stiffness for the client is not known: the specimen has no behaviour",

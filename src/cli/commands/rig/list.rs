@@ -11,7 +11,7 @@ use serialport::{SerialPortInfo, SerialPortType};
 use crate::cli::args::Format;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::{print_message, print_result};
-use crate::text::diagnostic::excerpt::escape;
+use psd_text::diagnostic::excerpt::escape;
 
 /// The folder of names made of manufacturer and serial number, each a link to its port.
 const NAMES: &str = "/dev/serial/by-id";
@@ -180,7 +180,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         assert!(persistent_names(&folder.path().join("none")).is_empty());
         let line =
-            crate::emulator::PseudoTerminal::linked(&folder.path().join("usb-Maker_A7")).unwrap();
+            psd_rig::emulator::PseudoTerminal::linked(&folder.path().join("usb-Maker_A7")).unwrap();
         let names = persistent_names(folder.path());
         let [(name, port)] = names.as_slice() else {
             panic!("{names:?}")

@@ -18,8 +18,8 @@ use crate::cli::args::PlanSettings;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::plan_file;
 use crate::cli::settings::Settings;
-use crate::plan::{Link, Plan};
-use crate::rig::{Rig, StopRequest, connect, virtual_rig};
+use psd_plan::{Link, Plan};
+use psd_rig::{Rig, StopRequest, connect, virtual_rig};
 
 #[derive(Debug, Subcommand)]
 pub enum RigCommand {

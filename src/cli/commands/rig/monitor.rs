@@ -12,9 +12,9 @@ use crate::cli::operator::screen::{Screen, is_large_enough};
 use crate::cli::operator::watch::Signals;
 use crate::cli::output::print_while_read;
 use crate::cli::settings::Settings;
-use crate::plan::Plan;
-use crate::rig::{Reading, Rig, StopRequest};
 use crate::run::{Observer as _, StepReport};
+use psd_plan::Plan;
+use psd_rig::{Reading, Rig, StopRequest};
 
 #[derive(Debug, Args)]
 #[command(after_help = "In a pipe: one line per reading, in SI units.\n\n\

@@ -10,12 +10,12 @@ use std::fmt::Write as _;
 
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::print_result;
-use crate::physics::identification::fit_line;
-use crate::plan::{Datum, Interval, Plan};
-use crate::rig::{Identity, Reading, Rig};
-use crate::text::diagnostic::excerpt::escape;
-use crate::units::Dimension;
-use crate::units::display::{plain, readable};
+use psd_physics::identification::fit_line;
+use psd_plan::{Datum, Interval, Plan};
+use psd_rig::{Identity, Reading, Rig};
+use psd_text::diagnostic::excerpt::escape;
+use psd_text::units::Dimension;
+use psd_text::units::display::{plain, readable};
 
 /// Number of readings; time between two readings \[s\].
 const READINGS: usize = 10;

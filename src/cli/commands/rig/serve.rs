@@ -20,22 +20,22 @@ use crate::cli::operator::watch::{Attendance, Signals, Watcher};
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::evidence::Folder;
-use crate::plan::{Link, Plan};
-use crate::record::Outcome;
-use crate::record::remote::DrivenStep;
 use crate::remote;
 use crate::remote::{Ended, Event, Protocol, Session};
 use crate::report;
 use crate::report::Provenance;
-use crate::rig::transport::{Clock as _, MonotonicClock};
-use crate::rig::{Rig, StopRequest, virtual_rig};
 use crate::run::client_run::{Driver, Requests};
 use crate::run::remote_control::Specimen;
 use crate::run::replay;
 use crate::run::replay::{OpenLog, Recorded, Wall};
-use crate::text::diagnostic::excerpt::escape;
-use crate::units::Dimension;
-use crate::units::display::readable;
+use psd_plan::record::Outcome;
+use psd_plan::record::remote::DrivenStep;
+use psd_plan::{Link, Plan};
+use psd_rig::transport::{Clock as _, MonotonicClock};
+use psd_rig::{Rig, StopRequest, virtual_rig};
+use psd_text::diagnostic::excerpt::escape;
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 
 #[derive(Debug, Args)]
 #[command(
@@ -382,7 +382,7 @@ const fn exit_of(session: &Session) -> Exit {
 mod tests {
     use super::*;
     use crate::remote::Driven;
-    use crate::rig::RigFault;
+    use psd_rig::RigFault;
 
     #[test]
     fn a_session_ends_as_the_reference_specifies() {

@@ -13,11 +13,11 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::plan_file;
 use crate::cli::output::print_message;
 use crate::cli::settings::Settings;
-use crate::emulator::lines::real_time::{Carrier, Until, serve};
-use crate::emulator::{Log, PseudoTerminal, RigEmulator, Script, TcpLine, of_plan};
-use crate::plan::{DeviceLink, Plan, PortPlan, RealLink};
-use crate::rig::transport::MonotonicClock;
-use crate::text::diagnostic::excerpt::escape;
+use psd_plan::{DeviceLink, Plan, PortPlan, RealLink};
+use psd_rig::emulator::lines::real_time::{Carrier, Until, serve};
+use psd_rig::emulator::{Log, PseudoTerminal, RigEmulator, Script, TcpLine, of_plan};
+use psd_rig::transport::MonotonicClock;
+use psd_text::diagnostic::excerpt::escape;
 
 #[derive(Debug, Args)]
 #[command(

@@ -1,8 +1,8 @@
 //! Numbers that the operator types, with units as the language writes them. In: a string. Out: SI, or an error with an example.
 
 use crate::cli::exit::Failure;
-use crate::units::Dimension;
-use crate::units::unit;
+use psd_text::units::Dimension;
+use psd_text::units::unit;
 
 /// A position for every axis \[m\]: `1 mm`, or `1 mm, 2 mm` for two axes.
 pub fn positions(text: &str, axes: usize, what: &str) -> Result<Vec<f64>, Failure> {

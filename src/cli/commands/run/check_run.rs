@@ -11,8 +11,8 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::operator::watch::Attendance;
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
-use crate::plan::Plan;
 use crate::run::check_run;
+use psd_plan::Plan;
 
 /// Measures and predicts; the exit code states whether every limit is predicted to be satisfied.
 pub fn check_run(

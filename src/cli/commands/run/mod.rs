@@ -21,9 +21,9 @@ use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::golden::print::console;
 use crate::golden::{Outcome, Tested};
-use crate::text::diagnostic::json;
 use check_run::check_run;
 use on_rig::{End, on_its_rig};
+use psd_text::diagnostic::json;
 
 #[derive(Debug, Args)]
 #[command(

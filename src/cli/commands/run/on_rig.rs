@@ -12,11 +12,11 @@ use crate::cli::operator::watch::{Attendance, Signals, Watcher};
 use crate::cli::operator::{expected, held, real_rig};
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
-use crate::plan::{Link, Plan};
 use crate::report::Provenance;
-use crate::rig::{StopRequest, virtual_rig};
 use crate::run::replay;
 use crate::run::replay::Recorded;
+use psd_plan::{Link, Plan};
+use psd_rig::{StopRequest, virtual_rig};
 
 /// A run that has ended, with any outcome.
 pub(crate) struct Ran {

@@ -19,17 +19,17 @@ use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::evidence::MANIFEST;
 use crate::files::provenance::{BUILD, TOOLCHAIN};
-use crate::plan::Plan;
-use crate::record::equipment::Equipment;
 use crate::report::Provenance;
-use crate::rig::journal::{Durability, EntryKind, FileStorage, Journal};
-use crate::rig::real::RealRig;
-use crate::rig::{Rig as _, StopRequest, connect};
 use crate::run::replay;
 use crate::run::replay::{
     AmendBody, Assurance, Bands, Continuation, Header, LoggedRun, Recorded, RecoverBody,
     ResumeBody, RigBody,
 };
+use psd_plan::Plan;
+use psd_plan::record::equipment::Equipment;
+use psd_rig::journal::{Durability, EntryKind, FileStorage, Journal};
+use psd_rig::real::RealRig;
+use psd_rig::{Rig as _, StopRequest, connect};
 
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]

@@ -8,12 +8,12 @@ use crate::cli::args::Format;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::{print_message, print_result};
 use crate::files::failure::plain;
-use crate::physics::study::probability::Decision;
 use crate::report::SUMMARY;
 use crate::study::answers::{Answers, StudiedAnswer};
 use crate::study::console;
 use crate::study::data_set::Reader;
 use crate::study::report::summary;
+use psd_physics::study::probability::Decision;
 
 /// Writes and prints the answers. The exit code is that of the requirements on probabilities.
 /// `plan`: the plan and its rig on the command line, for the lines that reproduce a run.

@@ -19,10 +19,10 @@ use crate::cli::args::PlanSettings;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::plan_file;
 use crate::cli::settings::Settings;
-use crate::plan::Plan;
 use crate::study::definition::Definition;
 use crate::study::definition::measured;
-use crate::text::sanitize;
+use psd_plan::Plan;
+use psd_text::sanitize;
 
 #[derive(Debug, Subcommand)]
 pub enum StudyCommand {

@@ -13,9 +13,6 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::operator::watch::Signals;
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::{Settings, variable};
-use crate::plan::study::Sampling;
-use crate::rig::StopRequest;
-use crate::rig::transport::MonotonicClock;
 use crate::study::cluster::shard::{self, NamedShard, Shard};
 use crate::study::collection::{Collection, Ended};
 use crate::study::data_set::Metadata;
@@ -24,6 +21,9 @@ use crate::study::simulation::Simulation;
 use crate::study::stopping::Looks;
 use crate::study::stopping::rare::RareRuns;
 use crate::study::{collection, metadata};
+use psd_plan::study::Sampling;
+use psd_rig::StopRequest;
+use psd_rig::transport::MonotonicClock;
 
 /// Stack size for the deepest plan, also in a build without optimisation.
 const STACK: usize = 32 << 20;

@@ -11,10 +11,10 @@ use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::files::failure::plain;
-use crate::plan::study::Runs;
 use crate::study::cluster::shard;
 use crate::study::cluster::slurm::{ARRAY_SCRIPT, Job, MERGE_SCRIPT};
 use crate::study::collection::CollectionFault;
+use psd_plan::study::Runs;
 
 #[derive(Debug, Args)]
 #[command(

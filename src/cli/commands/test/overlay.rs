@@ -1,13 +1,13 @@
 //! Accepted and new results on one chart: the figure curves that differ, and columns of tables that are in no such figure. In: both
 //! results and the differences. Out: images. If a difference is too small to see, it is drawn as a separate curve.
 
-use crate::schema::columns;
+use psd_plan::schema::columns;
 use std::collections::BTreeSet;
 
 use crate::cli::exit::Failure;
 use crate::golden::{Change, Finding, Part, Table, Truth, column_dimension};
 use crate::report::{Curve, Curves, FigureCurve, OutputError, OutputFile, PlainAxis};
-use crate::units::{Dimension, unit};
+use psd_text::units::{Dimension, unit};
 
 /// Largest number of columns drawn: those with the largest difference over their tolerance.
 const COLUMNS: usize = 6;

@@ -7,7 +7,7 @@ use super::keys::Key;
 use super::{Dialogue, Typing, What};
 use crate::cli::operator::question::{After, Choice, Kind};
 use crate::cli::operator::watch::interrupt;
-use crate::rig::StopRequest;
+use psd_rig::StopRequest;
 
 /// Largest number of characters of one typed line.
 const LONGEST_LINE: usize = 200;

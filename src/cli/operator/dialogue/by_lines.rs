@@ -7,8 +7,8 @@ use super::typed::{Input, Typed};
 use super::{Dialogue, What};
 use crate::cli::operator::question::{Kind, Question, WHY_RESUME};
 use crate::cli::output::print_message;
-use crate::rig::StopRequest;
 use crate::run::Inspection;
+use psd_rig::StopRequest;
 
 /// The dialogue in lines.
 #[derive(Default)]

@@ -11,9 +11,9 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use super::question::{After, Choice, DEAF, Question, Stay};
-use crate::rig::StopRequest;
 use crate::run::{Inspection, Next};
-use crate::text::diagnostic::excerpt::escape;
+use psd_rig::StopRequest;
+use psd_text::diagnostic::excerpt::escape;
 
 /// Questions, answers, notes and pauses.
 #[derive(Clone, Debug, Default)]

@@ -11,12 +11,12 @@ use std::time::{Duration, Instant};
 
 use super::dialogue::Dialogue;
 use super::dialogue::keys::Key;
-use crate::plan::Plan;
-use crate::record::Event;
-use crate::rig::{Live, StopRequest};
 use crate::run::{Next, Observer, StepReport};
 use draw::View;
 use model::{Ended, Model};
+use psd_plan::Plan;
+use psd_plan::record::Event;
+use psd_rig::{Live, StopRequest};
 use terminal::{Page, TerminalLost};
 
 pub use terminal::is_large_enough;

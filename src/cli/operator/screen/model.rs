@@ -4,12 +4,12 @@
 use std::collections::VecDeque;
 
 use super::curve::Curve;
-use crate::plan::{Interval, Limits, Plan, SafeState};
-use crate::record::{Event, EventKind};
-use crate::rig::Feedback;
-use crate::rig::real::commands_only;
 use crate::run::{StepReport, UNLOADING};
-use crate::units::Dimension;
+use psd_plan::record::{Event, EventKind};
+use psd_plan::{Interval, Limits, Plan, SafeState};
+use psd_rig::Feedback;
+use psd_rig::real::commands_only;
+use psd_text::units::Dimension;
 
 /// Largest number of events kept for the screen.
 const MOST_EVENTS: usize = 32;

@@ -12,14 +12,14 @@ use super::dialogue::by_lines::Person;
 use super::question::{self, After, Kind, Question, Stay};
 use super::screen::{self, Screen};
 use crate::cli::settings::{Settings, today};
-use crate::plan::Plan;
-use crate::record::{Event, EventKind, NO_OPERATOR_ASKED};
 use crate::report::report_status;
-use crate::rig::{Live, StopRequest};
 use crate::run::{Extent, Inspection, Motion, Next, Observer, StepReport};
-use crate::schema::plan_block::OPERATOR;
-use crate::text::diagnostic::excerpt::escape;
 use plain::{Bar, Lines};
+use psd_plan::Plan;
+use psd_plan::record::{Event, EventKind, NO_OPERATOR_ASKED};
+use psd_plan::schema::plan_block::OPERATOR;
+use psd_rig::{Live, StopRequest};
+use psd_text::diagnostic::excerpt::escape;
 pub use signals::{Signals, catch_full_files, interrupt};
 
 /// The observer of `psd run`.

@@ -6,12 +6,12 @@ use std::fmt::Write as _;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::cli::output::print_message;
-use crate::record::{Event, EventKind};
-use crate::rig::IS_OUTSIDE;
 use crate::run::{Observer, StepReport};
-use crate::text::diagnostic::excerpt::escape;
-use crate::units::Dimension;
-use crate::units::display::readable;
+use psd_plan::record::{Event, EventKind};
+use psd_rig::IS_OUTSIDE;
+use psd_text::diagnostic::excerpt::escape;
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 
 /// A progress bar.
 pub struct Bar {

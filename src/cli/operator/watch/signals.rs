@@ -14,7 +14,7 @@ use signal_hook::consts::{
 use signal_hook::iterator;
 
 use crate::cli::output::print_message;
-use crate::rig::StopRequest;
+use psd_rig::StopRequest;
 
 /// Signals that end the motion. The last one is the power failure that an uninterruptible power supply reports.
 const WISHES: [i32; 5] = [SIGINT, SIGQUIT, SIGTERM, SIGHUP, Signal::POWER.as_raw()];

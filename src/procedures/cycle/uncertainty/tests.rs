@@ -1,11 +1,11 @@
 //! The uncertainty of displacement cycles against closed forms and repeated runs.
 
-use crate::plan::formula::{Formula, Function, ResultValue};
-use crate::plan::{
+use crate::tests::testing::{elastic_plan, number, result_of, run_unwatched};
+use psd_plan::formula::{Formula, Function, ResultValue};
+use psd_plan::uncertainty::Source;
+use psd_plan::{
     Behaviour, Bolted, Calibration, Cycle, Level, Link, Plan, ProcedureKind, Sides, VirtualLink,
 };
-use crate::tests::testing::{elastic_plan, number, result_of, run_unwatched};
-use crate::uncertainty::Source;
 
 const STIFFNESS: f64 = 1000.0;
 const POINTS: u32 = 10;
@@ -106,7 +106,7 @@ fn noise_hides_no_corner() {
             (cycle.points, cycle.samples) = (8, 1);
             let record = run_unwatched(&plan);
             let energies = record.procedures[0].result("energies").unwrap();
-            let corner = |part: &&crate::uncertainty::Contribution| {
+            let corner = |part: &&psd_plan::uncertainty::Contribution| {
                 part.entry == 1 && matches!(part.source, Source::LoopSampling { .. })
             };
             let corner = energies.contributions.iter().find(corner);
@@ -200,7 +200,7 @@ fn the_lists_are_as_uncertain_as_the_numbers() {
 
 /// Bolted supports with corners that ten points per quarter lose: 131.1 of 135.75 J, the friction alone, 4·1.5 kN·(23 mm − 1.5 kN/4
 /// kN/mm).
-fn of_points(points: u32) -> crate::record::Record {
+fn of_points(points: u32) -> psd_plan::record::Record {
     let supports = Bolted {
         stiffness: 4e6,
         bearing_force: 8e3,
@@ -325,7 +325,7 @@ fn largest_and_smallest_of_noisy_cycles_are_those_of_the_force() {
         };
         run_unwatched(&plan(behaviour, link, Calibration::default()))
     });
-    let records: Vec<crate::record::Record> = records.collect();
+    let records: Vec<psd_plan::record::Record> = records.collect();
     for (name, truth) in [("max_force", 10.0), ("min_force", -10.0)] {
         let held = records.iter().filter(|record| {
             let (value, u) = number(record, 0, name);

@@ -2,13 +2,13 @@
 //! error if the impact is over before the contact begins. It knows neither specimen nor contact.
 
 use crate::codes::E638;
-use crate::language::check::checker::Checker;
-use crate::language::check::wording::{shown, time};
-use crate::plan::Striker;
-use crate::schema::{Kind, methods, striker};
-use crate::text::diagnostic::Violation;
-use crate::text::source::Span;
-use crate::units::Dimension;
+use psd_language::check::checker::Checker;
+use psd_language::check::wording::{shown, time};
+use psd_plan::Striker;
+use psd_plan::schema::{Kind, methods, striker};
+use psd_text::diagnostic::Violation;
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 /// The time in which a striker crosses its gap, s: t of gap = v t + g t²/2.
 fn time_to_arrive(striker: &Striker) -> f64 {

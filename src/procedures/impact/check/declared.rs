@@ -2,22 +2,22 @@
 //! declarations of the plan. Out: errors and warnings.
 
 use crate::codes::W712;
-use crate::language::check::checker::Checker;
-use crate::language::check::declared::Declared;
-use crate::language::check::violations::NoEffect;
-use crate::physics::structure::frame_properties::FrameProperties;
-use crate::plan::formula::{Formula, NoResults};
-use crate::plan::procedures::impact::block as schema;
-use crate::plan::{
-    Contact, Frame, Impact, ImpactTarget, MOST_STEPS, PointTarget, Specimen, StoreyTarget, Striker,
-    Until, steps_in,
-};
 use crate::procedures::common::violations::TooManyInProcedure;
 use crate::procedures::stepping::check::frame_check::FrameSteps;
 use crate::procedures::stepping::check::{
     beyond_duration, frame_check, integrator_check, mode_check,
 };
-use crate::schema::methods;
+use psd_language::check::checker::Checker;
+use psd_language::check::declared::Declared;
+use psd_language::check::violations::NoEffect;
+use psd_physics::structure::frame_properties::FrameProperties;
+use psd_plan::formula::{Formula, NoResults};
+use psd_plan::procedures::impact::block as schema;
+use psd_plan::schema::methods;
+use psd_plan::{
+    Contact, Frame, Impact, ImpactTarget, MOST_STEPS, PointTarget, Specimen, StoreyTarget, Striker,
+    Until, steps_in,
+};
 
 use super::time_step::predicted_critical;
 use super::{arrival, warnings};

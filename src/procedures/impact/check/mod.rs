@@ -6,15 +6,15 @@ pub(crate) mod target;
 pub(crate) mod time_step;
 pub(crate) mod warnings;
 
-use crate::language::check::checker::Checker;
-use crate::language::check::declarations::specimen::frame;
-use crate::plan::procedures::impact::block as schema;
-use crate::plan::{Impact, ProcedureKind, Until};
 use crate::procedures::impact::contact;
 use crate::procedures::stepping;
 use crate::procedures::stepping::check::integrator_check;
-use crate::schema::Kind;
-use crate::schema::methods;
+use psd_language::check::checker::Checker;
+use psd_language::check::declarations::specimen::frame;
+use psd_plan::procedures::impact::block as schema;
+use psd_plan::schema::Kind;
+use psd_plan::schema::methods;
+use psd_plan::{Impact, ProcedureKind, Until};
 
 /// The time step of an impact that names none: the critical one over this.
 const FINER: f64 = 20.0;

@@ -4,20 +4,20 @@
 use std::rc::Rc;
 
 use crate::codes::E640;
-use crate::language::check::checker::Checker;
-use crate::language::check::declarations::specimen;
-use crate::language::check::expressions::fields::whole;
-use crate::language::codes::E641;
-use crate::plan::formula::Formula;
-use crate::plan::procedures::impact::block as impact;
-use crate::plan::{Frame, ImpactTarget, PointTarget, StoreyTarget};
 use crate::procedures::common::violations::NoUseOnAFrame;
 use crate::procedures::shake;
-use crate::schema::frames;
-use crate::schema::procedures::STIFFNESS;
-use crate::text::diagnostic::{Code, Diagnostic, Violation};
-use crate::text::source::Span;
-use crate::units::{Dimension, display};
+use psd_language::check::checker::Checker;
+use psd_language::check::declarations::specimen;
+use psd_language::check::expressions::fields::whole;
+use psd_language::codes::E641;
+use psd_plan::formula::Formula;
+use psd_plan::procedures::impact::block as impact;
+use psd_plan::schema::frames;
+use psd_plan::schema::procedures::STIFFNESS;
+use psd_plan::{Frame, ImpactTarget, PointTarget, StoreyTarget};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::Span;
+use psd_text::units::{Dimension, display};
 
 /// One degree of freedom, of the specimen at the block `tested`.
 pub(crate) fn point(

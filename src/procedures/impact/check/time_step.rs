@@ -1,10 +1,10 @@
 //! The critical time step and the time step of an impact before the run. In: the plan. Out: times \[s\], if they are known.
 
-use crate::language::check::checker::Checker;
-use crate::plan::formula::{Formula, NoResults, Part, ResultReference, ResultValue, Results};
-use crate::plan::procedures::cycle::block as cycle;
-use crate::plan::procedures::stiffness_ramp::block as stiffness_ramp;
-use crate::plan::{Impact, Specimen, Striker};
+use psd_language::check::checker::Checker;
+use psd_plan::formula::{Formula, NoResults, Part, ResultReference, ResultValue, Results};
+use psd_plan::procedures::cycle::block as cycle;
+use psd_plan::procedures::stiffness_ramp::block as stiffness_ramp;
+use psd_plan::{Impact, Specimen, Striker};
 
 /// Δtc of an impact of this striker on one degree of freedom, s, where all its quantities are known before the run.
 pub(crate) fn critical_before_the_run(impact: &Impact, striker: &Striker) -> Option<f64> {

@@ -2,17 +2,17 @@
 //! a portal. In: an impact, its striker and specimen. Out: warnings with the numbers.
 
 use crate::codes::{W701, W703, W724};
-use crate::language::check::checker::Checker;
-use crate::language::check::wording::{shown, time};
-use crate::physics::structure::portal::limit::mechanism_limit;
-use crate::plan::formula::{Formula, NoResults};
-use crate::plan::procedures::impact::block as schema;
-use crate::plan::{Behaviour, Contact, Impact, Mechanism, Specimen, Striker};
 use crate::procedures::common::violations::StepAboveCritical;
-use crate::schema::methods;
-use crate::text::diagnostic::{Code, Diagnostic, Violation};
-use crate::text::source::Span;
-use crate::units::Dimension;
+use psd_language::check::checker::Checker;
+use psd_language::check::wording::{shown, time};
+use psd_physics::structure::portal::limit::mechanism_limit;
+use psd_plan::formula::{Formula, NoResults};
+use psd_plan::procedures::impact::block as schema;
+use psd_plan::schema::methods;
+use psd_plan::{Behaviour, Contact, Impact, Mechanism, Specimen, Striker};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 use super::time_step::{predicted_critical, time_step_before_the_run};
 

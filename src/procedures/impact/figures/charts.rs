@@ -1,15 +1,15 @@
 //! Charts of an impact (paper, Figs. 9–11 and 16). In: the steps of one impact. Out: [`Chart`]s in SI.
 
-use crate::plan::ProcedureKind;
-use crate::plan::formula::ProcedureId;
 use crate::procedures::impact::contact;
 use crate::procedures::stepping::energy::{EnergyCurve, nonzero_curves};
-use crate::record::{ImpactHistory, ImpactStep, StepState};
 use crate::report::Run;
 use crate::report::figures::chart::{
     Band, Chart, DASHED, DOTTED, Quantity, Reference, SOLID, Series, Style, palette,
 };
-use crate::units::Dimension;
+use psd_plan::ProcedureKind;
+use psd_plan::formula::ProcedureId;
+use psd_plan::record::{ImpactHistory, ImpactStep, StepState};
+use psd_text::units::Dimension;
 
 /// Displacement of structure and striker, contact shaded, required bounds as lines.
 pub(crate) fn displacement(history: &ImpactHistory, limits: &[Reference]) -> Chart {

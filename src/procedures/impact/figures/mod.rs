@@ -3,14 +3,14 @@
 pub(crate) mod charts;
 pub(crate) mod storey;
 
-use crate::plan::procedures::impact::block as schema;
-use crate::plan::{Figure, FigureKind};
 use crate::procedures::common::limit_lines::limits_on;
-use crate::record::ImpactHistory;
 use crate::report::Run;
 use crate::report::figures::chart::{Chart, Quantity, SharedCurve};
 use crate::report::figures::points::Points;
-use crate::units::Dimension;
+use psd_plan::procedures::impact::block as schema;
+use psd_plan::record::ImpactHistory;
+use psd_plan::{Figure, FigureKind};
+use psd_text::units::Dimension;
 
 /// Figures of an impact on one degree of freedom, in the order of a report.
 pub(crate) const FIGURES: &[FigureKind] = &[

@@ -2,15 +2,15 @@
 //! storeys, with the contact shaded in all that run over time. In: a history. Out: [`Chart`]s in SI with their captions.
 
 use super::charts;
-use crate::plan::procedures::impact::block as schema;
-use crate::plan::{Figure, FigureKind};
 use crate::procedures::common::limit_lines::limits_on;
 use crate::procedures::shake;
-use crate::record::{ImpactHistory, StruckFrame};
 use crate::report::Run;
 use crate::report::figures::chart::{Chart, DASHED, Quantity, SOLID, Series, Style, palette};
-use crate::schema::ResultKind;
-use crate::units::Dimension;
+use psd_plan::procedures::impact::block as schema;
+use psd_plan::record::{ImpactHistory, StruckFrame};
+use psd_plan::schema::ResultKind;
+use psd_plan::{Figure, FigureKind};
+use psd_text::units::Dimension;
 
 /// A figure and its caption; None before the first step, or for a figure of a different procedure.
 pub(crate) fn chart(

@@ -2,10 +2,10 @@
 //! period is not a contact: a law that follows the contact inside a step can have several contacts in one period, which the result
 //! `contacts` counts.
 
-use crate::record::{ImpactHistory, ImpactStep, StepState};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
-use crate::units::Dimension;
+use psd_plan::record::{ImpactHistory, ImpactStep, StepState};
+use psd_text::units::Dimension;
 
 /// Contact periods printed; the tables hold every step.
 const PRINTED: usize = 24;
@@ -103,8 +103,8 @@ fn periods(steps: &[ImpactStep]) -> Vec<Period> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::impact::energy::Energies;
-    use crate::physics::tracking::monitor::Tracking;
+    use psd_physics::impact::energy::Energies;
+    use psd_physics::tracking::monitor::Tracking;
 
     #[test]
     fn consecutive_steps_in_contact_are_one_period() {

@@ -4,18 +4,18 @@
 pub(crate) mod contact_log;
 pub(crate) mod storey;
 
-use crate::plan::procedures::damping_sweep::block as damping_sweep;
-use crate::plan::procedures::impact::block as schema;
-use crate::plan::{Contact, Impact, Integrator, PointTarget, ProcedureKind};
 use crate::procedures;
 use crate::procedures::impact::contact;
 use crate::procedures::stepping::{self, energy};
-use crate::record::{ImpactHistory, ProcedureRecord};
 use crate::report::document::Block;
 use crate::report::sections::results::actuators;
 use crate::report::{Run, number};
-use crate::schema::procedures::tracking as tracking_schema;
-use crate::units::Dimension;
+use psd_plan::procedures::damping_sweep::block as damping_sweep;
+use psd_plan::procedures::impact::block as schema;
+use psd_plan::record::{ImpactHistory, ProcedureRecord};
+use psd_plan::schema::procedures::tracking as tracking_schema;
+use psd_plan::{Contact, Impact, Integrator, PointTarget, ProcedureKind};
+use psd_text::units::Dimension;
 
 /// Results that have a budget even if no requirement reads any.
 pub(crate) const BUDGET: &[&str] = &[schema::MAX_DISPLACEMENT.name, schema::ABSORBED_ENERGY.name];

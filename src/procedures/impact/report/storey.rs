@@ -2,15 +2,15 @@
 //! storey, the energy balance, the contact log. In: a plan and a record. Out: blocks.
 
 use super::{contact_log, contact_work, energy_balance};
-use crate::plan::procedures::impact::block as schema;
-use crate::plan::{Contact, Impact, Mode, ProcedureKind, StoreyTarget};
 use crate::procedures::shake;
 use crate::procedures::stepping::energy;
-use crate::record::{ImpactHistory, ProcedureRecord, StruckFrame};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::sections::results::tracking;
 use crate::report::{Run, number};
-use crate::units::Dimension;
+use psd_plan::procedures::impact::block as schema;
+use psd_plan::record::{ImpactHistory, ProcedureRecord, StruckFrame};
+use psd_plan::{Contact, Impact, Mode, ProcedureKind, StoreyTarget};
+use psd_text::units::Dimension;
 
 /// The results that a reader looks for first.
 pub(crate) const HEADLINE: &[&str] = &[

@@ -7,29 +7,29 @@ mod storey;
 use super::contact;
 use super::results::re_integrated;
 use super::setting::{Setting, StruckStructure};
-use crate::physics::contact::ContactLaw;
-use crate::physics::impact::ImpactError;
-use crate::physics::impact::summary::ImpactSummary;
-use crate::physics::reintegration::impact::{ImpactValues, Outcome, predicted_velocities, rerun};
-use crate::physics::reintegration::perturbation::Perturbation;
-use crate::physics::reintegration::recorded_path::{ContinuousMotion, Reading, RecordedPath};
-use crate::plan::formula::Formula;
-use crate::plan::procedures::impact::block as schema;
-use crate::plan::{Impact, ImpactTarget, Mode, Plan, PointTarget, Striker};
 use crate::procedures::common::perturbed_inputs::{
     LEADS_ELSEWHERE, UncertainRun, uncertain_inputs,
 };
 use crate::procedures::common::results::{Evaluated, flat, give, layout_of, values};
 use crate::procedures::stepping::frame_uncertainty::FrameUncertainty;
-use crate::record::{ImpactHistory, ImpactStep, NamedResult};
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use crate::schema::ResultKind;
-use crate::uncertainty::engine::{
+use psd_physics::contact::ContactLaw;
+use psd_physics::impact::ImpactError;
+use psd_physics::impact::summary::ImpactSummary;
+use psd_physics::reintegration::impact::{ImpactValues, Outcome, predicted_velocities, rerun};
+use psd_physics::reintegration::perturbation::Perturbation;
+use psd_physics::reintegration::recorded_path::{ContinuousMotion, Reading, RecordedPath};
+use psd_plan::formula::Formula;
+use psd_plan::procedures::impact::block as schema;
+use psd_plan::record::{ImpactHistory, ImpactStep, NamedResult};
+use psd_plan::schema::ResultKind;
+use psd_plan::uncertainty::engine::{
     CLOSE, Contributions, Evaluate, Evaluation, Progress, Shifts, Unknown,
 };
-use crate::uncertainty::{Contribution, Refinement, Source};
+use psd_plan::uncertainty::{Contribution, Refinement, Source};
+use psd_plan::{Impact, ImpactTarget, Mode, Plan, PointTarget, Striker};
 use storey::StoreyRecord;
 
 /// The numbers of an impact on one degree of freedom.

@@ -5,23 +5,23 @@ use super::super::contact;
 use super::super::results::re_integrated;
 use super::super::setting::Setting;
 use super::{counted, give_resolved, same, striker_sources};
-use crate::physics::impact::ImpactInput;
-use crate::physics::impact::summary::ImpactSummary;
-use crate::physics::reintegration::frame::{FloorImpact, Floors, FrameRun, StrikerOutcome};
-use crate::physics::reintegration::frame_path::FramePath;
-use crate::physics::reintegration::impact::ImpactValues;
-use crate::physics::reintegration::perturbation::Perturbation;
-use crate::plan::procedures::impact::block as schema;
-use crate::plan::{Impact, StoreyTarget, Striker};
 use crate::procedures::common::perturbed_inputs::LEADS_ELSEWHERE;
 use crate::procedures::common::results::{Evaluated, flat, index_of, layout_of, values};
 use crate::procedures::stepping;
 use crate::procedures::stepping::frame_uncertainty::{FrameUncertainty, leads_there};
 use crate::procedures::stepping::setting::FrameSteps;
-use crate::record::{FloorStep, NamedResult};
 use crate::run::stop::Stop;
-use crate::uncertainty::engine::{Evaluate, Evaluation, Progress, Shifts, Unknown};
-use crate::uncertainty::{Contribution, Source};
+use psd_physics::impact::ImpactInput;
+use psd_physics::impact::summary::ImpactSummary;
+use psd_physics::reintegration::frame::{FloorImpact, Floors, FrameRun, StrikerOutcome};
+use psd_physics::reintegration::frame_path::FramePath;
+use psd_physics::reintegration::impact::ImpactValues;
+use psd_physics::reintegration::perturbation::Perturbation;
+use psd_plan::procedures::impact::block as schema;
+use psd_plan::record::{FloorStep, NamedResult};
+use psd_plan::uncertainty::engine::{Evaluate, Evaluation, Progress, Shifts, Unknown};
+use psd_plan::uncertainty::{Contribution, Source};
+use psd_plan::{Impact, StoreyTarget, Striker};
 
 /// An impact on a storey as it was recorded.
 #[derive(Clone, Copy)]

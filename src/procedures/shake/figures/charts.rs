@@ -2,13 +2,13 @@
 //! dash distinguish floors and storeys, the lowest first.
 
 use crate::procedures::stepping::energy::{EnergyCurve, nonzero_curves};
-use crate::record::{Floors, Modes, ShakeHistory, ShakeStep};
 use crate::report::figures::chart::{
     Chart, Colour, DASH_DOT, DASHED, DOTTED, End, LONG, Marker, Quantity, Reference, SOLID, Series,
     Style, palette,
 };
 use crate::report::figures::points::{PointCollector, Points};
-use crate::units::Dimension;
+use psd_plan::record::{Floors, Modes, ShakeHistory, ShakeStep};
+use psd_text::units::Dimension;
 
 /// More curves than this cannot be distinguished in one picture.
 const MOST_CURVES: usize = 6;

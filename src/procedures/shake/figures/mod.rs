@@ -3,15 +3,15 @@
 
 pub(crate) mod charts;
 
-use crate::plan::procedures::shake::block as schema;
-use crate::plan::{Figure, FigureKind};
 use crate::procedures::common::limit_lines::limits_on;
-use crate::record::{Floors as _, ShakeHistory, ShakeStep, UnloadStep};
 use crate::report::Run;
 use crate::report::figures::chart::{Chart, Quantity, SharedCurve};
 use crate::report::figures::points::Points;
-use crate::schema::ResultKind;
-use crate::units::Dimension;
+use psd_plan::procedures::shake::block as schema;
+use psd_plan::record::{Floors as _, ShakeHistory, ShakeStep, UnloadStep};
+use psd_plan::schema::ResultKind;
+use psd_plan::{Figure, FigureKind};
+use psd_text::units::Dimension;
 
 /// Figures of a ground-motion test, in the order of a report.
 pub(crate) const FIGURES: &[FigureKind] = &[

@@ -2,18 +2,18 @@
 //! frame and its time step. It knows no striker and no ground.
 
 use crate::codes::E627;
-use crate::language::check::checker::Checker;
-use crate::language::check::violations::NoEffect;
-use crate::physics::structure::frame_properties::FrameProperties;
-use crate::physics::structure::storeys_of;
-use crate::plan::formula::NoResults;
-use crate::plan::{Frame, Integrator, MOST_STEPS, Mode, ShakeDamping, Stepping, steps_in};
 use crate::procedures::common::violations::{
     StepAboveCritical, TooManyInProcedure, UnstableAsAllowed, UnstableStep,
 };
-use crate::schema::{frames, methods, specimen};
-use crate::text::diagnostic::Violation;
-use crate::text::source::Span;
+use psd_language::check::checker::Checker;
+use psd_language::check::violations::NoEffect;
+use psd_physics::structure::frame_properties::FrameProperties;
+use psd_physics::structure::storeys_of;
+use psd_plan::formula::NoResults;
+use psd_plan::schema::{frames, methods, specimen};
+use psd_plan::{Frame, Integrator, MOST_STEPS, Mode, ShakeDamping, Stepping, steps_in};
+use psd_text::diagnostic::Violation;
+use psd_text::source::Span;
 
 use super::beyond_duration;
 use super::mode_check::warn_of_damping_twice;

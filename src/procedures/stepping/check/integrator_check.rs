@@ -1,19 +1,19 @@
 //! `integrator = …` of a procedure that integrates, and the stability of its time step. In: a block. Out: the integrator, or an error.
 
 use crate::codes::{E642, W718};
-use crate::language::check::checker::Checker;
-use crate::language::check::wording::shown;
-use crate::physics::integrator::stability::{Met, longest_stable_step};
-use crate::physics::structure::Matrices;
-use crate::plan::procedures::impact::block as impact;
-use crate::plan::{Behaviour, Contact, Impact, Integrator, Mode, PointTarget, Specimen, Striker};
 use crate::procedures::common::violations::{UnstableAsAllowed, UnstableStep};
 use crate::procedures::impact::check::time_step::time_step_before_the_run;
-use crate::schema::methods;
-use crate::schema::procedures::STIFFNESS;
-use crate::text::diagnostic::{Code, Diagnostic, Violation};
-use crate::text::source::Span;
-use crate::units::Dimension;
+use psd_language::check::checker::Checker;
+use psd_language::check::wording::shown;
+use psd_physics::integrator::stability::{Met, longest_stable_step};
+use psd_physics::structure::Matrices;
+use psd_plan::procedures::impact::block as impact;
+use psd_plan::schema::methods;
+use psd_plan::schema::procedures::STIFFNESS;
+use psd_plan::{Behaviour, Contact, Impact, Integrator, Mode, PointTarget, Specimen, Striker};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::Span;
+use psd_text::units::Dimension;
 
 /// The integrator that a block names, else the tangent form. In continuous mode the secant of two readings would include the force of a
 /// damper: there the default is explicit Newmark, if the contact law does not need the tangent.

@@ -4,17 +4,17 @@ pub(crate) mod frame_check;
 pub(crate) mod integrator_check;
 pub(crate) mod mode_check;
 
-use crate::language::check::checker::{Checker, Context};
-use crate::language::check::expressions::choice::Chosen;
-use crate::language::check::expressions::fields::whole as whole_number;
-use crate::language::check::violations::NoEffect;
-use crate::language::codes::E401;
-use crate::plan::formula::{Formula, Operator};
-use crate::plan::{Contact, InspectTrigger, Integrator, Mode, Stepping};
-use crate::schema::methods;
-use crate::text::diagnostic::{Code, Diagnostic, Violation};
-use crate::text::source::Span;
-use crate::units::{Dimension, display};
+use psd_language::check::checker::{Checker, Context};
+use psd_language::check::expressions::choice::Chosen;
+use psd_language::check::expressions::fields::whole as whole_number;
+use psd_language::check::violations::NoEffect;
+use psd_language::codes::E401;
+use psd_plan::formula::{Formula, Operator};
+use psd_plan::schema::methods;
+use psd_plan::{Contact, InspectTrigger, Integrator, Mode, Stepping};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::Span;
+use psd_text::units::{Dimension, display};
 
 /// The fields of a block that steps; where it gives no time step, the critical one over `finer`.
 pub fn stepping(

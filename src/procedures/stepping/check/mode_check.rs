@@ -2,14 +2,14 @@
 //! warning where damping would count twice.
 
 use crate::codes::{E644, E645, W716};
-use crate::language::check::checker::Checker;
-use crate::language::syntax::ast::{Argument, ExprKind};
-use crate::plan::procedures::impact::block as impact;
-use crate::plan::{Dialect, Impact, Mode, PointTarget, Specimen};
-use crate::schema::devices::DIALECT;
-use crate::schema::{Kind, methods, rig, specimen};
-use crate::text::diagnostic::{Code, Diagnostic, Violation};
-use crate::text::source::Span;
+use psd_language::check::checker::Checker;
+use psd_language::syntax::ast::{Argument, ExprKind};
+use psd_plan::procedures::impact::block as impact;
+use psd_plan::schema::devices::DIALECT;
+use psd_plan::schema::{Kind, methods, rig, specimen};
+use psd_plan::{Dialect, Impact, Mode, PointTarget, Specimen};
+use psd_text::diagnostic::{Code, Diagnostic, Violation};
+use psd_text::source::Span;
 
 struct ContinuousOnARealRig<'a> {
     dialect: &'a str,

@@ -1,9 +1,9 @@
 //! A multilinear curve, segment by segment, with the plan text of a specimen with this curve. In: the fit. Out: blocks.
 
-use crate::record::MultilinearFit;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
-use crate::units::{Dimension, display};
+use psd_plan::record::MultilinearFit;
+use psd_text::units::{Dimension, display};
 
 /// `reach` \[m\] is the position of the last reading along the curve.
 pub(crate) fn table(fit: &MultilinearFit, reach: f64, body: &mut Vec<Block>) {

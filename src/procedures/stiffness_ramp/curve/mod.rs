@@ -3,15 +3,13 @@
 
 pub(crate) mod curve_report;
 
-use crate::physics::identification::StatedVariance;
-use crate::physics::identification::multilinear_fit::{
-    BreakCount, MultilinearFit, fit_multilinear,
-};
-use crate::plan::procedures::stiffness_ramp::block as schema;
-use crate::record::{LineFit, NamedResult};
-use crate::schema::{ResultKind, curves};
-use crate::units::Dimension;
-use crate::units::display::readable;
+use psd_physics::identification::StatedVariance;
+use psd_physics::identification::multilinear_fit::{BreakCount, MultilinearFit, fit_multilinear};
+use psd_plan::procedures::stiffness_ramp::block as schema;
+use psd_plan::record::{LineFit, NamedResult};
+use psd_plan::schema::{ResultKind, curves};
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 
 /// The curve through points (m, N); `what` names the points in an observation.
 pub(crate) fn fitted(

@@ -3,16 +3,16 @@
 
 pub(crate) mod relaxation_figures;
 
-use crate::plan::FigureKind;
-use crate::record::{
-    DampingSweepHistory, MultilinearFit, RampStep, StiffnessRampHistory, SweepStep,
-};
 use crate::report::figures::chart::{
     Chart, DASHED, Marker, Quantity, SOLID, Series, Style, palette,
 };
 use crate::report::figures::points::Points;
 use crate::report::number;
-use crate::units::Dimension;
+use psd_plan::FigureKind;
+use psd_plan::record::{
+    DampingSweepHistory, MultilinearFit, RampStep, StiffnessRampHistory, SweepStep,
+};
+use psd_text::units::Dimension;
 
 /// In the order of a report.
 pub(crate) const FIGURES: &[FigureKind] = &[FigureKind::ForceDisplacement, FigureKind::Relaxation];

@@ -1,14 +1,14 @@
 //! Charts of a relaxation: the remaining force of each dwell, or the force lost by one law and by the other, against the time of the
 //! dwell. In: the dwells and their fit. Out: a [`Chart`] in SI.
 
-use crate::physics::relaxation::law::RelaxationLaw;
-use crate::physics::relaxation::time_constant::RelaxationFit;
-use crate::record::{Hold, LawFit, StiffnessRampHistory, SuperpositionFit};
 use crate::report::figures::chart::{
     Chart, Colour, DASHED, Marker, Quantity, SOLID, Series, Style, palette,
 };
 use crate::report::number;
-use crate::units::Dimension;
+use psd_physics::relaxation::law::RelaxationLaw;
+use psd_physics::relaxation::time_constant::RelaxationFit;
+use psd_plan::record::{Hold, LawFit, StiffnessRampHistory, SuperpositionFit};
+use psd_text::units::Dimension;
 
 /// Largest number of dwells drawn: the last, which loses most, and others evenly spaced before it.
 const DRAWN: usize = 4;

@@ -96,7 +96,7 @@ mod tests {
             font.ttf().glyph_index(c).is_some_and(|glyph| glyph.0 != 0)
         };
         let differ =
-            |c: &char| crate::text::glyphs::has(*c) != instances.iter().any(|font| shape(font, *c));
+            |c: &char| psd_text::glyphs::has(*c) != instances.iter().any(|font| shape(font, *c));
         let differing: Vec<char> = ('\u{80}'..='\u{1ffff}').filter(differ).take(20).collect();
         assert!(differing.is_empty(), "{differing:?}");
     }

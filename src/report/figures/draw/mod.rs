@@ -110,7 +110,7 @@ fn draw_marker(canvas: &Canvas, marker: Marker, at: Point, colour: Colour) {
 mod tests {
     use super::super::chart::{Quantity, Reference, Series, Style, palette};
     use super::*;
-    use crate::units::Dimension;
+    use psd_text::units::Dimension;
 
     #[test]
     fn a_far_limit_does_not_stretch_the_axis() {

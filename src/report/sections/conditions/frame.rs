@@ -1,11 +1,11 @@
 //! A frame and its ground motion, as a report describes them. In: the plan. Out: blocks.
 
 use super::described;
-use crate::plan::{Frame, Ground};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::report::wording::specimen as specimen_text;
-use crate::units::Dimension;
+use psd_plan::{Frame, Ground};
+use psd_text::units::Dimension;
 
 /// Storeys from the ground up, or the files of the matrices.
 pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
@@ -37,7 +37,7 @@ pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
     let friction = frame.storeys.iter().any(|storey| storey.coulomb != 0.0);
     columns.extend(damping.then(|| Column::numbers("Virtual damping")));
     columns.extend(friction.then(|| Column::numbers("Virtual friction")));
-    let row = |(index, storey): (usize, &crate::plan::Storey)| -> Vec<Text> {
+    let row = |(index, storey): (usize, &psd_plan::Storey)| -> Vec<Text> {
         let mut cells: Vec<Text> = vec![
             (index + 1).to_string().into(),
             number::stated(storey.mass, Dimension::MASS).into(),

@@ -5,17 +5,17 @@ mod frame;
 
 use super::provenance;
 use super::{Source, described, pairs, with_spaces};
-use crate::plan::{Interval, Parameter, Settle, Specimen, Striker};
 use crate::procedures;
-use crate::record::equipment::HeldLimit;
 use crate::report::document::{Block, Text};
 use crate::report::number;
 use crate::report::run::Run;
 use crate::report::status::particulars::{FRONT, stated};
 use crate::report::wording::{common, conditions as wording, specimen as specimen_text};
-use crate::schema::limits;
-use crate::schema::plan_block as schema;
-use crate::units::Dimension;
+use psd_plan::record::equipment::HeldLimit;
+use psd_plan::schema::limits;
+use psd_plan::schema::plan_block as schema;
+use psd_plan::{Interval, Parameter, Settle, Specimen, Striker};
+use psd_text::units::Dimension;
 
 /// Fields of the `plan` block that another section prints, or that concern the language.
 const PRINTED_ELSEWHERE: &[&str] = &[

@@ -6,19 +6,19 @@ mod zero_drift;
 
 use super::conditions::{range, settling};
 use super::{Source, pairs};
-use crate::plan::{
-    Behind, Calibration, DeviceLink, Interval, PortPlan, ReadingRules, RealLink, VirtualLink,
-};
-use crate::record::equipment::{Channel, GivenIn};
 use crate::report::document::{Block, Column, Style, Table, Text};
 use crate::report::number;
 use crate::report::run::Run;
 use crate::report::status::days::last_day;
 use crate::report::status::particulars;
 use crate::report::wording::equipment as wording;
-use crate::schema::plan_block::EQUIPMENT;
-use crate::units::Dimension;
-use crate::units::display::significant;
+use psd_plan::record::equipment::{Channel, GivenIn};
+use psd_plan::schema::plan_block::EQUIPMENT;
+use psd_plan::{
+    Behind, Calibration, DeviceLink, Interval, PortPlan, ReadingRules, RealLink, VirtualLink,
+};
+use psd_text::units::Dimension;
+use psd_text::units::display::significant;
 
 /// The rig of the run.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {

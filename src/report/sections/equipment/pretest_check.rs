@@ -2,12 +2,12 @@
 //! strings.
 
 use super::super::conditions::range;
-use crate::plan::PretestCheck;
-use crate::record::EventKind;
 use crate::report::number;
 use crate::report::run::Run;
 use crate::report::wording::equipment as wording;
-use crate::units::Dimension;
+use psd_plan::PretestCheck;
+use psd_plan::record::EventKind;
+use psd_text::units::Dimension;
 
 /// The limits of the check.
 pub(super) fn required(pretest_check: &PretestCheck) -> String {

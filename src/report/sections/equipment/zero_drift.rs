@@ -1,14 +1,14 @@
 //! Zero readings beside the equipment: before the test, after it, and their slopes at rest. In: a run. Out: blocks. If the zeros were not
 //! read again, a note states it.
 
-use crate::plan::ZeroAfter;
-use crate::record::{AxisDrift, Drift};
 use crate::report::document::{Block, Column, Style, Table, Text};
 use crate::report::number;
 use crate::report::run::Run;
 use crate::report::wording::zero_drift as wording;
-use crate::rig::{named_axis, of_axis};
-use crate::units::Dimension;
+use psd_plan::ZeroAfter;
+use psd_plan::record::{AxisDrift, Drift};
+use psd_rig::{named_axis, of_axis};
+use psd_text::units::Dimension;
 
 /// The zero readings of a rig with a declared allowed zero drift; for a real rig without it, a note.
 pub(super) fn append(run: &Run<'_>, body: &mut Vec<Block>) {

@@ -6,10 +6,10 @@ mod photos;
 pub(super) use photos::photographs;
 
 use super::{Source, headline};
-use crate::plan::FigureKind;
 use crate::report::document::{Block, Figure};
 use crate::report::figures::Drawn;
 use crate::report::wording::figures as wording;
+use psd_plan::FigureKind;
 
 /// The main figure.
 pub(super) fn headline(source: &Source<'_>, body: &mut Vec<Block>) {

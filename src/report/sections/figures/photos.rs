@@ -1,9 +1,9 @@
 //! Photographs of the specimen. In: a run. Out: blocks.
 
 use super::Source;
-use crate::plan::Picture;
 use crate::report::document::{Block, Photo};
 use crate::report::wording::photos as wording;
+use psd_plan::Picture;
 
 /// Returns nothing if the plan names no photograph.
 pub(in super::super) fn photographs(source: &Source<'_>, body: &mut Vec<Block>) {

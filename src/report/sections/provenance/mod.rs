@@ -11,7 +11,7 @@ use crate::report::output::sink::FileDigest;
 use crate::report::run::{RealRun, Run};
 use crate::report::status::issue;
 use crate::report::wording::provenance as wording;
-use crate::text::digest::sha256;
+use psd_text::digest::sha256;
 
 /// The section.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {

@@ -2,16 +2,16 @@
 //! blocks.
 
 use super::Source;
-use crate::physics::self_test;
-use crate::physics::self_test::{Quantity, SelfTest, SelfTestPart};
 use crate::procedures;
 use crate::report::document::{Block, Column, Style, Table, Text};
 use crate::report::number;
 use crate::report::run::Run;
 use crate::report::status::particulars::stated;
 use crate::report::wording::validation as wording;
-use crate::schema::plan_block::VALIDATION;
-use crate::units::Dimension;
+use psd_physics::self_test;
+use psd_physics::self_test::{Quantity, SelfTest, SelfTestPart};
+use psd_plan::schema::plan_block::VALIDATION;
+use psd_text::units::Dimension;
 
 /// Parts of the program that one procedure uses together.
 type Combination = Vec<SelfTestPart>;

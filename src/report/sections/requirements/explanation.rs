@@ -5,14 +5,14 @@ use super::super::results;
 use super::super::results::budget_table::is_printed;
 use super::super::results::read::read_by;
 use super::{Scope, wording};
-use crate::plan::Condition;
-use crate::plan::formula::ResultReference;
-use crate::record::Outcome;
 use crate::report::budget::budgets;
 use crate::report::number;
 use crate::report::run::Run;
-use crate::schema::block_of_words;
 use crate::verdict::{ConditionOutcome, Verdict};
+use psd_plan::Condition;
+use psd_plan::formula::ResultReference;
+use psd_plan::record::Outcome;
+use psd_plan::schema::block_of_words;
 
 /// Whether the value of a complete run decides the condition to the disadvantage of the item, or is too near to its
 /// limit, or too uncertain for its tolerance.

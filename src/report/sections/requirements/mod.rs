@@ -4,8 +4,6 @@ mod explanation;
 
 use super::results::budget_table::{self, Scope};
 use super::{Source, entry_name, with_spaces};
-use crate::plan::formula::{Formula, Part, ResultValue};
-use crate::plan::{Condition, DecisionRule, Requirement};
 use crate::report::budget::coverage_factor;
 use crate::report::document::{Block, Column, Style, Table, Text};
 use crate::report::number;
@@ -13,6 +11,8 @@ use crate::report::run::Run;
 use crate::report::status::ReportStatus;
 use crate::report::wording::{common, headline, requirements as wording};
 use crate::verdict::{ConditionOutcome, RequirementOutcome, Verdict};
+use psd_plan::formula::{Formula, Part, ResultValue};
+use psd_plan::{Condition, DecisionRule, Requirement};
 
 /// Every requirement with value, expanded uncertainty, limit, probability of conformity and verdict; below them the decision rule.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {

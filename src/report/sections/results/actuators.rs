@@ -1,11 +1,11 @@
 //! Motion of the actuators: force correction, mode of motion, tracking error. In: the stepping and tracking of a procedure. Out:
 //! sentences. They describe the method; they are not deviations from it.
 
-use crate::physics::tracking::monitor::Tracking;
-use crate::plan::Mode;
 use crate::report::number::{self, small_percent};
 use crate::report::wording::actuators as wording;
-use crate::units::Dimension;
+use psd_physics::tracking::monitor::Tracking;
+use psd_plan::Mode;
+use psd_text::units::Dimension;
 
 /// Tracking errors below this are rounding \[m\].
 pub(super) const ROUNDING: f64 = 1e-12;

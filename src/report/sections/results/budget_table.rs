@@ -4,19 +4,19 @@
 use super::super::entry_name;
 use super::read::{ReadResult, read_by_requirements};
 use super::with_spaces;
-use crate::plan::formula::{Part, ProcedureId, ResultReference, ResultValue};
-use crate::plan::procedures::impact::block as impact;
-use crate::plan::procedures::unload::block as unload;
 use crate::procedures;
-use crate::record::{History, NamedResult, ProcedureRecord};
 use crate::report::budget::{Budget, Line, Origin, budgets, coverage_factor};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::{self, percent};
 use crate::report::run::Run;
 use crate::report::wording::budget as wording;
-use crate::uncertainty::{Contribution, MOST_DRAWS, StepInterval};
-use crate::units::Dimension;
-use crate::units::display::{is_rounding, minus, significant, typeset, unit};
+use psd_plan::formula::{Part, ProcedureId, ResultReference, ResultValue};
+use psd_plan::procedures::impact::block as impact;
+use psd_plan::procedures::unload::block as unload;
+use psd_plan::record::{History, NamedResult, ProcedureRecord};
+use psd_plan::uncertainty::{Contribution, MOST_DRAWS, StepInterval};
+use psd_text::units::Dimension;
+use psd_text::units::display::{is_rounding, minus, significant, typeset, unit};
 
 /// Lines with a smaller fraction of u² are printed together.
 const SMALL: f64 = 1e-3;

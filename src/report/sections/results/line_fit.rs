@@ -1,10 +1,10 @@
 //! The note on a least-squares line. In: the fit, names and dimensions of its two coefficients. Out: a note.
 
-use crate::record::LineFit;
 use crate::report::document::Block;
 use crate::report::number;
 use crate::report::wording::line_fit as wording;
-use crate::units::Dimension;
+use psd_plan::record::LineFit;
+use psd_text::units::Dimension;
 
 /// A coefficient of the line: its name and its dimension.
 pub(crate) struct Coefficient(pub &'static str, pub Dimension);

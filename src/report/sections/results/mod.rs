@@ -8,17 +8,17 @@ pub(super) mod read;
 pub(crate) mod tracking;
 
 use super::{Source, with_spaces};
-use crate::plan::formula::{Estimate, Part, ProcedureId, ResultReference, ResultValue};
 use crate::procedures;
-use crate::record::{NamedResult, ProcedureRecord};
 use crate::report::budget::coverage_factor;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::report::run::Run;
 use crate::report::wording::{common, results as wording};
-use crate::uncertainty::{MeasurementUncertainty, measurement_uncertainty};
-use crate::units::Dimension;
-use crate::units::display::is_rounding;
+use psd_plan::formula::{Estimate, Part, ProcedureId, ResultReference, ResultValue};
+use psd_plan::record::{NamedResult, ProcedureRecord};
+use psd_plan::uncertainty::{MeasurementUncertainty, measurement_uncertainty};
+use psd_text::units::Dimension;
+use psd_text::units::display::is_rounding;
 
 /// Every procedure that was run, in order, with the text of its method.
 pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {

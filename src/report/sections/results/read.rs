@@ -1,8 +1,8 @@
 //! The results that the requirements of a plan read, and those that it compares with published numbers. In: a plan. Out: results, each with the entry of a list that is read.
 
-use crate::plan::formula::{Formula, Part, ResultReference, ResultValue};
-use crate::plan::{Condition, Plan};
-use crate::record::{NamedResult, Record};
+use psd_plan::formula::{Formula, Part, ResultReference, ResultValue};
+use psd_plan::record::{NamedResult, Record};
+use psd_plan::{Condition, Plan};
 
 /// A result, and the entry of a list if one is named.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,13 +2,13 @@
 //! a sentence; a table if an actuator missed a target.
 
 use super::actuators;
-use crate::physics::tracking::monitor::Tracking;
-use crate::record::ProcedureRecord;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::report::wording::actuators as wording;
-use crate::schema::procedures::tracking;
-use crate::units::Dimension;
+use psd_physics::tracking::monitor::Tracking;
+use psd_plan::record::ProcedureRecord;
+use psd_plan::schema::procedures::tracking;
+use psd_text::units::Dimension;
 
 /// All actuators over a run; the energy is that of the actuator with the largest one.
 pub(crate) fn sentence(procedure: &ProcedureRecord) -> Option<String> {

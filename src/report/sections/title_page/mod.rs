@@ -14,8 +14,8 @@ use crate::report::document::Photo;
 use crate::report::run::Run;
 use crate::report::status::particulars::stated;
 use crate::report::wording::{photos, title_page as wording};
-use crate::schema::plan_block::LABORATORY;
-use crate::text::sanitize;
+use psd_plan::schema::plan_block::LABORATORY;
+use psd_text::sanitize;
 
 /// The title of the report, else that of the plan.
 pub(super) fn title<'a>(run: &Run<'a>) -> &'a str {

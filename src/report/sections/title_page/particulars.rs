@@ -6,7 +6,7 @@ use crate::report::run::Run;
 use crate::report::status::particulars::{FRONT, Wanted, missing_names, stated};
 use crate::report::status::report_status;
 use crate::report::wording::particulars as wording;
-use crate::schema::plan_block::{DATE, REVISION};
+use psd_plan::schema::plan_block::{DATE, REVISION};
 
 /// Names and values that are stated; the plan with its digest last. A simulation is no test: its date is beside the title only.
 pub(in super::super) fn rows(run: &Run<'_>) -> Vec<(Text, Text)> {

@@ -2,15 +2,15 @@
 
 use std::borrow::Cow;
 
-use crate::record::Outcome;
 use crate::report::document::{Text, Tone, Verdict as Stated};
 use crate::report::run::Run;
 use crate::report::sections::reproductions::not_reproduced;
 use crate::report::status::ReportStatus;
 use crate::report::wording::{reproductions, verdict as wording};
-use crate::rig::IS_OUTSIDE;
 use crate::run::check_run;
 use crate::verdict::Verdict;
+use psd_plan::record::Outcome;
+use psd_rig::IS_OUTSIDE;
 
 /// The statement, and the reason if the run was not completed. A simulation is headed as such, and so is a check run: neither is
 /// the test of the plan. The report of a test that is not issuable says so before the outcome.

@@ -10,10 +10,10 @@ use super::entry::{
 };
 use super::logged_run::{LoggedRun, UnreadableLog, body};
 use super::state::Undecided;
-use crate::record::{Event, EventKind};
-use crate::rig::Reading;
-use crate::rig::journal::{EntryKind, Line};
 use crate::run::{Inspection, UNLOADING};
+use psd_plan::record::{Event, EventKind};
+use psd_rig::Reading;
+use psd_rig::journal::{EntryKind, Line};
 
 pub use position::Bands;
 use position::{FoundPosition, InterruptedMotion, Measured, Place, may_move, mostly_lost};

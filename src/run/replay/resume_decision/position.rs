@@ -1,13 +1,13 @@
 //! The position and force of a rig that is found when a run is resumed, compared with those of its run log.
 
 use super::refusal::ResumeRefusal;
-use crate::physics::tracking::trajectory::Path;
-use crate::plan::{Interval, RealLink, RigPlan};
-use crate::rig::journal::{EntryKind, Line};
-use crate::rig::safety::failpoint::{Guarding, on};
-use crate::rig::{Reading, named_axis};
 use crate::run::replay::entry::{SampleBody, TargetStatus};
 use crate::run::replay::logged_run::body;
+use psd_physics::tracking::trajectory::Path;
+use psd_plan::{Interval, RealLink, RigPlan};
+use psd_rig::journal::{EntryKind, Line};
+use psd_rig::safety::failpoint::{Guarding, on};
+use psd_rig::{Reading, named_axis};
 
 /// Longest time for which a rig without a next path continues before it holds \[s\]: 0.25 s of the controller, and the
 /// delay of its line and its clock.

@@ -1,9 +1,9 @@
 //! Reasons why a run must not be resumed automatically, each with its message.
 
-use crate::rig::{of_axis, who};
 use crate::run::replay::logged_run::{Mismatch, UnreadableLog};
-use crate::units::Dimension;
-use crate::units::display::plain;
+use psd_rig::{of_axis, who};
+use psd_text::units::Dimension;
+use psd_text::units::display::plain;
 
 /// Why a run must not be resumed automatically.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,13 +1,13 @@
 //! Whether the rig that answers is the one of the run log: identity, power-up, resolution, calibration.
 
 use super::refusal::ResumeRefusal;
-use crate::plan::{RealLink, RigPlan};
-use crate::rig::controllers::NOT_TRUSTED;
-use crate::rig::journal::EntryKind;
-use crate::rig::safety::failpoint::{Guarding, on};
-use crate::rig::{DeclaredNoise, Identity, JUST_STARTED, NO_POWER_UP};
 use crate::run::replay::entry::{Assurance, FaultBody};
 use crate::run::replay::logged_run::{LoggedRun, body};
+use psd_plan::{RealLink, RigPlan};
+use psd_rig::controllers::NOT_TRUSTED;
+use psd_rig::journal::EntryKind;
+use psd_rig::safety::failpoint::{Guarding, on};
+use psd_rig::{DeclaredNoise, Identity, JUST_STARTED, NO_POWER_UP};
 
 /// Whether the rig that answers is that of the run log, and has neither restarted nor changed its firmware. If it cannot report whether
 /// it was switched off, the operator must.

@@ -5,8 +5,8 @@ use std::cell::Cell;
 
 use super::entry::IntentBody;
 use super::*;
-use crate::plan::{Interval, Plan};
 use crate::tests::testing::{elastic_plan, header, ramp};
+use psd_plan::{Interval, Plan};
 use psd_testing::forwarded;
 
 /// Speed of the rig at the start of the run, and of the amended rig \[m/s\].

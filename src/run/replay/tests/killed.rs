@@ -1,7 +1,7 @@
 //! A run that is killed at every write and every sync is resumed to the same end, and no target is executed twice.
 
 use super::*;
-use crate::plan::Interval;
+use psd_plan::Interval;
 
 #[test]
 fn killed_at_every_write_and_every_sync_it_goes_on_to_the_same_end() {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use crate::record::{History, ImpactHistory, Record};
+use psd_plan::record::{History, ImpactHistory, Record};
 
 /// The measured and computed values of a run, without their times.
 pub(super) fn measured(record: &Record) -> String {

@@ -18,17 +18,17 @@ use killed::killed_everywhere;
 use measured::measured;
 
 use super::*;
-use crate::physics::tracking::trajectory::Path;
-use crate::plan::{DampingSweep, InspectTrigger, Move, Plan, ProcedureKind, StiffnessRamp};
-use crate::record::EventKind;
-use crate::rig::journal::{Durability, Recovered, Storage};
-use crate::rig::safety::failpoint::{Guarding, without};
-use crate::rig::{
+use crate::run::{Inspection, StepReport};
+use crate::tests::testing::{elastic_plan, header, impact, ramp, result_of, struck_frame};
+use psd_physics::tracking::trajectory::Path;
+use psd_plan::record::EventKind;
+use psd_plan::{DampingSweep, InspectTrigger, Move, Plan, ProcedureKind, StiffnessRamp};
+use psd_rig::journal::{Durability, Recovered, Storage};
+use psd_rig::safety::failpoint::{Guarding, without};
+use psd_rig::{
     CutOff, DeclaredNoise, EachReading, EncodedMove, Identity, LastMove, LineStatistics, Reading,
     RigFault, virtual_rig,
 };
-use crate::run::{Inspection, StepReport};
-use crate::tests::testing::{elastic_plan, header, impact, ramp, result_of, struck_frame};
 use psd_testing::journal::AlterEntry as _;
 use psd_testing::journal::{Killed, PowerLoss, SickDisk, Sickness, recover};
 
@@ -243,18 +243,18 @@ fn plan() -> Plan {
     let sweep = DampingSweep {
         specimen: 0,
         velocities: vec![
-            crate::plan::formula::Formula::Constant(0.01),
-            crate::plan::formula::Formula::Constant(0.02),
+            psd_plan::formula::Formula::Constant(0.01),
+            psd_plan::formula::Formula::Constant(0.02),
         ],
-        stroke: crate::plan::formula::Formula::Constant(1e-3),
+        stroke: psd_plan::formula::Formula::Constant(1e-3),
         about: None,
         stiffness: result_of(0, "stiffness"),
-        rate: Some(crate::plan::formula::Formula::Constant(60.0)),
+        rate: Some(psd_plan::formula::Formula::Constant(60.0)),
     };
     let mut struck = impact(result_of(0, "stiffness"));
     struck.stepping.inspect = vec![InspectTrigger::Every(7)];
     let home = Move {
-        to: crate::plan::formula::Formula::Constant(0.0),
+        to: psd_plan::formula::Formula::Constant(0.0),
         speed: None,
     };
     elastic_plan(
@@ -441,7 +441,7 @@ fn what_cannot_be_gone_on_with_is_known_without_a_rig() {
 
     let mut other = plan.clone();
     if let ProcedureKind::StiffnessRamp(ramp) = &mut other.procedures[0].kind {
-        ramp.displacements[0] = crate::plan::formula::Formula::Constant(5e-5);
+        ramp.displacements[0] = psd_plan::formula::Formula::Constant(5e-5);
     }
     assert!(
         matches!(check_run(&other), (ResumeRefusal::Otherwise(_), false)),

@@ -1,15 +1,15 @@
 //! A plan for every procedure that moves the rig.
 
-use crate::plan::formula::Formula::Constant;
-use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
-use crate::plan::{
+use crate::tests::testing::{elastic_plan, every, impact, ramp, struck_frame};
+use psd_plan::formula::Formula::Constant;
+use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference};
+use psd_plan::{
     Behaviour, Between, Comparison, Condition, Cycle, DampingSweep, DriftCheck, Escalate, Frame,
     Ground, Impact, InspectTrigger, Integrator, Level, Mode, Move, Plan, Procedure, ProcedureKind,
     Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload, Until, WatchedHold,
     WatchedModel, ZeroAfter,
 };
-use crate::tests::testing::{elastic_plan, every, impact, ramp, struck_frame};
-use crate::units::Dimension;
+use psd_text::units::Dimension;
 
 pub(super) const CONTINUOUS: Mode = Mode::Continuous { time_scale: 100.0 };
 

@@ -4,15 +4,15 @@
 use super::entry::FaultBody;
 use super::procedures::{CONTINUOUS, plans, shaken, short, swept_past_yield, to};
 use super::*;
-use crate::plan::formula::Formula::Constant;
-use crate::plan::formula::ResultValue;
-use crate::plan::{Impact, Mode, ProcedureKind, StiffnessRamp};
-use crate::record::History;
-use crate::rig::controllers::DeviceFault;
-use crate::rig::journal::Durability;
-use crate::rig::safety::failpoint::{Guarding, without};
-use crate::rig::{Identity, JUST_STARTED, RigFault};
 use crate::tests::testing::{elastic_plan, header, ramp, result_of};
+use psd_plan::formula::Formula::Constant;
+use psd_plan::formula::ResultValue;
+use psd_plan::record::History;
+use psd_plan::{Impact, Mode, ProcedureKind, StiffnessRamp};
+use psd_rig::controllers::DeviceFault;
+use psd_rig::journal::Durability;
+use psd_rig::safety::failpoint::{Guarding, without};
+use psd_rig::{Identity, JUST_STARTED, RigFault};
 use psd_testing::journal::PowerLoss;
 use psd_testing::plans::ChangeTarget as _;
 

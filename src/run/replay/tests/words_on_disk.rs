@@ -9,9 +9,9 @@ use super::super::entry::{
     AmendBody, EndBody, FaultBody, Header, HeldBody, IntentBody, OperatorEntry, PlanBody,
     RecoverBody, ResumeBody, RigBody, SampleBody, StepBody, StrokeBody,
 };
-use crate::record::Event;
-use crate::rig::LineStatistics;
-use crate::rig::journal::EntryKind;
+use psd_plan::record::Event;
+use psd_rig::LineStatistics;
+use psd_rig::journal::EntryKind;
 
 /// Whether these bodies are read, and written with the same keys and values.
 fn stable<Body: Serialize + DeserializeOwned>(bodies: &[Value]) {

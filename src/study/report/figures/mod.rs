@@ -5,15 +5,15 @@ mod fragility;
 
 use std::borrow::Cow;
 
-use crate::physics::study::sensitivity::spearman;
 use crate::report::figures::chart::{
     Chart, DASHED, End, Marker, Quantity, Reference, SOLID, Series, Style, palette,
 };
 use crate::report::wording::study as wording;
 use crate::study::answers::{Answers, Histogram, RANKED, ResultAnswer};
 use crate::study::data_set::{Column, Kind, Limit, Metadata, Stopping};
-use crate::units::Dimension;
-use crate::units::display;
+use psd_physics::study::sensitivity::spearman;
+use psd_text::units::Dimension;
+use psd_text::units::display;
 
 /// A limit farther from the results than this many times their range is not drawn: it would make the curve narrow.
 const FARTHEST: f64 = 1.5;

@@ -3,14 +3,14 @@
 
 use super::two_axes::{checked, continuous_text, ideal, results, same, upper};
 use super::{logged_run, stopped};
-use crate::plan::{Interval, Plan};
-use crate::record::Outcome;
-use crate::rig::LineStatistics;
-use crate::rig::safety::failpoint::Guarding;
-use crate::rig::transport::Clock as _;
 use crate::run::replay;
 use crate::tests::fault_table::interrupted::cut_off::cut_off_anywhere;
 use crate::tests::fault_table::stage::{link, run, run_without};
+use psd_plan::record::Outcome;
+use psd_plan::{Interval, Plan};
+use psd_rig::LineStatistics;
+use psd_rig::safety::failpoint::Guarding;
+use psd_rig::transport::Clock as _;
 use psd_testing::emulator::InProcess;
 
 fn plan(duration: &str) -> Plan {

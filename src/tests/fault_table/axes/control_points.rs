@@ -3,9 +3,9 @@
 
 use super::held;
 use super::two_axes::{checked, ideal, results, same};
-use crate::plan::Plan;
-use crate::rig::LineStatistics;
 use crate::tests::fault_table::stage::run;
+use psd_plan::Plan;
+use psd_rig::LineStatistics;
 
 const SINE: &str = include_str!("../../../../plans/two_storeys_sine.psd");
 const LIBRARY: &str = include_str!("../../../../plans/lib/two_actuator_frame.psd");

@@ -5,11 +5,11 @@ use serde_json::{Value, json};
 
 use super::control_points;
 use super::several::{apart, metered, plan as of_text, sites};
-use crate::plan::{Dialect, Plan, Settle};
-use crate::rig::journal::EntryKind;
 use crate::tests::fault_table::forged::{found, judged};
 use crate::tests::fault_table::line::unnumbered::{as_homed, grbl, modbus};
 use crate::tests::fault_table::stage::{Ended, device_link, link, plan, run};
+use psd_plan::{Dialect, Plan, Settle};
+use psd_rig::journal::EntryKind;
 use psd_testing::journal::AlterEntry as _;
 
 const CONTRADICTION: &str = "the replies in its `raw` give another number";

@@ -9,14 +9,14 @@ pub(super) mod two_axes;
 
 use super::interrupted::cut_off::{Resumed, killed, resumed};
 use super::stage::{Ended, emulator, link, open, run, run_watched, run_without};
-use crate::emulator::Log;
-use crate::plan::{Interval, Plan};
-use crate::record::{EventKind, Outcome};
-use crate::rig::safety::failpoint::Guarding;
-use crate::rig::{LineStatistics, Reading, Rig as _, RigFault};
 use crate::run::Unwatched;
 use crate::run::replay;
 use crate::run::replay::{Bands, LoggedRun, RigBody};
+use psd_plan::record::{EventKind, Outcome};
+use psd_plan::{Interval, Plan};
+use psd_rig::emulator::Log;
+use psd_rig::safety::failpoint::Guarding;
+use psd_rig::{LineStatistics, Reading, Rig as _, RigFault};
 use psd_testing::journal::PowerLoss;
 use psd_testing::journal::recover;
 use two_axes::{base_excited_plan, checked, ideal, results, same, upper};
@@ -381,7 +381,7 @@ fn each_axis_is_held_to_its_own_bands_when_it_goes_on() {
     );
 }
 
-pub(super) fn logged_run(disk: &PowerLoss) -> (crate::rig::journal::Recovered, LoggedRun) {
+pub(super) fn logged_run(disk: &PowerLoss) -> (psd_rig::journal::Recovered, LoggedRun) {
     let recovered = recover(&disk.written()).unwrap();
     let logged_run = LoggedRun::of(&recovered).unwrap();
     (recovered, logged_run)

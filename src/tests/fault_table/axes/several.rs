@@ -4,12 +4,12 @@
 
 use super::held;
 use super::two_axes::{LINK, checked, ideal, results, same, upper, with_devices};
-use crate::plan::{Interval, Plan};
-use crate::record::Outcome;
-use crate::rig::LineStatistics;
-use crate::rig::safety::failpoint::Guarding;
 use crate::tests::fault_table::interrupted::cut_off::cut_off_anywhere;
 use crate::tests::fault_table::stage::{run, run_without};
+use psd_plan::record::Outcome;
+use psd_plan::{Interval, Plan};
+use psd_rig::LineStatistics;
+use psd_rig::safety::failpoint::Guarding;
 
 const LOWER: &str = "    axis(pretest_check:";
 const UPPER: &str = "    axis(polarity: negative,";

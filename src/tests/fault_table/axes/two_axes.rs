@@ -2,11 +2,11 @@
 //! opposite polarity. In: text. Out: checked plans, and the same plans on an ideal virtual rig.
 
 use crate::check::{LoadError, Options, check};
-use crate::plan::formula::ResultValue;
-use crate::plan::{AxisPlan, Plan, RealLink};
-use crate::record::Record;
-use crate::rig::virtual_rig;
 use crate::run::{Unwatched, run};
+use psd_plan::formula::ResultValue;
+use psd_plan::record::Record;
+use psd_plan::{AxisPlan, Plan, RealLink};
+use psd_rig::virtual_rig;
 
 /// Elastic storeys of 300 and 200 kN/m: K = [500, −200; −200, 200] kN/m.
 const PLAN: &str = r#"

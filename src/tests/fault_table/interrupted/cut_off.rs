@@ -3,16 +3,16 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::emulator::Log;
-use crate::plan::Plan;
-use crate::record::{Outcome, Record};
-use crate::rig::Rig as _;
-use crate::rig::journal::{Durability, EntryKind, Journal};
 use crate::run::Unwatched;
 use crate::run::replay;
 use crate::run::replay::{Bands, RigBody};
 use crate::tests::fault_table::axes::logged_run;
 use crate::tests::fault_table::stage::{emulator, header, open};
+use psd_plan::Plan;
+use psd_plan::record::{Outcome, Record};
+use psd_rig::Rig as _;
+use psd_rig::emulator::Log;
+use psd_rig::journal::{Durability, EntryKind, Journal};
 use psd_testing::emulator::InProcess;
 use psd_testing::journal::{Killed, PowerLoss};
 

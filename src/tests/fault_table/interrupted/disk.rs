@@ -1,13 +1,13 @@
 //! A disk that fails at any write or flush of a run. In: the number of the call. Out: the run says where the rig holds, and its run log is
 //! replayed to the same record.
 
-use crate::emulator::Log;
-use crate::plan::Plan;
-use crate::record::{Event, EventKind, Outcome, Record};
-use crate::rig::journal::{Durability, Journal};
 use crate::run::Unwatched;
 use crate::run::replay::{self, LoggedRun};
 use crate::tests::fault_table::stage::{emulator, header, open, plan_of, to};
+use psd_plan::Plan;
+use psd_plan::record::{Event, EventKind, Outcome, Record};
+use psd_rig::emulator::Log;
+use psd_rig::journal::{Durability, Journal};
 use psd_testing::journal::{SickDisk, Sickness, recover};
 
 /// Runs the plan on this disk. Returns whether the disk failed.

@@ -5,15 +5,15 @@ use std::io;
 use std::process::Command;
 use std::sync::{Arc, Mutex};
 
-use crate::emulator::Log;
-use crate::plan::formula::Formula;
-use crate::plan::{Plan, ProcedureKind, StiffnessRamp};
-use crate::record::{EventKind, History, Outcome};
-use crate::rig::LineStatistics;
-use crate::rig::journal::{Durability, Journal, Line, Storage};
 use crate::run::{Unwatched, replay};
 use crate::tests::fault_table::stage::{STIFFNESS, emulator, header, link, open, plan_of};
 use crate::tests::testing::ramp;
+use psd_plan::formula::Formula;
+use psd_plan::record::{EventKind, History, Outcome};
+use psd_plan::{Plan, ProcedureKind, StiffnessRamp};
+use psd_rig::LineStatistics;
+use psd_rig::emulator::Log;
+use psd_rig::journal::{Durability, Journal, Line, Storage};
 
 /// Steps out and back: 20 000 in all. A memory leak per step shows in the memory of this many steps: 400 bytes per step are 7 MB.
 const STEPS: u32 = 10_000;
@@ -176,7 +176,7 @@ fn very_many_steps_with_faults_by_chance_lose_no_sample_and_hold_on_to_nothing()
         resent,
         ignored,
         reread,
-    } = crate::rig::Rig::line_statistics(&rig);
+    } = psd_rig::Rig::line_statistics(&rig);
     assert!(
         resent > 60 && ignored > 60 && reread > 6,
         "seed {seed}: {resent} {ignored} {reread}"

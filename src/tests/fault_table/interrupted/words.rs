@@ -8,13 +8,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use super::cut_off::{Resumed, resumed};
-use crate::emulator::Log;
-use crate::plan::{Plan, ProcedureKind, StiffnessRamp};
-use crate::rig::journal::{Durability, Journal};
-use crate::rig::transport::{Emergency, Port};
 use crate::run::{Unwatched, replay};
 use crate::tests::fault_table::stage::{emulator, header, open_through, plan_of, run};
 use crate::tests::testing::ramp;
+use psd_plan::{Plan, ProcedureKind, StiffnessRamp};
+use psd_rig::emulator::Log;
+use psd_rig::journal::{Durability, Journal};
+use psd_rig::transport::{Emergency, Port};
 use psd_testing::emulator::{InProcess, SimulatedPort};
 use psd_testing::journal::PowerLoss;
 
@@ -112,7 +112,7 @@ fn killed_at_every_word_it_goes_on_to_the_same_end_and_no_target_is_carried_out_
                         moves,
                         "word {kills}, {after}: each target once, in order"
                     );
-                    let results = |record: &crate::record::Record| {
+                    let results = |record: &psd_plan::record::Record| {
                         format!("{:?}", record.procedures[0].results)
                     };
                     assert_eq!(

@@ -6,11 +6,11 @@ pub(super) mod unnumbered;
 use super::stage::{
     Ended, REPLY_TIMEOUT, emulator, link, open, plan, plan_of, run, run_without, to,
 };
-use crate::emulator::Log;
-use crate::record::EventKind;
-use crate::rig::controllers::LONGEST_LINE;
-use crate::rig::safety::failpoint::{Guarding, without};
-use crate::rig::{LineStatistics, Rig as _};
+use psd_plan::record::EventKind;
+use psd_rig::controllers::LONGEST_LINE;
+use psd_rig::emulator::Log;
+use psd_rig::safety::failpoint::{Guarding, without};
+use psd_rig::{LineStatistics, Rig as _};
 
 /// Times at which a frame was sent, with the frame, from the first that contains `part`.
 fn sent<'a>(ended: &'a Ended, part: &str) -> Vec<(f64, &'a str)> {

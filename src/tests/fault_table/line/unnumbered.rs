@@ -1,10 +1,10 @@
 //! Lines whose replies carry no number: Grbl with a converter, and Modbus. In: runs on which replies are lost, late or old. Out: the
 //! numbers of a sound line, or a rig on hold.
 
-use crate::plan::{Datum, Dialect, Interval, ModbusMap, ModbusNumber, Plan};
-use crate::record::Outcome;
-use crate::rig::safety::failpoint::Guarding;
 use crate::tests::fault_table::stage::{device_link, link, plan, run, run_without};
+use psd_plan::record::Outcome;
+use psd_plan::{Datum, Dialect, Interval, ModbusMap, ModbusNumber, Plan};
+use psd_rig::safety::failpoint::Guarding;
 
 pub(crate) fn modbus() -> Plan {
     let map = ModbusMap {

@@ -1,14 +1,14 @@
 //! Impact series on a storey.
 
 use super::{close, rest};
-use crate::plan::formula::Formula::Constant;
-use crate::plan::formula::{Formula, Part, ProcedureId, ResultReference};
-use crate::plan::{
+use crate::tests::testing::{as_of, list, number, run_unwatched, struck_frame};
+use psd_plan::formula::Formula::Constant;
+use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference};
+use psd_plan::record::{EscalateHistory, History, Outcome, Record};
+use psd_plan::{
     Between, Comparison, Condition, Escalate, Impact, Plan, Procedure, ProcedureKind, Striker, Test,
 };
-use crate::record::{EscalateHistory, History, Outcome, Record};
-use crate::tests::testing::{as_of, list, number, run_unwatched, struck_frame};
-use crate::units::Dimension;
+use psd_text::units::Dimension;
 
 fn drifts_below(limit: f64) -> Condition {
     let all = Formula::Result(ResultReference {
@@ -16,7 +16,7 @@ fn drifts_below(limit: f64) -> Condition {
         name: "max_drift",
         part: Part::Value,
     });
-    let value = Formula::Call(crate::plan::formula::Function::Max, vec![all]);
+    let value = Formula::Call(psd_plan::formula::Function::Max, vec![all]);
     let test = Test::Compare {
         comparison: Comparison::Less,
         limit: Constant(limit),

@@ -3,14 +3,14 @@
 pub(crate) mod escalate;
 mod unloading;
 
-use crate::plan::formula::Formula::Constant;
-use crate::plan::{Behaviour, Frame, Plan, ProcedureKind, Storey, Unload};
 use crate::procedures::unload::run::{of_frame, to_rest};
-use crate::record::{Rest, UnloadStep};
-use crate::rig::virtual_rig;
 use crate::run::Unwatched;
 use crate::run::session::Session;
 use crate::tests::testing::elastic_plan;
+use psd_plan::formula::Formula::Constant;
+use psd_plan::record::{Rest, UnloadStep};
+use psd_plan::{Behaviour, Frame, Plan, ProcedureKind, Storey, Unload};
+use psd_rig::virtual_rig;
 
 pub(super) const STIFFNESS: [f64; 3] = [4e6, 2e6, 1e6];
 pub(super) const YIELD: [f64; 3] = [40e3, 20e3, 10e3];

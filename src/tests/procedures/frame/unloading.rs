@@ -1,16 +1,16 @@
 //! Unloading of a frame to zero floor forces, inside the limits.
 
 use super::{close, rest, three, unloaded};
-use crate::plan::formula::Formula::Constant;
-use crate::plan::{
-    Behaviour, Frame, Interval, Link, Procedure, ProcedureKind, Storey, Unload, VirtualLink,
-};
 use crate::procedures::unload::run::{of_frame, to_rest};
-use crate::record::{History, Outcome};
-use crate::rig::virtual_rig;
 use crate::run::Unwatched;
 use crate::run::session::Session;
 use crate::tests::testing::{elastic_plan, number, run_unwatched};
+use psd_plan::formula::Formula::Constant;
+use psd_plan::record::{History, Outcome};
+use psd_plan::{
+    Behaviour, Frame, Interval, Link, Procedure, ProcedureKind, Storey, Unload, VirtualLink,
+};
+use psd_rig::virtual_rig;
 
 /// A bilinear storey beyond its yield drift δy has the shear Fy + hk(δ − δy), and unloads along k. The residual drift is its plastic
 /// drift (1 − h)(δ − δy), independent of the other storeys. Three moves are sufficient: a short one, most of the path, the rest.
@@ -186,7 +186,7 @@ fn one_storey_is_unloaded_as_one_degree_of_freedom() {
     single.specimens[0].coulomb = 0.2;
     single.specimens[0].behaviour = Some(behaviour.clone());
     frame.specimens[0].behaviour = Some(behaviour);
-    let away = crate::plan::Move {
+    let away = psd_plan::Move {
         to: Constant(0.08),
         speed: None,
     };

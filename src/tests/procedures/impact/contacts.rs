@@ -1,12 +1,12 @@
 //! Number of impacts, and the reference energy of relative energy errors, on one degree of freedom and on one storey.
 
-use crate::plan::formula::Formula::Constant;
-use crate::plan::{
+use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched, struck_frame};
+use psd_plan::formula::Formula::Constant;
+use psd_plan::record::{History, ImpactStep, Record, StepState};
+use psd_plan::{
     Behaviour, Contact, Frame, Impact, Integrator, Move, Plan, Procedure, ProcedureKind, Stepping,
     Storey, Until,
 };
-use crate::record::{History, ImpactStep, Record, StepState};
-use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched, struck_frame};
 use psd_testing::plans::ChangeTarget as _;
 
 /// As heavy as the earth, compared with a striker of 10 kg.
@@ -203,7 +203,7 @@ fn errors_are_shares_of_all_that_was_put_in() {
             panic!()
         };
         impact.storey_mut().storey = 0;
-        impact.storey_mut().damping = crate::plan::ShakeDamping::Rayleigh(Constant(0.0));
+        impact.storey_mut().damping = psd_plan::ShakeDamping::Rayleigh(Constant(0.0));
         plan
     };
     for plan in [&alone as &dyn Fn() -> Plan, &framed] {

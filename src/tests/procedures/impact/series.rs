@@ -1,18 +1,18 @@
 //! Impact series of increasing energy, run on a virtual rig.
 
-use crate::plan::formula::Formula;
-use crate::plan::formula::Formula::Constant;
-use crate::plan::formula::{Part, ProcedureId, ResultReference};
-use crate::plan::{
+use crate::run::{Inspection, Observer, StepReport};
+use crate::tests::testing::{as_of, elastic_plan, every, impact, list, number, run_unwatched};
+use crate::verdict::{Verdict, assess};
+use psd_plan::formula::Formula;
+use psd_plan::formula::Formula::Constant;
+use psd_plan::formula::{Part, ProcedureId, ResultReference};
+use psd_plan::record::{EscalateHistory, EventKind, History, Outcome, Record};
+use psd_plan::{
     Behaviour, Between, Comparison, Condition, Contact, Escalate, Impact, Plan, ProcedureKind,
     Requirement, Test, Unload, Until,
 };
-use crate::record::{EscalateHistory, EventKind, History, Outcome, Record};
-use crate::rig::VirtualRig;
-use crate::run::{Inspection, Observer, StepReport};
-use crate::tests::testing::{as_of, elastic_plan, every, impact, list, number, run_unwatched};
-use crate::units::Dimension;
-use crate::verdict::{Verdict, assess};
+use psd_rig::VirtualRig;
+use psd_text::units::Dimension;
 
 fn below(limit: f64) -> Condition {
     let value = Formula::Result(ResultReference {
@@ -130,7 +130,7 @@ fn every_impact_of_a_series_equals_a_single_one() {
     }
     let mut plan = yielding(written);
     for (index, velocity) in velocities.into_iter().enumerate() {
-        let striker = crate::plan::Striker {
+        let striker = psd_plan::Striker {
             velocity,
             ..plan.strikers[0].clone()
         };
@@ -160,7 +160,7 @@ fn every_impact_of_a_series_equals_a_single_one() {
 fn it_ends_with_the_first_impact_that_fails() {
     let velocities = [0.2, 0.4, 0.6, 0.8, 1.0];
     let mut plan = rising(&velocities, 0.0150, Between::Home);
-    let contact = crate::plan::Contact::Restitution {
+    let contact = psd_plan::Contact::Restitution {
         coefficient: Constant(0.0),
     };
     plan.impact = Impact {
@@ -249,7 +249,7 @@ fn a_limit_in_an_impact_ends_it_and_keeps_the_steps() {
         1.0,
         Between::Unload,
     ))]);
-    plan.limits.displacement = crate::plan::Interval {
+    plan.limits.displacement = psd_plan::Interval {
         low: -1.0,
         high: 0.02,
     };

@@ -1,15 +1,15 @@
 //! Impacts on plans built by hand: the paper's first example, observations, limits, inspections, resolution of the rig.
 
-use crate::physics::contact::state::StepState;
-use crate::plan::formula::Formula;
-use crate::plan::{
+use crate::run::{Inspection, Observer, run};
+use crate::tests::testing::{elastic_plan, every, number, result_of, run_unwatched};
+use psd_physics::contact::state::StepState;
+use psd_plan::formula::Formula;
+use psd_plan::record::{EventKind, History, ImpactStep, Outcome, Record};
+use psd_plan::{
     Contact, Impact, InspectTrigger, Interval, Link, Plan, ProcedureKind, Stepping, Until,
     VirtualLink,
 };
-use crate::record::{EventKind, History, ImpactStep, Outcome, Record};
-use crate::rig::VirtualRig;
-use crate::run::{Inspection, Observer, run};
-use crate::tests::testing::{elastic_plan, every, number, result_of, run_unwatched};
+use psd_rig::VirtualRig;
 use psd_testing::plans::ChangeTarget as _;
 
 fn constant(value: f64) -> Formula {
@@ -91,7 +91,7 @@ fn results_are_in_the_order_of_the_reference_also_without_values() {
 #[test]
 fn pauses_take_rig_time_and_a_time_step_may_be_critical() {
     let twentieth = Formula::Binary(
-        crate::plan::formula::Operator::Divide,
+        psd_plan::formula::Operator::Divide,
         Box::new(Formula::CriticalTimeStep),
         Box::new(constant(20.0)),
     );
@@ -127,7 +127,7 @@ fn a_default_step_resolves_the_impact_of_a_stiff_contact() {
     let hertz = |step, duration| {
         let divided = |by| {
             let parts = (Box::new(Formula::CriticalTimeStep), Box::new(constant(by)));
-            Formula::Binary(crate::plan::formula::Operator::Divide, parts.0, parts.1)
+            Formula::Binary(psd_plan::formula::Operator::Divide, parts.0, parts.1)
         };
         let contact = Contact::Hertz {
             stiffness: constant(1e9),
@@ -215,12 +215,12 @@ fn a_breach_keeps_every_step_and_what_follows_from_them() {
     assert_eq!(record.events.last().unwrap().kind, EventKind::LimitBreach);
     assert_eq!(record.events.last().unwrap().step, Some(last.step));
     // A force limit is detected by reading. The step that exceeded the limit is in the results, because the specimen reached it.
-    plan.limits = crate::plan::Limits {
+    plan.limits = psd_plan::Limits {
         force: Interval {
             low: -30.0,
             high: 30.0,
         },
-        ..crate::plan::Limits::NONE
+        ..psd_plan::Limits::NONE
     };
     let record = run_unwatched(&plan);
     assert!(matches!(record.outcome, Outcome::Aborted { .. }));
@@ -388,14 +388,14 @@ fn a_specimen_that_stiffens_past_the_operator_is_remarked_once() {
             [0.02, 6.0],
             [0.1, 78.0],
         ];
-        let unloading = crate::plan::Unloading::AlongTheCurve;
-        let table = crate::plan::Table {
+        let unloading = psd_plan::Unloading::AlongTheCurve;
+        let table = psd_plan::Table {
             file: "points.csv".to_owned(),
             points,
             unloading,
             scale: 1.0,
         };
-        plan.specimens[0].behaviour = Some(crate::plan::Behaviour::Table(table));
+        plan.specimens[0].behaviour = Some(psd_plan::Behaviour::Table(table));
         let record = run_unwatched(&plan);
         record
             .events
@@ -403,7 +403,7 @@ fn a_specimen_that_stiffens_past_the_operator_is_remarked_once() {
             .filter(|event| event.text.starts_with("W718"))
             .collect::<Vec<_>>()
     };
-    let remarks = stiffening(crate::plan::Integrator::AlphaOs { alpha: 0.0 });
+    let remarks = stiffening(psd_plan::Integrator::AlphaOs { alpha: 0.0 });
     assert_eq!(remarks.len(), 1, "{remarks:?}");
     // The first secant across the breakpoint, or after it; 2/√(590) s = 82 ms is left.
     assert!(
@@ -412,5 +412,5 @@ fn a_specimen_that_stiffens_past_the_operator_is_remarked_once() {
         "{}",
         remarks[0].text
     );
-    assert!(stiffening(crate::plan::Integrator::Tangent).is_empty());
+    assert!(stiffening(psd_plan::Integrator::Tangent).is_empty());
 }

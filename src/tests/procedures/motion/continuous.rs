@@ -1,12 +1,12 @@
 //! Continuous runs on the virtual rig: compared with ramp-and-hold and with closed forms, and replayed from their run log.
 
-use crate::plan::formula::Formula::Constant;
-use crate::plan::{
+use crate::tests::testing::{elastic_plan, every, impact, run_unwatched};
+use psd_plan::formula::Formula::Constant;
+use psd_plan::record::{History, ImpactStep, Outcome, Record};
+use psd_plan::{
     Contact, Impact, Integrator, Interval, Link, Mode, Move, Plan, ProcedureKind, Stepping, Until,
     VirtualLink,
 };
-use crate::record::{History, ImpactStep, Outcome, Record};
-use crate::tests::testing::{elastic_plan, every, impact, run_unwatched};
 use psd_testing::journal::AlterEntry as _;
 
 const STIFFNESS: f64 = 300.0;
@@ -183,10 +183,10 @@ fn after_an_impact_the_damper_acts_at_the_velocity_of_the_structure() {
 /// trend.
 #[test]
 fn an_impact_is_not_extrapolated_as_a_trend() {
-    use crate::rig::VirtualRig;
-    use crate::rig::journal::{Durability, EntryKind, Journal};
     use crate::run::Unwatched;
     use crate::run::replay::{begin, record};
+    use psd_rig::VirtualRig;
+    use psd_rig::journal::{Durability, EntryKind, Journal};
     use psd_testing::journal::PowerLoss;
     use psd_testing::journal::recover;
 
@@ -301,10 +301,10 @@ fn a_continuous_run_is_stopped_by_a_reading_during_the_motion() {
 /// The recorded continuous run is replayed bit-identically. With one bit of a path changed, the replay differs.
 #[test]
 fn a_continuous_run_is_played_back_from_its_record() {
-    use crate::rig::VirtualRig;
-    use crate::rig::journal::{Durability, EntryKind, Journal};
     use crate::run::Unwatched;
     use crate::run::replay::{LoggedRun, begin, record, replay};
+    use psd_rig::VirtualRig;
+    use psd_rig::journal::{Durability, EntryKind, Journal};
     use psd_testing::journal::PowerLoss;
     use psd_testing::journal::recover;
 

@@ -1,14 +1,14 @@
 //! Runs on specimens that are stiffer than α-OS assumes, and on others. One spring and storeys, ramp-and-hold and continuous, with
 //! dampers and friction in the readings.
 
-use crate::plan::formula::Formula::Constant;
-use crate::plan::{
+use crate::run::Unwatched;
+use crate::tests::testing::{elastic_plan, impact, struck_frame};
+use psd_plan::formula::Formula::Constant;
+use psd_plan::{
     Behaviour, Contact, Impact, Integrator, Link, Mode, Plan, ProcedureKind, Stepping, Until,
     VirtualLink,
 };
-use crate::rig::virtual_rig;
-use crate::run::Unwatched;
-use crate::tests::testing::{elastic_plan, impact, struck_frame};
+use psd_rig::virtual_rig;
 
 const CONTINUOUS: Mode = Mode::Continuous { time_scale: 50.0 };
 const NOISY: VirtualLink = VirtualLink {

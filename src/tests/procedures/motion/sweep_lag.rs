@@ -1,12 +1,12 @@
 //! Damping sweep on an actuator that lags: c and its U, for any K of the plan.
 
-use crate::plan::formula::Formula;
-use crate::plan::{
+use crate::tests::testing::{elastic_plan, number, ramp, result_of, run_unwatched};
+use psd_plan::formula::Formula;
+use psd_plan::record::Record;
+use psd_plan::uncertainty::{Source, measurement_uncertainty};
+use psd_plan::{
     Behaviour, Breaks, DampingSweep, Link, Move, Plan, ProcedureKind, Settle, VirtualLink,
 };
-use crate::record::Record;
-use crate::tests::testing::{elastic_plan, number, ramp, result_of, run_unwatched};
-use crate::uncertainty::{Source, measurement_uncertainty};
 
 const DAMPING: f64 = 300.0;
 const COULOMB: f64 = 10.0;

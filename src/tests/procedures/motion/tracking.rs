@@ -1,22 +1,22 @@
 //! Floors that follow sines on a virtual rig with known errors. Indicator, energy error, NRMS and peak of each axis are compared with
 //! closed forms, in both modes. Some runs are held because of these values.
 
-use crate::physics::integrator::state::FrameState;
-use crate::physics::structure::frame_properties::FrameProperties;
-use crate::physics::structure::{Damping, FrameEnergies};
-use crate::physics::tracking::monitor::Tracking;
-use crate::plan::{Integrator, Interval, Link, Mode, Plan, ProcedureKind, Stepping, VirtualLink};
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::setting::Start;
 use crate::procedures::stepping::setting::Steps;
 use crate::procedures::stepping::step_loop::{self, AxesState, Balance, Stepped};
 use crate::procedures::stepping::tracking::TrackingSummary;
-use crate::record::{NamedResult, Outcome};
-use crate::rig::{Reading, virtual_rig};
 use crate::run::Unwatched;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::tests::testing::struck_frame;
+use psd_physics::integrator::state::FrameState;
+use psd_physics::structure::frame_properties::FrameProperties;
+use psd_physics::structure::{Damping, FrameEnergies};
+use psd_physics::tracking::monitor::Tracking;
+use psd_plan::record::{NamedResult, Outcome};
+use psd_plan::{Integrator, Interval, Link, Mode, Plan, ProcedureKind, Stepping, VirtualLink};
+use psd_rig::{Reading, virtual_rig};
 
 /// Largest command of each floor, m: within the elastic range of `struck_frame`.
 const AMPLITUDES: [f64; 2] = [0.010, 0.018];
@@ -217,7 +217,7 @@ fn list(results: &[NamedResult], name: &str) -> Vec<f64> {
         .find(|result| result.name == name)
         .map(|result| &result.value)
     {
-        Some(crate::plan::formula::ResultValue::List(values)) => values.clone(),
+        Some(psd_plan::formula::ResultValue::List(values)) => values.clone(),
         other => panic!("{name}: {other:?}"),
     }
 }
@@ -275,7 +275,7 @@ fn a_missed_fraction_of_each_increment_shows_as_in_the_closed_form() {
         }
         let [energy, indicator, ..] = followed.of_all();
         let of = |value: &NamedResult| match value.value {
-            crate::plan::formula::ResultValue::Number {
+            psd_plan::formula::ResultValue::Number {
                 value: Some(value), ..
             } => value,
             _ => panic!("{value:?}"),

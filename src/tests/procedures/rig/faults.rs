@@ -1,10 +1,10 @@
 //! Runs on a rig that fails during the run: no invalid number passes, and the record before the fault is kept.
 
-use crate::plan::{Plan, ProcedureKind};
-use crate::record::{EventKind, History, Outcome, Record};
-use crate::rig::{EncodedMove, Reading, Rig, RigFault, VirtualRig};
 use crate::run::{Unwatched, run};
 use crate::tests::testing::{elastic_plan, number, ramp};
+use psd_plan::record::{EventKind, History, Outcome, Record};
+use psd_plan::{Plan, ProcedureKind};
+use psd_rig::{EncodedMove, Reading, Rig, RigFault, VirtualRig};
 use psd_testing::forwarded;
 
 /// The reading that follows some valid readings.

@@ -7,11 +7,11 @@ pub(crate) mod settled_hold;
 pub(crate) mod slow_line;
 
 use crate::check::{Options, check, no_files};
-use crate::emulator::Log;
-use crate::plan::formula::ResultValue;
-use crate::record::{ProcedureRecord, Record};
 use crate::run::{Unwatched, run};
 use crate::tests::fault_table::stage;
+use psd_plan::formula::ResultValue;
+use psd_plan::record::{ProcedureRecord, Record};
+use psd_rig::emulator::Log;
 
 /// The plan, run on the emulator of its rig `bench` over lines of `baud`.
 fn over_a_line(text: &str, baud: f64, seed: u64) -> Record {

@@ -2,7 +2,7 @@
 //! second in its band after every move; the positions polled during the move show when it moved.
 
 use super::{over_a_line, uncertain};
-use crate::record::{History, Outcome};
+use psd_plan::record::{History, Outcome};
 
 const PLAN: &str = r#"
 specimen joint {

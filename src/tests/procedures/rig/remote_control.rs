@@ -3,24 +3,24 @@
 
 use std::cell::Cell;
 
-use crate::plan::{DriftCheck, Plan, VirtualLink, ZeroAfter};
-use crate::record::remote::DrivenStep;
-use crate::record::{Outcome, Record};
-use crate::rig::journal::{Durability, Journal};
-use crate::rig::{RigFault, virtual_rig};
 use crate::run::client_run::{Driver, Requests};
 use crate::run::remote_control::Specimen;
 use crate::run::replay;
 use crate::run::replay::{Header, LoggedRun};
 use crate::run::{Disconnect, Inspection, Observer};
 use crate::tests::testing::elastic_plan;
+use psd_plan::record::remote::DrivenStep;
+use psd_plan::record::{Outcome, Record};
+use psd_plan::{DriftCheck, Plan, VirtualLink, ZeroAfter};
+use psd_rig::journal::{Durability, Journal};
+use psd_rig::{RigFault, virtual_rig};
 use psd_testing::journal::PowerLoss;
 use psd_testing::journal::recover;
 
 /// 0.1 N/s on a cell that may drift by this amount \[N\].
 fn plan(force: f64, after: ZeroAfter) -> Plan {
     let mut plan = elastic_plan(1e5, Vec::new());
-    plan.rig.link = crate::plan::Link::Virtual(VirtualLink {
+    plan.rig.link = psd_plan::Link::Virtual(VirtualLink {
         drift: 0.1,
         ..VirtualLink::default()
     });

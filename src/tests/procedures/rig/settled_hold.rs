@@ -1,15 +1,15 @@
 //! Dwells of a rig that waits until it has settled: the settling is time at rest, and the fit includes the relaxation during it.
 
-use crate::physics::relaxation::law::RelaxationLaw;
-use crate::physics::relaxation::time_constant::RelaxationModel;
-use crate::plan::formula::Formula;
-use crate::plan::{
+use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
+use psd_physics::relaxation::law::RelaxationLaw;
+use psd_physics::relaxation::time_constant::RelaxationModel;
+use psd_plan::formula::Formula;
+use psd_plan::record::{History, Record};
+use psd_plan::uncertainty::measurement_uncertainty;
+use psd_plan::{
     Behaviour, Link, Plan, ProcedureKind, Settle, StiffnessRamp, VirtualLink, WatchedHold,
     WatchedModel,
 };
-use crate::record::{History, Record};
-use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
-use crate::uncertainty::measurement_uncertainty;
 
 const BRANCH: f64 = 1.2e5;
 const SHARE: f64 = 0.015;

@@ -2,7 +2,7 @@
 //! within its uncertainty although far fewer readings arrive than requested.
 
 use super::{over_a_line, uncertain};
-use crate::record::{EventKind, History, Outcome, Record};
+use psd_plan::record::{EventKind, History, Outcome, Record};
 
 /// c and the Coulomb force of the simulated rig \[N·s/m\] and \[N\].
 const DAMPING: f64 = 600.0;

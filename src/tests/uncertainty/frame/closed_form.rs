@@ -1,13 +1,13 @@
 //! One storey compared with one degree of freedom, two elastic storeys with their modes.
 
 use super::{base_excited_plan, constant, entry, from, rebuilt, storey, storeys};
-use crate::plan::procedures::impact::block::RESULTS;
-use crate::plan::{
+use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched, struck_frame};
+use psd_plan::procedures::impact::block::RESULTS;
+use psd_plan::uncertainty::{Contribution, Source, combined};
+use psd_plan::{
     Calibration, Contact, Impact, Link, Plan, ProcedureKind, ShakeDamping, Storey, Until,
     VirtualLink,
 };
-use crate::tests::testing::{elastic_plan, every, impact, number, run_unwatched, struck_frame};
-use crate::uncertainty::{Contribution, Source, combined};
 use psd_testing::plans::ChangeTarget as _;
 
 /// A plastic impact on a frame of one storey equals the impact on one degree of freedom, including its uncertainty. The contributions of

@@ -3,13 +3,13 @@
 mod closed_form;
 mod repeated_runs;
 
-use crate::plan::formula::{Formula, ResultValue};
-use crate::plan::{
+use crate::tests::testing::{elastic_plan, every};
+use psd_plan::formula::{Formula, ResultValue};
+use psd_plan::record::Record;
+use psd_plan::uncertainty::{Contribution, Source};
+use psd_plan::{
     Behaviour, Frame, Ground, Plan, ProcedureKind, Shake, ShakeDamping, Stepping, Storey,
 };
-use crate::record::Record;
-use crate::tests::testing::{elastic_plan, every};
-use crate::uncertainty::{Contribution, Source};
 
 pub(crate) fn constant(value: f64) -> Formula {
     Formula::Constant(value)

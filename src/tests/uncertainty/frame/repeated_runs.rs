@@ -1,11 +1,11 @@
 //! Uncertainty of frames, compared with the scatter of many virtual runs.
 
 use super::{base_excited_plan, constant, entry, rebuilt, shake, storey, storeys};
-use crate::plan::{
+use crate::tests::testing::{Uniform, every, run_unwatched, scatter, struck_frame};
+use psd_plan::uncertainty::{Source, combined};
+use psd_plan::{
     Behaviour, Contact, Link, Plan, ProcedureKind, ShakeDamping, Stepping, Storey, VirtualLink,
 };
-use crate::tests::testing::{Uniform, every, run_unwatched, scatter, struck_frame};
-use crate::uncertainty::{Source, combined};
 
 const RUNS: u32 = 150;
 

@@ -1,10 +1,10 @@
 //! Contributions to the results of an impact, compared with its closed form.
 
 use super::{MASS, STIFFNESS, STRIKER, all_uncertain, contributions, from, plan, sticking};
-use crate::plan::formula::ProcedureId;
-use crate::plan::{Impact, Link, ProcedureKind, VirtualLink};
 use crate::tests::testing::{elastic_plan, impact, number, ramp, result_of, run_unwatched};
-use crate::uncertainty::{Contribution, Source, StepInterval, combined};
+use psd_plan::formula::ProcedureId;
+use psd_plan::uncertainty::{Contribution, Source, StepInterval, combined};
+use psd_plan::{Impact, Link, ProcedureKind, VirtualLink};
 use psd_testing::plans::ChangeTarget as _;
 
 /// X = `Ms·V0/√(K(M + Ms))`, t = π/2·√((M + Ms)/K), ½KX². K is proportional to the factor of the force over that of the displacement. A
@@ -148,7 +148,7 @@ fn an_exact_impact_has_the_effect_of_its_time_step() {
 #[test]
 fn a_run_may_ask_for_no_uncertainty() {
     let plan = all_uncertain(plan(sticking(1e-3)));
-    let mut rig = crate::rig::virtual_rig(&plan);
+    let mut rig = psd_rig::virtual_rig(&plan);
     let settings = crate::run::Settings { uncertainty: false };
     let without = crate::run::run_with(&plan, &mut *rig, &mut crate::run::Unwatched, settings);
     let with = run_unwatched(&plan);

@@ -4,15 +4,15 @@ use super::{
     MASS, STIFFNESS, STRIKER, all_uncertain, constant, contributions, plan, sticking,
     without_the_time_step,
 };
-use crate::physics::impact::summary::ImpactSummary;
-use crate::plan::{
+use crate::tests::testing::{elastic_plan, every, impact, number, result_of, run_unwatched};
+use crate::verdict::{Verdict, assess};
+use psd_physics::impact::summary::ImpactSummary;
+use psd_plan::uncertainty::combined;
+use psd_plan::{
     Calibration, Comparison, Condition, Contact, Impact, Integrator, Link, ProcedureKind,
     Requirement, Stepping, Test, Until, VirtualLink,
 };
-use crate::tests::testing::{elastic_plan, every, impact, number, result_of, run_unwatched};
-use crate::uncertainty::combined;
-use crate::units::Dimension;
-use crate::verdict::{Verdict, assess};
+use psd_text::units::Dimension;
 
 /// A contact that yields at 60 N is hit a step earlier or later as the velocity increases: the indentation jumps.
 #[test]
@@ -46,13 +46,13 @@ fn a_discontinuous_result_is_not_treated_as_smooth() {
 /// A re-run that does not reproduce its record reports no uncertainty, and states the reason.
 #[test]
 fn a_record_that_does_not_reproduce_its_results_reports_no_uncertainty() {
-    use crate::plan::formula::ProcedureId;
     use crate::procedures::common::perturbed_inputs::UncertainRun;
     use crate::procedures::impact::setting::Setting;
     use crate::procedures::impact::uncertainty::ImpactUncertainty;
-    use crate::record::History;
-    use crate::rig::DeclaredNoise;
     use crate::run::inputs::Inputs;
+    use psd_plan::formula::ProcedureId;
+    use psd_plan::record::History;
+    use psd_rig::DeclaredNoise;
     let plan = all_uncertain(plan(sticking(1e-3)));
     let record = run_unwatched(&plan);
     let ProcedureKind::Impact(impact) = &plan.procedures[0].kind else {
@@ -99,7 +99,7 @@ fn a_record_that_does_not_reproduce_its_results_reports_no_uncertainty() {
         &mut results,
         &mut |_, _| Ok(()),
     );
-    let Err(crate::uncertainty::engine::Unknown::Reason(reason)) = found else {
+    let Err(psd_plan::uncertainty::engine::Unknown::Reason(reason)) = found else {
         panic!("an uncertainty is reported")
     };
     assert_eq!(
@@ -113,7 +113,7 @@ fn a_record_that_does_not_reproduce_its_results_reports_no_uncertainty() {
 /// exceeded by 3 % fails.
 #[test]
 fn a_guard_band_decides_nothing_where_the_impact_is_uncertain() {
-    use crate::plan::DecisionRule;
+    use psd_plan::DecisionRule;
     let largest = STRIKER / (STIFFNESS * (MASS + STRIKER)).sqrt();
     let verdict = |limit: f64, uncertainty: f64, rule| {
         let mut plan = plan(sticking(1e-3));
@@ -159,16 +159,16 @@ fn a_guard_band_decides_nothing_where_the_impact_is_uncertain() {
 /// Two impacts of one striker and one cell share velocity and calibration, but not the errors of their readings.
 #[test]
 fn impacts_of_one_striker_share_its_uncertainty() {
-    use crate::plan::{Between, Escalate};
+    use psd_plan::{Between, Escalate};
     let rising = Escalate {
         impact: Impact {
-            until: crate::plan::Until::StrikerStop,
+            until: psd_plan::Until::StrikerStop,
             ..sticking(1e-3)
         },
         velocities: vec![constant(0.5), constant(1.0)],
         energies: None,
         condition: Vec::new(),
-        own: crate::plan::formula::ProcedureId(0),
+        own: psd_plan::formula::ProcedureId(0),
         between: Between::Home,
         inspect_between: false,
     };
@@ -181,7 +181,7 @@ fn impacts_of_one_striker_share_its_uncertainty() {
             ..VirtualLink::default()
         });
         let record = run_unwatched(&plan);
-        let crate::record::History::Escalate(history) = &record.procedures[0].history else {
+        let psd_plan::record::History::Escalate(history) = &record.procedures[0].history else {
             panic!()
         };
         let of_impacts = history

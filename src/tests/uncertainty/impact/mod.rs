@@ -4,11 +4,11 @@ mod closed_form;
 mod limits;
 mod repeated_runs;
 
-use crate::plan::formula::Formula;
-use crate::plan::{Calibration, Contact, Impact, Plan, ProcedureKind};
-use crate::record::Record;
 use crate::tests::testing::{elastic_plan, every, impact};
-use crate::uncertainty::{Contribution, Source};
+use psd_plan::formula::Formula;
+use psd_plan::record::Record;
+use psd_plan::uncertainty::{Contribution, Source};
+use psd_plan::{Calibration, Contact, Impact, Plan, ProcedureKind};
 use psd_testing::plans::ChangeTarget as _;
 
 pub(super) const STIFFNESS: f64 = 327.65;

@@ -1,12 +1,12 @@
 //! Uncertainty of an impact, compared with the scatter of many virtual runs.
 
 use super::{MASS, STIFFNESS, constant, contributions, plan, sticking, without_the_time_step};
-use crate::plan::formula::Formula;
-use crate::plan::{Behaviour, Impact, Link, ProcedureKind, VirtualLink};
 use crate::tests::testing::{
     Uniform, elastic_plan, number, ramp, result_of, run_unwatched, scatter,
 };
-use crate::uncertainty::Source;
+use psd_plan::formula::Formula;
+use psd_plan::uncertainty::Source;
+use psd_plan::{Behaviour, Impact, Link, ProcedureKind, VirtualLink};
 use psd_testing::plans::ChangeTarget as _;
 
 /// The rig runs again with random inputs; the scatter is compared with the prediction of one recorded run. The specimen yields and
@@ -15,7 +15,7 @@ use psd_testing::plans::ChangeTarget as _;
 fn repeated_runs_scatter_as_predicted() {
     const RUNS: u32 = 200;
     let given_impact = || Impact {
-        until: crate::plan::Until::Rebound,
+        until: psd_plan::Until::Rebound,
         ..sticking(2e-3)
     };
     let with = |velocity: f64, mass: f64, force: f64| {
@@ -119,7 +119,7 @@ fn readings_of_one_rig_share_its_calibration() {
     let (stiffness, u) = number(&record, 0, "stiffness");
     assert!((u.unwrap() / stiffness.unwrap() - 0.01).abs() < 1e-9);
     let product = Formula::Binary(
-        crate::plan::formula::Operator::Multiply,
+        psd_plan::formula::Operator::Multiply,
         Box::new(result_of(0, "stiffness")),
         Box::new(result_of(1, "max_displacement")),
     );

@@ -1,10 +1,10 @@
 //! Published results on these integrators: HHT-α, and the effect of an actuator that misses its target.
 
-use psd::physics::integrator::input::FrameInput;
-use psd::physics::integrator::solver::FrameSolver;
-use psd::physics::integrator::state::FrameState;
-use psd::physics::structure::{Damping, FrameMatrices, SymmetricBand, damping_matrix, modes};
-use psd::plan::Integrator;
+use psd_physics::integrator::input::FrameInput;
+use psd_physics::integrator::solver::FrameSolver;
+use psd_physics::integrator::state::FrameState;
+use psd_physics::structure::{Damping, FrameMatrices, SymmetricBand, damping_matrix, modes};
+use psd_plan::Integrator;
 
 use super::support::{at, run_linear, uniform};
 
@@ -42,7 +42,7 @@ fn splitting_is_hht_alpha_to_rounding_on_a_linear_frame() {
         &found,
     )
     .expect("ratios");
-    let dense = |band: &psd::physics::structure::SymmetricBand| {
+    let dense = |band: &psd_physics::structure::SymmetricBand| {
         std::array::from_fn::<[f64; 3], 3, _>(|i| std::array::from_fn(|j| band.entry(i, j)))
     };
     let (m, c, k) = (

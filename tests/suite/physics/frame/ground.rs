@@ -1,15 +1,15 @@
 //! Frames on ground that moves. A harmonic motion is compared with its exact solution. An elastic–plastic building under a record is
 //! compared with exact arcs between yielding and unloading.
 
-use psd::physics::integrator::input::FrameInput;
-use psd::physics::integrator::solver::FrameSolver;
-use psd::physics::integrator::tangents::Tangents;
-use psd::physics::specimen::{Bilinear, BilinearCurve, RestoringForce};
-use psd::physics::structure::{
+use psd_physics::integrator::input::FrameInput;
+use psd_physics::integrator::solver::FrameSolver;
+use psd_physics::integrator::tangents::Tangents;
+use psd_physics::specimen::{Bilinear, BilinearCurve, RestoringForce};
+use psd_physics::structure::{
     Damping, FrameMatrices, SymmetricBand, damping_matrix, drifts, floor_forces, modes,
     storey_stiffness,
 };
-use psd::plan::Integrator;
+use psd_plan::Integrator;
 
 use super::support::{at, run_linear, uniform, uniform_frequency, uniform_shape};
 

@@ -1,12 +1,12 @@
 //! An impact on one floor: one storey equals one degree of freedom; many close their energy balance and converge to closed forms.
 
-use psd::physics::contact::ContactLaw;
-use psd::physics::contact::NeedsTangent;
-use psd::physics::impact::{FrameImpactSolver, ImpactError, ImpactInput, ImpactSetup, ImpactState};
-use psd::physics::integrator::input::FrameInput;
-use psd::physics::integrator::tangents::Tangents;
-use psd::physics::structure::{FrameMatrices, SymmetricBand, storey_stiffness};
-use psd::plan::Integrator;
+use psd_physics::contact::ContactLaw;
+use psd_physics::contact::NeedsTangent;
+use psd_physics::impact::{FrameImpactSolver, ImpactError, ImpactInput, ImpactSetup, ImpactState};
+use psd_physics::integrator::input::FrameInput;
+use psd_physics::integrator::tangents::Tangents;
+use psd_physics::structure::{FrameMatrices, SymmetricBand, storey_stiffness};
+use psd_plan::Integrator;
 
 use super::super::support::{impact, run};
 use super::support::{at, uniform};

@@ -1,6 +1,6 @@
 //! Modes of uniform shear buildings, compared with their closed form (a chain of equal masses, fixed below and free above).
 
-use psd::physics::structure::modes;
+use psd_physics::structure::modes;
 
 use super::support::{uniform, uniform_frequency, uniform_shape};
 

@@ -1,12 +1,12 @@
 //! The integrators on linear frames: order of convergence, the stability limit, the energy balance, and the effect of a storey's own
 //! tangent changes (nothing).
 
-use psd::physics::integrator::input::FrameInput;
-use psd::physics::integrator::solver::FrameSolver;
-use psd::physics::integrator::state::FrameState;
-use psd::physics::integrator::tangents::Tangents;
-use psd::physics::structure::{Damping, FrameMatrices, damping_matrix, modes};
-use psd::plan::Integrator;
+use psd_physics::integrator::input::FrameInput;
+use psd_physics::integrator::solver::FrameSolver;
+use psd_physics::integrator::state::FrameState;
+use psd_physics::integrator::tangents::Tangents;
+use psd_physics::structure::{Damping, FrameMatrices, damping_matrix, modes};
+use psd_plan::Integrator;
 
 use super::support::{at, run_linear, uniform, uniform_frequency, uniform_shape};
 

@@ -1,10 +1,10 @@
 //! An impact on one of two floors compared with closed forms: the joined chain of a plastic impact, free masses under Hertz's contact,
 //! momentum and energy.
 
-use psd::physics::contact::ContactLaw;
-use psd::physics::impact::{FrameImpactSolver, ImpactSetup};
-use psd::physics::structure::{FrameMatrices, SymmetricBand, storey_stiffness};
-use psd::plan::Integrator;
+use psd_physics::contact::ContactLaw;
+use psd_physics::impact::{FrameImpactSolver, ImpactSetup};
+use psd_physics::structure::{FrameMatrices, SymmetricBand, storey_stiffness};
+use psd_plan::Integrator;
 
 use super::support::{at, number};
 

@@ -1,12 +1,12 @@
 //! Frames to test on, and runs of them on ideal specimens.
 
-use psd::physics::integrator::input::FrameInput;
-use psd::physics::integrator::solver::FrameSolver;
-use psd::physics::integrator::state::FrameState;
-use psd::physics::integrator::tangents::Tangents;
-use psd::physics::statistics::DeclaredNoise;
-use psd::physics::structure::{FrameMatrices, SymmetricBand, storey_stiffness};
-use psd::plan::Integrator;
+use psd_physics::integrator::input::FrameInput;
+use psd_physics::integrator::solver::FrameSolver;
+use psd_physics::integrator::state::FrameState;
+use psd_physics::integrator::tangents::Tangents;
+use psd_physics::statistics::DeclaredNoise;
+use psd_physics::structure::{FrameMatrices, SymmetricBand, storey_stiffness};
+use psd_plan::Integrator;
 
 /// Storeys of one mass \[kg\] and one stiffness \[N/m\], undamped.
 pub fn uniform(storeys: usize, mass: f64, stiffness: f64) -> FrameMatrices {

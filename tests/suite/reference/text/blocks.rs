@@ -6,9 +6,9 @@ use std::fmt::Write as _;
 use super::options;
 use super::pages::Page;
 use super::values::{default, is_truth, row, value};
-use psd::schema::{BlockKind, Field, FieldType, Naming, ResultKind};
-use psd::units::Dimension;
-use psd::units::display::si_unit;
+use psd_plan::schema::{BlockKind, Field, FieldType, Naming, ResultKind};
+use psd_text::units::Dimension;
+use psd_text::units::display::si_unit;
 
 /// Writes the section of a block; `earlier`: the blocks before it; `options`: those that are written already.
 pub(super) fn write(

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::values::{default, is_truth, value};
-use psd::schema::{BlockKind, Field, FieldType, Presence, Variant};
+use psd_plan::schema::{BlockKind, Field, FieldType, Presence, Variant};
 
 /// The default of an argument that is a field of its block as well.
 const OF_THE_RIG: &str = "the rig's";

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use super::options::Written;
 use super::values::{default, is_truth, row, value};
-use psd::schema::{BLOCKS, block};
-use psd::schema::{FieldType, Kind, Variant};
+use psd_plan::schema::{BLOCKS, block};
+use psd_plan::schema::{FieldType, Kind, Variant};
 
 /// The options of a field that another page describes.
 pub struct Page {

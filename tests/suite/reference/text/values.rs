@@ -1,8 +1,8 @@
 //! Values of fields in words: the type with its limits, and the default.
 
-use psd::schema::{BlockKind, Field, FieldType, Presence, Range};
-use psd::units::Dimension;
-use psd::units::display::{si_unit, significant};
+use psd_plan::schema::{BlockKind, Field, FieldType, Presence, Range};
+use psd_text::units::Dimension;
+use psd_text::units::display::{si_unit, significant};
 
 /// The value of a field: `` `kg` > 0 ``, `string`, `option`; `blocks`: those that it may name.
 pub(super) fn value(field: &Field, blocks: &[&BlockKind]) -> String {

@@ -21,19 +21,19 @@ use crate::cli::operator::watch::{Attendance, Signals};
 use crate::cli::output::print_message;
 use crate::cli::settings::Settings;
 use crate::evidence::Folder;
-use crate::plan::{Datum, Link, Plan};
-use crate::record::remote::DrivenStep;
 use crate::report;
 use crate::report::Provenance;
-use crate::rig::transport::{Clock as _, MonotonicClock};
-use crate::rig::{Connected, Rig, StopRequest, connect, virtual_rig};
 use crate::run::Unwatched;
 use crate::run::client_run::{Driver, Requests};
 use crate::run::remote_control::Specimen;
 use crate::run::replay;
 use crate::run::replay::{BY_HAND, Header, OpenLog, Recorded};
-use crate::units::Dimension;
-use crate::units::display::readable;
+use psd_plan::record::remote::DrivenStep;
+use psd_plan::{Datum, Link, Plan};
+use psd_rig::transport::{Clock as _, MonotonicClock};
+use psd_rig::{Connected, Rig, StopRequest, connect, virtual_rig};
+use psd_text::units::Dimension;
+use psd_text::units::display::readable;
 use session::{JogSession, Person};
 
 #[derive(Debug, Args)]

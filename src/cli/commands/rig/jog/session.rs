@@ -8,13 +8,13 @@ use crate::cli::operator::dialogue::by_lines::{self, next_line};
 use crate::cli::operator::question::{Kind, Question};
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
-use crate::plan::{Interval, Plan};
-use crate::record::Outcome;
-use crate::rig::{Identity, LimitedQuantity, OWN_SPEED, RigFault, StopRequest};
 use crate::run::remote_control::Specimen;
 use crate::run::{Disconnect, Extent, Motion};
-use crate::units::Dimension;
-use crate::units::display::{plain, readable};
+use psd_plan::record::Outcome;
+use psd_plan::{Interval, Plan};
+use psd_rig::{Identity, LimitedQuantity, OWN_SPEED, RigFault, StopRequest};
+use psd_text::units::Dimension;
+use psd_text::units::display::{plain, readable};
 
 /// One session of manual moves.
 pub(super) struct JogSession<'a> {

@@ -8,7 +8,7 @@ use ratatui::widgets::{Clear, Paragraph, Wrap};
 
 use super::{View, shown};
 use crate::cli::operator::question::After;
-use crate::record::EventKind;
+use psd_plan::record::EventKind;
 
 pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
     let message = view

@@ -8,8 +8,8 @@ use ratatui::widgets::{Axis, Block, BorderType, Chart, Dataset, GraphType};
 
 use super::View;
 use crate::cli::operator::screen::curve::Curve;
-use crate::units::Dimension;
-use crate::units::display::{readable_unit, significant};
+use psd_text::units::Dimension;
+use psd_text::units::display::{readable_unit, significant};
 
 pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
     let [left, right] = Layout::horizontal([Constraint::Fill(1), Constraint::Fill(1)]).areas(area);

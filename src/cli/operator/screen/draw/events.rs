@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use super::{View, fitted, shown};
-use crate::record::{Event, EventKind};
+use psd_plan::record::{Event, EventKind};
 
 /// Column of the second line of the newest event.
 const INDENT: usize = 14;

@@ -9,8 +9,8 @@ use super::{View, fitted, shown};
 use crate::cli::operator::dialogue::{Typing, What};
 use crate::cli::operator::question::{After, Kind};
 use crate::cli::operator::screen::model::{Ended, INSPECT};
-use crate::units::Dimension;
-use crate::units::display::{readable, significant};
+use psd_text::units::Dimension;
+use psd_text::units::display::{readable, significant};
 
 /// Title and rig; state, procedure, step and time; the last numbers.
 pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {

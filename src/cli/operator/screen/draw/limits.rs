@@ -7,8 +7,8 @@ use ratatui::text::{Line, Span};
 
 use super::{View, head};
 use crate::cli::operator::screen::model::LimitRow;
-use crate::units::Dimension;
-use crate::units::display::{plain, readable, stated};
+use psd_text::units::Dimension;
+use psd_text::units::display::{plain, readable, stated};
 
 /// Widths of the name, of each end, and of the margin.
 const NAME: usize = 15;

@@ -20,8 +20,8 @@ use ratatui::widgets::{Block, Borders};
 
 use super::model::{Ended, Model};
 use crate::cli::operator::dialogue::Dialogue;
-use crate::rig::StopRequest;
-use crate::text::diagnostic::excerpt::escape;
+use psd_rig::StopRequest;
+use psd_text::diagnostic::excerpt::escape;
 
 /// The smallest terminal on which the screen is drawn: columns and rows.
 pub const SMALLEST: (u16, u16) = (60, 16);

@@ -9,7 +9,7 @@ use ratatui::widgets::{Block, BorderType, Clear, Padding, Paragraph};
 use super::{View, shown};
 use crate::cli::operator::dialogue::{Typing, What};
 use crate::cli::operator::question::{After, Kind, WHY_RESUME, position_and_force};
-use crate::record::EventKind;
+use psd_plan::record::EventKind;
 
 const WIDEST: u16 = 72;
 

@@ -11,11 +11,11 @@ use crate::cli::operator::dialogue::keys::Key;
 use crate::cli::operator::question::{After, Kind, Question, Stay};
 use crate::cli::operator::screen::model::Model;
 
-use crate::plan::Interval;
-use crate::record::{Event, EventKind};
-use crate::rig::{Feedback, Identity, StopRequest};
 use crate::run::{Extent, Motion, StepReport};
 use crate::tests::testing::empty_plan;
+use psd_plan::Interval;
+use psd_plan::record::{Event, EventKind};
+use psd_rig::{Feedback, Identity, StopRequest};
 
 /// An impact in progress: a decaying sine.
 fn model() -> Model {
@@ -321,7 +321,7 @@ fn hostile_labels_are_text_where_they_are_shown() {
         assert!(
             !picture
                 .chars()
-                .any(|c| crate::text::sanitize::is_control_like(c) && c != '\n'),
+                .any(|c| psd_text::sanitize::is_control_like(c) && c != '\n'),
             "{label:?}:\n{picture}"
         );
     }
