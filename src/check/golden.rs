@@ -11,7 +11,7 @@ use psd_language::check::violations::UnknownProcedure;
 use psd_language::check::wording::{shown, suggestion};
 use psd_language::codes::E304;
 use psd_language::syntax::ast::{Expr, ExprKind};
-use psd_plan::formula::{Part, ProcedureId};
+use psd_plan::formula::{ProcedureId, ResultPart};
 use psd_plan::schema::{BlockKind, Column, Kind, golden as schema};
 use psd_plan::{ColumnTolerance, Golden, ResultTolerance, Tolerance};
 use psd_text::diagnostic::Violation;
@@ -115,7 +115,7 @@ fn result_tolerance<'a>(
     let Some(reference) = typed
         .formula
         .as_result()
-        .filter(|reference| reference.part == Part::Value)
+        .filter(|reference| reference.part == ResultPart::Value)
     else {
         return checker.fail(AcceptedResultWanted {
             span: of.span,

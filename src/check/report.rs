@@ -9,7 +9,7 @@ use psd_language::check::violations::UnknownProcedure;
 use psd_language::check::wording::{one_of, suggestion};
 use psd_language::codes::{E205, E304, E501, E502, E504};
 use psd_language::syntax::ast::{Argument, Expr, ExprKind};
-use psd_plan::formula::{Part, ProcedureId, ResultReference};
+use psd_plan::formula::{ProcedureId, ResultPart, ResultReference};
 use psd_plan::schema::{BlockKind, Kind, report as schema};
 use psd_plan::{
     Annex, Figure, FigureKind, Format, MOST_PHOTOS, MOST_TOGETHER, Picture, PictureKind, Procedure,
@@ -210,7 +210,7 @@ fn result<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option<ResultRefe
     let reference = typed
         .formula
         .as_result()
-        .filter(|reference| reference.part == Part::Value);
+        .filter(|reference| reference.part == ResultPart::Value);
     match reference {
         Some(reference) => Some(reference),
         None => checker.fail(ResultWanted {
@@ -425,7 +425,7 @@ fn drawn_of(
     Some(procedure)
 }
 
-/// E651 from here on: procedures that cannot share a chart.
+/// A figure that procedures cannot share.
 struct FigureOfOne<'a, I: Iterator<Item = &'a str>> {
     figure: &'a str,
     procedure: &'a str,

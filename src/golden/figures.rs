@@ -1,7 +1,7 @@
 //! Figures by their content: the curves, the text of the legend, the limits, the shaded times. Numbers in the text of a legend are
 //! results, and are compared there.
 
-use super::finding::{Change, Finding, Part, RowRef};
+use super::finding::{Change, Finding, FindingPart, RowRef};
 use super::tolerance::{Rule, Tolerances};
 use super::{Truth, number};
 use crate::report::{FigureCurve, FigureData};
@@ -17,17 +17,25 @@ pub(super) fn compare(
         (Some(was), Some(is)) => (was.figures, is.figures),
         (None, None) => return,
         (None, Some(_)) => {
-            return found.push(Finding::new(Part::Figure, super::FIGURES, Change::New));
+            return found.push(Finding::new(
+                FindingPart::Figure,
+                super::FIGURES,
+                Change::New,
+            ));
         }
         (Some(_), None) => {
-            return found.push(Finding::new(Part::Figure, super::FIGURES, Change::Missing));
+            return found.push(Finding::new(
+                FindingPart::Figure,
+                super::FIGURES,
+                Change::Missing,
+            ));
         }
     };
     for old in &was {
         match is.iter().find(|new| new.figure == old.figure) {
             Some(new) => figure(old, new, tolerances, found),
             None => found.push(Finding::new(
-                Part::Figure,
+                FindingPart::Figure,
                 format!("figure {}", old.figure),
                 Change::Missing,
             )),
@@ -38,7 +46,7 @@ pub(super) fn compare(
         .filter(|new| !was.iter().any(|old| old.figure == new.figure))
     {
         found.push(Finding::new(
-            Part::Figure,
+            FindingPart::Figure,
             format!("figure {}", new.figure),
             Change::New,
         ));
@@ -56,7 +64,11 @@ struct Axis {
 fn figure(was: &FigureData, is: &FigureData, tolerances: &Tolerances, found: &mut Vec<Finding>) {
     let mut note = |what: &str, change: Option<Change>| {
         found.extend(change.map(|change| {
-            Finding::new(Part::Figure, format!("figure {}{what}", was.figure), change)
+            Finding::new(
+                FindingPart::Figure,
+                format!("figure {}{what}", was.figure),
+                change,
+            )
         }));
     };
     for (axis, old, new) in [("x", &was.x, &is.x), ("y", &was.y, &is.y)] {

@@ -5,7 +5,7 @@ use psd_text::units::Dimension;
 
 /// The part of the results that a finding is about, the most important first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Part {
+pub enum FindingPart {
     /// The plan's text, a parameter, an input that follows from no changed result, or the rig.
     Cause,
     Diagnostics,
@@ -18,7 +18,7 @@ pub enum Part {
     Figure,
 }
 
-impl Part {
+impl FindingPart {
     /// The name in the JSON report.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -38,7 +38,7 @@ impl Part {
 /// One difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    pub part: Part,
+    pub part: FindingPart,
     /// For example `hit.max_displacement`.
     pub name: String,
     pub change: Change,
@@ -124,7 +124,7 @@ impl Moved {
 impl Finding {
     /// A difference in a part.
     #[must_use]
-    pub fn new(part: Part, name: impl Into<String>, change: Change) -> Self {
+    pub fn new(part: FindingPart, name: impl Into<String>, change: Change) -> Self {
         Self {
             part,
             name: name.into(),
@@ -134,7 +134,7 @@ impl Finding {
 
     /// A text that is different.
     #[must_use]
-    pub fn text(part: Part, name: impl Into<String>, was: &str, is: &str) -> Self {
+    pub fn text(part: FindingPart, name: impl Into<String>, was: &str, is: &str) -> Self {
         Self::new(
             part,
             name,

@@ -14,7 +14,7 @@ mod tolerance;
 
 use std::collections::BTreeMap;
 
-pub use finding::{Change, Count, Finding, Moved, Part, RowRef};
+pub use finding::{Change, Count, Finding, FindingPart, Moved, RowRef};
 pub use print::junit::junit;
 pub use print::tap::tap;
 pub use print::words::Words;
@@ -105,17 +105,22 @@ pub fn compare(accepted: &Truth, now: &Truth, tolerances: &Tolerances) -> Vec<Fi
     let mut found = Vec::new();
     match (accepted.text(DIAGNOSTICS), now.text(DIAGNOSTICS)) {
         (Some(was), Some(is)) if was != is => {
-            found.push(Finding::text(Part::Diagnostics, DIAGNOSTICS, was, is));
+            found.push(Finding::text(
+                FindingPart::Diagnostics,
+                DIAGNOSTICS,
+                was,
+                is,
+            ));
         }
         (Some(_), None) => {
             found.push(Finding::new(
-                Part::Diagnostics,
+                FindingPart::Diagnostics,
                 "the plan checks, but is accepted as a plan that does not",
                 Change::Missing,
             ));
         }
         (None, Some(_)) => found.push(Finding::new(
-            Part::Diagnostics,
+            FindingPart::Diagnostics,
             "the plan fails to check",
             Change::New,
         )),

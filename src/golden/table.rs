@@ -1,6 +1,6 @@
 //! Tables: reading of CSV, and comparison of columns. Rows are compared by their index.
 
-use super::finding::{Change, Count, Finding, Part, RowRef};
+use super::finding::{Change, Count, Finding, FindingPart, RowRef};
 use super::tolerance::Tolerances;
 use super::{Truth, number};
 use crate::procedures;
@@ -128,7 +128,7 @@ pub(super) fn compare_all(
         match is.iter().find(|(other, _)| other == name) {
             Some((_, new)) => compare(name, table, new, tolerances, found),
             None => found.push(Finding::new(
-                Part::Table,
+                FindingPart::Table,
                 format!("table of {name}"),
                 Change::Missing,
             )),
@@ -139,7 +139,7 @@ pub(super) fn compare_all(
         .filter(|(name, _)| !was.iter().any(|(other, _)| other == name))
     {
         found.push(Finding::new(
-            Part::Table,
+            FindingPart::Table,
             format!("table of {name}"),
             Change::New,
         ));
@@ -156,7 +156,9 @@ fn compare(
     let named = |column: &str| format!("{procedure}.{column}");
     let rows = Change::length("rows", was.rows(), is.rows());
     found.extend(
-        rows.map(|change| Finding::new(Part::Table, format!("table of {procedure}"), change)),
+        rows.map(|change| {
+            Finding::new(FindingPart::Table, format!("table of {procedure}"), change)
+        }),
     );
     for (column, _) in &was.columns {
         let (Some(old), new) = (was.column(column), is.column(column)) else {
@@ -175,14 +177,14 @@ fn compare(
             }
             (_, Some(_)) => words(was, is, column),
         };
-        found.extend(change.map(|change| Finding::new(Part::Table, named(column), change)));
+        found.extend(change.map(|change| Finding::new(FindingPart::Table, named(column), change)));
     }
     for (column, _) in is
         .columns
         .iter()
         .filter(|(column, _)| was.column(column).is_none())
     {
-        found.push(Finding::new(Part::Table, named(column), Change::New));
+        found.push(Finding::new(FindingPart::Table, named(column), Change::New));
     }
 }
 

@@ -5,7 +5,7 @@
 use super::contribution::{Contribution, combined, combined_entries};
 use super::results::{Moved, sources_of};
 pub use super::results::{
-    NoResults, Part, ResultReference, ResultValue, Results, UncertaintyStatus,
+    NoResults, ResultPart, ResultReference, ResultValue, Results, UncertaintyStatus,
 };
 pub use super::source::ProcedureId;
 use super::source::Source;
@@ -300,19 +300,21 @@ impl Formula {
                         .ok_or(FormulaError::Missing(reference.name))?,
                     reference.part,
                 ) {
-                    (ResultValue::List(values), Part::Value) => Value::List(values),
-                    (ResultValue::List(values), Part::Uncertainty) => {
+                    (ResultValue::List(values), ResultPart::Value) => Value::List(values),
+                    (ResultValue::List(values), ResultPart::Uncertainty) => {
                         let entries =
                             combined_entries(&results.contributions(*reference), values.len());
                         let known: Option<Vec<f64>> = entries.into_iter().collect();
                         Value::List(known.ok_or(FormulaError::NoUncertainty(reference.name))?)
                     }
-                    (ResultValue::Number { value, .. }, Part::Value) => {
+                    (ResultValue::Number { value, .. }, ResultPart::Value) => {
                         Value::Number(value.ok_or(FormulaError::Missing(reference.name))?)
                     }
-                    (ResultValue::Number { uncertainty, .. }, Part::Uncertainty) => Value::Number(
-                        uncertainty.ok_or(FormulaError::NoUncertainty(reference.name))?,
-                    ),
+                    (ResultValue::Number { uncertainty, .. }, ResultPart::Uncertainty) => {
+                        Value::Number(
+                            uncertainty.ok_or(FormulaError::NoUncertainty(reference.name))?,
+                        )
+                    }
                 }
             }
             Self::List(parts) => Value::List(parts.iter().map(number).collect::<Result<_, _>>()?),

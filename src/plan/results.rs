@@ -6,7 +6,7 @@ use super::source::{ProcedureId, Source};
 
 /// Which number of a result is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum ResultPart {
     Value,
     /// `.u`, the standard uncertainty.
     Uncertainty,
@@ -17,7 +17,7 @@ pub enum Part {
 pub struct ResultReference {
     pub procedure: ProcedureId,
     pub name: &'static str,
-    pub part: Part,
+    pub part: ResultPart,
 }
 
 /// The value of a result: one number or a list, with the standard uncertainty of a number that was measured.
@@ -154,7 +154,7 @@ pub struct Moved<'a> {
 impl Results for Moved<'_> {
     fn result(&self, reference: ResultReference) -> Option<ResultValue> {
         let found = self.results.result(reference)?;
-        if reference.part != Part::Value {
+        if reference.part != ResultPart::Value {
             return Some(found);
         }
         let parts = self.results.contributions(reference);
@@ -225,7 +225,7 @@ pub fn sources_of(references: &[ResultReference], results: &dyn Results) -> Vec<
     let mut sources = Vec::new();
     for reference in references
         .iter()
-        .filter(|reference| reference.part == Part::Value)
+        .filter(|reference| reference.part == ResultPart::Value)
     {
         for part in results.contributions(*reference) {
             if part.amount != 0.0 && !sources.contains(&part.source) {
@@ -251,7 +251,7 @@ mod tests {
         ResultReference {
             procedure: ProcedureId(0),
             name,
-            part: Part::Value,
+            part: ResultPart::Value,
         }
     }
 

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 
 use super::answers::{Answers, Probability, RequirementAnswer, ResultAnswer, StudiedAnswer};
-use super::data_set::{Kind, Metadata};
+use super::data_set::{Metadata, StudyKind};
 use psd_physics::study::probability::Decision;
 use psd_plan::schema::readable_result;
 use psd_text::sanitize::one_line;
@@ -80,7 +80,7 @@ fn of_studied(studied: &StudiedAnswer) -> String {
 fn of_requirement(metadata: &Metadata, plan: &str, requirement: &RequirementAnswer) -> String {
     let runs = requirement.met + requirement.not_met + requirement.no_result;
     let label = one_line(&requirement.label);
-    let mut text = if matches!(metadata.kind, Kind::Fragility(_)) {
+    let mut text = if matches!(metadata.kind, StudyKind::Fragility(_)) {
         format!("  {label}: exceeded in {} of {runs} runs", requirement.met)
     } else if requirement.probability.is_none() {
         format!(

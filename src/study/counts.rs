@@ -1,7 +1,7 @@
 //! Outcomes of runs, counted for each requirement. In: rows. Out: how many runs met it, did not, or have no result. It computes no
 //! probability.
 
-use super::data_set::{Event, Outcome, Row};
+use super::data_set::{Event, Outcome, StudyRow};
 use psd_physics::study::probability::Outcomes;
 
 /// Counts of the runs so far.
@@ -35,7 +35,7 @@ impl Counts {
     }
 
     /// Adds a run.
-    pub fn add(&mut self, row: &Row) {
+    pub fn add(&mut self, row: &StudyRow) {
         self.runs += 1;
         for (count, outcome) in self.requirements.iter_mut().zip(&row.outcomes) {
             match outcome {

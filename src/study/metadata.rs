@@ -1,6 +1,6 @@
 //! The metadata of a study: what its data set says about itself. In: the plan and the study. Out: the metadata of its first run.
 
-use super::data_set::{Column, Event, Kind, Metadata, Setting, StudiedRequirement};
+use super::data_set::{Column, Event, Metadata, Setting, StudiedRequirement, StudyKind};
 use super::definition::Definition;
 use super::simulation::readout::Readout;
 use crate::files::provenance::BUILD;
@@ -19,8 +19,8 @@ pub fn version() -> String {
 #[must_use]
 pub fn of(plan: &Plan, study: &Definition, readout: &Readout) -> Metadata {
     let variation = match study.kind {
-        Kind::Study(_) => Some(&plan.studies.studies[study.index].variation),
-        Kind::Fragility(_) => plan.studies.fragilities[study.index].variation.as_ref(),
+        StudyKind::Study(_) => Some(&plan.studies.studies[study.index].variation),
+        StudyKind::Fragility(_) => plan.studies.fragilities[study.index].variation.as_ref(),
     };
     let setting = |(name, text): &(String, String)| Setting {
         name: name.clone(),
@@ -53,8 +53,8 @@ pub fn of(plan: &Plan, study: &Definition, readout: &Readout) -> Metadata {
         results: readout.columns(),
         requirements: readout.decisions(plan),
         studied: match study.kind {
-            Kind::Study(_) => studied(&plan.studies.requirements, study.index),
-            Kind::Fragility(_) => Vec::new(),
+            StudyKind::Study(_) => studied(&plan.studies.requirements, study.index),
+            StudyKind::Fragility(_) => Vec::new(),
         },
     }
 }

@@ -1,7 +1,7 @@
 //! Studies of plans as text: ground-motion records and results of identification as inputs, and rare events, against closed forms.
 
 use super::collection::{Collection, Ended};
-use super::data_set::{Kind, Metadata, Outcome, Reader, Row, Stopping};
+use super::data_set::{Metadata, Outcome, Reader, Stopping, StudyKind, StudyRow};
 use super::definition::Definition;
 use super::definition::measured::{self, MeasuredError};
 use super::metadata;
@@ -49,7 +49,7 @@ fn frame(rest: &str) -> String {
     )
 }
 
-fn rows(of: &Parsed, runs: u64) -> Vec<Row> {
+fn rows(of: &Parsed, runs: u64) -> Vec<StudyRow> {
     let definition = Definition::of(&of.plan.studies, None, None).unwrap();
     Simulation::new(&of.parsed, &of.plan, &definition).rows(0..runs)
 }
@@ -79,7 +79,7 @@ fn a_fragility_knows_its_record() {
          vary = [quake.damping_ratio ~ normal(cv: 10 %), motion.record_number ~ any]\nruns = 2 }",
     ));
     let definition = Definition::of(&of.plan.studies, None, None).unwrap();
-    let Kind::Fragility(stripes) = definition.kind else {
+    let StudyKind::Fragility(stripes) = definition.kind else {
         panic!("a fragility");
     };
     assert_eq!(stripes.record, Some(2));
@@ -136,7 +136,7 @@ fn a_rare_drift_of_a_frame_has_its_probability_in_closed_form() {
         again.answer(level).unwrap().probability.value,
         subset.probability
     );
-    assert!(matches!(metadata.kind, Kind::Study(Stopping::Rare(_))));
+    assert!(matches!(metadata.kind, StudyKind::Study(Stopping::Rare(_))));
 }
 
 /// The data set once it is finished, with the metadata of the study.

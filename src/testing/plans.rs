@@ -1,6 +1,6 @@
 //! Plans built without text, for tests of the stages after `check`.
 
-use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
+use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference, ResultValue};
 use psd_plan::record::{NamedResult, Record};
 use psd_plan::uncertainty::Source;
 use psd_plan::{
@@ -216,7 +216,7 @@ pub fn result_of(procedure: usize, name: &'static str) -> Formula {
     Formula::Result(ResultReference {
         procedure: ProcedureId(procedure),
         name,
-        part: Part::Value,
+        part: ResultPart::Value,
     })
 }
 

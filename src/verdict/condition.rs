@@ -2,7 +2,7 @@
 
 use super::{Bound, ConditionOutcome, Verdict};
 use psd_physics::statistics::student_t;
-use psd_plan::formula::{Formula, FormulaError, Operator, Part, Results, UncertaintyStatus};
+use psd_plan::formula::{Formula, FormulaError, Operator, ResultPart, Results, UncertaintyStatus};
 use psd_plan::schema::is_in_percent;
 use psd_plan::uncertainty::{FEW, MeasurementUncertainty, measurement_uncertainty};
 use psd_plan::{Comparison, Condition, DecisionRule, Test};
@@ -108,7 +108,7 @@ fn uncertainty_status(condition: &Condition, record: &dyn Results) -> Uncertaint
     condition.collect_references(&mut references);
     references
         .into_iter()
-        .filter(|reference| reference.part == Part::Value)
+        .filter(|reference| reference.part == ResultPart::Value)
         .map(|read| record.uncertainty_status(read))
         .fold(UncertaintyStatus::Exact, UncertaintyStatus::and)
 }

@@ -1,7 +1,7 @@
 //! Verdicts at and near their limits, under both decision rules.
 
 use super::*;
-use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue};
+use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference, ResultValue};
 use psd_plan::record::{History, NamedResult, Outcome, ProcedureRecord, Record};
 use psd_plan::{Comparison, Condition, DecisionRule, Requirement, Test};
 use psd_rig::Identity;
@@ -45,7 +45,7 @@ pub(super) fn result(name: &'static str) -> Formula {
     Formula::Result(ResultReference {
         procedure: ProcedureId(0),
         name,
-        part: Part::Value,
+        part: ResultPart::Value,
     })
 }
 

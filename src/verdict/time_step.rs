@@ -3,7 +3,7 @@
 
 use super::condition::{decide, is_equality};
 use super::{ConditionOutcome, Verdict};
-use psd_plan::formula::{Part, ResultReference, Results};
+use psd_plan::formula::{ResultPart, ResultReference, Results};
 use psd_plan::procedures::impact::block::TIME_STEP;
 use psd_plan::time_step::{FINER, in_finer_steps};
 use psd_plan::uncertainty::sources_of;
@@ -84,7 +84,7 @@ fn advice(
     for reference in references {
         let step = ResultReference {
             name: TIME_STEP.name,
-            part: Part::Value,
+            part: ResultPart::Value,
             ..*reference
         };
         let found = results.result(step).and_then(|step| step.number());

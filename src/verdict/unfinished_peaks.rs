@@ -5,7 +5,7 @@
 use super::ConditionOutcome;
 use super::assess_condition;
 use psd_plan::formula::{
-    Part, ProcedureId, ResultReference, ResultValue, Results, UncertaintyStatus,
+    ProcedureId, ResultPart, ResultReference, ResultValue, Results, UncertaintyStatus,
 };
 use psd_plan::procedures::escalate::block as series;
 use psd_plan::procedures::impact::block as schema;
@@ -112,7 +112,7 @@ impl Results for Grown<'_> {
         let growing = self
             .growing
             .iter()
-            .find(|(growing, _)| *growing == reference && reference.part == Part::Value);
+            .find(|(growing, _)| *growing == reference && reference.part == ResultPart::Value);
         if let Some((_, growth)) = growing {
             let grow = |value: &mut f64| *value += self.by * value.abs().max(LEAST);
             match &mut found {

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::codes::W730;
 use psd_language::check::checker::Checker;
 use psd_language::check::warnings::left::LEFT;
-use psd_plan::formula::{Formula, Part, ResultReference};
+use psd_plan::formula::{Formula, ResultPart, ResultReference};
 use psd_plan::{Condition, Procedure, Requirement};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
@@ -96,7 +96,7 @@ pub fn warn(
 fn compared(side: &Formula) -> Option<ResultReference> {
     match side {
         Formula::Result(reference) => {
-            Some(*reference).filter(|reference| reference.part == Part::Value)
+            Some(*reference).filter(|reference| reference.part == ResultPart::Value)
         }
         Formula::Index(inner, _) | Formula::Negate(inner) => compared(inner),
         Formula::Call(_, arguments) => match arguments.as_slice() {

@@ -15,13 +15,13 @@ pub const DEAF: Duration = Duration::from_secs(1);
 /// A question of the run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Question {
-    pub kind: Kind,
+    pub kind: QuestionKind,
     pub lines: Vec<String>,
 }
 
 /// The effect of a confirmation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum QuestionKind {
     /// An inspection; no real rig moves.
     Look,
     /// An inspection, after which the rig moves on.
@@ -114,7 +114,7 @@ impl Question {
         let note = format!("inspect: {}", escape(note));
         let Some(motion) = released else {
             return Self {
-                kind: Kind::Look,
+                kind: QuestionKind::Look,
                 lines: vec![note],
             };
         };
@@ -123,7 +123,7 @@ impl Question {
             ..motion.clone()
         };
         Self {
-            kind: Kind::GoOn,
+            kind: QuestionKind::GoOn,
             lines: [vec![note, String::new()], onward.lines()].concat(),
         }
     }
@@ -135,7 +135,7 @@ impl Question {
     }
 
     /// A motion that requires the operator's confirmation.
-    pub fn of(kind: Kind, motion: &Motion) -> Self {
+    pub fn of(kind: QuestionKind, motion: &Motion) -> Self {
         Self {
             kind,
             lines: motion.lines().iter().map(|line| escape(line)).collect(),
@@ -143,7 +143,7 @@ impl Question {
     }
 }
 
-impl Kind {
+impl QuestionKind {
     pub const fn title(self) -> &'static str {
         match self {
             Self::Look => "INSPECTION",
@@ -220,7 +220,12 @@ mod tests {
 
     #[test]
     fn only_the_word_as_it_is_shown_lets_something_move() {
-        for kind in [Kind::GoOn, Kind::Release, Kind::Unload, Kind::Jog] {
+        for kind in [
+            QuestionKind::GoOn,
+            QuestionKind::Release,
+            QuestionKind::Unload,
+            QuestionKind::Jog,
+        ] {
             assert_eq!(kind.answer(&format!(" {} ", kind.word())), Some(true));
             for other in [
                 "y",
@@ -243,15 +248,15 @@ mod tests {
             );
         }
         assert_eq!(
-            Kind::Unload.answer("RELEASE"),
+            QuestionKind::Unload.answer("RELEASE"),
             None,
             "each motion has its own word"
         );
         assert_eq!(
             (
-                Kind::Look.answer("y"),
-                Kind::Look.answer("yes"),
-                Kind::Look.answer("yesterday")
+                QuestionKind::Look.answer("y"),
+                QuestionKind::Look.answer("yes"),
+                QuestionKind::Look.answer("yesterday")
             ),
             (Some(true), Some(true), None)
         );

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Comparison, Row, table};
+use super::{ComparedRow, Comparison, table};
 use psd_text::columns::columns;
 
 /// Largest number of runs that have separate columns.
@@ -84,7 +84,7 @@ fn head(runs: usize) -> Vec<String> {
         .collect()
 }
 
-fn results(text: &mut String, title: &str, rows: &[Row], runs: usize) {
+fn results(text: &mut String, title: &str, rows: &[ComparedRow], runs: usize) {
     if rows.is_empty() {
         return;
     }

@@ -32,7 +32,7 @@ pub struct Side {
 
 /// One result over all runs.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct ComparedRow {
     /// For example `hit.max_displacement`, `quake.max_drift[0]`.
     pub name: String,
     pub dimension: Dimension,
@@ -54,9 +54,9 @@ pub struct Comparison {
     pub names: Vec<String>,
     pub verdicts: Vec<String>,
     /// Results that all runs have.
-    pub shared: Vec<Row>,
+    pub shared: Vec<ComparedRow>,
     /// Results that only some runs have.
-    pub partial: Vec<Row>,
+    pub partial: Vec<ComparedRow>,
     /// For each requirement: its verdict in each run.
     pub requirements: Vec<(String, Vec<Option<String>>)>,
     /// Differences in plan, settings and rig: name, and text in each run.
@@ -68,7 +68,7 @@ pub struct Comparison {
 impl Comparison {
     #[must_use]
     pub fn of(sides: &[Side]) -> Self {
-        let (mut shared, partial): (Vec<Row>, Vec<Row>) = rows(sides)
+        let (mut shared, partial): (Vec<ComparedRow>, Vec<ComparedRow>) = rows(sides)
             .into_iter()
             .partition(|row| row.cells.iter().all(Option::is_some));
         // A result without a value in any run is not informative.
@@ -89,8 +89,8 @@ impl Comparison {
 }
 
 /// Every result of every run, in the order of the first occurrence.
-fn rows(sides: &[Side]) -> Vec<Row> {
-    let mut rows: Vec<Row> = Vec::new();
+fn rows(sides: &[Side]) -> Vec<ComparedRow> {
+    let mut rows: Vec<ComparedRow> = Vec::new();
     for (column, side) in sides.iter().enumerate() {
         for (name, dimension, cell) in results(&side.summary) {
             // One name may be of different quantities in different plans.
@@ -102,7 +102,7 @@ fn rows(sides: &[Side]) -> Vec<Row> {
             } else {
                 let mut cells = vec![None; sides.len()];
                 cells[column] = Some(cell);
-                rows.push(Row {
+                rows.push(ComparedRow {
                     name,
                     dimension,
                     cells,
@@ -182,7 +182,8 @@ mod tests {
             &json!({ "x": { "value": 1.5, "unit": "m", "u": 0.4 }, "d": { "value": [1.0, null], "unit": "m" } }),
         );
         let compared = Comparison::of(&[one, two]);
-        let names = |rows: &[Row]| rows.iter().map(|row| row.name.clone()).collect::<Vec<_>>();
+        let names =
+            |rows: &[ComparedRow]| rows.iter().map(|row| row.name.clone()).collect::<Vec<_>>();
         assert_eq!(
             (names(&compared.shared), names(&compared.partial)),
             (

@@ -1,13 +1,13 @@
 //! The page of a comparison. In: the comparison, and its figures drawn. Out: HTML.
 
-use super::{Comparison, Row, TITLES, cells, heads};
+use super::{ComparedRow, Comparison, TITLES, cells, heads};
 use crate::report::comparison;
 use crate::report::comparison::{ComparisonPage, ResultTable};
 
 /// The page; `figures` are captions with PNG bytes.
 #[must_use]
 pub fn page(compared: &Comparison, figures: &[(String, Vec<u8>)]) -> String {
-    let table = |(title, rows): (&'static str, &Vec<Row>)| ResultTable {
+    let table = |(title, rows): (&'static str, &Vec<ComparedRow>)| ResultTable {
         title,
         heads: heads(compared.names.len()),
         rows: rows

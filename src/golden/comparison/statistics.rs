@@ -1,6 +1,6 @@
 //! The difference of two runs, and the spread of several.
 
-use super::Row;
+use super::ComparedRow;
 
 /// The second of two runs minus the first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,7 +16,7 @@ pub struct Difference {
 impl Difference {
     /// The difference of a row of two runs that both have a value.
     #[must_use]
-    pub fn of(row: &Row) -> Option<Self> {
+    pub fn of(row: &ComparedRow) -> Option<Self> {
         let [Some(first), Some(second)] = row.cells.as_slice() else {
             return None;
         };
@@ -49,7 +49,7 @@ pub struct Spread {
 impl Spread {
     /// The spread of the existing values; None if there are none.
     #[must_use]
-    pub fn of(row: &Row) -> Option<Self> {
+    pub fn of(row: &ComparedRow) -> Option<Self> {
         Self::of_values(
             &row.cells
                 .iter()

@@ -1,6 +1,6 @@
 //! Results as rows of text, for the terminal and as CSV. In: a comparison. Out: cells; readable units on the terminal, SI in the CSV.
 
-use super::{Cell, Comparison, Difference, Row, Spread};
+use super::{Cell, ComparedRow, Comparison, Difference, Spread};
 use psd_plan::schema::{printed_unit, readable_result};
 use psd_text::sanitize::cell;
 use psd_text::units::Dimension;
@@ -24,7 +24,7 @@ pub fn heads(runs: usize) -> &'static [&'static str] {
 
 /// Cells of a row: the runs, then their difference or their spread. The unit is that of the largest value.
 #[must_use]
-pub fn cells(row: &Row) -> Vec<String> {
+pub fn cells(row: &ComparedRow) -> Vec<String> {
     let values = || row.cells.iter().flatten().filter_map(|cell| cell.value);
     let largest = values().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let (unit, factor) = printed_unit(&row.name, largest, row.dimension);
@@ -79,7 +79,7 @@ fn value(cell: Option<Cell>, unit: &str, factor: f64, dimension: Dimension) -> S
 }
 
 /// In the unit of the values; if that gives only zeros, in a separate unit.
-fn differs(difference: Difference, unit: &str, factor: f64, row: &Row) -> Vec<String> {
+fn differs(difference: Difference, unit: &str, factor: f64, row: &ComparedRow) -> Vec<String> {
     let absolute = if difference.absolute == 0.0 {
         "0".to_owned()
     } else {
@@ -100,7 +100,7 @@ fn differs(difference: Difference, unit: &str, factor: f64, row: &Row) -> Vec<St
     ]
 }
 
-fn spreads(spread: Spread, unit: &str, factor: f64, row: &Row) -> Vec<String> {
+fn spreads(spread: Spread, unit: &str, factor: f64, row: &ComparedRow) -> Vec<String> {
     let deviation = spread.deviation.map_or_else(String::new, |deviation| {
         if deviation == 0.0 {
             "0".to_owned()
@@ -181,7 +181,7 @@ fn quoted(text: &str) -> String {
 mod tests {
     use super::*;
 
-    fn row(values: &[(f64, Option<f64>)]) -> Row {
+    fn row(values: &[(f64, Option<f64>)]) -> ComparedRow {
         let cells = values
             .iter()
             .map(|(value, u)| {
@@ -191,7 +191,7 @@ mod tests {
                 })
             })
             .collect();
-        Row {
+        ComparedRow {
             name: "hit.x".to_owned(),
             dimension: Dimension::LENGTH,
             cells,

@@ -63,7 +63,7 @@ fn quoted(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::golden::finding::{Change, Finding, Part};
+    use crate::golden::finding::{Change, Finding, FindingPart};
     use crate::golden::tested::Tested;
 
     #[test]
@@ -74,8 +74,8 @@ mod tests {
             outcome,
         };
         let found = vec![
-            Finding::text(Part::Verdict, "verdict", "pass", "fail"),
-            Finding::new(Part::Table, "table of k0", Change::Missing),
+            Finding::text(FindingPart::Verdict, "verdict", "pass", "fail"),
+            Finding::new(FindingPart::Table, "table of k0", Change::Missing),
         ];
         let report = Report {
             tested: vec![

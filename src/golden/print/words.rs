@@ -236,7 +236,7 @@ fn texts(was: &str, is: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::golden::finding::Part;
+    use crate::golden::finding::FindingPart;
     use crate::golden::tolerance::Rule;
 
     fn moved(was: Option<f64>, is: Option<f64>, dimension: Dimension) -> Moved {
@@ -257,7 +257,11 @@ mod tests {
     }
 
     fn words(change: Change) -> Words {
-        Words::of(&Finding::new(Part::Result, "hit.max_displacement", change))
+        Words::of(&Finding::new(
+            FindingPart::Result,
+            "hit.max_displacement",
+            change,
+        ))
     }
 
     #[test]

@@ -3,7 +3,7 @@
 
 use serde_json::{Map, Value};
 
-use crate::golden::finding::{Change, Finding, Part};
+use crate::golden::finding::{Change, Finding, FindingPart};
 use crate::golden::tolerance::{Rule, Tolerances};
 use crate::golden::{SUMMARY, number};
 use psd_text::units::{Dimension, unit};
@@ -45,7 +45,7 @@ pub(in crate::golden) fn plan_change(was: Option<&str>, is: Option<&str>) -> Opt
         Some(digest.chars().take(DIGITS).collect::<String>())
     };
     let (was, is) = (digest(was)?, digest(is)?);
-    (was != is).then(|| Finding::text(Part::Cause, "text of the plan (SHA-256)", &was, &is))
+    (was != is).then(|| Finding::text(FindingPart::Cause, "text of the plan (SHA-256)", &was, &is))
 }
 
 pub(in crate::golden) fn compare(
@@ -56,11 +56,11 @@ pub(in crate::golden) fn compare(
 ) {
     let read = |text: Option<&str>| serde_json::from_str::<Value>(text?).ok();
     let Some(was) = read(was) else {
-        found.push(Finding::new(Part::Verdict, SUMMARY, Change::New));
+        found.push(Finding::new(FindingPart::Verdict, SUMMARY, Change::New));
         return;
     };
     let Some(is) = read(is) else {
-        found.push(Finding::new(Part::Verdict, SUMMARY, Change::Missing));
+        found.push(Finding::new(FindingPart::Verdict, SUMMARY, Change::Missing));
         return;
     };
     Walk { tolerances, found }.value(&mut Vec::new(), &was, &is, None);
@@ -236,7 +236,7 @@ impl Walk<'_> {
         };
         let (part, name) = named(path);
         let parts: Vec<&str> = path.iter().map(String::as_str).collect();
-        let is_result = |finding: &Finding| finding.part == Part::Result;
+        let is_result = |finding: &Finding| finding.part == FindingPart::Result;
         let part = match parts.as_slice() {
             // The budget of a result that came or went is no second difference.
             ["procedures", procedure, BUDGETS, result]
@@ -249,7 +249,9 @@ impl Walk<'_> {
                 return;
             }
             // Results come in the order of the run: an input before the first changed one follows from none of them.
-            ["procedures", _, "inputs", ..] if !self.found.iter().any(is_result) => Part::Cause,
+            ["procedures", _, "inputs", ..] if !self.found.iter().any(is_result) => {
+                FindingPart::Cause
+            }
             _ => part,
         };
         self.found.push(Finding::new(part, name, change));
@@ -340,12 +342,12 @@ fn text(was: &Value, is: &Value) -> Change {
 }
 
 /// `procedures hit results stop_time value` gives `hit.stop_time`.
-fn named(path: &[String]) -> (Part, String) {
+fn named(path: &[String]) -> (FindingPart, String) {
     let parts: Vec<&str> = path.iter().map(String::as_str).collect();
     match parts.as_slice() {
-        ["verdict"] => (Part::Verdict, "verdict".to_owned()),
-        ["outcome", ..] => (Part::Verdict, parts.join(".")),
-        ["requirements", name] => (Part::Requirement, format!("require \"{name}\"")),
+        ["verdict"] => (FindingPart::Verdict, "verdict".to_owned()),
+        ["outcome", ..] => (FindingPart::Verdict, parts.join(".")),
+        ["requirements", name] => (FindingPart::Requirement, format!("require \"{name}\"")),
         // The values in a requirement follow from results, which are more important.
         [
             "requirements",
@@ -354,50 +356,59 @@ fn named(path: &[String]) -> (Part, String) {
             index,
             rest @ ("value" | "limit" | "tolerance"),
         ] => (
-            Part::Other,
+            FindingPart::Other,
             format!("require \"{name}\", condition {index}: {rest}"),
         ),
         ["requirements", name, "conditions", index, rest @ ..] => (
-            Part::Requirement,
+            FindingPart::Requirement,
             format!("require \"{name}\", condition {index}: {}", rest.join(".")),
         ),
         ["requirements", name, rest @ ..] => (
-            Part::Requirement,
+            FindingPart::Requirement,
             format!("require \"{name}\": {}", rest.join(".")),
         ),
-        ["reproductions", name] => (Part::Requirement, format!("reproduces {name}")),
+        ["reproductions", name] => (FindingPart::Requirement, format!("reproduces {name}")),
         ["reproductions", name, rest @ ..] => (
-            Part::Requirement,
+            FindingPart::Requirement,
             format!("reproduces {name}: {}", rest.join(".")),
         ),
         ["procedures", name, "results", result, "value", index @ ..] => {
             let entries = index
                 .iter()
                 .fold(String::new(), |text, index| text + "[" + index + "]");
-            (Part::Result, format!("{name}.{result}{entries}"))
+            (FindingPart::Result, format!("{name}.{result}{entries}"))
         }
         ["procedures", name, "results", rest @ ..] => {
-            (Part::Result, format!("{name}.{}", rest.join(".")))
+            (FindingPart::Result, format!("{name}.{}", rest.join(".")))
         }
         ["procedures", name, BUDGETS, result, rest @ ..] => {
             let rest = rest.strip_prefix(&["contributions"]).unwrap_or(rest);
             let rest = rest
                 .iter()
                 .fold(String::new(), |text, key| text + ": " + key);
-            (Part::Result, format!("budget of {name}.{result}{rest}"))
+            (
+                FindingPart::Result,
+                format!("budget of {name}.{result}{rest}"),
+            )
         }
         ["procedures", name, "inputs", input, "value"] => {
-            (Part::Other, format!("input {name}.{input}"))
+            (FindingPart::Other, format!("input {name}.{input}"))
         }
-        ["procedures", name, "inputs", rest @ ..] => {
-            (Part::Other, format!("input {name}.{}", rest.join(".")))
+        ["procedures", name, "inputs", rest @ ..] => (
+            FindingPart::Other,
+            format!("input {name}.{}", rest.join(".")),
+        ),
+        ["procedures", name] => (FindingPart::Result, (*name).to_owned()),
+        ["procedures", name, rest @ ..] => {
+            (FindingPart::Result, format!("{name}: {}", rest.join(".")))
         }
-        ["procedures", name] => (Part::Result, (*name).to_owned()),
-        ["procedures", name, rest @ ..] => (Part::Result, format!("{name}: {}", rest.join("."))),
-        ["parameters", name, "value"] => (Part::Cause, format!("param {name}")),
-        ["parameters" | "plan" | "rig", ..] => (Part::Cause, parts.join(".")),
-        ["events", index, rest @ ..] => (Part::Other, format!("event {index}: {}", rest.join("."))),
-        _ => (Part::Other, parts.join(".")),
+        ["parameters", name, "value"] => (FindingPart::Cause, format!("param {name}")),
+        ["parameters" | "plan" | "rig", ..] => (FindingPart::Cause, parts.join(".")),
+        ["events", index, rest @ ..] => (
+            FindingPart::Other,
+            format!("event {index}: {}", rest.join(".")),
+        ),
+        _ => (FindingPart::Other, parts.join(".")),
     }
 }
 

@@ -16,7 +16,7 @@ fn stiffness() -> Formula {
     Formula::Result(ResultReference {
         procedure: ProcedureId(0),
         name: "stiffness",
-        part: Part::Value,
+        part: ResultPart::Value,
     })
 }
 

@@ -6,7 +6,7 @@ use crate::report::Run;
 use crate::report::figures::chart::Reference;
 use crate::report::number;
 use crate::verdict::Bound;
-use psd_plan::formula::{Formula, Function, Part, ProcedureId};
+use psd_plan::formula::{Formula, Function, ProcedureId, ResultPart};
 use psd_plan::schema::ResultKind;
 use psd_plan::{Condition, Test};
 
@@ -114,9 +114,9 @@ fn entry(value: &Formula) -> Option<usize> {
 /// apply to the chart.
 fn reads(value: &Formula, procedure: ProcedureId, result: &str) -> bool {
     let is = |formula: &Formula| {
-        formula
-            .as_result()
-            .is_some_and(|r| r.procedure == procedure && r.name == result && r.part == Part::Value)
+        formula.as_result().is_some_and(|r| {
+            r.procedure == procedure && r.name == result && r.part == ResultPart::Value
+        })
     };
     match value {
         Formula::Call(Function::Max, arguments) => arguments.iter().all(is),
@@ -156,20 +156,20 @@ mod tests {
                 part,
             })
         };
-        assert!(reads(&result(Part::Value), procedure, name));
-        assert!(!reads(&result(Part::Uncertainty), procedure, name));
+        assert!(reads(&result(ResultPart::Value), procedure, name));
+        assert!(!reads(&result(ResultPart::Uncertainty), procedure, name));
         assert!(
-            !reads(&result(Part::Value), ProcedureId(1), name)
-                && !reads(&result(Part::Value), procedure, "periods")
+            !reads(&result(ResultPart::Value), ProcedureId(1), name)
+                && !reads(&result(ResultPart::Value), procedure, "periods")
         );
-        let second = Formula::Index(Box::new(result(Part::Value)), 1);
+        let second = Formula::Index(Box::new(result(ResultPart::Value)), 1);
         assert!(
             reads(&second, procedure, name)
                 && entry(&second) == Some(2)
-                && entry(&result(Part::Value)).is_none()
+                && entry(&result(ResultPart::Value)).is_none()
         );
         assert!(!reads(
-            &Formula::Index(Box::new(result(Part::Uncertainty)), 1),
+            &Formula::Index(Box::new(result(ResultPart::Uncertainty)), 1),
             procedure,
             name
         ));

@@ -3,7 +3,7 @@
 use crate::procedures;
 use crate::report::run::Run;
 use crate::report::wording::budget as wording;
-use psd_plan::formula::{Part, ProcedureId, ResultReference, ResultValue, Results};
+use psd_plan::formula::{ProcedureId, ResultPart, ResultReference, ResultValue, Results};
 use psd_plan::record::ProcedureRecord;
 use psd_plan::schema::frames::{DAMPING_RATIO, MASS_MATRIX, STIFFNESS_MATRIX};
 use psd_plan::uncertainty::{Contribution, Source};
@@ -284,7 +284,7 @@ impl Input {
         let reference = ResultReference {
             procedure,
             name: result,
-            part: Part::Value,
+            part: ResultPart::Value,
         };
         let value = match (run.record.result(reference), entry) {
             (Some(ResultValue::Number { value, .. }), _) => value,

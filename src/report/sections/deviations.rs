@@ -9,7 +9,7 @@ use crate::report::number;
 use crate::report::run::Run;
 use crate::report::status::deviations;
 use crate::report::wording::deviations as wording;
-use psd_plan::formula::{Part, ProcedureId, ResultReference};
+use psd_plan::formula::{ProcedureId, ResultPart, ResultReference};
 use psd_plan::record::{EventKind, NO_OPERATOR_ASKED, ProcedureRecord};
 use psd_plan::uncertainty::measurement_uncertainty;
 
@@ -61,7 +61,7 @@ fn not_distinct(run: &Run<'_>) -> Vec<String> {
         let reference = ResultReference {
             procedure: ProcedureId(index),
             name: result.name,
-            part: Part::Value,
+            part: ResultPart::Value,
         };
         let value = procedure.number(name)?;
         let u = measurement_uncertainty(&result.contributions_of(reference), run.record)?;

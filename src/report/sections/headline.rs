@@ -9,7 +9,7 @@ use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::report::run::Run;
 use crate::report::wording::{common, headline as wording};
-use psd_plan::formula::{Part, ProcedureId, ResultReference, ResultValue};
+use psd_plan::formula::{ProcedureId, ResultPart, ResultReference, ResultValue};
 use psd_plan::uncertainty::{
     MeasurementUncertainty, measurement_uncertainties, measurement_uncertainty,
 };
@@ -155,7 +155,7 @@ fn headlines(run: &Run<'_>) -> Vec<ReadResult> {
                 reference: ResultReference {
                     procedure: ProcedureId(index),
                     name,
-                    part: Part::Value,
+                    part: ResultPart::Value,
                 },
                 entry: None,
             })

@@ -10,7 +10,7 @@ use crate::report::budget::{Budget, Line, budgets, coverage_factor};
 use crate::report::run::Run;
 use crate::report::status::{Change, Issues, ReportStatus, deviations, report_status};
 use crate::verdict::{Bound, ConditionOutcome, ReproductionOutcome, RequirementOutcome};
-use psd_plan::formula::{Estimate, Part, ProcedureId, ResultReference, ResultValue};
+use psd_plan::formula::{Estimate, ProcedureId, ResultPart, ResultReference, ResultValue};
 use psd_plan::record::{NamedResult, Outcome, ProcedureRecord};
 use psd_plan::schema;
 use psd_plan::uncertainty::{
@@ -251,7 +251,7 @@ fn expanded(quantity: Quantity, run: &Run<'_>, index: usize, result: &NamedResul
     let reference = ResultReference {
         procedure: ProcedureId(index),
         name: result.name,
-        part: Part::Value,
+        part: ResultPart::Value,
     };
     let parts = result.contributions_of(reference);
     let printed = |all: &[Option<MeasurementUncertainty>], read: Read| {

@@ -8,7 +8,7 @@ use super::kept::Kept;
 use super::moments::{Moments, number};
 use super::sensitivity::{self, Sensitivity};
 use super::{Ends, ends};
-use crate::study::data_set::{Metadata, Row};
+use crate::study::data_set::{Metadata, StudyRow};
 use psd_physics::study::quantile::{Quantile, quantile};
 use psd_physics::study::{Confidence, mean};
 use psd_plan::study::Sampling;
@@ -83,7 +83,7 @@ impl Distributions {
         }
     }
 
-    pub fn add(&mut self, row: &Row) {
+    pub fn add(&mut self, row: &StudyRow) {
         let replicate = usize::try_from(row.run % self.replicates).unwrap_or(0);
         for (index, value) in row.results.iter().enumerate() {
             if let Some(value) = value {

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::ends;
 use super::moments::number;
 use crate::study::counts::Counts;
-use crate::study::data_set::{Column, Event, Kind, Metadata, Row, Stripes};
+use crate::study::data_set::{Column, Event, Metadata, Stripes, StudyKind, StudyRow};
 use psd_physics::study::Confidence;
 use psd_physics::study::fragility::{Fit, NoFit, NoResult, Split, Stripe};
 use psd_physics::study::probability::Outcomes;
@@ -113,8 +113,8 @@ pub struct StripeCounts {
 impl StripeCounts {
     pub fn new(metadata: &Metadata) -> Self {
         let (count, record) = match &metadata.kind {
-            Kind::Study(_) => (0, None),
-            Kind::Fragility(stripes) => (stripes.values.len(), stripes.record),
+            StudyKind::Study(_) => (0, None),
+            StudyKind::Fragility(stripes) => (stripes.values.len(), stripes.record),
         };
         Self {
             stripes: vec![Counts::new(metadata.requirements.len()); count],
@@ -123,7 +123,7 @@ impl StripeCounts {
         }
     }
 
-    pub fn add(&mut self, row: &Row) {
+    pub fn add(&mut self, row: &StudyRow) {
         let stripe = row.run.checked_rem(self.stripes.len() as u64);
         let Some(stripe) = stripe.and_then(|stripe| usize::try_from(stripe).ok()) else {
             return;
@@ -143,7 +143,7 @@ pub fn answer(
     counts: &StripeCounts,
     confidence: Confidence,
 ) -> Option<FragilityAnswer> {
-    let Kind::Fragility(Stripes {
+    let StudyKind::Fragility(Stripes {
         intensity, values, ..
     }) = &metadata.kind
     else {

@@ -1,7 +1,7 @@
 //! The first runs of a study, kept for quantiles, sensitivities and figures. In: rows. Out: their values, column by column.
 
 use super::KEPT;
-use crate::study::data_set::{Metadata, Row};
+use crate::study::data_set::{Metadata, StudyRow};
 
 /// Columns of the first runs.
 #[derive(Clone, Debug, Default)]
@@ -20,7 +20,7 @@ impl Kept {
         }
     }
 
-    pub fn add(&mut self, row: &Row) {
+    pub fn add(&mut self, row: &StudyRow) {
         if self.runs >= KEPT {
             return;
         }

@@ -2,7 +2,7 @@
 //! requirement. A run without a result is a count of its own.
 
 use crate::study::counts::Counts;
-use crate::study::data_set::{Kind, Metadata, Row, Stopping};
+use crate::study::data_set::{Metadata, Stopping, StudyKind, StudyRow};
 use crate::study::stopping::Looks;
 use crate::study::stopping::rare::RareRuns;
 use psd_physics::study::Confidence;
@@ -25,13 +25,13 @@ impl CountsWithLooks {
     pub fn new(metadata: &Metadata, confidence: Confidence) -> Self {
         let at_most = metadata.at_most;
         let runs = match metadata.kind {
-            Kind::Study(Stopping::Fixed) | Kind::Fragility(_) => Runs::Fixed(at_most),
-            Kind::Study(Stopping::Rare(rare)) => Runs::Rare(rare),
-            Kind::Study(Stopping::Decided) => Runs::Decided {
+            StudyKind::Study(Stopping::Fixed) | StudyKind::Fragility(_) => Runs::Fixed(at_most),
+            StudyKind::Study(Stopping::Rare(rare)) => Runs::Rare(rare),
+            StudyKind::Study(Stopping::Decided) => Runs::Decided {
                 confidence,
                 at_most,
             },
-            Kind::Study(Stopping::HalfWidth(half_width)) => Runs::HalfWidth {
+            StudyKind::Study(Stopping::HalfWidth(half_width)) => Runs::HalfWidth {
                 half_width,
                 confidence,
                 at_most,
@@ -43,7 +43,7 @@ impl CountsWithLooks {
         }
     }
 
-    pub fn add(&mut self, row: &Row) {
+    pub fn add(&mut self, row: &StudyRow) {
         let look = self.rule.planned();
         self.rule.add(row);
         let counts = self.counts();

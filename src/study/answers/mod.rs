@@ -23,7 +23,7 @@ mod worst;
 
 use serde::Serialize;
 
-use crate::study::data_set::{DataSetFault, Kind, Metadata, Reader, Row, Stopping};
+use crate::study::data_set::{DataSetFault, Metadata, Reader, Stopping, StudyKind, StudyRow};
 use distribution::Distributions;
 use kept::Kept;
 use looks::CountsWithLooks;
@@ -126,7 +126,7 @@ impl Pass {
         }
     }
 
-    fn add(&mut self, metadata: &Metadata, row: &Row) {
+    fn add(&mut self, metadata: &Metadata, row: &StudyRow) {
         self.counts.add(row);
         self.distributions.add(row);
         self.kept.add(row);
@@ -173,10 +173,10 @@ const fn ends(interval: Interval) -> [f64; 2] {
 }
 
 /// Whether the runs are drawn from the inputs as they scatter.
-const fn is_a_sample(kind: &Kind) -> bool {
+const fn is_a_sample(kind: &StudyKind) -> bool {
     matches!(
         kind,
-        Kind::Study(Stopping::Fixed | Stopping::Decided | Stopping::HalfWidth(_))
+        StudyKind::Study(Stopping::Fixed | Stopping::Decided | Stopping::HalfWidth(_))
     )
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::study::data_set::Row;
+use crate::study::data_set::StudyRow;
 
 /// Reasons that are distinguished.
 const MOST: usize = 50;
@@ -26,7 +26,7 @@ pub struct Reasons {
 }
 
 impl Reasons {
-    pub fn add(&mut self, row: &Row) {
+    pub fn add(&mut self, row: &StudyRow) {
         let Some(reason) = &row.reason else { return };
         let new = |reason: &str| ReasonCount {
             reason: reason.to_owned(),

@@ -5,7 +5,7 @@ use tempfile::TempDir;
 use super::Answers;
 use crate::study::data_set::testing::{metadata as any_metadata, written};
 use crate::study::data_set::{
-    Column, Decision, Kind, Limit, Metadata, Outcome, Reader, Row, Stripes,
+    Column, Decision, Limit, Metadata, Outcome, Reader, Stripes, StudyKind, StudyRow,
 };
 use psd_physics::study::distribution::{Distribution, Spread};
 use psd_physics::study::inputs::{Source, StudyInputs};
@@ -45,7 +45,7 @@ pub fn metadata(runs: u64) -> Metadata {
 }
 
 /// The runs of y; every run of `lost` has no result.
-pub fn rows(inputs: &StudyInputs, runs: u64, lost: impl Fn(u64) -> bool) -> Vec<Row> {
+pub fn rows(inputs: &StudyInputs, runs: u64, lost: impl Fn(u64) -> bool) -> Vec<StudyRow> {
     let limit = 3.0 + 2.0 * scatter();
     let mut values = Vec::new();
     (0..runs)
@@ -57,7 +57,7 @@ pub fn rows(inputs: &StudyInputs, runs: u64, lost: impl Fn(u64) -> bool) -> Vec<
                 Some(_) => Outcome::NotMet,
                 None => Outcome::NoResult,
             };
-            Row {
+            StudyRow {
                 run,
                 inputs: values.clone(),
                 results: vec![y],
@@ -68,7 +68,7 @@ pub fn rows(inputs: &StudyInputs, runs: u64, lost: impl Fn(u64) -> bool) -> Vec<
         .collect()
 }
 
-pub fn answers(metadata: &Metadata, rows: &[Row]) -> Answers {
+pub fn answers(metadata: &Metadata, rows: &[StudyRow]) -> Answers {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("runs.parquet");
     written(&path, metadata, rows);
@@ -83,7 +83,7 @@ pub fn fragility_metadata(values: &[f64], runs: u64) -> Metadata {
     let length = |name, text| Column::new(name, Dimension::LENGTH, text);
     Metadata {
         study: "tip".to_owned(),
-        kind: Kind::Fragility(Stripes {
+        kind: StudyKind::Fragility(Stripes {
             intensity: 0,
             values: values.to_vec(),
             runs,
@@ -107,7 +107,7 @@ pub fn fragility_metadata(values: &[f64], runs: u64) -> Metadata {
 }
 
 /// The rows of it; at the capacity, the displacement is 50 mm.
-pub fn fragility_rows(values: &[f64], runs: u64) -> Vec<Row> {
+pub fn fragility_rows(values: &[f64], runs: u64) -> Vec<StudyRow> {
     let law = Distribution::normal(0.0, Spread::Sd(1.0)).unwrap();
     let inputs = StudyInputs::new(vec![Source::Distribution(law)], &[], Design::Random, 8).unwrap();
     let mut drawn = Vec::new();
@@ -122,7 +122,7 @@ pub fn fragility_rows(values: &[f64], runs: u64) -> Vec<Row> {
             } else {
                 Outcome::NotMet
             };
-            Row {
+            StudyRow {
                 run,
                 inputs: vec![intensity, drawn[0]],
                 results: vec![Some(0.05 * used)],

@@ -241,7 +241,7 @@ fn a_study_with_a_rule_decides_at_a_look() {
     let all = rows(&normals(Design::Random, 6), 5000, |_| false);
     let of = |runs: usize, limit| {
         let metadata = Metadata {
-            kind: Kind::Study(Stopping::Decided),
+            kind: StudyKind::Study(Stopping::Decided),
             studied: vec![studied(Comparison::Less, limit, Event::Fails)],
             ..metadata(1_000_000)
         };
@@ -273,11 +273,11 @@ fn a_study_with_a_rule_decides_at_a_look() {
 fn the_dispersion_between_records_is_divided_from_that_of_the_structures() {
     let values = [0.4, 0.6, 0.8, 1.0, 1.2];
     let whole = fragility_metadata(&values, 200);
-    let Kind::Fragility(stripes) = whole.kind.clone() else {
+    let StudyKind::Fragility(stripes) = whole.kind.clone() else {
         panic!("a fragility");
     };
     let mut metadata = Metadata {
-        kind: Kind::Fragility(Stripes {
+        kind: StudyKind::Fragility(Stripes {
             record: Some(2),
             ..stripes
         }),
@@ -332,9 +332,9 @@ fn a_known_fragility_is_recovered() {
     let stripe = &fragility.stripes[2];
     assert_eq!(stripe.exceeded + stripe.not_exceeded, RUNS);
     // All of them below the first capacity: no curve, with the reason in the unit of the intensity.
-    let step: Vec<Row> = rows
+    let step: Vec<StudyRow> = rows
         .iter()
-        .map(|row| Row {
+        .map(|row| StudyRow {
             outcomes: vec![if row.inputs[0] <= values[0] {
                 Outcome::NotMet
             } else {
@@ -355,7 +355,7 @@ fn a_known_fragility_is_recovered() {
 #[test]
 fn lost_runs_give_two_curves_and_a_part_none() {
     let metadata = Metadata {
-        kind: Kind::Fragility(Stripes {
+        kind: StudyKind::Fragility(Stripes {
             intensity: 0,
             values: vec![0.9, 1.0, 1.1],
             runs: 100,
@@ -363,7 +363,7 @@ fn lost_runs_give_two_curves_and_a_part_none() {
         }),
         ..metadata(300)
     };
-    let row = |run: u64| Row {
+    let row = |run: u64| StudyRow {
         run,
         inputs: vec![0.9 + 0.1 * number(run % 3), 1.0],
         results: vec![None],
@@ -374,7 +374,7 @@ fn lost_runs_give_two_curves_and_a_part_none() {
         }],
         reason: None,
     };
-    let rows: Vec<Row> = (0..300).map(row).collect();
+    let rows: Vec<StudyRow> = (0..300).map(row).collect();
     let fragility = answers(&metadata, &rows).fragility.unwrap();
     let medians: Vec<f64> = fragility
         .fits

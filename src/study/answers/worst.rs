@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 
-use crate::study::data_set::{Column, Kind, Metadata, Outcome, Row};
+use crate::study::data_set::{Column, Metadata, Outcome, StudyKind, StudyRow};
 use psd_text::units::{Dimension, Quantity};
 
 /// Runs that are listed.
@@ -29,7 +29,7 @@ struct Candidate {
     is_met: bool,
     /// Distance from the limit, negative for a run that is beyond it.
     distance: f64,
-    row: Row,
+    row: StudyRow,
 }
 
 impl Candidate {
@@ -47,8 +47,8 @@ impl WorstRuns {
         Self(metadata.requirements.iter().map(|_| Vec::new()).collect())
     }
 
-    pub fn add(&mut self, metadata: &Metadata, row: &Row) {
-        if matches!(metadata.kind, Kind::Fragility(_)) {
+    pub fn add(&mut self, metadata: &Metadata, row: &StudyRow) {
+        if matches!(metadata.kind, StudyKind::Fragility(_)) {
             return;
         }
         let decisions = metadata.requirements.iter().zip(&row.outcomes);

@@ -20,7 +20,7 @@ use thiserror::Error;
 
 use crate::study::cluster::shard::Shard;
 use crate::study::counts::Counts;
-use crate::study::data_set::{DataSetFault, Metadata, Reader, Row, Writer};
+use crate::study::data_set::{DataSetFault, Metadata, Reader, StudyRow, Writer};
 use crate::study::simulation::Simulation;
 use crate::study::stopping::Looks;
 use psd_plan::study::Runs;
@@ -174,7 +174,7 @@ impl Collection<'_> {
     }
 
     /// The next runs: the numbers of those of a subset simulation follow from the runs before them.
-    fn rows(&self, looks: &Looks, runs: Range<u64>) -> Vec<Row> {
+    fn rows(&self, looks: &Looks, runs: Range<u64>) -> Vec<StudyRow> {
         let Some(rare) = looks.rare() else {
             return self.simulation.rows(runs);
         };

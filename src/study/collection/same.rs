@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::study::data_set::{Kind, Metadata};
+use crate::study::data_set::{Metadata, StudyKind};
 use psd_plan::study::Sampling;
 
 /// Why runs cannot be put together.
@@ -60,7 +60,9 @@ pub fn grown(found: &Metadata, wanted: &Metadata) -> Result<(), Difference> {
     }
     let mut alike = found.clone();
     alike.at_most = wanted.at_most;
-    if let (Kind::Fragility(stripes), Kind::Fragility(others)) = (&mut alike.kind, &wanted.kind) {
+    if let (StudyKind::Fragility(stripes), StudyKind::Fragility(others)) =
+        (&mut alike.kind, &wanted.kind)
+    {
         stripes.runs = others.runs;
     }
     if alike.belongs_to(wanted) {

@@ -9,7 +9,7 @@ use crate::study::data_set::{DataSetFault, Metadata, Reader};
 
 /// The state of a study or of a shard.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub struct StudyPart {
     /// None: the whole study.
     pub shard: Option<Shard>,
     /// Runs that are durable.
@@ -25,7 +25,7 @@ pub struct Status {
     /// Of some data set in the folder; None without one.
     pub metadata: Option<Metadata>,
     /// The whole study if a part of it is there, then every shard.
-    pub parts: Vec<Part>,
+    pub parts: Vec<StudyPart>,
 }
 
 impl Status {
@@ -75,7 +75,7 @@ fn part(
     folder: &Path,
     shard: Option<Shard>,
     metadata: &mut Option<Metadata>,
-) -> Result<Part, DataSetFault> {
+) -> Result<StudyPart, DataSetFault> {
     let files = DataSetFiles::of(folder, shard);
     let mut runs = 0;
     let mut read = |path: &Path| -> Result<(), DataSetFault> {
@@ -95,7 +95,7 @@ fn part(
             read(&piece)?;
         }
     }
-    Ok(Part {
+    Ok(StudyPart {
         shard,
         runs,
         of: 0,

@@ -6,7 +6,7 @@ use super::same::Difference;
 use super::status::status;
 use super::{Collection, CollectionFault, Ended};
 use crate::study::cluster::shard::Shard;
-use crate::study::data_set::{Metadata, Reader, Row};
+use crate::study::data_set::{Metadata, Reader, StudyRow};
 use crate::study::definition::{Definition, DefinitionError};
 use crate::study::metadata;
 use crate::study::simulation::Simulation;
@@ -53,7 +53,7 @@ fn finished(studied: &Studied, folder: &Path) -> Vec<u8> {
     }
 }
 
-fn rows(path: &Path) -> Vec<Row> {
+fn rows(path: &Path) -> Vec<StudyRow> {
     let reader = Reader::open(path).unwrap();
     reader.rows().map(Result::unwrap).collect()
 }

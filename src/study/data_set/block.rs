@@ -30,7 +30,7 @@ impl Outcome {
 
 /// One run.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct StudyRow {
     pub run: u64,
     /// In the order of the metadata, SI.
     pub inputs: Vec<f64>,
@@ -86,7 +86,7 @@ impl Block {
     }
 
     /// The rows of the block.
-    pub fn rows(&self) -> impl Iterator<Item = Row> + '_ {
+    pub fn rows(&self) -> impl Iterator<Item = StudyRow> + '_ {
         (0..self.len()).map(|at| self.row(at))
     }
 
@@ -95,8 +95,8 @@ impl Block {
     /// # Panics
     /// If the block has no such row.
     #[must_use]
-    pub fn row(&self, at: usize) -> Row {
-        Row {
+    pub fn row(&self, at: usize) -> StudyRow {
+        StudyRow {
             run: self.first + at as u64,
             inputs: self.inputs.iter().map(|column| column[at]).collect(),
             results: self.results.iter().map(|column| column[at]).collect(),
@@ -106,7 +106,7 @@ impl Block {
     }
 
     /// Why the row cannot follow, if it cannot.
-    pub(super) fn refuses(&self, row: &Row) -> Option<String> {
+    pub(super) fn refuses(&self, row: &StudyRow) -> Option<String> {
         let expected = self.end();
         if row.run != expected {
             return Some(format!("run {expected} is next, not run {}", row.run));
@@ -125,7 +125,7 @@ impl Block {
     }
 
     /// Adds a row that is not refused.
-    pub(super) fn push(&mut self, row: &Row) {
+    pub(super) fn push(&mut self, row: &StudyRow) {
         fn add<T: Copy>(columns: &mut [Vec<T>], values: &[T]) {
             for (column, value) in columns.iter_mut().zip(values) {
                 column.push(*value);

@@ -25,7 +25,7 @@ pub struct Metadata {
     pub settings: Vec<Setting>,
     /// Name of the study.
     pub study: String,
-    pub kind: Kind,
+    pub kind: StudyKind,
     pub seed: u64,
     #[serde(with = "keywords::sampling")]
     pub sampling: Sampling,
@@ -61,7 +61,7 @@ pub struct Setting {
 /// What the runs are for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum StudyKind {
     Study(Stopping),
     Fragility(Stripes),
 }

@@ -26,10 +26,11 @@ pub(crate) mod testing;
 mod tests;
 mod writer;
 
-pub use block::{Block, Outcome, Row};
+pub use block::{Block, Outcome, StudyRow};
 pub use fault::DataSetFault;
 pub use metadata::{
-    Column, Decision, Event, Kind, Limit, Metadata, Setting, Stopping, Stripes, StudiedRequirement,
+    Column, Decision, Event, Limit, Metadata, Setting, Stopping, Stripes, StudiedRequirement,
+    StudyKind,
 };
 pub use reader::Reader;
 pub use writer::Writer;

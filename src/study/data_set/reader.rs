@@ -11,7 +11,7 @@ use polars::prelude::{
 };
 use sha2::{Digest as _, Sha256};
 
-use super::block::{Block, Row};
+use super::block::{Block, StudyRow};
 use super::fault::DataSetFault;
 use super::footer::{self, Footer};
 use super::frame;
@@ -90,7 +90,7 @@ impl Reader {
     }
 
     /// All rows; after an error, no more follow.
-    pub fn rows(&self) -> impl Iterator<Item = Result<Row, DataSetFault>> + '_ {
+    pub fn rows(&self) -> impl Iterator<Item = Result<StudyRow, DataSetFault>> + '_ {
         self.blocks().flat_map(|block| {
             let (rows, fault) = match block {
                 Ok(block) => (block.rows().map(Ok).collect(), None),

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::{
-    Column, Decision, Event, Kind, Limit, Metadata, Outcome, Row, Stopping, StudiedRequirement,
-    Writer,
+    Column, Decision, Event, Limit, Metadata, Outcome, Stopping, StudiedRequirement, StudyKind,
+    StudyRow, Writer,
 };
 use psd_plan::Comparison;
 use psd_plan::study::Sampling;
@@ -23,7 +23,7 @@ pub fn metadata(first: u64) -> Metadata {
         digest: "00".repeat(32),
         settings: Vec::new(),
         study: "scatter".to_owned(),
-        kind: Kind::Study(Stopping::Fixed),
+        kind: StudyKind::Study(Stopping::Fixed),
         seed: u64::MAX,
         sampling: Sampling::Random,
         replicates: 1,
@@ -76,7 +76,7 @@ pub fn metadata(first: u64) -> Metadata {
 }
 
 /// Numbers with all bits in use, both zeros, the smallest and the largest number, results that do not exist.
-pub fn row(run: u64) -> Row {
+pub fn row(run: u64) -> StudyRow {
     let [first, second] = [0x9e37_79b9_7f4a_7c15, 0xd1b5_4a32_d192_ed03_u64].map(|factor: u64| {
         let number = f64::from_bits((run + 1).wrapping_mul(factor));
         if number.is_finite() { number } else { f64::MAX }
@@ -90,7 +90,7 @@ pub fn row(run: u64) -> Row {
     };
     let is_lost = run % 10 == 3;
     let outcome = |holds: bool| if holds { Outcome::Met } else { Outcome::NotMet };
-    Row {
+    StudyRow {
         run,
         inputs: vec![first, special],
         results: vec![Some(special), (!is_lost).then_some(second)],
@@ -107,7 +107,7 @@ pub fn row(run: u64) -> Row {
 }
 
 /// Writes the rows.
-pub fn written(path: &Path, metadata: &Metadata, rows: &[Row]) {
+pub fn written(path: &Path, metadata: &Metadata, rows: &[StudyRow]) {
     let mut writer = Writer::create(path, metadata).unwrap();
     for row in rows {
         writer.push(row).unwrap();

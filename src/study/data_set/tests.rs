@@ -33,7 +33,7 @@ fn small(folder: &TempDir) -> PathBuf {
 }
 
 /// Bits of every number: 0 and −0 are not the same.
-fn bits(row: &Row) -> Vec<Option<u64>> {
+fn bits(row: &StudyRow) -> Vec<Option<u64>> {
     let inputs = row.inputs.iter().map(|value| Some(value.to_bits()));
     inputs
         .chain(row.results.iter().map(|value| value.map(f64::to_bits)))
@@ -42,7 +42,7 @@ fn bits(row: &Row) -> Vec<Option<u64>> {
 
 fn fault(path: &Path) -> String {
     let opened =
-        Reader::open(path).and_then(|reader| reader.rows().collect::<Result<Vec<Row>, _>>());
+        Reader::open(path).and_then(|reader| reader.rows().collect::<Result<Vec<StudyRow>, _>>());
     opened.unwrap_err().to_string()
 }
 
@@ -95,14 +95,14 @@ fn equal_rows_give_equal_bytes() {
 fn rows_that_do_not_belong_are_refused() {
     let folder = folder();
     let mut writer = Writer::create(&folder.path().join("a"), &metadata(7)).unwrap();
-    let mut refused = |row: Row| writer.push(&row).unwrap_err().reason;
+    let mut refused = |row: StudyRow| writer.push(&row).unwrap_err().reason;
     assert_eq!(refused(row(8)), "run 7 is next, not run 8");
-    let narrow = Row {
+    let narrow = StudyRow {
         inputs: vec![1.0],
         ..row(7)
     };
     assert!(refused(narrow).contains("[1, 2, 2]"));
-    let infinite = Row {
+    let infinite = StudyRow {
         results: vec![Some(f64::NAN), None],
         ..row(7)
     };

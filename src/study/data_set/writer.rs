@@ -16,7 +16,7 @@ use polars_parquet::write::{
     array_to_columns,
 };
 
-use super::block::{Block, Row};
+use super::block::{Block, StudyRow};
 use super::fault::DataSetFault;
 use super::group::{Group, Metered, SharedMeter};
 use super::metadata::{FORMAT, Metadata};
@@ -100,7 +100,7 @@ impl Writer {
     ///
     /// # Errors
     /// It is not the next run, has other columns or a number that is not finite; or the disk is full.
-    pub fn push(&mut self, row: &Row) -> Result<(), DataSetFault> {
+    pub fn push(&mut self, row: &StudyRow) -> Result<(), DataSetFault> {
         if let Some(reason) = self.block.refuses(row) {
             return Err(DataSetFault::new(&self.path, reason));
         }

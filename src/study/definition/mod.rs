@@ -5,7 +5,7 @@ pub mod measured;
 
 use thiserror::Error;
 
-use crate::study::data_set::{Kind, Stopping, Stripes};
+use crate::study::data_set::{Stopping, Stripes, StudyKind};
 use crate::study::draws::Draws;
 use psd_physics::study::Confidence;
 use psd_physics::study::inputs::InputError;
@@ -17,7 +17,7 @@ use psd_plan::study::{Collected, Fragility, Input, MOST_RUNS, Runs, Sampling, St
 pub struct Definition {
     pub name: String,
     /// A study, or a fragility with its intensities.
-    pub kind: Kind,
+    pub kind: StudyKind,
     /// The varied values in the order of the columns of the data set; first the intensity of a fragility.
     pub inputs: Vec<Input>,
     pub seed: u64,
@@ -104,7 +104,7 @@ impl Definition {
         let variation = &study.variation;
         Ok(Self {
             name: study.name.clone(),
-            kind: Kind::Study(match runs {
+            kind: StudyKind::Study(match runs {
                 Runs::Fixed(_) => Stopping::Fixed,
                 Runs::Decided { .. } => Stopping::Decided,
                 Runs::HalfWidth { half_width, .. } => Stopping::HalfWidth(half_width),
@@ -138,7 +138,7 @@ impl Definition {
         let record = others.iter().position(|input| input.is_record);
         Ok(Self {
             name: fragility.name.clone(),
-            kind: Kind::Fragility(Stripes {
+            kind: StudyKind::Fragility(Stripes {
                 intensity: 0,
                 values: stripes.clone(),
                 runs: each,

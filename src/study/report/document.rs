@@ -6,7 +6,7 @@ use crate::report::number::comparison_sign;
 use crate::report::wording::study::in_the_box;
 use crate::report::wording::{LABELS, study as wording, verdict};
 use crate::study::answers::{Answers, LookAnswer, StudiedAnswer};
-use crate::study::data_set::{Kind, Metadata, Stopping};
+use crate::study::data_set::{Metadata, Stopping, StudyKind};
 use psd_physics::study::probability::Decision;
 use psd_plan::Comparison;
 use psd_plan::study::Sampling;
@@ -61,11 +61,13 @@ pub fn document(source: &Source<'_>) -> Document {
 
 fn front(metadata: &Metadata, answers: &Answers) -> Vec<(Text, Text)> {
     let ends = match &metadata.kind {
-        Kind::Study(Stopping::Fixed) => wording::ENDS_FIXED.to_owned(),
-        Kind::Study(Stopping::Decided) => wording::ENDS_DECIDED.to_owned(),
-        Kind::Study(Stopping::HalfWidth(width)) => wording::ends_half_width(percent(*width)),
-        Kind::Study(Stopping::Rare(rare)) => wording::ends_levels(rare.replicates, rare.points),
-        Kind::Fragility(stripes) => wording::ends_stripes(stripes.values.len(), stripes.runs),
+        StudyKind::Study(Stopping::Fixed) => wording::ENDS_FIXED.to_owned(),
+        StudyKind::Study(Stopping::Decided) => wording::ENDS_DECIDED.to_owned(),
+        StudyKind::Study(Stopping::HalfWidth(width)) => wording::ends_half_width(percent(*width)),
+        StudyKind::Study(Stopping::Rare(rare)) => {
+            wording::ends_levels(rare.replicates, rare.points)
+        }
+        StudyKind::Fragility(stripes) => wording::ends_stripes(stripes.values.len(), stripes.runs),
     };
     let sampling = match metadata.sampling {
         Sampling::Random => wording::RANDOM.to_owned(),

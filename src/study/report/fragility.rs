@@ -6,7 +6,7 @@ use super::source::Source;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::wording::study as wording;
 use crate::study::answers::{Answers, FitAnswer, StripeAnswer};
-use crate::study::data_set::{Kind, Metadata};
+use crate::study::data_set::{Metadata, StudyKind};
 use psd_text::units::{Dimension, display};
 
 /// Below this the fitted curve is doubtful.
@@ -56,7 +56,7 @@ pub fn section(source: &Source<'_>, body: &mut Vec<Block>) {
         }));
         body.push(Block::note(wording::SPLIT));
     }
-    let records = matches!(&source.metadata.kind, Kind::Fragility(it) if it.record.is_some());
+    let records = matches!(&source.metadata.kind, StudyKind::Fragility(it) if it.record.is_some());
     match (records, source.metadata.inputs.len()) {
         _ if !any => {}
         (true, 2) => body.push(Block::note(wording::RECORDS_ALONE)),
@@ -97,7 +97,7 @@ pub fn statement(metadata: &Metadata, answers: &Answers) -> Option<String> {
 }
 
 fn dimension(metadata: &Metadata) -> Option<Dimension> {
-    let Kind::Fragility(stripes) = &metadata.kind else {
+    let StudyKind::Fragility(stripes) = &metadata.kind else {
         return None;
     };
     Some(metadata.inputs.get(stripes.intensity)?.dimension)

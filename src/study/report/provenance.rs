@@ -5,7 +5,7 @@ use super::numbers::percents;
 use super::source::Source;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::wording::study as wording;
-use crate::study::data_set::Kind;
+use crate::study::data_set::StudyKind;
 use psd_plan::study::Sampling;
 use psd_text::units::display;
 
@@ -44,8 +44,8 @@ pub fn inputs(source: &Source<'_>, body: &mut Vec<Block>) {
     body.push(Block::section(wording::INPUTS));
     let [name, text, nominal] = wording::INPUT_COLUMNS;
     let stepped = match &metadata.kind {
-        Kind::Fragility(stripes) => Some(stripes.intensity),
-        Kind::Study(_) => None,
+        StudyKind::Fragility(stripes) => Some(stripes.intensity),
+        StudyKind::Study(_) => None,
     };
     let rows = metadata.inputs.iter().enumerate().map(|(index, column)| {
         let distribution = if stepped == Some(index) {

@@ -5,13 +5,13 @@ use super::source::Source;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::wording::study as wording;
 use crate::study::answers::LevelAnswer;
-use crate::study::data_set::{Kind, Stopping};
+use crate::study::data_set::{Stopping, StudyKind};
 use psd_text::units::display;
 
 /// The section; nothing for another study.
 pub fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     let metadata = source.metadata;
-    let (Some(subset), Kind::Study(Stopping::Rare(rare))) =
+    let (Some(subset), StudyKind::Study(Stopping::Rare(rare))) =
         (&source.answers.subset, &metadata.kind)
     else {
         return;

@@ -4,7 +4,7 @@
 use crate::procedures;
 use crate::procedures::impact::batched::{self, BatchedImpact};
 use psd_plan::Plan;
-use psd_plan::formula::{Part, ResultReference};
+use psd_plan::formula::{ResultPart, ResultReference};
 use psd_plan::record::{Outcome, Record};
 use psd_rig::virtual_rig;
 
@@ -17,7 +17,7 @@ pub fn impact(plan: &Plan) -> Option<BatchedImpact> {
 /// Whether batches give everything that is read of the runs of this plan.
 pub fn takes(plan: &Plan, read: &[ResultReference]) -> bool {
     let given = |reference: &ResultReference| {
-        reference.part == Part::Value && batched::gives(reference.name)
+        reference.part == ResultPart::Value && batched::gives(reference.name)
     };
     impact(plan).is_some() && read.iter().all(given)
 }

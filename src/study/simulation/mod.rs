@@ -12,7 +12,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::data_set::Row;
+use super::data_set::StudyRow;
 use super::definition::Definition;
 use crate::check::ParsedPlan;
 use batches::Batch;
@@ -83,17 +83,17 @@ impl<'a> Simulation<'a> {
 
     /// The rows of these runs, in their order, on all cores. They do not depend on the number of threads.
     #[must_use]
-    pub fn rows(&self, runs: Range<u64>) -> Vec<Row> {
+    pub fn rows(&self, runs: Range<u64>) -> Vec<StudyRow> {
         self.on_all_cores(runs, None)
     }
 
     /// The same at these points in standard normal space, one for each run.
     #[must_use]
-    pub fn rows_at(&self, first: u64, points: &[Vec<f64>]) -> Vec<Row> {
+    pub fn rows_at(&self, first: u64, points: &[Vec<f64>]) -> Vec<StudyRow> {
         self.on_all_cores(first..first + points.len() as u64, Some(points))
     }
 
-    fn on_all_cores(&self, runs: Range<u64>, points: Option<&[Vec<f64>]>) -> Vec<Row> {
+    fn on_all_cores(&self, runs: Range<u64>, points: Option<&[Vec<f64>]>) -> Vec<StudyRow> {
         let threads = rayon::current_num_threads() as u64;
         // Several pieces a thread, so that none waits long for the others; large enough for batches.
         let size = ((runs.end - runs.start) / (4 * threads)).clamp(1, BLOCK);
@@ -111,11 +111,11 @@ impl<'a> Simulation<'a> {
 
     /// The rows of these runs, on this thread.
     #[must_use]
-    pub fn block(&self, runs: Range<u64>) -> Vec<Row> {
+    pub fn block(&self, runs: Range<u64>) -> Vec<StudyRow> {
         self.on_this_thread(runs, None)
     }
 
-    fn on_this_thread(&self, runs: Range<u64>, points: Option<&[Vec<f64>]>) -> Vec<Row> {
+    fn on_this_thread(&self, runs: Range<u64>, points: Option<&[Vec<f64>]>) -> Vec<StudyRow> {
         let mut rows = Vec::new();
         let mut values = Vec::new();
         let mut batch = Batch::default();
@@ -178,8 +178,8 @@ impl<'a> Simulation<'a> {
     }
 }
 
-fn row(run: u64, inputs: Vec<f64>, kept: Kept) -> Row {
-    Row {
+fn row(run: u64, inputs: Vec<f64>, kept: Kept) -> StudyRow {
+    StudyRow {
         run,
         inputs,
         results: kept.results,

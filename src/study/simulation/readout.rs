@@ -4,10 +4,10 @@
 //! A requirement is decided on its value alone: the scatter of the runs replaces the uncertainty of one run. What a run calls inconclusive has no result
 //! here: a stop by a limit, a result that does not exist, a peak that was not reached.
 
-use crate::study::data_set::{Column, Decision, Kind, Limit, Outcome};
+use crate::study::data_set::{Column, Decision, Limit, Outcome, StudyKind};
 use crate::study::definition::Definition;
 use crate::verdict::{self, Verdict};
-use psd_plan::formula::{Formula, Part, ResultReference};
+use psd_plan::formula::{Formula, ResultPart, ResultReference};
 use psd_plan::record::{Outcome as Ended, Record};
 use psd_plan::schema::block_of_words;
 use psd_plan::study::Collected;
@@ -56,8 +56,8 @@ impl Readout {
     /// The columns of a study of this plan: the values that its requirements read, then the collected results.
     pub fn of(plan: &Plan, study: &Definition) -> Self {
         let exceeds = match study.kind {
-            Kind::Study(_) => None,
-            Kind::Fragility(_) => {
+            StudyKind::Study(_) => None,
+            StudyKind::Fragility(_) => {
                 let fragility = &plan.studies.fragilities[study.index];
                 let requirement = Requirement {
                     label: fragility.name.clone(),
@@ -325,8 +325,8 @@ fn of_result(plan: &Plan, reference: ResultReference) -> Option<Column> {
     let words: Vec<&str> = procedure.kind.keyword().split(' ').collect();
     let kind = block_of_words(&words)?.result(reference.name)?;
     let part = match reference.part {
-        Part::Value => "",
-        Part::Uncertainty => ".u",
+        ResultPart::Value => "",
+        ResultPart::Uncertainty => ".u",
     };
     let name = format!("{}.{}{part}", procedure.name, reference.name);
     (!kind.list).then(|| Column::new(&name, kind.dimension, kind.doc))

@@ -8,7 +8,7 @@ use crate::study::metadata::column;
 use crate::study::testing::{Studied, checked, plan, usual, variation};
 use psd_physics::study::distribution::{Distribution, Spread};
 use psd_physics::study::inputs::Source;
-use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference};
+use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference};
 use psd_plan::study::{Collected, Fragility, Variation};
 use psd_plan::{Comparison, Condition, Test};
 use psd_text::units::Dimension;
@@ -19,8 +19,8 @@ fn folder(path: &str) -> Result<String, LoadError> {
 }
 
 /// Inputs and results as bits.
-fn bits(rows: &[Row]) -> Vec<(u64, Vec<u64>, Vec<Option<u64>>)> {
-    let of = |row: &Row| {
+fn bits(rows: &[StudyRow]) -> Vec<(u64, Vec<u64>, Vec<Option<u64>>)> {
+    let of = |row: &StudyRow| {
         (
             row.run,
             row.inputs.iter().map(|value| value.to_bits()).collect(),
@@ -263,7 +263,7 @@ fn a_fragility_decides_its_condition_at_each_stripe() {
     let displacement = Formula::Result(ResultReference {
         procedure: ProcedureId(0),
         name: psd_plan::procedures::impact::block::MAX_DISPLACEMENT.name,
-        part: Part::Value,
+        part: ResultPart::Value,
     });
     studied.plan.studies.studies[0].collect = vec![Collected {
         text: "2 * hit.max_displacement".to_owned(),

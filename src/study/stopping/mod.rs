@@ -7,7 +7,7 @@
 pub mod rare;
 
 use crate::study::counts::Counts;
-use crate::study::data_set::{Event, Metadata, Row, StudiedRequirement};
+use crate::study::data_set::{Event, Metadata, StudiedRequirement, StudyRow};
 use psd_physics::study::Interval;
 use psd_physics::study::probability::Decision;
 use psd_physics::study::probability::stopping::{self, Look};
@@ -113,7 +113,7 @@ impl Looks {
     }
 
     /// Adds the next run, and looks if it is the last one before a look.
-    pub fn add(&mut self, row: &Row) {
+    pub fn add(&mut self, row: &StudyRow) {
         self.counts.add(row);
         if let Some(rare) = &mut self.rare {
             rare.add(row);

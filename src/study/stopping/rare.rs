@@ -1,7 +1,7 @@
 //! The subset simulation of a study. In: its metadata, then its rows in the order of their runs. Out: the points of the next runs, and the
 //! probability of the rare event. It runs nothing: the rows of a data set give the same answer as those of the process that made them.
 
-use crate::study::data_set::{Kind, Limit, Metadata, Outcome, Row, Stopping};
+use crate::study::data_set::{Limit, Metadata, Outcome, Stopping, StudyKind, StudyRow};
 use psd_physics::study::Confidence;
 use psd_physics::study::subset_simulation::{Answer, Progress};
 use psd_plan::study::RareEvent;
@@ -18,7 +18,7 @@ impl RareRuns {
     /// None for another study, or if the metadata do not describe a subset simulation.
     #[must_use]
     pub fn of(metadata: &Metadata) -> Option<Self> {
-        let Kind::Study(Stopping::Rare(event)) = metadata.kind else {
+        let StudyKind::Study(Stopping::Rare(event)) = metadata.kind else {
             return None;
         };
         let limit = metadata.requirements.get(event.requirement)?.limit?;
@@ -38,7 +38,7 @@ impl RareRuns {
     }
 
     /// Adds the next run.
-    pub fn add(&mut self, row: &Row) {
+    pub fn add(&mut self, row: &StudyRow) {
         if self.is_over() {
             return;
         }

@@ -39,7 +39,7 @@ struct End {
 fn study(runs: Runs, metadata: &Metadata, seed: u64, probability: f64) -> End {
     let stream = Philox::new(seed);
     let mut looks = Looks::of(runs, metadata);
-    let mut row = Row {
+    let mut row = StudyRow {
         run: 0,
         inputs: Vec::new(),
         results: Vec::new(),

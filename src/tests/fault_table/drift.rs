@@ -4,7 +4,7 @@
 use super::stage::{Ended, STIFFNESS, plan, plan_of, run, run_without, to};
 use crate::tests::testing::ramp;
 use crate::verdict::{Assessment, Verdict, assess};
-use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference};
+use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference};
 use psd_plan::record::EventKind;
 use psd_plan::{
     Comparison, Condition, DriftCheck, Plan, ProcedureKind, Requirement, StiffnessRamp, Test,
@@ -28,7 +28,7 @@ fn drifting(check: DriftCheck) -> Plan {
             value: Formula::Result(ResultReference {
                 procedure: ProcedureId(0),
                 name,
-                part: Part::Value,
+                part: ResultPart::Value,
             }),
             test: Test::Compare {
                 comparison: Comparison::Greater,

@@ -3,7 +3,7 @@
 use crate::tests::testing::{elastic_plan, number, ramp, run_unwatched};
 use crate::verdict::{Verdict, assess};
 use psd_physics::statistics::student_t::LEVEL;
-use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue, Results};
+use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference, ResultValue, Results};
 use psd_plan::record::Record;
 use psd_plan::uncertainty::{MeasurementUncertainty, measurement_uncertainty};
 use psd_plan::{
@@ -36,7 +36,7 @@ fn value_and_uncertainty(record: &Record, name: &'static str) -> (f64, Measureme
     let reference = ResultReference {
         procedure: ProcedureId(0),
         name,
-        part: Part::Value,
+        part: ResultPart::Value,
     };
     let value = number(record, 0, name).0.unwrap();
     (
@@ -81,7 +81,7 @@ fn a_guard_band_has_the_degrees_of_freedom_of_its_ramp() {
     let reference = ResultReference {
         procedure: ProcedureId(0),
         name: "stiffness",
-        part: Part::Value,
+        part: ResultPart::Value,
     };
     let of_limit = |limit: f64| {
         let mut plan = plan(3, 5);
@@ -142,7 +142,7 @@ fn what_follows_from_a_fit_has_its_degrees_of_freedom() {
         Formula::Result(ResultReference {
             procedure: ProcedureId(procedure),
             name: "stiffness",
-            part: Part::Value,
+            part: ResultPart::Value,
         })
     };
     let degrees = |formula: &Formula| {

@@ -2,7 +2,7 @@
 
 use crate::tests::noise::uniform;
 use crate::tests::testing::{elastic_plan, ramp, result_of, run_unwatched};
-use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference, ResultValue, Results};
+use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference, ResultValue, Results};
 use psd_plan::record::{History, Record};
 use psd_plan::uncertainty::{MeasurementUncertainty, Source, measurement_uncertainty};
 use psd_plan::{
@@ -21,7 +21,7 @@ fn value_and_uncertainty(
     let reference = ResultReference {
         procedure: ProcedureId(procedure),
         name,
-        part: Part::Value,
+        part: ResultPart::Value,
     };
     let Some(ResultValue::Number {
         value: Some(value), ..

@@ -8,7 +8,7 @@ use psd_physics::identification::LineFit;
 use psd_physics::impact::energy::Energies;
 use psd_physics::tracking::monitor::Tracking;
 use psd_plan::formula::{
-    Estimate, Formula, Part, ProcedureId, ResultReference, ResultValue, UncertaintyStatus,
+    Estimate, Formula, ProcedureId, ResultPart, ResultReference, ResultValue, UncertaintyStatus,
 };
 use psd_plan::record::{
     BroughtTogether, DampingSweepHistory, Event, EventKind, History, ImpactHistory, ImpactStep,
@@ -377,7 +377,7 @@ fn plan() -> Plan {
         Formula::Result(ResultReference {
             procedure: ProcedureId(procedure),
             name,
-            part: Part::Value,
+            part: ResultPart::Value,
         })
     };
     let compare = |text: &str, value, limit, dimension| Condition {

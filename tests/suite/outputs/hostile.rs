@@ -5,7 +5,9 @@ use psd::check::{Checked, Options, check, no_files};
 use psd::golden::comparison::page;
 use psd::golden::comparison::{Comparison, Side, csv};
 use psd::golden::print::json as golden_json;
-use psd::golden::{Change, Finding, Outcome as TestOutcome, Part, Report, Tested, junit, tap};
+use psd::golden::{
+    Change, Finding, FindingPart, Outcome as TestOutcome, Report, Tested, junit, tap,
+};
 use psd::report::{Figures, OutputFile, console};
 use psd_plan::Format;
 use psd_plan::record::{EventKind, Outcome};
@@ -322,8 +324,8 @@ fn no_label_is_another_path_or_another_line_of_the_manifest() {
 fn tested_with(label: &str) -> Report {
     let own = || label.to_owned();
     let found = vec![
-        Finding::text(Part::Verdict, label, label, label),
-        Finding::new(Part::Table, label, Change::Missing),
+        Finding::text(FindingPart::Verdict, label, label, label),
+        Finding::new(FindingPart::Table, label, Change::Missing),
     ];
     let outcomes = [
         TestOutcome::Same {

@@ -8,7 +8,7 @@ use crate::cli::args::Format;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::output::{print_message, print_result};
 use crate::study::collection::merge::{self, resubmission};
-use crate::study::collection::status::{self, Part};
+use crate::study::collection::status::{self, StudyPart};
 
 /// Shows the runs that are there, and the shards that are not finished.
 pub fn status(folder: &Path) -> Result<Exit, Failure> {
@@ -21,7 +21,7 @@ pub fn status(folder: &Path) -> Result<Exit, Failure> {
         "study {} of {}, {} runs\n",
         metadata.study, metadata.plan, metadata.at_most
     );
-    let finished = |part: &&Part| part.shard.is_some() && part.finished;
+    let finished = |part: &&StudyPart| part.shard.is_some() && part.finished;
     let shards = status.parts.iter().filter(|part| part.shard.is_some());
     let of = shards.clone().count();
     if of > 0 {
@@ -55,7 +55,7 @@ pub fn status(folder: &Path) -> Result<Exit, Failure> {
         }
     }
     print_result(&text)?;
-    let whole = |part: &Part| part.shard.is_none() && part.finished;
+    let whole = |part: &StudyPart| part.shard.is_none() && part.finished;
     let complete = status.parts.iter().any(whole) || status.parts.iter().all(|part| part.finished);
     Ok(if complete {
         Exit::Met
@@ -64,7 +64,7 @@ pub fn status(folder: &Path) -> Result<Exit, Failure> {
     })
 }
 
-fn unfinished(part: &Part) -> String {
+fn unfinished(part: &StudyPart) -> String {
     let name = part.shard.map_or_else(
         || "the study".to_owned(),
         |shard| format!("shard {}", shard.number),

@@ -5,7 +5,7 @@ use psd_plan::schema::columns;
 use std::collections::BTreeSet;
 
 use crate::cli::exit::Failure;
-use crate::golden::{Change, Finding, Part, Table, Truth, column_dimension};
+use crate::golden::{Change, Finding, FindingPart, Table, Truth, column_dimension};
 use crate::report::{Curve, Curves, FigureCurve, OutputError, OutputFile, PlainAxis};
 use psd_text::units::{Dimension, unit};
 
@@ -96,7 +96,7 @@ fn columns(was: &Truth, is: &Truth, found: &[Finding]) -> Vec<(String, Curves)> 
     let mut moved: Vec<(&str, f64)> = found
         .iter()
         .filter_map(|finding| match &finding.change {
-            Change::Moved(moved) if finding.part == Part::Table => {
+            Change::Moved(moved) if finding.part == FindingPart::Table => {
                 let by = moved.by().map_or(f64::INFINITY, f64::abs);
                 Some((
                     finding.name.as_str(),

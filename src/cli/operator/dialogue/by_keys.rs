@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::keys::Key;
 use super::{Dialogue, Typing, What};
-use crate::cli::operator::question::{After, Choice, Kind};
+use crate::cli::operator::question::{After, Choice, QuestionKind};
 use crate::cli::operator::watch::interrupt;
 use psd_rig::StopRequest;
 
@@ -95,7 +95,7 @@ impl Dialogue {
             .as_ref()
             .is_none_or(|typing| typing.text.is_empty());
         let question = self.question.as_ref();
-        let unload = question.is_some_and(|question| question.kind == Kind::Unload);
+        let unload = question.is_some_and(|question| question.kind == QuestionKind::Unload);
         self.unclear = false;
         match key {
             Key::Character('i' | 'I') if nothing_typed => self.line(What::Remark),

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use super::typed::{Input, Typed};
 use super::{Dialogue, What};
-use crate::cli::operator::question::{Kind, Question, WHY_RESUME};
+use crate::cli::operator::question::{Question, QuestionKind, WHY_RESUME};
 use crate::cli::output::print_message;
 use crate::run::Inspection;
 use psd_rig::StopRequest;
@@ -140,8 +140,8 @@ impl Person {
 }
 
 /// The possible input at a question.
-fn answers(kind: Kind) -> String {
-    let remark = if kind == Kind::Jog {
+fn answers(kind: QuestionKind) -> String {
+    let remark = if kind == QuestionKind::Jog {
         ""
     } else {
         ", or i and an observation for the run log"

@@ -9,7 +9,7 @@ use std::cell::RefCell;
 
 use super::dialogue::Dialogue;
 use super::dialogue::by_lines::Person;
-use super::question::{self, After, Kind, Question, Stay};
+use super::question::{self, After, Question, QuestionKind, Stay};
 use super::screen::{self, Screen};
 use crate::cli::settings::{Settings, today};
 use crate::report::report_status;
@@ -282,7 +282,7 @@ impl Observer for Watcher {
 
     fn release(&mut self, _: &str, motion: &Motion) -> Inspection {
         let motion = motion.clone().expecting(self.expected);
-        let mut question = Question::of(Kind::Release, &motion);
+        let mut question = Question::of(QuestionKind::Release, &motion);
         question.lines.extend(
             self.overdue
                 .iter()
@@ -293,7 +293,7 @@ impl Observer for Watcher {
     }
 
     fn may_unload(&mut self, _: &str, motion: &Motion) -> Option<Inspection> {
-        let question = Question::of(Kind::Unload, motion);
+        let question = Question::of(QuestionKind::Unload, motion);
         let answer = self.wait_after_the_end(&Some(Inspection::Wait), |dialogue| {
             dialogue.ask_to_unload(&question)
         })?;
@@ -326,7 +326,7 @@ impl Watcher {
         match &self.asking {
             Asking::Yes(operator) => Inspection::GoOn {
                 note: Some(match question.kind {
-                    Kind::Release => "released with --yes, without a prompt".to_owned(),
+                    QuestionKind::Release => "released with --yes, without a prompt".to_owned(),
                     _ => "answered by --yes".to_owned(),
                 }),
                 by: operator.clone(),

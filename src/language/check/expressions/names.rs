@@ -10,7 +10,7 @@ use crate::check::wording::{owner, suggestion};
 use crate::codes::{E203, E206, E304, E403, E641};
 use crate::syntax::ast::{Expr, ExprKind, Ident};
 use psd_plan::ProcedureBlock;
-use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference};
+use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference};
 use psd_plan::schema::study::PROBABILITY;
 use psd_plan::schema::{self, BlockKind, Kind};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
@@ -316,7 +316,7 @@ impl<'a> Checker<'a> {
             let formula = Formula::Result(ResultReference {
                 procedure,
                 name: result.name,
-                part: Part::Value,
+                part: ResultPart::Value,
             });
             let shape = if result.list {
                 Shape::List
@@ -495,7 +495,7 @@ impl<'a> Checker<'a> {
         let measured = typed
             .formula
             .as_result()
-            .filter(|reference| reference.part == Part::Value)
+            .filter(|reference| reference.part == ResultPart::Value)
             .filter(|reference| {
                 let kind = self
                     .procedure(reference.procedure)
@@ -510,7 +510,7 @@ impl<'a> Checker<'a> {
             });
         };
         let formula = Formula::Result(ResultReference {
-            part: Part::Uncertainty,
+            part: ResultPart::Uncertainty,
             ..reference
         });
         Some(Typed {
@@ -560,7 +560,7 @@ impl<'a> Checker<'a> {
             let reference = ResultReference {
                 procedure,
                 name: result.name,
-                part: Part::Value,
+                part: ResultPart::Value,
             };
             let outside = self.results.iter().find(|(of, _)| *of == reference);
             if let Some((_, outside)) = outside {

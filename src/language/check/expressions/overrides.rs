@@ -11,7 +11,7 @@ use crate::check::wording::{one_of, suggestion};
 use crate::codes::{E203, E206, E214, E656};
 use crate::syntax::ast::{Argument, Entry, Expr, ExprKind};
 use psd_plan::ProcedureBlock;
-use psd_plan::formula::{Formula, Part, ResultReference};
+use psd_plan::formula::{Formula, ResultPart, ResultReference};
 use psd_plan::schema::{Field, FieldType, Kind, Presence, RigKind, Variant};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
@@ -221,7 +221,7 @@ pub fn find_input<'a>(scope: &Scope<'a>, path: &[&str]) -> Result<InputLocation<
         let reference = ResultReference {
             procedure,
             name: result.name,
-            part: Part::Value,
+            part: ResultPart::Value,
         };
         return Ok(InputLocation::Result {
             reference,

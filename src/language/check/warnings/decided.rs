@@ -7,7 +7,7 @@ use crate::check::checker::Checker;
 use crate::check::wording::shown;
 use crate::codes::{E667, W732};
 use crate::syntax::ast::{Expr, ExprKind};
-use psd_plan::formula::{Formula, Function, Part, ProcedureId, ResultReference};
+use psd_plan::formula::{Formula, Function, ProcedureId, ResultPart, ResultReference};
 use psd_plan::schema::Possible;
 use psd_plan::{Comparison, Condition, Limits, Procedure, ProcedureKind, Requirement, Test};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
@@ -112,7 +112,7 @@ fn allowed(test: &Test) -> Option<Values> {
 /// The result whose values a formula has: the result itself, an entry of a list, or the largest, smallest or mean one.
 fn read(formula: &Formula) -> Option<ResultReference> {
     match formula {
-        Formula::Result(reference) if reference.part == Part::Value => Some(*reference),
+        Formula::Result(reference) if reference.part == ResultPart::Value => Some(*reference),
         Formula::Index(list, _) => read(list),
         Formula::Call(Function::Max | Function::Min | Function::Mean, parts) => match &parts[..] {
             [list] => read(list),
@@ -218,7 +218,7 @@ pub fn check(
             let Some(result) = condition
                 .value
                 .as_result()
-                .filter(|it| it.part == Part::Value)
+                .filter(|it| it.part == ResultPart::Value)
             else {
                 continue;
             };

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use crate::check::checker::Checker;
 use crate::codes::{W729, W736};
-use psd_plan::formula::Part;
+use psd_plan::formula::ResultPart;
 use psd_plan::procedures::escalate::block as escalate;
 use psd_plan::procedures::impact::block as impact;
 use psd_plan::report::undeclared::{DISPLACEMENT_CALIBRATION, FORCE_CALIBRATION};
@@ -109,10 +109,9 @@ pub fn warn(
             .conditions
             .iter()
             .for_each(|condition| condition.collect_references(&mut references));
-        for reference in references
-            .iter()
-            .filter(|reference| reference.part == Part::Value && !EXACT.contains(&reference.name))
-        {
+        for reference in references.iter().filter(|reference| {
+            reference.part == ResultPart::Value && !EXACT.contains(&reference.name)
+        }) {
             let Some((block, Some(procedure))) = procedures.get(reference.procedure.0) else {
                 continue;
             };

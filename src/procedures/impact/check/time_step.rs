@@ -1,7 +1,7 @@
 //! The critical time step and the time step of an impact before the run. In: the plan. Out: times \[s\], if they are known.
 
 use psd_language::check::checker::Checker;
-use psd_plan::formula::{Formula, NoResults, Part, ResultReference, ResultValue, Results};
+use psd_plan::formula::{Formula, NoResults, ResultPart, ResultReference, ResultValue, Results};
 use psd_plan::procedures::cycle::block as cycle;
 use psd_plan::procedures::stiffness_ramp::block as stiffness_ramp;
 use psd_plan::{Impact, Specimen, Striker};
@@ -53,7 +53,7 @@ const PREDICTED: [&str; 3] = [
 
 impl Results for Predicted {
     fn result(&self, reference: ResultReference) -> Option<ResultValue> {
-        let found = PREDICTED.contains(&reference.name) && reference.part == Part::Value;
+        let found = PREDICTED.contains(&reference.name) && reference.part == ResultPart::Value;
         found.then_some(ResultValue::Number {
             value: Some(self.stiffness),
             uncertainty: None,

@@ -11,7 +11,7 @@ use crate::report::run::Run;
 use crate::report::status::ReportStatus;
 use crate::report::wording::{common, headline, requirements as wording};
 use crate::verdict::{ConditionOutcome, RequirementOutcome, Verdict};
-use psd_plan::formula::{Formula, Part, ResultValue};
+use psd_plan::formula::{Formula, ResultPart, ResultValue};
 use psd_plan::{Condition, DecisionRule, Requirement};
 
 /// Every requirement with value, expanded uncertainty, limit, probability of conformity and verdict; below them the decision rule.
@@ -82,7 +82,7 @@ fn is_reliable(run: &Run<'_>, condition: &Condition) -> bool {
     condition.collect_references(&mut references);
     references
         .into_iter()
-        .filter(|reference| reference.part == Part::Value)
+        .filter(|reference| reference.part == ResultPart::Value)
         .all(|reference| {
             let result = run
                 .record
@@ -215,7 +215,7 @@ fn quantity(run: &Run<'_>, condition: &Condition) -> Option<String> {
         formula => (formula.as_result()?, None),
     };
     let procedure = run.plan.procedures.get(reference.procedure.0)?;
-    if reference.part != Part::Value {
+    if reference.part != ResultPart::Value {
         return None;
     }
     let name = match entry {

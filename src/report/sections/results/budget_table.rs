@@ -10,7 +10,7 @@ use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::{self, percent};
 use crate::report::run::Run;
 use crate::report::wording::budget as wording;
-use psd_plan::formula::{Part, ProcedureId, ResultReference, ResultValue};
+use psd_plan::formula::{ProcedureId, ResultPart, ResultReference, ResultValue};
 use psd_plan::procedures::impact::block as impact;
 use psd_plan::procedures::unload::block as unload;
 use psd_plan::record::{History, NamedResult, ProcedureRecord};
@@ -119,7 +119,7 @@ fn requested(run: &Run<'_>, index: usize, history: &History) -> Vec<ReadResult> 
             reference: ResultReference {
                 procedure: ProcedureId(index),
                 name,
-                part: Part::Value,
+                part: ResultPart::Value,
             },
             entry: None,
         })

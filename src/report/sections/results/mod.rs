@@ -14,7 +14,7 @@ use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::report::run::Run;
 use crate::report::wording::{common, results as wording};
-use psd_plan::formula::{Estimate, Part, ProcedureId, ResultReference, ResultValue};
+use psd_plan::formula::{Estimate, ProcedureId, ResultPart, ResultReference, ResultValue};
 use psd_plan::record::{NamedResult, ProcedureRecord};
 use psd_plan::uncertainty::{MeasurementUncertainty, measurement_uncertainty};
 use psd_text::units::Dimension;
@@ -106,7 +106,7 @@ fn table(run: &Run<'_>, index: usize, results: &[&NamedResult]) -> Block {
         let reference = ResultReference {
             procedure: ProcedureId(index),
             name: result.name,
-            part: Part::Value,
+            part: ResultPart::Value,
         };
         measurement_uncertainty(&result.contributions_of(reference), run.record)
             .filter(|known| !is_rounding(known.standard, result.dimension))

@@ -1,6 +1,6 @@
 //! The results that the requirements of a plan read, and those that it compares with published numbers. In: a plan. Out: results, each with the entry of a list that is read.
 
-use psd_plan::formula::{Formula, Part, ResultReference, ResultValue};
+use psd_plan::formula::{Formula, ResultPart, ResultReference, ResultValue};
 use psd_plan::record::{NamedResult, Record};
 use psd_plan::{Condition, Plan};
 
@@ -68,10 +68,12 @@ pub(crate) fn exists(result: &NamedResult) -> bool {
 
 fn collect(formula: &Formula, entry: Option<usize>, into: &mut Vec<ReadResult>) {
     match formula {
-        Formula::Result(reference) if reference.part == Part::Value => into.push(ReadResult {
-            reference: *reference,
-            entry,
-        }),
+        Formula::Result(reference) if reference.part == ResultPart::Value => {
+            into.push(ReadResult {
+                reference: *reference,
+                entry,
+            })
+        }
         Formula::Constant(_)
         | Formula::Stated(_)
         | Formula::CriticalTimeStep

@@ -2,7 +2,7 @@
 
 use crate::tests::testing::{elastic_plan, every, impact, ramp, struck_frame};
 use psd_plan::formula::Formula::Constant;
-use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference};
+use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference};
 use psd_plan::{
     Behaviour, Between, Comparison, Condition, Cycle, DampingSweep, DriftCheck, Escalate, Frame,
     Ground, Impact, InspectTrigger, Integrator, Level, Mode, Move, Plan, Procedure, ProcedureKind,
@@ -113,7 +113,7 @@ pub(super) fn escalating() -> Plan {
     let value = Formula::Result(ResultReference {
         procedure: ProcedureId(0),
         name: "max_velocity",
-        part: Part::Value,
+        part: ResultPart::Value,
     });
     // The impacts end before their peak, so the condition would not be conclusive.
     let below = Condition {

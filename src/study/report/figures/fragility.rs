@@ -4,11 +4,11 @@ use super::{FigureKind, StudyFigure, axis, cloud, plain, references, series, who
 use crate::report::figures::chart::{Chart, DASHED, End, Marker, Quantity, SOLID, Style, palette};
 use crate::report::wording::study as wording;
 use crate::study::answers::{Answers, FitAnswer, FragilityAnswer};
-use crate::study::data_set::{Kind, Metadata};
+use crate::study::data_set::{Metadata, StudyKind};
 
 /// Band, curve, stripes. Beyond the stripes the curve is dashed.
 pub(super) fn curve(metadata: &Metadata, fragility: &FragilityAnswer) -> Option<StudyFigure> {
-    let Kind::Fragility(stripes) = &metadata.kind else {
+    let StudyKind::Fragility(stripes) = &metadata.kind else {
         return None;
     };
     let column = &metadata.inputs[stripes.intensity];
@@ -94,7 +94,7 @@ pub(super) fn curve(metadata: &Metadata, fragility: &FragilityAnswer) -> Option<
 
 /// The result that the limit of a fragility compares, at every intensity.
 pub(super) fn scatter(metadata: &Metadata, answers: &Answers) -> Option<StudyFigure> {
-    let Kind::Fragility(stripes) = &metadata.kind else {
+    let StudyKind::Fragility(stripes) = &metadata.kind else {
         return None;
     };
     let limit = metadata.requirements.first()?.limit?;

@@ -10,7 +10,7 @@ use crate::report::figures::chart::{
 };
 use crate::report::wording::study as wording;
 use crate::study::answers::{Answers, Histogram, RANKED, ResultAnswer};
-use crate::study::data_set::{Column, Kind, Limit, Metadata, Stopping};
+use crate::study::data_set::{Column, Limit, Metadata, Stopping, StudyKind};
 use psd_physics::study::sensitivity::spearman;
 use psd_text::units::Dimension;
 use psd_text::units::display;
@@ -70,7 +70,7 @@ pub fn figures(metadata: &Metadata, answers: &Answers) -> Vec<StudyFigure> {
 
 /// The runs of all levels of a subset simulation, which come nearer to the limit.
 fn of_levels(metadata: &Metadata, answers: &Answers) -> Option<StudyFigure> {
-    let Kind::Study(Stopping::Rare(rare)) = metadata.kind else {
+    let StudyKind::Study(Stopping::Rare(rare)) = metadata.kind else {
         return None;
     };
     let limit = metadata.requirements.get(rare.requirement)?.limit?;

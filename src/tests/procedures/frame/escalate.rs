@@ -3,7 +3,7 @@
 use super::{close, rest};
 use crate::tests::testing::{as_of, list, number, run_unwatched, struck_frame};
 use psd_plan::formula::Formula::Constant;
-use psd_plan::formula::{Formula, Part, ProcedureId, ResultReference};
+use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference};
 use psd_plan::record::{EscalateHistory, History, Outcome, Record};
 use psd_plan::{
     Between, Comparison, Condition, Escalate, Impact, Plan, Procedure, ProcedureKind, Striker, Test,
@@ -14,7 +14,7 @@ fn drifts_below(limit: f64) -> Condition {
     let all = Formula::Result(ResultReference {
         procedure: ProcedureId(0),
         name: "max_drift",
-        part: Part::Value,
+        part: ResultPart::Value,
     });
     let value = Formula::Call(psd_plan::formula::Function::Max, vec![all]);
     let test = Test::Compare {
@@ -41,7 +41,7 @@ pub(crate) fn rising(velocities: &[f64], between: Between) -> Plan {
     let steps = Formula::Result(ResultReference {
         procedure: ProcedureId(0),
         name: "steps",
-        part: Part::Value,
+        part: ResultPart::Value,
     });
     let test = Test::Compare {
         comparison: Comparison::Greater,

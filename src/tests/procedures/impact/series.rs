@@ -5,7 +5,7 @@ use crate::tests::testing::{as_of, elastic_plan, every, impact, list, number, ru
 use crate::verdict::{Verdict, assess};
 use psd_plan::formula::Formula;
 use psd_plan::formula::Formula::Constant;
-use psd_plan::formula::{Part, ProcedureId, ResultReference};
+use psd_plan::formula::{ProcedureId, ResultPart, ResultReference};
 use psd_plan::record::{EscalateHistory, EventKind, History, Outcome, Record};
 use psd_plan::{
     Behaviour, Between, Comparison, Condition, Contact, Escalate, Impact, Plan, ProcedureKind,
@@ -18,7 +18,7 @@ fn below(limit: f64) -> Condition {
     let value = Formula::Result(ResultReference {
         procedure: ProcedureId(0),
         name: "max_displacement",
-        part: Part::Value,
+        part: ResultPart::Value,
     });
     let test = Test::Compare {
         comparison: Comparison::Less,
@@ -321,7 +321,7 @@ fn a_series_of_truncated_impacts_concludes_nothing_that_complete_ones_do_not() {
         let value = Formula::Result(ResultReference {
             procedure: ProcedureId(0),
             name: "last_passed_energy",
-            part: Part::Value,
+            part: ResultPart::Value,
         });
         let test = Test::Compare {
             comparison: Comparison::GreaterEqual,
@@ -395,7 +395,7 @@ fn a_row_goes_by_where_the_specimen_rests() {
         condition.value = Formula::Result(ResultReference {
             procedure: ProcedureId(0),
             name: "residual_displacement",
-            part: Part::Value,
+            part: ResultPart::Value,
         });
     };
     row.condition.iter_mut().for_each(read);

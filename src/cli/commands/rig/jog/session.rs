@@ -5,7 +5,7 @@ use super::super::typed::positions;
 use super::Wanted;
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::operator::dialogue::by_lines::{self, next_line};
-use crate::cli::operator::question::{Kind, Question};
+use crate::cli::operator::question::{Question, QuestionKind};
 use crate::cli::output::{print_message, print_result};
 use crate::cli::settings::Settings;
 use crate::run::remote_control::Specimen;
@@ -264,7 +264,7 @@ impl Person<'_> {
         let (agreed, how) = if self.yes {
             (true, "answered by --yes")
         } else {
-            let asked = Question::of(Kind::Jog, motion);
+            let asked = Question::of(QuestionKind::Jog, motion);
             let yes = self
                 .lines
                 .agrees(&asked, self.stop_request, || specimen.listen())

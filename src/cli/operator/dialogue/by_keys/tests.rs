@@ -8,10 +8,10 @@ use crate::run::{Inspection, Next};
 const LATER: Duration = Duration::from_secs(100);
 
 fn look() -> Question {
-    of(Kind::Look)
+    of(QuestionKind::Look)
 }
 
-fn of(kind: Kind) -> Question {
+fn of(kind: QuestionKind) -> Question {
     Question {
         kind,
         lines: vec!["look".to_owned()],
@@ -37,7 +37,7 @@ const fn key(character: char) -> Key {
     }
 }
 
-fn answered(kind: Kind, operator: Option<&str>, typed: &str) -> Inspection {
+fn answered(kind: QuestionKind, operator: Option<&str>, typed: &str) -> Inspection {
     let mut dialogue = Dialogue::new(operator.map(str::to_owned));
     assert_eq!(dialogue.ask(&of(kind)), Inspection::Wait);
     type_in(&mut dialogue, typed);
@@ -47,7 +47,7 @@ fn answered(kind: Kind, operator: Option<&str>, typed: &str) -> Inspection {
 #[test]
 fn only_yes_with_a_name_goes_on() {
     let by = |name: &str| Some(name.to_owned());
-    let look = |operator, typed| answered(Kind::Look, operator, typed);
+    let look = |operator, typed| answered(QuestionKind::Look, operator, typed);
     assert_eq!(
         look(Some("A. Engineer"), "y\n"),
         Inspection::GoOn {
@@ -110,7 +110,7 @@ fn only_the_word_releases_a_rig() {
         note: None,
         by: Some("A".to_owned()),
     };
-    let release = |typed| answered(Kind::Release, Some("A"), typed);
+    let release = |typed| answered(QuestionKind::Release, Some("A"), typed);
     assert_eq!(release("RELEASE\n"), released);
     assert_eq!(
         release("y\nxyz\nRELEASE\n"),
@@ -145,10 +145,10 @@ fn no_key_counts_before_a_question_could_be_read() {
         text.chars()
             .for_each(|character| dialogue.press(key(character), now, &stop_request));
     };
-    dialogue.ask(&of(Kind::Release));
+    dialogue.ask(&of(QuestionKind::Release));
     press(&mut dialogue, "RELEASE\nqhn\n\u{4}", LATER);
     assert_eq!(
-        dialogue.ask(&of(Kind::Release)),
+        dialogue.ask(&of(QuestionKind::Release)),
         Inspection::Wait,
         "it has not been drawn"
     );
@@ -162,7 +162,7 @@ fn no_key_counts_before_a_question_could_be_read() {
         LATER + Duration::from_millis(999),
     );
     assert_eq!(
-        dialogue.ask(&of(Kind::Release)),
+        dialogue.ask(&of(QuestionKind::Release)),
         Inspection::Wait,
         "in its first second"
     );
@@ -174,14 +174,14 @@ fn no_key_counts_before_a_question_could_be_read() {
     );
     press(&mut dialogue, "RELEASE\n", LATER + DEAF);
     assert!(matches!(
-        dialogue.ask(&of(Kind::Release)),
+        dialogue.ask(&of(QuestionKind::Release)),
         Inspection::GoOn { .. }
     ));
     assert!(!stop_request.end_requested());
-    dialogue.ask(&of(Kind::GoOn));
+    dialogue.ask(&of(QuestionKind::GoOn));
     press(&mut dialogue, "RELEASE\n", LATER + 2 * DEAF);
     assert_eq!(
-        dialogue.ask(&of(Kind::GoOn)),
+        dialogue.ask(&of(QuestionKind::GoOn)),
         Inspection::Wait,
         "the next question is a new one"
     );
@@ -269,13 +269,13 @@ fn a_pause_is_one_when_the_step_has_ended() {
 fn held(typed: &str) -> (Dialogue, Option<Inspection>) {
     let mut dialogue = Dialogue::new(Some("A".to_owned()));
     assert_eq!(
-        dialogue.ask_to_unload(&of(Kind::Unload)),
+        dialogue.ask_to_unload(&of(QuestionKind::Unload)),
         Some(Inspection::Wait)
     );
     let mut answer = None;
     for character in typed.chars() {
         type_in(&mut dialogue, &character.to_string());
-        answer = dialogue.ask_to_unload(&of(Kind::Unload));
+        answer = dialogue.ask_to_unload(&of(QuestionKind::Unload));
         if answer != Some(Inspection::Wait) {
             break;
         }
@@ -313,10 +313,10 @@ fn a_held_rig_unloads_for_its_word_alone() {
         assert_eq!(held(undecided).1, Some(Inspection::Wait), "{undecided:?}");
     }
     let mut hasty = Dialogue::new(Some("A".to_owned()));
-    hasty.ask_to_unload(&of(Kind::Unload));
+    hasty.ask_to_unload(&of(QuestionKind::Unload));
     type_in(&mut hasty, "uRELEASE\nx");
     assert_eq!(
-        hasty.ask_to_unload(&of(Kind::Unload)),
+        hasty.ask_to_unload(&of(QuestionKind::Unload)),
         Some(Inspection::Wait),
         "what comes before its question chooses nothing else"
     );
@@ -394,7 +394,7 @@ fn nobody_leaves_a_rig_that_may_still_move_unseen() {
     lost.lose(&stop_request);
     assert_eq!(
         (
-            lost.ask_to_unload(&of(Kind::Unload)),
+            lost.ask_to_unload(&of(QuestionKind::Unload)),
             lost.stay(After::NotHeld)
         ),
         (None, Stay::Leave),

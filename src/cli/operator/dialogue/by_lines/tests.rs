@@ -30,7 +30,7 @@ impl Typist {
         }
     }
 
-    fn ask(&mut self, kind: Kind) -> Inspection {
+    fn ask(&mut self, kind: QuestionKind) -> Inspection {
         self.person.wait_for(&[], &Inspection::Wait, |dialogue| {
             dialogue.ask(&question(kind))
         })
@@ -39,7 +39,7 @@ impl Typist {
     fn ask_to_unload(&mut self) -> Option<Inspection> {
         self.person
             .wait_for(&[], &Some(Inspection::Wait), |dialogue| {
-                dialogue.ask_to_unload(&question(Kind::Unload))
+                dialogue.ask_to_unload(&question(QuestionKind::Unload))
             })
     }
 
@@ -53,9 +53,9 @@ impl Typist {
     }
 }
 
-const LOOK: Kind = Kind::Look;
+const LOOK: QuestionKind = QuestionKind::Look;
 
-fn question(kind: Kind) -> Question {
+fn question(kind: QuestionKind) -> Question {
     Question {
         kind,
         lines: vec!["look".to_owned()],
@@ -63,7 +63,7 @@ fn question(kind: Kind) -> Question {
 }
 
 /// The result of these lines, typed after the question can be answered and followed by the end of the input.
-fn answer_to(kind: Kind, lines: &[&str], operator: Option<&str>) -> Inspection {
+fn answer_to(kind: QuestionKind, lines: &[&str], operator: Option<&str>) -> Inspection {
     let mut typist = Typist::new(operator);
     assert_eq!(typist.ask(kind), Inspection::Wait);
     typist.now.set(Duration::from_secs(1));
@@ -108,7 +108,7 @@ fn only_a_clear_yes_with_a_name_goes_on_and_a_remark_is_a_line_of_its_own() {
         Inspection::Stop { by: Some(_), .. }
     ));
     let released = answer_to(
-        Kind::Release,
+        QuestionKind::Release,
         &["y", "yes", "xyz", "release", "RELEASE"],
         Some("A"),
     );
@@ -122,7 +122,7 @@ fn only_a_clear_yes_with_a_name_goes_on_and_a_remark_is_a_line_of_its_own() {
     for none in ["y", "yes", "xyz", "release", "UNLOAD", "y RELEASE"] {
         assert!(
             matches!(
-                answer_to(Kind::Release, &[none], Some("A")),
+                answer_to(QuestionKind::Release, &[none], Some("A")),
                 Inspection::Stop { by: None, .. }
             ),
             "{none}"
@@ -133,7 +133,7 @@ fn only_a_clear_yes_with_a_name_goes_on_and_a_remark_is_a_line_of_its_own() {
         by: by("A"),
     };
     assert_eq!(
-        answer_to(Kind::Release, &["i not clear", "n"], Some("A")),
+        answer_to(QuestionKind::Release, &["i not clear", "n"], Some("A")),
         declined
     );
 }
@@ -141,7 +141,7 @@ fn only_a_clear_yes_with_a_name_goes_on_and_a_remark_is_a_line_of_its_own() {
 #[test]
 fn a_release_typed_before_its_question_could_be_read_is_none() {
     let mut typist = Typist::new(Some("A"));
-    let ask = |typist: &mut Typist| typist.ask(Kind::Release);
+    let ask = |typist: &mut Typist| typist.ask(QuestionKind::Release);
     typist.types("RELEASE");
     assert_eq!(ask(&mut typist), Inspection::Wait);
     typist.types("RELEASE");
@@ -161,27 +161,33 @@ fn a_release_typed_before_its_question_could_be_read_is_none() {
 fn the_next_question_takes_no_line_of_the_one_before() {
     let mut typist = Typist::new(Some("A"));
     let ask = |typist: &mut Typist, kind| typist.ask(kind);
-    ask(&mut typist, Kind::Release);
+    ask(&mut typist, QuestionKind::Release);
     typist.now.set(Duration::from_secs(1));
-    ask(&mut typist, Kind::Release);
+    ask(&mut typist, QuestionKind::Release);
     typist.types("RELEASE");
     typist.types("RELEASE");
     assert!(matches!(
-        ask(&mut typist, Kind::Release),
+        ask(&mut typist, QuestionKind::Release),
         Inspection::GoOn { .. }
     ));
     assert_eq!(
-        [ask(&mut typist, Kind::GoOn), ask(&mut typist, Kind::GoOn)],
+        [
+            ask(&mut typist, QuestionKind::GoOn),
+            ask(&mut typist, QuestionKind::GoOn)
+        ],
         [Inspection::Wait, Inspection::Wait]
     );
     typist.now.set(Duration::from_secs(2));
     assert_eq!(
-        [ask(&mut typist, Kind::GoOn), ask(&mut typist, Kind::GoOn)],
+        [
+            ask(&mut typist, QuestionKind::GoOn),
+            ask(&mut typist, QuestionKind::GoOn)
+        ],
         [Inspection::Wait, Inspection::Wait]
     );
     typist.types("RELEASE");
     assert!(matches!(
-        ask(&mut typist, Kind::GoOn),
+        ask(&mut typist, QuestionKind::GoOn),
         Inspection::GoOn { .. }
     ));
 }
@@ -358,18 +364,22 @@ fn one_move_by_hand_wants_its_word() {
         send.send("MOVE".to_owned()).unwrap();
         let mut send = Some(send);
         let mut looks = 0;
-        let agreed = person.agrees(&question(Kind::Jog), &StopRequest::default(), || {
-            looks += 1;
-            if looks == 1 {
-                now.set(Duration::from_secs(1));
-            } else if looks == 2 {
-                let send = send.take().unwrap();
-                for line in typed {
-                    send.send((*line).to_owned()).unwrap();
+        let agreed = person.agrees(
+            &question(QuestionKind::Jog),
+            &StopRequest::default(),
+            || {
+                looks += 1;
+                if looks == 1 {
+                    now.set(Duration::from_secs(1));
+                } else if looks == 2 {
+                    let send = send.take().unwrap();
+                    for line in typed {
+                        send.send((*line).to_owned()).unwrap();
+                    }
                 }
-            }
-            Ok::<_, ()>(())
-        });
+                Ok::<_, ()>(())
+            },
+        );
         assert_eq!(agreed, Ok(moves), "{typed:?}");
     }
 }

@@ -7,7 +7,7 @@ use ratatui::text::{Line, Span};
 
 use super::{View, fitted, shown};
 use crate::cli::operator::dialogue::{Typing, What};
-use crate::cli::operator::question::{After, Kind};
+use crate::cli::operator::question::{After, QuestionKind};
 use crate::cli::operator::screen::model::{Ended, INSPECT};
 use psd_text::units::Dimension;
 use psd_text::units::display::{readable, significant};
@@ -101,7 +101,7 @@ fn state(view: &View<'_>) -> (&'static str, Color) {
         ("STOPPING", Color::Red)
     } else if let Some(question) = &view.dialogue.question {
         (
-            if question.kind == Kind::Release {
+            if question.kind == QuestionKind::Release {
                 "NOT RELEASED YET"
             } else {
                 "INSPECTION"
@@ -213,7 +213,7 @@ pub fn keys<'a>(view: &View<'_>) -> Line<'a> {
         " Ctrl-C stop, twice: hold now   other keys do not count yet"
     } else if let Some(question) = dialogue.question.as_ref().filter(|_| answering) {
         let word = question.kind.word();
-        let stop = if question.kind == Kind::Unload {
+        let stop = if question.kind == QuestionKind::Unload {
             "Esc back"
         } else {
             "q stop   h hold now   ? help"

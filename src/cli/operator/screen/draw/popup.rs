@@ -8,7 +8,7 @@ use ratatui::widgets::{Block, BorderType, Clear, Padding, Paragraph};
 
 use super::{View, shown};
 use crate::cli::operator::dialogue::{Typing, What};
-use crate::cli::operator::question::{After, Kind, WHY_RESUME, position_and_force};
+use crate::cli::operator::question::{After, QuestionKind, WHY_RESUME, position_and_force};
 use psd_plan::record::EventKind;
 
 const WIDEST: u16 = 72;
@@ -56,7 +56,7 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, charts: Rect, whole: Rect, e
         .dialogue
         .question
         .as_ref()
-        .is_some_and(|question| question.kind != Kind::Look);
+        .is_some_and(|question| question.kind != QuestionKind::Look);
     let block = Block::bordered()
         .border_type(BorderType::Double)
         .border_style(view.paint(if moves { Color::Red } else { Color::Yellow }))
@@ -125,14 +125,14 @@ fn content(view: &View<'_>, width: usize) -> Option<(&'static str, Vec<String>)>
 }
 
 /// The request for the line that is being typed.
-fn asked(view: &View<'_>, kind: Kind) -> String {
+fn asked(view: &View<'_>, kind: QuestionKind) -> String {
     let (word, declined) = (kind.word(), kind.declined());
     let unclear = if view.dialogue.unclear {
         "Not an answer. "
     } else {
         ""
     };
-    let unloads = if view.model.unloads && kind != Kind::Unload {
+    let unloads = if view.model.unloads && kind != QuestionKind::Unload {
         " After a stop by a limit the rig MOVES back and unloads automatically; after a stop by you it holds."
     } else {
         ""

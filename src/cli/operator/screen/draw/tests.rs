@@ -8,7 +8,7 @@ use ratatui::backend::TestBackend;
 use super::{View, draw};
 use crate::cli::operator::dialogue::Dialogue;
 use crate::cli::operator::dialogue::keys::Key;
-use crate::cli::operator::question::{After, Kind, Question, Stay};
+use crate::cli::operator::question::{After, Question, QuestionKind, Stay};
 use crate::cli::operator::screen::model::Model;
 
 use crate::run::{Extent, Motion, StepReport};
@@ -210,7 +210,7 @@ fn a_release_states_what_will_move_and_requires_its_word() {
         simulated: false,
         ..Model::new(&empty_plan(), false)
     };
-    dialogue.ask(&Question::of(Kind::Release, &motion()));
+    dialogue.ask(&Question::of(QuestionKind::Release, &motion()));
     let unread = picture((80, 24), &dialogue, &before);
     read(&mut dialogue);
     let read = picture((80, 24), &dialogue, &before);
@@ -251,7 +251,7 @@ fn a_held_rig_stays_on_the_screen_with_what_may_be_done() {
         force: vec![2288.0],
     });
     let mut dialogue = Dialogue::new(Some("A".to_owned()));
-    dialogue.ask_to_unload(&Question::of(Kind::Unload, &motion()));
+    dialogue.ask_to_unload(&Question::of(QuestionKind::Unload, &motion()));
     read(&mut dialogue);
     let menu = picture((80, 24), &dialogue, &held);
     press(&mut dialogue, "r");
