@@ -72,7 +72,7 @@ fn collect(formula: &Formula, entry: Option<usize>, into: &mut Vec<ReadResult>) 
             into.push(ReadResult {
                 reference: *reference,
                 entry,
-            })
+            });
         }
         Formula::Constant(_)
         | Formula::Stated(_)
