@@ -18,7 +18,7 @@ mod virtual_rig;
 #[cfg(test)]
 extern crate self as psd_rig;
 #[cfg(test)]
-#[path = "../testing/rig_tests.rs"]
+#[path = "../testing/lib.rs"]
 pub mod testing;
 
 use serde::{Deserialize, Serialize};

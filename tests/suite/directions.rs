@@ -1,16 +1,13 @@
-//! The dependency rules: which folder of `src` may use which. No files form a dependency cycle.
+//! The dependency rules inside the crate `psd`: which folder may use which. The compiler holds those between crates. No files form a
+//! dependency cycle.
 
 use std::collections::BTreeSet;
 
 use super::import_graph::{ImportGraph, cycles, is_of_tests, without_comments_and_tests};
 use super::source_text::{none, rust_files};
 
-/// The folders of `src`, lowest level first. A folder may use the folders of earlier lines. In its own line it may use only itself.
+/// The folders of `psd`, lowest level first. A folder may use the folders of earlier lines. In its own line it may use only itself.
 const ORDER: &[&[&str]] = &[
-    &["text"],
-    &["physics"],
-    &["plan"],
-    &["language", "rig"],
     &["run"],
     &["verdict"],
     &["report"],
@@ -28,7 +25,7 @@ const DISPATCH: &str = "procedures/mod.rs";
 /// The types of its facts about a procedure.
 const FACTS: &str = "procedures/facts.rs";
 
-/// The drivers of check, run and report. Only they query the procedures, and only through the dispatch file. All other files in their
+/// The drivers of run and report. Only they query the procedures, and only through the dispatch file. All other files in their
 /// folders are engines, which the procedures use.
 const DRIVERS: &[&str] = &[
     "report/budget/line.rs",

@@ -18,7 +18,7 @@ use crate::explain_pages::{FOLDER, options_of, page_path, page_text, shared_text
 pub struct PageCase {
     /// The code of its page.
     pub code: Code,
-    /// Its heading, which tells it from the other cases of the page.
+    /// Its heading, which distinguishes it from the other cases of the page.
     pub name: String,
     /// Its plan, without the shared plans before it.
     pub plan: String,

@@ -169,7 +169,7 @@ fn no_speed_is_rounded_up_and_no_number_is_clamped() {
         assert_eq!(
             (going.targets[0], going.speed),
             (asked, asked),
-            "the last bit of turning units is not held against it"
+            "the last bit of turning units makes no difference"
         );
     }
     for (target, speed) in [
