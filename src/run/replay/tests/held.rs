@@ -311,7 +311,7 @@ fn a_target_that_was_sent_again_began_where_the_rig_was_found() {
         (2.1e-4, false),
     ] {
         let decided = decided_of(&logged, displacement, 300.0 * displacement, true);
-        let refused = matches!(decided, Err(ResumeRefusal::Elsewhere { .. }));
+        let refused = matches!(decided, Err(ResumeRefusal::Lost { .. }));
         assert_eq!(
             (decided.is_ok(), refused),
             (allowed, !allowed),
