@@ -204,10 +204,7 @@ fn offsets(length: usize) -> Vec<usize> {
 fn a_sound_folder_is_sound_and_names_its_parts() {
     let signed = signed();
     let findings = examine(&signed.folder, &signed.rebuilt, &signed.keys);
-    assert!(
-        findings.iter().all(|finding| finding.is_sound()),
-        "{findings:#?}"
-    );
+    assert!(findings.iter().all(Finding::is_sound), "{findings:#?}");
     let parts: Vec<&str> = findings.iter().map(|finding| finding.part).collect();
     assert_eq!(
         parts,
@@ -226,7 +223,7 @@ fn a_sound_folder_is_sound_and_names_its_parts() {
     let unsigned = folder(run());
     let findings = examine(&unsigned, &signed.rebuilt, &[]);
     assert!(
-        findings.iter().all(|finding| finding.is_sound())
+        findings.iter().all(Finding::is_sound)
             && findings.last().unwrap().statement.contains("unsigned")
     );
     assert_eq!(
@@ -242,7 +239,7 @@ fn a_missing_signature_is_reported_and_with_a_key_is_an_error() {
     let half = with(&signed.folder, quality, None);
     let findings = examine(&half, &signed.rebuilt, &[]);
     assert!(
-        findings.iter().all(|finding| finding.is_sound())
+        findings.iter().all(Finding::is_sound)
             && findings.last().unwrap().statement == "Quality has not signed",
         "{findings:#?}"
     );
@@ -321,7 +318,7 @@ fn without_a_known_key_a_signature_still_holds_against_the_key_it_names() {
     }
     let findings = examine(&signed.folder, &signed.rebuilt, &[]);
     assert!(
-        findings.iter().all(|finding| finding.is_sound())
+        findings.iter().all(Finding::is_sound)
             && findings
                 .last()
                 .unwrap()

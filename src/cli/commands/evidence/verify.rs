@@ -69,7 +69,7 @@ pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, F
         );
     }
     print_result(&text)?;
-    Ok(if findings.iter().all(|finding| finding.is_sound()) {
+    Ok(if findings.iter().all(Finding::is_sound) {
         Exit::Met
     } else {
         Exit::Fault
