@@ -7,7 +7,7 @@ use sha2::{Digest as _, Sha256};
 use super::circumstances::Circumstances;
 use crate::report::{Build, Provenance, RealRun};
 use crate::run::check_run;
-use crate::run::replay::Header;
+use crate::run::replay::{Header, LogForm};
 use psd_plan::Plan;
 use psd_text::digest::{hex, sha256};
 
@@ -20,6 +20,24 @@ pub fn this_build() -> Build {
     Build {
         sources: BUILD.to_owned(),
         toolchain: TOOLCHAIN.to_owned(),
+    }
+}
+
+/// The other build of psd that made a run; None if it was this one. The steps of a simulation also depend on the toolchain.
+pub fn other_build(header: &Header) -> Option<String> {
+    let Header {
+        psd,
+        build,
+        toolchain,
+        log,
+        ..
+    } = header;
+    if build != BUILD {
+        Some(format!("psd {psd} build {build}"))
+    } else if *log == LogForm::Compact && toolchain != TOOLCHAIN {
+        Some(format!("psd {psd} built by {toolchain}"))
+    } else {
+        None
     }
 }
 

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::cli::args::{Format, PlanSettings, name};
+use crate::cli::args::{Format, PlanSettings, RunLog, name};
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::accepted::AcceptedFolder;
 use crate::cli::files::golden_run;
@@ -54,6 +54,9 @@ pub struct RunArguments {
     /// Standard output: the run folder, or the summary as JSON
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub format: Format,
+    /// Run log of a simulation: digests, or every target and reading
+    #[arg(long, value_enum, value_name = "FORM")]
+    pub log: Option<RunLog>,
     /// Also replace the accepted results in reports/PLAN
     #[arg(long)]
     pub accept: bool,
