@@ -133,7 +133,7 @@ impl Released {
 }
 
 /// Longest time between the reading of a position and its arrival as a target \[s\].
-const READ_WITHIN: f64 = 0.05;
+pub(super) const READ_WITHIN: f64 = 0.05;
 
 /// Larger than any number whose words are swapped and whose second word was 0 \[m\].
 const HARMLESS: f64 = 1e-30;
@@ -167,6 +167,8 @@ pub(super) struct Witness {
     /// INTENT that belongs to the last move, and the moves beyond the first of one INTENT.
     last_intent: u64,
     pub(super) repeated: u64,
+    /// psd was killed: what it had sent again is not in its record.
+    pub(super) killed: bool,
     /// Moves after the last release.
     pub(super) moved: u64,
     /// Why the run must not have gone on, if anything moves now.
@@ -194,6 +196,7 @@ impl Witness {
             violations: 0,
             last_intent: 0,
             repeated: 0,
+            killed: false,
             moved: 0,
             other_specimen: None,
             breaches: Vec::new(),
@@ -208,12 +211,21 @@ impl Witness {
         }
     }
 
+    /// A session begins, and nothing has moved. Nothing is released, unless the rig still `obeys_late` what was released before.
+    pub(super) fn begin(&mut self, obeys_late: bool) {
+        (self.moved, self.other_specimen) = (0, None);
+        if !obeys_late {
+            (self.released, self.killed) = (None, false);
+        }
+    }
+
     /// What someone else did to the rig is not psd's.
     pub(super) fn look_away(&mut self, rig: &EmulatedRig) {
         (self.moves, self.violations) = (rig.moves().len(), rig.violations().len());
     }
 
-    /// Looks at what the rig has received since the last look. `positions` are its commanded and its true position before \[m\]; `moving`: it moved then.
+    /// Looks at what the rig has received since the last look. `positions` are its commanded and its true position before \[m\]; `moving`:
+    /// it moved then, or within the time in which a position is read.
     pub(super) fn look(
         &mut self,
         rig: &EmulatedRig,
@@ -302,7 +314,7 @@ impl Witness {
         self.check(Law::TargetDurable, durable, || {
             format!("the rig moves to {target:e} m, which is not the last durable INTENT")
         });
-        if number == self.last_intent {
+        if number == self.last_intent && !self.killed {
             self.repeated += 1;
         }
         self.last_intent = number;

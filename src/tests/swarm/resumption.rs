@@ -235,7 +235,7 @@ fn other_specimen(
         .filter(|line| line.kind == EntryKind::Sample);
     let elsewhere = readings
         .filter_map(|line| line.read::<SampleBody>().ok())
-        .find(|earlier| (earlier.x[0] - sampled.x[0]).abs() > band);
+        .find(|earlier| (earlier.x[0] - sampled.x[0]).abs() > bands.displacement[0]);
     if let Some(earlier) = elsewhere {
         let tangent = (sampled.r[0] - earlier.r[0]) / (sampled.x[0] - earlier.x[0]);
         window.low = window.low.min(tangent.max(0.0));

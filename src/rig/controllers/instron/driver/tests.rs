@@ -91,6 +91,20 @@ fn a_ramp_is_read_back_before_it_starts() {
     assert_eq!(console.line_statistics().resent, 2);
 }
 
+/// The line has no checksum: one bit makes 8.01 of 0.01, and 0.05 of 0.01.
+#[test]
+fn a_ramp_never_follows_a_single_wrong_position() {
+    for wrong in ["8.01", "0.05"] {
+        let (mut console, mut script) = opened();
+        round(&mut script, "0", "0.01", "0.01");
+        console.sample().unwrap();
+        round(&mut script, "0", wrong, "0.01");
+        console.sample().unwrap();
+        let going = console.encode(&[0.005], 0.0008).unwrap();
+        assert_eq!(text(&going.frames.concat()), format!("{RAMP}{START}"));
+    }
+}
+
 #[test]
 fn a_ramp_that_is_never_read_back_is_never_started() {
     let (mut console, mut script) = opened();
