@@ -24,6 +24,7 @@ pub mod testing;
 use serde::{Deserialize, Serialize};
 
 use psd_physics::tracking::trajectory::Path;
+use psd_plan::record::IS_OUTSIDE;
 use psd_plan::{Interval, Limits, Plan};
 use psd_text::units::{Dimension, display};
 
@@ -172,9 +173,6 @@ pub enum RigFault {
     #[error("{0}")]
     Device(String),
 }
-
-/// Between a value and its limit, in the text of a limit that was broken.
-pub const IS_OUTSIDE: &str = " is outside its limit ";
 
 /// Six digits, because a value just beyond its limit must not appear equal to the limit. Fractions are in percent.
 fn breach(

@@ -177,9 +177,6 @@ impl Inspection {
     }
 }
 
-/// The event in the run log before a stopped run unloads.
-pub const UNLOADING: &str = "unloading to where the run began";
-
 /// Displays nothing, and continues at every inspection.
 pub struct Unwatched;
 

@@ -23,6 +23,11 @@ pub fn this_build() -> Build {
     }
 }
 
+/// Version and build of this program, for the data set of a study.
+pub fn version() -> String {
+    format!("{} {BUILD}", env!("CARGO_PKG_VERSION"))
+}
+
 /// The other build of psd that made a run; None if it was this one. The steps of a simulation also depend on the toolchain.
 pub fn other_build(header: &Header) -> Option<String> {
     let Header {
@@ -39,11 +44,6 @@ pub fn other_build(header: &Header) -> Option<String> {
     } else {
         None
     }
-}
-
-/// Version and build of this program, for the data set of a study.
-pub fn version() -> String {
-    format!("{} {BUILD}", env!("CARGO_PKG_VERSION"))
 }
 
 /// The provenance of a run of `plan` by this version of the program; `date` is that of the command line, which the plan
@@ -209,7 +209,7 @@ fn run_id(plan: &Plan, version: &str, date: Option<&str>) -> String {
         part(date);
     }
     // A low-level check run has an id different from that of its run.
-    if check_run::performed_part(plan).is_some() {
+    if plan.performed_part().is_some() {
         digest.update(check_run::RUN_ID_MARK);
     }
     hex(&digest.finalize())[..16].to_owned()

@@ -6,7 +6,6 @@ use super::disk_space;
 use crate::args::PlanSettings;
 use crate::files::failure::Failure;
 use psd::report::Provenance;
-use psd::run::check_run;
 use psd::run::replay;
 use psd::run::replay::{Header, HeaderFile, LogForm, RULES};
 use psd_plan::Plan;
@@ -47,7 +46,7 @@ pub fn header(
         rig: settings.rig.clone(),
         equipment: Equipment::of(plan, device),
         log: LogForm::Full,
-        check_run: check_run::performed_part(plan).is_some(),
+        check_run: plan.performed_part().is_some(),
         served,
         date: settings.date.clone(),
         operator,

@@ -78,6 +78,12 @@ pub enum Outcome {
 /// The end of the text of an inspection of a simulated rig without a terminal.
 pub const NO_OPERATOR_ASKED: &str = "no operator was asked: simulated rig, no terminal";
 
+/// The event in the run log before a stopped run unloads.
+pub const UNLOADING: &str = "unloading to where the run began";
+
+/// Between a value and its limit, in the text of a limit that was broken.
+pub const IS_OUTSIDE: &str = " is outside its limit ";
+
 /// An event for the report.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {

@@ -4,6 +4,10 @@
 use serde_json::{Value, json};
 
 use super::{Bytes, compact_run, folder, forged, offsets, psd, run, with};
+<<<<<<< HEAD
+=======
+use crate::Exit;
+>>>>>>> walls
 use crate::commands::prediction::prediction;
 use crate::evidence::check::examine;
 use crate::evidence::finding::{Finding, Judgement};

@@ -53,7 +53,7 @@ report {
 "#;
 
 fn psd(arguments: &[&str]) -> Exit {
-    crate::run(["psd"].iter().chain(arguments).map(Into::into))
+    crate::run_command_line(["psd"].iter().chain(arguments).map(Into::into))
 }
 
 pub(super) type Bytes = BTreeMap<String, Vec<u8>>;
