@@ -19,7 +19,7 @@ pub use crate::procedures::damping_sweep::history::{
     BroughtTogether, DampingSweepHistory, SweepStep,
 };
 pub use crate::procedures::escalate::history::{EscalateHistory, SeriesImpact};
-pub use crate::procedures::impact::history::{ImpactHistory, ImpactStep};
+pub use crate::procedures::impact::history::{ImpactHistory, ImpactStep, StillGrowing};
 pub use crate::procedures::move_to::history::MoveStep;
 pub use crate::procedures::shake::history::{ShakeHistory, ShakeStep};
 pub use crate::procedures::stiffness_ramp::history::{RampStep, StiffnessRampHistory};

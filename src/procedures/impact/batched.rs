@@ -11,7 +11,7 @@ use psd_physics::impact::batch::{self, Batched, Reach};
 use psd_physics::specimen::SpecimenModel;
 use psd_plan::formula::{NoResults, ProcedureId};
 use psd_plan::procedures::impact::block as schema;
-use psd_plan::record::{History, ImpactHistory, ProcedureRecord};
+use psd_plan::record::{History, ImpactHistory, ProcedureRecord, StillGrowing};
 use psd_plan::{Impact, Interval, Limits, Mode, Plan, Procedure, Until};
 use psd_rig::DeclaredNoise;
 
@@ -95,12 +95,13 @@ impl BatchedImpact {
     }
 }
 
-const fn without_steps(time_step: f64, critical_time_step: f64) -> ImpactHistory {
+fn without_steps(time_step: f64, critical_time_step: f64) -> ImpactHistory {
     ImpactHistory {
         steps: Vec::new(),
         frame: None,
         time_step,
         critical_time_step,
+        growing: StillGrowing::default(),
     }
 }
 

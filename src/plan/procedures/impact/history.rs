@@ -2,7 +2,6 @@
 
 use crate::record::{StepState, StruckFrame};
 use psd_physics::impact::energy::Energies;
-use psd_physics::impact::summary::still_rising;
 use psd_physics::tracking::monitor::Tracking;
 
 /// One row of an impact's table; step 0 is the start.
@@ -47,20 +46,20 @@ pub struct ImpactHistory {
     pub time_step: f64,
     /// \[s\]
     pub critical_time_step: f64,
+    pub growing: StillGrowing,
 }
 
-impl ImpactHistory {
-    /// Whether the structure was still moving beyond its largest displacement at the end of the record: then the maximum
-    /// was not reached within the run.
-    #[must_use]
-    pub fn still_rising(&self) -> bool {
-        let largest = self
-            .steps
-            .iter()
-            .map(|step| step.computed)
-            .fold(f64::NEG_INFINITY, f64::max);
-        self.steps
-            .last()
-            .is_some_and(|last| still_rising(last.velocity, last.computed >= largest))
-    }
+/// The quantities that were still growing when an impact ended: the largest value of each is not its peak.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct StillGrowing {
+    /// Whether the striker had not stopped after any step, and if so, whether it had touched the structure.
+    pub pushed: Option<bool>,
+    /// The structure was moving beyond its largest displacement.
+    pub displacement: bool,
+    pub velocity: bool,
+    pub contact_force: bool,
+    pub base_shear: bool,
+    /// The floors of a frame, from 0, and its storeys that were moving beyond their largest displacement and drift.
+    pub floors: Vec<usize>,
+    pub storeys: Vec<usize>,
 }
