@@ -10,7 +10,7 @@ use crate::procedures::stepping::tracking::TrackingSummary;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use psd_physics::integrator::solver::FrameSolver;
-use psd_physics::structure::ground::acceleration_at;
+use psd_physics::structure::ground::{acceleration_at, next_acceleration};
 use psd_physics::tracking::monitor::Tracking;
 use psd_plan::record::{FloorMotion, ShakeHistory, ShakeStep};
 use psd_plan::{Ground, Shake};
@@ -61,6 +61,7 @@ impl Shaking<'_> {
                         ground,
                         solver,
                         load,
+                        passed: 0,
                         history,
                         summary,
                     },
@@ -87,6 +88,8 @@ struct Shaken<'a> {
     solver: FrameSolver,
     /// Load of the present step \[N\].
     load: Vec<f64>,
+    /// Samples of the ground motion that are passed.
+    passed: usize,
     history: &'a mut ShakeHistory,
     summary: &'a mut ShakeSummary,
 }
@@ -102,9 +105,13 @@ impl Stepped for Shaken<'_> {
             ground,
             solver,
             load,
+            passed,
             ..
         } = self;
-        let ground_acceleration = setting.ground_at(ground, solver.state().step + 1);
+        #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
+        let time = (solver.state().step + 1) as f64 * setting.frame.steps.time_step;
+        let ground_acceleration =
+            setting.scale * next_acceleration(&ground.times, &ground.accelerations, time, passed);
         let matrices = &setting.frame.properties.matrices;
         matrices.ground_load(ground_acceleration, load);
         target.copy_from_slice(self.solver.predict(&self.load));

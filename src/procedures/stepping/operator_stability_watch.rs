@@ -103,7 +103,11 @@ impl Stiffer {
         let (measured, spread) = if self.judged.moving {
             self.in_motion.add(reading, self.judged.noise)
         } else {
-            self.secant(reading)
+            let stable = match integrator {
+                Integrator::Explicit => 0.0,
+                Integrator::Tangent | Integrator::AlphaOs { .. } => operator_stiffness,
+            };
+            self.secant(reading, stable)
         }?;
         // The secant of a very small move is rounding; in motion the velocities are differences too.
         let rounding = if self.judged.moving { 1e-4 } else { 1e-9 } * operator_stiffness;
@@ -165,8 +169,9 @@ impl Stiffer {
 impl Stiffer {
     /// Secant stiffness of the last step with its standard deviation \[N/m\]; None if the move is too small, or reversed: friction
     /// reverses with it. In a response that reverses at every step, as an unstable one does, the last reading but one has the same
-    /// friction: both were reached in the same direction, if the amplitude has grown enough.
-    fn secant(&mut self, reading: (f64, f64)) -> Option<(f64, f64)> {
+    /// friction: both were reached in the same direction, if the amplitude has grown enough. None also up to the `stable` stiffness
+    /// \[N/m\].
+    fn secant(&mut self, reading: (f64, f64), stable: f64) -> Option<(f64, f64)> {
         let noise = self.judged.noise;
         let moved = reading.0 - self.last.0;
         let first = self.moved == 0.0;
@@ -183,6 +188,9 @@ impl Stiffer {
         let measured = (reading.1 - from.1) / change;
         (self.before, self.last, self.moved, self.turned) =
             (self.last, reading, moved, turned && !first);
+        if !(counts && measured.is_finite() && change.abs() > SURE * noise.1 && measured > stable) {
+            return None;
+        }
         // A reading has at least the error of its last digits.
         let rounded =
             |noise: f64, read: f64, other: f64| noise.max(ROUNDING * read.abs().max(other.abs()));
@@ -190,8 +198,7 @@ impl Stiffer {
         let spread = std::f64::consts::SQRT_2
             * force.hypot(measured * rounded(noise.1, reading.0, from.0))
             / change.abs();
-        (counts && measured.is_finite() && change.abs() > SURE * noise.1)
-            .then_some((measured, spread))
+        Some((measured, spread))
     }
 }
 

@@ -293,7 +293,7 @@ impl<'rig> Guard<'rig> {
     /// Allowed tracking-error energy as a fraction of the input energy: the plan's limit, else the default.
     #[must_use]
     pub fn tracking_energy_limit(&self) -> Interval {
-        self.limits.held().tracking_energy_error
+        self.limits.held_tracking_energy_error()
     }
 
     /// Stops all motion and keeps the load. A proposed move is discarded.

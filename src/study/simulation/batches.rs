@@ -11,7 +11,7 @@ use psd_rig::virtual_rig;
 /// The impact that is the whole plan, if it can run in a batch.
 pub fn impact(plan: &Plan) -> Option<BatchedImpact> {
     let first = &plan.procedures.first()?.kind;
-    BatchedImpact::of(procedures::facts_of(first).point_impact?, plan)
+    BatchedImpact::of(procedures::point_impact(first)?, plan)
 }
 
 /// Whether batches give everything that is read of the runs of this plan.

@@ -2,6 +2,8 @@
 //! seed and i alone. It writes no file.
 
 mod alone;
+#[cfg(test)]
+mod alone_tests;
 mod batches;
 pub mod readout;
 #[cfg(test)]

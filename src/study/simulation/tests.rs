@@ -14,7 +14,7 @@ use psd_plan::{Comparison, Condition, Test};
 use psd_text::units::Dimension;
 
 /// Files beside the examples.
-fn folder(path: &str) -> Result<String, LoadError> {
+pub(super) fn folder(path: &str) -> Result<String, LoadError> {
     std::fs::read_to_string(format!("plans/{path}")).map_err(|_| LoadError::NotFound)
 }
 
