@@ -67,7 +67,7 @@ const KNOWS: &[(&[&str], &[&str])] = &[
             "minisign",
             "rpassword",
         ],
-        &["cli", "evidence"],
+        &["cli"],
     ),
     (&["serialport"], &["rig/transport", "rig/emulator", "cli"]),
 ];

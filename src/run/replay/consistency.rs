@@ -6,8 +6,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::entry::{
-    AmendBody, EndBody, FaultBody, Header, HeldBody, IntentBody, OperatorEntry, PlanBody,
-    RecoverBody, ResumeBody, RigBody, SampleBody, StepBody, StrokeBody, unescaped,
+    AmendBody, DigestBody, EndBody, FaultBody, Header, HeldBody, IntentBody, OperatorEntry,
+    PlanBody, RecoverBody, ResumeBody, RigBody, SampleBody, StepBody, StrokeBody, unescaped,
 };
 use super::logged_run::{LoggedRun, body};
 use psd_plan::record::Event;
@@ -162,6 +162,7 @@ fn is_ours(line: &Line) -> Result<(), Contradiction> {
         EntryKind::Sample => written::<SampleBody>(line, &[]),
         EntryKind::Stroke => written::<StrokeBody>(line, &[]),
         EntryKind::Step => written::<StepBody>(line, &[]),
+        EntryKind::Digest => written::<DigestBody>(line, &[]),
         EntryKind::Operator => written::<OperatorEntry>(line, &[]),
         EntryKind::Event => written::<Event>(line, &[]),
         EntryKind::Fault => written::<FaultBody>(line, &[]),

@@ -5,7 +5,9 @@ use std::collections::VecDeque;
 
 use serde::de::DeserializeOwned;
 
-use super::entry::{AmendBody, Header, PlanBody, RULES, ResumeBody, RigBody, TargetStatus};
+use super::entry::{
+    AmendBody, DigestBody, Header, PlanBody, RULES, ResumeBody, RigBody, TargetStatus,
+};
 use super::in_force::Rigs;
 use psd_plan::record::{Event, EventKind};
 use psd_rig::journal::{EntryKind, Line, Recovered};
@@ -129,6 +131,7 @@ impl LoggedRun {
             | EntryKind::Sample
             | EntryKind::Stroke
             | EntryKind::Step
+            | EntryKind::Digest
             | EntryKind::Operator
             | EntryKind::Event
             | EntryKind::Fault
@@ -195,6 +198,24 @@ impl LoggedRun {
             text,
         });
     }
+}
+
+/// Number of targets and of steps in a run log.
+#[must_use]
+pub fn number_of_steps(recovered: &Recovered) -> (u64, u64) {
+    let count = |(targets, steps), line: &Line| match line.kind {
+        EntryKind::Intent => (targets + 1, steps),
+        EntryKind::Step => (targets, steps + 1),
+        EntryKind::Digest => match line.read::<DigestBody>() {
+            Ok(digest) => (
+                digest.targets.saturating_add(targets),
+                digest.steps.saturating_add(steps),
+            ),
+            Err(_) => (targets, steps),
+        },
+        _ => (targets, steps),
+    };
+    recovered.lines.iter().fold((0, 0), count)
 }
 
 /// The header, if its run follows the rules of this version.

@@ -94,7 +94,7 @@ fn reach(record: &Record) -> [f64; 2] {
 #[test]
 fn a_run_of_a_study_is_the_recorded_run() {
     let (mut completed, mut stopped) = (0, 0);
-    for entry in std::fs::read_dir("plans").unwrap() {
+    for entry in std::fs::read_dir("../plans").unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_none_or(|extension| extension != "psd") {
             continue;
@@ -155,7 +155,7 @@ fn a_step_allocates_nothing() {
             vec![ProcedureKind::Impact(impact(Formula::Constant(300.0)))],
         )
     };
-    let text = std::fs::read_to_string("plans/fragility_two_storeys.psd").unwrap();
+    let text = std::fs::read_to_string("../plans/fragility_two_storeys.psd").unwrap();
     let of_shake = |duration: &str| {
         let text = text.replace(
             "integrator    =",

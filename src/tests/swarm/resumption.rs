@@ -7,12 +7,11 @@ use super::bench;
 use super::case::Session;
 use super::laws::{Law, Released};
 use super::life::{Ended, Life, open, read};
-use crate::cli::operator::watch::Shared;
 use crate::run::replay::{
     self, AmendBody, Assurance, Bands, Continuation, HeldBody, IntentBody, LoggedRun, RecoverBody,
     ResumeBody, ResumeDecision, ResumeRefusal, RigBody, SampleBody,
 };
-use crate::run::{Inspection, Motion, Observer};
+use crate::run::{Inspection, Motion, Observer, Shared};
 use psd_plan::Plan;
 use psd_rig::journal::{Durability, EntryKind, Journal, Storage as _};
 use psd_rig::{Reading, Rig as _, RigFault, StopRequest};
@@ -206,16 +205,23 @@ fn other_specimen(
         .or_else(|| last(EntryKind::Intent));
     let sample = last(EntryKind::Sample)?;
     let mut sampled: SampleBody = sample.read().ok()?;
-    // The final hold was read later.
-    let held = before
+    // The final hold was read later; without one, the rig was read before the last resumption.
+    let later = before
         .lines
         .iter()
         .rev()
         .take_while(|line| line.seq > sample.seq);
-    if let Some(line) = { held }.find(|line| line.kind == EntryKind::Held)
-        && let Some((positions, forces)) = line.read::<HeldBody>().ok()?.found
-    {
-        (sampled.x, sampled.r) = (positions, forces);
+    let held = { later }.find(|line| line.kind == EntryKind::Held);
+    let held = match held {
+        Some(line) => line.read::<HeldBody>().ok()?.found,
+        None => None,
+    };
+    let resumed = before
+        .resumption
+        .as_ref()
+        .map(|resume| resume.found.clone());
+    if let Some(found) = held.or(resumed) {
+        (sampled.x, sampled.r) = found;
     }
     let (mut from, mut to) = (sampled.x[0], sampled.x[0]);
     if let Some(intent) = intent.filter(|intent| intent.seq > sample.seq) {

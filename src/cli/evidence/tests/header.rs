@@ -4,14 +4,14 @@
 use serde_json::{Value, json};
 
 use super::{faults, folder, run, with};
-use crate::cli::commands::prediction::prediction;
+use crate::commands::prediction::prediction;
 use crate::evidence::check::examine;
 use crate::evidence::folder::Folder;
 use crate::evidence::names::MANIFEST;
 use crate::evidence::rebuilt::Rebuilt;
 use crate::files::recorded_run::JOURNAL;
-use crate::report::manifest_with;
-use crate::run::replay::RULES;
+use psd::report::manifest_with;
+use psd::run::replay::RULES;
 use psd_rig::journal::{EntryKind, FORMAT};
 use psd_testing::journal::{forged, recover};
 
@@ -91,7 +91,7 @@ fn a_false_factor_certificate_limit_or_rig_is_found() {
 fn another_format_or_other_rules_are_refused() {
     let statement = |altered: &Folder| {
         let findings = Rebuilt::of(altered, &prediction).findings;
-        assert!(!findings[0].sound, "{findings:?}");
+        assert!(!findings[0].is_sound(), "{findings:?}");
         findings[0].statement.clone()
     };
     for format in [FORMAT - 1, FORMAT + 1] {
