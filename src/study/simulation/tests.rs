@@ -15,7 +15,7 @@ use psd_text::units::Dimension;
 
 /// Files beside the examples.
 pub(super) fn folder(path: &str) -> Result<String, LoadError> {
-    std::fs::read_to_string(format!("plans/{path}")).map_err(|_| LoadError::NotFound)
+    std::fs::read_to_string(format!("../plans/{path}")).map_err(|_| LoadError::NotFound)
 }
 
 /// Inputs and results as bits.
@@ -87,7 +87,7 @@ fn runs_in_batches_are_the_runs_one_by_one() {
 #[test]
 fn every_example_that_a_batch_takes_has_the_same_results_in_it() {
     let mut paths = Vec::new();
-    for entry in std::fs::read_dir("plans").unwrap() {
+    for entry in std::fs::read_dir("../plans").unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_none_or(|extension| extension != "psd") {
             continue;
