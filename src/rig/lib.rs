@@ -303,7 +303,7 @@ pub trait Rig {
     }
 
     /// This rig, if it is simulated, settles equally long after every move, and nothing records its calls: its guard then takes whole
-    /// steps with [`VirtualRig::step`].
+    /// steps in one call.
     fn at_once(&mut self) -> Option<&mut VirtualRig> {
         None
     }

@@ -108,7 +108,7 @@ fn a_run_of_a_study_is_the_recorded_run() {
         let [displacement, force] = reach(&recorded(&plan));
         let within = |high: f64| Interval { low: -high, high };
         let mut variants = vec![(name.clone(), plan.clone())];
-        for fraction in [0.5] {
+        for fraction in [0.3, 0.7] {
             let mut limited = plan.clone();
             limited.limits.force = within(fraction * force);
             variants.push((format!("{name}, {fraction} of its force"), limited));
@@ -126,7 +126,7 @@ fn a_run_of_a_study_is_the_recorded_run() {
             }
         }
     }
-    assert!(completed >= 20 && stopped >= 10, "{completed}, {stopped}");
+    assert!(completed >= 20 && stopped >= 20, "{completed}, {stopped}");
 }
 
 /// Allocations of a run of a study.

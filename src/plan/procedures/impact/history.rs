@@ -51,6 +51,7 @@ pub struct ImpactHistory {
 
 /// The quantities that were still growing when an impact ended: the largest value of each is not its peak.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "independent of each other")]
 pub struct StillGrowing {
     /// Whether the striker had not stopped after any step, and if so, whether it had touched the structure.
     pub pushed: Option<bool>,
