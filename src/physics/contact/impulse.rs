@@ -11,6 +11,15 @@
 //! In the tangent form w = ½Δt/M̂, and the line above is eq. (4) again. A tensile F₁ is dropped, one beyond the limit force
 //! is cut to it.
 //!
+//! The step of one degree of freedom is a ratio, Ẍ₁ = top/bottom ([`crate::structure::matrix::one_degree`]), to whose top F₁ adds
+//! F₁ΔX. Both decisions on F₁ are then products, and eq. (4) is a ratio again:
+//!
+//! ```text
+//! a = Ẋs + gΔt − Ẋ − ½ΔtẌ                             s = ±(a·bottom − ½Δt·top), with the sign of bottom
+//! F₁ ≥ 0  ⇔  s ≥ 0                                     F₁ > F  ⇔  (Ms/Δt)·s > F·|bottom + ½Ms ΔX|
+//! Ẍ₁ = (top + (Ms/Δt) a ΔX)/(bottom + ½Ms ΔX)          F₁ = (Ms/Δt)(Ẋs + gΔt − Ẋ₁)
+//! ```
+//!
 //! ## Energy
 //! A force acts at both ends of a step, of which the trapezoid gives the structure the mean: M·½(v₀+v₁)·Δt·½(c₀+c₁) =
 //! ½(F₀+F₁)·½Δt(v₀+v₁), exactly, so that the contact loss counts the travel ½Δt(v₀+v₁) and not d₁ − d₀, which under explicit
@@ -27,6 +36,7 @@ use super::Start;
 use crate::contact::state::StepState;
 use crate::integrator::substep::Striker;
 use crate::number::{Answer as _, Number, numbers};
+use crate::structure::matrix::one_degree::Unforced;
 
 numbers! {
     /// Rigid contact, cut at a limit force, with what the striker brings into a step. `fall` and `striker_compliance` are not neighbours:
@@ -40,6 +50,8 @@ numbers! {
         striker_mass,
         /// Δt/Ms \[s/kg\]
         striker_compliance,
+        /// Ms/Δt \[kg/s\]
+        striker_inertia,
     }
 }
 
@@ -117,7 +129,23 @@ impl ImpulseContact {
             striker_mass: striker.mass,
             fall: striker.gravity * striker.time_step,
             striker_compliance: striker.time_step / striker.mass,
+            striker_inertia: striker.mass / striker.time_step,
         }
+    }
+}
+
+impl ImpulseContact {
+    /// The contact of a step from `v_free` \[m/s\] and w \[m/s/N\]: the force that stops the closing within the step, at most the limit,
+    /// and never in tension.
+    #[inline]
+    pub(crate) fn decide(&self, start: &Start, free: f64, compliance: f64) -> Decided {
+        if !Self::is_near(start) {
+            return Decided::FREE;
+        }
+        let needed = (start.striker_velocity + self.fall - free) / (self.striker_compliance + compliance);
+        let state = f64::state(needed > self.force_limit, needed >= 0.0);
+        let force = f64::of_state(state, || 0.0, || needed, || self.force_limit);
+        Decided { state, force }
     }
 }
 
@@ -129,47 +157,72 @@ impl Decided {
 }
 
 impl<N: Touching> ImpulseContact<N> {
-    /// F that stops the closing within a step \[N\], from the velocity Ẋs at its start, `v_free` \[m/s\] and w \[m/s/N\].
+    /// Whether the surfaces touch as a step begins. No tolerance: δp was stored as this very difference, so that a surface at rest on its
+    /// dent touches it.
     #[inline(always)]
-    pub(crate) fn needed(&self, striker_velocity: N, free: N, compliance: N) -> N {
-        (striker_velocity + self.fall - free) / (self.striker_compliance + compliance)
+    fn is_near(start: &Start<N>) -> N::Answer {
+        (start.striker_displacement - start.displacement).ge(start.indentation)
     }
 
-    /// F of a step that needs this force: at most the limit, and never in tension. Only a law that is `LIMITED` can have a limit.
+    /// The state of a step of one degree of freedom, and its Ẍ₁ as a ratio. Only a law that is `LIMITED` can have a limit.
     #[inline(always)]
-    pub(crate) fn decide<const LIMITED: bool>(
+    pub(crate) fn join<const LIMITED: bool>(
         &self,
+        time_step: N,
         start: &Start<N>,
-        needed: impl FnOnce() -> N,
-    ) -> Decided<N> {
-        let zero = self.force_limit.same(0.0);
-        // No tolerance: δp was stored as this very difference, so that a surface at rest on its dent touches it.
-        let near = (start.striker_displacement - start.displacement).ge(start.indentation);
+        unforced: &Unforced<N>,
+    ) -> (N::State, [N; 2]) {
+        let Unforced {
+            glide,
+            top,
+            bottom,
+            response,
+            ..
+        } = *unforced;
+        let near = Self::is_near(start);
         if near.is_surely_no() {
-            return Decided {
-                state: N::state(near, near),
-                force: zero,
-            };
+            return (N::state(near, near), [top, bottom]);
         }
-        let needed = needed();
+        let (half, zero) = (time_step * 0.5, time_step.same(0.0));
+        let ahead = start.striker_velocity + self.fall - glide;
+        let spare = ahead * bottom - half * top;
+        let positive = N::choose(bottom.gt(zero), || spare, || zero - spare);
+        let heavier = bottom + self.striker_inertia * half * response;
         let beyond = if LIMITED {
-            needed.gt(self.force_limit)
+            (self.striker_inertia * positive).gt(self.force_limit * heavier.abs())
         } else {
             near & !near
         };
-        let state = N::state(near & beyond, near & needed.ge(zero));
-        let force = N::of_state(state, || zero, || needed, || self.force_limit);
-        Decided { state, force }
+        let state = N::state(near & beyond, near & positive.ge(zero));
+        let pushed = || top + self.striker_inertia * ahead * response;
+        let limited = || top + self.force_limit * response;
+        (
+            state,
+            [
+                N::of_state(state, || top, pushed, limited),
+                N::of_state(state, || bottom, || heavier, || bottom),
+            ],
+        )
     }
 
-    /// The striker after a step of Δt \[s\], the struck degree of freedom at `displacement` \[m\] with `velocity` \[m/s\] then.
+    /// F \[N\] of that step, which ends with Ẋ₁ \[m/s\]: never in tension.
+    #[inline(always)]
+    pub(crate) fn settled(&self, start: &Start<N>, state: N::State, velocity: N) -> N {
+        let zero = || self.force_limit.same(0.0);
+        let falling = start.striker_velocity + self.fall;
+        let stopped = || (self.striker_inertia * (falling - velocity)).larger(zero());
+        N::of_state(state, zero, stopped, || self.force_limit)
+    }
+
+    /// The striker after a step of Δt \[s\], the struck degree of freedom at `displacement` \[m\] with `velocity` \[m/s\] then; `moved` is
+    /// ½Δt(v₀+v₁).
     #[inline(always)]
     pub(crate) fn advance(
         &self,
         time_step: N,
         start: &Start<N>,
         decided: &Decided<N>,
-        [displacement, velocity]: [N; 2],
+        [displacement, velocity, moved]: [N; 3],
     ) -> StrikerEnd<N> {
         let Decided { state, force } = *decided;
         let half = time_step * 0.5;
@@ -192,7 +245,6 @@ impl<N: Touching> ImpulseContact<N> {
         let none = || force.same(0.0);
         let work = || force * (indentation - start.indentation);
         let indentation_work = N::of_state(state, none, none, work);
-        let moved = half * (start.velocity + velocity);
         StrikerEnd {
             displacement: striker_displacement,
             velocity: striker_velocity,

@@ -9,7 +9,6 @@
 mod lanes;
 mod reach;
 mod rows;
-mod step;
 #[cfg(test)]
 mod tests;
 

@@ -1,21 +1,15 @@
-//! One step of an impact in tangent form under a law of impulses, on an elastic or bilinear specimen with exact readings; of one impact or
-//! of several side by side. In: the state before it. Out: the state after it. It knows nothing of impacts that begin and end.
-//!
-//! A step has four parts, and each part is done for all lanes before the next one: a division takes long, and those of several lanes
-//! overlap only if little is between them. So a step ends with the divisions of the next one.
+//! One step of an impact in tangent form under a law of impulses, on a specimen with exact readings; of one impact or of several side by
+//! side. In: the state before it. Out: the state after it. It knows nothing of impacts that begin and end.
 
 #![allow(
     clippy::inline_always,
     reason = "a part of its caller, which is compiled for several vector units"
 )]
 
-use super::reach::RunningReach;
-use crate::contact::{ImpulseContact, Start, Touching};
-use crate::impact::summary::{RunningResults, StepEnd};
-use crate::integrator::tangent::secant;
-use crate::number::{Number, numbers};
-use crate::specimen::BilinearLines;
-use crate::structure::matrix::one_degree::{effective_mass, travel, unbalanced_force};
+use super::summary::StepEnd;
+use crate::contact::{Decided, ImpulseContact, Start, Touching};
+use crate::number::numbers;
+use crate::structure::matrix::one_degree::{LEAST_CHANGE, Secant, unforced};
 
 numbers! {
     /// The structure.
@@ -49,20 +43,6 @@ numbers! {
         striker_displacement,
         striker_velocity,
         contact_force,
-    }
-}
-
-numbers! {
-    /// What the next step needs.
-    pub(super) struct Ahead {
-        /// K_t
-        tangent,
-        /// Ẍ₁ without its contact.
-        free_acceleration,
-        /// 1/M̂
-        response,
-        /// The contact force that stops the closing.
-        needed,
     }
 }
 
@@ -125,7 +105,6 @@ groups! {
     /// What does not change.
     StepInputs {
         structure: Structure,
-        specimen: BilinearLines,
         contact: ImpulseContact,
         striker: StrikerInput,
     }
@@ -135,13 +114,11 @@ groups! {
     /// The end of a step, where the next one begins.
     BetweenSteps {
         motion: Motion,
-        ahead: Ahead,
+        secant: Secant,
         work: Work,
         indented: Indented,
         damped: Damped,
         fallen: Fallen,
-        results: RunningResults,
-        reach: RunningReach,
     }
 }
 
@@ -165,34 +142,24 @@ pub(super) struct Marks<N: Touching> {
 }
 
 impl BetweenSteps {
-    /// From rest at X = 0, with the striker at `striker_displacement`; `instant` is the start.
-    pub fn at_rest(inputs: &StepInputs, [xs, vs]: [f64; 2], tangent: f64, instant: f64) -> Self {
-        let end = StepEnd {
-            instant,
-            displacement: 0.0,
-            velocity: 0.0,
-            restoring_force: 0.0,
-            contact_force: 0.0,
-            restoring_energy: 0.0,
-        };
-        let mut results = RunningResults::START;
-        results.add(inputs.structure.time_step, &end);
-        let mut state = Self {
+    /// At rest at X = 0 under the force R of the specimen \[N\], with Ẍ \[m/s²\], K_t, and the input energy \[J\].
+    pub fn at_rest(
+        [force, acceleration]: [f64; 2],
+        [xs, vs]: [f64; 2],
+        secant: Secant,
+        input: f64,
+    ) -> Self {
+        Self {
             motion: Motion {
                 displacement: 0.0,
                 velocity: 0.0,
-                acceleration: 0.0,
-                force: 0.0,
+                acceleration,
+                force,
                 striker_displacement: xs,
                 striker_velocity: vs,
                 contact_force: 0.0,
             },
-            ahead: Ahead {
-                tangent,
-                free_acceleration: 0.0,
-                response: 0.0,
-                needed: 0.0,
-            },
+            secant,
             work: Work {
                 restoring: 0.0,
                 contact_loss: 0.0,
@@ -202,35 +169,41 @@ impl BetweenSteps {
                 work: 0.0,
             },
             damped: Damped { work: 0.0 },
-            fallen: Fallen {
-                work: 0.0,
-                input: inputs.striker.energy,
-            },
-            results,
-            reach: RunningReach::START,
-        };
-        [state.ahead.free_acceleration, state.ahead.response] = without_contact(inputs, &state);
-        state.ahead.needed = needed(inputs, &state);
-        state
+            fallen: Fallen { work: 0.0, input },
+        }
     }
 }
 
-/// The contact; eqs. (2c) and (2d), and the force there; the striker; the work of all forces, and the results so far.
+impl<N: Touching> BetweenSteps<N> {
+    /// As far as the results follow it.
+    #[inline(always)]
+    pub fn step_end(&self, instant: N) -> StepEnd<N> {
+        StepEnd {
+            instant,
+            displacement: self.motion.displacement,
+            velocity: self.motion.velocity,
+            restoring_force: self.motion.force,
+            contact_force: self.motion.contact_force,
+            restoring_energy: self.work.restoring,
+        }
+    }
+}
+
+/// The contact; eqs. (2c) and (2d), and the force there, from X, R and X₁; the striker; the work of all forces; K_t.
 #[inline(always)]
-pub(super) fn end_step<N: Touching, const YIELDS: bool, const LIMITED: bool>(
+pub(super) fn end_step<N: Touching, const LIMITED: bool>(
     inputs: &StepInputs<N>,
     from: &BetweenSteps<N>,
     also: Also,
-    instant: N,
+    force: impl FnOnce([N; 2], N) -> N,
 ) -> (BetweenSteps<N>, Marks<N>) {
     let StepInputs {
         structure,
-        specimen,
         contact,
         striker,
     } = inputs;
-    let zero = instant.same(0.0);
     let time_step = structure.time_step;
+    let zero = time_step.same(0.0);
     let Motion {
         displacement: x0,
         velocity: v0,
@@ -246,30 +219,32 @@ pub(super) fn end_step<N: Touching, const YIELDS: bool, const LIMITED: bool>(
         contact_force: from.motion.contact_force,
         indentation: if LIMITED { from.indented.depth } else { zero },
     };
-    let decided = contact.decide::<LIMITED>(&start, || from.ahead.needed);
-
-    let a1 = from.ahead.free_acceleration + decided.force * from.ahead.response;
-    let [x1, v1] = travel(time_step, [x0, v0, a0], a1);
-    let r1 = if YIELDS {
-        specimen.force([x0, r0], x1)
-    } else {
-        specimen.stiffness * x1
+    let body = [structure.mass, structure.damping];
+    let unforced = unforced(time_step, body, [v0, a0], [zero, r0], &from.secant);
+    let (state, [top, bottom]) = contact.join::<LIMITED>(time_step, &start, &unforced);
+    let a1 = top / bottom;
+    let [x1, v1] = unforced.travel(time_step, x0, a1);
+    let decided = Decided {
+        state,
+        force: contact.settled(&start, state, v1),
     };
-    let end = contact.advance(time_step, &start, &decided, [x1, v1]);
-
+    let r1 = force([x0, r0], x1);
+    let change = x1 - x0;
+    let end = contact.advance(time_step, &start, &decided, [x1, v1, change]);
+    let secant = from
+        .secant
+        .after(r1 - r0, change, structure.largest_tangent, LEAST_CHANGE);
     let BetweenSteps {
         mut work,
         mut indented,
         mut damped,
         mut fallen,
-        mut results,
-        mut reach,
         ..
     } = *from;
     work.contact_loss = work.contact_loss + end.contact_loss;
     indented.depth = end.indentation;
     indented.work = indented.work + end.indentation_work;
-    work.restoring = work.restoring + (r0 + r1) * (x1 - x0) * 0.5;
+    work.restoring = work.restoring + (r0 + r1) * change * 0.5;
     if also.damped {
         let mean_velocity = (v0 + v1) * 0.5;
         let damping = structure.damping * mean_velocity;
@@ -280,20 +255,9 @@ pub(super) fn end_step<N: Touching, const YIELDS: bool, const LIMITED: bool>(
         fallen.work = fallen.work + striker.weight * height;
         fallen.input = fallen.input.larger(striker.energy + fallen.work);
     }
-
-    let step_end = StepEnd {
-        instant,
-        displacement: x1,
-        velocity: v1,
-        restoring_force: r1,
-        contact_force: decided.force,
-        restoring_energy: work.restoring,
-    };
-    results.add(time_step, &step_end);
-    reach.add(x0, &step_end);
     let stopped = end.velocity.le(zero);
     let marks = Marks {
-        state: decided.state,
+        state,
         stopped,
         over: stopped & v1.le(zero),
     };
@@ -307,68 +271,11 @@ pub(super) fn end_step<N: Touching, const YIELDS: bool, const LIMITED: bool>(
             striker_velocity: end.velocity,
             contact_force: decided.force,
         },
-        ahead: from.ahead,
+        secant,
         work,
         indented,
         damped,
         fallen,
-        results,
-        reach,
     };
     (state, marks)
-}
-
-/// K_t of the next step, eq. (6).
-#[inline(always)]
-pub(super) fn tangent<N: Number>(
-    inputs: &StepInputs<N>,
-    from: &BetweenSteps<N>,
-    to: &BetweenSteps<N>,
-) -> N {
-    let change = to.motion.displacement - from.motion.displacement;
-    let secant = || {
-        secant(
-            to.motion.force - from.motion.force,
-            change,
-            inputs.structure.largest_tangent,
-        )
-    };
-    N::choose(
-        change.equals(change.same(0.0)),
-        || from.ahead.tangent,
-        secant,
-    )
-}
-
-/// Eqs. (4) and (5) of the next step without its contact: Ẍ₁, and 1/M̂.
-#[inline(always)]
-pub(super) fn without_contact<N: Number>(inputs: &StepInputs<N>, to: &BetweenSteps<N>) -> [N; 2] {
-    let Structure {
-        mass,
-        damping,
-        time_step,
-        ..
-    } = inputs.structure;
-    let tangent = to.ahead.tangent;
-    let effective = effective_mass(time_step, [mass, damping, tangent]);
-    // Without damping, a zero is subtracted.
-    let push = unbalanced_force(
-        time_step,
-        [to.motion.velocity, to.motion.acceleration],
-        [mass.same(0.0), to.motion.force],
-        Some(damping),
-        tangent,
-    );
-    [push / effective, mass.same(1.0) / effective]
-}
-
-/// The contact force that stops the closing in the next step.
-#[inline(always)]
-pub(super) fn needed<N: Touching>(inputs: &StepInputs<N>, to: &BetweenSteps<N>) -> N {
-    let half = inputs.structure.time_step * 0.5;
-    let accelerations = to.motion.acceleration + to.ahead.free_acceleration;
-    let free = to.motion.velocity + half * accelerations;
-    inputs
-        .contact
-        .needed(to.motion.striker_velocity, free, half * to.ahead.response)
 }
