@@ -15,8 +15,8 @@
 //! F₁ΔX. Both decisions on F₁ are then products, and eq. (4) is a ratio again:
 //!
 //! ```text
-//! a = Ẋs + gΔt − Ẋ − ½ΔtẌ                             s = ±(a·bottom − ½Δt·top), with the sign of bottom
-//! F₁ ≥ 0  ⇔  s ≥ 0                                     F₁ > F  ⇔  (Ms/Δt)·s > F·|bottom + ½Ms ΔX|
+//! a = Ẋs + gΔt − Ẋ − ½ΔtẌ                             s = (a·bottom − ½Δt·top)·bottom
+//! F₁ ≥ 0  ⇔  s ≥ 0                                     F₁ > F  ⇔  (Ms/Δt)·s > F·(bottom + ½Ms ΔX)·bottom
 //! Ẍ₁ = (top + (Ms/Δt) a ΔX)/(bottom + ½Ms ΔX)          F₁ = (Ms/Δt)(Ẋs + gΔt − Ẋ₁)
 //! ```
 //!
@@ -39,19 +39,18 @@ use crate::number::{Answer as _, Number, numbers};
 use crate::structure::matrix::one_degree::Unforced;
 
 numbers! {
-    /// Rigid contact, cut at a limit force, with what the striker brings into a step. `fall` and `striker_compliance` are not neighbours:
-    /// the compiler would add both in one vector with numbers that were stored one by one just before, and the processor waits for such.
+    /// Rigid contact, cut at a limit force, with what the striker brings into a step.
     pub struct ImpulseContact {
         /// N; infinite under the rigid law.
         force_limit,
         /// gΔt of a step of free fall \[m/s\].
         fall,
-        /// Ms \[kg\]
-        striker_mass,
         /// Δt/Ms \[s/kg\]
         striker_compliance,
         /// Ms/Δt \[kg/s\]
         striker_inertia,
+        /// ½Ms \[kg\]
+        half_striker,
     }
 }
 
@@ -126,10 +125,10 @@ impl ImpulseContact {
     pub fn new(force_limit: f64, striker: &Striker) -> Self {
         Self {
             force_limit,
-            striker_mass: striker.mass,
             fall: striker.gravity * striker.time_step,
             striker_compliance: striker.time_step / striker.mass,
             striker_inertia: striker.mass / striker.time_step,
+            half_striker: 0.5 * striker.mass,
         }
     }
 }
@@ -139,7 +138,7 @@ impl ImpulseContact {
     /// and never in tension.
     #[inline]
     pub(crate) fn decide(&self, start: &Start, free: f64, compliance: f64) -> Decided {
-        if !Self::is_near(start) {
+        if !Self::is_near::<true>(start) {
             return Decided::FREE;
         }
         let needed = (start.striker_velocity + self.fall - free) / (self.striker_compliance + compliance);
@@ -160,17 +159,21 @@ impl<N: Touching> ImpulseContact<N> {
     /// Whether the surfaces touch as a step begins. No tolerance: δp was stored as this very difference, so that a surface at rest on its
     /// dent touches it.
     #[inline(always)]
-    fn is_near(start: &Start<N>) -> N::Answer {
-        (start.striker_displacement - start.displacement).ge(start.indentation)
+    fn is_near<const LIMITED: bool>(start: &Start<N>) -> N::Answer {
+        if LIMITED {
+            (start.striker_displacement - start.displacement).ge(start.indentation)
+        } else {
+            start.striker_displacement.ge(start.displacement)
+        }
     }
 
-    /// The state of a step of one degree of freedom, and its Ẍ₁ as a ratio. Only a law that is `LIMITED` can have a limit.
+    /// The state of a step of one degree of freedom, and its Ẍ₁ as a ratio; `half` is ½Δt \[s\]. Only a law that is `LIMITED` can have a limit.
     #[inline(always)]
     pub(crate) fn join<const LIMITED: bool>(
         &self,
-        time_step: N,
         start: &Start<N>,
         unforced: &Unforced<N>,
+        half: N,
     ) -> (N::State, [N; 2]) {
         let Unforced {
             glide,
@@ -179,21 +182,20 @@ impl<N: Touching> ImpulseContact<N> {
             response,
             ..
         } = *unforced;
-        let near = Self::is_near(start);
+        let near = Self::is_near::<LIMITED>(start);
         if near.is_surely_no() {
             return (N::state(near, near), [top, bottom]);
         }
-        let (half, zero) = (time_step * 0.5, time_step.same(0.0));
         let ahead = start.striker_velocity + self.fall - glide;
-        let spare = ahead * bottom - half * top;
-        let positive = N::choose(bottom.gt(zero), || spare, || zero - spare);
-        let heavier = bottom + self.striker_inertia * half * response;
+        // The sign of the bottom is that of the displacement.
+        let spare = (ahead * bottom - half * top) * bottom;
+        let heavier = bottom + self.half_striker * response;
         let beyond = if LIMITED {
-            (self.striker_inertia * positive).gt(self.force_limit * heavier.abs())
+            (self.striker_inertia * spare).gt(self.force_limit * (heavier * bottom))
         } else {
             near & !near
         };
-        let state = N::state(near & beyond, near & positive.ge(zero));
+        let state = N::state(near & beyond, near & spare.ge(half.same(0.0)));
         let pushed = || top + self.striker_inertia * ahead * response;
         let limited = || top + self.force_limit * response;
         (
@@ -214,24 +216,23 @@ impl<N: Touching> ImpulseContact<N> {
         N::of_state(state, zero, stopped, || self.force_limit)
     }
 
-    /// The striker after a step of Δt \[s\], the struck degree of freedom at `displacement` \[m\] with `velocity` \[m/s\] then; `moved` is
+    /// The striker after a step, `half` of it ½Δt \[s\], the struck degree of freedom at `displacement` \[m\] with `velocity` \[m/s\] then; `moved` is
     /// ½Δt(v₀+v₁).
     #[inline(always)]
     pub(crate) fn advance(
         &self,
-        time_step: N,
+        half: N,
         start: &Start<N>,
         decided: &Decided<N>,
         [displacement, velocity, moved]: [N; 3],
     ) -> StrikerEnd<N> {
         let Decided { state, force } = *decided;
-        let half = time_step * 0.5;
         let falling = start.striker_velocity + self.fall;
         let striker_velocity = N::of_state(
             state,
             || falling,
             || velocity,
-            || falling - force * time_step / self.striker_mass,
+            || falling - force * self.striker_compliance,
         );
         let striker_moved = half * (start.striker_velocity + striker_velocity);
         let striker_displacement = start.striker_displacement + striker_moved;
@@ -249,7 +250,7 @@ impl<N: Touching> ImpulseContact<N> {
             displacement: striker_displacement,
             velocity: striker_velocity,
             indentation,
-            contact_loss: force * striker_moved - (start.contact_force + force) * 0.5 * moved,
+            contact_loss: force * striker_moved - (start.contact_force + force) * (moved * 0.5),
             indentation_work,
         }
     }

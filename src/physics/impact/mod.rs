@@ -26,6 +26,7 @@ use crate::integrator::input::FrameError;
 use crate::integrator::state::State;
 use crate::integrator::substep::Striker;
 use crate::structure::Matrices;
+use crate::structure::matrix::one_degree::Body;
 use energy::Energies;
 use step::{StepInputs, StrikerInput, Structure};
 use summary::StepEnd;
@@ -118,9 +119,8 @@ impl ImpactInput {
             time_step: self.time_step,
         };
         StepInputs {
+            body: Body::new(self.mass, self.damping, self.time_step),
             structure: Structure {
-                mass: self.mass,
-                damping: self.damping,
                 time_step: self.time_step,
                 largest_tangent: self.max_tangent_ratio * self.stiffness,
             },

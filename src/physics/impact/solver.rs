@@ -333,7 +333,7 @@ impl<V: HasTangents> ImpactSolver<V> {
                 let end = [displacement, velocity, moved];
                 let touching = self.state.state != StepState::Free;
                 of_impulse(
-                    law.advance(striker.time_step, start, decided, end),
+                    law.advance(0.5 * striker.time_step, start, decided, end),
                     *decided,
                     touching,
                 )
@@ -483,8 +483,8 @@ impl StepContact for Impulse<'_> {
     }
 
     #[inline]
-    fn joined(&mut self, time_step: f64, unforced: &Unforced) -> [f64; 2] {
-        let (state, ratio) = self.law.join::<true>(time_step, self.start, unforced);
+    fn joined(&mut self, half: f64, unforced: &Unforced) -> [f64; 2] {
+        let (state, ratio) = self.law.join::<true>(self.start, unforced, half);
         self.decided.state = state;
         ratio
     }

@@ -9,14 +9,11 @@
 use super::summary::StepEnd;
 use crate::contact::{Decided, ImpulseContact, Start, Touching};
 use crate::number::numbers;
-use crate::structure::matrix::one_degree::{LEAST_CHANGE, Secant, unforced};
+use crate::structure::matrix::one_degree::{Body, LEAST_CHANGE, Secant};
 
 numbers! {
-    /// The structure.
+    /// What the body does not say of the structure.
     pub(super) struct Structure {
-        /// M, C
-        mass,
-        damping,
         /// Δt
         time_step,
         /// The largest `K_t`.
@@ -104,6 +101,7 @@ macro_rules! groups {
 groups! {
     /// What does not change.
     StepInputs {
+        body: Body,
         structure: Structure,
         contact: ImpulseContact,
         striker: StrikerInput,
@@ -198,12 +196,12 @@ pub(super) fn end_step<N: Touching, const LIMITED: bool>(
     force: impl FnOnce([N; 2], N) -> N,
 ) -> (BetweenSteps<N>, Marks<N>) {
     let StepInputs {
+        body,
         structure,
         contact,
         striker,
     } = inputs;
-    let time_step = structure.time_step;
-    let zero = time_step.same(0.0);
+    let zero = body.half.same(0.0);
     let Motion {
         displacement: x0,
         velocity: v0,
@@ -219,18 +217,17 @@ pub(super) fn end_step<N: Touching, const LIMITED: bool>(
         contact_force: from.motion.contact_force,
         indentation: if LIMITED { from.indented.depth } else { zero },
     };
-    let body = [structure.mass, structure.damping];
-    let unforced = unforced(time_step, body, [v0, a0], [zero, r0], &from.secant);
-    let (state, [top, bottom]) = contact.join::<LIMITED>(time_step, &start, &unforced);
+    let unforced = body.unforced(also.damped, [v0, a0], zero - r0, &from.secant);
+    let (state, [top, bottom]) = contact.join::<LIMITED>(&start, &unforced, body.half);
     let a1 = top / bottom;
-    let [x1, v1] = unforced.travel(time_step, x0, a1);
+    let [x1, v1] = body.travel(x0, &unforced, a1);
     let decided = Decided {
         state,
         force: contact.settled(&start, state, v1),
     };
     let r1 = force([x0, r0], x1);
     let change = x1 - x0;
-    let end = contact.advance(time_step, &start, &decided, [x1, v1, change]);
+    let end = contact.advance(body.half, &start, &decided, [x1, v1, change]);
     let secant = from
         .secant
         .after(r1 - r0, change, structure.largest_tangent, LEAST_CHANGE);
@@ -244,11 +241,11 @@ pub(super) fn end_step<N: Touching, const LIMITED: bool>(
     work.contact_loss = work.contact_loss + end.contact_loss;
     indented.depth = end.indentation;
     indented.work = indented.work + end.indentation_work;
-    work.restoring = work.restoring + (r0 + r1) * change * 0.5;
+    work.restoring = work.restoring + (r0 + r1) * (change * 0.5);
     if also.damped {
         let mean_velocity = (v0 + v1) * 0.5;
-        let damping = structure.damping * mean_velocity;
-        damped.work = damped.work + time_step * (mean_velocity * damping);
+        let damping = body.damping * mean_velocity;
+        damped.work = damped.work + structure.time_step * (mean_velocity * damping);
     }
     if also.falls {
         let height = end.displacement - start.striker_displacement;

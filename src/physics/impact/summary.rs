@@ -86,18 +86,81 @@ impl RunningResults {
     };
 }
 
-impl<N: Number> RunningResults<N> {
-    /// Adds the end of the next step.
+/// The results that are asked of many impacts: a running result costs as much as a part of the step. The largest displacement, the contacts,
+/// the end of the run and its energy error are always found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wanted {
+    pub time_of_max_displacement: bool,
+    pub absorbed_energy: bool,
+    pub max_velocity: bool,
+    pub max_contact_force: bool,
+    pub impulse: bool,
+    /// The ranges that limits of a rig bound ([`super::batch::Reach`]).
+    pub reach: bool,
+}
+
+impl Wanted {
+    pub const ALL: Self = Self {
+        time_of_max_displacement: true,
+        absorbed_energy: true,
+        max_velocity: true,
+        max_contact_force: true,
+        impulse: true,
+        reach: true,
+    };
+}
+
+impl<R> RunningResults<R> {
+    /// Adds the end of the next step to those of `before` that are wanted. `get` and `set` read and write a result of one impact, or of
+    /// several side by side.
     #[inline(always)]
-    pub fn add(&mut self, time_step: N, end: &StepEnd<N>) {
-        let farther = end.displacement.gt(self.max_displacement);
-        let chosen = |now: N, before: N| N::choose(farther, || now, || before);
-        self.instant = chosen(end.instant, self.instant);
-        self.absorbed_energy = chosen(end.restoring_energy, self.absorbed_energy);
-        self.max_displacement = self.max_displacement.larger(end.displacement);
-        self.max_velocity = self.max_velocity.larger(end.velocity.abs());
-        self.max_contact_force = self.max_contact_force.larger(end.contact_force);
-        self.impulse = self.impulse + end.contact_force * time_step;
+    pub fn add<N: Number>(
+        &mut self,
+        before: &Self,
+        wanted: Wanted,
+        time_step: N,
+        end: &StepEnd<N>,
+        get: impl Fn(&R) -> N,
+        mut set: impl FnMut(&mut R, N),
+    ) {
+        let largest = get(&before.max_displacement);
+        let farther = end.displacement.gt(largest);
+        let chosen = |now: N, before: &R| N::choose(farther, || now, || get(before));
+        set(&mut self.max_displacement, largest.larger(end.displacement));
+        if wanted.time_of_max_displacement {
+            set(&mut self.instant, chosen(end.instant, &before.instant));
+        }
+        if wanted.absorbed_energy {
+            let absorbed = chosen(end.restoring_energy, &before.absorbed_energy);
+            set(&mut self.absorbed_energy, absorbed);
+        }
+        if wanted.max_velocity {
+            let fastest = get(&before.max_velocity).larger(end.velocity.abs());
+            set(&mut self.max_velocity, fastest);
+        }
+        if wanted.max_contact_force {
+            let most = get(&before.max_contact_force).larger(end.contact_force);
+            set(&mut self.max_contact_force, most);
+        }
+        if wanted.impulse {
+            let impulse = get(&before.impulse) + end.contact_force * time_step;
+            set(&mut self.impulse, impulse);
+        }
+    }
+}
+
+impl RunningResults {
+    /// Adds the end of the next step.
+    pub fn push(&mut self, time_step: f64, end: &StepEnd) {
+        let before = *self;
+        self.add(
+            &before,
+            Wanted::ALL,
+            time_step,
+            end,
+            |number| *number,
+            |number, found| *number = found,
+        );
     }
 }
 
@@ -211,7 +274,7 @@ impl SummaryBuilder {
 
     /// Adds the end of the next step.
     pub fn push(&mut self, state: &ImpactState) {
-        self.results.add(self.input.time_step, &state.step_end());
+        self.results.push(self.input.time_step, &state.step_end());
         self.events.contacts = state.contacts;
         if self.events.stop.is_none() && state.step > 0 && state.striker_velocity <= 0.0 {
             self.events.stop = Some(state.time);

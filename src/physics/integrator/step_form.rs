@@ -58,8 +58,8 @@ pub(crate) trait StepContact {
     /// F \[N\] from `v_free` \[m/s\] and w \[m/s/N\].
     fn force(&mut self, free: f64, compliance: f64) -> f64;
 
-    /// Ẍ₁ of one degree of freedom with its contact, as a ratio.
-    fn joined(&mut self, time_step: f64, unforced: &Unforced) -> [f64; 2];
+    /// Ẍ₁ of one degree of freedom with its contact, as a ratio; `half` is ½Δt \[s\].
+    fn joined(&mut self, half: f64, unforced: &Unforced) -> [f64; 2];
 
     /// F \[N\] of that step, which ends with Ẋ₁ \[m/s\].
     fn settled(&mut self, velocity: f64) -> f64;

@@ -6,7 +6,7 @@ use std::fmt::Debug;
 use super::step_form::{Moment, Motion, StepContact, StepForm};
 use super::tangent::{Following, TangentStiffness};
 use crate::statistics::DeclaredNoise;
-use crate::structure::matrix::one_degree::{LEAST_CHANGE, Secant, unforced};
+use crate::structure::matrix::one_degree::{Body, LEAST_CHANGE, Secant};
 use crate::structure::matrix::{Matrix, Vector};
 use crate::structure::{Matrices, SymmetricBand, set_storeys, storeys_of};
 
@@ -79,21 +79,19 @@ impl HasTangents for f64 {
         to: &mut Motion<f64>,
         mut contact: impl StepContact,
     ) {
-        let time_step = form.time_step;
         let Matrices { mass, damping, .. } = form.matrices;
-        let [velocity, acceleration] = [*from.velocity, *from.acceleration];
+        let body = Body::new(mass, damping, form.time_step);
         let constant = Secant::of(*form.operator());
-        let unforced = unforced(
-            time_step,
-            [mass, damping],
-            [velocity, acceleration],
-            [*load_end, *from.force],
+        let unforced = body.unforced(
+            form.damping().is_some(),
+            [*from.velocity, *from.acceleration],
+            load_end - from.force,
             tangents.map_or(&constant, |tangents| &tangents.secant),
         );
-        let [top, bottom] = contact.joined(time_step, &unforced);
+        let [top, bottom] = contact.joined(body.half, &unforced);
         to.acceleration = top / bottom;
         [to.displacement, to.velocity] =
-            unforced.travel(time_step, *from.displacement, to.acceleration);
+            body.travel(*from.displacement, &unforced, to.acceleration);
         form.set_contact_force(contact.settled(to.velocity));
     }
 

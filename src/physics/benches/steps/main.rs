@@ -7,6 +7,7 @@ use std::hint::black_box;
 
 use psd_physics::contact::{Approaching, ContactLaw};
 use psd_physics::impact::batch::{self, Impact};
+use psd_physics::impact::summary::Wanted;
 use psd_physics::impact::{ImpactInput, ImpactSolver, StepRow, Until, simulate};
 use psd_physics::integrator::Integrator;
 use psd_physics::integrator::input::{FrameInput, SolverInput};
@@ -172,7 +173,12 @@ fn linear<'a>() -> [Case<'a>; 2] {
 }
 
 /// Scattered impacts, all in lanes.
-fn study<'a>(name: &str, law: ContactLaw, specimen: &SpecimenModel) -> Case<'a> {
+fn study<'a>(
+    name: &str,
+    law: ContactLaw,
+    specimen: &SpecimenModel,
+    wanted: Wanted,
+) -> Case<'a> {
     let impact = |run: u32| Impact {
         input: ImpactInput {
             striker_velocity: 1.0 + 1e-5 * f64::from(run),
@@ -187,6 +193,7 @@ fn study<'a>(name: &str, law: ContactLaw, specimen: &SpecimenModel) -> Case<'a> 
             &impacts,
             Some(Until::Duration),
             u64::from(STEPS),
+            wanted,
         ));
     })
 }
@@ -266,9 +273,24 @@ fn main() {
         cases.push(building("bilinear", storeys, secants, yielding_storey));
     }
     let limited = ContactLaw::Limit { force: 100.0 };
-    cases.push(study("elastic", ContactLaw::Rigid, &elastic));
-    cases.push(study("bilinear", ContactLaw::Rigid, &bilinear));
-    cases.push(study("elastic, limit force", limited, &elastic));
+    // A study of the largest displacement alone, and one of everything.
+    let peak = Wanted {
+        time_of_max_displacement: false,
+        absorbed_energy: false,
+        max_velocity: false,
+        max_contact_force: false,
+        impulse: false,
+        reach: false,
+    };
+    for (wanted, results) in [(peak, "peak"), (Wanted::ALL, "all results")] {
+        for (name, law, specimen) in [
+            ("elastic", ContactLaw::Rigid, &elastic),
+            ("bilinear", ContactLaw::Rigid, &bilinear),
+            ("elastic, limit force", limited, &elastic),
+        ] {
+            cases.push(study(&format!("{name}, {results}"), law, specimen, wanted));
+        }
+    }
     if let Some(only) = &only {
         cases.retain(|case| case.name.contains(only.as_str()));
     }

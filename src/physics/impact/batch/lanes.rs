@@ -17,9 +17,9 @@ use crate::impact::energy::Energies;
 use crate::impact::step::{
     Also, BetweenSteps, Marks, StepInputs, StrikerInput, Structure, end_step,
 };
-use crate::impact::summary::{Events, ImpactSummary, LastEnd, RunningResults};
+use crate::impact::summary::{Events, ImpactSummary, LastEnd, RunningResults, Wanted};
 use crate::specimen::BilinearLines;
-use crate::structure::matrix::one_degree::Secant;
+use crate::structure::matrix::one_degree::{Body, Secant};
 
 /// The lanes, as bits, in which something is so at the end of a step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -46,8 +46,9 @@ pub struct Lanes {
     /// A step reads one of them and writes the other, each at its own address. A number that is selected and written where it was read would
     /// become a masked store, which is slow on some processors. What a step leaves as it is, is the same in both.
     states: [BetweenSteps<LaneRow>; 2],
-    results: RunningResults<LaneRow>,
+    results: [RunningResults<LaneRow>; 2],
     reach: RunningReach<LaneRow>,
+    wanted: Wanted,
     /// Index of the state after the last step.
     now: usize,
     /// Steps so far.
@@ -92,18 +93,17 @@ impl LaneStart {
     /// A mass at rest, and a striker that is apart for ever and moves: nothing ever happens.
     fn resting() -> Self {
         let inputs = StepInputs {
+            body: Body::new(1.0, 0.0, 0.0),
             structure: Structure {
-                mass: 1.0,
-                damping: 0.0,
                 time_step: 0.0,
                 largest_tangent: 0.0,
             },
             contact: ImpulseContact {
                 force_limit: 0.0,
-                striker_mass: 1.0,
                 fall: 0.0,
                 striker_compliance: 1.0,
                 striker_inertia: 1.0,
+                half_striker: 0.5,
             },
             striker: StrikerInput {
                 weight: 0.0,
@@ -124,9 +124,20 @@ impl LaneStart {
     }
 }
 
+/// The one that a step reads, and the one that it writes.
+#[inline(always)]
+fn turn<T, const NOW: usize>(both: &mut [T; 2]) -> (&T, &mut T) {
+    let [first, second] = both;
+    if NOW == 0 {
+        (first, second)
+    } else {
+        (second, first)
+    }
+}
+
 impl Lanes {
     /// All at rest.
-    pub fn new() -> Self {
+    pub fn new(wanted: Wanted) -> Self {
         let LaneStart {
             inputs,
             specimen,
@@ -136,8 +147,9 @@ impl Lanes {
             inputs: inputs.map(|_| LaneRow::ZERO),
             specimen: specimen.map(|_| LaneRow::ZERO),
             states: [state.map(|_| LaneRow::ZERO), state.map(|_| LaneRow::ZERO)],
-            results: RunningResults::START.map(|_| LaneRow::ZERO),
+            results: [RunningResults::START.map(|_| LaneRow::ZERO); 2],
             reach: RunningReach::START.map(|_| LaneRow::ZERO),
+            wanted,
             now: 0,
             clock: 0,
             next_end: 0,
@@ -157,14 +169,16 @@ impl Lanes {
             state,
         } = start;
         let mut results = RunningResults::START;
-        results.add(inputs.structure.time_step, &state.step_end(self.instant()));
+        results.push(inputs.structure.time_step, &state.step_end(self.instant()));
         let set = |row: &mut LaneRow, number: f64| row.set_lane(lane, number);
         self.inputs.each(inputs, set);
         self.specimen.each(specimen, set);
         for states in &mut self.states {
             states.each(state, set);
         }
-        self.results.each(results, set);
+        for rows in &mut self.results {
+            rows.each(results, set);
+        }
         self.reach.each(RunningReach::START, set);
         self.touching &= !(1 << lane);
         self.stopped &= !(1 << lane);
@@ -203,12 +217,8 @@ impl Lanes {
         self.now = 1 - NOW;
         self.clock += 1;
         let instant = self.instant();
-        let [first, second] = &mut self.states;
-        let (from, to) = if NOW == 0 {
-            (&*first, second)
-        } else {
-            (&*second, first)
-        };
+        let (from, to) = turn::<_, NOW>(&mut self.states);
+        let (known, found) = turn::<_, NOW>(&mut self.results);
         let (inputs, specimen, also) = (&self.inputs, &self.specimen, self.also);
         let mut bits = Bits::default();
         for part in LanePart::all(simd) {
@@ -243,12 +253,13 @@ impl Lanes {
                 to.fallen.each(state.fallen, set);
             }
             let end = state.step_end(part.number(instant));
-            let mut results = self.results.map(get);
-            results.add(get(&inputs.structure.time_step), &end);
-            self.results.each(results, set);
-            let mut reach = self.reach.map(get);
-            reach.add(before.motion.displacement, &end);
-            self.reach.each(reach, set);
+            let time_step = get(&inputs.structure.time_step);
+            found.add(known, self.wanted, time_step, &end, get, set);
+            if self.wanted.reach {
+                let mut reach = self.reach.map(get);
+                reach.add(before.motion.displacement, &end);
+                self.reach.each(reach, set);
+            }
             bits.touching |= part.bits(contact.at_limit | contact.in_contact);
             bits.stopped |= part.bits(stopped);
             if self.ends_at_stop {
@@ -296,7 +307,7 @@ impl Lanes {
         self.next_end = lasts.min().unwrap_or_default();
         let some = |row: &LaneRow| row.any(|number| number != 0.0);
         self.also = Also {
-            damped: some(&self.inputs.structure.damping),
+            damped: some(&self.inputs.body.damping),
             falls: some(&self.inputs.contact.fall),
         };
         self.ends_at_stop = ends_at_stop;
@@ -318,7 +329,8 @@ impl Lanes {
             fallen,
             ..
         } = self.states[self.now].map(number);
-        let (mut results, reach) = (self.results.map(number), self.reach.map(number));
+        let mut results = self.results[self.now].map(number);
+        let reach = self.reach.map(number);
         results.instant = time(results.instant);
         events.stop = events.stop.map(time);
         let energies = Energies {

@@ -14,7 +14,7 @@ mod tests;
 
 use fearless_simd::{Level, Simd, dispatch};
 
-use super::summary::{ImpactSummary, SummaryBuilder};
+use super::summary::{ImpactSummary, SummaryBuilder, Wanted};
 use super::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink, Until};
 use crate::contact::ContactLaw;
 use crate::integrator::Integrator;
@@ -115,7 +115,7 @@ impl Impact {
     }
 }
 
-/// The results of many impacts, in their order: each until its end or for so many steps.
+/// The results of many impacts, in their order: each until its end or for so many steps. A result that is not wanted is that of the start.
 ///
 /// # Errors
 /// Each impact has its own, as [`ImpactSolver::new`].
@@ -124,8 +124,9 @@ pub fn run(
     impacts: &[Impact],
     until: Option<Until>,
     steps: u64,
+    wanted: Wanted,
 ) -> Vec<Result<Batched, ImpactError>> {
-    run_on(Level::new(), impacts, until, steps)
+    run_on(Level::new(), impacts, until, steps, wanted)
 }
 
 /// With these vectors of the processor. The results are the same for all.
@@ -134,6 +135,7 @@ fn run_on(
     impacts: &[Impact],
     until: Option<Until>,
     steps: u64,
+    wanted: Wanted,
 ) -> Vec<Result<Batched, ImpactError>> {
     // Lanes differ in what their loop contains: yielding specimens, limited forces.
     let mut queues: [Vec<usize>; 4] = Default::default();
@@ -155,10 +157,10 @@ fn run_on(
     let ends = until.is_some_and(|until| until == Until::StrikerStop);
     let mut take = |index: usize, result| results[index] = Some(Ok(result));
     dispatch!(level, simd => {
-        in_lanes::<_, false, false>(simd, impacts, &plain, ends, steps, &mut take);
-        in_lanes::<_, true, false>(simd, impacts, &yielding, ends, steps, &mut take);
-        in_lanes::<_, false, true>(simd, impacts, &limited, ends, steps, &mut take);
-        in_lanes::<_, true, true>(simd, impacts, &both, ends, steps, &mut take);
+        in_lanes::<_, false, false>(simd, impacts, &plain, ends, steps, wanted, &mut take);
+        in_lanes::<_, true, false>(simd, impacts, &yielding, ends, steps, wanted, &mut take);
+        in_lanes::<_, false, true>(simd, impacts, &limited, ends, steps, wanted, &mut take);
+        in_lanes::<_, true, true>(simd, impacts, &both, ends, steps, wanted, &mut take);
     });
     let finished = impacts
         .iter()
@@ -188,12 +190,13 @@ fn in_lanes<S: Simd, const YIELDS: bool, const LIMITED: bool>(
     indices: &[usize],
     ends_at_stop: bool,
     steps: u64,
+    wanted: Wanted,
     take: &mut impl FnMut(usize, Batched),
 ) {
     if indices.is_empty() {
         return;
     }
-    let mut lanes = Lanes::new();
+    let mut lanes = Lanes::new(wanted);
     let mut waiting = indices.iter().copied();
     let mut running: [Option<usize>; LANES] = [None; LANES];
     let mut begin = |lanes: &mut Lanes, lane: usize| {

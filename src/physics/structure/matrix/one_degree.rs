@@ -69,6 +69,33 @@ impl<N: Number> Secant<N> {
 }
 
 numbers! {
+    /// A body and its time step.
+    pub struct Body {
+        /// M + ½ΔtC \[kg\]
+        damped_mass,
+        /// C \[N·s/m\]
+        damping,
+        /// ½Δt \[s\]
+        half,
+        /// ¼Δt² \[s²\]
+        quarter,
+    }
+}
+
+impl Body {
+    /// Of M \[kg\] and C \[N·s/m\].
+    pub(crate) const fn new(mass: f64, damping: f64, time_step: f64) -> Self {
+        let half = 0.5 * time_step;
+        Self {
+            damped_mass: mass + half * damping,
+            damping,
+            half,
+            quarter: half * half,
+        }
+    }
+}
+
+numbers! {
     /// A step without contact.
     pub(crate) struct Unforced {
         /// Ẋ + ½ΔtẌ \[m/s\]: Ẋ₁ without the part of Ẍ₁.
@@ -83,36 +110,39 @@ numbers! {
     }
 }
 
-/// Eq. (5) from (Ẋ, Ẍ), with f₁ and R \[N\].
-#[inline(always)]
-pub(crate) fn unforced<N: Number>(
-    time_step: N,
-    [mass, damping]: [N; 2],
-    [velocity, acceleration]: [N; 2],
-    [load_end, force]: [N; 2],
-    secant: &Secant<N>,
-) -> Unforced<N> {
-    let half = time_step * 0.5;
-    let gained = half * acceleration;
-    let (glide, drift) = (velocity + gained, half * (velocity + velocity + gained));
-    let push = load_end - force - damping * glide;
-    Unforced {
-        glide,
-        top: push * secant.displacement - secant.force * drift,
-        bottom: (half * damping + mass) * secant.displacement + half * half * secant.force,
-        response: secant.displacement,
-        drift,
+impl<N: Number> Body<N> {
+    /// Eq. (5) from (Ẋ, Ẍ), with f₁ − R \[N\]; without damping C is not read.
+    #[inline(always)]
+    pub(crate) fn unforced(
+        &self,
+        damped: bool,
+        [velocity, acceleration]: [N; 2],
+        unbalanced: N,
+        secant: &Secant<N>,
+    ) -> Unforced<N> {
+        let gained = self.half * acceleration;
+        let glide = velocity + gained;
+        let drift = self.half * (velocity + velocity + gained);
+        let push = if damped {
+            unbalanced - self.damping * glide
+        } else {
+            unbalanced
+        };
+        Unforced {
+            glide,
+            top: push * secant.displacement - secant.force * drift,
+            bottom: self.damped_mass * secant.displacement + self.quarter * secant.force,
+            response: secant.displacement,
+            drift,
+        }
     }
-}
 
-impl<N: Number> Unforced<N> {
     /// Eqs. (2c) and (2d): X₁ = X + ½Δt(Ẋ + Ẋ₁), Ẋ₁ = Ẋ + ½Δt(Ẍ + Ẍ₁), as (X₁, Ẋ₁). X₁ does not wait for Ẋ₁.
     #[inline(always)]
-    pub(crate) fn travel(&self, time_step: N, displacement: N, acceleration_end: N) -> [N; 2] {
-        let half = time_step * 0.5;
+    pub(crate) fn travel(&self, from: N, unforced: &Unforced<N>, acceleration_end: N) -> [N; 2] {
         [
-            displacement + (self.drift + half * half * acceleration_end),
-            self.glide + half * acceleration_end,
+            from + (unforced.drift + self.quarter * acceleration_end),
+            unforced.glide + self.half * acceleration_end,
         ]
     }
 }
