@@ -28,7 +28,7 @@ use psd_plan::{Interval, Limits, Plan};
 use psd_text::units::{Dimension, display};
 
 pub use connect::{Connected, connect};
-pub use guard::{Guard, Traversed};
+pub use guard::{Guard, Traversed, fault_of_ideal_step};
 pub use psd_plan::DeclaredNoise;
 pub use psd_plan::record::{Held, Identity};
 pub use psd_plan::{named_axis, of_axis, who};

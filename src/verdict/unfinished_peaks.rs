@@ -55,8 +55,8 @@ pub(super) fn undecided_by(
     })
 }
 
-/// Whether the verdict depends on the further growth. The growing results are increased up to 10¹² times, in steps of half a decade. The
-/// steps also detect a change of a condition with a window.
+/// Whether the verdict depends on the further growth. The growing results are increased up to 10¹² times, in steps of half a decade, the
+/// largest first. The steps also detect a change of a condition with a window.
 fn hangs_on(
     condition: &Condition,
     rule: DecisionRule,
@@ -92,7 +92,7 @@ fn hangs_on(
         .verdict
             != now
     };
-    (-12..=24).any(changes).then(|| why.clone())
+    (-12..=24).rev().any(changes).then(|| why.clone())
 }
 
 /// The results after further growth.
@@ -190,17 +190,13 @@ fn of_impact(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> O
         })
     };
     // Until the striker has stopped, the largest force may still come, even if the structure moves back meanwhile.
-    let still_striking = impact.steps.len() > 1
-        && impact.steps[1..]
-            .iter()
-            .all(|step| step.striker_velocity > 0.0);
-    if still_striking
+    let ending = impact.ending();
+    if ending.still_striking
         && is(result, &PUSHED)
-        && !(is(result, &[schema::MAX_DISPLACEMENT]) && impact.still_rising())
+        && !(is(result, &[schema::MAX_DISPLACEMENT]) && ending.still_rising)
     {
         let entries = (0..floors.last().map_or(1, |floor| floor.floors.computed.len())).collect();
-        let touched = impact.steps.iter().any(|step| step.contact_force > 0.0);
-        let what = if touched {
+        let what = if ending.touched {
             "the striker was still pushing"
         } else {
             "the striker had not touched the structure yet"
@@ -219,20 +215,18 @@ fn of_impact(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> O
         ],
     ) {
         number(
-            impact.still_rising(),
+            ending.still_rising,
             "the structure was still moving",
             "displacement",
         )
     } else if is(result, &[schema::MAX_VELOCITY]) {
-        let growing = last_largest(&mut impact.steps.iter().map(|step| step.velocity.abs()));
         number(
-            growing,
+            ending.speeding_up,
             "the velocity of the structure was still increasing",
             "velocity",
         )
     } else if is(result, &[schema::MAX_CONTACT_FORCE]) {
-        let growing = last_largest(&mut impact.steps.iter().map(|step| step.contact_force));
-        number(growing, "the contact force was still increasing", "size")
+        number(ending.pushing_harder, "the contact force was still increasing", "size")
     } else if is(result, &[schema::MAX_BASE_SHEAR]) {
         let growing = last_largest(
             &mut floors

@@ -86,9 +86,24 @@ impl RunningResults {
     };
 }
 
+/// How an impact ended, as far as its largest values depend on it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ImpactEnding {
+    /// The striker has moved forward in every step.
+    pub still_striking: bool,
+    /// A contact force has acted.
+    pub touched: bool,
+    /// The structure was still moving outwards at its largest X.
+    pub still_rising: bool,
+    /// |Ẋ| was larger at the last step than ever before.
+    pub speeding_up: bool,
+    /// F was larger in the last step than ever before.
+    pub pushing_harder: bool,
+}
+
 /// The results that are asked of many impacts: a running result costs as much as a part of the step. The largest displacement, the contacts,
 /// the end of the run and its energy error are always found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
     pub time_of_max_displacement: bool,
     pub absorbed_energy: bool,

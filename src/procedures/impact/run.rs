@@ -171,6 +171,7 @@ fn history_of(
     let planned = setting.map(Setting::steps);
     ImpactHistory {
         steps,
+        ending: None,
         frame,
         time_step: planned.map_or(0.0, |planned| planned.time_step),
         critical_time_step: planned.map_or(0.0, |planned| planned.critical_time_step),

@@ -349,6 +349,35 @@ fn inside(limit: Interval, value: f64) -> bool {
     limit.contains(value) && value.is_finite()
 }
 
+/// The fault with which a guard stops an ideal rig of one axis in a step from one position to another \[m\], where this force \[N\] is
+/// read. Speeds and tracking errors are not checked.
+#[must_use]
+pub fn fault_of_ideal_step(
+    limits: &Limits,
+    [from, to]: [f64; 2],
+    force: f64,
+) -> Option<RigFault> {
+    let checks = [
+        (LimitedQuantity::TargetDisplacement, limits.displacement, to),
+        (
+            LimitedQuantity::Increment,
+            limits.increment,
+            increment(from, to),
+        ),
+        (LimitedQuantity::Force, limits.force, force),
+    ];
+    let (quantity, limit, value) = checks
+        .into_iter()
+        .find(|(_, limit, value)| !inside(*limit, *value))?;
+    Some(RigFault::LimitBreached {
+        quantity,
+        value,
+        low: limit.low,
+        high: limit.high,
+        axis: None,
+    })
+}
+
 /// The first value of a reading that is outside its limit: that of its axis, if the axis has its own.
 pub(super) fn outside(limits: &Limits, own: &[Limits], reading: &Reading) -> Option<RigFault> {
     let of = |index: usize| own.get(index).unwrap_or(limits);

@@ -170,6 +170,7 @@ pub fn finished() -> Finished {
         ],
         history: History::Impact(ImpactHistory {
             steps,
+            ending: None,
             frame: None,
             time_step: TIME_STEP,
             critical_time_step: 0.0347,

@@ -274,15 +274,7 @@ fn main() {
     }
     let limited = ContactLaw::Limit { force: 100.0 };
     // A study of the largest displacement alone, and one of everything.
-    let peak = Wanted {
-        time_of_max_displacement: false,
-        absorbed_energy: false,
-        max_velocity: false,
-        max_contact_force: false,
-        impulse: false,
-        reach: false,
-    };
-    for (wanted, results) in [(peak, "peak"), (Wanted::ALL, "all results")] {
+    for (wanted, results) in [(Wanted::default(), "peak"), (Wanted::ALL, "all results")] {
         for (name, law, specimen) in [
             ("elastic", ContactLaw::Rigid, &elastic),
             ("bilinear", ContactLaw::Rigid, &bilinear),

@@ -329,6 +329,7 @@ impl Lanes {
             fallen,
             ..
         } = self.states[self.now].map(number);
+        let before = self.results[1 - self.now].map(number);
         let mut results = self.results[self.now].map(number);
         let reach = self.reach.map(number);
         results.instant = time(results.instant);
@@ -355,9 +356,8 @@ impl Lanes {
                 0.0
             },
         };
-        Batched {
-            summary: ImpactSummary::new(input, &results, &events, &last),
-            reach: reach.finish(&results, &last),
-        }
+        let summary = ImpactSummary::new(input, &results, &events, &last);
+        let steps = self.clock - begun;
+        Batched::new(summary, steps, [&before, &results], &reach, &last)
     }
 }

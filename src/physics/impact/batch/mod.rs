@@ -14,8 +14,10 @@ mod tests;
 
 use fearless_simd::{Level, Simd, dispatch};
 
-use super::summary::{ImpactSummary, SummaryBuilder, Wanted};
-use super::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink, Until};
+use super::summary::{
+    ImpactEnding, ImpactSummary, LastEnd, RunningResults, SummaryBuilder, Wanted,
+};
+use super::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink, Until, simulate};
 use crate::contact::ContactLaw;
 use crate::integrator::Integrator;
 use crate::integrator::state::State;
@@ -37,12 +39,40 @@ pub struct Impact {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Batched {
     pub summary: ImpactSummary,
+    pub ending: ImpactEnding,
     pub reach: Reach,
+}
+
+impl Batched {
+    /// After `steps` steps; `before` are the results before the last one.
+    fn new(
+        summary: ImpactSummary,
+        steps: u64,
+        [before, after]: [&RunningResults; 2],
+        reach: &RunningReach,
+        last: &LastEnd,
+    ) -> Self {
+        let grown = |now: f64, before: f64| now > 0.0 && now > before;
+        Self {
+            ending: ImpactEnding {
+                still_striking: steps > 0 && summary.stop_time.is_none(),
+                touched: summary.contacts > 0,
+                still_rising: summary.still_rising,
+                speeding_up: grown(last.velocity.abs(), before.max_velocity),
+                pushing_harder: grown(last.contact_force, before.max_contact_force),
+            },
+            reach: reach.finish(after),
+            summary,
+        }
+    }
 }
 
 /// Sums up the steps of an impact that runs alone.
 struct Builder {
     summary: SummaryBuilder,
+    /// Before the last step.
+    before: RunningResults,
+    steps: u64,
     reach: RunningReach,
     /// X at the last step end.
     displacement: f64,
@@ -50,6 +80,8 @@ struct Builder {
 
 impl<V> Sink<V> for Builder {
     fn push(&mut self, _: &State<V>, state: &ImpactState, _: bool) {
+        self.before = self.summary.results;
+        self.steps = state.step;
         self.summary.push(state);
         self.reach.add(self.displacement, &state.step_end());
         self.displacement = state.displacement;
@@ -94,24 +126,41 @@ impl Impact {
     /// # Errors
     /// As [`ImpactSolver::new`].
     pub fn run(&self, until: Option<Until>, steps: u64) -> Result<Batched, ImpactError> {
-        let mut specimen = self.specimen.clone();
-        let mut solver = ImpactSolver::new(&self.input, 0.0, specimen.move_to(0.0))?;
+        let start = ImpactSolver::new(&self.input, 0.0, self.specimen.clone().move_to(0.0))?;
         let mut builder = Builder {
             summary: SummaryBuilder::new(&self.input),
+            before: RunningResults::START,
+            steps: 0,
             reach: RunningReach::START,
             displacement: 0.0,
         };
-        builder.push(solver.structure(), solver.state(), false);
-        let read = |solver: &mut ImpactSolver| {
-            let target = solver.predict();
-            [target, specimen.move_to(target)]
-        };
-        solver.run(until, steps, read, &mut builder);
-        let Builder { summary, reach, .. } = builder;
-        Ok(Batched {
-            reach: reach.finish(&summary.results, &summary.last),
-            summary: summary.finish(),
-        })
+        builder.push(start.structure(), start.state(), false);
+        self.simulate(until, steps, &mut builder)?;
+        let Builder {
+            summary,
+            before,
+            steps,
+            reach,
+            ..
+        } = builder;
+        let (after, last) = (summary.results, summary.last);
+        let results = [&before, &after];
+        Ok(Batched::new(summary.finish(), steps, results, &reach, &last))
+    }
+
+    /// The steps of this impact alone.
+    ///
+    /// # Errors
+    /// As [`ImpactSolver::new`].
+    pub fn simulate<K: Sink>(
+        &self,
+        until: Option<Until>,
+        steps: u64,
+        sink: &mut K,
+    ) -> Result<(), ImpactError> {
+        let mut specimen = self.specimen.clone();
+        simulate(&self.input, &mut specimen, until, steps, sink)?;
+        Ok(())
     }
 }
 

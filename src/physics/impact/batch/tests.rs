@@ -59,16 +59,26 @@ fn impact(run: u64, law: ContactLaw, yields: bool) -> Impact {
 }
 
 /// All numbers of a result as bits.
-fn bits(Batched { summary, reach }: &Batched) -> Vec<Option<u64>> {
+fn bits(
+    Batched {
+        summary,
+        ending,
+        reach,
+    }: &Batched,
+) -> Vec<Option<u64>> {
     let whole = |number: f64| Some(number.to_bits());
+    let flag = |is: bool| Some(u64::from(is));
     vec![
+        flag(ending.still_striking),
+        flag(ending.touched),
+        flag(ending.still_rising),
+        flag(ending.speeding_up),
+        flag(ending.pushing_harder),
         whole(reach.displacement[0]),
         whole(reach.displacement[1]),
         whole(reach.restoring_force[0]),
         whole(reach.restoring_force[1]),
         whole(reach.increment),
-        whole(reach.last_velocity),
-        whole(reach.last_contact_force),
         whole(summary.max_displacement),
         whole(summary.time_of_max_displacement),
         summary.stop_time.map(f64::to_bits),
@@ -83,8 +93,8 @@ fn bits(Batched { summary, reach }: &Batched) -> Vec<Option<u64>> {
         whole(summary.absorbed_energy),
         whole(summary.striker_energy),
         whole(summary.energy_error),
-        Some(u64::from(summary.still_rising)),
-        Some(u64::from(summary.last_contact_cut)),
+        flag(summary.still_rising),
+        flag(summary.last_contact_cut),
     ]
 }
 

@@ -2,7 +2,7 @@
 
 use crate::record::{StepState, StruckFrame};
 use psd_physics::impact::energy::Energies;
-use psd_physics::impact::summary::still_rising;
+use psd_physics::impact::summary::{ImpactEnding, still_rising};
 use psd_physics::tracking::monitor::Tracking;
 
 /// One row of an impact's table; step 0 is the start.
@@ -41,6 +41,8 @@ pub struct ImpactHistory {
     /// The striker and the struck point. For a frame: the struck floor and storey, with the energies of the whole frame and
     /// the tracking of all axes together.
     pub steps: Vec<ImpactStep>,
+    /// Of an impact whose steps are not kept.
+    pub ending: Option<ImpactEnding>,
     /// None for one degree of freedom.
     pub frame: Option<StruckFrame>,
     /// \[s\]
@@ -50,6 +52,29 @@ pub struct ImpactHistory {
 }
 
 impl ImpactHistory {
+    /// How it ended.
+    #[must_use]
+    pub fn ending(&self) -> ImpactEnding {
+        self.ending.unwrap_or_else(|| {
+            let after_start = self.steps.get(1..).unwrap_or_default();
+            ImpactEnding {
+                still_striking: !after_start.is_empty()
+                    && after_start.iter().all(|step| step.striker_velocity > 0.0),
+                touched: self.steps.iter().any(|step| step.contact_force > 0.0),
+                still_rising: self.still_rising(),
+                speeding_up: self.last_is_largest(|step| step.velocity.abs()),
+                pushing_harder: self.last_is_largest(|step| step.contact_force),
+            }
+        })
+    }
+
+    /// Whether a value is larger at the last step than ever before.
+    fn last_is_largest(&self, value: impl Fn(&ImpactStep) -> f64) -> bool {
+        self.steps.split_last().is_some_and(|(last, before)| {
+            value(last) > 0.0 && before.iter().all(|step| value(step) < value(last))
+        })
+    }
+
     /// Whether the structure was still moving beyond its largest displacement at the end of the record: then the maximum
     /// was not reached within the run.
     #[must_use]

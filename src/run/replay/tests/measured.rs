@@ -21,6 +21,7 @@ pub(super) fn measured(record: &Record) -> String {
                 }
             }
             History::Impact(ImpactHistory {
+                ending: None,
                 frame: Some(frame),
                 steps,
                 ..
