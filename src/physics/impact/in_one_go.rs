@@ -169,3 +169,75 @@ impl End {
         (structure, state)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Approaching;
+    use crate::specimen::{Bilinear, BilinearCurve};
+
+    const STIFFNESS: f64 = 327.65;
+
+    struct Ends(Vec<(State<f64>, ImpactState, bool)>);
+
+    impl Sink for Ends {
+        fn push(&mut self, structure: &State<f64>, state: &ImpactState, over: bool) {
+            self.0.push((structure.clone(), *state, over));
+        }
+    }
+
+    /// With and without damper, fall and gap, under every law and end condition: all numbers of structure and striker are those of the
+    /// solver, to the last bit.
+    #[test]
+    fn in_one_go_and_step_by_step_are_the_same_bits() {
+        let laws = [
+            ContactLaw::Rigid,
+            ContactLaw::Limit { force: 60.0 },
+            ContactLaw::Restitution { coefficient: 0.5 },
+        ];
+        let specimen = || {
+            Bilinear::new(BilinearCurve {
+                stiffness: STIFFNESS,
+                yield_force: 20.0,
+                post_yield_ratio: 0.1,
+            })
+        };
+        for (law, damping, gravity, gap) in laws
+            .into_iter()
+            .flat_map(|law| [(law, 0.0, 0.0, 0.0), (law, 2.0, 9.81, 1e-3)])
+        {
+            let input = ImpactInput {
+                law,
+                damping,
+                gravity,
+                gap,
+                ..ImpactInput::rigid(
+                    STIFFNESS,
+                    Approaching {
+                        mass: 1.0,
+                        striker_mass: 10.0,
+                        velocity: 1.0,
+                        time_step: 1e-3,
+                    },
+                )
+            };
+            for until in [None, Some(Until::StrikerStop), Some(Until::Rebound)] {
+                let mut ends = Ends(Vec::new());
+                let last = simulate(&input, &mut specimen(), until, 700, &mut ends).unwrap();
+                let mut solver = ImpactSolver::new(&input, 0.0, 0.0).unwrap();
+                let (mut specimen, mut own) = (specimen(), Vec::new());
+                while own.len() < 700 {
+                    let target = solver.predict();
+                    solver.complete(target, specimen.move_to(target));
+                    let over = until.is_some_and(|until| solver.over(until));
+                    own.push((solver.structure().clone(), *solver.state(), over));
+                    if over {
+                        break;
+                    }
+                }
+                assert!(own.len() > 20 && ends.0 == own, "{law:?} until {until:?}");
+                assert_eq!(last, *solver.state());
+            }
+        }
+    }
+}

@@ -146,3 +146,51 @@ impl<N: Number> Body<N> {
         ]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LARGEST: f64 = 2000.0;
+
+    /// 1000 N/m, then a rise \[N\] over a change \[m\], forwards and backwards.
+    fn after(rise: f64, change: f64) -> f64 {
+        let [forwards, backwards] = [1.0, -1.0].map(|sign| {
+            let before = Secant::of(1000.0);
+            let secant = before.after(sign * rise, sign * change, LARGEST, LEAST_CHANGE);
+            secant.stiffness()
+        });
+        assert_eq!(forwards.to_bits(), backwards.to_bits());
+        forwards
+    }
+
+    #[test]
+    fn a_secant_stays_within_its_bounds() {
+        assert_eq!(after(0.3, 1e-3), 0.3 / 1e-3);
+        assert_eq!(after(5.0, 1e-3), LARGEST, "stiffer than the bound");
+        assert_eq!(after(-5.0, 1e-3), 0.0, "softening");
+        assert_eq!(after(5.0, 0.0), 1000.0, "without motion");
+        assert_eq!(after(1e-150, 1e-153), 1000.0, "below the least change");
+    }
+
+    /// Eq. (5) with the same K_t as a ratio of small and of large numbers, against the one with divisions.
+    #[test]
+    fn the_ratio_is_eq_5() {
+        let (mass, damping, time_step, stiffness) = (1.3, 2.0, 1e-2, 327.65);
+        let (velocity, acceleration, force) = (0.7, -20.0, 9.0);
+        let half = 0.5 * time_step;
+        let drift = time_step * velocity + half * half * acceleration;
+        let push = -force - damping * (velocity + half * acceleration) - stiffness * drift;
+        let exact = push / (mass + half * damping + half * half * stiffness);
+        let body = Body::new(mass, damping, time_step);
+        for change in [1e-12, -1e-3, 1.0, 1e3] {
+            let secant = Secant {
+                force: stiffness * change,
+                displacement: change,
+            };
+            let unforced = body.unforced(true, [velocity, acceleration], -force, &secant);
+            let found = unforced.top / unforced.bottom;
+            assert!((found / exact - 1.0).abs() < 1e-14, "{change}: {found}");
+        }
+    }
+}
