@@ -23,7 +23,7 @@ fn checked(text: &str) -> (ParsedPlan, Plan, Definition) {
     (parsed, plan, study)
 }
 
-/// Impacts of 3000 steps of 0.1 ms. The striker stops and the peak is reached after this time \[ms\] or later in most runs, or in few.
+/// Impacts of about 3000 steps of 0.1 ms, with or without a peak until the end of this duration.
 fn of_3000_steps(bencher: divan::Bencher, duration: &str) {
     let text = PLAN
         .replace("duration = 1 s", duration)
@@ -32,20 +32,20 @@ fn of_3000_steps(bencher: divan::Bencher, duration: &str) {
     let simulation = Simulation::new(&parsed, &plan, &study);
     let rows = simulation.block(0..1024);
     let missing = rows.iter().filter(|row| row.results[0].is_none()).count();
-    eprintln!("{missing} of 1024 runs have no peak");
+    println!("{missing} of 1024 runs have no peak");
     bencher
         .counter(divan::counter::ItemsCount::new(1024_u32))
         .bench_local(|| simulation.block(0..1024));
 }
 
 #[divan::bench]
-fn with_peaks(bencher: divan::Bencher) {
+fn all_with_a_peak(bencher: divan::Bencher) {
     of_3000_steps(bencher, "duration = 0.4 s");
 }
 
 #[divan::bench]
-fn mostly_without_peaks(bencher: divan::Bencher) {
-    of_3000_steps(bencher, "duration = 0.3 s");
+fn many_without_a_peak(bencher: divan::Bencher) {
+    of_3000_steps(bencher, "duration = 0.2945 s");
 }
 
 #[divan::bench]

@@ -226,7 +226,11 @@ fn of_impact(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> O
             "velocity",
         )
     } else if is(result, &[schema::MAX_CONTACT_FORCE]) {
-        number(ending.pushing_harder, "the contact force was still increasing", "size")
+        number(
+            ending.pushing_harder,
+            "the contact force was still increasing",
+            "size",
+        )
     } else if is(result, &[schema::MAX_BASE_SHEAR]) {
         let growing = last_largest(
             &mut floors

@@ -141,7 +141,8 @@ impl ImpulseContact {
         if !Self::is_near::<true>(start) {
             return Decided::FREE;
         }
-        let needed = (start.striker_velocity + self.fall - free) / (self.striker_compliance + compliance);
+        let needed =
+            (start.striker_velocity + self.fall - free) / (self.striker_compliance + compliance);
         let state = f64::state(needed > self.force_limit, needed >= 0.0);
         let force = f64::of_state(state, || 0.0, || needed, || self.force_limit);
         Decided { state, force }

@@ -34,8 +34,12 @@ pub fn simulate<S: RestoringForce, K: Sink>(
     };
     let start = solver.state();
     match (input.law, stops.filter(|_| exact)) {
-        (ContactLaw::Rigid, Some(stops)) => Ok(run::<_, _, false>(input, start, specimen, stops, steps, sink)),
-        (ContactLaw::Limit { .. }, Some(stops)) => Ok(run::<_, _, true>(input, start, specimen, stops, steps, sink)),
+        (ContactLaw::Rigid, Some(stops)) => Ok(run::<_, _, false>(
+            input, start, specimen, stops, steps, sink,
+        )),
+        (ContactLaw::Limit { .. }, Some(stops)) => Ok(run::<_, _, true>(
+            input, start, specimen, stops, steps, sink,
+        )),
         _ => {
             let read = |solver: &mut ImpactSolver| {
                 let target = solver.predict();

@@ -51,7 +51,11 @@ pub trait HasTangents: Vector {
     type Tangents: FollowedTangents<Vector = Self>;
 
     /// The whole step in tangent form, except the force at its end, which is read later.
-    #[allow(private_interfaces, private_bounds, reason = "no other crate steps a form")]
+    #[allow(
+        private_interfaces,
+        private_bounds,
+        reason = "no other crate steps a form"
+    )]
     fn predict(
         form: &mut StepForm<Self>,
         tangents: Option<&Self::Tangents>,
@@ -62,11 +66,19 @@ pub trait HasTangents: Vector {
     );
 
     /// The tangents have changed.
-    #[allow(private_interfaces, private_bounds, reason = "no other crate steps a form")]
+    #[allow(
+        private_interfaces,
+        private_bounds,
+        reason = "no other crate steps a form"
+    )]
     fn follow(form: &mut StepForm<Self>, tangents: &Self::Tangents);
 }
 
-#[allow(private_interfaces, private_bounds, reason = "no other crate steps a form")]
+#[allow(
+    private_interfaces,
+    private_bounds,
+    reason = "no other crate steps a form"
+)]
 impl HasTangents for f64 {
     type Tangents = StoreyTangent;
 
@@ -104,7 +116,11 @@ impl HasTangents for f64 {
     }
 }
 
-#[allow(private_interfaces, private_bounds, reason = "no other crate steps a form")]
+#[allow(
+    private_interfaces,
+    private_bounds,
+    reason = "no other crate steps a form"
+)]
 impl HasTangents for Vec<f64> {
     type Tangents = StoreyTangents;
 

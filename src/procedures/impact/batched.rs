@@ -15,8 +15,8 @@ use psd_physics::integrator::state::State;
 use psd_physics::specimen::SpecimenModel;
 use psd_plan::formula::{NoResults, ProcedureId};
 use psd_plan::procedures::impact::block as schema;
-use psd_plan::schema::ResultKind;
 use psd_plan::record::{History, ImpactHistory, NamedResult, Outcome, ProcedureRecord};
+use psd_plan::schema::ResultKind;
 use psd_plan::{Impact, Interval, Limits, Mode, Plan, Procedure, Until};
 use psd_rig::{DeclaredNoise, RigFault, fault_of_ideal_step};
 

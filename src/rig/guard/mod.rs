@@ -352,11 +352,7 @@ fn inside(limit: Interval, value: f64) -> bool {
 /// The fault with which a guard stops an ideal rig of one axis in a step from one position to another \[m\], where this force \[N\] is
 /// read. Speeds and tracking errors are not checked.
 #[must_use]
-pub fn fault_of_ideal_step(
-    limits: &Limits,
-    [from, to]: [f64; 2],
-    force: f64,
-) -> Option<RigFault> {
+pub fn fault_of_ideal_step(limits: &Limits, [from, to]: [f64; 2], force: f64) -> Option<RigFault> {
     let checks = [
         (LimitedQuantity::TargetDisplacement, limits.displacement, to),
         (

@@ -1,5 +1,5 @@
 //! The cost of a step, beside the least that the same formula can cost ([`kernel`]): `cargo bench -p psd-physics`. Times are of the
-//! processor. All cases take turns in one loop, and the fastest turn counts: other work on the machine makes a turn longer, not shorter.
+//! processor. All cases take turns in one loop; other work on the machine makes a turn longer, so that the fastest one counts beside the median.
 
 mod kernel;
 
@@ -58,7 +58,8 @@ struct Case<'a> {
     name: String,
     steps: f64,
     turn: Box<dyn FnMut() + 'a>,
-    fastest: f64,
+    /// Of each turn \[s\].
+    times: Vec<f64>,
 }
 
 fn case<'a>(name: &str, steps: u32, turn: impl FnMut() + 'a) -> Case<'a> {
@@ -66,7 +67,7 @@ fn case<'a>(name: &str, steps: u32, turn: impl FnMut() + 'a) -> Case<'a> {
         name: name.to_owned(),
         steps: f64::from(steps),
         turn: Box::new(turn),
-        fastest: f64::INFINITY,
+        times: Vec::new(),
     }
 }
 
@@ -108,13 +109,7 @@ fn bare<'a>() -> [Case<'a>; 3] {
     let input = example_1();
     [
         case("impact, elastic, bare", STEPS, move || {
-            let end = simulate(
-                &input,
-                &mut { SPECIMEN },
-                None,
-                u64::from(STEPS),
-                &mut (),
-            );
+            let end = simulate(&input, &mut { SPECIMEN }, None, u64::from(STEPS), &mut ());
             black_box(end).expect("an impact");
         }),
         case("impact, elastic, bare: kernel", STEPS, move || {
@@ -164,21 +159,20 @@ fn linear<'a>() -> [Case<'a>; 2] {
             }
             black_box(solver.state().energies.error);
         }),
-        case("one degree of freedom, recorded: kernel", STEPS, move || {
-            kernel_rows.clear();
-            let matrices = [mass, damping, stiffness];
-            black_box(kernel::linear(matrices, 1.0, 1e-3, STEPS, &mut kernel_rows));
-        }),
+        case(
+            "one degree of freedom, recorded: kernel",
+            STEPS,
+            move || {
+                kernel_rows.clear();
+                let matrices = [mass, damping, stiffness];
+                black_box(kernel::linear(matrices, 1.0, 1e-3, STEPS, &mut kernel_rows));
+            },
+        ),
     ]
 }
 
 /// Scattered impacts, all in lanes.
-fn study<'a>(
-    name: &str,
-    law: ContactLaw,
-    specimen: &SpecimenModel,
-    wanted: Wanted,
-) -> Case<'a> {
+fn study<'a>(name: &str, law: ContactLaw, specimen: &SpecimenModel, wanted: Wanted) -> Case<'a> {
     let impact = |run: u32| Impact {
         input: ImpactInput {
             striker_velocity: 1.0 + 1e-5 * f64::from(run),
@@ -294,11 +288,16 @@ fn main() {
             }
             let before = own_time();
             (case.turn)();
-            case.fastest = case.fastest.min(own_time() - before);
+            case.times.push(own_time() - before);
         }
     }
-    println!("| a step of | ns |\n|---|---|");
-    for case in &cases {
-        println!("| {} | {:.2} |", case.name, case.fastest / case.steps * 1e9);
+    println!("| a step of | fastest, ns | median, ns |\n|---|---|---|");
+    for Case {
+        name, steps, times, ..
+    } in &mut cases
+    {
+        times.sort_by(f64::total_cmp);
+        let [fastest, median] = [times[0], times[times.len() / 2]].map(|time| time / *steps * 1e9);
+        println!("| {name} | {fastest:.2} | {median:.2} |");
     }
 }

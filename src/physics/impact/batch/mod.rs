@@ -145,7 +145,13 @@ impl Impact {
         } = builder;
         let (after, last) = (summary.results, summary.last);
         let results = [&before, &after];
-        Ok(Batched::new(summary.finish(), steps, results, &reach, &last))
+        Ok(Batched::new(
+            summary.finish(),
+            steps,
+            results,
+            &reach,
+            &last,
+        ))
     }
 
     /// The steps of this impact alone.

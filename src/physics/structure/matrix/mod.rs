@@ -244,7 +244,6 @@ impl Vector for f64 {
         *velocity = from[1] + half * (from[2] + acceleration);
         *displacement = from[0] + half * (from[1] + *velocity);
     }
-
 }
 
 impl Matrix for f64 {
