@@ -211,10 +211,10 @@ mod tests {
             .flat_map(|law| [(law, 0.0, 0.0, 0.0), (law, 2.0, 9.81, 1e-3)])
         {
             let input = ImpactInput {
-                law,
                 damping,
-                gravity,
                 gap,
+                gravity,
+                law,
                 ..ImpactInput::rigid(
                     STIFFNESS,
                     Approaching {

@@ -119,7 +119,7 @@ impl ImpactInput {
             time_step: self.time_step,
         };
         StepInputs {
-            body: Body::new(self.mass, self.damping, self.time_step),
+            body: Body::new([self.mass, self.damping], self.time_step),
             structure: Structure {
                 time_step: self.time_step,
                 largest_tangent: self.max_tangent_ratio * self.stiffness,

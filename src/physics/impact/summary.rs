@@ -88,6 +88,7 @@ impl RunningResults {
 
 /// How an impact ended, as far as its largest values depend on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "independent facts")]
 pub struct ImpactEnding {
     /// The striker has moved forward in every step.
     pub still_striking: bool,
@@ -104,6 +105,7 @@ pub struct ImpactEnding {
 /// The results that are asked of many impacts: a running result costs as much as a part of the step. The largest displacement, the contacts,
 /// the end of the run and its energy error are always found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "independent results")]
 pub struct Wanted {
     pub time_of_max_displacement: bool,
     pub absorbed_energy: bool,
@@ -125,6 +127,13 @@ impl Wanted {
     };
 }
 
+/// The next step, and the results that are wanted of it.
+pub(crate) struct Next<'a, N> {
+    pub wanted: Wanted,
+    pub time_step: N,
+    pub end: &'a StepEnd<N>,
+}
+
 impl<R> RunningResults<R> {
     /// Adds the end of the next step to those of `before` that are wanted. `get` and `set` read and write a result of one impact, or of
     /// several side by side.
@@ -132,12 +141,15 @@ impl<R> RunningResults<R> {
     pub fn add<N: Number>(
         &mut self,
         before: &Self,
-        wanted: Wanted,
-        time_step: N,
-        end: &StepEnd<N>,
+        next: &Next<N>,
         get: impl Fn(&R) -> N,
         mut set: impl FnMut(&mut R, N),
     ) {
+        let Next {
+            wanted,
+            time_step,
+            end,
+        } = *next;
         let largest = get(&before.max_displacement);
         let farther = end.displacement.gt(largest);
         let chosen = |now: N, before: &R| N::choose(farther, || now, || get(before));
@@ -167,12 +179,15 @@ impl<R> RunningResults<R> {
 impl RunningResults {
     /// Adds the end of the next step.
     pub fn push(&mut self, time_step: f64, end: &StepEnd) {
+        let next = Next {
+            wanted: Wanted::ALL,
+            time_step,
+            end,
+        };
         let before = *self;
         self.add(
             &before,
-            Wanted::ALL,
-            time_step,
-            end,
+            &next,
             |number| *number,
             |number, found| *number = found,
         );

@@ -73,7 +73,8 @@ impl TangentStiffness {
         let change = displacement - self.last.0;
         let mut value = self.value;
         if change.abs() > self.least_change {
-            value = secant(force - self.last.1, change, self.largest);
+            // Eq. (6)
+            value = ((force - self.last.1) / change).clamp(0.0, self.largest);
             self.value = value;
         }
         if self.least_change > 0.0 {
@@ -106,12 +107,6 @@ impl TangentStiffness {
             }
         }
     }
-}
-
-/// Eq. (6): a change of force \[N\] over its change of displacement \[m\], inside the bounds \[N/m\].
-#[inline]
-fn secant(force: f64, displacement: f64, largest: f64) -> f64 {
-    (force / displacement).clamp(0.0, largest)
 }
 
 /// Least squares of force on displacement, with an intercept.

@@ -89,22 +89,19 @@ impl HasTangents for f64 {
         from: &Moment<f64>,
         load_end: &f64,
         to: &mut Motion<f64>,
-        mut contact: impl StepContact,
+        contact: impl StepContact,
     ) {
         let Matrices { mass, damping, .. } = form.matrices;
-        let body = Body::new(mass, damping, form.time_step);
-        let constant = Secant::of(*form.operator());
-        let unforced = body.unforced(
-            form.damping().is_some(),
-            [*from.velocity, *from.acceleration],
-            load_end - from.force,
-            tangents.map_or(&constant, |tangents| &tangents.secant),
-        );
-        let [top, bottom] = contact.joined(body.half, &unforced);
-        to.acceleration = top / bottom;
-        [to.displacement, to.velocity] =
-            body.travel(*from.displacement, &unforced, to.acceleration);
-        form.set_contact_force(contact.settled(to.velocity));
+        let point = Point {
+            body: Body::new([mass, damping], form.time_step),
+            damped: form.damping().is_some(),
+            secant: tangents.map_or(Secant::of(*form.operator()), |tangents| tangents.secant),
+            motion: [*from.displacement, *from.velocity, *from.acceleration],
+            unbalanced: load_end - from.force,
+        };
+        let ([displacement, velocity, acceleration], force) = point.step(contact);
+        (to.displacement, to.velocity, to.acceleration) = (displacement, velocity, acceleration);
+        form.set_contact_force(force);
     }
 
     /// A whole step has its tangent as a ratio; only a part of one needs the factor.
@@ -124,22 +121,73 @@ impl HasTangents for f64 {
 impl HasTangents for Vec<f64> {
     type Tangents = StoreyTangents;
 
+    /// A frame of one floor is one degree of freedom.
     #[inline]
     fn predict(
         form: &mut StepForm<Self>,
-        _: Option<&StoreyTangents>,
+        tangents: Option<&StoreyTangents>,
         from: &Moment<Self>,
         load_end: &Self,
         to: &mut Motion<Self>,
         contact: impl StepContact,
     ) {
-        form.predict(from, load_end, to, contact);
+        if load_end.len() > 1 {
+            return form.predict(from, load_end, to, contact);
+        }
+        let constant = || Secant::of(form.operator().at(0, 0));
+        let Matrices { mass, damping, .. } = &form.matrices;
+        let point = Point {
+            body: Body::new([mass.at(0, 0), damping.at(0, 0)], form.time_step),
+            damped: form.damping().is_some(),
+            secant: tangents
+                .and_then(|tangents| tangents.only.as_ref())
+                .map_or_else(constant, |only| only.secant),
+            motion: [from.displacement[0], from.velocity[0], from.acceleration[0]],
+            unbalanced: load_end[0] - from.force[0],
+        };
+        let ([displacement, velocity, acceleration], force) = point.step(contact);
+        to.displacement[0] = displacement;
+        to.velocity[0] = velocity;
+        to.acceleration[0] = acceleration;
+        form.set_contact_force(force);
     }
 
     fn follow(form: &mut StepForm<Self>, tangents: &StoreyTangents) {
         // No storey tangent is negative, so that M̂ has a factor because M has one; after a failure by rounding the last factor
         // remains.
         let _ = form.set_tangent(|stiffness| tangents.compose(stiffness));
+    }
+}
+
+/// A step of one degree of freedom.
+struct Point {
+    body: Body,
+    damped: bool,
+    secant: Secant,
+    /// X, Ẋ, Ẍ
+    motion: [f64; 3],
+    /// f₁ − R \[N\]
+    unbalanced: f64,
+}
+
+impl Point {
+    /// X₁, Ẋ₁, Ẍ₁ and F \[N\].
+    #[inline]
+    fn step(&self, mut contact: impl StepContact) -> ([f64; 3], f64) {
+        let [displacement, velocity, acceleration] = self.motion;
+        let unforced = self.body.unforced(
+            self.damped,
+            [velocity, acceleration],
+            self.unbalanced,
+            &self.secant,
+        );
+        let [top, bottom] = contact.joined(self.body.half, &unforced);
+        let acceleration = top / bottom;
+        let [displacement, velocity] = self.body.travel(displacement, &unforced, acceleration);
+        (
+            [displacement, velocity, acceleration],
+            contact.settled(velocity),
+        )
     }
 }
 
@@ -160,6 +208,8 @@ pub struct StoreyTangent {
 /// The tangents of storeys.
 #[derive(Clone, Debug)]
 pub struct StoreyTangents {
+    /// That of the only storey.
+    only: Option<StoreyTangent>,
     storeys: Vec<Storey>,
     /// \[N/m\]
     stiffnesses: Vec<f64>,
@@ -306,7 +356,12 @@ impl FollowedTangents for StoreyTangents {
             storeys.push(Storey::new(stiffnesses[storey], following, first));
         });
         storeys.reverse();
+        let only = match &stiffnesses[..] {
+            [only] => StoreyTangent::new(only, following, &displacement[0], &force[0]),
+            _ => None,
+        };
         Some(Self {
+            only,
             storeys,
             stiffnesses,
         })
@@ -323,14 +378,14 @@ impl FollowedTangents for StoreyTangents {
     fn take(&mut self, displacement: &Vec<f64>, force: &Vec<f64>) -> bool {
         let mut changed = false;
         let Self {
+            only,
             storeys,
             stiffnesses,
         } = self;
-        if let ([storey], [stiffness]) = (&mut storeys[..], &mut stiffnesses[..]) {
-            // Every secant of a single storey is used, because its factor costs one division.
-            let before =
-                std::mem::replace(stiffness, storey.followed.take(displacement[0], force[0]));
-            return *stiffness != before;
+        if let Some(only) = only {
+            changed = only.take(&displacement[0], &force[0]);
+            stiffnesses[0] = only.stiffness;
+            return changed;
         }
         each_reading(displacement, force, |storey, now| {
             changed |= storeys[storey].take(now, &mut stiffnesses[storey]);

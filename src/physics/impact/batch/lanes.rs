@@ -17,7 +17,7 @@ use crate::impact::energy::Energies;
 use crate::impact::step::{
     Also, BetweenSteps, Marks, StepInputs, StrikerInput, Structure, end_step,
 };
-use crate::impact::summary::{Events, ImpactSummary, LastEnd, RunningResults, Wanted};
+use crate::impact::summary::{Events, ImpactSummary, LastEnd, Next, RunningResults, Wanted};
 use crate::specimen::BilinearLines;
 use crate::structure::matrix::one_degree::{Body, Secant};
 
@@ -93,7 +93,7 @@ impl LaneStart {
     /// A mass at rest, and a striker that is apart for ever and moves: nothing ever happens.
     fn resting() -> Self {
         let inputs = StepInputs {
-            body: Body::new(1.0, 0.0, 0.0),
+            body: Body::new([1.0, 0.0], 0.0),
             structure: Structure {
                 time_step: 0.0,
                 largest_tangent: 0.0,
@@ -162,12 +162,12 @@ impl Lanes {
         }
     }
 
-    fn set(&mut self, lane: usize, start: LaneStart, last: u64) {
+    fn set(&mut self, lane: usize, start: &LaneStart, last: u64) {
         let LaneStart {
             inputs,
             specimen,
             state,
-        } = start;
+        } = *start;
         let mut results = RunningResults::START;
         results.push(inputs.structure.time_step, &state.step_end(self.instant()));
         let set = |row: &mut LaneRow, number: f64| row.set_lane(lane, number);
@@ -199,12 +199,12 @@ impl Lanes {
     pub fn begin(&mut self, lane: usize, impact: &Impact, steps: u64) {
         let specimen = impact.lane_specimen(None).expect("batched");
         let start = LaneStart::of(&impact.input, specimen);
-        self.set(lane, start, self.clock.saturating_add(steps));
+        self.set(lane, &start, self.clock.saturating_add(steps));
     }
 
     /// A lane without an impact.
     pub fn rest(&mut self, lane: usize) {
-        self.set(lane, LaneStart::resting(), u64::MAX);
+        self.set(lane, &LaneStart::resting(), u64::MAX);
     }
 
     /// One step of every lane, from state `NOW` to the other one; the first step is from state 0. Whether [`Self::follow`] has something to
@@ -253,8 +253,12 @@ impl Lanes {
                 to.fallen.each(state.fallen, set);
             }
             let end = state.step_end(part.number(instant));
-            let time_step = get(&inputs.structure.time_step);
-            found.add(known, self.wanted, time_step, &end, get, set);
+            let next = Next {
+                wanted: self.wanted,
+                time_step: get(&inputs.structure.time_step),
+                end: &end,
+            };
+            found.add(known, &next, get, set);
             if self.wanted.reach {
                 let mut reach = self.reach.map(get);
                 reach.add(before.motion.displacement, &end);

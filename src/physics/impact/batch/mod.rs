@@ -209,13 +209,17 @@ fn run_on(
         });
     }
     let [plain, yielding, limited, both] = queues;
-    let ends = until.is_some_and(|until| until == Until::StrikerStop);
+    let terms = Terms {
+        ends_at_stop: until.is_some_and(|until| until == Until::StrikerStop),
+        steps,
+        wanted,
+    };
     let mut take = |index: usize, result| results[index] = Some(Ok(result));
     dispatch!(level, simd => {
-        in_lanes::<_, false, false>(simd, impacts, &plain, ends, steps, wanted, &mut take);
-        in_lanes::<_, true, false>(simd, impacts, &yielding, ends, steps, wanted, &mut take);
-        in_lanes::<_, false, true>(simd, impacts, &limited, ends, steps, wanted, &mut take);
-        in_lanes::<_, true, true>(simd, impacts, &both, ends, steps, wanted, &mut take);
+        in_lanes::<_, false, false>(simd, impacts, &plain, &terms, &mut take);
+        in_lanes::<_, true, false>(simd, impacts, &yielding, &terms, &mut take);
+        in_lanes::<_, false, true>(simd, impacts, &limited, &terms, &mut take);
+        in_lanes::<_, true, true>(simd, impacts, &both, &terms, &mut take);
     });
     let finished = impacts
         .iter()
@@ -233,6 +237,14 @@ fn is_finite(summary: &ImpactSummary) -> bool {
     summary.energy_error.is_finite() && summary.final_displacement.is_finite()
 }
 
+/// When impacts end, and what is found of them.
+struct Terms {
+    ends_at_stop: bool,
+    /// At most.
+    steps: u64,
+    wanted: Wanted,
+}
+
 /// Steps the impacts at these places, thirty-two at a time. A part of its caller, which is compiled for several vector units.
 #[allow(
     clippy::inline_always,
@@ -243,11 +255,14 @@ fn in_lanes<S: Simd, const YIELDS: bool, const LIMITED: bool>(
     simd: S,
     impacts: &[Impact],
     indices: &[usize],
-    ends_at_stop: bool,
-    steps: u64,
-    wanted: Wanted,
+    terms: &Terms,
     take: &mut impl FnMut(usize, Batched),
 ) {
+    let Terms {
+        ends_at_stop,
+        steps,
+        wanted,
+    } = *terms;
     if indices.is_empty() {
         return;
     }

@@ -84,7 +84,7 @@ numbers! {
 
 impl Body {
     /// Of M \[kg\] and C \[N·s/m\].
-    pub(crate) const fn new(mass: f64, damping: f64, time_step: f64) -> Self {
+    pub(crate) const fn new([mass, damping]: [f64; 2], time_step: f64) -> Self {
         let half = 0.5 * time_step;
         Self {
             damped_mass: mass + half * damping,
@@ -182,7 +182,7 @@ mod tests {
         let drift = time_step * velocity + half * half * acceleration;
         let push = -force - damping * (velocity + half * acceleration) - stiffness * drift;
         let exact = push / (mass + half * damping + half * half * stiffness);
-        let body = Body::new(mass, damping, time_step);
+        let body = Body::new([mass, damping], time_step);
         for change in [1e-12, -1e-3, 1.0, 1e3] {
             let secant = Secant {
                 force: stiffness * change,

@@ -1,6 +1,8 @@
 //! The least that a step of an impact or of one degree of freedom can be: the same formulas with every number in a register, one division a
 //! step, and no other law, integrator, noise or end condition. The bench compares psd with it in one run.
 
+#![allow(clippy::inline_always, reason = "a row is a part of its loop")]
+
 use psd_physics::impact::{ImpactInput, StepRow};
 use psd_physics::specimen::RestoringForce;
 
