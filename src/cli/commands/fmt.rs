@@ -5,9 +5,9 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use similar::TextDiff;
 
 use crate::cli::exit::{Exit, Failure};
+use crate::cli::files::difference;
 use crate::cli::files::loader::{is_plan, read_plan};
 use crate::cli::files::plan_file::name_of;
 use crate::cli::output::{print_message, print_result};
@@ -52,14 +52,11 @@ fn one(path: &Path, check: bool, settings: Settings) -> Result<Exit, Failure> {
     }
     if check {
         let name = one_line(&path.display().to_string());
-        let diff = TextDiff::from_lines(&text, &formatted);
-        print_result(
-            &diff
-                .unified_diff()
-                .context_radius(3)
-                .header(&name, &format!("{name} (formatted)"))
-                .to_string(),
-        )?;
+        let of_the_formatted = format!("{name} (formatted)");
+        print_result(&difference::unified(
+            (&name, &text),
+            (&of_the_formatted, &formatted),
+        ))?;
         return Ok(Exit::Missed);
     }
     // A check of the formatter: its output must parse without errors and be stable.

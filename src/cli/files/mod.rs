@@ -4,6 +4,7 @@
 pub(crate) use crate::files::provenance;
 
 pub(crate) mod accepted;
+pub(crate) mod difference;
 pub(crate) mod disk_space;
 pub(crate) mod finish_run;
 pub(crate) mod golden_run;
