@@ -41,20 +41,16 @@ impl Guard<'_> {
     fn check_limits_and_tracking(&mut self, reading: &Reading) -> Result<(), RigFault> {
         self.check_reading(reading)?;
         if self.settled {
-            let errors: Vec<f64> = reading
+            let errors = reading
                 .displacement
                 .iter()
                 .zip(&self.commanded)
-                .map(|(measured, target)| (measured - target).abs())
-                .collect();
+                .map(|(measured, target)| (measured - target).abs());
             let limit = self.limits.tracking_error;
-            if let Some(index) = errors.iter().position(|error| !limit.contains(*error)) {
-                return Err(self.breach(
-                    LimitedQuantity::TrackingError,
-                    Some(index),
-                    limit,
-                    errors[index],
-                ));
+            let mut errors = errors.enumerate();
+            if let Some((index, error)) = errors.find(|(_, error)| !limit.contains(*error)) {
+                let quantity = LimitedQuantity::TrackingError;
+                return Err(self.breach(quantity, Some(index), limit, error));
             }
             if let Some(holds) = &mut self.holds {
                 holds.see(&self.commanded, reading);

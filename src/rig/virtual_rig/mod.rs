@@ -47,6 +47,17 @@ pub struct VirtualRig {
     moved: Option<[f64; 2]>,
     /// The paths that the axes follow, or were stopped on.
     interrupted: Vec<Course>,
+    /// Memory of a move, for each axis: a long run makes millions of them.
+    buffers: Buffers,
+}
+
+#[derive(Default)]
+struct Buffers {
+    /// \[m\]
+    aims: Vec<f64>,
+    travels: Vec<Motion>,
+    /// \[m/s\]
+    velocities: Vec<f64>,
 }
 
 struct Axis {
@@ -99,6 +110,7 @@ impl VirtualRig {
             proposed: None,
             moved: None,
             interrupted: Vec::new(),
+            buffers: Buffers::default(),
         }
     }
 
@@ -165,30 +177,28 @@ impl VirtualRig {
             *bent = position;
         }
         if moved {
-            let velocities = self.velocities();
-            self.springs.slide(&velocities);
+            self.note_velocities();
+            self.springs.slide(&self.buffers.velocities);
         }
         self.springs
             .bend(travels, &self.bent, &mut self.restoring_force);
     }
 
-    /// Velocities of the pistons \[m/s\].
-    fn velocities(&self) -> Vec<f64> {
-        self.axes
-            .iter()
-            .map(|axis| axis.actuator.velocity())
-            .collect()
+    /// Puts the velocities of the pistons \[m/s\] into their buffer.
+    fn note_velocities(&mut self) {
+        let velocities = self.axes.iter().map(|axis| axis.actuator.velocity());
+        self.buffers.velocities.clear();
+        self.buffers.velocities.extend(velocities);
     }
 
     /// `seconds` pass with the references at rest.
     fn rest(&mut self, seconds: f64) {
-        let travels: Vec<Motion> = self
-            .axes
-            .iter_mut()
-            .map(|axis| axis.actuator.rest(seconds))
-            .collect();
+        let mut travels = std::mem::take(&mut self.buffers.travels);
+        travels.clear();
+        travels.extend(self.axes.iter_mut().map(|axis| axis.actuator.rest(seconds)));
         self.time += seconds;
         self.follow(&travels);
+        self.buffers.travels = travels;
     }
 
     fn reading(&mut self) -> Reading {
@@ -198,14 +208,12 @@ impl VirtualRig {
             .iter()
             .map(|bent| sign * to_quantum(*bent, resolution))
             .collect();
-        let velocities = self.velocities();
-        let feedback = self.springs.feedback(&velocities, &self.restoring_force);
-        let force = self
-            .axes
-            .iter_mut()
-            .zip(feedback)
-            .map(|(axis, force)| sign * axis.cell.read(force, time))
-            .collect();
+        self.note_velocities();
+        let velocities = &self.buffers.velocities;
+        let mut force = self.springs.feedback(velocities, &self.restoring_force);
+        for (axis, force) in self.axes.iter_mut().zip(&mut force) {
+            *force = sign * axis.cell.read(*force, time);
+        }
         Reading {
             time,
             displacement,
@@ -310,28 +318,30 @@ impl Rig for VirtualRig {
 
     /// All axes arrive simultaneously; the one with the longest travel has the requested speed.
     fn execute(&mut self) -> Result<(), RigFault> {
-        let (targets, speed) = self
+        let (mut targets, speed) = self
             .proposed
             .take()
             .ok_or_else(|| RigFault::Device("nothing was proposed to execute".to_owned()))?;
-        let aims: Vec<f64> = self
-            .axes
-            .iter()
-            .zip(&targets)
-            .map(|(axis, target)| axis.actuator.aim(*target))
-            .collect();
+        let aimed = self.axes.iter().zip(&targets);
+        self.buffers.aims.clear();
+        self.buffers
+            .aims
+            .extend(aimed.map(|(axis, target)| axis.actuator.aim(*target)));
+        let aims = &self.buffers.aims;
         let travels = self
             .axes
             .iter()
-            .zip(&aims)
+            .zip(aims)
             .map(|(axis, aim)| (aim - axis.actuator.reference()).abs());
         let seconds = travels.fold(0.0, f64::max) / speed;
         let motions = self
             .axes
             .iter_mut()
-            .zip(&aims)
+            .zip(aims)
             .map(|(axis, aim)| axis.actuator.advance(*aim, seconds));
-        let travels: Vec<Motion> = motions.collect();
+        let mut travels = std::mem::take(&mut self.buffers.travels);
+        travels.clear();
+        travels.extend(motions);
         // A first-order lag delays a motion by its time constant, and adds its square to the variance.
         let lag = self.link.lag;
         self.moved = Some(even(
@@ -343,16 +353,15 @@ impl Rig for VirtualRig {
         ));
         self.time += seconds;
         self.follow(&travels);
+        self.buffers.travels = travels;
         for axis in &mut self.axes {
             axis.actuator.stop();
         }
         let arrived = self.time;
-        let misses: Vec<f64> = targets
-            .iter()
-            .zip(&aims)
-            .map(|(target, aim)| target - aim)
-            .collect();
-        if self.settle(&misses) {
+        for (target, aim) in targets.iter_mut().zip(&self.buffers.aims) {
+            *target -= aim;
+        }
+        if self.settle(&targets) {
             return Ok(());
         }
         self.rest((arrived + self.settle.timeout - self.time).max(0.0));

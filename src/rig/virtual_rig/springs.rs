@@ -5,7 +5,7 @@ use psd_physics::relaxation::maxwell::Motion;
 use psd_physics::relaxation::relaxation_state::{Deformed, RelaxationState};
 use psd_physics::specimen::{RestoringForce as _, SpecimenModel};
 use psd_physics::structure::cell_damping::{CellDamping, StrengthRate};
-use psd_physics::structure::{SymmetricBand, drifts, floor_forces};
+use psd_physics::structure::{SymmetricBand, drifts};
 use psd_plan::{Behaviour, Frame, Specimen};
 
 /// Springs between the axes and the ground.
@@ -104,10 +104,12 @@ impl Springs {
     ) {
         match self {
             Self::Storeys(storeys) => {
-                let mut drift = vec![0.0; storeys.len()];
-                drifts(displacement, &mut drift);
+                // The drifts, then the shears, then the forces, in one list: no step allocates.
+                drifts(displacement, restoring_force);
                 let mut below = None;
-                for ((storey, axis), drift) in storeys.iter_mut().zip(travels).zip(drift) {
+                let forces = restoring_force.iter_mut();
+                for ((storey, axis), force) in storeys.iter_mut().zip(travels).zip(forces) {
+                    let drift = *force;
                     let travel = below.map_or(*axis, |below| axis.relative_to(below));
                     storey.shear = storey.relaxing.advance(
                         &mut storey.model,
@@ -119,10 +121,10 @@ impl Springs {
                         drift,
                     );
                     storey.drift = drift;
+                    *force = storey.shear;
                     below = Some(axis);
                 }
-                let shears: Vec<f64> = storeys.iter().map(|storey| storey.shear).collect();
-                floor_forces(&shears, restoring_force);
+                of_shears(restoring_force);
             }
             Self::Matrix { stiffness, .. } => stiffness.mul_into(displacement, restoring_force),
         }
@@ -131,8 +133,10 @@ impl Springs {
     /// The axes continue at these velocities \[m/s\]: the friction of each storey follows their direction.
     pub(super) fn slide(&mut self, velocities: &[f64]) {
         if let Self::Storeys(storeys) = self {
-            for (storey, velocity) in storeys.iter_mut().zip(of_drifts(velocities)) {
-                storey.damper.force(velocity);
+            let mut below = 0.0;
+            for (storey, velocity) in storeys.iter_mut().zip(velocities) {
+                storey.damper.force(velocity - below);
+                below = *velocity;
             }
         }
     }
@@ -145,13 +149,12 @@ impl Springs {
                 .iter()
                 .any(|storey| !storey.damper.is_none() || !storey.relaxing.is_none())
         {
-            let storeys = storeys.iter_mut().zip(of_drifts(velocities));
-            let shears: Vec<f64> = storeys
-                .map(|(storey, velocity)| {
-                    storey.damper.measured_force(storey.shear, velocity) + storey.relaxing.force()
-                })
-                .collect();
-            floor_forces(&shears, &mut feedback);
+            drifts(velocities, &mut feedback);
+            for (storey, force) in storeys.iter_mut().zip(&mut feedback) {
+                *force =
+                    storey.damper.measured_force(storey.shear, *force) + storey.relaxing.force();
+            }
+            of_shears(&mut feedback);
         }
         feedback
     }
@@ -208,9 +211,9 @@ impl Springs {
     }
 }
 
-/// Velocities of the storey drifts \[m/s\].
-fn of_drifts(velocities: &[f64]) -> Vec<f64> {
-    let mut drift = vec![0.0; velocities.len()];
-    drifts(velocities, &mut drift);
-    drift
+/// Makes the shears of the storeys the forces of their floors \[N\].
+fn of_shears(shears: &mut [f64]) {
+    for above in 1..shears.len() {
+        shears[above - 1] -= shears[above];
+    }
 }
