@@ -280,12 +280,16 @@ impl<'a> Life<'a> {
         let at_rest = self.world.at_rest();
         let mut state = self.world.lock();
         let witness = &mut state.witness;
-        match ended {
-            Ended::Recorded(recorded) => witness.session_ended(&recorded.record, at_rest, allowed),
-            // What was sent again is counted in the run log a moment later.
-            _ => {
-                (witness.repeated, witness.killed) = (witness.repeated.min(allowed), true);
-            }
+        // What was sent again is counted in the run log a moment later: not by a psd that was killed, and not on a full disk.
+        let uncounted = match ended {
+            Ended::Recorded(recorded) => recorded.fault.is_some(),
+            _ => true,
+        };
+        if uncounted {
+            (witness.repeated, witness.killed) = (witness.repeated.min(allowed), true);
+        }
+        if let Ended::Recorded(recorded) = ended {
+            witness.session_ended(&recorded.record, at_rest, allowed);
         }
         let early = self.disk.early();
         witness.check(Law::ReadingDurable, early == 0, || {

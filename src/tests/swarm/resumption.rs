@@ -206,16 +206,23 @@ fn other_specimen(
         .or_else(|| last(EntryKind::Intent));
     let sample = last(EntryKind::Sample)?;
     let mut sampled: SampleBody = sample.read().ok()?;
-    // The final hold was read later.
-    let held = before
+    // The final hold was read later; without one, the rig was read before the last resumption.
+    let later = before
         .lines
         .iter()
         .rev()
         .take_while(|line| line.seq > sample.seq);
-    if let Some(line) = { held }.find(|line| line.kind == EntryKind::Held)
-        && let Some((positions, forces)) = line.read::<HeldBody>().ok()?.found
-    {
-        (sampled.x, sampled.r) = (positions, forces);
+    let held = { later }.find(|line| line.kind == EntryKind::Held);
+    let held = match held {
+        Some(line) => line.read::<HeldBody>().ok()?.found,
+        None => None,
+    };
+    let resumed = before
+        .resumption
+        .as_ref()
+        .map(|resume| resume.found.clone());
+    if let Some(found) = held.or(resumed) {
+        (sampled.x, sampled.r) = found;
     }
     let (mut from, mut to) = (sampled.x[0], sampled.x[0]);
     if let Some(intent) = intent.filter(|intent| intent.seq > sample.seq) {

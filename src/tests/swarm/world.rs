@@ -45,8 +45,6 @@ pub(super) struct State {
     kill: Option<Kill>,
     dead: bool,
     struck: Vec<&'static str>,
-    /// A controller froze in the session before, and obeys in this one what that session sent.
-    obeys_late: bool,
     /// Blocks of bytes that each line has received from the rig since its power-up.
     pub(super) replies: [u64; 2],
 }
@@ -66,7 +64,6 @@ impl World {
             kill: None,
             dead: false,
             struck: Vec::new(),
-            obeys_late: false,
             replies: [0; 2],
         })))
     }
@@ -92,8 +89,7 @@ impl World {
                 _ => {}
             }
         }
-        state.obeys_late = state.bench.obeys_later();
-        let obeys_late = state.obeys_late;
+        let obeys_late = state.bench.obeys_later();
         state.witness.begin(obeys_late);
     }
 
@@ -207,8 +203,7 @@ impl State {
             self.moved = self.now();
         }
         self.witness.look(self.bench.rig(), before, &self.disk);
-        if self.obeys_late && !self.bench.obeys_later() {
-            self.obeys_late = false;
+        if self.witness.obeys_late && !self.bench.obeys_later() {
             self.witness.begin(false);
         }
     }

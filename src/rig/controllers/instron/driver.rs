@@ -201,12 +201,39 @@ impl Instron {
         })
     }
 
-    /// The travel to a target \[m\], by the last positions. The line has no checksum, and the time of the ramp follows from the travel:
-    /// the median of three positions is not changed by a single wrong one, and of two the longer travel is the slower one.
+    /// The travel to a target \[m\]. The line has no checksum, and the time of the ramp follows from the travel: a position that jumped is
+    /// replaced by the median of the last three. Of two, the longer travel is the slower one.
     fn travel(&self, target: f64) -> Option<f64> {
-        let mut travels: Vec<f64> = self.last.iter().map(|last| (target - last).abs()).collect();
-        travels.sort_by(f64::total_cmp);
-        travels.get(travels.len() / 2).copied()
+        let travel = |position: f64| (target - position).abs();
+        match *self.last {
+            [] => None,
+            [before, last] => Some(travel(before).max(travel(last))),
+            [.., first, before, last] => {
+                let mut sorted = [first, before, last];
+                sorted.sort_by(f64::total_cmp);
+                let jumped = (last - before).abs() > (before - first).abs();
+                Some(travel(if jumped { sorted[1] } else { last }))
+            }
+            [last] => Some(travel(last)),
+        }
+    }
+
+    /// The full scale of a channel, as two answers in turn give it: every reading is multiplied by it, and the line has no checksum.
+    fn ask_full_scale(&mut self, channel: Channel) -> Result<(f64, Vec<u8>), DeviceFault> {
+        let mut before = None;
+        for _ in 0..=TRIES {
+            self.wait_for_poll()?;
+            let mut raw = Vec::new();
+            let full_scale = self.number_twice_if_zero(Question::FullScale(channel), &mut raw)?;
+            if before == Some(full_scale) {
+                // If one of the two readings was a false zero, the other number is kept.
+                return Ok((full_scale, raw.pop().unwrap_or_default()));
+            }
+            before = Some(full_scale);
+        }
+        Err(DeviceFault::Unfit(format!(
+            "the full scale of its {channel} channel differs between two questions"
+        )))
     }
 
     /// Whether it runs, or has already arrived.
@@ -224,11 +251,9 @@ impl Instron {
 impl Device for Instron {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         let mut raw = Vec::new();
-        for (index, channel) in [Channel::Position, Channel::Load].into_iter().enumerate() {
-            self.wait_for_poll()?;
-            let full_scale = self.number_twice_if_zero(Question::FullScale(channel), &mut raw)?;
-            // If one of the two readings is a false zero, the other number is kept.
-            raw.drain(index..raw.len() - 1);
+        for channel in [Channel::Position, Channel::Load] {
+            let (full_scale, answer) = self.ask_full_scale(channel)?;
+            raw.push(answer);
             if !(0.0 < full_scale && full_scale.is_finite()) {
                 return Err(DeviceFault::Unfit(format!(
                     "the full scale of its {channel} channel is {full_scale}"

@@ -35,15 +35,19 @@ fn console() -> (Instron, Transcript) {
     (Instron::new(client), Transcript::new(port, 0.02, text))
 }
 
+/// Both full scales, each asked twice.
+fn full_scales(script: &mut Transcript) -> &mut Transcript {
+    script
+        .on("Q308,1 ", "0.1")
+        .on("Q308,1 ", "0.1")
+        .on("Q308,2 ", "50000")
+        .on("Q308,2 ", "50000")
+}
+
 /// Full scale 100 mm and 50 kN; at rest at 1 % of each.
 fn opened() -> (Instron, Transcript) {
     let (mut console, mut script) = console();
-    round(
-        script.on("Q308,1 ", "0.1").on("Q308,2 ", "50000"),
-        "0",
-        "0.01",
-        "0.01",
-    );
+    round(full_scales(&mut script), "0", "0.01", "0.01");
     console.identify().unwrap();
     (console, script)
 }
@@ -249,8 +253,7 @@ fn what_has_tripped_is_a_flag_or_makes_it_unfit() {
         Err(DeviceFault::Unfit("oil too hot".to_owned()))
     );
     let (mut console, mut script) = self::console();
-    script.on("Q308,1 ", "0.1").on("Q308,2 ", "50000");
-    script
+    full_scales(&mut script)
         .on("Q22 ", "3072")
         .on("Q1 ", "0")
         .on("Q134,1,0 ", "0.01")
@@ -260,11 +263,32 @@ fn what_has_tripped_is_a_flag_or_makes_it_unfit() {
         Err(DeviceFault::Unfit("emergency stop pushed".to_owned()))
     );
     let (mut console, mut script) = self::console();
-    script.on("Q308,1 ", "0").on("Q308,1 ", "0");
+    for _ in 0..4 {
+        script.on("Q308,1 ", "0");
+    }
     assert!(
         matches!(console.identify(), Err(DeviceFault::Unfit(_))),
         "a full scale of nothing"
     );
+    script.done();
+}
+
+/// One bit makes 4.1 of 0.1: every reading and every target would be 41 times too large.
+#[test]
+fn a_full_scale_counts_when_two_answers_in_turn_give_it() {
+    let (mut console, mut script) = console();
+    for answer in ["0.1", "4.1", "0.1", "0.1"] {
+        script.on("Q308,1 ", answer);
+    }
+    script.on("Q308,2 ", "50000").on("Q308,2 ", "50000");
+    round(&mut script, "0", "0.01", "0.01");
+    console.identify().unwrap();
+    script.done();
+    let (mut console, mut script) = self::console();
+    for answer in ["0.1", "4.1", "0.1", "4.1"] {
+        script.on("Q308,1 ", answer);
+    }
+    assert!(matches!(console.identify(), Err(DeviceFault::Unfit(_))));
     script.done();
 }
 
