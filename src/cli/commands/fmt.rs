@@ -8,6 +8,7 @@ use clap::Args;
 
 use crate::cli::exit::{Exit, Failure};
 use crate::cli::files::difference;
+use crate::cli::files::difference::Named;
 use crate::cli::files::loader::{is_plan, read_plan};
 use crate::cli::files::plan_file::name_of;
 use crate::cli::output::{print_message, print_result};
@@ -54,8 +55,14 @@ fn one(path: &Path, check: bool, settings: Settings) -> Result<Exit, Failure> {
         let name = one_line(&path.display().to_string());
         let of_the_formatted = format!("{name} (formatted)");
         print_result(&difference::unified(
-            (&name, &text),
-            (&of_the_formatted, &formatted),
+            &Named {
+                name: &name,
+                text: &text,
+            },
+            &Named {
+                name: &of_the_formatted,
+                text: &formatted,
+            },
         ))?;
         return Ok(Exit::Missed);
     }

@@ -10,14 +10,20 @@ use similar::{Algorithm, DiffOp, capture_diff_slices, group_diff_ops};
 /// Number of lines around a change.
 const CONTEXT: usize = 3;
 
+/// A text, and its name in the difference.
+pub struct Named<'a> {
+    pub name: &'a str,
+    pub text: &'a str,
+}
+
 /// The unified difference; empty if the texts are equal.
-pub fn unified((name, text): (&str, &str), (other_name, other): (&str, &str)) -> String {
-    let old: Vec<&str> = text.split_inclusive('\n').collect();
-    let new: Vec<&str> = other.split_inclusive('\n').collect();
+pub fn unified(before: &Named<'_>, after: &Named<'_>) -> String {
+    let old: Vec<&str> = before.text.split_inclusive('\n').collect();
+    let new: Vec<&str> = after.text.split_inclusive('\n').collect();
     let mut shown = String::new();
     for hunk in group_diff_ops(operations(&old, &new), CONTEXT) {
         if shown.is_empty() {
-            let _ = writeln!(shown, "--- {name}\n+++ {other_name}");
+            let _ = writeln!(shown, "--- {}\n+++ {}", before.name, after.name);
         }
         let _ = writeln!(shown, "{}", UnifiedHunkHeader::new(&hunk));
         for operation in hunk {
@@ -103,10 +109,11 @@ fn change(operations: &mut Vec<DiffOp>, from: (usize, usize), to: (usize, usize)
 mod tests {
     use std::fmt::Write as _;
 
-    use super::unified;
+    use super::{Named, unified};
 
     fn shown(old: &str, new: &str) -> String {
-        unified(("a", old), ("b", new))
+        let named = |name, text| Named { name, text };
+        unified(&named("a", old), &named("b", new))
     }
 
     #[test]

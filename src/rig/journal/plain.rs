@@ -323,7 +323,7 @@ mod tests {
             r#"{"a"}"#,
             r#"{"a":1,}"#,
             r#"{"a":tru}"#,
-            r#"{a:1}"#,
+            "{a:1}",
         ] {
             assert_eq!(Plain::of(json.as_bytes()).time_of_object(), None, "{json}");
         }

@@ -43,16 +43,14 @@ general!(
 );
 
 /// A field that can be absent, after its name.
-fn field<'json, T>(
-    json: &mut Plain<'json>,
-    name: &[u8],
-    read: impl FnOnce(&mut Plain<'json>) -> Option<T>,
-) -> Option<Option<T>> {
-    if json.skip(name) {
-        read(json).map(Some)
-    } else {
-        Some(None)
-    }
+macro_rules! optional {
+    ($json:expr, $name:literal, $read:expr) => {
+        if $json.skip($name) {
+            Some($read($json)?)
+        } else {
+            None
+        }
+    };
 }
 
 impl Body for IntentBody {
@@ -70,16 +68,15 @@ impl Body for IntentBody {
         } else {
             Some(json.number()?)
         };
-        let encoded = field(json, b",\"encoded\":", Plain::numbers)?;
+        let encoded = optional!(json, b",\"encoded\":", Plain::numbers);
         json.expect(b",\"rate\":")?;
         let rate = json.number()?;
-        let wire = field(json, b",\"wire\":", Plain::string)?;
-        let id = field(json, b",\"id\":", Plain::whole)?;
-        let own = field(json, b",\"own\":", Plain::numbers)?;
-        let samples = field(json, b",\"samples\":", |json| {
-            usize::try_from(json.whole()?).ok()
-        })?;
-        let wall = field(json, b",\"wall\":", Plain::string)?;
+        let wire = optional!(json, b",\"wire\":", Plain::string);
+        let id = optional!(json, b",\"id\":", Plain::whole);
+        let own = optional!(json, b",\"own\":", Plain::numbers);
+        let samples = optional!(json, b",\"samples\":", Plain::whole);
+        let samples = samples.map(usize::try_from).transpose().ok()?;
+        let wall = optional!(json, b",\"wall\":", Plain::string);
         json.expect(b"}")?;
         json.end()?;
         Some(Self {
@@ -108,9 +105,10 @@ impl Body for SampleBody {
         let x = json.numbers()?;
         json.expect(b",\"r\":")?;
         let r = json.numbers()?;
-        let raw = field(json, b",\"raw\":", Plain::strings)?.unwrap_or_default();
-        let moved = field(json, b",\"moved\":", |json| json.numbers()?.try_into().ok())?;
-        let wall = field(json, b",\"wall\":", Plain::string)?;
+        let raw = optional!(json, b",\"raw\":", Plain::strings).unwrap_or_default();
+        let moved = optional!(json, b",\"moved\":", Plain::numbers);
+        let moved = moved.map(TryInto::try_into).transpose().ok()?;
+        let wall = optional!(json, b",\"wall\":", Plain::string);
         json.expect(b"}")?;
         json.end()?;
         Some(Self {
@@ -135,12 +133,14 @@ impl Body for StepBody {
         let u = json.number()?;
         json.expect(b",\"x\":")?;
         let x = json.number()?;
-        let v = field(json, b",\"v\":", Plain::number)?;
-        let a = field(json, b",\"a\":", Plain::number)?;
+        let v = optional!(json, b",\"v\":", Plain::number);
+        let a = optional!(json, b",\"a\":", Plain::number);
         json.expect(b",\"r\":")?;
         let r = json.number()?;
-        let e = field(json, b",\"e\":", Plain::number)?;
-        let axes = field(json, b",\"axes\":", |json| json.list(1, axis))?.unwrap_or_default();
+        let e = optional!(json, b",\"e\":", Plain::number);
+        let axes = optional!(json, b",\"axes\":", |json: &mut Plain<'_>| json
+            .list(1, axis))
+        .unwrap_or_default();
         json.expect(b"}")?;
         json.end()?;
         Some(Self {
