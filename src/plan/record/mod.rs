@@ -28,7 +28,7 @@ use crate::schema::block_of_words;
 use crate::uncertainty::{Contribution, Source, combined_entries};
 pub use held::Held;
 pub use history::History;
-pub use history::floors::{FloorMotion, FloorStep, Floors, FloorsAt, StruckFrame};
+pub use history::floors::{FloorMotion, FloorStep, Floors, FloorsAt, StillGrowing, StruckFrame};
 pub use identity::Identity;
 pub use psd_physics::contact::state::StepState;
 pub use psd_physics::identification::LineFit;

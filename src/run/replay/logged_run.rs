@@ -3,12 +3,11 @@
 
 use std::collections::VecDeque;
 
-use serde::de::DeserializeOwned;
-
 use super::entry::{
     AmendBody, DigestBody, Header, PlanBody, RULES, ResumeBody, RigBody, TargetStatus,
 };
 use super::in_force::Rigs;
+use super::plain_body::Body;
 use psd_plan::record::{Event, EventKind};
 use psd_rig::journal::{EntryKind, Line, Recovered};
 use psd_rig::{LineStatistics, position_and_force};
@@ -281,10 +280,11 @@ fn describe(resume: &ResumeBody) -> String {
 }
 
 /// The body of an entry, typed.
-pub(super) fn body<T: DeserializeOwned>(line: &Line) -> Result<T, UnreadableLog> {
-    line.read().map_err(|error| UnreadableLog::Body {
-        seq: line.seq,
-        kind: line.kind,
-        reason: error.to_string(),
-    })
+pub(super) fn body<T: Body>(line: &Line) -> Result<T, UnreadableLog> {
+    line.read_by(T::of_plain)
+        .map_err(|error| UnreadableLog::Body {
+            seq: line.seq,
+            kind: line.kind,
+            reason: error.to_string(),
+        })
 }

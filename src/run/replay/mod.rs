@@ -13,6 +13,7 @@ mod entry;
 mod entry_of;
 mod in_force;
 mod logged_run;
+mod plain_body;
 mod recorded_observer;
 mod recorded_rig;
 mod resume_decision;

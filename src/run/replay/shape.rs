@@ -2,13 +2,12 @@
 //! in a wrong order, or with lists whose length differs from the number of axes. It compares no numbers: that is done by
 //! the replay.
 
-use serde::de::DeserializeOwned;
-
 use super::entry::Header;
 use super::entry::{
     Call, DigestBody, FaultBody, HeldBody, IntentBody, LogForm, ResumeBody, RigBody, SampleBody,
     StepBody, TargetStatus,
 };
+use super::plain_body::Body;
 use super::steps_digest::DIGEST_STEPS;
 use psd_plan::Plan;
 use psd_rig::journal::{EntryKind, Line, Recovered};
@@ -257,8 +256,8 @@ impl Shape<'_> {
     }
 }
 
-fn body_of<T: DeserializeOwned>(line: &Line) -> Result<T, String> {
-    line.read().map_err(|fault| fault.to_string())
+fn body_of<T: Body>(line: &Line) -> Result<T, String> {
+    line.read_by(T::of_plain).map_err(|fault| fault.to_string())
 }
 
 /// `1 axis`, `2 axes`

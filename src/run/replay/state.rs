@@ -4,7 +4,6 @@
 use std::collections::VecDeque;
 
 use serde::Serialize;
-use serde::de::DeserializeOwned;
 
 use super::Wall;
 use super::entry::{
@@ -13,6 +12,7 @@ use super::entry::{
 };
 use super::in_force::{InForce, Rigs};
 use super::logged_run::{LoggedRun, Mismatch, body};
+use super::plain_body::Body;
 use super::steps_digest::{DIGEST_STEPS, StepsDigest};
 use crate::run::Request;
 use psd_plan::record::Event;
@@ -246,11 +246,7 @@ impl<'rig> State<'rig> {
     }
 
     /// The next entry, not consumed.
-    pub(super) fn peek<T: DeserializeOwned>(
-        &mut self,
-        kind: EntryKind,
-        called: &str,
-    ) -> Result<T, RigFault> {
+    pub(super) fn peek<T: Body>(&mut self, kind: EntryKind, called: &str) -> Result<T, RigFault> {
         if let (None, Some(fault)) = (&self.mismatch, self.final_entry()) {
             return Err(fault);
         }

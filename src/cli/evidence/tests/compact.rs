@@ -4,17 +4,13 @@
 use serde_json::{Value, json};
 
 use super::{Bytes, compact_run, folder, forged, offsets, psd, run, with};
-<<<<<<< HEAD
-=======
 use crate::Exit;
->>>>>>> walls
 use crate::commands::prediction::prediction;
 use crate::evidence::check::examine;
 use crate::evidence::finding::{Finding, Judgement};
 use crate::evidence::folder::Folder;
 use crate::evidence::names::MANIFEST;
 use crate::evidence::rebuilt::Rebuilt;
-use crate::exit::Exit;
 use crate::files::failure::NOT_VERIFIABLE;
 use crate::files::recorded_run::JOURNAL;
 use psd_rig::journal::EntryKind;
