@@ -123,6 +123,12 @@ impl Faulty {
         !self.deaf
     }
 
+    /// Whether it has received bytes that it will obey later, because its firmware is frozen.
+    #[must_use]
+    pub const fn obeys_later(&self) -> bool {
+        !self.unheard.is_empty()
+    }
+
     /// Whether it closed the line.
     #[must_use]
     pub const fn hung_up(&self) -> bool {

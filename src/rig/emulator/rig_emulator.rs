@@ -104,6 +104,12 @@ impl RigEmulator {
         self.lines[line].controller.reads()
     }
 
+    /// Whether a controller has received bytes that it will obey later, because its firmware is frozen.
+    #[must_use]
+    pub fn obeys_later(&self) -> bool {
+        self.lines.iter().any(|line| line.controller.obeys_later())
+    }
+
     #[must_use]
     pub fn hung_up(&self, line: usize) -> bool {
         self.lines[line].controller.hung_up()

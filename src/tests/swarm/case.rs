@@ -255,12 +255,19 @@ fn session(draw: &mut Draw, devices: Devices, legs: usize, first: bool) -> Sessi
 fn of_the_rig(draw: &mut Draw, devices: Devices) -> Fault {
     let after = u64::from(draw.between(0, 140));
     match draw.between(0, 10) {
-        0..=5 => Fault::Reply {
-            after,
-            on_load_cell: draw.chance(0.3),
-            count: if draw.chance(0.1) { 40 } else { 1 },
-            what: reply(draw),
-        },
+        0..=5 => {
+            let (on_load_cell, many) = (draw.chance(0.3), draw.chance(0.1));
+            let what = reply(draw);
+            // psd discards what it has not asked for. A drive whose every answer is the one before it would have to send each of them
+            // in time, and all look alike: position for force, force for position.
+            let alike = matches!(devices, Devices::Modbus(_)) && what == ReplyFault::Replay;
+            Fault::Reply {
+                after,
+                on_load_cell,
+                count: if many && !alike { 40 } else { 1 },
+                what,
+            }
+        }
         6 | 7 => Fault::Controller {
             after,
             what: match draw.between(0, 5) {

@@ -133,7 +133,7 @@ impl Released {
 }
 
 /// Longest time between the reading of a position and its arrival as a target \[s\].
-const READ_WITHIN: f64 = 0.05;
+pub(super) const READ_WITHIN: f64 = 0.05;
 
 /// Larger than any number whose words are swapped and whose second word was 0 \[m\].
 const HARMLESS: f64 = 1e-30;
@@ -167,6 +167,10 @@ pub(super) struct Witness {
     /// INTENT that belongs to the last move, and the moves beyond the first of one INTENT.
     last_intent: u64,
     pub(super) repeated: u64,
+    /// psd was killed: what it had sent again is not in its record.
+    pub(super) killed: bool,
+    /// A controller froze in the session before, and obeys in this one what that session sent.
+    pub(super) obeys_late: bool,
     /// Moves after the last release.
     pub(super) moved: u64,
     /// Why the run must not have gone on, if anything moves now.
@@ -194,6 +198,8 @@ impl Witness {
             violations: 0,
             last_intent: 0,
             repeated: 0,
+            killed: false,
+            obeys_late: false,
             moved: 0,
             other_specimen: None,
             breaches: Vec::new(),
@@ -208,12 +214,21 @@ impl Witness {
         }
     }
 
+    /// A session begins, and nothing has moved. Nothing is released, unless the rig still `obeys_late` what was released before.
+    pub(super) fn begin(&mut self, obeys_late: bool) {
+        (self.moved, self.other_specimen, self.obeys_late) = (0, None, obeys_late);
+        if !obeys_late {
+            (self.released, self.killed) = (None, false);
+        }
+    }
+
     /// What someone else did to the rig is not psd's.
     pub(super) fn look_away(&mut self, rig: &EmulatedRig) {
         (self.moves, self.violations) = (rig.moves().len(), rig.violations().len());
     }
 
-    /// Looks at what the rig has received since the last look. `positions` are its commanded and its true position before \[m\]; `moving`: it moved then.
+    /// Looks at what the rig has received since the last look. `positions` are its commanded and its true position before \[m\]; `moving`:
+    /// it moved then, or within the time in which a position is read.
     pub(super) fn look(
         &mut self,
         rig: &EmulatedRig,
@@ -250,8 +265,14 @@ impl Witness {
             if target != 0.0 && (sign * target + zero).abs() < HARMLESS {
                 continue;
             }
-            let travel = (target - sign * (positions[0] - zero)).abs();
-            self.moves_to(target, speed, travel, disk.logged());
+            let travels = positions.map(|position| (target - sign * (position - zero)).abs());
+            // A ramp has a time: an actuator that lags behind its command has another travel in the same time.
+            let speed = if self.obeys.by_time && travels[0] > 0.0 {
+                speed * travels[1] / travels[0]
+            } else {
+                speed
+            };
+            self.moves_to(target, speed, travels[1], disk.logged());
         }
     }
 
@@ -279,7 +300,9 @@ impl Witness {
             None => format!("the rig moves to {target:e} m before any release"),
             Some(_) => format!("the rig moves to {target:e} m, which no release named"),
         });
-        if let Some(named) = named.filter(|_| self.obeys.speed) {
+        // A ramp that is obeyed late keeps its time, but someone may have moved the rig meanwhile.
+        let obeys_speed = self.obeys.speed && !(self.obeys_late && self.obeys.by_time);
+        if let Some(named) = named.filter(|_| obeys_speed) {
             // A ramp has a time: its speed is as exact as the position from which its travel was computed.
             let slack = 1e-3
                 + if self.obeys.by_time {
@@ -302,7 +325,7 @@ impl Witness {
         self.check(Law::TargetDurable, durable, || {
             format!("the rig moves to {target:e} m, which is not the last durable INTENT")
         });
-        if number == self.last_intent {
+        if number == self.last_intent && !self.killed {
             self.repeated += 1;
         }
         self.last_intent = number;

@@ -16,7 +16,6 @@ use crate::tests::testing::header;
 use psd_plan::record::{Outcome, Record};
 use psd_plan::{Behind, Plan};
 use psd_rig::emulator::Log;
-use psd_rig::emulator::script::LineFault;
 use psd_rig::journal::{Durability, EntryKind, Journal, Recovered};
 use psd_rig::real::RealRig;
 use psd_rig::{RigFault, StopRequest, controllers};
@@ -76,18 +75,9 @@ impl<'a> Life<'a> {
             .iter()
             .flat_map(|session| &session.faults)
             .collect();
-        let freezes = faults.iter().any(|fault| {
-            matches!(
-                fault,
-                Fault::Controller {
-                    what: LineFault::FreezeFirmware(_),
-                    ..
-                }
-            )
-        });
         Self {
             case,
-            world: World::new(case.rig(&faults, None, log), case.witness(), freezes),
+            world: World::new(case.rig(&faults, None, log), case.witness()),
             plan: case.plan(),
             bytes: Vec::new(),
             disk: Disk::default(),
@@ -290,10 +280,16 @@ impl<'a> Life<'a> {
         let at_rest = self.world.at_rest();
         let mut state = self.world.lock();
         let witness = &mut state.witness;
-        match ended {
-            Ended::Recorded(recorded) => witness.session_ended(&recorded.record, at_rest, allowed),
-            // What was sent again is counted in the run log a moment later.
-            _ => witness.repeated = witness.repeated.min(allowed),
+        // What was sent again is counted in the run log a moment later: not by a psd that was killed, and not on a full disk.
+        let uncounted = match ended {
+            Ended::Recorded(recorded) => recorded.fault.is_some(),
+            _ => true,
+        };
+        if uncounted {
+            (witness.repeated, witness.killed) = (witness.repeated.min(allowed), true);
+        }
+        if let Ended::Recorded(recorded) = ended {
+            witness.session_ended(&recorded.record, at_rest, allowed);
         }
         let early = self.disk.early();
         witness.check(Law::ReadingDurable, early == 0, || {

@@ -206,16 +206,23 @@ fn other_specimen(
         .or_else(|| last(EntryKind::Intent));
     let sample = last(EntryKind::Sample)?;
     let mut sampled: SampleBody = sample.read().ok()?;
-    // The final hold was read later.
-    let held = before
+    // The final hold was read later; without one, the rig was read before the last resumption.
+    let later = before
         .lines
         .iter()
         .rev()
         .take_while(|line| line.seq > sample.seq);
-    if let Some(line) = { held }.find(|line| line.kind == EntryKind::Held)
-        && let Some((positions, forces)) = line.read::<HeldBody>().ok()?.found
-    {
-        (sampled.x, sampled.r) = (positions, forces);
+    let held = { later }.find(|line| line.kind == EntryKind::Held);
+    let held = match held {
+        Some(line) => line.read::<HeldBody>().ok()?.found,
+        None => None,
+    };
+    let resumed = before
+        .resumption
+        .as_ref()
+        .map(|resume| resume.found.clone());
+    if let Some(found) = held.or(resumed) {
+        (sampled.x, sampled.r) = found;
     }
     let (mut from, mut to) = (sampled.x[0], sampled.x[0]);
     if let Some(intent) = intent.filter(|intent| intent.seq > sample.seq) {
@@ -236,7 +243,7 @@ fn other_specimen(
         .filter(|line| line.kind == EntryKind::Sample);
     let elsewhere = readings
         .filter_map(|line| line.read::<SampleBody>().ok())
-        .find(|earlier| (earlier.x[0] - sampled.x[0]).abs() > band);
+        .find(|earlier| (earlier.x[0] - sampled.x[0]).abs() > bands.displacement[0]);
     if let Some(earlier) = elsewhere {
         let tangent = (sampled.r[0] - earlier.r[0]) / (sampled.x[0] - earlier.x[0]);
         window.low = window.low.min(tangent.max(0.0));

@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use super::disk::{Disk, Killed};
 use super::fault::{CommandFault, Fault, Kill};
-use super::laws::Witness;
+use super::laws::{READ_WITHIN, Witness};
 use psd_rig::StopRequest;
 use psd_rig::emulator::RigEmulator;
 use psd_rig::transport::{Clock, Emergency, Port};
@@ -38,19 +38,19 @@ pub(super) struct State {
     earlier: f64,
     /// Start of the session \[s\].
     began: f64,
+    /// When the rig was last seen to move \[s\].
+    moved: f64,
     commands: u32,
     faults: Vec<Fault>,
     kill: Option<Kill>,
     dead: bool,
     struck: Vec<&'static str>,
-    freezes: bool,
     /// Blocks of bytes that each line has received from the rig since its power-up.
     pub(super) replies: [u64; 2],
 }
 
 impl World {
-    /// `freezes`: the controller of this rig freezes at some time.
-    pub(super) fn new(bench: RigEmulator, witness: Witness, freezes: bool) -> Self {
+    pub(super) fn new(bench: RigEmulator, witness: Witness) -> Self {
         Self(Arc::new(Mutex::new(State {
             bench,
             disk: Disk::default(),
@@ -58,12 +58,12 @@ impl World {
             stop_request: StopRequest::default(),
             earlier: 0.0,
             began: 0.0,
+            moved: f64::NEG_INFINITY,
             commands: 0,
             faults: Vec::new(),
             kill: None,
             dead: false,
             struck: Vec::new(),
-            freezes,
             replies: [0; 2],
         })))
     }
@@ -89,11 +89,8 @@ impl World {
                 _ => {}
             }
         }
-        // A controller that was frozen carries out what the session before has sent.
-        if !state.freezes {
-            state.witness.released = None;
-        }
-        (state.witness.moved, state.witness.other_specimen) = (0, None);
+        let obeys_late = state.bench.obeys_later();
+        state.witness.begin(obeys_late);
     }
 
     /// psd is gone: its lines are dead.
@@ -113,14 +110,21 @@ impl World {
         witness.look_away(bench.rig());
     }
 
-    /// Someone moves the rig by hand to a position in its own coordinate \[m\].
+    /// Someone moves the rig by hand to a position in its own coordinate \[m\]. An actuator that sticks stays, and its controller with it.
     pub(super) fn move_by_hand(&self, to: f64) {
         let mut state = self.lock();
-        let rig = state.bench.rig_mut();
-        let (speed, time) = (rig.settings().top_speed, rig.time());
-        rig.go(to, speed);
-        state.bench.advance(time + 1.0);
         let State { bench, witness, .. } = &mut *state;
+        let mut go = |to: f64| {
+            let rig = bench.rig_mut();
+            let (speed, time) = (rig.settings().top_speed, rig.time());
+            rig.go(to, speed);
+            bench.advance(time + 1.0);
+            bench.rig_mut().displacement()
+        };
+        let reached = go(to);
+        if reached != to {
+            go(reached);
+        }
         witness.look_away(bench.rig());
     }
 
@@ -190,10 +194,18 @@ impl State {
 
     /// Whatever the rig receives, the witness looks at it.
     fn observed(&mut self, act: impl FnOnce(&mut RigEmulator)) {
+        let now = self.now();
         let rig = self.bench.rig_mut();
-        let before = ([rig.commanded(), rig.displacement()], rig.moving());
+        let moving = rig.moving() || now - self.moved <= READ_WITHIN;
+        let before = ([rig.commanded(), rig.displacement()], moving);
         act(&mut self.bench);
+        if self.bench.rig().moving() {
+            self.moved = self.now();
+        }
         self.witness.look(self.bench.rig(), before, &self.disk);
+        if self.witness.obeys_late && !self.bench.obeys_later() {
+            self.witness.begin(false);
+        }
     }
 
     /// The fault of this command, and the signals that arrive with it.

@@ -18,14 +18,16 @@ const TRIES: u32 = 3;
 /// A target (fraction of full scale) and a time \[s\] that differ by less are the same.
 const SAME_TARGET: f64 = 1e-7;
 const SAME_TIME: f64 = 1e-3;
+/// Number of positions from which a travel is measured.
+const LAST: usize = 3;
 
 /// The console at the other end of a line.
 pub struct Instron {
     client: LineClient,
     position: Reader,
     load: Reader,
-    /// Its last position \[m\].
-    last: Option<f64>,
+    /// Its last positions \[m\], the newest at the end.
+    last: Vec<f64>,
     movement: Movement,
     /// Time of the last poll \[s\], by the clock.
     polled: Option<f64>,
@@ -48,7 +50,7 @@ impl Instron {
             client,
             position,
             load,
-            last: None,
+            last: Vec::new(),
             movement: Movement::Stopped,
             polled: None,
         }
@@ -199,6 +201,41 @@ impl Instron {
         })
     }
 
+    /// The travel to a target \[m\]. The line has no checksum, and the time of the ramp follows from the travel: a position that jumped is
+    /// replaced by the median of the last three. Of two, the longer travel is the slower one.
+    fn travel(&self, target: f64) -> Option<f64> {
+        let travel = |position: f64| (target - position).abs();
+        match *self.last {
+            [] => None,
+            [before, last] => Some(travel(before).max(travel(last))),
+            [.., first, before, last] => {
+                let mut sorted = [first, before, last];
+                sorted.sort_by(f64::total_cmp);
+                let jumped = (last - before).abs() > (before - first).abs();
+                Some(travel(if jumped { sorted[1] } else { last }))
+            }
+            [last] => Some(travel(last)),
+        }
+    }
+
+    /// The full scale of a channel, as two answers in turn give it: every reading is multiplied by it, and the line has no checksum.
+    fn ask_full_scale(&mut self, channel: Channel) -> Result<(f64, Vec<u8>), DeviceFault> {
+        let mut before = None;
+        for _ in 0..=TRIES {
+            self.wait_for_poll()?;
+            let mut raw = Vec::new();
+            let full_scale = self.number_twice_if_zero(Question::FullScale(channel), &mut raw)?;
+            if before == Some(full_scale) {
+                // If one of the two readings was a false zero, the other number is kept.
+                return Ok((full_scale, raw.pop().unwrap_or_default()));
+            }
+            before = Some(full_scale);
+        }
+        Err(DeviceFault::Unfit(format!(
+            "the full scale of its {channel} channel differs between two questions"
+        )))
+    }
+
     /// Whether it runs, or has already arrived.
     fn is_moving_to(&mut self, target: f64) -> Result<bool, DeviceFault> {
         let mut raw = Vec::new();
@@ -206,7 +243,7 @@ impl Instron {
             return Ok(true);
         }
         let here = self.feedback(Channel::Position, &mut raw)?;
-        let travel = self.last.map_or(0.0, |last| (target - last).abs());
+        let travel = self.travel(target).unwrap_or(0.0);
         Ok((target - here).abs() <= (travel / 2.0).max(SAME_TARGET * self.position.full_scale))
     }
 }
@@ -214,11 +251,9 @@ impl Instron {
 impl Device for Instron {
     fn identify(&mut self) -> Result<DeviceIdentity, DeviceFault> {
         let mut raw = Vec::new();
-        for (index, channel) in [Channel::Position, Channel::Load].into_iter().enumerate() {
-            self.wait_for_poll()?;
-            let full_scale = self.number_twice_if_zero(Question::FullScale(channel), &mut raw)?;
-            // If one of the two readings is a false zero, the other number is kept.
-            raw.drain(index..raw.len() - 1);
+        for channel in [Channel::Position, Channel::Load] {
+            let (full_scale, answer) = self.ask_full_scale(channel)?;
+            raw.push(answer);
             if !(0.0 < full_scale && full_scale.is_finite()) {
                 return Err(DeviceFault::Unfit(format!(
                     "the full scale of its {channel} channel is {full_scale}"
@@ -240,9 +275,6 @@ impl Device for Instron {
 
     fn encode(&mut self, targets: &[f64], speed: f64) -> Result<DeviceMove, DeviceFault> {
         let target = one_axis(targets)?;
-        let from = self.last.ok_or_else(|| {
-            DeviceFault::Unfit("its position is not known: read it first".to_owned())
-        })?;
         let unsayable = || {
             DeviceFault::Unfit(format!(
                 "the console cannot express {target} m at {speed} m/s"
@@ -251,7 +283,9 @@ impl Device for Instron {
         let full_scale = self.position.full_scale;
         let rounded = instron::codec::ramp(target / full_scale, 0.0).ok_or_else(unsayable)?;
         let (fraction, _) = instron::codec::decoded_ramp(&rounded).ok_or_else(unsayable)?;
-        let travel = (fraction * full_scale - from).abs();
+        let travel = self.travel(fraction * full_scale).ok_or_else(|| {
+            DeviceFault::Unfit("its position is not known: read it first".to_owned())
+        })?;
         let mut frames = instron::codec::ramp(fraction, travel / speed).ok_or_else(unsayable)?;
         let (fraction, seconds) = instron::codec::decoded_ramp(&frames).ok_or_else(unsayable)?;
         frames.extend(instron::codec::start());
@@ -292,7 +326,10 @@ impl Device for Instron {
         let moving = self.ask_movement(&mut raw)? == Movement::Running;
         let displacement = self.feedback(Channel::Position, &mut raw)?;
         let force = self.feedback(Channel::Load, &mut raw)?;
-        self.last = Some(displacement);
+        if self.last.len() == LAST {
+            self.last.remove(0);
+        }
+        self.last.push(displacement);
         let axis = controllers::Channel {
             displacement: Some(displacement),
             force: Some(Force::Newtons(force)),

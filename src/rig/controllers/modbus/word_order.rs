@@ -11,6 +11,8 @@ use psd_text::units::display::plain;
 
 /// Smaller than any non-zero reading: the value of a float whose words are swapped.
 pub(super) const IMPLAUSIBLY_SMALL: f64 = 1e-30;
+/// Nearer to zero no sensor resolves \[m\] or \[N\]: such a reading shows no order.
+const RESOLVED: f64 = 1e-9;
 /// A value this many times beyond its limit is no value of this rig.
 const BEYOND_LIMITS: f64 = 10.0;
 
@@ -77,7 +79,7 @@ impl WordOrder {
         }
         let possible =
             |value: f64| plausible(value) && (own == other || !far_outside(limit, value));
-        let differs = own.is_some_and(|own| own != 0.0 && limit.contains(own));
+        let differs = own.is_some_and(|own| own.abs() >= RESOLVED && limit.contains(own));
         self.confirmed |= differs && !other.is_some_and(possible);
     }
 

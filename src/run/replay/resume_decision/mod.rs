@@ -193,6 +193,9 @@ fn last_target(
             _ => decided(after, TargetStatus::None, Place::At(target)),
         });
     }
+    // If it was sent again, it began where the rig was found then.
+    let resumed = logged.resumption.as_ref();
+    let before = resumed.map_or(before, |resume| resume.found.0.clone());
     let on_the_way = || Place::Between(before.clone(), target.clone());
     let (target_status, place) = match (&rig.last_move, intent.id) {
         (Some(moved), Some(id))

@@ -290,6 +290,36 @@ fn a_rig_that_was_moved_or_let_go_of_since_is_refused() {
     );
 }
 
+/// psd was killed right after the resumption: the target went out again from where the rig was found, and the rig does not go back.
+#[test]
+fn a_target_that_was_sent_again_began_where_the_rig_was_found() {
+    let (_, bytes) = held(false);
+    let (_, mut logged) = logged(&bytes);
+    let found = |displacement: f64| Reading {
+        time: 0.0,
+        displacement: vec![displacement],
+        force: vec![300.0 * displacement],
+        raw: Vec::new(),
+    };
+    let decision = decided_of(&logged, 2.5e-4, 300.0 * 2.5e-4, false).unwrap();
+    assert_eq!(decision.target_status, TargetStatus::HeldDuringMotion);
+    logged.resumed(decision.resumption("A", "so", &found(2.5e-4), 1.0));
+    for (displacement, allowed) in [
+        (2.5e-4, true),
+        (2.7e-4, true),
+        (3e-4, true),
+        (2.1e-4, false),
+    ] {
+        let decided = decided_of(&logged, displacement, 300.0 * displacement, true);
+        let refused = matches!(decided, Err(ResumeRefusal::Lost { .. }));
+        assert_eq!(
+            (decided.is_ok(), refused),
+            (allowed, !allowed),
+            "{displacement}"
+        );
+    }
+}
+
 /// The position at rest is not known: the run log ends with the target, and the last reading was made before it.
 #[test]
 fn the_force_is_compared_whatever_became_of_the_last_target() {

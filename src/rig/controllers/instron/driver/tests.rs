@@ -35,15 +35,19 @@ fn console() -> (Instron, Transcript) {
     (Instron::new(client), Transcript::new(port, 0.02, text))
 }
 
+/// Both full scales, each asked twice.
+fn full_scales(script: &mut Transcript) -> &mut Transcript {
+    script
+        .on("Q308,1 ", "0.1")
+        .on("Q308,1 ", "0.1")
+        .on("Q308,2 ", "50000")
+        .on("Q308,2 ", "50000")
+}
+
 /// Full scale 100 mm and 50 kN; at rest at 1 % of each.
 fn opened() -> (Instron, Transcript) {
     let (mut console, mut script) = console();
-    round(
-        script.on("Q308,1 ", "0.1").on("Q308,2 ", "50000"),
-        "0",
-        "0.01",
-        "0.01",
-    );
+    round(full_scales(&mut script), "0", "0.01", "0.01");
     console.identify().unwrap();
     (console, script)
 }
@@ -89,6 +93,20 @@ fn a_ramp_is_read_back_before_it_starts() {
     console.start(&going).unwrap();
     script.done();
     assert_eq!(console.line_statistics().resent, 2);
+}
+
+/// The line has no checksum: one bit makes 8.01 of 0.01, and 0.05 of 0.01.
+#[test]
+fn a_ramp_never_follows_a_single_wrong_position() {
+    for wrong in ["8.01", "0.05"] {
+        let (mut console, mut script) = opened();
+        round(&mut script, "0", "0.01", "0.01");
+        console.sample().unwrap();
+        round(&mut script, "0", wrong, "0.01");
+        console.sample().unwrap();
+        let going = console.encode(&[0.005], 0.0008).unwrap();
+        assert_eq!(text(&going.frames.concat()), format!("{RAMP}{START}"));
+    }
 }
 
 #[test]
@@ -235,8 +253,7 @@ fn what_has_tripped_is_a_flag_or_makes_it_unfit() {
         Err(DeviceFault::Unfit("oil too hot".to_owned()))
     );
     let (mut console, mut script) = self::console();
-    script.on("Q308,1 ", "0.1").on("Q308,2 ", "50000");
-    script
+    full_scales(&mut script)
         .on("Q22 ", "3072")
         .on("Q1 ", "0")
         .on("Q134,1,0 ", "0.01")
@@ -246,11 +263,32 @@ fn what_has_tripped_is_a_flag_or_makes_it_unfit() {
         Err(DeviceFault::Unfit("emergency stop pushed".to_owned()))
     );
     let (mut console, mut script) = self::console();
-    script.on("Q308,1 ", "0").on("Q308,1 ", "0");
+    for _ in 0..4 {
+        script.on("Q308,1 ", "0");
+    }
     assert!(
         matches!(console.identify(), Err(DeviceFault::Unfit(_))),
         "a full scale of nothing"
     );
+    script.done();
+}
+
+/// One bit makes 4.1 of 0.1: every reading and every target would be 41 times too large.
+#[test]
+fn a_full_scale_counts_when_two_answers_in_turn_give_it() {
+    let (mut console, mut script) = console();
+    for answer in ["0.1", "4.1", "0.1", "0.1"] {
+        script.on("Q308,1 ", answer);
+    }
+    script.on("Q308,2 ", "50000").on("Q308,2 ", "50000");
+    round(&mut script, "0", "0.01", "0.01");
+    console.identify().unwrap();
+    script.done();
+    let (mut console, mut script) = self::console();
+    for answer in ["0.1", "4.1", "0.1", "4.1"] {
+        script.on("Q308,1 ", answer);
+    }
+    assert!(matches!(console.identify(), Err(DeviceFault::Unfit(_))));
     script.done();
 }
 

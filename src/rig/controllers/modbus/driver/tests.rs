@@ -250,38 +250,6 @@ fn a_late_answer_is_never_accepted_and_only_the_guard_stops_it() {
     assert_eq!(without(Guarding::Sequence, late_answer), 111.0);
 }
 
-/// The drive holds by its present position. The last question for the force, before it, is answered after 1.2 T, when it was given up.
-/// Gives the numbers that the drive is commanded to.
-fn holds_after_a_late_force() -> Vec<Vec<u8>> {
-    let (mut device, port, _) = device(ModbusMap {
-        command: None,
-        status: None,
-        ..MAP
-    });
-    port.reply(&at_once(float(2.5)));
-    for _ in 0..3 {
-        port.reply(&[]);
-    }
-    port.reply(&[Scripted::After(1.2 * T, float(111.0))]);
-    assert!(matches!(device.sample(), Err(DeviceFault::Silent { .. })));
-    for _ in 0..2 {
-        port.reply(&at_once(float(2.5)));
-    }
-    // Unguarded, one of these answers is left for the write.
-    let _ = device.hold();
-    let writes = |frame: &Vec<u8>| frame[1] == 16;
-    frames(&port).into_iter().filter(writes).collect()
-}
-
-#[test]
-fn a_late_force_is_never_the_position_at_which_a_drive_holds() {
-    let there = modbus::codec::write(1, 40, &[0x4020, 0]);
-    let force = modbus::codec::write(1, 40, &[0x42DE, 0]);
-    assert_eq!(holds_after_a_late_force()[0], there, "2.5 mm");
-    let unguarded = without(Guarding::Sequence, holds_after_a_late_force);
-    assert_eq!(unguarded[0], force, "111 N, as 111 mm");
-}
-
 #[test]
 fn an_answer_that_comes_while_the_second_question_is_open_is_one_too_many() {
     let (mut device, port, _) = device(CELL);
@@ -389,6 +357,29 @@ fn a_target_is_exact_once_a_reading_shows_the_order() {
     assert_eq!(words_of(&going.frames[1]), [0x40C0, 0]);
 }
 
+/// A drive far outside the limits: 1.4 mm is 3FB3 3333, and in the other order 3333 3FB3, 4.2e-8 mm. No sensor resolves that.
+#[test]
+fn a_reading_that_no_sensor_resolves_shows_no_order() {
+    let displacement = Interval {
+        low: -1e-4,
+        high: 1e-4,
+    };
+    let limits = Limits {
+        displacement,
+        ..Limits::NONE
+    };
+    let turned = f32::from_bits(0x3333_3FB3);
+    for (position, open) in [(turned, true), (0.05, false)] {
+        let (mut device, port, _) = device(MAP);
+        device.narrow_limits(&[limits]).unwrap();
+        for reply in [float(position), float(0.0), sealed(&[1, 3, 2, 0, 0])] {
+            port.reply(&at_once(reply));
+        }
+        device.sample().unwrap();
+        assert_eq!(device.rounds_first_target(), open, "{position} mm");
+    }
+}
+
 /// A whole number has no first target that is small in both orders.
 #[test]
 fn a_drive_with_whole_numbers_at_zero_is_sent_nothing() {
@@ -468,11 +459,13 @@ fn it_holds_by_its_stop_word_or_by_going_where_it_is() {
         command: None,
         ..MAP
     });
+    // The line is one answer behind: the first answer is a force of 111 N.
+    port.reply(&at_once(float(111.0)));
     port.reply(&at_once(float(2.5)));
     let target = modbus::codec::write(1, 40, &[0x4020, 0]);
     port.reply(&at_once(sealed(&target[..6])));
     device.hold().unwrap();
-    assert_eq!(frames(&port)[1], target);
+    assert_eq!(frames(&port)[2], target, "2.5 mm");
     assert!(device.emergency().is_empty());
 }
 
