@@ -11,6 +11,7 @@ pub(crate) mod pretest_check;
 pub mod remote_control;
 pub mod replay;
 pub(crate) mod session;
+mod shared;
 mod shutdown;
 pub mod start;
 pub(crate) mod stop;
@@ -19,6 +20,7 @@ pub(crate) mod zero_drift;
 pub use driver::{run, run_with};
 pub use motion::{Extent, Motion};
 pub use psd_plan::record::remote::{Disconnect, Request};
+pub use shared::Shared;
 
 use serde::{Deserialize, Serialize};
 
@@ -176,7 +178,7 @@ impl Inspection {
 }
 
 /// The event in the run log before a stopped run unloads.
-pub(crate) const UNLOADING: &str = "unloading to where the run began";
+pub const UNLOADING: &str = "unloading to where the run began";
 
 /// Displays nothing, and continues at every inspection.
 pub struct Unwatched;

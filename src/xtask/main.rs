@@ -23,25 +23,25 @@ const PARTS: &[Part] = &[
     Part {
         name: "results",
         files: "accepted results that moved, reports/",
-        command: &["run", "-p", "psd", "--", "test", "plans"],
+        command: &["run", "-p", "psd-cli", "--", "test", "plans"],
         accept: &["--accept"],
     },
     Part {
         name: "reference",
         files: "grammar/LANGUAGE.md, docs/reference/, arguments of options",
-        command: &["test", "-p", "psd", "--test", "suite", "reference::"],
+        command: &["test", "-p", "psd-cli", "--test", "suite", "reference::"],
         accept: &[],
     },
     Part {
         name: "specimens",
         files: "loops of the specimen models, docs/specimens/",
-        command: &["test", "-p", "psd", "--test", "suite", "specimens_page::"],
+        command: &["test", "-p", "psd-cli", "--test", "suite", "specimens_page::"],
         accept: &[],
     },
     Part {
         name: "book",
         files: "console blocks, figures and tables of docs/",
-        command: &["test", "-p", "psd", "--test", "suite", "book::"],
+        command: &["test", "-p", "psd-cli", "--test", "suite", "book::"],
         accept: &[],
     },
     Part {
@@ -53,25 +53,25 @@ const PARTS: &[Part] = &[
     Part {
         name: "emulator",
         files: "docs/tutorial/emulator.md",
-        command: &["test", "-p", "psd", "--test", "system", "book::emulator::"],
+        command: &["test", "-p", "psd-cli", "--test", "system", "book::emulator::"],
         accept: &[],
     },
     Part {
         name: "schema",
         files: "grammar/summary.schema.json",
-        command: &["test", "-p", "psd", "--test", "suite", "outputs::"],
+        command: &["test", "-p", "psd-cli", "--test", "suite", "outputs::"],
         accept: &[],
     },
     Part {
         name: "language",
         files: "cases and snapshots of the language",
-        command: &["test", "-p", "psd", "--test", "suite", "lang::"],
+        command: &["test", "-p", "psd-cli", "--test", "suite", "lang::"],
         accept: &[],
     },
     Part {
         name: "screen",
         files: "snapshots of the live screen, src/cli/operator/screen/",
-        command: &["test", "-p", "psd", "--lib", "screen::"],
+        command: &["test", "-p", "psd-cli", "--bin", "psd", "screen::"],
         accept: &[],
     },
 ];

@@ -68,7 +68,7 @@ const KNOWS: &[(&[&str], &[&str])] = &[
             "minisign",
             "rpassword",
         ],
-        &["cli", "evidence"],
+        &["cli"],
     ),
     (&["serialport"], &["rig/transport", "rig/emulator", "cli"]),
 ];

@@ -7,12 +7,12 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use similar::TextDiff;
 
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::loader::{plans_below, read_plan};
-use crate::cli::files::plan_file::name_of;
-use crate::cli::output::{print_message, print_result};
-use crate::cli::settings::Settings;
+use crate::exit::{Exit, Failure};
 use crate::files::failure::plain;
+use crate::files::loader::{plans_below, read_plan};
+use crate::files::plan_file::name_of;
+use crate::output::{print_message, print_result};
+use crate::settings::Settings;
 use psd_language::syntax;
 use psd_text::diagnostic::excerpt::one_line;
 use psd_text::diagnostic::render::render_all;

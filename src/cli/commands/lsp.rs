@@ -8,11 +8,11 @@ use std::sync::Arc;
 use psd_lsp::{Ended, Program, SimulatedRequirement, SimulatedResult, Simulation};
 
 use super::explain_plan::DryRun;
-use crate::check::{LoadError, Loader, Options, check};
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::loader::{FolderLoader, plans_below, read_plan};
-use crate::cli::settings::today;
+use crate::exit::{Exit, Failure};
 use crate::files::failure::plain;
+use crate::files::loader::{FolderLoader, plans_below, read_plan};
+use crate::settings::today;
+use psd::check::{LoadError, Loader, Options, check};
 use psd_plan::Plan;
 
 /// Most entries of a folder of the editor that are looked at: it may be a home folder.

@@ -8,8 +8,8 @@ use std::path::{Component, Path, PathBuf};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
-use crate::check::LoadError;
 use crate::files::failure::{Failure, plain};
+use psd::check::LoadError;
 use psd_language::syntax::limits::FILE_BYTES;
 use psd_plan::{PICTURE_BYTES, PictureKind};
 use psd_text::markdown::{Document, is_document};

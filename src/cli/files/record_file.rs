@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use super::disk_space;
-use crate::cli::args::PlanSettings;
+use crate::args::PlanSettings;
 use crate::files::failure::Failure;
-use crate::report::Provenance;
-use crate::run::check_run;
-use crate::run::replay;
-use crate::run::replay::{Header, HeaderFile, RULES};
+use psd::report::Provenance;
+use psd::run::check_run;
+use psd::run::replay;
+use psd::run::replay::{Header, HeaderFile, RULES};
 use psd_plan::Plan;
 use psd_plan::record::equipment::{Device, Equipment};
 use psd_rig::Rig;

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::cli::commands::prediction::prediction;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::record_file::{JOURNAL, journal_of};
-use crate::cli::output::print_result;
-use crate::cli::settings::Settings;
+use crate::commands::prediction::prediction;
 use crate::evidence::{Finding, Folder, Rebuilt, examine, keys};
+use crate::exit::{Exit, Failure};
+use crate::files::record_file::{JOURNAL, journal_of};
+use crate::output::print_result;
+use crate::settings::Settings;
 use psd_rig::journal::{FileFault, FileStorage};
 use psd_text::diagnostic::excerpt::one_line;
 

@@ -15,12 +15,12 @@ pub(crate) mod zero_drift;
 use std::fmt::Write as _;
 
 use super::explain_plan::dry_rig::{Reach, Watched};
-use crate::cli::exit::Exit;
-use crate::cli::settings::Settings;
-use crate::report::wording::specimen as specimen_text;
-use crate::report::{PredictedProcedure, PredictedRequirement, Prediction};
-use crate::verdict::{self, Assessment, ConditionOutcome, Declared, ReproductionOutcome, Verdict};
+use crate::exit::Exit;
+use crate::settings::Settings;
 use cells::{row, span};
+use psd::report::wording::specimen as specimen_text;
+use psd::report::{PredictedProcedure, PredictedRequirement, Prediction};
+use psd::verdict::{self, Assessment, ConditionOutcome, Declared, ReproductionOutcome, Verdict};
 use psd_plan::record::{History, Outcome, Record};
 use psd_plan::{
     Condition, DecisionRule, Interval, Link, Plan, ProcedureKind, ReadingErrors, VirtualLink,

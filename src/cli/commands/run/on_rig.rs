@@ -2,19 +2,19 @@
 
 use super::RunArguments;
 use super::resume;
-use crate::cli::args::Format;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::finish_run::{finish_run, summary};
-use crate::cli::files::provenance;
-use crate::cli::files::record_file;
-use crate::cli::files::run_folder::RunFolder;
-use crate::cli::operator::watch::{Attendance, Signals, Watcher};
-use crate::cli::operator::{expected, held, real_rig};
-use crate::cli::output::{print_message, print_result};
-use crate::cli::settings::Settings;
-use crate::report::Provenance;
-use crate::run::replay;
-use crate::run::replay::Recorded;
+use crate::args::Format;
+use crate::exit::{Exit, Failure};
+use crate::files::finish_run::{finish_run, summary};
+use crate::files::provenance;
+use crate::files::record_file;
+use crate::files::run_folder::RunFolder;
+use crate::operator::watch::{Attendance, Signals, Watcher};
+use crate::operator::{expected, held, real_rig};
+use crate::output::{print_message, print_result};
+use crate::settings::Settings;
+use psd::report::Provenance;
+use psd::run::replay;
+use psd::run::replay::Recorded;
 use psd_plan::{Link, Plan};
 use psd_rig::{StopRequest, virtual_rig};
 

@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::{answers, failure, slurm};
-use crate::cli::args::Format;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::output::{print_message, print_result};
-use crate::study::collection::merge::{self, resubmission};
-use crate::study::collection::status::{self, StudyPart};
+use crate::args::Format;
+use crate::exit::{Exit, Failure};
+use crate::output::{print_message, print_result};
+use psd::study::collection::merge::{self, resubmission};
+use psd::study::collection::status::{self, StudyPart};
 
 /// Shows the runs that are there, and the shards that are not finished.
 pub fn status(folder: &Path) -> Result<Exit, Failure> {

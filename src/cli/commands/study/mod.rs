@@ -14,13 +14,13 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 
-use crate::check::ParsedPlan;
-use crate::cli::args::PlanSettings;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::plan_file;
-use crate::cli::settings::Settings;
-use crate::study::definition::Definition;
-use crate::study::definition::measured;
+use crate::args::PlanSettings;
+use crate::exit::{Exit, Failure};
+use crate::files::plan_file;
+use crate::settings::Settings;
+use psd::check::ParsedPlan;
+use psd::study::definition::Definition;
+use psd::study::definition::measured;
 use psd_plan::Plan;
 use psd_text::sanitize;
 

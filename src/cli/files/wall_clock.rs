@@ -3,7 +3,7 @@
 
 use jiff::Timestamp;
 
-use crate::report::ClockJump;
+use psd::report::ClockJump;
 use psd_rig::journal::{EntryKind, Line};
 
 /// A smaller difference is the slow correction of a clock, or the time between the two time stamps of an entry \[s\].

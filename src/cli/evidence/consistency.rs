@@ -3,7 +3,7 @@
 
 use crate::files::provenance::recorded_id;
 use crate::files::recorded_run::{ReadRecord, plan_of};
-use crate::run::replay::{self, LoggedRun};
+use psd::run::replay::{self, LoggedRun};
 use psd_plan::Plan;
 use psd_rig::journal::{EntryKind, Recovered};
 

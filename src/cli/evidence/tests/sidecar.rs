@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use sha2::{Digest as _, Sha256, Sha512};
 
 use super::{faults, folder, run, with};
-use crate::cli::commands::prediction::prediction;
+use crate::commands::prediction::prediction;
 use crate::evidence::check::examine;
 use crate::evidence::folder::Folder;
 use crate::evidence::names::MANIFEST;

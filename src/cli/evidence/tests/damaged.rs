@@ -7,23 +7,23 @@ use std::sync::OnceLock;
 use serde_json::{Value, json};
 
 use super::{psd, run};
-use crate::check::{LoadError, Options, check};
-use crate::cli::args::PlanSettings;
-use crate::cli::commands::prediction::prediction;
-use crate::cli::files::record_file;
+use crate::args::PlanSettings;
+use crate::commands::prediction::prediction;
 use crate::evidence::consistency;
 use crate::evidence::rebuilt::ReplayedRun;
 use crate::files::provenance;
+use crate::files::record_file;
 use crate::files::recorded_run::JOURNAL;
-use crate::report;
-use crate::run::Unwatched;
-use crate::run::replay;
-use crate::run::replay::Bands;
-use crate::tests::fault_table::stage;
+use psd::check::{LoadError, Options, check};
+use psd::report;
+use psd::run::Unwatched;
+use psd::run::replay;
+use psd::run::replay::Bands;
 use psd_plan::record::Outcome;
 use psd_rig::Reading;
 use psd_rig::emulator::Log;
 use psd_rig::journal::{Durability, EntryKind, Journal};
+use psd_testing::emulator;
 use psd_testing::journal::{PowerLoss, Vandal, records, written};
 
 /// A change to the entries of a run log.
@@ -129,8 +129,8 @@ rig bench {
         };
         let none = |_: &str| Err(LoadError::NotFound);
         let plan = check("ramp.psd", PLAN, &none, &options).plan.unwrap();
-        let emulator = stage::emulator(&plan, "", Log::none(), 1);
-        let mut rig = stage::open(&plan, &emulator).unwrap();
+        let on = emulator::emulator(&plan, "", Log::none(), 1);
+        let mut rig = emulator::open(&plan, &on).unwrap();
         let disk = PowerLoss::new();
         let mut journal = Journal::create(Box::new(disk.clone()), Durability::EverySyncPoint);
         let mut header = record_file::header(

@@ -19,10 +19,10 @@ use super::keys::KnownKey;
 use super::names::MANIFEST;
 use super::rebuilt::Rebuilt;
 use super::signature::{self, Statement};
-use crate::cli::Exit;
-use crate::cli::commands::prediction::prediction;
+use crate::commands::prediction::prediction;
+use crate::exit::Exit;
 use crate::files::recorded_run::JOURNAL;
-use crate::report::manifest_with;
+use psd::report::manifest_with;
 
 /// A few steps, and every kind of file.
 const PLAN: &str = r#"plan "A few steps" {
@@ -52,7 +52,7 @@ report {
 "#;
 
 fn psd(arguments: &[&str]) -> Exit {
-    crate::cli::main(["psd"].iter().chain(arguments).map(Into::into))
+    crate::run(["psd"].iter().chain(arguments).map(Into::into))
 }
 
 pub(super) type Bytes = BTreeMap<String, Vec<u8>>;

@@ -9,13 +9,13 @@ use crate::files::provenance::BUILD;
 use crate::files::recorded_run;
 use crate::files::recorded_run::{JOURNAL, ReadRecord};
 use crate::files::results::put_results;
-use crate::report::{
+use psd::report::{
     FileDigest, Issue, IssueKind, NullSink, OutputError, OutputSink, Prediction, Provenance,
     ReportStatus, Run,
 };
-use crate::run::replay;
-use crate::run::replay::{CUT_OFF, Mismatch, Replayed};
-use crate::verdict::{self, Assessment};
+use psd::run::replay;
+use psd::run::replay::{CUT_OFF, Mismatch, Replayed};
+use psd::verdict::{self, Assessment};
 use psd_plan::Plan;
 use psd_plan::record::remote::DrivenStep;
 use psd_plan::record::{Outcome, Record};

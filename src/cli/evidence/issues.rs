@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::folder::Folder;
 use super::names::ISSUE;
-use crate::report::status::days::{day, days_after, last_day};
-use crate::report::{Change, Issue, IssueKind, Issues, Provenance};
+use psd::report::status::days::{day, days_after, last_day};
+use psd::report::{Change, Issue, IssueKind, Issues, Provenance};
 use psd_language::syntax::limits::TEXT_BYTES;
 use psd_plan::Plan;
 use psd_plan::schema::{self, FieldType, Kind};

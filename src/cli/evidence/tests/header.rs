@@ -4,14 +4,14 @@
 use serde_json::{Value, json};
 
 use super::{faults, folder, run, with};
-use crate::cli::commands::prediction::prediction;
+use crate::commands::prediction::prediction;
 use crate::evidence::check::examine;
 use crate::evidence::folder::Folder;
 use crate::evidence::names::MANIFEST;
 use crate::evidence::rebuilt::Rebuilt;
 use crate::files::recorded_run::JOURNAL;
-use crate::report::manifest_with;
-use crate::run::replay::RULES;
+use psd::report::manifest_with;
+use psd::run::replay::RULES;
 use psd_rig::journal::{EntryKind, FORMAT};
 use psd_testing::journal::{forged, recover};
 

@@ -1,25 +1,29 @@
-//! The program around the pipeline: arguments, settings, one file per command, exit code. In: the command
+//! The program `psd` around the pipeline: arguments, settings, one file per command, exit code. In: the command
 //! line. Out: an exit code. It is the only folder that reads the environment and writes to the terminal;
 //! it decides nothing about physics or conformity.
 
-pub(crate) mod args;
-pub mod commands;
-pub(crate) mod exit;
-pub mod files;
-pub mod operator;
+mod args;
+mod commands;
+mod evidence;
+mod exit;
+mod files;
+mod operator;
 mod output;
-pub(crate) mod settings;
+mod settings;
 
 use std::ffi::OsString;
+use std::process::ExitCode;
 
 use clap::Parser as _;
 
-pub use exit::Exit;
-use exit::Failure;
+use exit::{Exit, Failure};
+
+fn main() -> ExitCode {
+    run(std::env::args_os()).into()
+}
 
 /// Runs one command line, which begins with the name of the program, and returns its exit.
-#[must_use]
-pub fn main(arguments: impl Iterator<Item = OsString>) -> Exit {
+fn run(arguments: impl Iterator<Item = OsString>) -> Exit {
     // If the signal cannot be caught, a file over the size limit ends the program, and the watchdog of the rig puts it on hold.
     let _ = operator::watch::catch_full_files();
     let arguments = match commands::Arguments::try_parse_from(arguments) {

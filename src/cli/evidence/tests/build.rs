@@ -1,12 +1,12 @@
 //! The build of psd that made a run, in its run log and its report.
 
 use super::{folder, run, with};
-use crate::cli::commands::prediction::prediction;
+use crate::commands::prediction::prediction;
 use crate::evidence::rebuilt::{Rebuilt, ReplayedRun};
 use crate::files::provenance::{BUILD, TOOLCHAIN};
 use crate::files::recorded_run;
 use crate::files::recorded_run::JOURNAL;
-use crate::report::OutputFile;
+use psd::report::OutputFile;
 use psd_rig::journal::{Durability, EntryKind, FileStorage, Journal};
 use psd_testing::journal::recover;
 

@@ -1,8 +1,8 @@
 //! Issued reports: what may be stated, in which order, and how it is read back.
 
 use super::*;
-use crate::report::RealRun;
-use crate::tests::testing::empty_plan;
+use psd::report::RealRun;
+use psd_testing::plans::empty_plan;
 
 const TESTED: &str = "2026-11-22";
 

@@ -10,7 +10,7 @@ use super::names::MANIFEST;
 use super::rebuilt::{Rebuilt, Report};
 use super::sidecar;
 use super::signature;
-use crate::report::manifest_with;
+use psd::report::manifest_with;
 
 /// Largest number of names listed for one finding.
 const NAMED: usize = 6;

@@ -1,8 +1,8 @@
 //! Every file of the results of a run. In: the record and its assessment. Out: files.
 
-use crate::report;
-use crate::report::{FileDigest, OutputError, OutputSink, Provenance, Run};
-use crate::verdict::Assessment;
+use psd::report;
+use psd::report::{FileDigest, OutputError, OutputSink, Provenance, Run};
+use psd::verdict::Assessment;
 use psd_plan::Plan;
 use psd_plan::record::remote::DrivenStep;
 use psd_plan::record::{Outcome, Record};

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::codes::E629;
+use psd::codes::E629;
 use psd_text::diagnostic::Code;
 use psd_text::source::Position;
 
@@ -27,7 +27,7 @@ pub enum Failure {
         at: Option<Position>,
     },
     #[error("the results could not be created: {0}")]
-    Output(#[from] crate::report::OutputError),
+    Output(#[from] psd::report::OutputError),
     #[error("standard output: {0}")]
     Stdout(std::io::Error),
     #[error(transparent)]
@@ -44,9 +44,9 @@ pub enum Failure {
         location: String,
     },
     #[error("no check run: {0}")]
-    NoCheckRun(#[from] crate::run::check_run::NoCheckRun),
+    NoCheckRun(#[from] psd::run::check_run::NoCheckRun),
     #[error("the run cannot continue: {0}")]
-    Refused(#[from] crate::run::replay::ResumeRefusal),
+    Refused(#[from] psd::run::replay::ResumeRefusal),
     #[error("not resumed, and nothing moved: {reason}")]
     NotReleased { reason: String },
     #[error("signals cannot be caught, so a run could not be stopped: {0}")]

@@ -5,11 +5,11 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use super::failure::{Failure, plain};
-use crate::check::{LoadError, Options, check};
-use crate::report::{Build, Provenance, RealRun};
-use crate::run::check_run;
-use crate::run::replay;
-use crate::run::replay::{Header, LoggedRun};
+use psd::check::{LoadError, Options, check};
+use psd::report::{Build, Provenance, RealRun};
+use psd::run::check_run;
+use psd::run::replay;
+use psd::run::replay::{Header, LoggedRun};
 use psd_plan::Plan;
 use psd_plan::record::equipment::{Device, Equipment};
 use psd_rig::journal::{Line, LogText, Recovered, Unreadable, recover};

@@ -5,9 +5,9 @@ use psd_plan::schema::plan_block::DATE;
 use sha2::{Digest as _, Sha256};
 
 use super::circumstances::Circumstances;
-use crate::report::{Build, Provenance, RealRun};
-use crate::run::check_run;
-use crate::run::replay::Header;
+use psd::report::{Build, Provenance, RealRun};
+use psd::run::check_run;
+use psd::run::replay::Header;
 use psd_plan::Plan;
 use psd_text::digest::{hex, sha256};
 
@@ -21,6 +21,11 @@ pub fn this_build() -> Build {
         sources: BUILD.to_owned(),
         toolchain: TOOLCHAIN.to_owned(),
     }
+}
+
+/// Version and build of this program, for the data set of a study.
+pub fn version() -> String {
+    format!("{} {BUILD}", env!("CARGO_PKG_VERSION"))
 }
 
 /// The provenance of a run of `plan` by this version of the program; `date` is that of the command line, which the plan
@@ -195,8 +200,8 @@ fn run_id(plan: &Plan, version: &str, date: Option<&str>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tests::testing::empty_plan;
     use psd_plan::{Link, PlanFile, VirtualLink};
+    use psd_testing::plans::empty_plan;
 
     fn plan(files: &[(&str, &str)], settings: &[(&str, &str)], seed: u64) -> Plan {
         let own = |(name, text): &(&str, &str)| (String::from(*name), String::from(*text));
