@@ -59,7 +59,7 @@ pub struct Value<'a> {
     pub variants: &'static [Variant],
     pub call: Option<Call<'a>>,
     /// Whether a value ends before the cursor, so that an operator follows.
-    pub is_after_value: bool,
+    pub is_complete: bool,
     /// Path and members of the value before the last comparison: `hit.max_displacement` of `hit.max_displacement < 5 `.
     pub compared: Vec<&'a str>,
 }
@@ -397,7 +397,7 @@ impl<'a> Lines<'a> {
         let last = self.list[from.min(self.list.len())..]
             .iter()
             .rfind(|token| !matches!(token.kind, Kind::Comment | Kind::Newline));
-        let is_after_value = last.is_some_and(|last| match last.kind {
+        let is_complete = last.is_some_and(|last| match last.kind {
             Kind::Number | Kind::Unit => true,
             Kind::Text => {
                 word != "require" || self.word(line[1.min(line.len() - 1)]) != self.word(*last)
@@ -416,7 +416,7 @@ impl<'a> Lines<'a> {
             field,
             variants,
             call,
-            is_after_value,
+            is_complete,
         }
     }
 

@@ -110,7 +110,7 @@ impl Documents {
         {
             self.add_folder(folder);
         }
-        self.set(key, uri, version, text);
+        self.set(&key, uri, version, text);
     }
 
     /// Applies changes to an open document.
@@ -138,17 +138,17 @@ impl Documents {
                 }
             };
         }
-        self.set(key, &open.uri, version, text.as_str());
+        self.set(&key, &open.uri, version, text.as_str());
     }
 
-    fn set(&mut self, key: String, uri: &str, version: i32, text: &str) {
+    fn set(&mut self, key: &str, uri: &str, version: i32, text: &str) {
         let open = Open {
             uri: uri.to_owned(),
             version,
             text: Text::new(text, self.encoding),
         };
-        Arc::make_mut(&mut self.now.open).insert(key.clone(), Arc::new(open));
-        self.read_uses(&key);
+        Arc::make_mut(&mut self.now.open).insert(key.to_owned(), Arc::new(open));
+        self.read_uses(key);
         self.analyses.borrow_mut().clear();
     }
 

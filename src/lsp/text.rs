@@ -26,7 +26,7 @@ impl Encoding {
 /// A text and the starts of its lines.
 #[derive(Clone, Debug)]
 pub struct Text {
-    text: Arc<str>,
+    content: Arc<str>,
     starts: Vec<usize>,
     encoding: Encoding,
 }
@@ -42,19 +42,19 @@ impl Text {
         });
         let starts = std::iter::once(0).chain(ends.map(|end| end + 1)).collect();
         Self {
-            text,
+            content: text,
             starts,
             encoding,
         }
     }
 
     pub fn as_str(&self) -> &str {
-        &self.text
+        &self.content
     }
 
     /// The text, shared.
     pub fn shared(&self) -> Arc<str> {
-        Arc::clone(&self.text)
+        Arc::clone(&self.content)
     }
 
     /// The line, from 0, of a byte offset.
@@ -67,14 +67,14 @@ impl Text {
     /// The bytes of a line without its end.
     pub fn line(&self, line: usize) -> Range<usize> {
         let Some(start) = self.starts.get(line).copied() else {
-            return self.text.len()..self.text.len();
+            return self.content.len()..self.content.len();
         };
         let end = self
             .starts
             .get(line + 1)
             .copied()
-            .unwrap_or(self.text.len());
-        let body = self.text[start..end].trim_end_matches(['\r', '\n']);
+            .unwrap_or(self.content.len());
+        let body = self.content[start..end].trim_end_matches(['\r', '\n']);
         start..start + body.len()
     }
 
@@ -82,7 +82,7 @@ impl Text {
     pub fn offset(&self, position: lsp::Position) -> usize {
         let line = self.line(usize::try_from(position.line).unwrap_or(usize::MAX));
         let wanted = usize::try_from(position.character).unwrap_or(usize::MAX);
-        let text = &self.text[line.clone()];
+        let text = &self.content[line.clone()];
         let mut counted = 0;
         for (at, character) in text.char_indices() {
             let length = match self.encoding {
@@ -99,9 +99,11 @@ impl Text {
 
     /// The position of a byte offset.
     pub fn position(&self, offset: usize) -> lsp::Position {
-        let offset = self.text.floor_char_boundary(offset);
+        let offset = self.content.floor_char_boundary(offset);
         let line = self.line_of(offset);
-        let character = self.encoding.length(&self.text[self.starts[line]..offset]);
+        let character = self
+            .encoding
+            .length(&self.content[self.starts[line]..offset]);
         lsp::Position::new(narrow(line), narrow(character))
     }
 

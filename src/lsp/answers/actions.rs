@@ -123,10 +123,11 @@ fn missing_fields(view: &View<'_>, wanted: &Range<usize>) -> Option<lsp::CodeAct
     }
     let text = view.text().as_str();
     let brace = block.head.range().end + text.get(block.head.range().end..item.end)?.find('{')? + 1;
-    let lines: String = missing
+    let lines: Vec<String> = missing
         .iter()
         .map(|field| format!("\n  {}", field.example))
         .collect();
+    let lines = lines.concat();
     // What follows the brace on its line begins a line of its own.
     let rest = text[brace..item.end]
         .lines()

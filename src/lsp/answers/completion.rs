@@ -267,7 +267,7 @@ impl<'v> Items<'v, '_> {
     }
 
     fn value(&mut self, value: &Value<'_>, offset: usize) {
-        if value.is_after_value {
+        if value.is_complete {
             return self.operators(value);
         }
         if let Some(call) = &value.call
@@ -668,15 +668,13 @@ impl<'v> Items<'v, '_> {
                     }
                 }
             }
-            [_, member] => {
-                if kind.result(member).is_some_and(|result| result.measured) {
-                    self.add(
-                        "u",
-                        lsp::CompletionItemKind::Property,
-                        "standard uncertainty",
-                        "",
-                    );
-                }
+            [_, member] if kind.result(member).is_some_and(|result| result.measured) => {
+                self.add(
+                    "u",
+                    lsp::CompletionItemKind::Property,
+                    "standard uncertainty",
+                    "",
+                );
             }
             _ => {}
         }

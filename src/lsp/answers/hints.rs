@@ -109,9 +109,9 @@ fn customary(view: &View<'_>, value: &Expr, found: &mut Vec<lsp::InlayHint>) {
             found.push(hint(view, value.span.range().end, label));
         }
     }
-    parts(value)
-        .into_iter()
-        .for_each(|part| customary(view, part, found));
+    for part in parts(value) {
+        customary(view, part, found);
+    }
 }
 
 /// What the newest simulation found, at the name of each procedure and at each requirement.

@@ -70,8 +70,12 @@ fn item_word(word: &str) -> &'static str {
     }
 }
 
-fn joined(text: String, more: Option<String>) -> String {
-    more.map_or(text.clone(), |more| format!("{text}\n\n{more}"))
+fn joined(mut text: String, more: Option<String>) -> String {
+    if let Some(more) = more {
+        text.push_str("\n\n");
+        text.push_str(&more);
+    }
+    text
 }
 
 fn symbol(view: &View<'_>, index: usize, value: Option<String>) -> String {
@@ -174,7 +178,7 @@ pub fn simulated(view: &View<'_>, procedure: &str, result: &str) -> Option<Strin
 fn number(view: &View<'_>, span: Span) -> Option<String> {
     let written = view.analysis.sources.text(span);
     let token = written.trim_start_matches(|c: char| c.is_ascii_digit() || matches!(c, '.' | '_'));
-    let token = token.trim_start_matches(|c: char| matches!(c, 'e' | 'E'));
+    let token = token.trim_start_matches(['e', 'E']);
     let token = token
         .trim_start_matches(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-'))
         .trim();

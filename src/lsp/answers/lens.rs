@@ -25,7 +25,7 @@ pub fn lenses(view: &View<'_>, _: &lsp::CodeLensParams) -> Vec<lsp::CodeLens> {
     };
     let first = items
         .iter()
-        .find(|item| kind(item).is_some_and(|kind| kind.is_procedure()));
+        .find(|item| kind(item).is_some_and(schema::BlockKind::is_procedure));
     let Some(first) = first.filter(|_| view.file.0 == 0) else {
         return Vec::new();
     };

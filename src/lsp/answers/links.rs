@@ -19,10 +19,9 @@ pub fn links(view: &View<'_>, _: &lsp::DocumentLinkParams) -> Vec<lsp::DocumentL
         match &item.kind {
             ItemKind::Use { path } => texts.push(path.span),
             ItemKind::Block(block) => {
-                block
-                    .fields
-                    .iter()
-                    .for_each(|entry| strings(&entry.value, &mut texts));
+                for entry in &block.fields {
+                    strings(&entry.value, &mut texts);
+                }
             }
             ItemKind::Let { .. } | ItemKind::Param { .. } | ItemKind::Require { .. } => {}
         }
@@ -46,7 +45,9 @@ fn strings(expr: &Expr, into: &mut Vec<Span>) {
     {
         into.push(expr.span);
     }
-    parts(expr).into_iter().for_each(|part| strings(part, into));
+    for part in parts(expr) {
+        strings(part, into);
+    }
 }
 
 /// The document that a string names, with its quotes; None if there is no such file.

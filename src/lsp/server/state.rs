@@ -303,10 +303,9 @@ impl Server {
         for plan in gone {
             let known = self.known.remove(&plan).unwrap_or_default();
             self.answer_waiting(&plan);
-            known
-                .findings
-                .keys()
-                .for_each(|document| self.publish(document));
+            for document in known.findings.keys() {
+                self.publish(document);
+            }
         }
         self.background.check(Order {
             revision: self.revision,
@@ -381,7 +380,9 @@ impl Server {
         known.plan = plan.map(Arc::new);
         let before = std::mem::replace(&mut known.findings, findings.clone());
         let documents: BTreeSet<String> = before.into_keys().chain(findings.into_keys()).collect();
-        documents.iter().for_each(|document| self.publish(document));
+        for document in &documents {
+            self.publish(document);
+        }
     }
 
     /// Sends the diagnostics of a document, from every plan that it belongs to.
