@@ -152,12 +152,11 @@ impl Documents {
         self.analyses.borrow_mut().clear();
     }
 
-    pub fn close(&mut self, uri: &str) -> String {
+    pub fn close(&mut self, uri: &str) {
         let key = normal(uri);
         Arc::make_mut(&mut self.now.open).remove(&key);
         self.read_uses(&key);
         self.analyses.borrow_mut().clear();
-        key
     }
 
     /// A file changed on disk.

@@ -229,8 +229,10 @@ impl Editor {
             "textDocument": { "uri": uri(name) },
             "position": position(&marked[..at], self.encoding),
         });
-        for (key, value) in more.as_object().into_iter().flatten() {
-            params[key] = value.clone();
+        if let Value::Object(more) = more {
+            for (key, value) in more {
+                params[key] = value;
+            }
         }
         params
     }
