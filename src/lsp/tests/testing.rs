@@ -22,7 +22,7 @@ pub const FOLDER: &str = "/plans";
 pub const CURSOR: &str = "‸";
 
 /// How long a test waits for a message that must come.
-const LONGEST: Duration = Duration::from_secs(60);
+const LONGEST: Duration = Duration::from_mins(1);
 
 pub struct Editor {
     connection: Connection,
