@@ -16,6 +16,9 @@ pub trait Program: Send + Sync {
     /// Runs a plan on a simulated rig. No real rig is opened, whatever the plan names.
     fn simulate(&self, plan: &Plan) -> Simulation;
 
+    /// The steps of a plan, as far as they are known before it runs.
+    fn steps(&self, plan: &Plan) -> u64;
+
     /// The text of a file beside a plan; `file` is relative to the plan's folder.
     ///
     /// # Errors

@@ -13,6 +13,7 @@ use crate::files::failure::plain;
 use crate::files::loader::{FolderLoader, plans_below, read_plan};
 use crate::settings::today;
 use psd::check::{LoadError, Loader, Options, check};
+use psd::procedures::most_steps;
 use psd_plan::Plan;
 
 /// Most entries of a folder of the editor that are looked at: it may be a home folder.
@@ -76,6 +77,13 @@ impl Program for Commands {
                 })
                 .collect(),
         }
+    }
+
+    fn steps(&self, plan: &Plan) -> u64 {
+        let procedures = plan.procedures.iter();
+        procedures
+            .filter_map(|procedure| most_steps(&procedure.kind, plan))
+            .fold(0, u64::saturating_add)
     }
 
     fn load(&self, plan: &Path, file: &str) -> Result<String, LoadError> {

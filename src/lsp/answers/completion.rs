@@ -202,11 +202,8 @@ impl<'v> Items<'v, '_> {
     /// The fields that a block does not state, the required ones first.
     fn keys(&mut self, inside: &Inside<'_>) {
         let Some(kind) = inside.kind else { return };
-        let is_frame = inside
-            .keys
-            .iter()
-            .any(|key| matches!(*key, "storeys" | "portal" | "stiffness_matrix"))
-            || inside.keys.contains(&"storey");
+        let mut stated = inside.keys.iter().filter_map(|key| kind.field(key));
+        let is_frame = stated.any(|field| field.of_frames);
         let rank = |field: &Field| match field.presence {
             Presence::Required => 0,
             Presence::RequiredOn(..) => 1,
@@ -300,7 +297,7 @@ impl<'v> Items<'v, '_> {
         match field.ty {
             FieldType::Choice(_) | FieldType::Choices(_) | FieldType::Inner | FieldType::Inners => {
                 self.variants(value.variants);
-                if field.name == "time_step" {
+                if field.name == schema::methods::TIME_STEP.name {
                     self.numbers(value, Some(Dimension::TIME), offset);
                 }
             }
@@ -416,7 +413,7 @@ impl<'v> Items<'v, '_> {
         if value.word == "require" {
             self.procedures(None);
         }
-        if value.word == "time_step" {
+        if value.word == schema::methods::TIME_STEP.name {
             self.add(
                 "critical",
                 lsp::CompletionItemKind::EnumMember,

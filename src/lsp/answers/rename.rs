@@ -68,7 +68,7 @@ fn refused(view: &View<'_>, name: &str, old: &str) -> Result<(), String> {
         && name.chars().all(|c| is_start(c) || c.is_ascii_digit());
     if !is_name {
         return Err(format!(
-            "`{name}` is no name: write a-z, 0-9 and `_`, first a letter"
+            "`{name}` is not a name: write a-z, 0-9 and `_`, first a letter"
         ));
     }
     let is_word = ITEM_WORDS.contains(&name)

@@ -36,6 +36,10 @@ impl Program for Nothing {
         }
     }
 
+    fn steps(&self, _: &Plan) -> u64 {
+        0
+    }
+
     fn load(&self, _: &Path, _: &str) -> Result<String, LoadError> {
         Err(LoadError::NotFound)
     }

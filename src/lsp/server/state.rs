@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use gen_lsp_types as lsp;
 use lsp_server::{ErrorCode, Message, Notification, Request, RequestId, Response, ResponseError};
-use psd_plan::{Plan, ProcedureKind};
+use psd_plan::Plan;
 use serde_json::{Value, json};
 
 use super::background::{Background, Found, Order, SimulationOrder, protected};
@@ -411,11 +411,12 @@ impl Server {
         let wanted =
             |one: &Waiting| matches!(one, Waiting::Simulation { plan, .. } if plan == plan_key);
         let is_wanted = self.waiting.iter().any(wanted);
+        let program = &self.documents.now.program;
         let Some(known) = self.known.get_mut(plan_key) else {
             return;
         };
         match &known.plan {
-            Some(plan) if is_wanted || steps(plan) <= MOST_STEPS => {
+            Some(plan) if is_wanted || program.steps(plan) <= MOST_STEPS => {
                 if known.ordered != Some(self.revision) {
                     known.ordered = Some(self.revision);
                     self.background.simulate(SimulationOrder {
@@ -557,32 +558,4 @@ pub fn error(code: ErrorCode, message: &str) -> ResponseError {
         message: message.to_owned(),
         data: None,
     }
-}
-
-/// The steps of a plan that are known before it runs.
-fn steps(plan: &Plan) -> u64 {
-    let of = |kind: &ProcedureKind| match kind {
-        ProcedureKind::StiffnessRamp(ramp) => Some(ramp.targets()),
-        ProcedureKind::Impact(impact) => {
-            impact.known_steps(plan, plan.strikers.get(impact.striker)?)
-        }
-        ProcedureKind::Shake(shake) => shake.known_steps(plan),
-        ProcedureKind::Escalate(series) => {
-            let impacts = series.velocities.len() as u64;
-            Some(
-                series
-                    .known_steps_of_an_impact(plan)?
-                    .saturating_mul(impacts),
-            )
-        }
-        ProcedureKind::Cycle(cycle) => Some(cycle.targets()),
-        ProcedureKind::DampingSweep(_)
-        | ProcedureKind::Unload(_)
-        | ProcedureKind::Move(_)
-        | ProcedureKind::Inspect { .. } => None,
-    };
-    let procedures = plan.procedures.iter();
-    procedures
-        .filter_map(|procedure| of(&procedure.kind))
-        .fold(0, u64::saturating_add)
 }

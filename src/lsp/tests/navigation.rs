@@ -162,10 +162,10 @@ fn a_word_of_a_choice_is_no_name_of_the_plan() {
 #[test]
 fn a_rename_says_why_a_name_cannot_be() {
     for (name, reason) in [
-        ("1st", "is no name"),
-        ("hit-1", "is no name"),
-        ("µ", "is no name"),
-        ("", "is no name"),
+        ("1st", "is not a name"),
+        ("hit-1", "is not a name"),
+        ("µ", "is not a name"),
+        ("", "is not a name"),
         ("let", "is a word"),
         ("impact", "is a word"),
         ("sqrt", "is a word"),

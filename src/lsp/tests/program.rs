@@ -84,6 +84,10 @@ impl Program for Files {
         }
     }
 
+    fn steps(&self, _: &Plan) -> u64 {
+        0
+    }
+
     fn load(&self, plan: &Path, file: &str) -> Result<String, LoadError> {
         let path = plan.parent().unwrap_or(plan).join(file);
         self.read(&path).ok_or(LoadError::NotFound)
