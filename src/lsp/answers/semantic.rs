@@ -58,10 +58,9 @@ pub fn tokens(view: &View<'_>, _: &lsp::SemanticTokensParams) -> lsp::SemanticTo
             continue;
         };
         // A token of several lines has no code; a line end is part of none.
-        let shown = plan[token.start..token.end]
-            .lines()
-            .next()
-            .unwrap_or_default();
+        let whole = &plan[token.start..token.end];
+        // A lone carriage return ends a line for an editor.
+        let shown = whole.split(['\r', '\n']).next().unwrap_or_default();
         let range = text.range(token.start..token.start + shown.len());
         let (start, end) = (range.start, range.end);
         let same_line = start.line == before.line;

@@ -345,7 +345,7 @@ fn any_order_of_any_messages_is_survived() {
                 "🔨",
                 "\n",
                 "storeys = [",
-                "(",
+                "# a\rb",
                 "# x",
                 "hit.",
             ];
