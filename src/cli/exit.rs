@@ -97,7 +97,8 @@ impl Failure {
             | Self::Journal(_)
             | Self::DiskSpace(_)
             | Self::Refused(_)
-            | Self::Signals(_) => Exit::Fault,
+            | Self::Signals(_)
+            | Self::NotVerifiable { .. } => Exit::Fault,
         }
     }
 

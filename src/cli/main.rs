@@ -19,11 +19,11 @@ use clap::Parser as _;
 use exit::{Exit, Failure};
 
 fn main() -> ExitCode {
-    run(std::env::args_os()).into()
+    run_command_line(std::env::args_os()).into()
 }
 
 /// Runs one command line, which begins with the name of the program, and returns its exit.
-fn run(arguments: impl Iterator<Item = OsString>) -> Exit {
+fn run_command_line(arguments: impl Iterator<Item = OsString>) -> Exit {
     // If the signal cannot be caught, a file over the size limit ends the program, and the watchdog of the rig puts it on hold.
     let _ = operator::watch::catch_full_files();
     let arguments = match commands::Arguments::try_parse_from(arguments) {

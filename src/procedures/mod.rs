@@ -167,6 +167,21 @@ pub(crate) fn facts_of(kind: &ProcedureKind) -> Facts<'_> {
     }
 }
 
+/// Run: an impact on one degree of freedom, which a study may run in a batch.
+pub(crate) fn point_impact(kind: &ProcedureKind) -> Option<&Impact> {
+    match kind {
+        ProcedureKind::Impact(impact) => impact.point().map(|_| impact),
+        ProcedureKind::StiffnessRamp(_)
+        | ProcedureKind::DampingSweep(_)
+        | ProcedureKind::Shake(_)
+        | ProcedureKind::Cycle(_)
+        | ProcedureKind::Escalate(_)
+        | ProcedureKind::Unload(_)
+        | ProcedureKind::Move(_)
+        | ProcedureKind::Inspect { .. } => None,
+    }
+}
+
 /// Report: the observations on the record of a procedure.
 pub(crate) fn recorded(history: &History) -> Recorded {
     match history {

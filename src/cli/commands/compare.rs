@@ -95,6 +95,7 @@ fn from_record(name: String, run: &Path) -> Result<Side, Failure> {
     let issues = IssueFile::of(&kept).map_err(|fault| Failure::file(run, fault))?;
     let replayed = ReplayedRun::of(record_file::read(run)?, issues.as_ref(), &prediction)
         .map_err(|fault| Failure::file(run, fault))?;
+    replayed.refuse_another_simulation(run)?;
     if replayed.steps.is_some() {
         return Err(Failure::file(
             run,

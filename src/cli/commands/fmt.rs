@@ -5,9 +5,10 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use similar::TextDiff;
 
 use crate::exit::{Exit, Failure};
+use crate::files::difference;
+use crate::files::difference::Named;
 use crate::files::failure::plain;
 use crate::files::loader::{plans_below, read_plan};
 use crate::files::plan_file::name_of;
@@ -52,14 +53,17 @@ fn one(path: &Path, check: bool, settings: Settings) -> Result<Exit, Failure> {
     }
     if check {
         let name = one_line(&path.display().to_string());
-        let diff = TextDiff::from_lines(&text, &formatted);
-        print_result(
-            &diff
-                .unified_diff()
-                .context_radius(3)
-                .header(&name, &format!("{name} (formatted)"))
-                .to_string(),
-        )?;
+        let of_the_formatted = format!("{name} (formatted)");
+        print_result(&difference::unified(
+            &Named {
+                name: &name,
+                text: &text,
+            },
+            &Named {
+                name: &of_the_formatted,
+                text: &formatted,
+            },
+        ))?;
         return Ok(Exit::Missed);
     }
     // A check of the formatter: its output must parse without errors and be stable.

@@ -118,10 +118,12 @@ fn results(
             } else {
                 "; the run log has no end"
             };
-            findings.push(Finding::wrong(
-                part,
-                format!("{}{cut_off}{other}", some_of(faults)),
-            ));
+            let statement = format!("{}{cut_off}{other}", some_of(faults));
+            findings.push(if report.is_of_another_build() {
+                Finding::not_verifiable(part, statement)
+            } else {
+                Finding::wrong(part, statement)
+            });
         } else if let Some(count) = counts.get(part) {
             let files = if *count == 1 {
                 "the file"
@@ -167,7 +169,7 @@ fn manifest(folder: &Folder, report: Option<&Report>, sidecars: &BTreeSet<&str>)
     let unlisted = folder.listed().filter(|(name, _)| !known(name));
     faults.extend(unlisted.map(|(name, _)| format!("`{name}` is not in the manifest")));
     if faults.is_empty()
-        && let Some(report) = report
+        && let Some(report) = report.filter(|report| !report.is_of_another_build())
     {
         let all: Vec<(String, String)> =
             report.files.iter().cloned().chain(folder.kept()).collect();

@@ -16,7 +16,7 @@ mod tests;
 
 pub use check::examine;
 pub use consistency::check_consistency;
-pub use finding::Finding;
+pub use finding::{Finding, Judgement};
 pub use folder::Folder;
 pub use issues::{IssueFile, One, OneKind, may_be_stated};
 pub use names::{ISSUE, MANIFEST};

@@ -1,11 +1,14 @@
 //! The replay of a run log: record, verdict, every file of the results. In: the run log of a run folder, and the data stated after the
 //! test. Out: the results, and the findings of the replay itself.
 
+use std::path::Path;
+
 use super::consistency;
 use super::finding::Finding;
 use super::folder::Folder;
 use super::issues::{IssueFile, apply};
-use crate::files::provenance::BUILD;
+use crate::files::failure::Failure;
+use crate::files::provenance::other_build;
 use crate::files::recorded_run;
 use crate::files::recorded_run::{JOURNAL, ReadRecord};
 use crate::files::results::put_results;
@@ -14,13 +17,12 @@ use psd::report::{
     ReportStatus, Run,
 };
 use psd::run::replay;
-use psd::run::replay::{CUT_OFF, Mismatch, Replayed};
+use psd::run::replay::{CUT_OFF, LogForm, Mismatch, Replayed, number_of_steps};
 use psd::verdict::{self, Assessment};
 use psd_plan::Plan;
 use psd_plan::record::remote::DrivenStep;
 use psd_plan::record::{Outcome, Record};
 use psd_plan::schema::plan_block::ISSUED;
-use psd_rig::journal::EntryKind;
 
 /// Predicts a whole run from the record of its low-level check run; None for any other run.
 pub type Predict<'a> = &'a dyn Fn(&Plan, &Record) -> Option<Prediction>;
@@ -32,6 +34,10 @@ pub struct ReplayedRun {
     pub record: Record,
     pub assessment: Assessment,
     pub mismatch: Option<Mismatch>,
+    /// Whether it was simulated again: its run log is compact.
+    pub is_repeated: bool,
+    /// The program that made the run, if it was a different one.
+    pub other_build: Option<String>,
     /// The steps of a rig that a client drove.
     pub steps: Option<Vec<DrivenStep>>,
 }
@@ -51,6 +57,8 @@ impl ReplayedRun {
         } = read;
         // The replay no longer needs the entries: their memory is freed.
         drop(recovered);
+        let is_repeated = logged.header.log == LogForm::Compact;
+        let other_build = other_build(&logged.header);
         let Replayed {
             mut record,
             mismatch,
@@ -74,7 +82,26 @@ impl ReplayedRun {
             record,
             assessment,
             mismatch,
+            is_repeated,
+            other_build,
             steps,
+        })
+    }
+
+    /// An error if the repetition of a simulation differs from its run log: it has no results.
+    pub fn refuse_another_simulation(&self, run: &Path) -> Result<(), Failure> {
+        let Some(mismatch) = self.mismatch.as_ref().filter(|_| self.is_repeated) else {
+            return Ok(());
+        };
+        Err(match &self.other_build {
+            Some(other) => Failure::NotVerifiable {
+                path: run.to_owned(),
+                reason: format!("{mismatch}; the run was made by {other}"),
+            },
+            None => Failure::file(
+                run,
+                format!("the run log does not match the plan: {mismatch}"),
+            ),
         })
     }
 
@@ -126,8 +153,17 @@ pub struct Report {
     pub files: Vec<FileDigest>,
     /// The program that made the run, if it was a different one.
     pub other_build: Option<String>,
+    /// Whether its run was simulated again.
+    pub is_repeated: bool,
     /// Whether the run log is complete.
     pub ended: bool,
+}
+
+impl Report {
+    /// Whether the simulation of another build was repeated: a difference says nothing against that build.
+    pub const fn is_of_another_build(&self) -> bool {
+        self.is_repeated && self.other_build.is_some()
+    }
 }
 
 impl Rebuilt {
@@ -142,6 +178,12 @@ impl Rebuilt {
         };
         let read = match recorded_run::of_text(JOURNAL.as_ref(), text) {
             Ok(read) => read,
+            Err(Failure::NotVerifiable { reason, .. }) => {
+                return Self {
+                    findings: vec![Finding::not_verifiable("record", reason)],
+                    report: None,
+                };
+            }
             Err(failure) => return nothing("record", failure.to_string()),
         };
         match IssueFile::of(folder) {
@@ -151,14 +193,7 @@ impl Rebuilt {
     }
 
     fn replayed(read: ReadRecord, issues: Option<&IssueFile>, predict: Predict<'_>) -> Self {
-        let count = |kind| {
-            read.recovered
-                .lines
-                .iter()
-                .filter(|line| line.kind == kind)
-                .count()
-        };
-        let (targets, steps) = (count(EntryKind::Intent), count(EntryKind::Step));
+        let (targets, steps) = number_of_steps(&read.recovered);
         let torn = read.recovered.torn.as_ref();
         let torn = torn.map_or(String::new(), |torn| {
             format!(", {} bytes incomplete at its end", torn.end - torn.start)
@@ -176,9 +211,6 @@ impl Rebuilt {
             Err(fault) => Finding::wrong("record", fault),
         }];
         let ended = read.logged.ended;
-        let header = &read.logged.header;
-        let other_build =
-            (header.build != BUILD).then(|| format!("psd {} build {}", header.psd, header.build));
         let replayed = match ReplayedRun::of(read, issues, predict) {
             Ok(replayed) => replayed,
             Err(fault) => {
@@ -188,14 +220,27 @@ impl Rebuilt {
                 };
             }
         };
-        let built = if other_build.is_some() {
+        let built = if replayed.other_build.is_some() {
             " by another build of psd"
         } else {
             ""
         };
-        let again = || format!("all {targets} recomputed, bit-identical");
+        let again = || {
+            let again = if replayed.is_repeated {
+                "simulated again"
+            } else {
+                "recomputed"
+            };
+            format!("all {targets} {again}, bit-identical")
+        };
         findings.push(match (&replayed.mismatch, &replayed.record.outcome) {
-            (Some(mismatch), _) => Finding::wrong("targets", mismatch.to_string()),
+            (Some(mismatch), _) => match &replayed.other_build {
+                Some(other) if replayed.is_repeated => Finding::not_verifiable(
+                    "targets",
+                    format!("{mismatch}; the run was made by {other}"),
+                ),
+                _ => Finding::wrong("targets", mismatch.to_string()),
+            },
             (None, Outcome::Completed) if ended => {
                 Finding::sound("targets", format!("{}, and {steps} steps{built}", again()))
             }
@@ -235,15 +280,10 @@ impl Rebuilt {
                 issue_text(&issues.report_id, issues.all.last()?),
             ))
         }));
-        Self::with_results(findings, &replayed, other_build, ended)
+        Self::with_results(findings, &replayed, ended)
     }
 
-    fn with_results(
-        mut findings: Vec<Finding>,
-        replayed: &ReplayedRun,
-        other_build: Option<String>,
-        ended: bool,
-    ) -> Self {
+    fn with_results(mut findings: Vec<Finding>, replayed: &ReplayedRun, ended: bool) -> Self {
         let files = match replayed.results(&mut NullSink) {
             Ok(files) => files,
             Err(error) => {
@@ -261,7 +301,8 @@ impl Rebuilt {
             issued: super::issues::stated(&replayed.plan, ISSUED.name),
             roles: replayed.plan.report.sign.clone(),
             files,
-            other_build,
+            other_build: replayed.other_build.clone(),
+            is_repeated: replayed.is_repeated,
             ended,
         };
         Self {

@@ -6,6 +6,9 @@ use psd::codes::E629;
 use psd_text::diagnostic::Code;
 use psd_text::source::Position;
 
+/// The state of a simulation of another build of psd, if this build does not repeat it.
+pub const NOT_VERIFIABLE: &str = "NOT VERIFIABLE BY THIS BUILD";
+
 /// Why a command failed. Errors in a plan are diagnostics, not these.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
@@ -20,6 +23,9 @@ pub enum Failure {
         reason: String,
         help: Option<String>,
     },
+    /// The simulation of another build, which this build does not repeat.
+    #[error("{}: {NOT_VERIFIABLE}: {reason}", path.display())]
+    NotVerifiable { path: PathBuf, reason: String },
     #[error("{}: not a plan: {reason}", path.display())]
     NotAPlan {
         path: PathBuf,

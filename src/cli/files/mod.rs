@@ -3,6 +3,7 @@
 
 pub(crate) mod accepted;
 pub(crate) mod circumstances;
+pub(crate) mod difference;
 pub(crate) mod disk_space;
 pub(crate) mod failure;
 pub(crate) mod finish_run;

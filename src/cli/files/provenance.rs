@@ -7,7 +7,7 @@ use sha2::{Digest as _, Sha256};
 use super::circumstances::Circumstances;
 use psd::report::{Build, Provenance, RealRun};
 use psd::run::check_run;
-use psd::run::replay::Header;
+use psd::run::replay::{Header, LogForm};
 use psd_plan::Plan;
 use psd_text::digest::{hex, sha256};
 
@@ -26,6 +26,24 @@ pub fn this_build() -> Build {
 /// Version and build of this program, for the data set of a study.
 pub fn version() -> String {
     format!("{} {BUILD}", env!("CARGO_PKG_VERSION"))
+}
+
+/// The other build of psd that made a run; None if it was this one. The steps of a simulation also depend on the toolchain.
+pub fn other_build(header: &Header) -> Option<String> {
+    let Header {
+        psd,
+        build,
+        toolchain,
+        log,
+        ..
+    } = header;
+    if build != BUILD {
+        Some(format!("psd {psd} build {build}"))
+    } else if *log == LogForm::Compact && toolchain != TOOLCHAIN {
+        Some(format!("psd {psd} built by {toolchain}"))
+    } else {
+        None
+    }
 }
 
 /// The provenance of a run of `plan` by this version of the program; `date` is that of the command line, which the plan
@@ -191,7 +209,7 @@ fn run_id(plan: &Plan, version: &str, date: Option<&str>) -> String {
         part(date);
     }
     // A low-level check run has an id different from that of its run.
-    if check_run::performed_part(plan).is_some() {
+    if plan.performed_part().is_some() {
         digest.update(check_run::RUN_ID_MARK);
     }
     hex(&digest.finalize())[..16].to_owned()

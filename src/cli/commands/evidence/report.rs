@@ -60,6 +60,7 @@ pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, F
     })?;
     let replayed = ReplayedRun::of(read, issues.as_ref(), &prediction)
         .map_err(|fault| Failure::file(run, fault))?;
+    replayed.refuse_another_simulation(run)?;
     let folder = match &arguments.out {
         Some(out) => RunFolder::create(Some(out), run)?.path().to_owned(),
         None => without_results(run)?,

@@ -6,7 +6,7 @@
 //! grows by 4δ in each cycle.
 
 use psd::procedures::stepping::tracking::delay;
-use psd::run::{self, Settings, Unwatched};
+use psd::run::{self, Keep, Unwatched};
 use psd_plan::procedures::impact::block::MASS;
 use psd_plan::record::{
     Floors, ImpactHistory, Modes, Outcome, ProcedureRecord, Record, ShakeHistory, StruckFrame,
@@ -201,7 +201,7 @@ pub(crate) fn lagging(plan: &Plan) -> Option<Record> {
         &lagging,
         &mut *virtual_rig(&lagging),
         &mut Unwatched,
-        Settings { uncertainty: false },
+        Keep::Steps,
     ))
 }
 

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::args::{Format, PlanSettings, name};
+use crate::args::{Format, PlanSettings, RunLog, name};
 use crate::exit::{Exit, Failure};
 use crate::files::accepted::AcceptedFolder;
 use crate::files::golden_run;
@@ -54,6 +54,9 @@ pub struct RunArguments {
     /// Standard output: the run folder, or the summary as JSON
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub format: Format,
+    /// Run log of a simulation: digests, or every target and reading
+    #[arg(long, value_enum, value_name = "FORM")]
+    pub log: Option<RunLog>,
     /// Also replace the accepted results in reports/PLAN
     #[arg(long)]
     pub accept: bool,

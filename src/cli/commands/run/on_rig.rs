@@ -2,7 +2,7 @@
 
 use super::RunArguments;
 use super::resume;
-use crate::args::Format;
+use crate::args::{Format, RunLog};
 use crate::exit::{Exit, Failure};
 use crate::files::finish_run::{finish_run, summary};
 use crate::files::provenance;
@@ -14,7 +14,7 @@ use crate::output::{print_message, print_result};
 use crate::settings::Settings;
 use psd::report::Provenance;
 use psd::run::replay;
-use psd::run::replay::Recorded;
+use psd::run::replay::{Header, LogForm, Recorded};
 use psd_plan::{Link, Plan};
 use psd_rig::{StopRequest, virtual_rig};
 
@@ -109,6 +109,10 @@ pub(crate) fn on_its_rig(
 ) -> Result<Ran, Failure> {
     match plan.rig.link {
         Link::Virtual(_) => on_a_virtual_rig(plan, arguments, attendance, settings),
+        Link::Real(_) if arguments.log == Some(RunLog::Compact) => Err(Failure::command_line(
+            "the run log of a real rig is always full: no reading can be made again",
+        )
+        .help("remove `--log compact`")),
         Link::Real(_) => on_a_real_rig(plan, arguments, attendance, settings),
     }
 }
@@ -138,12 +142,22 @@ fn on_a_virtual_rig(
         &provenance,
         circumstances,
     );
+    let log = match arguments.log {
+        Some(RunLog::Full) => LogForm::Full,
+        Some(RunLog::Compact) | None => LogForm::Compact,
+    };
+    let header = Header { log, ..header };
     let provenance = Provenance {
         equipment: Some(header.equipment.clone()),
         ..provenance
     };
     let journal = record_file::begin(folder.path(), plan, &header)?;
-    let recorded = replay::record(plan, rig.as_mut(), &mut watcher, journal, Box::new(|| None));
+    let recorded = match log {
+        LogForm::Full => {
+            replay::record(plan, rig.as_mut(), &mut watcher, journal, Box::new(|| None))
+        }
+        LogForm::Compact => replay::record_compactly(plan, rig.as_mut(), &mut watcher, journal),
+    };
     watcher.finish();
     Ok(Ran {
         folder,

@@ -97,6 +97,9 @@ pub fn run(arguments: &RunStudyArguments, settings: Settings) -> Result<Exit, Fa
         shard,
     };
     let (ended, _) = collected(&collection, arguments, settings)?;
+    if let Some(left) = simulation.left().text() {
+        print_message(&format!("  {left}\n"));
+    }
     match ended {
         Ended::Stopped { runs, of } => {
             print_message(&format!(

@@ -88,7 +88,7 @@ pub fn submit(arguments: &SubmitArguments, settings: Settings) -> Result<Exit, F
             |name| name.to_string_lossy().into_owned(),
         ),
         command,
-        merge: words(&["study", "merge", &folder]),
+        merge: words(&["study", "merge", &folder, "--plan", &plan]),
         shards: folded(arguments.shards),
         throttle: arguments.throttle,
         processors: arguments.processors,

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 use serde_json::{Value, json};
 
-use super::{psd, run};
+use super::{compact_run, psd, run};
 use crate::args::PlanSettings;
 use crate::commands::prediction::prediction;
 use crate::evidence::consistency;
@@ -80,7 +80,7 @@ fn replayed(journal: &[u8]) -> Result<(), String> {
         .map_or(Ok(()), |mismatch| Err(mismatch.to_string()))
 }
 
-/// The run log of the first run of a language case.
+/// The full run log of the first run of a language case.
 fn of_case(name: &str) -> Vec<u8> {
     let root = tempfile::tempdir().unwrap();
     let plan = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -92,6 +92,8 @@ fn of_case(name: &str) -> Vec<u8> {
         plan.to_str().unwrap(),
         "--out",
         out.to_str().unwrap(),
+        "--log",
+        "full",
     ]);
     std::fs::read(out.join(JOURNAL)).unwrap()
 }
@@ -164,6 +166,7 @@ fn a_reading_of_another_rig_is_malformed() {
         let whole = records(&journal);
         let samples = whole.iter().enumerate();
         let samples = samples.filter(|(_, (kind, _))| *kind == EntryKind::Sample);
+        assert!(samples.clone().count() > 0, "{name}");
         for (at, _) in samples.take(8) {
             for (field, numbers) in [("x", 0), ("r", 0), ("x", 3), ("r", 3)] {
                 let mut damaged = whole.clone();
@@ -275,9 +278,10 @@ fn no_vandal_makes_a_record_that_panics() {
     const ROUNDS: u64 = 150;
     let rounds = std::env::var("PSD_VANDALS").map_or(ROUNDS, |rounds| rounds.parse().unwrap());
     let real = of_a_real_rig();
-    let journal = &run()[JOURNAL];
+    let (journal, compact) = (&run()[JOURNAL], &compact_run()[JOURNAL]);
     for seed in 0..rounds {
         let _ = replayed(&Vandal::new(seed).mangled(journal, real));
         let _ = replayed(&Vandal::new(seed).mangled(real, journal));
+        let _ = replayed(&Vandal::new(seed).mangled(compact, real));
     }
 }

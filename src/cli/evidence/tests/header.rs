@@ -91,7 +91,7 @@ fn a_false_factor_certificate_limit_or_rig_is_found() {
 fn another_format_or_other_rules_are_refused() {
     let statement = |altered: &Folder| {
         let findings = Rebuilt::of(altered, &prediction).findings;
-        assert!(!findings[0].sound, "{findings:?}");
+        assert!(!findings[0].is_sound(), "{findings:?}");
         findings[0].statement.clone()
     };
     for format in [FORMAT - 1, FORMAT + 1] {

@@ -1,6 +1,7 @@
 //! Every changed byte of a run folder is detected: flipped, cut, swapped or added. This includes a forger who regenerates the manifest.
 
 mod build;
+mod compact;
 mod damaged;
 mod header;
 mod sidecar;
@@ -52,29 +53,31 @@ report {
 "#;
 
 fn psd(arguments: &[&str]) -> Exit {
-    crate::run(["psd"].iter().chain(arguments).map(Into::into))
+    crate::run_command_line(["psd"].iter().chain(arguments).map(Into::into))
 }
 
 pub(super) type Bytes = BTreeMap<String, Vec<u8>>;
 
-/// The files of one run, made once.
+/// The files of one run with a full run log, made once.
 pub(super) fn run() -> &'static Bytes {
     static RUN: OnceLock<Bytes> = OnceLock::new();
-    RUN.get_or_init(|| {
-        let root = tempfile::tempdir().unwrap();
-        let (plan, out) = (root.path().join("few.psd"), root.path().join("run"));
-        std::fs::write(&plan, PLAN).unwrap();
-        assert_eq!(
-            psd(&[
-                "run",
-                plan.to_str().unwrap(),
-                "--out",
-                out.to_str().unwrap()
-            ]),
-            Exit::Met
-        );
-        files_of(&out)
-    })
+    RUN.get_or_init(|| made("full"))
+}
+
+/// The files of the same run with a compact run log, made once.
+fn compact_run() -> &'static Bytes {
+    static RUN: OnceLock<Bytes> = OnceLock::new();
+    RUN.get_or_init(|| made("compact"))
+}
+
+fn made(log: &str) -> Bytes {
+    let root = tempfile::tempdir().unwrap();
+    let (plan, out) = (root.path().join("few.psd"), root.path().join("run"));
+    std::fs::write(&plan, PLAN).unwrap();
+    let (plan, out_path) = (plan.to_str().unwrap(), out.to_str().unwrap());
+    let ran = psd(&["run", plan, "--out", out_path, "--log", log]);
+    assert_eq!(ran, Exit::Met);
+    files_of(&out)
 }
 
 fn files_of(run: &Path) -> Bytes {
@@ -168,7 +171,7 @@ fn signed() -> Signed {
 pub(super) fn faults(findings: &[Finding]) -> Vec<&'static str> {
     findings
         .iter()
-        .filter(|finding| !finding.sound)
+        .filter(|finding| !finding.is_sound())
         .map(|finding| finding.part)
         .collect()
 }
@@ -201,10 +204,7 @@ fn offsets(length: usize) -> Vec<usize> {
 fn a_sound_folder_is_sound_and_names_its_parts() {
     let signed = signed();
     let findings = examine(&signed.folder, &signed.rebuilt, &signed.keys);
-    assert!(
-        findings.iter().all(|finding| finding.sound),
-        "{findings:#?}"
-    );
+    assert!(findings.iter().all(Finding::is_sound), "{findings:#?}");
     let parts: Vec<&str> = findings.iter().map(|finding| finding.part).collect();
     assert_eq!(
         parts,
@@ -223,7 +223,7 @@ fn a_sound_folder_is_sound_and_names_its_parts() {
     let unsigned = folder(run());
     let findings = examine(&unsigned, &signed.rebuilt, &[]);
     assert!(
-        findings.iter().all(|finding| finding.sound)
+        findings.iter().all(Finding::is_sound)
             && findings.last().unwrap().statement.contains("unsigned")
     );
     assert_eq!(
@@ -239,7 +239,7 @@ fn a_missing_signature_is_reported_and_with_a_key_is_an_error() {
     let half = with(&signed.folder, quality, None);
     let findings = examine(&half, &signed.rebuilt, &[]);
     assert!(
-        findings.iter().all(|finding| finding.sound)
+        findings.iter().all(Finding::is_sound)
             && findings.last().unwrap().statement == "Quality has not signed",
         "{findings:#?}"
     );
@@ -318,7 +318,7 @@ fn without_a_known_key_a_signature_still_holds_against_the_key_it_names() {
     }
     let findings = examine(&signed.folder, &signed.rebuilt, &[]);
     assert!(
-        findings.iter().all(|finding| finding.sound)
+        findings.iter().all(Finding::is_sound)
             && findings
                 .last()
                 .unwrap()

@@ -4,7 +4,8 @@
 use std::collections::VecDeque;
 
 use super::curve::Curve;
-use psd::run::{StepReport, UNLOADING};
+use psd::run::StepReport;
+use psd_plan::record::UNLOADING;
 use psd_plan::record::{Event, EventKind};
 use psd_plan::{Interval, Limits, Plan, SafeState};
 use psd_rig::Feedback;

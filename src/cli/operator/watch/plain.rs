@@ -7,8 +7,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::output::print_message;
 use psd::run::{Observer, StepReport};
+use psd_plan::record::IS_OUTSIDE;
 use psd_plan::record::{Event, EventKind};
-use psd_rig::IS_OUTSIDE;
 use psd_text::diagnostic::excerpt::escape;
 use psd_text::units::Dimension;
 use psd_text::units::display::readable;
