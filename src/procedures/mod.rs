@@ -274,7 +274,7 @@ pub(crate) fn withhold_outside_calibration(
 }
 
 /// Run: an upper bound of a procedure's steps, if the plan alone gives one.
-pub(crate) fn most_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
+pub fn most_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
     match kind {
         ProcedureKind::StiffnessRamp(ramp) => Some(ramp.targets()),
         ProcedureKind::Impact(_) | ProcedureKind::Shake(_) => known_steps(kind, plan),

@@ -45,6 +45,12 @@ const PARTS: &[Part] = &[
         accept: &[],
     },
     Part {
+        name: "editor",
+        files: "docs/reference/language-server.md",
+        command: &["test", "-p", "psd-lsp", "transcripts::"],
+        accept: &[],
+    },
+    Part {
         name: "emulator",
         files: "docs/tutorial/emulator.md",
         command: &["test", "-p", "psd-cli", "--test", "system", "book::emulator::"],

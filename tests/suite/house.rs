@@ -13,6 +13,7 @@ const PURE: &[&str] = &[
     "physics",
     "plan",
     "language",
+    "lsp",
     "check",
     "procedures",
     "verdict",

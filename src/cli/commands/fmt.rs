@@ -10,7 +10,7 @@ use crate::exit::{Exit, Failure};
 use crate::files::difference;
 use crate::files::difference::Named;
 use crate::files::failure::plain;
-use crate::files::loader::{is_plan, read_plan};
+use crate::files::loader::{plans_below, read_plan};
 use crate::files::plan_file::name_of;
 use crate::output::{print_message, print_result};
 use crate::settings::Settings;
@@ -126,31 +126,10 @@ fn plans(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for path in paths {
         if path.is_dir() {
-            walk(path, &mut found)?;
+            plans_below(path, usize::MAX, &mut found)?;
         } else {
             found.push(path.clone());
         }
     }
     Ok(found)
-}
-
-fn walk(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
-    let failed = |error: std::io::Error| Failure::file(folder, plain(&error));
-    let mut entries = std::fs::read_dir(folder)
-        .map_err(failed)?
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(failed)?;
-    entries.sort_by_key(std::fs::DirEntry::file_name);
-    for entry in entries {
-        let (path, kind) = (entry.path(), entry.file_type().map_err(failed)?);
-        if entry.file_name().to_string_lossy().starts_with('.') {
-            continue;
-        }
-        if kind.is_dir() {
-            walk(&path, found)?;
-        } else if kind.is_file() && is_plan(&path) {
-            found.push(path);
-        }
-    }
-    Ok(())
 }

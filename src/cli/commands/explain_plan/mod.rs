@@ -142,6 +142,16 @@ impl<'a> DryRun<'a> {
         }
     }
 
+    /// What it recorded.
+    pub fn record(&self) -> &Record {
+        &self.record
+    }
+
+    /// Its verdicts.
+    pub fn assessment(&self) -> &Assessment {
+        &self.assessment
+    }
+
     /// The exit of a dry run that a limit stops is that of the run.
     pub fn exit(&self) -> Exit {
         match self.record.outcome {
@@ -372,7 +382,7 @@ impl<'a> DryRun<'a> {
     }
 
     /// The reason of a predicted stop.
-    fn stopped(&self) -> Option<String> {
+    pub fn stopped(&self) -> Option<String> {
         match &self.record.outcome {
             Outcome::Completed => None,
             Outcome::Aborted { reason } | Outcome::NotReleased { reason } => Some(format!(
