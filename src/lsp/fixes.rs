@@ -134,9 +134,8 @@ fn changes(diagnostic: &Diagnostic, span: Span, sources: &Sources) -> Vec<Change
     let Some(help) = &diagnostic.help else {
         return Vec::new();
     };
-    let text = &sources.file(span.file).text;
     let (tree, _) = syntax::parse(sources, span.file);
-    let place = Place::of(&tree.items, span, text);
+    let place = Place::of(&tree.items, span, sources);
     let mut found = Vec::new();
     let is_meant = help.starts_with("did you mean `") && help.matches('`').count() == 2;
     let pieces: Vec<&str> = help.split('`').collect();
@@ -168,6 +167,7 @@ fn is_item(text: &str) -> bool {
 
 /// Where a diagnostic is: its item, and its entry.
 struct Place<'a> {
+    sources: &'a Sources,
     text: &'a str,
     span: Range<usize>,
     item: Option<Range<usize>>,
@@ -176,7 +176,7 @@ struct Place<'a> {
 }
 
 impl<'a> Place<'a> {
-    fn of(items: &'a [syntax::ast::Item], span: Span, text: &'a str) -> Self {
+    fn of(items: &'a [syntax::ast::Item], span: Span, sources: &'a Sources) -> Self {
         let holds = |outer: Span| outer.start <= span.start && span.end <= outer.end;
         let item = items.iter().find(|item| holds(item.span));
         let block = item.and_then(|item| match &item.kind {
@@ -185,9 +185,10 @@ impl<'a> Place<'a> {
         });
         let entry = block.and_then(|block| block.fields.iter().find(|entry| holds(entry.span)));
         Self {
-            text,
-            span: span.range(),
-            item: item.map(|item| item.span.range()),
+            sources,
+            text: &sources.file(span.file).text,
+            span: sources.range(span),
+            item: item.map(|item| sources.range(item.span)),
             block,
             entry,
         }
@@ -213,14 +214,14 @@ impl<'a> Place<'a> {
         if let Some(key) = key.filter(is_name) {
             let mut entries = self.block.iter().flat_map(|block| &block.fields);
             match entries.find(|entry| entry.key.node == key) {
-                Some(entry) => changes.push(replace(entry.span.range())),
+                Some(entry) => changes.push(replace(self.sources.range(entry.span))),
                 None => changes.extend(self.with_line(piece)),
             }
             return changes;
         }
         changes.push(replace(self.span.clone()));
         if let Some(entry) = self.entry {
-            let value = entry.value.span.range();
+            let value = self.sources.range(entry.value.span);
             if value != self.span {
                 changes.push(replace(value));
             }
@@ -231,7 +232,8 @@ impl<'a> Place<'a> {
     /// A line more in the block.
     fn with_line(&self, line: &str) -> Option<Change> {
         let (block, item) = (self.block?, self.item.clone()?);
-        let last = block.fields.last().map(|entry| entry.span.range().end);
+        let last = block.fields.last();
+        let last = last.map(|entry| self.sources.range(entry.span).end);
         let title = format!("add `{line}`");
         let is_meant = false;
         let (replaced, text) = match last {
@@ -244,7 +246,7 @@ impl<'a> Place<'a> {
             }
             Some(end) => (end..end, format!("\n  {line}\n")),
             None => {
-                let brace = block.head.range().end;
+                let brace = self.sources.range(block.head).end;
                 let brace = brace + self.text.get(brace..item.end)?.find('{')? + 1;
                 let closes = self.text[brace..item.end].find('}').map(|at| brace + at)?;
                 (brace..closes, format!("\n  {line}\n"))
@@ -290,7 +292,7 @@ impl<'a> Place<'a> {
         let named =
             entries.find(|entry| entry.key.node == name.split(['=', ' ']).next().unwrap_or(name));
         let line = |entry: &Entry| {
-            let range = entry.span.range();
+            let range = self.sources.range(entry.span);
             let start = self.text[..range.start].trim_end_matches([' ', '\t']).len();
             let start = start.saturating_sub(usize::from(self.text[..start].ends_with('\n')));
             start..range.end

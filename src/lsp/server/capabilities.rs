@@ -15,9 +15,9 @@ pub struct Client {
     pub encoding: Encoding,
     /// It fills in placeholders of a completion.
     pub snippets: bool,
-    /// It tells when a file changes on disk, if it is asked to.
+    /// It reports that a file changes on disk, if the server registers for it.
     pub watches: bool,
-    /// It asks again for hints, or for lenses, if it is told to.
+    /// It asks again for hints, or for lenses, if the server requests it.
     pub refreshes_hints: bool,
     pub refreshes_lenses: bool,
 }

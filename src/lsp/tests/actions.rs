@@ -47,6 +47,12 @@ fn a_fix_is_what_the_help_names_and_was_tried() {
             "add `velocity = 1 m/s`",
             "striker s {\n  mass = 1 kg\n  velocity = 1 m/s\n}\n",
         ),
+        // The span of the last field ends inside its foreign letter.
+        (
+            "let m\u{e9} = 1 kg\nstriker s‸ {\n  mass = m\u{e9}\n}\n",
+            "add `velocity = 1 m/s`",
+            "let m\u{e9} = 1 kg\nstriker s {\n  mass = m\u{e9}\n  velocity = 1 m/s\n}\n",
+        ),
     ] {
         let found = actions(marked);
         let wanted = found.iter().find(|(found, ..)| found == title);

@@ -1,4 +1,5 @@
-//! The first messages of editors, as they were recorded: each line is one message. Then the conversation goes on as theirs does.
+//! The first messages of editors. Neovim's was recorded; those of VS Code and Helix are condensed from published ones, and Zed's is written
+//! by hand. Then the conversation goes on as theirs does.
 
 use serde_json::{Value, json};
 

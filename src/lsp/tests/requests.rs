@@ -346,7 +346,7 @@ fn hints(editor: &mut Editor, name: &str) -> Vec<String> {
 fn hints_have_values_other_units_and_what_a_simulation_found() {
     let mut editor = Editor::with(&[]);
     editor.open("a.psd", PLAN);
-    // The server simulates a valid plan by itself, and tells the editor to ask again.
+    // The server simulates a valid plan by itself, and requests the editor to ask again.
     editor.was_asked("workspace/inlayHint/refresh");
     editor.was_asked("workspace/codeLens/refresh");
     assert_eq!(
