@@ -16,16 +16,41 @@ const PLAN: &str = "param speed = 1 m/s\n\
     study scatter { vary = [speed ~ normal(sd: 0.05 m/s), beam.mass ~ lognormal(cv: 2 %)] }\n\
     require \"stays in travel\" hit.max_displacement < 0.2 m\n";
 
-fn checked() -> (ParsedPlan, Plan, Definition) {
-    let mut parsed = ParsedPlan::parse("study.psd", PLAN, &no_files, &Options::default());
+fn checked(text: &str) -> (ParsedPlan, Plan, Definition) {
+    let mut parsed = ParsedPlan::parse("study.psd", text, &no_files, &Options::default());
     let plan = parsed.check(&no_files).plan.expect("a sound plan");
     let study = Definition::of(&plan.studies, None, None).expect("one study");
     (parsed, plan, study)
 }
 
+/// Impacts of about 3000 steps of 0.1 ms, with or without a peak until the end of this duration.
+fn of_3000_steps(bencher: divan::Bencher, duration: &str) {
+    let text = PLAN
+        .replace("duration = 1 s", duration)
+        .replace("time_step = 2 ms", "time_step = 0.1 ms");
+    let (parsed, plan, study) = checked(&text);
+    let simulation = Simulation::new(&parsed, &plan, &study);
+    let rows = simulation.block(0..1024);
+    let missing = rows.iter().filter(|row| row.results[0].is_none()).count();
+    println!("{missing} of 1024 runs have no peak");
+    bencher
+        .counter(divan::counter::ItemsCount::new(1024_u32))
+        .bench_local(|| simulation.block(0..1024));
+}
+
+#[divan::bench]
+fn all_with_a_peak(bencher: divan::Bencher) {
+    of_3000_steps(bencher, "duration = 0.4 s");
+}
+
+#[divan::bench]
+fn many_without_a_peak(bencher: divan::Bencher) {
+    of_3000_steps(bencher, "duration = 0.2945 s");
+}
+
 #[divan::bench]
 fn in_batches(bencher: divan::Bencher) {
-    let (parsed, plan, study) = checked();
+    let (parsed, plan, study) = checked(PLAN);
     let simulation = Simulation::new(&parsed, &plan, &study);
     assert!(simulation.is_batched());
     bencher
@@ -35,7 +60,7 @@ fn in_batches(bencher: divan::Bencher) {
 
 #[divan::bench]
 fn one_by_one(bencher: divan::Bencher) {
-    let (parsed, plan, study) = checked();
+    let (parsed, plan, study) = checked(PLAN);
     let simulation = Simulation::new(&parsed, &plan, &study).one_by_one();
     bencher
         .counter(divan::counter::ItemsCount::new(64_u32))
@@ -44,7 +69,7 @@ fn one_by_one(bencher: divan::Bencher) {
 
 #[divan::bench]
 fn binding_alone(bencher: divan::Bencher) {
-    let (parsed, ..) = checked();
+    let (parsed, ..) = checked(PLAN);
     let values = std::collections::BTreeMap::from([(
         "speed".to_owned(),
         psd_text::units::Quantity::new(1.1, psd_text::units::Dimension::VELOCITY),

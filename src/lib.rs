@@ -6,13 +6,10 @@
 //!
 //! Each arrow is one public function. No stage calls back, and no stage after `check` reads text. The stages are engines:
 //! everything that concerns one procedure only is in its folder of `procedures`. Text, physics, plan, language and rigs are crates of their
-//! own, which this one joins.
+//! own, which this one joins. The program `psd` is the folder `cli`.
 
 pub mod check;
-pub mod cli;
 pub mod codes;
-pub(crate) mod evidence;
-pub(crate) mod files;
 pub mod golden;
 pub mod procedures;
 pub mod remote;

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use super::settings::Settings;
 use crate::files::failure::DiskSpaceFault;
 pub use crate::files::failure::Failure;
-use crate::verdict::{Assessment, ReproductionOutcome, Verdict};
+use psd::verdict::{Assessment, ReproductionOutcome, Verdict};
 use psd_rig::RigFault;
 use psd_text::diagnostic::excerpt::escape;
 
@@ -97,7 +97,8 @@ impl Failure {
             | Self::Journal(_)
             | Self::DiskSpace(_)
             | Self::Refused(_)
-            | Self::Signals(_) => Exit::Fault,
+            | Self::Signals(_)
+            | Self::NotVerifiable { .. } => Exit::Fault,
         }
     }
 

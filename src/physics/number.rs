@@ -30,16 +30,14 @@ pub trait Number:
     fn gt(self, other: Self) -> Self::Answer;
     fn ge(self, other: Self) -> Self::Answer;
     fn le(self, other: Self) -> Self::Answer;
-    fn equals(self, other: Self) -> Self::Answer;
     /// `other` where it is larger.
     #[must_use]
     fn larger(self, other: Self) -> Self;
     /// `other` where it is smaller.
     #[must_use]
     fn smaller(self, other: Self) -> Self;
-    /// At least `low` and at most `high`.
-    #[must_use]
-    fn clamped(self, low: Self, high: Self) -> Self;
+    /// Work that one number hardly ever needs: a branch leads to it.
+    fn rarely<T>(work: impl FnOnce() -> T) -> T;
     /// `yes` where the answer is yes, `no` elsewhere. Of several numbers both are computed.
     fn choose(answer: Self::Answer, yes: impl FnOnce() -> Self, no: impl FnOnce() -> Self) -> Self;
 }
@@ -48,12 +46,19 @@ pub trait Number:
 pub trait Answer: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
     /// Whether the work for a yes can be left out. Of several numbers it is always done.
     fn is_surely_no(self) -> bool;
+    /// Whether the work for a no can be left out. Of several numbers it is always done.
+    fn is_surely_yes(self) -> bool;
 }
 
 impl Answer for bool {
     #[inline(always)]
     fn is_surely_no(self) -> bool {
         !self
+    }
+
+    #[inline(always)]
+    fn is_surely_yes(self) -> bool {
+        self
     }
 }
 
@@ -86,23 +91,19 @@ impl Number for f64 {
     }
 
     #[inline(always)]
-    fn equals(self, other: Self) -> bool {
-        self == other
-    }
-
-    #[inline(always)]
     fn larger(self, other: Self) -> Self {
-        self.max(other)
+        if other > self { other } else { self }
     }
 
     #[inline(always)]
     fn smaller(self, other: Self) -> Self {
-        self.min(other)
+        if other < self { other } else { self }
     }
 
-    #[inline(always)]
-    fn clamped(self, low: Self, high: Self) -> Self {
-        self.clamp(low, high)
+    #[cold]
+    #[inline(never)]
+    fn rarely<T>(work: impl FnOnce() -> T) -> T {
+        work()
     }
 
     #[inline(always)]

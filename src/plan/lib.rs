@@ -108,7 +108,19 @@ pub struct Plan {
     pub settings: Vec<(String, String)>,
 }
 
+/// The particular of a plan that marks it as the part that a check run performs.
+pub const CHECK_RUN: &str = "check_run";
+
 impl Plan {
+    /// What a check run performs of its plan; None if this is no check run.
+    #[must_use]
+    pub fn performed_part(&self) -> Option<&str> {
+        self.particulars
+            .iter()
+            .find(|(field, _)| *field == CHECK_RUN)
+            .map(|(_, text)| text.as_str())
+    }
+
     /// The specimen on the rig: the one that the first procedure names, else the first.
     #[must_use]
     pub fn specimen_on_the_rig(&self) -> Option<&Specimen> {

@@ -3,7 +3,7 @@
 
 use super::unload;
 use psd_plan::record::BroughtTogether;
-use psd_plan::{Condition, Contact, Dependence, FigureKind, Impact, ShakeDamping, Stepping};
+use psd_plan::{Condition, Contact, Dependence, FigureKind, ShakeDamping, Stepping};
 
 /// The structure that a procedure tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,8 +20,6 @@ pub(crate) struct Facts<'a> {
     pub tests: Tests,
     /// Its time stepping, if it integrates.
     pub stepping: Option<&'a Stepping>,
-    /// The impact that it is, if that is on one degree of freedom: a study may run it in a batch.
-    pub point_impact: Option<&'a Impact>,
     /// The contact law of an impact.
     pub contact: Option<&'a Contact>,
     /// The conditions under which a series of impacts continues.

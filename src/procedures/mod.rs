@@ -167,6 +167,21 @@ pub(crate) fn facts_of(kind: &ProcedureKind) -> Facts<'_> {
     }
 }
 
+/// Run: an impact on one degree of freedom, which a study may run in a batch.
+pub(crate) fn point_impact(kind: &ProcedureKind) -> Option<&Impact> {
+    match kind {
+        ProcedureKind::Impact(impact) => impact.point().map(|_| impact),
+        ProcedureKind::StiffnessRamp(_)
+        | ProcedureKind::DampingSweep(_)
+        | ProcedureKind::Shake(_)
+        | ProcedureKind::Cycle(_)
+        | ProcedureKind::Escalate(_)
+        | ProcedureKind::Unload(_)
+        | ProcedureKind::Move(_)
+        | ProcedureKind::Inspect { .. } => None,
+    }
+}
+
 /// Report: the observations on the record of a procedure.
 pub(crate) fn recorded(history: &History) -> Recorded {
     match history {
@@ -259,7 +274,7 @@ pub(crate) fn withhold_outside_calibration(
 }
 
 /// Run: an upper bound of a procedure's steps, if the plan alone gives one.
-pub(crate) fn most_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
+pub fn most_steps(kind: &ProcedureKind, plan: &Plan) -> Option<u64> {
     match kind {
         ProcedureKind::StiffnessRamp(ramp) => Some(ramp.targets()),
         ProcedureKind::Impact(_) | ProcedureKind::Shake(_) => known_steps(kind, plan),

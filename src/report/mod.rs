@@ -17,15 +17,15 @@
 mod budget;
 pub mod console;
 pub(crate) mod document;
-pub(crate) mod figures;
+pub mod figures;
 pub(crate) mod number;
 mod output;
 mod run;
 pub(crate) mod sections;
-pub(crate) mod status;
+pub mod status;
 pub mod summary;
 pub(crate) mod tables;
-pub(crate) mod wording;
+pub mod wording;
 
 pub use document::comparison;
 pub use figures::{

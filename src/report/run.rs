@@ -6,10 +6,10 @@ use std::borrow::Cow;
 use super::status::Issues;
 use super::summary::Prediction;
 use crate::verdict::Assessment;
+use psd_plan::DeclaredNoise;
 use psd_plan::record::Record;
 use psd_plan::record::equipment::{Device, Equipment};
 use psd_plan::{Link, Plan};
-use psd_rig::DeclaredNoise;
 
 /// One run, complete or stopped, with its assessment.
 #[derive(Clone, Copy)]

@@ -24,11 +24,12 @@ pub mod testing;
 use serde::{Deserialize, Serialize};
 
 use psd_physics::tracking::trajectory::Path;
+use psd_plan::record::IS_OUTSIDE;
 use psd_plan::{Interval, Limits, Plan};
 use psd_text::units::{Dimension, display};
 
 pub use connect::{Connected, connect};
-pub use guard::{Guard, Traversed};
+pub use guard::{Guard, Traversed, UnfinishedStep, fault_of_ideal_step};
 pub use psd_plan::DeclaredNoise;
 pub use psd_plan::record::{Held, Identity};
 pub use psd_plan::{named_axis, of_axis, who};
@@ -173,9 +174,6 @@ pub enum RigFault {
     Device(String),
 }
 
-/// Between a value and its limit, in the text of a limit that was broken.
-pub const IS_OUTSIDE: &str = " is outside its limit ";
-
 /// Six digits, because a value just beyond its limit must not appear equal to the limit. Fractions are in percent.
 fn breach(
     quantity: LimitedQuantity,
@@ -300,6 +298,12 @@ pub trait Rig {
     /// As `read`.
     fn read_moved(&mut self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
         Ok((self.read()?, None))
+    }
+
+    /// This rig, if it is simulated, settles equally long after every move, and nothing records its calls: its guard then takes whole
+    /// steps in one call.
+    fn at_once(&mut self) -> Option<&mut VirtualRig> {
+        None
     }
 
     /// Moves at constant velocity (\[m/s\], signed towards the target) to absolute targets, and reads at up to `samples`

@@ -4,11 +4,8 @@
 
 use psd_plan::procedures::stiffness_ramp::block::STIFFNESS;
 use psd_plan::record::{History, Record, StiffnessRampHistory};
-use psd_plan::{Behaviour, Link, Plan, ProcedureKind, Specimen, VirtualLink};
+use psd_plan::{Behaviour, CHECK_RUN, Link, Plan, ProcedureKind, Specimen, VirtualLink};
 use psd_rig::VirtualRig;
-
-/// The administrative field of a plan that marks it as a check run.
-const FIELD: &str = "check_run";
 
 /// What distinguishes the identifier of a check run from that of the whole plan.
 pub const RUN_ID_MARK: &str = "check run";
@@ -83,7 +80,7 @@ pub fn measured_part(plan: &Plan) -> Result<Plan, NoCheckRun> {
     let text = format!(
         "{ran} ran on the rig; {predicted} did not run and was predicted on a virtual specimen"
     );
-    part.particulars.push((FIELD, text));
+    part.particulars.push((CHECK_RUN, text));
     part.check_run_of = Some(Box::new(plan.clone()));
     part.requirements.clear();
     part.reproductions.clear();
@@ -93,15 +90,6 @@ pub fn measured_part(plan: &Plan) -> Result<Plan, NoCheckRun> {
         .figures
         .retain(|figure| figure.procedures().all(|procedure| procedure.0 < ramps));
     Ok(part)
-}
-
-/// The plan that is checked, if this is a check run.
-#[must_use]
-pub fn performed_part(plan: &Plan) -> Option<&str> {
-    plan.particulars
-        .iter()
-        .find(|(field, _)| *field == FIELD)
-        .map(|(_, text)| text.as_str())
 }
 
 /// The whole plan on a virtual specimen with the stiffness of `measured`, and with the noise and resolution of the rig. The noise is the
@@ -216,7 +204,7 @@ mod tests {
         let part = measured_part(&plan).unwrap();
         assert!(part.procedures.is_empty());
         assert_eq!(
-            performed_part(&part),
+            part.performed_part(),
             Some("nothing ran on the rig; p0 did not run and was predicted on a virtual specimen")
         );
         let model = prediction(&plan, &run_unwatched(&part)).unwrap();
@@ -254,12 +242,12 @@ mod tests {
         let part = measured_part(&plan()).unwrap();
         assert_eq!(part.procedures.len(), 2, "not what comes after the move");
         assert_eq!(
-            performed_part(&part),
+            part.performed_part(),
             Some(
                 "p0, p1 ran on the rig; p2, p3, p4, p5 did not run and was predicted on a virtual specimen"
             )
         );
-        assert_eq!(performed_part(&plan()), None);
+        assert_eq!(plan().performed_part(), None);
         let mut blind = plan();
         blind.procedures.remove(1);
         assert_eq!(leading(&blind), 0);

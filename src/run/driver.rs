@@ -2,7 +2,7 @@
 //! observer. Out: the record. It knows no particular procedure.
 
 use super::session::Session;
-use super::{Observer, Performed, Settings, pretest_check, zero_drift};
+use super::{Keep, Observer, Performed, pretest_check, zero_drift};
 use crate::procedures;
 use crate::run::inputs::Inputs;
 use psd_plan::formula::ProcedureId;
@@ -13,17 +13,12 @@ use psd_rig::Rig;
 /// Runs every procedure of the plan in order on the rig. Never fails: a fault is the outcome of the record.
 #[must_use]
 pub fn run(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer) -> Record {
-    run_with(plan, rig, observer, Settings::default())
+    run_with(plan, rig, observer, Keep::default())
 }
 
-/// The same with these settings.
+/// The same, with a record of this part of the run.
 #[must_use]
-pub fn run_with(
-    plan: &Plan,
-    rig: &mut dyn Rig,
-    observer: &mut dyn Observer,
-    settings: Settings,
-) -> Record {
+pub fn run_with(plan: &Plan, rig: &mut dyn Rig, observer: &mut dyn Observer, keep: Keep) -> Record {
     let identity = rig.identity();
     let mut record = Record {
         rig: identity,
@@ -43,7 +38,7 @@ pub fn run_with(
             };
         }
     };
-    session.settings = settings;
+    session.keep = keep;
     if let Some(link) = plan.rig.link.as_real()
         && let Err(stop) = pretest_check::pass(plan, link, afterwards(plan), &mut session)
     {

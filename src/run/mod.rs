@@ -11,6 +11,7 @@ pub(crate) mod pretest_check;
 pub mod remote_control;
 pub mod replay;
 pub(crate) mod session;
+mod shared;
 mod shutdown;
 pub mod start;
 pub(crate) mod stop;
@@ -19,6 +20,7 @@ pub(crate) mod zero_drift;
 pub use driver::{run, run_with};
 pub use motion::{Extent, Motion};
 pub use psd_plan::record::remote::{Disconnect, Request};
+pub use shared::Shared;
 
 use serde::{Deserialize, Serialize};
 
@@ -74,7 +76,7 @@ pub enum Next {
 }
 
 /// The end of a step, for display and for the run log.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepReport {
     /// Number within its procedure, from 1.
     pub step: u64,
@@ -175,9 +177,6 @@ impl Inspection {
     }
 }
 
-/// The event in the run log before a stopped run unloads.
-pub(crate) const UNLOADING: &str = "unloading to where the run began";
-
 /// Displays nothing, and continues at every inspection.
 pub struct Unwatched;
 
@@ -195,15 +194,14 @@ pub(crate) struct Performed {
     pub(crate) stop: Option<Stop>,
 }
 
-/// Settings of a run that its plan does not state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Settings {
-    /// Whether the uncertainty of the results is evaluated; fits keep the standard errors of their scatter.
-    pub uncertainty: bool,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self { uncertainty: true }
-    }
+/// The part of a run that its record keeps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Keep {
+    /// Steps, results and their uncertainty.
+    #[default]
+    Everything,
+    /// Steps and results. No uncertainty is evaluated; fits keep the standard errors of their scatter.
+    Steps,
+    /// The results. A procedure that integrates keeps its last step alone.
+    Results,
 }

@@ -2,11 +2,11 @@
 //! knows no physics of a procedure.
 
 use super::stop::Stop;
-use super::{Inspection, Motion, Next, Observer, Settings, StepReport};
+use super::{Inspection, Keep, Motion, Next, Observer, StepReport};
 use psd_plan::record::{Event, EventKind, NamedResult};
 use psd_plan::uncertainty::engine::{Progress, Unknown};
 use psd_plan::{Plan, Procedure};
-use psd_rig::{Guard, Identity, LineStatistics, Reading, Rig, RigFault};
+use psd_rig::{Guard, Identity, LineStatistics, Reading, Rig, RigFault, UnfinishedStep};
 
 /// A reading, the time of the last move \[s\], and the fault that ends the run.
 pub(super) type MovedReading = (Reading, Option<[f64; 2]>, Option<Stop>);
@@ -33,7 +33,7 @@ pub(crate) struct Session<'run> {
     pub(super) home: Vec<f64>,
     /// The operator was asked to inspect, or has paused the run: the operator may be at the specimen.
     pub(super) attended: bool,
-    pub(crate) settings: Settings,
+    pub(crate) keep: Keep,
     /// Whether rig time is only simulated, and must not pass while the operator decides. An emulator on a line is driven like any rig,
     /// and has a watchdog like any rig.
     is_simulated: bool,
@@ -81,7 +81,7 @@ impl<'run> Session<'run> {
                     remarks: Vec::new(),
                     home,
                     attended: false,
-                    settings: Settings::default(),
+                    keep: Keep::default(),
                     is_simulated,
                 })
             }
@@ -178,12 +178,10 @@ impl<'run> Session<'run> {
     }
 
     /// Reports to the observer that a step is done, and asks whether to continue.
-    pub(crate) fn step_done(&mut self, report: StepReport) -> Result<(), Stop> {
+    pub(crate) fn step_done(&mut self, report: &mut StepReport) -> Result<(), Stop> {
         self.step = Some(report.step);
-        self.observer.step_done(&StepReport {
-            speed: self.guard.speed(),
-            ..report
-        });
+        report.speed = self.guard.speed();
+        self.observer.step_done(report);
         loop {
             self.stop_if_requested()?;
             match self.observer.next() {
@@ -280,7 +278,7 @@ impl<'run> Session<'run> {
         results: &mut [NamedResult],
         propagation: impl FnOnce(&mut [NamedResult], Progress<'_, Stop>) -> Result<(), Unknown<Stop>>,
     ) -> Option<Stop> {
-        if !self.settings.uncertainty {
+        if self.keep != Keep::Everything {
             return None;
         }
         match propagation(results, &mut |done, of| self.propagation(done, of)) {
@@ -349,11 +347,11 @@ impl<'run> Session<'run> {
         force: &[f64],
     ) -> Result<(), Stop> {
         let commands = self.guard.commanded();
-        let report = StepReport::of_readings(step, time, commands, displacement, force);
+        let mut report = StepReport::of_readings(step, time, commands, displacement, force);
         if report.axes.is_empty() {
             return Ok(());
         }
-        self.step_done(report)
+        self.step_done(&mut report)
     }
 
     /// The last target \[m\].
@@ -388,6 +386,24 @@ impl<'run> Session<'run> {
         );
         self.kept(read)
             .map(|(reading, stop)| (reading, moved, stop))
+    }
+
+    /// Moves to targets \[m\], pauses for so long \[s\] and reads. A step that ended early with a reading, which exceeded a limit, is
+    /// returned; the reading is kept.
+    pub(crate) fn step(
+        &mut self,
+        targets: &[f64],
+        pause: f64,
+        reading: &mut Reading,
+    ) -> Result<Option<UnfinishedStep>, Stop> {
+        let Err(ended) = self.guard.step(targets, pause, reading) else {
+            return Ok(None);
+        };
+        match self.guard.take_broken() {
+            Some(broken) => *reading = broken,
+            None => return Err(ended.fault.into()),
+        }
+        Ok(Some(ended))
     }
 
     fn kept(&mut self, read: Result<Reading, RigFault>) -> Result<(Reading, Option<Stop>), Stop> {

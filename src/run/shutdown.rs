@@ -4,7 +4,8 @@
 
 use super::session::{Session, signed};
 use super::stop::Stop;
-use super::{Extent, Inspection, Motion, UNLOADING};
+use super::{Extent, Inspection, Motion};
+use psd_plan::record::UNLOADING;
 use psd_plan::record::{EventKind, Outcome};
 use psd_plan::{Interval, Limits, Plan, RealLink, SafeState};
 use psd_rig::{FinalHold, RigFault};

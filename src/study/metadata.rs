@@ -1,23 +1,16 @@
-//! The metadata of a study: what its data set says about itself. In: the plan and the study. Out: the metadata of its first run.
+//! The metadata of a study: what its data set says about itself. In: the build, the plan and the study. Out: the metadata of its first run.
 
 use super::data_set::{Column, Event, Metadata, Setting, StudiedRequirement, StudyKind};
 use super::definition::Definition;
 use super::simulation::readout::Readout;
-use crate::files::provenance::BUILD;
 use psd_physics::study::inputs::Source;
 use psd_plan::study::{Input, REPLICATES, Sampling, StudyEvent, Variation};
 use psd_plan::{Plan, StudyRequirement};
 use psd_text::digest::sha256;
 
-/// The build of psd that simulates the runs: runs of two builds are not mixed.
+/// The metadata of a study of `plan`, without runs. `version` names the build of psd that simulates them: runs of two builds are not mixed.
 #[must_use]
-pub fn version() -> String {
-    format!("{} {BUILD}", env!("CARGO_PKG_VERSION"))
-}
-
-/// The metadata of a study of `plan`, without runs.
-#[must_use]
-pub fn of(plan: &Plan, study: &Definition, readout: &Readout) -> Metadata {
+pub fn of(version: &str, plan: &Plan, study: &Definition, readout: &Readout) -> Metadata {
     let variation = match study.kind {
         StudyKind::Study(_) => Some(&plan.studies.studies[study.index].variation),
         StudyKind::Fragility(_) => plan.studies.fragilities[study.index].variation.as_ref(),
@@ -27,7 +20,7 @@ pub fn of(plan: &Plan, study: &Definition, readout: &Readout) -> Metadata {
         text: text.clone(),
     };
     Metadata {
-        version: version(),
+        version: version.to_owned(),
         title: plan.title.clone(),
         plan: plan
             .files

@@ -92,8 +92,8 @@ fn a_rare_drift_of_a_frame_has_its_probability_in_closed_form() {
     let of = parsed(&frame("require \"usual\" max(quake.max_drift) < 1 m"));
     let record = {
         let mut rig = psd_rig::virtual_rig(&of.plan);
-        let settings = crate::run::Settings { uncertainty: false };
-        crate::run::run_with(&of.plan, rig.as_mut(), &mut crate::run::Unwatched, settings)
+        let keep = crate::run::Keep::Results;
+        crate::run::run_with(&of.plan, rig.as_mut(), &mut crate::run::Unwatched, keep)
     };
     let usual = &of.plan.requirements[0].conditions[0].value;
     let usual = usual.evaluate(&record, None).unwrap().value;
@@ -147,7 +147,7 @@ fn collected(
 ) -> Option<(std::path::PathBuf, Metadata)> {
     let definition = Definition::of(&of.plan.studies, None, None).unwrap();
     let simulation = Simulation::new(&of.parsed, &of.plan, &definition);
-    let metadata = metadata::of(&of.plan, &definition, simulation.readout());
+    let metadata = metadata::of("0.1.0 0", &of.plan, &definition, simulation.readout());
     let collection = Collection {
         simulation: &simulation,
         metadata: &metadata,

@@ -4,11 +4,15 @@ use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference, Resul
 use psd_plan::record::{NamedResult, Record};
 use psd_plan::uncertainty::Source;
 use psd_plan::{
-    Annex, Behaviour, Calibration, Contact, DecisionRule, Frame, Impact, ImpactTarget, Integrator,
-    Limits, Link, Mode, Plan, PointTarget, Procedure, ProcedureKind, RampFit, Report, RigPlan,
-    Settle, ShakeDamping, Specimen, Stepping, StiffnessRamp, Storey, StoreyTarget, Striker,
-    Studies, Until, VirtualLink,
+    Annex, Behaviour, Calibration, Contact, Datum, DecisionRule, DeviceLink, Dialect, Frame,
+    Impact, ImpactTarget, Integrator, Interval, Limits, Link, Mode, Plan, PointTarget, PortPlan,
+    PretestCheck, Procedure, ProcedureKind, RampFit, ReadingRules, RealLink, Report, RigPlan,
+    SafeState, Settle, ShakeDamping, Specimen, Stepping, StiffnessRamp, Storey, StoreyTarget,
+    Striker, Studies, Until, VirtualLink,
 };
+
+/// Time without a reply after which a frame is sent again \[s\].
+pub const REPLY_TIMEOUT: f64 = 0.1;
 
 /// An ideal virtual rig only.
 pub fn empty_plan() -> Plan {
@@ -71,6 +75,76 @@ pub fn elastic_plan(stiffness: f64, procedures: Vec<ProcedureKind>) -> Plan {
         strikers: vec![Striker::new("pendulum", 10.0, 1.0)],
         procedures: procedures.into_iter().enumerate().map(named).collect(),
         ..empty_plan()
+    }
+}
+
+/// The same on a rig `frame`: an actuator of the dialect `native` that measures its force, three readings each.
+pub fn real_plan(stiffness: f64, procedures: Vec<ProcedureKind>) -> Plan {
+    let mut plan = elastic_plan(stiffness, procedures);
+    "frame".clone_into(&mut plan.rig.name);
+    plan.rig.settle = Settle {
+        band: 5e-6,
+        force_rate: 0.0,
+        dwell: 0.05,
+        timeout: 0.5,
+    };
+    plan.rig.link = Link::Real(RealLink {
+        actuator: device_link(Dialect::Native),
+        load_cell: None,
+        safe_state: SafeState::Hold,
+        datum: Datum::Machine,
+        pretest_check: PretestCheck {
+            zero: 5.0,
+            probe: 5e-5,
+            stiffness: Interval {
+                low: 5e4,
+                high: 2e5,
+            },
+        },
+        readings: ReadingRules {
+            samples: 3,
+            rate: 50.0,
+            resolution: 1e-6,
+            noise: 0.0,
+            force_range: Interval {
+                low: -2000.0,
+                high: 2000.0,
+            },
+            frozen_after: 6,
+        },
+        watchdog: 3.0,
+        own_speed: 0.01,
+        axes: Vec::new(),
+    });
+    plan.limits = Limits {
+        displacement: Interval {
+            low: -0.002,
+            high: 0.01,
+        },
+        force: Interval {
+            low: -1500.0,
+            high: 1500.0,
+        },
+        speed: Interval {
+            low: 0.0,
+            high: 0.01,
+        },
+        ..Limits::NONE
+    };
+    plan
+}
+
+/// A device on a serial line.
+pub const fn device_link(dialect: Dialect) -> DeviceLink {
+    let port = PortPlan::Serial {
+        path: String::new(),
+        baud: 115_200,
+    };
+    DeviceLink {
+        port,
+        dialect,
+        reply_timeout: REPLY_TIMEOUT,
+        serial_number: None,
     }
 }
 

@@ -2,7 +2,7 @@
 
 pub(crate) use psd_testing::plans::*;
 
-use crate::run::replay::{Header, HeaderFile, RULES};
+use crate::run::replay::{Header, HeaderFile, LogForm, RULES};
 use psd_plan::Plan;
 use psd_plan::record::Record;
 use psd_plan::record::equipment::{Device, Equipment};
@@ -29,6 +29,7 @@ pub(crate) fn header(plan: &Plan) -> Header {
         rig: None,
         equipment: Equipment::of(plan, Device::of(&rig.identity(), rig.declared_noise())),
         check_run: false,
+        log: LogForm::Full,
         served: None,
         date: None,
         operator: None,

@@ -110,9 +110,15 @@ impl Sources {
     /// The text under a span, in whole characters: a span may end within a letter of several bytes, where it is read as a punctuation mark.
     #[must_use]
     pub fn text(&self, span: Span) -> &str {
+        &self.file(span.file).text[self.range(span)]
+    }
+
+    /// The whole characters of a span. A word with a foreign letter at its end has a span that ends inside it.
+    #[must_use]
+    pub fn range(&self, span: Span) -> std::ops::Range<usize> {
         let text = &self.file(span.file).text;
         let start = text.floor_char_boundary(span.start as usize);
-        &text[start..text.ceil_char_boundary((span.end as usize).max(start))]
+        start..text.ceil_char_boundary((span.end as usize).max(start))
     }
 
     /// The byte range of some lines, counted from 0; lines that the file does not have are omitted.

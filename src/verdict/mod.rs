@@ -9,13 +9,13 @@ mod time_step;
 mod undecided;
 mod unfinished_peaks;
 
-pub(crate) use partial::Declared;
+pub use partial::Declared;
 use psd_plan::formula::{ProcedureId, Results, UncertaintyStatus};
 use psd_plan::record::{ImpactHistory, Outcome, Record};
 use psd_plan::{Comparison, Condition, DecisionRule, Plan, Requirement};
 use psd_text::units::Dimension;
 pub use reproduction::ReproductionOutcome;
-pub(crate) use time_step::assess_condition;
+pub use time_step::assess_condition;
 use undecided::{beyond, longer_than_critical, unless_undecided};
 
 /// Completed < Pass < Inconclusive < Fail < Aborted < Error; a parent takes its worst child.

@@ -7,14 +7,14 @@ use psd_plan::formula::{ResultReference, ResultValue, Results, UncertaintyStatus
 use psd_plan::uncertainty::{Contribution, Source};
 
 /// Results of a run on the rig of a plan.
-pub(crate) struct Declared<'a> {
+pub struct Declared<'a> {
     results: &'a dyn Results,
     /// The calibrations of a real rig that the plan does not declare.
     undeclared: Vec<&'static str>,
 }
 
 impl<'a> Declared<'a> {
-    pub(crate) fn of(plan: &Plan, results: &'a dyn Results) -> Self {
+    pub fn of(plan: &Plan, results: &'a dyn Results) -> Self {
         let undeclared = plan.rig.link.as_real().map_or_else(Vec::new, |_| {
             plan.rig.undeclared_calibrations(plan.degrees_of_freedom())
         });

@@ -2,9 +2,9 @@
 
 use super::*;
 use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference, ResultValue};
+use psd_plan::record::Identity;
 use psd_plan::record::{History, NamedResult, Outcome, ProcedureRecord, Record};
 use psd_plan::{Comparison, Condition, DecisionRule, Requirement, Test};
-use psd_rig::Identity;
 use psd_text::units::Dimension;
 
 pub(super) fn record(outcome: Outcome) -> Record {

@@ -16,7 +16,7 @@ const FINEST: f64 = 1024.0;
 
 /// The outcome of a condition: decided with these results, and with those in finer steps. All results of a procedure are those of one
 /// re-integration. An equality, and a published number, are compared with the number of the run itself.
-pub(crate) fn assess_condition(
+pub fn assess_condition(
     condition: &Condition,
     rule: DecisionRule,
     results: &dyn Results,

@@ -9,11 +9,11 @@ use psd_plan::procedures::damping_sweep::block as damping_sweep;
 use psd_plan::procedures::escalate::block as escalate;
 use psd_plan::procedures::impact::block as impact;
 use psd_plan::procedures::stiffness_ramp::block as stiffness_ramp;
+use psd_plan::record::failpoint;
+use psd_plan::record::failpoint::Guarding;
 use psd_plan::record::{Beyond, ProcedureRecord, Record};
 use psd_plan::schema::ResultKind;
 use psd_plan::{Condition, DecisionRule};
-use psd_rig::safety::failpoint;
-use psd_rig::safety::failpoint::Guarding;
 use psd_text::units::Dimension;
 use psd_text::units::display::stated;
 

@@ -9,7 +9,7 @@ use psd_plan::formula::{
 };
 use psd_plan::procedures::escalate::block as series;
 use psd_plan::procedures::impact::block as schema;
-use psd_plan::record::{EscalateHistory, FloorStep, Floors, History, ImpactHistory, SeriesImpact};
+use psd_plan::record::{EscalateHistory, History, ImpactHistory, SeriesImpact};
 use psd_plan::schema::ResultKind;
 use psd_plan::uncertainty::{Contribution, Source};
 use psd_plan::{Condition, DecisionRule};
@@ -33,7 +33,7 @@ pub(super) fn undecided<'a>(
     hangs_on(condition, rule, results, |reference| {
         let (history, name) = history_of(reference.procedure)?;
         match history {
-            History::Impact(history) => of_impact(Steps::of(history), reference.name, name),
+            History::Impact(history) => of_impact(history, reference.name, name),
             History::Escalate(history) => of_row(history, reference.name, name),
             _ => None,
         }
@@ -50,13 +50,13 @@ pub(super) fn undecided_by(
 ) -> Option<String> {
     hangs_on(condition, rule, results, |reference| {
         (reference.procedure == own)
-            .then(|| of_own(Steps::of(impact), reference.name, "the impact"))
+            .then(|| of_own(impact, reference.name, "the impact"))
             .flatten()
     })
 }
 
-/// Whether the verdict depends on the further growth. The growing results are increased up to 10¹² times, in steps of half a decade. The
-/// steps also detect a change of a condition with a window.
+/// Whether the verdict depends on the further growth. The growing results are increased up to 10¹² times, in steps of half a decade, the
+/// largest first. The steps also detect a change of a condition with a window.
 fn hangs_on(
     condition: &Condition,
     rule: DecisionRule,
@@ -92,7 +92,7 @@ fn hangs_on(
         .verdict
             != now
     };
-    (-12..=24).any(changes).then(|| why.clone())
+    (-12..=24).rev().any(changes).then(|| why.clone())
 }
 
 /// The results after further growth.
@@ -145,24 +145,9 @@ impl Results for Grown<'_> {
     }
 }
 
-/// The steps of an impact; for a frame also the steps of its floors.
-#[derive(Clone, Copy)]
-struct Steps<'a> {
-    impact: &'a ImpactHistory,
-    floors: &'a [FloorStep],
-}
-
-impl<'a> Steps<'a> {
-    fn of(impact: &'a ImpactHistory) -> Self {
-        Self {
-            impact,
-            floors: impact.frame.as_ref().map_or(&[], |frame| &frame.floors),
-        }
-    }
-}
-
 /// Growth of a result of an impact. A run that continues past a largest value has reached a peak, independent of later values.
-fn of_impact(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> Option<Growth> {
+fn of_impact(impact: &ImpactHistory, result: &str, name: &str) -> Option<Growth> {
+    let frame = impact.frame.as_ref();
     let still = |what: &str, largest: &str| {
         format!("{what} when {name} ended: its largest {largest} is not a peak")
     };
@@ -172,41 +157,26 @@ fn of_impact(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> O
             why: still(what, largest),
         })
     };
-    let last_largest = |values: &mut dyn Iterator<Item = f64>| {
-        let values: Vec<f64> = values.collect();
-        values
-            .split_last()
-            .is_some_and(|(last, before)| *last > 0.0 && before.iter().all(|value| value < last))
-    };
-    let list = |of: fn(&FloorStep) -> Vec<f64>,
-                rate: fn(&FloorStep) -> Vec<f64>,
-                what: &str,
-                largest: &str| {
-        let entries = growing_entries(floors, of, rate);
+    let list = |entries: &[usize], what: &str, largest: &str| {
         let entry = entries.first()? + 1;
         Some(Growth {
             why: still(&format!("{what} {entry} was still moving"), largest),
-            entries,
+            entries: entries.to_vec(),
         })
     };
     // Until the striker has stopped, the largest force may still come, even if the structure moves back meanwhile.
-    let still_striking = impact.steps.len() > 1
-        && impact.steps[1..]
-            .iter()
-            .all(|step| step.striker_velocity > 0.0);
-    if still_striking
+    let ending = impact.ending;
+    if ending.still_striking
         && is(result, &PUSHED)
-        && !(is(result, &[schema::MAX_DISPLACEMENT]) && impact.still_rising())
+        && !(is(result, &[schema::MAX_DISPLACEMENT]) && ending.still_rising)
     {
-        let entries = (0..floors.last().map_or(1, |floor| floor.floors.computed.len())).collect();
-        let touched = impact.steps.iter().any(|step| step.contact_force > 0.0);
-        let what = if touched {
+        let what = if ending.touched {
             "the striker was still pushing"
         } else {
             "the striker had not touched the structure yet"
         };
         return Some(Growth {
-            entries,
+            entries: (0..floors_of(impact).unwrap_or(1)).collect(),
             why: format!("{what} when {name} ended: the peak is not reached"),
         });
     }
@@ -219,39 +189,36 @@ fn of_impact(Steps { impact, floors }: Steps<'_>, result: &str, name: &str) -> O
         ],
     ) {
         number(
-            impact.still_rising(),
+            ending.still_rising,
             "the structure was still moving",
             "displacement",
         )
     } else if is(result, &[schema::MAX_VELOCITY]) {
-        let growing = last_largest(&mut impact.steps.iter().map(|step| step.velocity.abs()));
         number(
-            growing,
+            ending.speeding_up,
             "the velocity of the structure was still increasing",
             "velocity",
         )
     } else if is(result, &[schema::MAX_CONTACT_FORCE]) {
-        let growing = last_largest(&mut impact.steps.iter().map(|step| step.contact_force));
-        number(growing, "the contact force was still increasing", "size")
+        let what = "the contact force was still increasing";
+        number(ending.pushing_harder, what, "size")
     } else if is(result, &[schema::MAX_BASE_SHEAR]) {
-        let growing = last_largest(
-            &mut floors
-                .iter()
-                .map(|floor| floor.floors.restoring_force.iter().sum::<f64>().abs()),
-        );
-        number(growing, "the base shear was still increasing", "size")
+        let what = "the base shear was still increasing";
+        let growing = frame.is_some_and(|frame| frame.growing.base_shear);
+        number(growing, what, "size")
     } else if is(result, &[schema::FLOOR_DISPLACEMENT]) {
-        list(
-            |floor| floor.floors.computed.clone(),
-            |floor| floor.floors.velocity.clone(),
-            "floor",
-            "displacement",
-        )
+        list(&frame?.growing.floors, "floor", "displacement")
     } else if is(result, &[schema::MAX_DRIFT]) {
-        list(Floors::drift, drift_rate, "storey", "drift")
+        list(&frame?.growing.storeys, "storey", "drift")
     } else {
         None
     }
+}
+
+/// The number of floors of a struck frame; None for one degree of freedom.
+fn floors_of(impact: &ImpactHistory) -> Option<usize> {
+    let last = impact.frame.as_ref()?.floors.last()?;
+    Some(last.floors.computed.len())
 }
 
 /// Whether this is the name of one of these results.
@@ -269,36 +236,10 @@ const PUSHED: [ResultKind; 6] = [
     schema::MAX_DRIFT,
 ];
 
-fn drift_rate(floor: &FloorStep) -> Vec<f64> {
-    let mut rate = vec![0.0; floor.floors.velocity.len()];
-    psd_physics::structure::drifts(&floor.floors.velocity, &mut rate);
-    rate
-}
-
-/// Entries whose absolute value was the largest at the last step and was still increasing.
-fn growing_entries(
-    floors: &[FloorStep],
-    of: fn(&FloorStep) -> Vec<f64>,
-    rate: fn(&FloorStep) -> Vec<f64>,
-) -> Vec<usize> {
-    let Some((last, before)) = floors.split_last() else {
-        return Vec::new();
-    };
-    let (value, rate) = (of(last), rate(last));
-    let mut growing: Vec<usize> = (0..value.len())
-        .filter(|entry| value[*entry] * rate[*entry] > 0.0)
-        .collect();
-    for floor in before {
-        let earlier = of(floor);
-        growing.retain(|entry| earlier[*entry].abs() <= value[*entry].abs());
-    }
-    growing
-}
-
 /// Growth of a result of an impact, read by the condition of its series. If the impact ended before its peak, its final position is not
 /// determined either.
-fn of_own(steps: Steps<'_>, result: &str, name: &str) -> Option<Growth> {
-    let of = |kind: ResultKind| of_impact(steps, kind.name, name);
+fn of_own(impact: &ImpactHistory, result: &str, name: &str) -> Option<Growth> {
+    let of = |kind: ResultKind| of_impact(impact, kind.name, name);
     if is(
         result,
         &[series::RESIDUAL_DISPLACEMENT, series::FINAL_DISPLACEMENT],
@@ -307,11 +248,11 @@ fn of_own(steps: Steps<'_>, result: &str, name: &str) -> Option<Growth> {
     } else if is(result, &[series::RESIDUAL_DRIFT, series::FINAL_DRIFT]) {
         let growth = of(schema::MAX_DISPLACEMENT).or_else(|| of(schema::MAX_DRIFT))?;
         Some(Growth {
-            entries: (0..steps.floors.last()?.floors.computed.len()).collect(),
+            entries: (0..floors_of(impact)?).collect(),
             ..growth
         })
     } else {
-        of_impact(steps, result, name)
+        of_impact(impact, result, name)
     }
 }
 
@@ -321,7 +262,7 @@ fn of_row(history: &EscalateHistory, result: &str, name: &str) -> Option<Growth>
     let numbered_impacts = || history.impacts.iter().enumerate();
     let of = |(index, impact): (usize, &SeriesImpact), own: ResultKind| {
         of_own(
-            Steps::of(&impact.history),
+            &impact.history,
             own.name,
             &format!("impact {} of {name}", index + 1),
         )

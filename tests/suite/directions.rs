@@ -13,10 +13,7 @@ const ORDER: &[&[&str]] = &[
     &["report"],
     &["procedures"],
     &["check", "golden", "remote"],
-    &["files"],
-    &["evidence"],
     &["study"],
-    &["cli"],
 ];
 
 /// The one file that lists the procedures.

@@ -36,7 +36,8 @@ fn a_document_is_run_and_verified_and_the_run_folder_keeps_it() {
 #[test]
 fn a_run_of_a_document_that_was_cut_is_reported_from_its_log_alone() {
     let folder = Workspace::new(&[("procedure.md", DOCUMENT)]);
-    folder.ends(0, &["run", "procedure.md", "--out", "run"]);
+    let run = ["run", "procedure.md", "--out", "run", "--log", "full"];
+    folder.ends(0, &run);
     let log = folder.read("run/journal.psdj");
     let cut: Vec<&str> = log.lines().take(30).collect();
     fs::create_dir(folder.path("cut")).unwrap();

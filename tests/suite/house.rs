@@ -13,6 +13,7 @@ const PURE: &[&str] = &[
     "physics",
     "plan",
     "language",
+    "lsp",
     "check",
     "procedures",
     "verdict",
@@ -67,7 +68,7 @@ const KNOWS: &[(&[&str], &[&str])] = &[
             "minisign",
             "rpassword",
         ],
-        &["cli", "evidence"],
+        &["cli"],
     ),
     (&["serialport"], &["rig/transport", "rig/emulator", "cli"]),
 ];

@@ -11,7 +11,7 @@ type Path = Vec<String>;
 /// The files of `src` that make up the product, by module, with the files that each uses.
 pub struct ImportGraph {
     files: BTreeMap<Path, Module>,
-    /// The modules whose file is a `lib.rs`: the program itself, and every member crate that lies in a folder of `src`.
+    /// The modules whose file is a `lib.rs` or `main.rs`: every crate that lies in `src`.
     crate_roots: BTreeSet<Path>,
 }
 
@@ -31,7 +31,7 @@ impl ImportGraph {
     pub fn of(files: &[SourceText]) -> Self {
         let product = files.iter().filter(|file| !is_of_tests(&file.path));
         let modules = product.map(|file| (module_of(&file.path), read(file)));
-        let roots = files.iter().filter(|file| file.path.ends_with("lib.rs"));
+        let roots = files.iter().filter(|file| is_crate_root(&file.path));
         Self {
             files: modules.collect(),
             crate_roots: roots.map(|file| module_of(&file.path)).collect(),
@@ -113,13 +113,13 @@ impl ImportGraph {
     }
 }
 
-/// Dependency cycles, each with more than one file. A `mod.rs` or `lib.rs` and the files of its own folder count as one unit: its uses of them are
-/// not counted.
+/// Dependency cycles, each with more than one file. A `mod.rs`, `lib.rs` or `main.rs` and the files of its own folder count as one unit: its uses
+/// of them are not counted.
 pub fn cycles<'a>(uses: &BTreeMap<&'a str, BTreeSet<&'a str>>) -> Vec<BTreeSet<&'a str>> {
     let outside = |file: &'a str, used: &BTreeSet<&'a str>| {
-        let folder = file
-            .strip_suffix("mod.rs")
-            .or_else(|| file.strip_suffix("lib.rs"));
+        let folder = ["mod.rs", "lib.rs", "main.rs"]
+            .iter()
+            .find_map(|name| file.strip_suffix(name));
         let folder = folder.map(str::to_owned);
         let folder = folder.unwrap_or_else(|| file.replace(".rs", "/"));
         used.iter()
@@ -162,12 +162,16 @@ pub fn is_of_tests(path: &str) -> bool {
         .any(|part| part == "tests" || part == "testing" || part.ends_with("_tests"))
 }
 
+fn is_crate_root(path: &str) -> bool {
+    matches!(path.rsplit('/').next(), Some("lib.rs" | "main.rs"))
+}
+
 /// `run/mod.rs` is `run`, `lib.rs` the root and `physics/lib.rs` is `physics`.
 fn module_of(path: &str) -> Path {
     let path = path.trim_end_matches(".rs");
     let parts = path
         .split('/')
-        .filter(|part| !["mod", "lib"].contains(part));
+        .filter(|part| !["mod", "lib", "main"].contains(part));
     parts.map(str::to_owned).collect()
 }
 

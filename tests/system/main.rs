@@ -8,6 +8,7 @@ mod build;
 mod clock;
 mod disk;
 mod document;
+mod editor;
 mod editors;
 mod ended;
 mod faults;

@@ -40,6 +40,15 @@ pub fn minisign() -> bool {
     )
 }
 
+/// Whether `nvim` is installed.
+pub fn neovim() -> bool {
+    able(
+        "nvim",
+        "say its version",
+        Command::new("nvim").arg("--version"),
+    )
+}
+
 /// Whether Python can read XML.
 pub fn python() -> bool {
     able(

@@ -284,11 +284,23 @@ fn an_array_that_loses_shards_has_the_bytes_of_one_process() {
     assert_eq!(merge.status.code(), Some(3), "{}", printed(&merge));
     let text = printed(&merge);
     let numbers = merge::listed(&missing);
-    let line = format!("sbatch --array={numbers} shards/array.sbatch");
+    let array = format!("sbatch --parsable --array={numbers} shards/array.sbatch");
+    let line = format!("sbatch --dependency=afterany:$({array}) shards/merge.sbatch");
     assert!(text.contains(&line), "{text}");
     let status = psd(&["status", "shards"]);
     assert!(
         printed(&status).contains(&format!("submit again: {line}")),
+        "{}",
+        printed(&status)
+    );
+    let without_runs = printed(&status).lines().find_map(|line| {
+        line.trim()
+            .strip_prefix("shards without runs: ")
+            .map(str::to_owned)
+    });
+    assert!(
+        without_runs
+            .is_some_and(|listed| listed.split([',', '-']).any(|it| it == lost.to_string())),
         "{}",
         printed(&status)
     );

@@ -138,6 +138,22 @@ fn shards_of_processes_are_put_together() {
     let output = ended(whole.path(), &["--one-by-one"]);
     assert_eq!(output.status.code(), Some(0), "{}", messages(&output));
     let expected = fs::read(study(whole.path()).join("study.parquet")).unwrap();
+    let status = || {
+        Command::new(PSD)
+            .args(["study", "status"])
+            .arg(study(divided.path()))
+            .output()
+            .unwrap()
+    };
+    // Before the first run is durable, the folder has the scripts alone.
+    assert_eq!(status().status.code(), Some(3));
+    fs::create_dir_all(study(divided.path())).unwrap();
+    let script = study(divided.path()).join("array.sbatch");
+    fs::write(&script, "").unwrap();
+    let submitted = status();
+    assert_eq!(submitted.status.code(), Some(75));
+    assert!(String::from_utf8_lossy(&submitted.stdout).contains("no runs are durable yet"));
+    fs::remove_file(script).unwrap();
     let run = |shard: &str| ended(divided.path(), &["--shard", shard]);
     let merged = || {
         Command::new(PSD)
@@ -157,6 +173,9 @@ fn shards_of_processes_are_put_together() {
         "{}",
         messages(&refused)
     );
+    let missing = status();
+    let missing = String::from_utf8_lossy(&missing.stdout).into_owned();
+    assert!(missing.contains("shards without runs: 2"), "{missing}");
     let by_index = psd(divided.path(), &["--shard", "env/3"])
         .env("SLURM_ARRAY_TASK_ID", "2")
         .output()
@@ -166,4 +185,21 @@ fn shards_of_processes_are_put_together() {
     assert_eq!(output.status.code(), Some(0), "{}", messages(&output));
     let found = fs::read(study(divided.path()).join("study.parquet")).unwrap();
     assert!(found == expected, "the bytes differ");
+    // The access rights follow the umask.
+    let mode = |name: &str| {
+        use std::os::unix::fs::PermissionsExt as _;
+        let path = study(divided.path()).join(name);
+        fs::metadata(path).unwrap().permissions().mode()
+    };
+    assert_eq!(mode("study.parquet"), mode("summary.json"));
+    let reproduced = Command::new(PSD)
+        .args(["study", "merge", "--plan", "elsewhere/plan.psd"])
+        .arg(study(divided.path()))
+        .output()
+        .unwrap();
+    assert!(
+        messages(&reproduced).contains("psd run elsewhere/plan.psd"),
+        "{}",
+        messages(&reproduced)
+    );
 }

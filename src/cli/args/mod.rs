@@ -35,6 +35,13 @@ pub enum Format {
     Json,
 }
 
+/// The run log of a simulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum RunLog {
+    Compact,
+    Full,
+}
+
 fn setting(text: &str) -> Result<(String, String), String> {
     let (name, value) = text.split_once('=').ok_or("write it as NAME=VALUE")?;
     let (name, value) = (name.trim(), value.trim());

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use crate::cli::args::{Format, PlanSettings};
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::plan_file;
-use crate::cli::output::{print_message, print_result};
-use crate::cli::settings::Settings;
+use crate::args::{Format, PlanSettings};
+use crate::exit::{Exit, Failure};
+use crate::files::plan_file;
+use crate::output::{print_message, print_result};
+use crate::settings::Settings;
 use clap::Args;
 use psd_language::codes::E106;
 use psd_text::diagnostic::excerpt::one_line;

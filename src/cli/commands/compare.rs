@@ -6,19 +6,19 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::prediction::prediction;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::accepted::truth_in;
-use crate::cli::files::record_file;
-use crate::cli::files::record_file::journal_of;
-use crate::cli::files::run_folder::{RunFolder, write_new};
-use crate::cli::output::print_result;
 use crate::evidence::{Folder, IssueFile, ReplayedRun};
-use crate::golden::comparison;
-use crate::golden::comparison::page::page;
-use crate::golden::comparison::{Comparison, Side};
-use crate::golden::{FIGURES, SUMMARY};
-use crate::report::summary::Summary;
-use crate::report::{Figures, OutputError, OutputFile, figures};
+use crate::exit::{Exit, Failure};
+use crate::files::accepted::truth_in;
+use crate::files::record_file;
+use crate::files::record_file::journal_of;
+use crate::files::run_folder::{RunFolder, write_new};
+use crate::output::print_result;
+use psd::golden::comparison;
+use psd::golden::comparison::page::page;
+use psd::golden::comparison::{Comparison, Side};
+use psd::golden::{FIGURES, SUMMARY};
+use psd::report::summary::Summary;
+use psd::report::{Figures, OutputError, OutputFile, figures};
 
 #[derive(Debug, Args)]
 pub struct CompareArguments {
@@ -95,6 +95,7 @@ fn from_record(name: String, run: &Path) -> Result<Side, Failure> {
     let issues = IssueFile::of(&kept).map_err(|fault| Failure::file(run, fault))?;
     let replayed = ReplayedRun::of(record_file::read(run)?, issues.as_ref(), &prediction)
         .map_err(|fault| Failure::file(run, fault))?;
+    replayed.refuse_another_simulation(run)?;
     if replayed.steps.is_some() {
         return Err(Failure::file(
             run,

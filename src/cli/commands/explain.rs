@@ -3,11 +3,11 @@
 
 use std::fmt::Write as _;
 
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::output::print_result;
-use crate::cli::settings::Settings;
-use crate::codes;
+use crate::exit::{Exit, Failure};
+use crate::output::print_result;
+use crate::settings::Settings;
 use clap::Args;
+use psd::codes;
 use psd_text::diagnostic::Code;
 use psd_text::diagnostic::page::{Page, PagePlan};
 use psd_text::suggest::nearest;

@@ -5,14 +5,15 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use similar::TextDiff;
 
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::loader::{is_plan, read_plan};
-use crate::cli::files::plan_file::name_of;
-use crate::cli::output::{print_message, print_result};
-use crate::cli::settings::Settings;
+use crate::exit::{Exit, Failure};
+use crate::files::difference;
+use crate::files::difference::Named;
 use crate::files::failure::plain;
+use crate::files::loader::{plans_below, read_plan};
+use crate::files::plan_file::name_of;
+use crate::output::{print_message, print_result};
+use crate::settings::Settings;
 use psd_language::syntax;
 use psd_text::diagnostic::excerpt::one_line;
 use psd_text::diagnostic::render::render_all;
@@ -52,14 +53,17 @@ fn one(path: &Path, check: bool, settings: Settings) -> Result<Exit, Failure> {
     }
     if check {
         let name = one_line(&path.display().to_string());
-        let diff = TextDiff::from_lines(&text, &formatted);
-        print_result(
-            &diff
-                .unified_diff()
-                .context_radius(3)
-                .header(&name, &format!("{name} (formatted)"))
-                .to_string(),
-        )?;
+        let of_the_formatted = format!("{name} (formatted)");
+        print_result(&difference::unified(
+            &Named {
+                name: &name,
+                text: &text,
+            },
+            &Named {
+                name: &of_the_formatted,
+                text: &formatted,
+            },
+        ))?;
         return Ok(Exit::Missed);
     }
     // A check of the formatter: its output must parse without errors and be stable.
@@ -122,31 +126,10 @@ fn plans(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for path in paths {
         if path.is_dir() {
-            walk(path, &mut found)?;
+            plans_below(path, usize::MAX, &mut found)?;
         } else {
             found.push(path.clone());
         }
     }
     Ok(found)
-}
-
-fn walk(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
-    let failed = |error: std::io::Error| Failure::file(folder, plain(&error));
-    let mut entries = std::fs::read_dir(folder)
-        .map_err(failed)?
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(failed)?;
-    entries.sort_by_key(std::fs::DirEntry::file_name);
-    for entry in entries {
-        let (path, kind) = (entry.path(), entry.file_type().map_err(failed)?);
-        if entry.file_name().to_string_lossy().starts_with('.') {
-            continue;
-        }
-        if kind.is_dir() {
-            walk(&path, found)?;
-        } else if kind.is_file() && is_plan(&path) {
-            found.push(path);
-        }
-    }
-    Ok(())
 }

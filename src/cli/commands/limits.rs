@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::output::print_result;
-use crate::procedures::{damping_sweep, stiffness_ramp};
+use crate::exit::{Exit, Failure};
+use crate::output::print_result;
+use psd::procedures::{damping_sweep, stiffness_ramp};
 use psd_language::check;
 use psd_language::syntax::limits as syntax;
 use psd_rig::journal;

@@ -8,6 +8,7 @@ pub(crate) mod explain;
 pub(crate) mod explain_plan;
 pub(crate) mod fmt;
 pub(crate) mod limits;
+pub(crate) mod lsp;
 pub(crate) mod prediction;
 pub(crate) mod rig;
 pub(crate) mod run;
@@ -62,6 +63,8 @@ pub enum Command {
     Explain(explain::ExplainArguments),
     /// List the limits of the language: sizes, nesting, steps
     Limits,
+    /// Serve an editor: the language server, over standard input and output
+    Lsp,
     /// Run many simulations of a plan with scattered inputs
     Study {
         #[command(subcommand)]
@@ -93,6 +96,7 @@ impl Command {
                 explain::explain(arguments.code.as_deref(), arguments.full, settings)
             }
             Self::Limits => limits::limits(),
+            Self::Lsp => lsp::lsp(),
             Self::Study { command } => study::study(command, settings),
             Self::Rig { command } => rig::rig(command, settings),
         }

@@ -2,8 +2,8 @@
 //! prediction, from a dry run on a simulated specimen with the measured properties.
 
 use super::explain_plan::DryRun;
-use crate::report::Prediction;
-use crate::run::check_run;
+use psd::report::Prediction;
+use psd::run::check_run;
 use psd_plan::record::{Outcome, Record};
 use psd_plan::{Behaviour, Frame, Plan};
 use psd_rig::VirtualRig;

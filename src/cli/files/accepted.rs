@@ -6,8 +6,8 @@ use std::path::{Component, Path, PathBuf};
 use super::run_folder::write_new;
 use crate::files::failure::Failure;
 use crate::files::failure::plain;
-use crate::golden::{Accepted, SUMMARY, Tolerances, Truth, compare};
-use crate::report::OutputFile;
+use psd::golden::{Accepted, SUMMARY, Tolerances, Truth, compare};
+use psd::report::OutputFile;
 
 /// The file that names the plan whose results a folder has: its path, from the folder above `reports`.
 const PLAN: &str = "plan.txt";
@@ -280,7 +280,7 @@ pub fn is_page(path: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::golden::DIAGNOSTICS;
+    use psd::golden::DIAGNOSTICS;
 
     fn file(path: &str) -> OutputFile {
         OutputFile {

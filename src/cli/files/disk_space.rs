@@ -24,13 +24,15 @@ pub fn compare(folder: &Path, free: u64) -> Result<(), DiskSpaceFault> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::args::PlanSettings;
     use crate::files::failure::amount;
-    use crate::run::{Unwatched, replay};
-    use crate::tests::testing::{elastic_plan, ramp};
+    use crate::files::{provenance, record_file};
+    use psd::run::{Unwatched, replay};
     use psd_plan::ProcedureKind;
     use psd_rig::journal::{Durability, Journal, Storage};
     use psd_rig::safety::failpoint::without;
     use psd_rig::virtual_rig;
+    use psd_testing::plans::{elastic_plan, ramp};
     use std::io;
 
     /// A disk with this free space \[bytes\].
@@ -60,19 +62,16 @@ mod tests {
         compare(Path::new("runs/beam-1"), free)?;
         let disk = Small(usize::try_from(free).unwrap());
         let mut journal = Journal::create(Box::new(disk), Durability::EverySyncPoint);
-        replay::begin(
-            &mut journal,
-            &crate::tests::testing::header(&plan),
-            &["text".to_owned()],
-        )
-        .unwrap();
-        let recorded = replay::record(
+        let mut rig = virtual_rig(&plan);
+        let header = record_file::header(
             &plan,
-            virtual_rig(&plan).as_mut(),
-            &mut Unwatched,
-            journal,
-            Box::new(|| None),
+            record_file::device(&*rig),
+            &PlanSettings::default(),
+            &provenance::of(&plan, None),
+            record_file::Circumstances::default(),
         );
+        replay::begin(&mut journal, &header, &["text".to_owned()]).unwrap();
+        let recorded = replay::record(&plan, &mut *rig, &mut Unwatched, journal, Box::new(|| None));
         Ok(recorded.fault.is_none()
             && recorded.record.outcome == psd_plan::record::Outcome::Completed)
     }

@@ -8,14 +8,15 @@ use std::path::Path;
 use super::finish_run::numbered;
 use super::record_file::{self, Circumstances};
 use super::{plan_file, provenance};
-use crate::cli::args::PlanSettings;
+use crate::args::PlanSettings;
 use crate::files::failure::Failure;
 use crate::files::results::put_results;
-use crate::golden::{DIAGNOSTICS, Tolerances};
-use crate::report::{OutputFile, Provenance, Run, figure_data, numbers};
-use crate::run::replay;
-use crate::run::{Inspection, Observer};
-use crate::verdict;
+use psd::golden::{DIAGNOSTICS, Tolerances};
+use psd::report::{OutputFile, Provenance, Run, figure_data, numbers};
+use psd::run::replay;
+use psd::run::replay::{Header, LogForm};
+use psd::run::{Inspection, Observer};
+use psd::verdict;
 use psd_plan::Plan;
 use psd_plan::record::Outcome;
 use psd_rig::virtual_rig;
@@ -64,25 +65,23 @@ pub fn of(path: &Path, extent: Extent) -> Result<Trial, Failure> {
     let provenance = provenance::of(plan, None);
     let mut rig = virtual_rig(plan);
     let device = record_file::device(rig.as_ref());
-    let header = record_file::header(
-        plan,
-        device,
-        &PlanSettings::default(),
-        &provenance,
-        Circumstances::default(),
-    );
+    let header = Header {
+        log: LogForm::Compact,
+        ..record_file::header(
+            plan,
+            device,
+            &PlanSettings::default(),
+            &provenance,
+            Circumstances::default(),
+        )
+    };
     let provenance = Provenance {
         equipment: Some(header.equipment.clone()),
         ..provenance
     };
     let journal = record_file::begin_nowhere(plan, &header)?;
-    let recorded = replay::record(
-        plan,
-        rig.as_mut(),
-        &mut Unattended { operator },
-        journal,
-        Box::new(|| None),
-    );
+    let recorded =
+        replay::record_compactly(plan, rig.as_mut(), &mut Unattended { operator }, journal);
     let provenance = numbered(provenance, plan, &recorded);
     let record = recorded.record;
     let assessment = verdict::assess(plan, &record);

@@ -8,8 +8,8 @@ use std::path::{Component, Path, PathBuf};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
-use crate::check::LoadError;
 use crate::files::failure::{Failure, plain};
+use psd::check::LoadError;
 use psd_language::syntax::limits::FILE_BYTES;
 use psd_plan::{PICTURE_BYTES, PictureKind};
 use psd_text::markdown::{Document, is_document};
@@ -71,6 +71,35 @@ pub fn is_plan(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let has_block = || read(path).is_ok_and(|text| !Document::read(&text).blocks.is_empty());
     path.extension().is_some_and(|ending| ending == "psd") || is_document(&name) && has_block()
+}
+
+/// Adds every plan under a folder, sorted by name. Links to folders and hidden folders are not entered. The search ends after `most` entries.
+pub fn plans_below(folder: &Path, most: usize, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
+    let mut left = most;
+    walk(folder, &mut left, found)
+}
+
+fn walk(folder: &Path, left: &mut usize, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
+    let failed = |error: std::io::Error| Failure::file(folder, plain(&error));
+    let mut entries = std::fs::read_dir(folder)
+        .map_err(failed)?
+        .take(*left)
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(failed)?;
+    entries.sort_by_key(std::fs::DirEntry::file_name);
+    *left -= entries.len();
+    for entry in entries {
+        let (path, kind) = (entry.path(), entry.file_type().map_err(failed)?);
+        if entry.file_name().to_string_lossy().starts_with('.') {
+            continue;
+        }
+        if kind.is_dir() {
+            walk(&path, left, found)?;
+        } else if kind.is_file() && is_plan(&path) {
+            found.push(path);
+        }
+    }
+    Ok(())
 }
 
 /// The text of the plan. It may be a link, because the operator named it.

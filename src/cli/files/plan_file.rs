@@ -5,11 +5,11 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::loader::{FolderLoader, read_plan};
-use crate::check::{Checked, Options, ParsedPlan};
-use crate::cli::args::PlanSettings;
-use crate::cli::output::print_message;
-use crate::cli::settings::{Settings, folder_of, today};
+use crate::args::PlanSettings;
 use crate::files::failure::Failure;
+use crate::output::print_message;
+use crate::settings::{Settings, folder_of, today};
+use psd::check::{Checked, Options, ParsedPlan};
 use psd_text::diagnostic::{json, render};
 use psd_text::source::{Position, Span};
 

@@ -3,12 +3,11 @@
 use std::path::Path;
 
 use super::disk_space;
-use crate::cli::args::PlanSettings;
+use crate::args::PlanSettings;
 use crate::files::failure::Failure;
-use crate::report::Provenance;
-use crate::run::check_run;
-use crate::run::replay;
-use crate::run::replay::{Header, HeaderFile, RULES};
+use psd::report::Provenance;
+use psd::run::replay;
+use psd::run::replay::{Header, HeaderFile, LogForm, RULES};
 use psd_plan::Plan;
 use psd_plan::record::equipment::{Device, Equipment};
 use psd_rig::Rig;
@@ -18,7 +17,7 @@ use psd_text::digest::sha256;
 pub use crate::files::circumstances::Circumstances;
 pub use crate::files::recorded_run::{JOURNAL, ReadRecord, journal_of, of_text, read};
 
-/// The header of a run on the connected device.
+/// The header of a run on the connected device, with a full run log.
 pub fn header(
     plan: &Plan,
     device: Device,
@@ -46,7 +45,8 @@ pub fn header(
         settings: settings.set.clone(),
         rig: settings.rig.clone(),
         equipment: Equipment::of(plan, device),
-        check_run: check_run::performed_part(plan).is_some(),
+        log: LogForm::Full,
+        check_run: plan.performed_part().is_some(),
         served,
         date: settings.date.clone(),
         operator,

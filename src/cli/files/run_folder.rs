@@ -8,7 +8,7 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::files::failure::Failure;
 use crate::files::failure::plain;
-use crate::report::{OutputError, OutputFile, OutputSink};
+use psd::report::{OutputError, OutputFile, OutputSink};
 use psd_text::sanitize;
 
 /// An empty folder for one run.

@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::cli::output::print_message;
-use crate::cli::settings::Settings;
-use crate::report::{OutputPiece, OutputSink};
+use crate::output::print_message;
+use crate::settings::Settings;
+use psd::report::{OutputPiece, OutputSink};
 
 /// Time between two updates of the line.
 const TICK: Duration = Duration::from_millis(250);
@@ -161,7 +161,7 @@ impl Drop for ProgressSink<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::OutputPart;
+    use psd::report::OutputPart;
 
     /// The first piece takes a long time, the second follows immediately, the third is of a different part.
     #[test]

@@ -2,9 +2,9 @@
 //! the motion, or no permission. Nothing has moved yet, and the run log has not changed.
 
 use super::watch::Watcher;
-use crate::cli::exit::Failure;
-use crate::run::replay::{Assurance, ResumeDecision, TargetStatus};
-use crate::run::{Inspection, Motion, Observer as _};
+use crate::exit::Failure;
+use psd::run::replay::{Assurance, ResumeDecision, TargetStatus};
+use psd::run::{Inspection, Motion, Observer as _};
 use psd_plan::Plan;
 use psd_rig::{Reading, Rig, RigFault, position_and_force};
 use psd_text::units::Dimension;

@@ -1,8 +1,8 @@
 //! The expected demand of a run on its rig, for the operator who permits the motion: displacement, force, speed, duration. In: a plan.
 //! Out: the extent of a dry run on an ideal copy of the specimen, and its steps. It moves nothing.
 
-use crate::cli::commands::explain_plan::dry_rig::{Reach, Watched};
-use crate::run::Extent;
+use crate::commands::explain_plan::dry_rig::{Reach, Watched};
+use psd::run::Extent;
 use psd_plan::{Interval, Link, Plan, VirtualLink};
 use psd_rig::RigFault;
 use psd_rig::real::RealRig;

@@ -4,7 +4,7 @@
 use super::hold_status::{can_go_on, is_held};
 use super::question::Stay;
 use super::watch::Watcher;
-use crate::run::Observer as _;
+use psd::run::Observer as _;
 use psd_plan::record::{Event, EventKind, Outcome, Record};
 use psd_rig::Rig;
 

@@ -1,6 +1,6 @@
 //! Whether a run that ended early left its rig on hold, and whether it can be resumed. In: the record.
 
-use crate::run::UNLOADING;
+use psd_plan::record::UNLOADING;
 use psd_plan::record::{EventKind, Record};
 
 /// Whether the rig was at rest in its last reading.

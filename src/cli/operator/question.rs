@@ -4,7 +4,7 @@
 
 use std::time::Duration;
 
-use crate::run::{Inspection, Motion};
+use psd::run::{Inspection, Motion};
 use psd_text::diagnostic::excerpt::escape;
 use psd_text::units::Dimension;
 use psd_text::units::display::readable;

@@ -4,14 +4,14 @@ use std::path::Path;
 
 use super::dialogue::typed::throw_away;
 use super::watch::{Attendance, Signals, Watcher};
-use crate::check::Checked;
-use crate::cli::args::{PlanSettings, name};
-use crate::cli::exit::Failure;
-use crate::cli::files::plan_file;
-use crate::cli::files::record_file::Circumstances;
-use crate::cli::output::print_message;
-use crate::cli::settings::Settings;
-use crate::run::replay::Wall;
+use crate::args::{PlanSettings, name};
+use crate::exit::Failure;
+use crate::files::plan_file;
+use crate::files::record_file::Circumstances;
+use crate::output::print_message;
+use crate::settings::Settings;
+use psd::check::Checked;
+use psd::run::replay::Wall;
 use psd_plan::Plan;
 use psd_rig::{Connected, Rig as _, StopRequest, connect};
 
@@ -120,7 +120,7 @@ pub fn wall_clock() -> Wall {
 }
 
 /// The values of `--rig`, `--set` and `--date` at the start of a run log.
-pub fn settings_of(header: &crate::run::replay::Header) -> PlanSettings {
+pub fn settings_of(header: &psd::run::replay::Header) -> PlanSettings {
     PlanSettings {
         rig: header.rig.clone(),
         set: header.settings.clone(),

@@ -19,5 +19,10 @@ mod rule_names;
 #[cfg(test)]
 mod tests;
 
+/// The tokens of a text, for what reads a text that need not be valid.
+pub mod tokens {
+    pub use super::lexical::tokens::{JOINING_WORDS, Kind, Token, Tokens};
+}
+
 pub use format::{format, format_document};
 pub use parse::parse;

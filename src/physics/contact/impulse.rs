@@ -11,6 +11,15 @@
 //! In the tangent form w = ½Δt/M̂, and the line above is eq. (4) again. A tensile F₁ is dropped, one beyond the limit force
 //! is cut to it.
 //!
+//! The step of one degree of freedom is a ratio, Ẍ₁ = top/bottom ([`crate::structure::matrix::one_degree`]), to whose top F₁ adds
+//! F₁ΔX. Both decisions on F₁ are then products, and eq. (4) is a ratio again:
+//!
+//! ```text
+//! a = Ẋs + gΔt − Ẋ − ½ΔtẌ                             s = (a·bottom − ½Δt·top)·bottom
+//! F₁ ≥ 0  ⇔  s ≥ 0                                     F₁ > F  ⇔  (Ms/Δt)·s > F·(bottom + ½Ms ΔX)·bottom
+//! Ẍ₁ = (top + (Ms/Δt) a ΔX)/(bottom + ½Ms ΔX)          F₁ = (Ms/Δt)(Ẋs + gΔt − Ẋ₁)
+//! ```
+//!
 //! ## Energy
 //! A force acts at both ends of a step, of which the trapezoid gives the structure the mean: M·½(v₀+v₁)·Δt·½(c₀+c₁) =
 //! ½(F₀+F₁)·½Δt(v₀+v₁), exactly, so that the contact loss counts the travel ½Δt(v₀+v₁) and not d₁ − d₀, which under explicit
@@ -27,19 +36,21 @@ use super::Start;
 use crate::contact::state::StepState;
 use crate::integrator::substep::Striker;
 use crate::number::{Answer as _, Number, numbers};
+use crate::structure::matrix::one_degree::Unforced;
 
 numbers! {
-    /// Rigid contact, cut at a limit force, with what the striker brings into a step. `fall` and `striker_compliance` are not neighbours:
-    /// the compiler would add both in one vector with numbers that were stored one by one just before, and the processor waits for such.
+    /// Rigid contact, cut at a limit force, with what the striker brings into a step.
     pub struct ImpulseContact {
         /// N; infinite under the rigid law.
         force_limit,
         /// gΔt of a step of free fall \[m/s\].
         fall,
-        /// Ms \[kg\]
-        striker_mass,
         /// Δt/Ms \[s/kg\]
         striker_compliance,
+        /// Ms/Δt \[kg/s\]
+        striker_inertia,
+        /// ½Ms \[kg\]
+        half_striker,
     }
 }
 
@@ -114,10 +125,27 @@ impl ImpulseContact {
     pub fn new(force_limit: f64, striker: &Striker) -> Self {
         Self {
             force_limit,
-            striker_mass: striker.mass,
             fall: striker.gravity * striker.time_step,
             striker_compliance: striker.time_step / striker.mass,
+            striker_inertia: striker.mass / striker.time_step,
+            half_striker: 0.5 * striker.mass,
         }
+    }
+}
+
+impl ImpulseContact {
+    /// The contact of a step from `v_free` \[m/s\] and w \[m/s/N\]: the force that stops the closing within the step, at most the limit,
+    /// and never in tension.
+    #[inline]
+    pub(crate) fn decide(&self, start: &Start, free: f64, compliance: f64) -> Decided {
+        if !Self::is_near::<true>(start) {
+            return Decided::FREE;
+        }
+        let needed =
+            (start.striker_velocity + self.fall - free) / (self.striker_compliance + compliance);
+        let state = f64::state(needed > self.force_limit, needed >= 0.0);
+        let force = f64::of_state(state, || 0.0, || needed, || self.force_limit);
+        Decided { state, force }
     }
 }
 
@@ -129,56 +157,83 @@ impl Decided {
 }
 
 impl<N: Touching> ImpulseContact<N> {
-    /// F that stops the closing within a step \[N\], from the velocity Ẋs at its start, `v_free` \[m/s\] and w \[m/s/N\].
+    /// Whether the surfaces touch as a step begins. No tolerance: δp was stored as this very difference, so that a surface at rest on its
+    /// dent touches it.
     #[inline(always)]
-    pub(crate) fn needed(&self, striker_velocity: N, free: N, compliance: N) -> N {
-        (striker_velocity + self.fall - free) / (self.striker_compliance + compliance)
+    fn is_near<const LIMITED: bool>(start: &Start<N>) -> N::Answer {
+        if LIMITED {
+            (start.striker_displacement - start.displacement).ge(start.indentation)
+        } else {
+            start.striker_displacement.ge(start.displacement)
+        }
     }
 
-    /// F of a step that needs this force: at most the limit, and never in tension. Only a law that is `LIMITED` can have a limit.
+    /// The state of a step of one degree of freedom, and its Ẍ₁ as a ratio; `half` is ½Δt \[s\]. Only a law that is `LIMITED` can have a limit.
     #[inline(always)]
-    pub(crate) fn decide<const LIMITED: bool>(
+    pub(crate) fn join<const LIMITED: bool>(
         &self,
         start: &Start<N>,
-        needed: impl FnOnce() -> N,
-    ) -> Decided<N> {
-        let zero = self.force_limit.same(0.0);
-        // No tolerance: δp was stored as this very difference, so that a surface at rest on its dent touches it.
-        let near = (start.striker_displacement - start.displacement).ge(start.indentation);
+        unforced: &Unforced<N>,
+        half: N,
+    ) -> (N::State, [N; 2]) {
+        let Unforced {
+            glide,
+            top,
+            bottom,
+            response,
+            ..
+        } = *unforced;
+        let near = Self::is_near::<LIMITED>(start);
         if near.is_surely_no() {
-            return Decided {
-                state: N::state(near, near),
-                force: zero,
-            };
+            return (N::state(near, near), [top, bottom]);
         }
-        let needed = needed();
+        let ahead = start.striker_velocity + self.fall - glide;
+        // The sign of the bottom is that of the displacement.
+        let spare = (ahead * bottom - half * top) * bottom;
+        let heavier = bottom + self.half_striker * response;
         let beyond = if LIMITED {
-            needed.gt(self.force_limit)
+            (self.striker_inertia * spare).gt(self.force_limit * (heavier * bottom))
         } else {
             near & !near
         };
-        let state = N::state(near & beyond, near & needed.ge(zero));
-        let force = N::of_state(state, || zero, || needed, || self.force_limit);
-        Decided { state, force }
+        let state = N::state(near & beyond, near & spare.ge(half.same(0.0)));
+        let pushed = || top + self.striker_inertia * ahead * response;
+        let limited = || top + self.force_limit * response;
+        (
+            state,
+            [
+                N::of_state(state, || top, pushed, limited),
+                N::of_state(state, || bottom, || heavier, || bottom),
+            ],
+        )
     }
 
-    /// The striker after a step of Δt \[s\], the struck degree of freedom at `displacement` \[m\] with `velocity` \[m/s\] then.
+    /// F \[N\] of that step, which ends with Ẋ₁ \[m/s\]: never in tension.
+    #[inline(always)]
+    pub(crate) fn settled(&self, start: &Start<N>, state: N::State, velocity: N) -> N {
+        let zero = || self.force_limit.same(0.0);
+        let falling = start.striker_velocity + self.fall;
+        let stopped = || (self.striker_inertia * (falling - velocity)).larger(zero());
+        N::of_state(state, zero, stopped, || self.force_limit)
+    }
+
+    /// The striker after a step, `half` of it ½Δt \[s\], the struck degree of freedom at `displacement` \[m\] with `velocity` \[m/s\] then; `moved` is
+    /// ½Δt(v₀+v₁).
     #[inline(always)]
     pub(crate) fn advance(
         &self,
-        time_step: N,
+        half: N,
         start: &Start<N>,
         decided: &Decided<N>,
-        [displacement, velocity]: [N; 2],
+        [displacement, velocity, moved]: [N; 3],
     ) -> StrikerEnd<N> {
         let Decided { state, force } = *decided;
-        let half = time_step * 0.5;
         let falling = start.striker_velocity + self.fall;
         let striker_velocity = N::of_state(
             state,
             || falling,
             || velocity,
-            || falling - force * time_step / self.striker_mass,
+            || falling - force * self.striker_compliance,
         );
         let striker_moved = half * (start.striker_velocity + striker_velocity);
         let striker_displacement = start.striker_displacement + striker_moved;
@@ -192,12 +247,11 @@ impl<N: Touching> ImpulseContact<N> {
         let none = || force.same(0.0);
         let work = || force * (indentation - start.indentation);
         let indentation_work = N::of_state(state, none, none, work);
-        let moved = half * (start.velocity + velocity);
         StrikerEnd {
             displacement: striker_displacement,
             velocity: striker_velocity,
             indentation,
-            contact_loss: force * striker_moved - (start.contact_force + force) * 0.5 * moved,
+            contact_loss: force * striker_moved - (start.contact_force + force) * (moved * 0.5),
             indentation_work,
         }
     }

@@ -2,6 +2,7 @@
 
 use psd_physics::contact::Approaching;
 use psd_physics::impact::batch::{self, Impact};
+use psd_physics::impact::summary::Wanted;
 use psd_physics::impact::{ImpactInput, Until};
 use psd_physics::specimen::{Elastic, SpecimenModel};
 use psd_physics::study::Confidence;
@@ -41,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let mut outcomes = Outcomes::default();
     let mut displacements = Vec::new();
-    for result in batch::run(&impacts, Some(Until::StrikerStop), 3000) {
+    for result in batch::run(&impacts, Some(Until::StrikerStop), 3000, Wanted::ALL) {
         let displacement = result?.summary.max_displacement;
         if displacement > 0.18 {
             outcomes.failed += 1;

@@ -3,11 +3,14 @@
 
 pub mod batch;
 pub mod energy;
+mod in_one_go;
 pub mod peaks;
 mod solver;
+mod step;
 pub mod summary;
 mod until;
 
+pub use in_one_go::simulate;
 pub use solver::{FrameImpactSolver, ImpactSolver};
 pub use until::Until;
 
@@ -17,13 +20,15 @@ use crate::contact::ContactLaw;
 use crate::statistics::DeclaredNoise;
 
 use crate::contact::state::StepState;
-use crate::contact::{Approaching, NeedsTangent};
+use crate::contact::{Approaching, ImpulseContact, NeedsTangent};
 use crate::integrator::Integrator;
 use crate::integrator::input::FrameError;
 use crate::integrator::state::State;
-use crate::specimen::RestoringForce;
+use crate::integrator::substep::Striker;
 use crate::structure::Matrices;
+use crate::structure::matrix::one_degree::Body;
 use energy::Energies;
+use step::{StepInputs, StrikerInput, Structure};
 use summary::StepEnd;
 
 /// Initial state and parameters of an impact on one degree of freedom.
@@ -98,6 +103,32 @@ impl ImpactInput {
             mass: self.mass,
             damping: self.damping,
             stiffness: self.stiffness,
+        }
+    }
+
+    /// The parts of a step in tangent form under a law of impulses.
+    fn step_inputs(&self) -> StepInputs {
+        let force_limit = match self.law {
+            ContactLaw::Limit { force } => force,
+            _ => f64::INFINITY,
+        };
+        let striker = Striker {
+            struck: 0,
+            mass: self.striker_mass,
+            gravity: self.gravity,
+            time_step: self.time_step,
+        };
+        StepInputs {
+            body: Body::new([self.mass, self.damping], self.time_step),
+            structure: Structure {
+                time_step: self.time_step,
+                largest_tangent: self.max_tangent_ratio * self.stiffness,
+            },
+            contact: ImpulseContact::new(force_limit, &striker),
+            striker: StrikerInput {
+                weight: self.striker_mass * self.gravity,
+                energy: self.striker_energy(),
+            },
         }
     }
 
@@ -239,30 +270,10 @@ impl Sink for Vec<StepRow> {
     }
 }
 
-/// An impact on one degree of freedom of an ideal rig from rest at X = 0.
-///
-/// # Errors
-/// As [`ImpactSolver::new`].
-pub fn simulate<S: RestoringForce, K: Sink>(
-    input: &ImpactInput,
-    specimen: &mut S,
-    until: Option<Until>,
-    steps: u64,
-    sink: &mut K,
-) -> Result<ImpactState, ImpactError> {
-    let mut solver = ImpactSolver::new(input, 0.0, specimen.move_to(0.0))?;
-    let read = |solver: &mut ImpactSolver| {
-        let target = solver.predict();
-        [target, specimen.move_to(target)]
-    };
-    solver.run(until, steps, read, sink);
-    Ok(*solver.state())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::specimen::{Bilinear, BilinearCurve};
+    use crate::specimen::{Bilinear, BilinearCurve, RestoringForce as _};
 
     const STIFFNESS: f64 = 327.65;
     const RIGID: ContactLaw = ContactLaw::Rigid;

@@ -12,9 +12,10 @@ use crate::integrator::Integrator;
 use crate::integrator::input::SolverInput;
 use crate::integrator::solver::Solver;
 use crate::integrator::state::State;
-use crate::integrator::step_form::StepForm;
+use crate::integrator::step_form::{StepContact, StepForm};
 use crate::integrator::substep::{Striker, Substep, Workspace};
 use crate::integrator::tangents::{HasTangents, Tangents};
+use crate::structure::matrix::one_degree::Unforced;
 use crate::structure::matrix::{Factor, Matrix, Vector};
 
 /// A pseudo-dynamic impact test: `predict`, command, read, `complete`.
@@ -157,6 +158,7 @@ impl<V: HasTangents> ImpactSolver<V> {
             time_step,
         };
         let law = AnyContact::new(law, input.integrator, approaching, &striker)?;
+        structure.form.is_divided = matches!(law, AnyContact::Divided(_));
         let striker_energy = 0.5 * mass * velocity * velocity;
         let stored = reach.as_ref().map_or(0.0, |reach| {
             reach.stored(&structure.state().restoring_force)
@@ -178,7 +180,14 @@ impl<V: HasTangents> ImpactSolver<V> {
             ..Energies::default()
         };
         Ok(Self {
-            state: state(&structure, struck, &advance, energies, first_input),
+            state: impact_state(
+                structure.state(),
+                struck,
+                &advance,
+                stiffness_at(&structure, struck),
+                energies,
+                first_input,
+            ),
             workspace: Workspace::new(&structure.form),
             unloaded: structure.state().load.clone(),
             structure,
@@ -217,10 +226,12 @@ impl<V: HasTangents> ImpactSolver<V> {
         match law {
             AnyContact::Impulse(law) => {
                 let start = start(state);
-                structure.predict_with(unloaded.view(), |free, compliance| {
-                    *decided = decide(law, &start, free, compliance);
-                    decided.force
-                })
+                let contact = Impulse {
+                    law,
+                    start: &start,
+                    decided,
+                };
+                structure.predict_with(unloaded.view(), contact)
             }
             AnyContact::Divided(law) => {
                 let start = start(state);
@@ -278,16 +289,19 @@ impl<V: HasTangents> ImpactSolver<V> {
             decided,
             ..
         } = self;
-        structure.complete_with(
-            measured_displacement,
-            restoring_force,
-            |free, compliance| {
-                if let AnyContact::Impulse(law) = law {
-                    *decided = decide(law, &start, free, compliance);
-                }
-                decided.force
-            },
-        );
+        match law {
+            AnyContact::Impulse(law) => {
+                let contact = Impulse {
+                    law,
+                    start: &start,
+                    decided,
+                };
+                structure.complete_with(measured_displacement, restoring_force, contact);
+            }
+            AnyContact::Divided(_) => {
+                structure.complete(measured_displacement, restoring_force);
+            }
+        }
         self.follow(&start);
         &self.state
     }
@@ -306,13 +320,20 @@ impl<V: HasTangents> ImpactSolver<V> {
         let (after, struck) = (structure.state(), striker.struck);
         let advance = match law {
             AnyContact::Impulse(law) => {
-                let end = [
+                let (displacement, velocity) = (
                     after.displacement.as_slice()[struck],
                     after.velocity.as_slice()[struck],
-                ];
+                );
+                // The tangent form moves by it; explicit Newmark and α-OS do not.
+                let moved = if structure.form.integrator == Integrator::Tangent {
+                    displacement - start.displacement
+                } else {
+                    0.5 * striker.time_step * (start.velocity + velocity)
+                };
+                let end = [displacement, velocity, moved];
                 let touching = self.state.state != StepState::Free;
                 of_impulse(
-                    law.advance(striker.time_step, start, decided, end),
+                    law.advance(0.5 * striker.time_step, start, decided, end),
                     *decided,
                     touching,
                 )
@@ -334,9 +355,10 @@ impl<V: HasTangents> ImpactSolver<V> {
         energies.error = energies.missing(self.striker_energy, balance.input);
         let input = self.state.input.max(self.first_input + energies.weight);
         let contacts = self.state.contacts + u64::from(advance.contacts);
+        let stiffness = stiffness_at(structure, struck);
         self.state = ImpactState {
             contacts,
-            ..state(structure, struck, &advance, energies, input)
+            ..impact_state(after, struck, &advance, stiffness, energies, input)
         };
         self.striker_stopped |= self.state.striker_velocity <= 0.0;
     }
@@ -446,12 +468,33 @@ const fn start(state: &ImpactState) -> Start {
     }
 }
 
-/// The contact force of a step under a law of impulses.
-#[inline]
-fn decide(law: &ImpulseContact, start: &Start, free: f64, compliance: f64) -> Decided {
-    law.decide::<true>(start, || {
-        law.needed(start.striker_velocity, free, compliance)
-    })
+/// The contact of a step under a law of impulses.
+struct Impulse<'a> {
+    law: &'a ImpulseContact,
+    start: &'a Start,
+    decided: &'a mut Decided,
+}
+
+impl StepContact for Impulse<'_> {
+    #[inline]
+    fn force(&mut self, free: f64, compliance: f64) -> f64 {
+        *self.decided = self.law.decide(self.start, free, compliance);
+        self.decided.force
+    }
+
+    #[inline]
+    fn joined(&mut self, half: f64, unforced: &Unforced) -> [f64; 2] {
+        let (state, ratio) = self.law.join::<true>(self.start, unforced, half);
+        self.decided.state = state;
+        ratio
+    }
+
+    #[inline]
+    fn settled(&mut self, velocity: f64) -> f64 {
+        let Decided { state, force } = &mut *self.decided;
+        *force = self.law.settled(self.start, *state, velocity);
+        *force
+    }
 }
 
 /// The step of such a law; `touching`: the step before it was one in contact.
@@ -471,18 +514,27 @@ fn of_impulse(end: StrikerEnd, decided: Decided, touching: bool) -> Advance {
     }
 }
 
+/// K_t of the struck degree of freedom \[N/m\].
+#[inline]
+fn stiffness_at<V: HasTangents>(structure: &Solver<V>, struck: usize) -> f64 {
+    let followed = structure.state().storey_stiffness.as_slice();
+    followed
+        .get(struck)
+        .copied()
+        .unwrap_or_else(|| structure.form.matrices.stiffness.at(struck, struck))
+}
+
 /// The struck degree of freedom and the striker.
 #[inline]
-fn state<V: HasTangents>(
-    structure: &Solver<V>,
+pub(super) fn impact_state<V: Vector>(
+    state: &State<V>,
     struck: usize,
     advance: &Advance,
+    tangent_stiffness: f64,
     energies: Energies,
     input: f64,
 ) -> ImpactState {
-    let state = structure.state();
     let at = |vector: &V| vector.as_slice()[struck];
-    let followed = state.storey_stiffness.as_slice().get(struck).copied();
     ImpactState {
         step: state.step,
         time: state.time,
@@ -496,8 +548,7 @@ fn state<V: HasTangents>(
         contact_force: advance.contact_force,
         striker_displacement: advance.striker_displacement,
         striker_velocity: advance.striker_velocity,
-        tangent_stiffness: followed
-            .unwrap_or_else(|| structure.form.matrices.stiffness.at(struck, struck)),
+        tangent_stiffness,
         indentation: advance.indentation,
         state: advance.state,
         energies,

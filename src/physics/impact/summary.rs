@@ -86,18 +86,111 @@ impl RunningResults {
     };
 }
 
-impl<N: Number> RunningResults<N> {
-    /// Adds the end of the next step.
+/// How an impact ended, as far as its largest values depend on it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "independent facts")]
+pub struct ImpactEnding {
+    /// The striker has moved forward in every step.
+    pub still_striking: bool,
+    /// A contact force has acted.
+    pub touched: bool,
+    /// The structure was still moving outwards at its largest X.
+    pub still_rising: bool,
+    /// |Ẋ| was larger at the last step than ever before.
+    pub speeding_up: bool,
+    /// F was larger in the last step than ever before.
+    pub pushing_harder: bool,
+}
+
+/// The results that are asked of many impacts: a running result costs as much as a part of the step. The largest displacement, the contacts,
+/// the end of the run and its energy error are always found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "independent results")]
+pub struct Wanted {
+    pub time_of_max_displacement: bool,
+    pub absorbed_energy: bool,
+    pub max_velocity: bool,
+    pub max_contact_force: bool,
+    pub impulse: bool,
+    /// The ranges that limits of a rig bound ([`super::batch::Reach`]).
+    pub reach: bool,
+}
+
+impl Wanted {
+    pub const ALL: Self = Self {
+        time_of_max_displacement: true,
+        absorbed_energy: true,
+        max_velocity: true,
+        max_contact_force: true,
+        impulse: true,
+        reach: true,
+    };
+}
+
+/// The next step, and the results that are wanted of it.
+pub(crate) struct Next<'a, N> {
+    pub wanted: Wanted,
+    pub time_step: N,
+    pub end: &'a StepEnd<N>,
+}
+
+impl<R> RunningResults<R> {
+    /// Adds the end of the next step to those of `before` that are wanted. `get` and `set` read and write a result of one impact, or of
+    /// several side by side.
     #[inline(always)]
-    pub fn add(&mut self, time_step: N, end: &StepEnd<N>) {
-        let farther = end.displacement.gt(self.max_displacement);
-        let chosen = |now: N, before: N| N::choose(farther, || now, || before);
-        self.instant = chosen(end.instant, self.instant);
-        self.absorbed_energy = chosen(end.restoring_energy, self.absorbed_energy);
-        self.max_displacement = self.max_displacement.larger(end.displacement);
-        self.max_velocity = self.max_velocity.larger(end.velocity.abs());
-        self.max_contact_force = self.max_contact_force.larger(end.contact_force);
-        self.impulse = self.impulse + end.contact_force * time_step;
+    pub fn add<N: Number>(
+        &mut self,
+        before: &Self,
+        next: &Next<N>,
+        get: impl Fn(&R) -> N,
+        mut set: impl FnMut(&mut R, N),
+    ) {
+        let Next {
+            wanted,
+            time_step,
+            end,
+        } = *next;
+        let largest = get(&before.max_displacement);
+        let farther = end.displacement.gt(largest);
+        let chosen = |now: N, before: &R| N::choose(farther, || now, || get(before));
+        set(&mut self.max_displacement, largest.larger(end.displacement));
+        if wanted.time_of_max_displacement {
+            set(&mut self.instant, chosen(end.instant, &before.instant));
+        }
+        if wanted.absorbed_energy {
+            let absorbed = chosen(end.restoring_energy, &before.absorbed_energy);
+            set(&mut self.absorbed_energy, absorbed);
+        }
+        if wanted.max_velocity {
+            let fastest = get(&before.max_velocity).larger(end.velocity.abs());
+            set(&mut self.max_velocity, fastest);
+        }
+        if wanted.max_contact_force {
+            let most = get(&before.max_contact_force).larger(end.contact_force);
+            set(&mut self.max_contact_force, most);
+        }
+        if wanted.impulse {
+            let impulse = get(&before.impulse) + end.contact_force * time_step;
+            set(&mut self.impulse, impulse);
+        }
+    }
+}
+
+impl RunningResults {
+    /// Adds the end of the next step.
+    pub fn push(&mut self, time_step: f64, end: &StepEnd) {
+        let next = Next {
+            wanted: Wanted::ALL,
+            time_step,
+            end,
+        };
+        let before = *self;
+        self.add(
+            &before,
+            &next,
+            |number| *number,
+            |number, found| *number = found,
+        );
     }
 }
 
@@ -211,7 +304,7 @@ impl SummaryBuilder {
 
     /// Adds the end of the next step.
     pub fn push(&mut self, state: &ImpactState) {
-        self.results.add(self.input.time_step, &state.step_end());
+        self.results.push(self.input.time_step, &state.step_end());
         self.events.contacts = state.contacts;
         if self.events.stop.is_none() && state.step > 0 && state.striker_velocity <= 0.0 {
             self.events.stop = Some(state.time);

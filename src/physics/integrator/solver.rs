@@ -3,7 +3,7 @@
 
 use super::input::{FrameError, SolverInput};
 use super::state::State;
-use super::step_form::{Moment, Motion, StepForm};
+use super::step_form::{Moment, Motion, StepContact, StepForm};
 use super::tangent::Following;
 use super::tangents::{FollowedTangents as _, HasTangents, Tangents};
 use crate::integrator::Integrator;
@@ -114,8 +114,9 @@ impl<V: HasTangents> Solver<V> {
 
     /// Displacements to command in this step \[m\], under the loads at its end \[N\]. Called again before `complete`, it returns the
     /// same, whatever the loads.
+    #[inline]
     pub fn predict(&mut self, load_end: V::View<'_>) -> V::View<'_> {
-        self.predict_with(load_end, |_, _| 0.0)
+        self.predict_with(load_end, ())
     }
 
     /// Predicted velocities at the end of the step predicted last \[m/s\]: exact in the tangent form, at constant acceleration under the
@@ -136,12 +137,12 @@ impl<V: HasTangents> Solver<V> {
         }
     }
 
-    /// [`Self::predict`] with the contact force that `decide` returns for `v_free` \[m/s\] and w \[m/(N·s)\].
+    /// [`Self::predict`] with a contact.
     #[inline]
     pub(crate) fn predict_with(
         &mut self,
         load_end: V::View<'_>,
-        decide: impl FnOnce(f64, f64) -> f64,
+        contact: impl StepContact,
     ) -> V::View<'_> {
         if !self.predicted {
             self.predicted = true;
@@ -149,13 +150,15 @@ impl<V: HasTangents> Solver<V> {
             self.damping_work = None;
             let Self {
                 form,
+                tangents,
                 state,
                 next,
                 load_end,
                 ..
             } = self;
             if form.integrator == Integrator::Tangent {
-                form.predict(&state.moment(), load_end, next, decide);
+                let tangents = tangents.as_ref();
+                V::predict(form, tangents, &state.moment(), load_end, next, contact);
             } else {
                 form.impose(&state.moment(), next);
             }
@@ -189,12 +192,13 @@ impl<V: HasTangents> Solver<V> {
     }
 
     /// Ends the step with the readings at the targets. Without a prediction before it, the loads are those of its start.
+    #[inline]
     pub fn complete(
         &mut self,
         measured_displacement: V::View<'_>,
         restoring_force: V::View<'_>,
     ) -> &State<V> {
-        self.complete_with(measured_displacement, restoring_force, |_, _| 0.0)
+        self.complete_with(measured_displacement, restoring_force, ())
     }
 
     #[inline]
@@ -202,7 +206,7 @@ impl<V: HasTangents> Solver<V> {
         &mut self,
         measured_displacement: V::View<'_>,
         restoring_force: V::View<'_>,
-        decide: impl FnOnce(f64, f64) -> f64,
+        contact: impl StepContact,
     ) -> &State<V> {
         if !self.predicted {
             let load = self.state.load.clone();
@@ -240,15 +244,13 @@ impl<V: HasTangents> Solver<V> {
         if form.integrator == Integrator::Tangent {
             next.force.set(effective_force.view());
         } else {
-            form.correct(&state.moment(), load_end, effective_force, next, decide);
+            form.correct(&state.moment(), load_end, effective_force, next, contact);
         }
         if let Some(tangents) = tangents
             && tangents.take(&state.measured_displacement, &state.restoring_force)
         {
             if form.integrator == Integrator::Tangent {
-                // No storey tangent is negative, so that M̂ has a factor because M has one; after a failure by rounding the last factor
-                // remains.
-                let _ = form.set_tangent(|stiffness| tangents.compose(stiffness));
+                V::follow(form, tangents);
             }
             state.storey_stiffness.set(tangents.stiffness().view());
         }
@@ -318,11 +320,11 @@ impl<V: HasTangents> Solver<V> {
         state.energies = state
             .energies
             .advance(matrices, time_step, &ends, damping_work, scratch);
-        std::mem::swap(&mut state.displacement, &mut next.displacement);
-        std::mem::swap(&mut state.velocity, &mut next.velocity);
-        std::mem::swap(&mut state.acceleration, &mut next.acceleration);
-        std::mem::swap(&mut state.force_at_computed, &mut next.force);
-        std::mem::swap(&mut state.load, load_end);
+        state.displacement.take_over(&mut next.displacement);
+        state.velocity.take_over(&mut next.velocity);
+        state.acceleration.take_over(&mut next.acceleration);
+        state.force_at_computed.take_over(&mut next.force);
+        state.load.take_over(load_end);
         state.step += 1;
         // A signed number is converted in one instruction.
         #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]

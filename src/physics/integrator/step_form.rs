@@ -27,6 +27,7 @@
 
 use super::coefficients::Coefficients;
 use crate::integrator::Integrator;
+use crate::structure::matrix::one_degree::Unforced;
 use crate::structure::matrix::{Factor, Matrix, SetOut, Vector};
 use crate::structure::{Matrices, NotPositiveDefinite};
 
@@ -46,8 +47,40 @@ pub(crate) struct StepForm<V: Vector> {
     /// Whether there is any damping.
     damped: bool,
     struck: Option<Struck<V>>,
+    /// A contact law divides steps.
+    pub is_divided: bool,
     scratch: V,
     product: V,
+}
+
+/// What decides on the contact force of a step, from its end without contact.
+pub(crate) trait StepContact {
+    /// F \[N\] from `v_free` \[m/s\] and w \[m/s/N\].
+    fn force(&mut self, free: f64, compliance: f64) -> f64;
+
+    /// Ẍ₁ of one degree of freedom with its contact, as a ratio; `half` is ½Δt \[s\].
+    fn joined(&mut self, half: f64, unforced: &Unforced) -> [f64; 2];
+
+    /// F \[N\] of that step, which ends with Ẋ₁ \[m/s\].
+    fn settled(&mut self, velocity: f64) -> f64;
+}
+
+/// No contact.
+impl StepContact for () {
+    #[inline]
+    fn force(&mut self, _: f64, _: f64) -> f64 {
+        0.0
+    }
+
+    #[inline]
+    fn joined(&mut self, _: f64, unforced: &Unforced) -> [f64; 2] {
+        [unforced.top, unforced.bottom]
+    }
+
+    #[inline]
+    fn settled(&mut self, _: f64) -> f64 {
+        0.0
+    }
 }
 
 type Factored<V> = <<V as Vector>::Matrix as Matrix>::Factor;
@@ -129,6 +162,7 @@ impl<V: Vector> StepForm<V> {
             effective,
             damped: !matrices.damping.vanishes(),
             struck: None,
+            is_divided: false,
             scratch: V::zero(order),
             product: V::zero(order),
             matrices: matrices.clone(),
@@ -249,22 +283,21 @@ impl Shares {
 }
 
 impl<V: Vector> StepForm<V> {
-    /// The whole step in tangent form, except the force at its end, which is read later. `decide` gives the contact force \[N\] from
-    /// `v_free` \[m/s\] and w \[m/s/N\].
+    /// The whole step in tangent form, except the force at its end, which is read later.
     #[inline]
     pub fn predict(
         &mut self,
         from: &Moment<V>,
         load_end: &V,
         to: &mut Motion<V>,
-        decide: impl FnOnce(f64, f64) -> f64,
+        mut contact: impl StepContact,
     ) {
         self.acceleration_without_contact(from, load_end, &mut to.acceleration);
         if let Some(struck) = &mut self.struck {
             let (half, s) = (0.5 * self.time_step, struck.index);
             let accelerations = from.acceleration.as_slice()[s] + to.acceleration.as_slice()[s];
             let free = from.velocity.as_slice()[s] + half * accelerations;
-            struck.force = decide(free, half * struck.response.as_slice()[s]);
+            struck.force = contact.force(free, half * struck.response.as_slice()[s]);
             add(&mut to.acceleration, struck.force, &struck.response);
         }
         let start = [from.displacement, from.velocity, from.acceleration];
@@ -328,7 +361,7 @@ impl<V: Vector> StepForm<V> {
         }
     }
 
-    /// The end of the step that imposed `to.displacement`, with the measured force `read` \[N\]; `decide` as in [`Self::predict`].
+    /// The end of the step that imposed `to.displacement`, with the measured force `read` \[N\].
     #[inline]
     pub fn correct(
         &mut self,
@@ -336,7 +369,7 @@ impl<V: Vector> StepForm<V> {
         load_end: &V,
         read: &V,
         to: &mut Motion<V>,
-        decide: impl FnOnce(f64, f64) -> f64,
+        mut contact: impl StepContact,
     ) {
         let contact_beta = self.contact_beta();
         let (time_step, Coefficients { alpha, beta, gamma }) = (self.time_step, self.coefficients);
@@ -364,7 +397,7 @@ impl<V: Vector> StepForm<V> {
                 to.velocity.as_slice()[s] + gamma * time_step * to.acceleration.as_slice()[s];
             let compliance = time_step
                 * (0.5 * struck.push.as_slice()[s] - gamma * struck.response.as_slice()[s]);
-            struck.force = decide(free, compliance);
+            struck.force = contact.force(free, compliance);
             add(&mut to.acceleration, -struck.force, &struck.response);
             add(
                 &mut to.velocity,
@@ -390,6 +423,14 @@ impl<V: Vector> StepForm<V> {
         }
         if let Some(struck) = &self.struck {
             add(&mut to.acceleration, struck.force, &struck.push);
+        }
+    }
+
+    /// Sets F of the step in progress \[N\].
+    #[inline]
+    pub fn set_contact_force(&mut self, force: f64) {
+        if let Some(struck) = &mut self.struck {
+            struck.force = force;
         }
     }
 

@@ -9,7 +9,6 @@
 
 use std::collections::VecDeque;
 
-use crate::number::Number;
 use crate::statistics::DeclaredNoise;
 
 /// A tangent stiffness needs a change of force this many times the load cell's noise. With less, noise appears as a stiffness (at 10 a
@@ -74,7 +73,8 @@ impl TangentStiffness {
         let change = displacement - self.last.0;
         let mut value = self.value;
         if change.abs() > self.least_change {
-            value = secant(force - self.last.1, change, self.largest);
+            // Eq. (6)
+            value = ((force - self.last.1) / change).clamp(0.0, self.largest);
             self.value = value;
         }
         if self.least_change > 0.0 {
@@ -107,16 +107,6 @@ impl TangentStiffness {
             }
         }
     }
-}
-
-/// Eq. (6): a change of force \[N\] over its change of displacement \[m\], inside the bounds \[N/m\].
-#[allow(
-    clippy::inline_always,
-    reason = "a part of its caller, which is compiled for several vector units"
-)]
-#[inline(always)]
-pub(crate) fn secant<N: Number>(force: N, displacement: N, largest: N) -> N {
-    (force / displacement).clamped(largest.same(0.0), largest)
 }
 
 /// Least squares of force on displacement, with an intercept.

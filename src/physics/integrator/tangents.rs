@@ -3,10 +3,12 @@
 
 use std::fmt::Debug;
 
+use super::step_form::{Moment, Motion, StepContact, StepForm};
 use super::tangent::{Following, TangentStiffness};
 use crate::statistics::DeclaredNoise;
+use crate::structure::matrix::one_degree::{Body, LEAST_CHANGE, Secant};
 use crate::structure::matrix::{Matrix, Vector};
-use crate::structure::{SymmetricBand, set_storeys, storeys_of};
+use crate::structure::{Matrices, SymmetricBand, set_storeys, storeys_of};
 
 /// `K_t` of the tangent form.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,20 +49,158 @@ pub trait FollowedTangents: Clone + Debug {
 /// A vector of a structure whose tangent stiffness can be followed.
 pub trait HasTangents: Vector {
     type Tangents: FollowedTangents<Vector = Self>;
+
+    /// The whole step in tangent form, except the force at its end, which is read later.
+    #[allow(
+        private_interfaces,
+        private_bounds,
+        reason = "no other crate steps a form"
+    )]
+    fn predict(
+        form: &mut StepForm<Self>,
+        tangents: Option<&Self::Tangents>,
+        from: &Moment<Self>,
+        load_end: &Self,
+        to: &mut Motion<Self>,
+        contact: impl StepContact,
+    );
+
+    /// The tangents have changed.
+    #[allow(
+        private_interfaces,
+        private_bounds,
+        reason = "no other crate steps a form"
+    )]
+    fn follow(form: &mut StepForm<Self>, tangents: &Self::Tangents);
 }
 
+#[allow(
+    private_interfaces,
+    private_bounds,
+    reason = "no other crate steps a form"
+)]
 impl HasTangents for f64 {
     type Tangents = StoreyTangent;
+
+    #[inline]
+    fn predict(
+        form: &mut StepForm<f64>,
+        tangents: Option<&StoreyTangent>,
+        from: &Moment<f64>,
+        load_end: &f64,
+        to: &mut Motion<f64>,
+        contact: impl StepContact,
+    ) {
+        let Matrices { mass, damping, .. } = form.matrices;
+        let point = Point {
+            body: Body::new([mass, damping], form.time_step),
+            damped: form.damping().is_some(),
+            secant: tangents.map_or(Secant::of(*form.operator()), |tangents| tangents.secant),
+            motion: [*from.displacement, *from.velocity, *from.acceleration],
+            unbalanced: load_end - from.force,
+        };
+        let ([displacement, velocity, acceleration], force) = point.step(contact);
+        (to.displacement, to.velocity, to.acceleration) = (displacement, velocity, acceleration);
+        form.set_contact_force(force);
+    }
+
+    /// A whole step has its tangent as a ratio; only a part of one needs the factor.
+    #[inline]
+    fn follow(form: &mut StepForm<f64>, tangents: &StoreyTangent) {
+        if form.is_divided {
+            let _ = form.set_tangent(|stiffness| tangents.compose(stiffness));
+        }
+    }
 }
 
+#[allow(
+    private_interfaces,
+    private_bounds,
+    reason = "no other crate steps a form"
+)]
 impl HasTangents for Vec<f64> {
     type Tangents = StoreyTangents;
+
+    /// A frame of one floor is one degree of freedom.
+    #[inline]
+    fn predict(
+        form: &mut StepForm<Self>,
+        tangents: Option<&StoreyTangents>,
+        from: &Moment<Self>,
+        load_end: &Self,
+        to: &mut Motion<Self>,
+        contact: impl StepContact,
+    ) {
+        if load_end.len() > 1 {
+            return form.predict(from, load_end, to, contact);
+        }
+        let constant = || Secant::of(form.operator().at(0, 0));
+        let Matrices { mass, damping, .. } = &form.matrices;
+        let point = Point {
+            body: Body::new([mass.at(0, 0), damping.at(0, 0)], form.time_step),
+            damped: form.damping().is_some(),
+            secant: tangents
+                .and_then(|tangents| tangents.only.as_ref())
+                .map_or_else(constant, |only| only.secant),
+            motion: [from.displacement[0], from.velocity[0], from.acceleration[0]],
+            unbalanced: load_end[0] - from.force[0],
+        };
+        let ([displacement, velocity, acceleration], force) = point.step(contact);
+        to.displacement[0] = displacement;
+        to.velocity[0] = velocity;
+        to.acceleration[0] = acceleration;
+        form.set_contact_force(force);
+    }
+
+    fn follow(form: &mut StepForm<Self>, tangents: &StoreyTangents) {
+        // No storey tangent is negative, so that M̂ has a factor because M has one; after a failure by rounding the last factor
+        // remains.
+        let _ = form.set_tangent(|stiffness| tangents.compose(stiffness));
+    }
 }
 
-/// The tangent of one degree of freedom.
+/// A step of one degree of freedom.
+struct Point {
+    body: Body,
+    damped: bool,
+    secant: Secant,
+    /// X, Ẋ, Ẍ
+    motion: [f64; 3],
+    /// f₁ − R \[N\]
+    unbalanced: f64,
+}
+
+impl Point {
+    /// X₁, Ẋ₁, Ẍ₁ and F \[N\].
+    #[inline]
+    fn step(&self, mut contact: impl StepContact) -> ([f64; 3], f64) {
+        let [displacement, velocity, acceleration] = self.motion;
+        let unforced = self.body.unforced(
+            self.damped,
+            [velocity, acceleration],
+            self.unbalanced,
+            &self.secant,
+        );
+        let [top, bottom] = contact.joined(self.body.half, &unforced);
+        let acceleration = top / bottom;
+        let [displacement, velocity] = self.body.travel(displacement, &unforced, acceleration);
+        (
+            [displacement, velocity, acceleration],
+            contact.settled(velocity),
+        )
+    }
+}
+
+/// The tangent of one degree of freedom: of exact readings a ratio, which a step solves without a division.
 #[derive(Clone, Debug)]
 pub struct StoreyTangent {
-    storey: Storey,
+    secant: Secant,
+    /// \[N/m\]
+    largest: f64,
+    /// The last reading \[m\], \[N\].
+    last: [f64; 2],
+    /// None if readings are exact.
+    noisy: Option<Box<TangentStiffness>>,
     /// \[N/m\]
     stiffness: f64,
 }
@@ -68,6 +208,8 @@ pub struct StoreyTangent {
 /// The tangents of storeys.
 #[derive(Clone, Debug)]
 pub struct StoreyTangents {
+    /// That of the only storey.
+    only: Option<StoreyTangent>,
     storeys: Vec<Storey>,
     /// \[N/m\]
     stiffnesses: Vec<f64>,
@@ -95,13 +237,6 @@ impl Storey {
     fn new(stiffness: f64, following: Following, last: Reading) -> Self {
         let followed = TangentStiffness::new(stiffness, following, last.drift, last.shear);
         Self { followed, last }
-    }
-
-    /// Adds the next reading of a single storey: every secant is used, because its factor costs one division.
-    #[inline]
-    fn take_alone(&mut self, displacement: f64, force: f64, stiffness: &mut f64) -> bool {
-        let before = std::mem::replace(stiffness, self.followed.take(displacement, force));
-        *stiffness != before
     }
 
     /// Adds the next reading of one storey of several; returns whether `stiffness` \[N/m\] changed by more than rounding.
@@ -156,14 +291,13 @@ impl FollowedTangents for StoreyTangent {
     type Vector = f64;
 
     fn new(stiffness: &f64, following: Following, displacement: &f64, force: &f64) -> Option<Self> {
-        let first = Reading {
-            drift: *displacement,
-            shear: *force,
-            drift_rounding: 0.0,
-            shear_rounding: 0.0,
-        };
+        let exact = following.noise == DeclaredNoise::NONE;
+        let noisy = || TangentStiffness::new(*stiffness, following, *displacement, *force);
         Some(Self {
-            storey: Storey::new(*stiffness, following, first),
+            secant: Secant::of(*stiffness),
+            largest: following.largest_ratio * stiffness,
+            last: [*displacement, *force],
+            noisy: (!exact).then(|| Box::new(noisy())),
             stiffness: *stiffness,
         })
     }
@@ -180,8 +314,14 @@ impl FollowedTangents for StoreyTangent {
 
     #[inline]
     fn take(&mut self, displacement: &f64, force: &f64) -> bool {
-        self.storey
-            .take_alone(*displacement, *force, &mut self.stiffness)
+        let [change, rise] = [displacement - self.last[0], force - self.last[1]];
+        self.last = [*displacement, *force];
+        self.secant = match &mut self.noisy {
+            None => self.secant.after(rise, change, self.largest, LEAST_CHANGE),
+            Some(followed) => Secant::of(followed.take(*displacement, *force)),
+        };
+        let before = std::mem::replace(&mut self.stiffness, self.secant.stiffness());
+        self.stiffness != before
     }
 }
 
@@ -216,7 +356,12 @@ impl FollowedTangents for StoreyTangents {
             storeys.push(Storey::new(stiffnesses[storey], following, first));
         });
         storeys.reverse();
+        let only = match &stiffnesses[..] {
+            [only] => StoreyTangent::new(only, following, &displacement[0], &force[0]),
+            _ => None,
+        };
         Some(Self {
+            only,
             storeys,
             stiffnesses,
         })
@@ -233,11 +378,14 @@ impl FollowedTangents for StoreyTangents {
     fn take(&mut self, displacement: &Vec<f64>, force: &Vec<f64>) -> bool {
         let mut changed = false;
         let Self {
+            only,
             storeys,
             stiffnesses,
         } = self;
-        if let ([storey], [stiffness]) = (&mut storeys[..], &mut stiffnesses[..]) {
-            return storey.take_alone(displacement[0], force[0], stiffness);
+        if let Some(only) = only {
+            changed = only.take(&displacement[0], &force[0]);
+            stiffnesses[0] = only.stiffness;
+            return changed;
         }
         each_reading(displacement, force, |storey, now| {
             changed |= storeys[storey].take(now, &mut stiffnesses[storey]);

@@ -5,6 +5,23 @@
 #[must_use]
 pub fn acceleration_at(times: &[f64], accelerations: &[f64], time: f64) -> f64 {
     let after = times.partition_point(|sample| *sample <= time);
+    before_sample(times, accelerations, time, after)
+}
+
+/// The same, at times that rise from call to call: `passed` counts the samples up to the last one.
+pub fn next_acceleration(
+    times: &[f64],
+    accelerations: &[f64],
+    time: f64,
+    passed: &mut usize,
+) -> f64 {
+    let later = times.iter().skip(*passed);
+    *passed += later.take_while(|sample| **sample <= time).count();
+    before_sample(times, accelerations, time, *passed)
+}
+
+/// m/s² at `time` \[s\], which is before the sample with this index and not before the one in front of it.
+fn before_sample(times: &[f64], accelerations: &[f64], time: f64, after: usize) -> f64 {
     let Some(before) = after.checked_sub(1) else {
         return 0.0;
     };

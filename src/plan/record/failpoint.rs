@@ -66,6 +66,7 @@ thread_local! {
 
 /// Whether the guard is on in this thread: in the program always.
 #[must_use]
+#[inline]
 pub fn on(guard: Guarding) -> bool {
     OFF.get() != Some(guard)
 }

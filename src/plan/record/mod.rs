@@ -28,7 +28,7 @@ use crate::schema::block_of_words;
 use crate::uncertainty::{Contribution, Source, combined_entries};
 pub use held::Held;
 pub use history::History;
-pub use history::floors::{FloorMotion, FloorStep, Floors, FloorsAt, StruckFrame};
+pub use history::floors::{FloorMotion, FloorStep, Floors, FloorsAt, StillGrowing, StruckFrame};
 pub use identity::Identity;
 pub use psd_physics::contact::state::StepState;
 pub use psd_physics::identification::LineFit;
@@ -77,6 +77,12 @@ pub enum Outcome {
 
 /// The end of the text of an inspection of a simulated rig without a terminal.
 pub const NO_OPERATOR_ASKED: &str = "no operator was asked: simulated rig, no terminal";
+
+/// The event in the run log before a stopped run unloads.
+pub const UNLOADING: &str = "unloading to where the run began";
+
+/// Between a value and its limit, in the text of a limit that was broken.
+pub const IS_OUTSIDE: &str = " is outside its limit ";
 
 /// An event for the report.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

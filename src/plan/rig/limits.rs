@@ -19,6 +19,7 @@ impl Interval {
 
     /// Whether `x` is inside; NaN never is.
     #[must_use]
+    #[inline]
     pub fn contains(self, x: f64) -> bool {
         self.low <= x && x <= self.high
     }
@@ -75,15 +76,21 @@ impl Limits {
     /// The limits that the guard enforces: the tracking-error energy always has one.
     #[must_use]
     pub fn held(&self) -> Self {
-        if self.tracking_energy_error.is_bounded() {
-            return *self;
-        }
         Self {
-            tracking_energy_error: Interval {
-                low: 0.0,
-                high: monitor::HOLD,
-            },
+            tracking_energy_error: self.held_tracking_energy_error(),
             ..*self
+        }
+    }
+
+    /// The limit of the tracking-error energy, as a fraction of the input energy: that of the plan, else the default.
+    #[must_use]
+    pub fn held_tracking_energy_error(&self) -> Interval {
+        if self.tracking_energy_error.is_bounded() {
+            return self.tracking_energy_error;
+        }
+        Interval {
+            low: 0.0,
+            high: monitor::HOLD,
         }
     }
 

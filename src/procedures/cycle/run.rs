@@ -6,10 +6,10 @@ use super::results::results;
 use super::uncertainty::{ENDS, RecordedLoops};
 use crate::procedures::common::dwell_readings::DwellReadings;
 use crate::procedures::stiffness_ramp::curve;
-use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::{Session, first};
 use crate::run::stop::Stop;
+use crate::run::{Keep, Performed};
 use psd_physics::identification::cyclic::{LoopPoint, loop_of, work};
 use psd_physics::identification::loop_sampling::spaced;
 use psd_plan::procedures::cycle::block as schema;
@@ -53,7 +53,7 @@ pub(crate) fn perform(
     let mut results = results(&cycling.history, noise);
     let left_open =
         super::uncertainty::left_open_by_points(&cycling.history, samples, instruments.errors(0));
-    if session.settings.uncertainty {
+    if session.keep == Keep::Everything {
         let loops = RecordedLoops {
             history: &cycling.history,
             samples,

@@ -1,19 +1,24 @@
-//! Impacts that run in batches, for studies. In: the plan of a run whose only procedure is an impact. Out: the record of its procedure
-//! without steps, or None where the impact has to run on the rig. It moves nothing.
+//! Impacts that run in batches, for studies. In: the plan of a run whose only procedure is an impact. Out: its outcome, and the record of
+//! its procedure without steps; or why the impact has to run on the rig. It moves nothing.
 //!
 //! On an ideal rig every reading is its target and the force there, so the steps of `physics::impact::batch` are those of the run. An
-//! impact that a limit would stop, or whose peaks were not reached, runs on the rig: its outcome depends on its steps.
+//! impact beyond a limit is integrated again, to find the step in which the guard stops it.
 
 use crate::procedures::impact::results::{of_impact, of_steps};
 use crate::procedures::impact::setting::Setting;
 use crate::run::inputs::Inputs;
+use crate::run::stop::Stop;
 use psd_physics::impact::batch::{self, Batched, Reach};
+use psd_physics::impact::summary::{ImpactEnding, Wanted};
+use psd_physics::impact::{ImpactState, Sink};
+use psd_physics::integrator::state::State;
 use psd_physics::specimen::SpecimenModel;
 use psd_plan::formula::{NoResults, ProcedureId};
 use psd_plan::procedures::impact::block as schema;
-use psd_plan::record::{History, ImpactHistory, ProcedureRecord};
+use psd_plan::record::{History, ImpactHistory, NamedResult, Outcome, ProcedureRecord};
+use psd_plan::schema::ResultKind;
 use psd_plan::{Impact, Interval, Limits, Mode, Plan, Procedure, Until};
-use psd_rig::DeclaredNoise;
+use psd_rig::{DeclaredNoise, RigFault, fault_of_ideal_step};
 
 /// An impact that can run in a batch.
 #[derive(Clone, Debug)]
@@ -33,9 +38,34 @@ const OF_STEPS: [&str; 3] = [
     schema::STEPS.name,
 ];
 
+/// Whether a result is wanted, as a part of what is.
+type Part = fn(&mut Wanted) -> &mut bool;
+
+/// Results of an impact that cost a part of each step.
+const OF_EVERY_STEP: [(ResultKind, Part); 5] = [
+    (schema::TIME_OF_MAX_DISPLACEMENT, |it| {
+        &mut it.time_of_max_displacement
+    }),
+    (schema::ABSORBED_ENERGY, |it| &mut it.absorbed_energy),
+    (schema::MAX_VELOCITY, |it| &mut it.max_velocity),
+    (schema::MAX_CONTACT_FORCE, |it| &mut it.max_contact_force),
+    (schema::IMPULSE, |it| &mut it.impulse),
+];
+
+/// What a batch has to find for these results.
+pub(crate) fn wanted<'a>(results: impl Iterator<Item = &'a str>) -> Wanted {
+    let mut wanted = Wanted::default();
+    for name in results {
+        if let Some((_, part)) = OF_EVERY_STEP.iter().find(|(kind, _)| kind.name == name) {
+            *part(&mut wanted) = true;
+        }
+    }
+    wanted
+}
+
 /// Whether a batch gives this result of an impact.
 pub(crate) fn gives(result: &str) -> bool {
-    let history = without_steps(0.0, 0.0);
+    let history = without_steps(0.0, 0.0, ImpactEnding::default());
     let known = of_impact(None, &history).map(|found| found.name);
     let times = of_steps(&history).map(|found| found.name);
     known.chain(times).any(|name| name == result) && !OF_STEPS.contains(&result)
@@ -70,43 +100,127 @@ impl BatchedImpact {
         })
     }
 
-    /// The record of its procedure, unless its outcome depends on its steps.
-    fn record(&self, of: &Procedure, result: &Batched) -> Option<ProcedureRecord> {
-        let Batched { summary, reach } = result;
-        // A largest value at the last step may not be the peak.
-        let peaked = summary.stop_time.is_some()
-            && !summary.still_rising
-            && reach.last_velocity.abs() < summary.max_velocity
-            && (reach.last_contact_force < summary.max_contact_force
-                || reach.last_contact_force == 0.0);
-        if !(peaked && summary.energy_error.is_finite() && within(&self.limits, reach)) {
-            return None;
+    /// Its outcome, unless the rig has to find it.
+    fn ended(&self, of: &Procedure, result: &Batched, mut wanted: Wanted) -> Result<Ended, Leaves> {
+        let Batched {
+            summary,
+            ending,
+            reach,
+        } = result;
+        if !(summary.energy_error.is_finite() && summary.final_displacement.is_finite()) {
+            return Err(Leaves::NotFinite);
         }
-        let history = without_steps(self.time_step, self.critical_time_step);
-        let results = of_impact(Some(summary), &history).chain(of_steps(&history));
-        Some(ProcedureRecord {
-            name: of.name.clone(),
-            kind: of.kind.keyword(),
-            complete: true,
-            inputs: Vec::new(),
-            results: results.collect(),
-            history: History::Impact(history),
+        if !within(&self.limits, &Reach::default()) {
+            return Err(Leaves::OutsideAtStart);
+        }
+        let stop = if within(&self.limits, reach) {
+            None
+        } else {
+            self.stop()
+        };
+        let history = without_steps(self.time_step, self.critical_time_step, *ending);
+        // What is known of an impact that was stopped is not a result.
+        let summary = stop.is_none().then_some(summary);
+        let found = |result: &NamedResult| {
+            let mut of_every_step = OF_EVERY_STEP.iter();
+            of_every_step
+                .find(|(kind, _)| kind.name == result.name)
+                .is_none_or(|(_, part)| *part(&mut wanted))
+        };
+        let results = of_impact(summary, &history).chain(of_steps(&history));
+        Ok(Ended {
+            procedure: ProcedureRecord {
+                name: of.name.clone(),
+                kind: of.kind.keyword(),
+                complete: stop.is_none(),
+                inputs: Vec::new(),
+                results: results.filter(found).collect(),
+                history: History::Impact(history),
+            },
+            outcome: stop.map_or(Outcome::Completed, |fault| Stop::Rig(fault).outcome()),
         })
+    }
+
+    /// The fault with which the guard stops it.
+    fn stop(&self) -> Option<RigFault> {
+        let mut stopped = Stopped {
+            limits: &self.limits,
+            position: 0.0,
+            fault: None,
+        };
+        // An impact that has results can be integrated.
+        let _ = self
+            .impact
+            .simulate(Some(self.until), self.steps, &mut stopped);
+        stopped.fault
     }
 }
 
-const fn without_steps(time_step: f64, critical_time_step: f64) -> ImpactHistory {
+/// How an impact in a batch ended.
+pub(crate) struct Ended {
+    /// Of its procedure, without steps.
+    pub procedure: ProcedureRecord,
+    pub outcome: Outcome,
+}
+
+/// Why an impact leaves its batch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Leaves {
+    /// Its values need the rig.
+    NeedsRig,
+    OutsideAtStart,
+    NotFinite,
+}
+
+/// Finds the first step that a guard stops.
+struct Stopped<'a> {
+    limits: &'a Limits,
+    /// At the last step end \[m\].
+    position: f64,
+    fault: Option<RigFault>,
+}
+
+impl<V> Sink<V> for Stopped<'_> {
+    fn push(&mut self, _: &State<V>, state: &ImpactState, _: bool) {
+        if self.fault.is_none() {
+            let step = [self.position, state.displacement];
+            self.fault = fault_of_ideal_step(self.limits, step, state.restoring_force);
+            self.position = state.displacement;
+        }
+    }
+}
+
+const fn without_steps(
+    time_step: f64,
+    critical_time_step: f64,
+    ending: ImpactEnding,
+) -> ImpactHistory {
     ImpactHistory {
         steps: Vec::new(),
+        ending,
         frame: None,
         time_step,
         critical_time_step,
     }
 }
 
-/// The records of impacts of one procedure, in their order; None for one that has to run on the rig.
-pub(crate) fn run(of: &Procedure, impacts: &[BatchedImpact]) -> Vec<Option<ProcedureRecord>> {
-    let mut records = vec![None; impacts.len()];
+/// How impacts of one procedure end, in their order.
+pub(crate) fn run(
+    of: &Procedure,
+    impacts: &[BatchedImpact],
+    wanted: Wanted,
+) -> Vec<Result<Ended, Leaves>> {
+    let bounds = |limits: &Limits| {
+        [limits.displacement, limits.force, limits.increment]
+            .iter()
+            .any(|limit| limit.is_bounded())
+    };
+    let wanted = Wanted {
+        reach: impacts.iter().any(|impact| bounds(&impact.limits)),
+        ..wanted
+    };
+    let mut found: Vec<Result<Ended, Leaves>> =
+        impacts.iter().map(|_| Err(Leaves::NeedsRig)).collect();
     let mut left: Vec<usize> = (0..impacts.len()).collect();
     while let Some(first) = left.first() {
         let (until, steps) = (impacts[*first].until, impacts[*first].steps);
@@ -119,15 +233,15 @@ pub(crate) fn run(of: &Procedure, impacts: &[BatchedImpact]) -> Vec<Option<Proce
             .collect();
         for (at, result) in together
             .into_iter()
-            .zip(batch::run(&batch, Some(until), steps))
+            .zip(batch::run(&batch, Some(until), steps, wanted))
         {
-            records[at] = result
-                .ok()
-                .and_then(|result| impacts[at].record(of, &result));
+            if let Ok(result) = result {
+                found[at] = impacts[at].ended(of, &result, wanted);
+            }
         }
         left = others;
     }
-    records
+    found
 }
 
 /// Whether every reading of the rig is the target and the force there, and no limit depends on more than the reach of an impact.

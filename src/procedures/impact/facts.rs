@@ -28,7 +28,6 @@ pub(crate) fn facts(impact: &Impact) -> Facts<'_> {
     };
     match &impact.target {
         ImpactTarget::Point(point) => Facts {
-            point_impact: Some(impact),
             dependence: Dependence {
                 striker: Some(impact.striker),
                 mass_uncertainty: Some(point.mass_uncertainty),

@@ -8,7 +8,7 @@ use crate::run::session::Session;
 use psd_physics::contact::ContactLaw;
 use psd_physics::contact::state::StepState;
 use psd_physics::impact::energy::Energies;
-use psd_physics::impact::summary::{ImpactSummary, SummaryBuilder};
+use psd_physics::impact::summary::{ImpactEnding, ImpactSummary, SummaryBuilder};
 use psd_physics::impact::{ImpactInput, ImpactState};
 use psd_physics::integrator::state::State;
 use psd_physics::reintegration::impact::ImpactValues;
@@ -18,7 +18,9 @@ use psd_physics::structure::{drifts, shears, widen};
 use psd_plan::Until;
 use psd_plan::procedures::impact::block as schema;
 use psd_plan::record::history::floors::drift_of;
-use psd_plan::record::{EventKind, ImpactHistory, NamedResult, StruckFrame};
+use psd_plan::record::{
+    EventKind, FloorMotion, Floors as _, ImpactHistory, NamedResult, StillGrowing, StruckFrame,
+};
 use psd_plan::schema::ResultKind;
 use psd_rig::Reading;
 use psd_text::units::Dimension;
@@ -215,7 +217,24 @@ pub(crate) fn observe(
 /// An impact on one degree of freedom, or on one floor of a frame.
 pub(crate) struct StruckSummary {
     impact: SummaryBuilder,
+    velocity: Growing,
+    contact_force: Growing,
     floors: Option<FloorSummary>,
+}
+
+/// A largest value, step by step.
+#[derive(Clone, Copy, Default)]
+struct Growing {
+    largest: f64,
+    /// Whether the last value exceeds all values before it.
+    is_last: bool,
+}
+
+impl Growing {
+    fn push(&mut self, value: f64) {
+        self.is_last = value > self.largest;
+        self.largest = self.largest.max(value);
+    }
 }
 
 impl StruckSummary {
@@ -223,6 +242,8 @@ impl StruckSummary {
     pub(crate) fn new(input: &ImpactInput) -> Self {
         Self {
             impact: SummaryBuilder::new(input),
+            velocity: Growing::default(),
+            contact_force: Growing::default(),
             floors: None,
         }
     }
@@ -230,16 +251,39 @@ impl StruckSummary {
     /// On one floor; `body` is that floor with the striker, `noise` the standard deviation of the measured base shear \[N\].
     pub(crate) fn of_frame(body: &ImpactInput, floors: usize, noise: f64) -> Self {
         Self {
-            impact: SummaryBuilder::new(body),
             floors: Some(FloorSummary::new(body, floors, noise)),
+            ..Self::new(body)
         }
     }
 
     /// Adds the end of a step.
     pub(crate) fn push<V: Vector>(&mut self, structure: &State<V>, state: &ImpactState) {
         self.impact.push(state);
+        self.velocity.push(state.velocity.abs());
+        self.contact_force.push(state.contact_force);
         if let Some(floors) = &mut self.floors {
             floors.push(structure, state);
+        }
+    }
+
+    /// How an impact with these steps ended; `impact` is the summary of the struck degree of freedom.
+    pub(super) fn ending(&self, impact: &ImpactSummary, history: &ImpactHistory) -> ImpactEnding {
+        let has_moved = history.steps.last().is_some_and(|last| last.step > 0);
+        ImpactEnding {
+            still_striking: has_moved && impact.stop_time.is_none(),
+            touched: impact.max_contact_force > 0.0,
+            still_rising: impact.still_rising,
+            speeding_up: self.velocity.is_last,
+            pushing_harder: self.contact_force.is_last,
+        }
+    }
+
+    /// Sets what is still growing at the last step of a struck frame.
+    pub(super) fn growing(&self, history: &mut ImpactHistory) {
+        if let (Some(summary), Some(frame)) = (&self.floors, &mut history.frame)
+            && let Some(last) = frame.floors.last()
+        {
+            frame.growing = summary.growing(&last.floors);
         }
     }
 
@@ -270,8 +314,13 @@ pub(crate) struct FloorSummary {
     /// Storey drifts at the end of the last step \[m\]; their shears \[N\] follow from the effective forces of the recursion.
     pub drift: Vec<f64>,
     shear: Vec<f64>,
+    /// Drifts and shears of the present step.
+    next_drift: Vec<f64>,
+    next_shear: Vec<f64>,
     storey_energy: Vec<f64>,
     base_shear: NoisyLargest,
+    /// The measured base shear \[N\].
+    shear_force: Growing,
     first_impact: u64,
     first_is_over: bool,
     striker_velocity: f64,
@@ -286,8 +335,11 @@ impl FloorSummary {
             max_drift: nothing(),
             drift: nothing(),
             shear: nothing(),
+            next_drift: nothing(),
+            next_shear: nothing(),
             storey_energy: nothing(),
             base_shear: NoisyLargest::new(noise),
+            shear_force: Growing::default(),
             first_impact: 0,
             first_is_over: false,
             striker_velocity: body.striker_velocity,
@@ -295,9 +347,9 @@ impl FloorSummary {
     }
 
     fn push<V: Vector>(&mut self, structure: &State<V>, state: &ImpactState) {
-        let (mut drift, mut shear) = (vec![0.0; self.drift.len()], vec![0.0; self.drift.len()]);
-        drifts(structure.displacement.as_slice(), &mut drift);
-        shears(structure.force_at_computed.as_slice(), &mut shear);
+        drifts(structure.displacement.as_slice(), &mut self.next_drift);
+        shears(structure.force_at_computed.as_slice(), &mut self.next_shear);
+        let (drift, shear) = (&self.next_drift, &self.next_shear);
         // Σ ½(V + V₁)Δδ over the storeys equals ½(R + R₁)ᵀΔX over the floors. Step 0 is the start.
         if structure.step > 0 {
             for storey in 0..drift.len() {
@@ -305,20 +357,17 @@ impl FloorSummary {
                 self.storey_energy[storey] += 0.5 * (self.shear[storey] + shear[storey]) * moved;
             }
         }
-        (self.drift, self.shear) = (drift, shear);
+        std::mem::swap(&mut self.drift, &mut self.next_drift);
+        std::mem::swap(&mut self.shear, &mut self.next_shear);
         widen(
             &mut self.floor_displacement,
             structure.displacement.as_slice(),
         );
         widen(&mut self.max_drift, &self.drift);
-        self.base_shear.push(
-            structure
-                .restoring_force
-                .as_slice()
-                .iter()
-                .sum::<f64>()
-                .abs(),
-        );
+        let force = structure.restoring_force.as_slice();
+        let base_shear = force.iter().sum::<f64>().abs();
+        self.base_shear.push(base_shear);
+        self.shear_force.push(base_shear);
         match state.state {
             StepState::Free => self.first_is_over |= self.first_impact > 0,
             _ if !self.first_is_over => self.first_impact += 1,
@@ -332,6 +381,22 @@ impl FloorSummary {
         widen(&mut self.max_drift, &drift_of(&reading.displacement));
         self.base_shear
             .push(reading.force.iter().sum::<f64>().abs());
+    }
+
+    /// What was still growing at this last step.
+    fn growing(&self, last: &FloorMotion) -> StillGrowing {
+        let beyond = |values: &[f64], rates: &[f64], largest: &[f64]| {
+            let entries = 0..values.len();
+            let grows = |entry: &usize| {
+                values[*entry] * rates[*entry] > 0.0 && values[*entry].abs() >= largest[*entry]
+            };
+            entries.filter(grows).collect()
+        };
+        StillGrowing {
+            base_shear: self.shear_force.is_last,
+            floors: beyond(&last.computed, &last.velocity, &self.floor_displacement),
+            storeys: beyond(&last.drift(), &drift_of(&last.velocity), &self.max_drift),
+        }
     }
 
     /// ∫ shear d(drift) of each storey so far \[J\].

@@ -10,16 +10,18 @@ use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::setting::{FrameSteps, Start, above_critical, not_stepped};
 use crate::procedures::stepping::step_loop::{self, AxesState, Balance, Stepped};
 use crate::procedures::stepping::tracking::TrackingSummary;
-use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::{Session, of_base_shear};
 use crate::run::stop::Stop;
+use crate::run::{Keep, Performed};
+use psd_physics::impact::summary::ImpactEnding;
 use psd_physics::impact::{FrameImpactSolver, ImpactSetup, ImpactSolver};
 use psd_physics::integrator::tangents::HasTangents;
 use psd_physics::structure::frame_properties::FrameProperties;
 use psd_physics::tracking::monitor::Tracking;
 use psd_plan::record::{
-    FloorMotion, FloorStep, History, ImpactHistory, ImpactStep, NamedResult, StruckFrame,
+    FloorMotion, FloorStep, History, ImpactHistory, ImpactStep, NamedResult, StillGrowing,
+    StruckFrame,
 };
 use psd_plan::{Impact, ImpactTarget, Plan, StoreyTarget, Until};
 use psd_rig::Reading;
@@ -76,7 +78,11 @@ pub(crate) fn strike(
         None => StruckSummary::new(input),
         Some(frame) => StruckSummary::of_frame(input, frame.order(), of_base_shear(session)),
     };
-    let mut so_far = ImpactSoFar::new(summary, setting.steps().count);
+    let kept = match session.keep {
+        Keep::Results => 0,
+        Keep::Everything | Keep::Steps => setting.steps().count,
+    };
+    let mut so_far = ImpactSoFar::new(summary, kept);
     let ran = match (&plan.target, &setting.structure) {
         (ImpactTarget::Storey(target), StruckStructure::Storey(frame)) => {
             take_steps(plan, setting, before, &mut so_far, session, |start| {
@@ -95,13 +101,17 @@ pub(crate) fn strike(
         tracking,
     } = so_far;
     let summary = (!steps.is_empty()).then_some(summary);
-    let history = history_of(plan, Some(setting), steps, floors);
-    if let (Some(summary), None) = (&summary, &stop) {
-        observe(&summary.impact(), plan.until, &input.law, session);
+    let mut history = history_of(plan, Some(setting), steps, floors);
+    let impact = summary.as_ref().map(StruckSummary::impact);
+    if let Some((summary, impact)) = summary.as_ref().zip(impact) {
+        history.ending = summary.ending(&impact, &history);
+        summary.growing(&mut history);
+    }
+    if let (Some(impact), None) = (&impact, &stop) {
+        observe(impact, plan.until, &input.law, session);
     }
     let mut results = results(summary.as_ref(), &tracking, &history);
-    if let (Some(summary), None) = (&summary, &stop) {
-        let summary = summary.impact();
+    if let (Some(summary), None) = (impact, &stop) {
         stop = session.evaluate_uncertainty(&mut results, |results, progress| {
             uncertainty.propagate(plan, setting, &history, &summary, results, progress)
         });
@@ -167,10 +177,12 @@ fn history_of(
         damping_ratios: properties
             .map(FrameProperties::damping_ratios)
             .unwrap_or_default(),
+        growing: StillGrowing::default(),
     });
     let planned = setting.map(Setting::steps);
     ImpactHistory {
         steps,
+        ending: ImpactEnding::default(),
         frame,
         time_step: planned.map_or(0.0, |planned| planned.time_step),
         critical_time_step: planned.map_or(0.0, |planned| planned.critical_time_step),
@@ -188,7 +200,7 @@ struct ImpactSoFar {
 }
 
 impl ImpactSoFar {
-    /// Before the first of `steps` steps. Capacity is reserved for at most 100,000 of them: `duration` is often far beyond the end.
+    /// Before the first step, of which `steps` are kept. Capacity is reserved for at most 100,000 of them: `duration` is often far beyond the end.
     fn new(summary: StruckSummary, steps: u64) -> Self {
         let capacity = usize::try_from(steps + 1)
             .unwrap_or(usize::MAX)
@@ -256,8 +268,8 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
         AxesState::of(self.solver.structure())
     }
 
-    fn predict(&mut self) -> Vec<f64> {
-        V::slice_of(&self.solver.predict()).to_vec()
+    fn predict(&mut self, target: &mut [f64]) {
+        target.copy_from_slice(V::slice_of(&self.solver.predict()));
     }
 
     fn predicted_velocity(&mut self, velocity: &mut [f64]) -> bool {
@@ -278,8 +290,8 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
         effective_force.as_slice().to_vec()
     }
 
-    fn effective_force(&self) -> Vec<f64> {
-        V::slice_of(&self.solver.effective_force()).to_vec()
+    fn effective_force(&self, force: &mut [f64]) {
+        force.copy_from_slice(V::slice_of(&self.solver.effective_force()));
     }
 
     fn complete(&mut self, reading: &Reading) {
@@ -289,13 +301,21 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
         );
     }
 
-    fn keep(&mut self, axes: &[Tracking], session: &Session<'_>) -> Balance {
+    fn sum_up(&mut self) -> Balance {
         let state = self.solver.state();
         self.summary.push(self.solver.structure(), state);
+        Balance {
+            error: state.energies.error,
+            input: state.input,
+        }
+    }
+
+    fn keep(&mut self, axes: &[Tracking], wall_time: f64) {
+        let state = self.solver.state();
         self.steps.push(ImpactStep {
             step: state.step,
             time: state.time,
-            wall_time: session.guard.time(),
+            wall_time,
             state: state.state,
             command: state.target,
             computed: state.displacement,
@@ -317,14 +337,10 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
                 storey_energy: floors.storey_energy().to_vec(),
             });
         }
-        Balance {
-            error: state.energies.error,
-            input: state.input,
-        }
     }
 
-    fn cut_off(&mut self, reading: &Reading, time_step: f64, session: &Session<'_>) {
-        let (target, struck) = (self.predict(), self.solver.struck());
+    fn cut_off(&mut self, target: &[f64], reading: &Reading, time_step: f64, wall_time: f64) {
+        let struck = self.solver.struck();
         let Some(last) = self.steps.last() else {
             return;
         };
@@ -332,7 +348,7 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
         let step = ImpactStep {
             step: last.step + 1,
             time,
-            wall_time: session.guard.time(),
+            wall_time,
             command: target[struck],
             computed: reading.displacement[struck],
             displacement: reading.displacement[struck],
@@ -344,7 +360,7 @@ impl<V: HasTangents> Stepped for Struck<'_, V> {
         if let Some(last) = self.floors.last() {
             let floors = last
                 .floors
-                .cut_off(time, &target, &reading.displacement, &reading.force);
+                .cut_off(time, target, &reading.displacement, &reading.force);
             let storey_energy = last.storey_energy.clone();
             self.floors.push(FloorStep {
                 floors,

@@ -10,7 +10,7 @@ use crate::procedures::stepping::tracking::TrackingSummary;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
 use psd_physics::integrator::solver::FrameSolver;
-use psd_physics::structure::ground::acceleration_at;
+use psd_physics::structure::ground::{acceleration_at, next_acceleration};
 use psd_physics::tracking::monitor::Tracking;
 use psd_plan::record::{FloorMotion, ShakeHistory, ShakeStep};
 use psd_plan::{Ground, Shake};
@@ -44,8 +44,7 @@ impl Shaking<'_> {
             session,
             |start| {
                 let mut load = vec![0.0; matrices.order()];
-                let ground_acceleration = setting.ground_at(ground, 0);
-                matrices.ground_load(ground_acceleration, &mut load);
+                matrices.ground_load(setting.ground_at(ground, 0), &mut load);
                 let input = start.input(&setting.frame, &plan.stepping, &load);
                 let mut solver = FrameSolver::new(&input)
                     .map_err(|error| not_stepped(setting.frame.steps.time_step, &error))?;
@@ -62,7 +61,7 @@ impl Shaking<'_> {
                         ground,
                         solver,
                         load,
-                        ground_acceleration,
+                        passed: 0,
                         history,
                         summary,
                     },
@@ -89,8 +88,8 @@ struct Shaken<'a> {
     solver: FrameSolver,
     /// Load of the present step \[N\].
     load: Vec<f64>,
-    /// \[m/s²\]
-    ground_acceleration: f64,
+    /// Samples of the ground motion that are passed.
+    passed: usize,
     history: &'a mut ShakeHistory,
     summary: &'a mut ShakeSummary,
 }
@@ -100,16 +99,22 @@ impl Stepped for Shaken<'_> {
         AxesState::of(self.solver.state())
     }
 
-    fn predict(&mut self) -> Vec<f64> {
-        self.ground_acceleration = self
-            .setting
-            .ground_at(self.ground, self.solver.state().step + 1);
-        self.setting
-            .frame
-            .properties
-            .matrices
-            .ground_load(self.ground_acceleration, &mut self.load);
-        self.solver.predict(&self.load).to_vec()
+    fn predict(&mut self, target: &mut [f64]) {
+        let Self {
+            setting,
+            ground,
+            solver,
+            load,
+            passed,
+            ..
+        } = self;
+        #[expect(clippy::cast_precision_loss, reason = "at most MOST_STEPS")]
+        let time = (solver.state().step + 1) as f64 * setting.frame.steps.time_step;
+        let ground_acceleration =
+            setting.scale * next_acceleration(&ground.times, &ground.accelerations, time, passed);
+        let matrices = &setting.frame.properties.matrices;
+        matrices.ground_load(ground_acceleration, load);
+        target.copy_from_slice(self.solver.predict(&self.load));
     }
 
     fn predicted_velocity(&mut self, velocity: &mut [f64]) -> bool {
@@ -125,23 +130,16 @@ impl Stepped for Shaken<'_> {
         )
     }
 
-    fn effective_force(&self) -> Vec<f64> {
-        self.solver.effective_force().to_vec()
+    fn effective_force(&self, force: &mut [f64]) {
+        force.copy_from_slice(self.solver.effective_force());
     }
 
     fn complete(&mut self, reading: &Reading) {
         self.solver.complete(&reading.displacement, &reading.force);
     }
 
-    fn keep(&mut self, axes: &[Tracking], session: &Session<'_>) -> Balance {
+    fn sum_up(&mut self) -> Balance {
         let state = self.solver.state();
-        self.history.steps.push(ShakeStep {
-            step: state.step,
-            wall_time: session.guard.time(),
-            ground_acceleration: self.ground_acceleration,
-            floors: FloorMotion::of_state(state, axes),
-            energies: state.energies,
-        });
         self.summary.push(state);
         // The input energy is 0 at the start: until it is larger, the reference is the energy that the ground motion can put in.
         let input = self
@@ -154,19 +152,29 @@ impl Stepped for Shaken<'_> {
         }
     }
 
-    fn cut_off(&mut self, reading: &Reading, time_step: f64, session: &Session<'_>) {
-        let target = self.predict();
+    fn keep(&mut self, axes: &[Tracking], wall_time: f64) {
+        let state = self.solver.state();
+        self.history.steps.push(ShakeStep {
+            step: state.step,
+            wall_time,
+            ground_acceleration: self.setting.ground_at(self.ground, state.step),
+            floors: FloorMotion::of_state(state, axes),
+            energies: state.energies,
+        });
+    }
+
+    fn cut_off(&mut self, target: &[f64], reading: &Reading, time_step: f64, wall_time: f64) {
         let Some(last) = self.history.steps.last() else {
             return;
         };
         let time = last.floors.time + time_step;
         let step = ShakeStep {
             step: last.step + 1,
-            wall_time: session.guard.time(),
-            ground_acceleration: self.ground_acceleration,
+            wall_time,
+            ground_acceleration: self.setting.ground_at(self.ground, last.step + 1),
             floors: last
                 .floors
-                .cut_off(time, &target, &reading.displacement, &reading.force),
+                .cut_off(time, target, &reading.displacement, &reading.force),
             energies: last.energies,
         };
         self.history.steps.push(step);

@@ -11,4 +11,4 @@ pub(crate) mod report;
 pub(crate) mod self_tested;
 pub(crate) mod setting;
 pub(crate) mod step_loop;
-pub(crate) mod tracking;
+pub mod tracking;

@@ -103,7 +103,11 @@ impl Stiffer {
         let (measured, spread) = if self.judged.moving {
             self.in_motion.add(reading, self.judged.noise)
         } else {
-            self.secant(reading)
+            let stable = match integrator {
+                Integrator::Explicit => 0.0,
+                Integrator::Tangent | Integrator::AlphaOs { .. } => operator_stiffness,
+            };
+            self.secant(reading, stable)
         }?;
         // The secant of a very small move is rounding; in motion the velocities are differences too.
         let rounding = if self.judged.moving { 1e-4 } else { 1e-9 } * operator_stiffness;
@@ -165,8 +169,9 @@ impl Stiffer {
 impl Stiffer {
     /// Secant stiffness of the last step with its standard deviation \[N/m\]; None if the move is too small, or reversed: friction
     /// reverses with it. In a response that reverses at every step, as an unstable one does, the last reading but one has the same
-    /// friction: both were reached in the same direction, if the amplitude has grown enough.
-    fn secant(&mut self, reading: (f64, f64)) -> Option<(f64, f64)> {
+    /// friction: both were reached in the same direction, if the amplitude has grown enough. None also up to the `stable` stiffness
+    /// \[N/m\].
+    fn secant(&mut self, reading: (f64, f64), stable: f64) -> Option<(f64, f64)> {
         let noise = self.judged.noise;
         let moved = reading.0 - self.last.0;
         let first = self.moved == 0.0;
@@ -183,6 +188,9 @@ impl Stiffer {
         let measured = (reading.1 - from.1) / change;
         (self.before, self.last, self.moved, self.turned) =
             (self.last, reading, moved, turned && !first);
+        if !(counts && measured.is_finite() && change.abs() > SURE * noise.1 && measured > stable) {
+            return None;
+        }
         // A reading has at least the error of its last digits.
         let rounded =
             |noise: f64, read: f64, other: f64| noise.max(ROUNDING * read.abs().max(other.abs()));
@@ -190,15 +198,19 @@ impl Stiffer {
         let spread = std::f64::consts::SQRT_2
             * force.hypot(measured * rounded(noise.1, reading.0, from.0))
             / change.abs();
-        (counts && measured.is_finite() && change.abs() > SURE * noise.1)
-            .then_some((measured, spread))
+        Some((measured, spread))
     }
 }
 
 /// Every spring of a structure: the specimen of one degree of freedom, or every storey of a frame by its shear and drift; none for a
 /// frame without storeys. If one storey is stiffer by ΔK, M⁻¹(K − `K_I`) is a matrix of rank one; its squared frequency is ΔK times the
 /// sum of 1/M of the floors that the storey joins.
-pub(crate) struct StifferSprings(Vec<(String, Stiffer)>);
+pub(crate) struct StifferSprings {
+    springs: Vec<(String, Stiffer)>,
+    /// Of the last reading \[m\], \[N\].
+    drift: Vec<f64>,
+    shear: Vec<f64>,
+}
 
 impl StifferSprings {
     /// The spring of one degree of freedom.
@@ -212,10 +224,19 @@ impl StifferSprings {
             noise: (start.noise.force, start.noise.resolution / 12_f64.sqrt()),
             moving: plan.mode != Mode::StepAndPause,
         };
-        Self(vec![(
+        Self::of(vec![(
             "the specimen".to_owned(),
             Stiffer::new(judged, first(&start.reading)),
         )])
+    }
+
+    fn of(springs: Vec<(String, Stiffer)>) -> Self {
+        let nothing = || vec![0.0; springs.len()];
+        Self {
+            drift: nothing(),
+            shear: nothing(),
+            springs,
+        }
     }
 
     /// The storeys of a frame.
@@ -227,7 +248,10 @@ impl StifferSprings {
     ) -> Self {
         let (noise, first) = (start.noise, &start.reading);
         let storeys = storeys_of(&matrices.stiffness).unwrap_or_default();
-        let (drift, shear) = drifts_and_shears(first);
+        let nothing = || vec![0.0; storeys.len()];
+        let (mut drift, mut shear) = (nothing(), nothing());
+        drifts(&first.displacement, &mut drift);
+        shears(&first.force, &mut shear);
         let floor = |floor: usize| 1.0 / matrices.mass.entry(floor, floor);
         let count = storeys.len();
         let judged = |(storey, operator_stiffness): (usize, f64)| {
@@ -253,28 +277,17 @@ impl StifferSprings {
                 Stiffer::new(judged, (drift[storey], shear[storey])),
             )
         };
-        Self(storeys.into_iter().enumerate().map(judged).collect())
+        Self::of(storeys.into_iter().enumerate().map(judged).collect())
     }
 
     pub(crate) fn take(&mut self, reading: &Reading, struck: bool, session: &mut Session<'_>) {
-        if self.0.is_empty() {
-            return;
-        }
-        let (drift, shear) = drifts_and_shears(reading);
-        for ((name, storey), reading) in self.0.iter_mut().zip(drift.into_iter().zip(shear)) {
+        drifts(&reading.displacement, &mut self.drift);
+        shears(&reading.force, &mut self.shear);
+        let readings = self.drift.iter().copied().zip(self.shear.iter().copied());
+        for ((name, storey), reading) in self.springs.iter_mut().zip(readings) {
             storey.take(reading, struck, name, session);
         }
     }
-}
-
-fn drifts_and_shears(reading: &Reading) -> (Vec<f64>, Vec<f64>) {
-    let (mut drift, mut shear) = (
-        vec![0.0; reading.displacement.len()],
-        vec![0.0; reading.force.len()],
-    );
-    drifts(&reading.displacement, &mut drift);
-    shears(&reading.force, &mut shear);
-    (drift, shear)
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use super::setting::{Start, Steps};
 use super::tracking::{Monitors, TrackingSummary};
 use crate::run::session::Session;
 use crate::run::stop::Stop;
-use crate::run::{AxisReport, StepReport};
+use crate::run::{AxisReport, Keep, StepReport};
 use psd_physics::integrator::state::State;
 use psd_physics::structure::matrix::Vector;
 use psd_physics::tracking::monitor::Tracking;
@@ -33,8 +33,8 @@ pub(crate) trait Stepped {
     /// The end of the last step.
     fn axes(&self) -> AxesState<'_>;
 
-    /// Target of each axis at the end of the next step \[m\]. Within one step it is always the same.
-    fn predict(&mut self) -> Vec<f64>;
+    /// Sets the target of each axis at the end of the next step \[m\]. Within one step it is always the same.
+    fn predict(&mut self, target: &mut [f64]);
 
     /// Predicted velocity of each axis at its target \[m/s\]. True if a contact force contributes to it.
     fn predicted_velocity(&mut self, velocity: &mut [f64]) -> bool;
@@ -42,20 +42,24 @@ pub(crate) trait Stepped {
     /// Effective forces of the recursion at the start \[N\].
     fn effective_force_at_start(&self, start: &Start) -> Vec<f64>;
 
-    /// Effective forces of the recursion at the targets of the last step \[N\].
-    fn effective_force(&self) -> Vec<f64>;
+    /// Sets the effective forces of the recursion at the targets of the last step \[N\].
+    fn effective_force(&self, force: &mut [f64]);
 
     /// Ends the step with a reading.
     fn complete(&mut self, reading: &Reading);
 
-    /// Keeps the reading that exceeded a limit on the way to the target: the step, of this length \[s\], has not ended.
-    fn cut_off(&mut self, reading: &Reading, time_step: f64, session: &Session<'_>);
+    /// Adds the end of a step to the results.
+    fn sum_up(&mut self) -> Balance;
+
+    /// Keeps the end of a step, with the tracking of each axis so far and the rig time \[s\].
+    fn keep(&mut self, axes: &[Tracking], wall_time: f64);
+
+    /// Keeps the reading that exceeded a limit on the way to the target: the step after the last one kept, of this length \[s\], has not
+    /// ended.
+    fn cut_off(&mut self, target: &[f64], reading: &Reading, time_step: f64, wall_time: f64);
 
     /// Whether a contact force acted in the last step.
     fn is_struck(&self) -> bool;
-
-    /// Keeps the end of a step, with the tracking of each axis so far.
-    fn keep(&mut self, axes: &[Tracking], session: &Session<'_>) -> Balance;
 
     /// Steps of the procedure done before these.
     fn before(&self) -> u64 {
@@ -66,7 +70,7 @@ pub(crate) trait Stepped {
     fn over(&self) -> bool;
 }
 
-/// All steps, from the present position of the rig.
+/// All steps, from the present position of the rig. A run that keeps its results alone keeps its last step.
 pub(crate) fn run<S: Stepped>(
     steps: &Steps,
     plan: &Stepping,
@@ -74,20 +78,19 @@ pub(crate) fn run<S: Stepped>(
     session: &mut Session<'_>,
     begin: impl FnOnce(&Start) -> Result<(S, StifferSprings), Stop>,
 ) -> Result<(), Stop> {
-    let mut triggers = Triggers::new(&plan.inspect);
     let (commanded, reading) = (session.guard.commanded().to_vec(), session.guard.read()?);
     let start = Start {
         commanded,
         reading,
         noise: session.guard.declared_noise(),
     };
-    let (mut stepped, mut stiffer) = begin(&start)?;
-    let mut monitors = Monitors::new(
+    let (mut stepped, stiffer) = begin(&start)?;
+    let monitors = Monitors::new(
         &start.commanded,
         &start.reading,
         &stepped.effective_force_at_start(&start),
     );
-    let mut motion = match plan.mode {
+    let motion = match plan.mode {
         Mode::Continuous { time_scale } => Some(ContinuousMotion::from_rest(
             &start.commanded,
             time_scale,
@@ -95,72 +98,174 @@ pub(crate) fn run<S: Stepped>(
         )),
         Mode::StepAndPause => None,
     };
-    stepped.keep(&monitors.tracking(), session);
-    let mut struck = false;
-    for _ in 0..steps.count {
-        let (reading, broken, is_reached) = if let Some(motion) = &mut motion {
-            let (reading, broken) = motion.step(|| waypoints(&mut stepped), session)?;
-            let is_reached = broken.is_none();
-            (reading, broken, is_reached)
-        } else {
-            let moved = session.guard.move_to(&stepped.predict(), None);
-            let is_reached = moved.is_ok();
-            let paused = moved.and_then(|()| session.guard.pause(steps.pause));
-            let (reading, broken) = session.read_after(paused)?;
-            (reading, broken, is_reached)
-        };
-        if !is_reached {
-            stepped.cut_off(&reading, steps.time_step, session);
-            return broken.map_or(Ok(()), Err);
-        }
-        stepped.complete(&reading);
-        let axes = monitors.take(stepped.axes().target, &reading, &stepped.effective_force());
-        if let Some(stop) = broken {
-            stepped.keep(&axes, session);
-            return Err(stop);
-        }
-        let (before, now) = (struck, stepped.is_struck());
-        stiffer.take(&reading, before || now, session);
-        struck = now;
-        let Balance { error, input } = stepped.keep(&axes, session);
-        let (tracking, tracking_energy_error) = followed.assess(&axes, input, session);
-        let errors = Errors {
-            energy_error: if error == 0.0 { 0.0 } else { error / input },
-            tracking,
-            tracking_energy_error,
-        };
-        session.guard.check_energy_error(errors.energy_error)?;
-        session
-            .guard
-            .check_tracking(errors.tracking_energy_error, errors.tracking.nrms_error)?;
-        let reported = report(&stepped.axes(), &errors);
-        session.step_done(StepReport {
-            step: stepped.before() + reported.step,
-            ..reported
-        })?;
-        if stepped.over() {
-            break;
-        }
-        let AxesState {
-            step, time, force, ..
-        } = stepped.axes();
-        if let Some(reason) = triggers.after(step, time, force.iter().sum()) {
-            session.inspect(&reason)?;
-        }
+    let keeps_steps = session.keep != Keep::Results;
+    stepped.sum_up();
+    if keeps_steps {
+        stepped.keep(monitors.tracking(), session.guard.time());
     }
-    motion.map_or(Ok(()), |motion| motion.brake(session))
+    let mut taken = StepsTaken {
+        stepped,
+        stiffer,
+        monitors,
+        motion,
+        keeps_steps,
+        target: start.commanded,
+        reading: start.reading,
+        wall_time: session.guard.time(),
+        is_cut_off: false,
+    };
+    let ended = taken.all(steps, plan, followed, session);
+    let StepsTaken {
+        mut stepped,
+        monitors,
+        target,
+        reading,
+        wall_time,
+        is_cut_off,
+        ..
+    } = taken;
+    if !keeps_steps {
+        stepped.keep(monitors.tracking(), wall_time);
+    }
+    if is_cut_off {
+        stepped.cut_off(&target, &reading, steps.time_step, session.guard.time());
+    }
+    ended
+}
+
+/// The steps so far, and the numbers of the present step.
+struct StepsTaken<S> {
+    stepped: S,
+    stiffer: StifferSprings,
+    monitors: Monitors,
+    motion: Option<ContinuousMotion>,
+    keeps_steps: bool,
+    /// \[m\]
+    target: Vec<f64>,
+    reading: Reading,
+    /// Rig time at the end of the last step \[s\].
+    wall_time: f64,
+    /// Whether a reading exceeded a limit on the way to the target.
+    is_cut_off: bool,
+}
+
+impl<S: Stepped> StepsTaken<S> {
+    fn all(
+        &mut self,
+        steps: &Steps,
+        plan: &Stepping,
+        followed: &mut TrackingSummary,
+        session: &mut Session<'_>,
+    ) -> Result<(), Stop> {
+        let mut triggers = Triggers::new(&plan.inspect);
+        let mut effective_force = vec![0.0; self.target.len()];
+        let mut report = StepReport::default();
+        let mut struck = false;
+        for _ in 0..steps.count {
+            if let Some(stop) = self.read_next(steps.pause, session)? {
+                if self.is_cut_off {
+                    return Err(stop);
+                }
+                self.complete(&mut effective_force, session);
+                return Err(stop);
+            }
+            let Balance { error, input } = self.complete(&mut effective_force, session);
+            let Self {
+                stepped,
+                stiffer,
+                monitors,
+                reading,
+                ..
+            } = self;
+            let (before, now) = (struck, stepped.is_struck());
+            stiffer.take(reading, before || now, session);
+            struck = now;
+            let (tracking, tracking_energy_error) =
+                followed.assess(monitors.tracking(), input, session);
+            let errors = Errors {
+                energy_error: if error == 0.0 { 0.0 } else { error / input },
+                tracking,
+                tracking_energy_error,
+            };
+            session.guard.check_energy_error(errors.energy_error)?;
+            session
+                .guard
+                .check_tracking(errors.tracking_energy_error, errors.tracking.nrms_error)?;
+            let state = stepped.axes();
+            errors.report(&state, &mut report);
+            report.step += stepped.before();
+            session.step_done(&mut report)?;
+            if stepped.over() {
+                break;
+            }
+            let AxesState {
+                step, time, force, ..
+            } = stepped.axes();
+            if let Some(reason) = triggers.after(step, time, force.iter().sum()) {
+                session.inspect(&reason)?;
+            }
+        }
+        let braked = self.motion.as_ref().map(|motion| motion.brake(session));
+        braked.unwrap_or(Ok(()))
+    }
+
+    /// Moves to the next target and reads there; the stop of a reading that exceeded a limit, there or on the way.
+    fn read_next(&mut self, pause: f64, session: &mut Session<'_>) -> Result<Option<Stop>, Stop> {
+        let Self {
+            stepped,
+            motion,
+            target,
+            reading,
+            is_cut_off,
+            ..
+        } = self;
+        let Some(motion) = motion else {
+            stepped.predict(target);
+            let ended = session.step(target, pause, reading)?;
+            return Ok(ended.map(|ended| {
+                *is_cut_off = !ended.is_reached;
+                ended.fault.into()
+            }));
+        };
+        let (read, stop) = motion.step(|| waypoints(stepped, target), session)?;
+        *reading = read;
+        *is_cut_off = stop.is_some();
+        if *is_cut_off {
+            stepped.predict(target);
+        }
+        Ok(stop)
+    }
+
+    /// Ends the step with the reading.
+    fn complete(&mut self, effective_force: &mut [f64], session: &Session<'_>) -> Balance {
+        let Self {
+            stepped,
+            monitors,
+            reading,
+            ..
+        } = self;
+        stepped.complete(reading);
+        stepped.effective_force(effective_force);
+        monitors.take(stepped.axes().target, reading, effective_force);
+        let balance = stepped.sum_up();
+        self.wall_time = session.guard.time();
+        if self.keeps_steps {
+            stepped.keep(monitors.tracking(), self.wall_time);
+        }
+        balance
+    }
 }
 
 /// The waypoint of each axis at the end of this step.
-fn waypoints(stepped: &mut impl Stepped) -> Vec<Waypoint> {
-    let displacements = stepped.predict();
-    let mut velocities = vec![0.0; displacements.len()];
+fn waypoints(stepped: &mut impl Stepped, target: &mut [f64]) -> Vec<Waypoint> {
+    stepped.predict(target);
+    let mut velocities = vec![0.0; target.len()];
     let struck = stepped.predicted_velocity(&mut velocities);
-    displacements
-        .into_iter()
+    target
+        .iter()
         .zip(velocities)
         .map(|(position, velocity)| Waypoint {
-            position,
+            position: *position,
             velocity,
             struck,
         })
@@ -206,23 +311,22 @@ pub(crate) struct Errors {
     pub tracking_energy_error: Option<f64>,
 }
 
-/// The step of all axes.
-pub(crate) fn report(state: &AxesState<'_>, errors: &Errors) -> StepReport {
-    let axis = |axis: usize| AxisReport {
-        command: state.target[axis],
-        displacement: state.displacement[axis],
-        velocity: Some(state.velocity[axis]),
-        acceleration: Some(state.acceleration[axis]),
-        force: state.force[axis],
-    };
-    StepReport {
-        step: state.step,
-        time: state.time,
-        axes: (0..state.target.len()).map(axis).collect(),
-        speed: None,
-        energy_error: Some(errors.energy_error),
-        tracking: Some(errors.tracking),
-        tracking_energy_error: errors.tracking_energy_error,
+impl Errors {
+    /// Sets the report of a step of all axes.
+    fn report(&self, state: &AxesState<'_>, report: &mut StepReport) {
+        let axis = |axis: usize| AxisReport {
+            command: state.target[axis],
+            displacement: state.displacement[axis],
+            velocity: Some(state.velocity[axis]),
+            acceleration: Some(state.acceleration[axis]),
+            force: state.force[axis],
+        };
+        (report.step, report.time) = (state.step, state.time);
+        report.axes.clear();
+        report.axes.extend((0..state.target.len()).map(axis));
+        report.energy_error = Some(self.energy_error);
+        report.tracking = Some(self.tracking);
+        report.tracking_energy_error = self.tracking_energy_error;
     }
 }
 

@@ -15,32 +15,35 @@ use psd_rig::Reading;
 use psd_text::units::display::significant;
 
 /// A tracking monitor for every axis.
-pub(crate) struct Monitors(Vec<Monitor>);
+pub(crate) struct Monitors {
+    axes: Vec<Monitor>,
+    /// Of each axis so far.
+    tracking: Vec<Tracking>,
+}
 
 impl Monitors {
     /// `effective_force` are the effective forces of the recursion at the commanded displacements \[N\].
     pub(crate) fn new(commanded: &[f64], reading: &Reading, effective_force: &[f64]) -> Self {
         let axes = tracked(commanded, reading, effective_force);
-        Self(axes.map(|axis| Monitor::new(&axis)).collect())
+        let axes: Vec<Monitor> = axes.map(|axis| Monitor::new(&axis)).collect();
+        Self {
+            tracking: axes.iter().map(Monitor::tracking).collect(),
+            axes,
+        }
     }
 
     /// The tracking of each axis so far.
-    pub(crate) fn tracking(&self) -> Vec<Tracking> {
-        self.0.iter().map(Monitor::tracking).collect()
+    pub(crate) fn tracking(&self) -> &[Tracking] {
+        &self.tracking
     }
 
     /// Adds a step; `effective_force` are the effective forces of the recursion at the commanded displacements \[N\].
-    pub(crate) fn take(
-        &mut self,
-        commanded: &[f64],
-        reading: &Reading,
-        effective_force: &[f64],
-    ) -> Vec<Tracking> {
-        let axes = self
-            .0
-            .iter_mut()
-            .zip(tracked(commanded, reading, effective_force));
-        axes.map(|(monitor, axis)| monitor.take(&axis)).collect()
+    pub(crate) fn take(&mut self, commanded: &[f64], reading: &Reading, effective_force: &[f64]) {
+        let axes = self.axes.iter_mut().zip(&mut self.tracking);
+        let steps = tracked(commanded, reading, effective_force);
+        for ((monitor, tracking), step) in axes.zip(steps) {
+            *tracking = monitor.take(&step);
+        }
     }
 }
 
@@ -172,7 +175,7 @@ impl EnergyWatch {
 
 /// Delay of the actuators of a rig to first order, in simulated time \[s\]. An undershoot t of each increment gives Δt·t/(1 − t). A lag τ
 /// gives the part that remains after a pause, or in continuous mode τ over the time scale.
-pub(crate) fn delay(plan: &Plan, stepping: &Stepping, time_step: f64) -> f64 {
+pub fn delay(plan: &Plan, stepping: &Stepping, time_step: f64) -> f64 {
     let Link::Virtual(VirtualLink {
         tracking: short,
         lag,

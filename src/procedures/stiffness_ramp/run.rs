@@ -7,10 +7,10 @@ use super::points::{Point, point, secant};
 use super::uncertainty::{Direct, Readings};
 use super::{curve, hold};
 use crate::procedures::common::dwell_readings::DwellReadings;
-use crate::run::Performed;
 use crate::run::inputs::Inputs;
 use crate::run::session::Session;
 use crate::run::stop::Stop;
+use crate::run::{Keep, Performed};
 use psd_physics::identification::bilinear_fit::fit_bilinear;
 use psd_physics::identification::{StatedVariance, fit_line};
 use psd_plan::procedures::stiffness_ramp::block as schema;
@@ -68,7 +68,7 @@ pub(crate) fn perform(
         },
     );
     let mut results = results(&readings.direct(plan, declared.force), &fits);
-    if session.settings.uncertainty {
+    if session.keep == Keep::Everything {
         super::uncertainty::propagate(
             &readings,
             plan,

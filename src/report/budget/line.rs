@@ -4,11 +4,11 @@ use crate::procedures;
 use crate::report::run::Run;
 use crate::report::wording::budget as wording;
 use psd_plan::formula::{ProcedureId, ResultPart, ResultReference, ResultValue, Results};
+use psd_plan::named_axis;
 use psd_plan::record::ProcedureRecord;
 use psd_plan::schema::frames::{DAMPING_RATIO, MASS_MATRIX, STIFFNESS_MATRIX};
 use psd_plan::uncertainty::{Contribution, Source};
 use psd_plan::{BelowRange, Plan, ShakeDamping, Specimen, Storey, Striker};
-use psd_rig::named_axis;
 use psd_text::units::Dimension;
 use psd_text::units::display::stated;
 

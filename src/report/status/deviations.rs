@@ -5,9 +5,8 @@ use crate::procedures;
 use crate::report::number;
 use crate::report::run::{ClockJump, Run};
 use crate::report::wording::deviations as wording;
-use crate::run::{UNLOADING, check_run};
 use psd_plan::record::equipment::{Channel, Measures};
-use psd_plan::record::{Drift, EventKind, Outcome, Record};
+use psd_plan::record::{Drift, EventKind, Outcome, Record, UNLOADING};
 use psd_plan::schema::plan_block::DEVIATIONS;
 use psd_text::units::Dimension;
 use psd_text::units::display::trimmed;
@@ -24,7 +23,7 @@ pub(in crate::report) fn of_run(run: &Run<'_>, with_reason: bool) -> Vec<String>
         .collect();
     let set = |(name, value): &(String, String)| wording::parameter_set(name, value);
     found.extend(run.plan.settings.iter().map(set));
-    if let Some(text) = check_run::performed_part(run.plan) {
+    if let Some(text) = run.plan.performed_part() {
         found.insert(0, wording::check_run(text));
     }
     let colon = |reason: &str| {

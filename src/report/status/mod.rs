@@ -1,7 +1,7 @@
 //! Statements about a report as a whole: its status, its particulars and days, deviations of the run, issues after the test.
 //! In: a run. Out: data and sentences. They know no document.
 
-pub(crate) mod days;
+pub mod days;
 pub(super) mod deviations;
 pub(super) mod issue;
 pub(super) mod particulars;

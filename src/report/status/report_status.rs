@@ -7,7 +7,6 @@ use super::days::last_day;
 use super::particulars;
 use crate::report::run::Run;
 use crate::report::wording::status as wording;
-use crate::run::check_run;
 use psd_physics::self_test;
 use psd_plan::Plan;
 use psd_plan::record::Outcome;
@@ -103,7 +102,7 @@ fn is_no_test(run: &Run<'_>) -> bool {
 }
 
 fn is_check_run(run: &Run<'_>) -> bool {
-    check_run::performed_part(run.plan).is_some()
+    run.plan.performed_part().is_some()
 }
 
 /// The missing fields of operator, calibration and program that the report on a real rig must state. A simulated rig has neither operator

@@ -242,6 +242,7 @@ wording! {
     mod figures {
         ONE_MORE = "One more figure of this run is in the folder figures.";
         fn more(count) = "{count} more figures of this run are in the folder figures.";
+        fn more_limits(label, count) = "{label} (and {count} more limits)";
         fn axes(y, x) = "{y} against {x}.";
         fn curve(name, low, high) = " {name}: {low} to {high}.";
     }

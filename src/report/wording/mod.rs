@@ -34,7 +34,7 @@ mod english;
 mod issue;
 pub(crate) mod reproductions;
 pub(crate) mod requirements;
-pub(crate) mod specimen;
+pub mod specimen;
 pub(crate) mod study;
 
 pub(crate) use english::*;

@@ -11,7 +11,7 @@ pub mod smooth_paths;
 pub mod speed;
 
 use super::safety::failpoint::{Guarding, on};
-use super::{EachReading, LimitedQuantity, Reading, Rig, RigFault, named_axis};
+use super::{EachReading, LimitedQuantity, OWN_SPEED, Reading, Rig, RigFault, named_axis};
 use holds::Holds;
 use psd_plan::{Interval, Limits};
 
@@ -46,6 +46,14 @@ pub struct Guard<'rig> {
 pub struct Traversed {
     pub readings: Vec<Reading>,
     pub fault: Option<RigFault>,
+}
+
+/// A step that ended early.
+#[derive(Debug)]
+pub struct UnfinishedStep {
+    /// Whether the targets were reached.
+    pub is_reached: bool,
+    pub fault: RigFault,
 }
 
 impl<'rig> Guard<'rig> {
@@ -109,13 +117,7 @@ impl<'rig> Guard<'rig> {
     /// A limit is exceeded, or the rig refuses.
     pub fn propose(&mut self, targets: &[f64], speed: Option<f64>) -> Result<(), RigFault> {
         self.proposed = None;
-        self.check_targets(targets)?;
-        let increments = targets
-            .iter()
-            .zip(&self.commanded)
-            .map(|(to, from)| increment(*from, *to));
-        let longest = increments.fold(0.0, f64::max);
-        self.check(LimitedQuantity::Increment, self.limits.increment, longest)?;
+        self.check_move(targets)?;
         let before = self.rig.before_motion(targets, self.speed_of(speed));
         self.or_hold(before)?;
         let speed = self.speed_of(speed);
@@ -149,6 +151,42 @@ impl<'rig> Guard<'rig> {
         self.note_speed(commanded_speed);
         self.commanded = targets;
         self.settled = true;
+        Ok(())
+    }
+
+    /// Moves to `targets` \[m\] without a requested speed, stays there for `pause` \[s\] of rig time and reads: `move_to`, `pause` and
+    /// `read`. A rig that is [`Rig::at_once`] does all of it in one call.
+    ///
+    /// # Errors
+    /// As those, with the part of the step that is done.
+    pub fn step(
+        &mut self,
+        targets: &[f64],
+        pause: f64,
+        reading: &mut Reading,
+    ) -> Result<(), UnfinishedStep> {
+        if self.holds.is_none() && self.rig.at_once().is_some() {
+            let ended = |is_reached| move |fault| UnfinishedStep { is_reached, fault };
+            self.check_move(targets).map_err(ended(false))?;
+            let speed = self.speed_of(None).unwrap_or(OWN_SPEED);
+            self.check_speed(speed).map_err(ended(false))?;
+            let is_valid = speed > 0.0 && speed.is_finite();
+            if let Some(rig) = self.rig.at_once().filter(|_| is_valid) {
+                rig.step(targets, speed, pause, reading);
+                self.proposed = None;
+                self.going.clear();
+                self.note_speed(speed);
+                self.commanded.copy_from_slice(targets);
+                self.settled = true;
+                return self.checked(reading).map_err(ended(true));
+            }
+        }
+        let moved = self.move_to(targets, None);
+        let is_reached = moved.is_ok();
+        let read = moved
+            .and_then(|()| self.pause(pause))
+            .and_then(|()| self.read());
+        *reading = read.map_err(|fault| UnfinishedStep { is_reached, fault })?;
         Ok(())
     }
 
@@ -255,7 +293,7 @@ impl<'rig> Guard<'rig> {
     /// Allowed tracking-error energy as a fraction of the input energy: the plan's limit, else the default.
     #[must_use]
     pub fn tracking_energy_limit(&self) -> Interval {
-        self.limits.held().tracking_energy_error
+        self.limits.held_tracking_energy_error()
     }
 
     /// Stops all motion and keeps the load. A proposed move is discarded.
@@ -263,6 +301,17 @@ impl<'rig> Guard<'rig> {
         self.proposed = None;
         self.going.clear();
         self.rig.hold();
+    }
+
+    /// Whether the targets \[m\], and the increments to them, are inside their limits.
+    fn check_move(&mut self, targets: &[f64]) -> Result<(), RigFault> {
+        self.check_targets(targets)?;
+        let increments = targets
+            .iter()
+            .zip(&self.commanded)
+            .map(|(to, from)| increment(*from, *to));
+        let longest = increments.fold(0.0, f64::max);
+        self.check(LimitedQuantity::Increment, self.limits.increment, longest)
     }
 
     pub(super) fn check_targets(&mut self, targets: &[f64]) -> Result<(), RigFault> {
@@ -347,6 +396,31 @@ impl<'rig> Guard<'rig> {
 /// Infinity is inside "no limit", but is not a position of a rig.
 fn inside(limit: Interval, value: f64) -> bool {
     limit.contains(value) && value.is_finite()
+}
+
+/// The fault with which a guard stops an ideal rig of one axis in a step from one position to another \[m\], where this force \[N\] is
+/// read. Speeds and tracking errors are not checked.
+#[must_use]
+pub fn fault_of_ideal_step(limits: &Limits, [from, to]: [f64; 2], force: f64) -> Option<RigFault> {
+    let checks = [
+        (LimitedQuantity::TargetDisplacement, limits.displacement, to),
+        (
+            LimitedQuantity::Increment,
+            limits.increment,
+            increment(from, to),
+        ),
+        (LimitedQuantity::Force, limits.force, force),
+    ];
+    let (quantity, limit, value) = checks
+        .into_iter()
+        .find(|(_, limit, value)| !inside(*limit, *value))?;
+    Some(RigFault::LimitBreached {
+        quantity,
+        value,
+        low: limit.low,
+        high: limit.high,
+        axis: None,
+    })
 }
 
 /// The first value of a reading that is outside its limit: that of its axis, if the axis has its own.

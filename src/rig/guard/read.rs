@@ -11,8 +11,10 @@ impl Guard<'_> {
     /// # Errors
     /// The reading is outside a limit or not finite, or the rig fails.
     pub fn read(&mut self) -> Result<Reading, RigFault> {
-        let reading = self.rig.read();
-        self.checked(reading)
+        let read = self.rig.read();
+        let reading = self.or_hold(read)?;
+        self.checked(&reading)?;
+        Ok(reading)
     }
 
     /// The same, with the time of the last move: start and end of the equivalent uniform motion \[s\].
@@ -21,40 +23,27 @@ impl Guard<'_> {
     /// As [`Guard::read`].
     pub fn read_moved(&mut self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
         let read = self.rig.read_moved();
-        let (reading, moved) = read.map_or_else(
-            |fault| (Err(fault), None),
-            |(reading, moved)| (Ok(reading), moved),
-        );
-        Ok((self.checked(reading)?, moved))
+        let (reading, moved) = self.or_hold(read)?;
+        self.checked(&reading)?;
+        Ok((reading, moved))
     }
 
-    fn checked(&mut self, reading: Result<Reading, RigFault>) -> Result<Reading, RigFault> {
-        let reading = self.or_hold(reading)?;
+    pub(super) fn checked(&mut self, reading: &Reading) -> Result<(), RigFault> {
         self.last_contact = reading.time;
-        if let Err(fault) = self.check_limits_and_tracking(&reading) {
-            self.broken = Some(reading).filter(Reading::is_finite);
-            return Err(fault);
-        }
-        Ok(reading)
+        self.check_limits_and_tracking(reading).inspect_err(|_| {
+            self.broken = Some(reading.clone()).filter(Reading::is_finite);
+        })
     }
 
     fn check_limits_and_tracking(&mut self, reading: &Reading) -> Result<(), RigFault> {
         self.check_reading(reading)?;
         if self.settled {
-            let errors: Vec<f64> = reading
-                .displacement
-                .iter()
-                .zip(&self.commanded)
-                .map(|(measured, target)| (measured - target).abs())
-                .collect();
+            let errors = reading.displacement.iter().zip(&self.commanded);
+            let errors = errors.map(|(measured, target)| (measured - target).abs());
             let limit = self.limits.tracking_error;
-            if let Some(index) = errors.iter().position(|error| !limit.contains(*error)) {
-                return Err(self.breach(
-                    LimitedQuantity::TrackingError,
-                    Some(index),
-                    limit,
-                    errors[index],
-                ));
+            let beyond = (0..).zip(errors).find(|(_, error)| !limit.contains(*error));
+            if let Some((index, error)) = beyond {
+                return Err(self.breach(LimitedQuantity::TrackingError, Some(index), limit, error));
             }
             if let Some(holds) = &mut self.holds {
                 holds.see(&self.commanded, reading);

@@ -21,6 +21,8 @@ pub enum EntryKind {
     Stroke,
     /// The end of a step, as computed.
     Step,
+    /// The digest of the targets, readings and steps since the entry before, in the compact run log of a simulation.
+    Digest,
     /// An answer or a request of the operator.
     Operator,
     Event,
@@ -41,7 +43,7 @@ pub enum EntryKind {
 }
 
 impl EntryKind {
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Header,
         Self::Plan,
         Self::Rig,
@@ -49,6 +51,7 @@ impl EntryKind {
         Self::Sample,
         Self::Stroke,
         Self::Step,
+        Self::Digest,
         Self::Operator,
         Self::Event,
         Self::Fault,
@@ -71,6 +74,7 @@ impl EntryKind {
             Self::Sample => "SAMPLE",
             Self::Stroke => "STROKE",
             Self::Step => "STEP",
+            Self::Digest => "DIGEST",
             Self::Operator => "OPERATOR",
             Self::Event => "EVENT",
             Self::Fault => "FAULT",

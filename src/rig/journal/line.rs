@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use super::chain::{CHAIN_DIGITS, Chain};
-use super::{EntryKind, LogText};
+use super::{EntryKind, LogText, Plain};
 
 /// Maximum length of a line, including its LF \[bytes\].
 pub const LINE_BYTES: usize = 64 * 1024;
@@ -44,14 +44,15 @@ impl Line {
     #[must_use]
     pub fn new(seq: u64, kind: EntryKind, body: &Value) -> Self {
         let json = LogText::from(body.to_string().into_bytes());
-        Self::written(seq, kind, body, 0..json.length(), json)
+        let time = body.get("t").and_then(Value::as_f64);
+        Self::written(seq, kind, time, 0..json.length(), json)
     }
 
-    /// The entry whose body is at this place in `text`.
+    /// The entry whose body is at this place in `text`, with its field `t`.
     pub(super) fn written(
         seq: u64,
         kind: EntryKind,
-        body: &Value,
+        time: Option<f64>,
         place: Range<u64>,
         text: LogText,
     ) -> Self {
@@ -60,7 +61,7 @@ impl Line {
             kind,
             length: u32::try_from(place.end - place.start).expect("an entry is short"),
             start: place.start,
-            time: body.get("t").and_then(Value::as_f64).unwrap_or(f64::NAN),
+            time: time.unwrap_or(f64::NAN),
             text,
         }
     }
@@ -82,9 +83,20 @@ impl Line {
     /// # Errors
     /// The body has a different type, or the file can no longer be read.
     pub fn read<T: DeserializeOwned>(&self) -> serde_json::Result<T> {
-        let read = self
-            .text
-            .read(self.place(), |json| serde_json::from_slice(json));
+        self.read_by(|_| None)
+    }
+
+    /// The same, by this reader of its plain form if it reads it.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_by<T: DeserializeOwned>(
+        &self,
+        reader: impl FnOnce(Plain<'_>) -> Option<T>,
+    ) -> serde_json::Result<T> {
+        let read = self.text.read(self.place(), |json| {
+            reader(Plain::of(json)).map_or_else(|| serde_json::from_slice(json), Ok)
+        });
         read.unwrap_or_else(|error| Err(serde_json::Error::io(error)))
     }
 

@@ -11,6 +11,7 @@ mod file;
 mod finite;
 mod kind;
 pub mod line;
+mod plain;
 mod recovery;
 mod storage;
 #[cfg(test)]
@@ -24,6 +25,7 @@ pub use fault::{Doing, JournalFault, Refusal};
 pub use file::{FileFault, FileStorage, MOST_BYTES, is_part_of_a_reserve};
 pub use kind::EntryKind;
 pub use line::{LINE_BYTES, Line};
+pub use plain::Plain;
 pub use recovery::{Recovered, Unreadable, recover};
 pub use storage::Storage;
 pub use text::LogText;

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::chain::Chain;
 use super::line::{self, LINE_BYTES, Unsound};
-use super::{Damage, EntryKind, FORMAT, Line, LogText, Wrong};
+use super::{Damage, EntryKind, FORMAT, Line, LogText, Plain, Wrong};
 
 /// The part of a run log that can be trusted.
 #[derive(Clone, Debug)]
@@ -165,14 +165,24 @@ fn read_line(bytes: &[u8], found: &Recovered, text: &LogText) -> Result<(Line, C
     }
     let kind =
         EntryKind::of_word(parts.word).ok_or_else(|| Wrong::UnknownKind(short(parts.word)))?;
-    let body: Value = serde_json::from_str(parts.json).map_err(|_| Wrong::NotAnObject)?;
-    if !body.is_object() {
-        return Err(Wrong::NotAnObject);
-    }
-    check_position(kind, &body, found)?;
+    let time = match Plain::of(parts.json.as_bytes()).time_of_object() {
+        // Its position depends on its kind alone.
+        Some(time) if !matches!(kind, EntryKind::Header | EntryKind::End) => {
+            check_position(kind, &Value::Null, found)?;
+            time
+        }
+        _ => {
+            let body: Value = serde_json::from_str(parts.json).map_err(|_| Wrong::NotAnObject)?;
+            if !body.is_object() {
+                return Err(Wrong::NotAnObject);
+            }
+            check_position(kind, &body, found)?;
+            body.get("t").and_then(Value::as_f64)
+        }
+    };
     let end = found.whole + parts.chained.len() as u64;
     let place = end - parts.json.len() as u64..end;
-    let entry = Line::written(parts.seq, kind, &body, place, text.clone());
+    let entry = Line::written(parts.seq, kind, time, place, text.clone());
     Ok((entry, chain))
 }
 

@@ -12,7 +12,7 @@ use psd_plan::record::failpoint::{Guarding, on};
 /// When entries are passed to the storage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Durability {
-    /// In large writes, made durable at the end and by `sync`: for a virtual rig, whose run can be repeated.
+    /// In large writes and with each digest of many steps, made durable at the end and by `sync`: for a virtual rig, whose run can be repeated.
     Buffered,
     /// Each entry immediately, made durable at every sync point: a real rig.
     EverySyncPoint,
@@ -81,8 +81,8 @@ impl Journal {
         }
         self.buffer(kind, body)?;
         let enough = match self.durability {
-            Durability::Buffered => WRITE_BYTES,
-            Durability::EverySyncPoint => 1,
+            Durability::Buffered if kind != EntryKind::Digest => WRITE_BYTES,
+            Durability::Buffered | Durability::EverySyncPoint => 1,
         };
         if self.buffered.len() >= enough {
             self.flush()

@@ -10,7 +10,7 @@ use crate::{FinalHold, RigFault};
 const COMES_TO_REST: f64 = 5.0;
 
 /// Readings at rest of which the median is taken: a single one may be a spike.
-const READINGS: usize = 3;
+pub(super) const READINGS: usize = 3;
 
 /// Displacement \[m\] and force \[N\] of every axis, if they could be read, with their bytes.
 type Found = (Option<(Vec<f64>, Vec<f64>)>, Vec<Vec<u8>>);

@@ -2,6 +2,8 @@
 //! received the limits and was read once, or the reason why not. Nothing moves.
 
 use super::coordinate::Coordinate;
+use super::halt::READINGS;
+use super::median::representative;
 use super::validity::ReadingValidator;
 use super::{Axis, DeviceRole, RealRig, degrees_of_freedom};
 use crate::controllers::{Device, DeviceFault, DeviceIdentity, metres};
@@ -11,7 +13,7 @@ use psd_plan::{Behind, Datum, DeviceLink, Limits, RealLink, RigPlan};
 
 impl RealRig {
     /// Requests the identity of both devices, sends them the limits and reads once. If the plan's zero is the present
-    /// position, that is read first.
+    /// position, that is read first: the median of several readings, because every later position counts from it.
     ///
     /// # Errors
     /// A device does not answer, is not the one in the plan, or is not suitable; or the reading cannot be used.
@@ -61,13 +63,15 @@ impl RealRig {
             Datum::Here => {
                 rig.note_contact();
                 rig.verify_at_rest()?;
-                let here = rig.settled_reading()?.displacement;
-                let own: Vec<f64> = rig
-                    .axes
-                    .iter()
-                    .zip(&here)
-                    .map(|(axis, position)| axis.coordinate.at_device(*position))
-                    .collect();
+                let mut readings = Vec::new();
+                for _ in 0..READINGS {
+                    readings.push(rig.settled_reading()?.displacement);
+                }
+                let here = |axis: usize| {
+                    let read = readings.iter().map(|positions| positions[axis]).collect();
+                    rig.axes[axis].coordinate.at_device(representative(read))
+                };
+                let own: Vec<f64> = (0..rig.axes.len()).map(here).collect();
                 rig.begin_at(&own)?;
             }
             Datum::At(positions) => rig.begin_at(&positions)?,

@@ -43,8 +43,15 @@ pub struct VirtualRig {
     restoring_force: Vec<f64>,
     /// Targets at the rig \[m\] and speed of the fastest axis \[m/s\].
     proposed: Option<(Vec<f64>, f64)>,
-    /// Start and end of its last move.
+    /// The references at the end of the present move \[m\], and the motion of each piston.
+    aims: Vec<f64>,
+    travels: Vec<Motion>,
+    /// Start and duration of its last move \[s\].
     moved: Option<[f64; 2]>,
+    /// Whether nothing changes while the references are at rest: no piston lags, and no force relaxes.
+    is_still: bool,
+    /// Settling time of every move \[s\]; None if it differs from move to move, or is beyond the timeout.
+    wait: Option<f64>,
     /// The paths that the axes follow, or were stopped on.
     interrupted: Vec<Course>,
 }
@@ -52,6 +59,11 @@ pub struct VirtualRig {
 struct Axis {
     actuator: Actuator,
     cell: LoadCell,
+}
+
+/// Velocities of the pistons \[m/s\].
+fn velocities(axes: &[Axis]) -> impl Iterator<Item = f64> {
+    axes.iter().map(|axis| axis.actuator.velocity())
 }
 
 /// The seed of one load cell: the plan's own for the first.
@@ -81,12 +93,11 @@ impl VirtualRig {
         let axes: Vec<Axis> = (0..).take(springs.order()).map(axis).collect();
         let at_rest = vec![0.0; axes.len()];
         let mut restoring_force = at_rest.clone();
-        springs.bend(
-            &vec![Motion::rest(0.0); axes.len()],
-            &at_rest,
-            &mut restoring_force,
-        );
-        Self {
+        let travels = vec![Motion::rest(0.0); axes.len()];
+        springs.bend(&travels, &at_rest, &mut restoring_force);
+        let relaxes = (0..axes.len()).any(|axis| !springs.relaxing_at(axis).is_empty());
+        let is_still = link.lag == 0.0 && !relaxes;
+        let mut rig = Self {
             name: "virtual".to_owned(),
             link,
             settle,
@@ -94,12 +105,20 @@ impl VirtualRig {
             axes,
             springs,
             time: 0.0,
-            bent: at_rest,
+            bent: at_rest.clone(),
             restoring_force,
             proposed: None,
+            aims: Vec::new(),
+            travels,
             moved: None,
+            is_still,
+            wait: None,
             interrupted: Vec::new(),
+        };
+        if is_still && link.tracking == 0.0 {
+            rig.wait = rig.settling(&at_rest);
         }
+        rig
     }
 
     /// The plan's rig with the plan's specimen: the one of the first procedure. For a plan with a real rig, an ideal
@@ -156,8 +175,8 @@ impl VirtualRig {
         }
     }
 
-    /// The specimen, its relaxation and its friction follow the pistons.
-    fn follow(&mut self, travels: &[Motion]) {
+    /// The specimen, its relaxation and its friction follow the pistons along `travels`.
+    fn follow(&mut self) {
         let mut moved = false;
         for (bent, axis) in self.bent.iter_mut().zip(&self.axes) {
             let position = axis.actuator.position();
@@ -165,53 +184,106 @@ impl VirtualRig {
             *bent = position;
         }
         if moved {
-            let velocities = self.velocities();
-            self.springs.slide(&velocities);
+            self.springs.slide(velocities(&self.axes));
         }
         self.springs
-            .bend(travels, &self.bent, &mut self.restoring_force);
-    }
-
-    /// Velocities of the pistons \[m/s\].
-    fn velocities(&self) -> Vec<f64> {
-        self.axes
-            .iter()
-            .map(|axis| axis.actuator.velocity())
-            .collect()
+            .bend(&self.travels, &self.bent, &mut self.restoring_force);
     }
 
     /// `seconds` pass with the references at rest.
     fn rest(&mut self, seconds: f64) {
-        let travels: Vec<Motion> = self
-            .axes
-            .iter_mut()
-            .map(|axis| axis.actuator.rest(seconds))
-            .collect();
         self.time += seconds;
-        self.follow(&travels);
+        if self.is_still {
+            self.stop();
+            return;
+        }
+        let resting = self.axes.iter_mut();
+        let resting = resting.map(|axis| axis.actuator.rest(seconds));
+        self.travels.clear();
+        self.travels.extend(resting);
+        self.follow();
+    }
+
+    /// The references stop.
+    fn stop(&mut self) {
+        for axis in &mut self.axes {
+            axis.actuator.stop();
+        }
     }
 
     fn reading(&mut self) -> Reading {
+        let mut reading = Reading {
+            time: 0.0,
+            displacement: Vec::new(),
+            force: Vec::new(),
+            raw: Vec::new(),
+        };
+        self.read_into(&mut reading);
+        reading
+    }
+
+    fn read_into(&mut self, reading: &mut Reading) {
         let (sign, time, resolution) = (self.sign, self.time, self.link.resolution);
-        let displacement = self
-            .bent
+        reading.time = time;
+        reading.displacement.clear();
+        let bent = self.bent.iter();
+        reading
+            .displacement
+            .extend(bent.map(|bent| sign * to_quantum(*bent, resolution)));
+        reading.force.clone_from(&self.restoring_force);
+        self.springs
+            .add_feedback(velocities(&self.axes), &mut reading.force);
+        for (axis, force) in self.axes.iter_mut().zip(&mut reading.force) {
+            *force = sign * axis.cell.read(*force, time);
+        }
+    }
+
+    /// Moves to finite targets \[m\] at this speed of the fastest axis, above 0 and finite \[m/s\], settles, pauses for so long \[s\] and
+    /// reads: to propose, execute, pause and read, without an allocation. Of a rig that is [`Rig::at_once`].
+    pub(super) fn step(&mut self, targets: &[f64], speed: f64, pause: f64, reading: &mut Reading) {
+        self.proposed = None;
+        let sign = self.sign;
+        self.aims.clear();
+        self.aims.extend(targets.iter().map(|to| sign * to));
+        self.arrive(speed);
+        self.rest(self.wait.unwrap_or(0.0));
+        if pause > 0.0 {
+            self.rest(pause);
+        }
+        self.read_into(reading);
+    }
+
+    /// The references move to their `aims` together, the one with the longest travel at this speed \[m/s\].
+    fn arrive(&mut self, speed: f64) {
+        for (aim, axis) in self.aims.iter_mut().zip(&self.axes) {
+            *aim = axis.actuator.aim(*aim);
+        }
+        let travels = self
+            .axes
             .iter()
-            .map(|bent| sign * to_quantum(*bent, resolution))
-            .collect();
-        let velocities = self.velocities();
-        let feedback = self.springs.feedback(&velocities, &self.restoring_force);
-        let force = self
+            .zip(&self.aims)
+            .map(|(axis, aim)| (aim - axis.actuator.reference()).abs());
+        let seconds = travels.fold(0.0, f64::max) / speed;
+        let motions = self
             .axes
             .iter_mut()
-            .zip(feedback)
-            .map(|(axis, force)| sign * axis.cell.read(force, time))
-            .collect();
-        Reading {
-            time,
-            displacement,
-            force,
-            raw: Vec::new(),
-        }
+            .zip(&self.aims)
+            .map(|(axis, aim)| axis.actuator.advance(*aim, seconds));
+        self.travels.clear();
+        self.travels.extend(motions);
+        self.moved = Some([self.time, seconds]);
+        self.time += seconds;
+        self.follow();
+        self.stop();
+    }
+
+    /// Settling time of a move whose axes miss their targets by these distances \[m\], without relaxation. None if one axis does not
+    /// settle within the timeout.
+    fn settling(&self, misses: &[f64]) -> Option<f64> {
+        self.longest(misses, |axis, unsettled| {
+            let relaxes = !self.springs.relaxing_at(axis).is_empty();
+            settling_time(&shared(&self.settle, unsettled, relaxes), unsettled)
+        })
     }
 
     /// The remaining motion of an axis that misses its target by `miss` \[m\].
@@ -249,11 +321,9 @@ impl VirtualRig {
 
     /// Waits until every axis and the force of every storey have settled; false if one does not settle within the timeout.
     fn settle(&mut self, misses: &[f64]) -> bool {
-        let waited = self.longest(misses, |axis, unsettled| {
-            let relaxes = !self.springs.relaxing_at(axis).is_empty();
-            settling_time(&shared(&self.settle, unsettled, relaxes), unsettled)
-        });
-        let Some(waited) = waited else { return false };
+        let Some(waited) = self.settling(misses) else {
+            return false;
+        };
         self.rest(waited);
         let more = self.longest(misses, |axis, unsettled| {
             relaxing_time(
@@ -314,42 +384,12 @@ impl Rig for VirtualRig {
             .proposed
             .take()
             .ok_or_else(|| RigFault::Device("nothing was proposed to execute".to_owned()))?;
-        let aims: Vec<f64> = self
-            .axes
-            .iter()
-            .zip(&targets)
-            .map(|(axis, target)| axis.actuator.aim(*target))
-            .collect();
-        let travels = self
-            .axes
-            .iter()
-            .zip(&aims)
-            .map(|(axis, aim)| (aim - axis.actuator.reference()).abs());
-        let seconds = travels.fold(0.0, f64::max) / speed;
-        let motions = self
-            .axes
-            .iter_mut()
-            .zip(&aims)
-            .map(|(axis, aim)| axis.actuator.advance(*aim, seconds));
-        let travels: Vec<Motion> = motions.collect();
-        // A first-order lag delays a motion by its time constant, and adds its square to the variance.
-        let lag = self.link.lag;
-        self.moved = Some(even(
-            self.time,
-            &Instants {
-                mean: self.time + 0.5 * seconds + lag,
-                variance: seconds * seconds / 12.0 + lag * lag,
-            },
-        ));
-        self.time += seconds;
-        self.follow(&travels);
-        for axis in &mut self.axes {
-            axis.actuator.stop();
-        }
+        self.aims.clone_from(&targets);
+        self.arrive(speed);
         let arrived = self.time;
         let misses: Vec<f64> = targets
             .iter()
-            .zip(&aims)
+            .zip(&self.aims)
             .map(|(target, aim)| target - aim)
             .collect();
         if self.settle(&misses) {
@@ -373,7 +413,20 @@ impl Rig for VirtualRig {
     }
 
     fn read_moved(&mut self) -> Result<(Reading, Option<[f64; 2]>), RigFault> {
-        Ok((self.reading(), self.moved))
+        // A first-order lag delays a motion by its time constant, and adds its square to the variance.
+        let lag = self.link.lag;
+        let moved = self.moved.map(|[start, seconds]| {
+            let instants = Instants {
+                mean: start + 0.5 * seconds + lag,
+                variance: seconds * seconds / 12.0 + lag * lag,
+            };
+            even(start, &instants)
+        });
+        Ok((self.reading(), moved))
+    }
+
+    fn at_once(&mut self) -> Option<&mut VirtualRig> {
+        self.wait.is_some().then_some(self)
     }
 
     fn traverse(

@@ -115,11 +115,12 @@ impl VirtualRig {
         let began = self.time - instants.get(done).copied().unwrap_or(0.0);
         for pair in instants.windows(2).skip(done) {
             let axes = courses.iter().zip(&mut self.axes);
-            let travels: Vec<Motion> = axes
-                .map(|(course, axis)| course.advance(&mut axis.actuator, pair[0], pair[1]))
-                .collect();
+            self.travels.clear();
+            self.travels.extend(
+                axes.map(|(course, axis)| course.advance(&mut axis.actuator, pair[0], pair[1])),
+            );
             self.time = began + pair[1];
-            self.follow(&travels);
+            self.follow();
             let reading = self.reading();
             if let Err(refused) = each(reading) {
                 self.hold();

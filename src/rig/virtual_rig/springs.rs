@@ -4,8 +4,8 @@
 use psd_physics::relaxation::maxwell::Motion;
 use psd_physics::relaxation::relaxation_state::{Deformed, RelaxationState};
 use psd_physics::specimen::{RestoringForce as _, SpecimenModel};
+use psd_physics::structure::SymmetricBand;
 use psd_physics::structure::cell_damping::{CellDamping, StrengthRate};
-use psd_physics::structure::{SymmetricBand, drifts, floor_forces};
 use psd_plan::{Behaviour, Frame, Specimen};
 
 /// Springs between the axes and the ground.
@@ -104,10 +104,9 @@ impl Springs {
     ) {
         match self {
             Self::Storeys(storeys) => {
-                let mut drift = vec![0.0; storeys.len()];
-                drifts(displacement, &mut drift);
                 let mut below = None;
-                for ((storey, axis), drift) in storeys.iter_mut().zip(travels).zip(drift) {
+                let drifts = drifts_of(displacement.iter().copied());
+                for ((storey, axis), drift) in storeys.iter_mut().zip(travels).zip(drifts) {
                     let travel = below.map_or(*axis, |below| axis.relative_to(below));
                     storey.shear = storey.relaxing.advance(
                         &mut storey.model,
@@ -121,39 +120,38 @@ impl Springs {
                     storey.drift = drift;
                     below = Some(axis);
                 }
-                let shears: Vec<f64> = storeys.iter().map(|storey| storey.shear).collect();
-                floor_forces(&shears, restoring_force);
+                set_floor_forces(storeys.iter().map(|storey| storey.shear), restoring_force);
             }
             Self::Matrix { stiffness, .. } => stiffness.mul_into(displacement, restoring_force),
         }
     }
 
     /// The axes continue at these velocities \[m/s\]: the friction of each storey follows their direction.
-    pub(super) fn slide(&mut self, velocities: &[f64]) {
+    pub(super) fn slide(&mut self, velocities: impl Iterator<Item = f64>) {
         if let Self::Storeys(storeys) = self {
-            for (storey, velocity) in storeys.iter_mut().zip(of_drifts(velocities)) {
+            for (storey, velocity) in storeys.iter_mut().zip(drifts_of(velocities)) {
                 storey.damper.force(velocity);
             }
         }
     }
 
-    /// The forces that the cells measure at these velocities \[m/s\], \[N\].
-    pub(super) fn feedback(&mut self, velocities: &[f64], restoring_force: &[f64]) -> Vec<f64> {
-        let mut feedback = restoring_force.to_vec();
+    /// Restoring forces become the forces that the cells measure at these velocities \[m/s\], \[N\].
+    pub(super) fn add_feedback(
+        &mut self,
+        velocities: impl Iterator<Item = f64>,
+        force: &mut [f64],
+    ) {
         if let Self::Storeys(storeys) = self
             && storeys
                 .iter()
                 .any(|storey| !storey.damper.is_none() || !storey.relaxing.is_none())
         {
-            let storeys = storeys.iter_mut().zip(of_drifts(velocities));
-            let shears: Vec<f64> = storeys
-                .map(|(storey, velocity)| {
-                    storey.damper.measured_force(storey.shear, velocity) + storey.relaxing.force()
-                })
-                .collect();
-            floor_forces(&shears, &mut feedback);
+            let storeys = storeys.iter_mut().zip(drifts_of(velocities));
+            let shears = storeys.map(|(storey, velocity)| {
+                storey.damper.measured_force(storey.shear, velocity) + storey.relaxing.force()
+            });
+            set_floor_forces(shears, force);
         }
-        feedback
     }
 
     /// The storey under an axis and the one above it.
@@ -208,9 +206,21 @@ impl Springs {
     }
 }
 
-/// Velocities of the storey drifts \[m/s\].
-fn of_drifts(velocities: &[f64]) -> Vec<f64> {
-    let mut drift = vec![0.0; velocities.len()];
-    drifts(velocities, &mut drift);
-    drift
+/// Storey drifts from the displacements of the floors, or their velocities from those of the floors.
+fn drifts_of(floors: impl Iterator<Item = f64>) -> impl Iterator<Item = f64> {
+    floors.scan(0.0, |below, floor| {
+        Some(floor - std::mem::replace(below, floor))
+    })
+}
+
+/// The restoring force of each floor \[N\], from the shears of its own storey and of the one above.
+fn set_floor_forces(shears: impl Iterator<Item = f64>, force: &mut [f64]) {
+    let mut below: Option<&mut f64> = None;
+    for (force, shear) in force.iter_mut().zip(shears) {
+        if let Some(below) = below.take() {
+            *below -= shear;
+        }
+        *force = shear;
+        below = Some(force);
+    }
 }

@@ -56,7 +56,9 @@ impl VirtualRig {
                 actuator.advance(to, each_takes)
             };
             self.time = began + seconds * fraction(sample);
-            self.follow(&[travel]);
+            self.travels.clear();
+            self.travels.push(travel);
+            self.follow();
             let reading = self.reading();
             if let Err(refused) = each(reading) {
                 self.hold();

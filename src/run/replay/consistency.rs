@@ -3,13 +3,13 @@
 //! the first entry that contradicts another. Replay finds the other differences.
 
 use serde::Serialize;
-use serde::de::DeserializeOwned;
 
 use super::entry::{
-    AmendBody, EndBody, FaultBody, Header, HeldBody, IntentBody, OperatorEntry, PlanBody,
-    RecoverBody, ResumeBody, RigBody, SampleBody, StepBody, StrokeBody, unescaped,
+    AmendBody, DigestBody, EndBody, FaultBody, Header, HeldBody, IntentBody, OperatorEntry,
+    PlanBody, RecoverBody, ResumeBody, RigBody, SampleBody, StepBody, StrokeBody, unescaped,
 };
 use super::logged_run::{LoggedRun, body};
+use super::plain_body::Body;
 use psd_plan::record::Event;
 use psd_plan::{Datum, Plan};
 use psd_rig::LineStatistics;
@@ -162,6 +162,7 @@ fn is_ours(line: &Line) -> Result<(), Contradiction> {
         EntryKind::Sample => written::<SampleBody>(line, &[]),
         EntryKind::Stroke => written::<StrokeBody>(line, &[]),
         EntryKind::Step => written::<StepBody>(line, &[]),
+        EntryKind::Digest => written::<DigestBody>(line, &[]),
         EntryKind::Operator => written::<OperatorEntry>(line, &[]),
         EntryKind::Event => written::<Event>(line, &[]),
         EntryKind::Fault => written::<FaultBody>(line, &[]),
@@ -175,10 +176,7 @@ fn is_ours(line: &Line) -> Result<(), Contradiction> {
 }
 
 /// `own` are the fields of the run log itself.
-fn written<T: DeserializeOwned + Serialize>(
-    line: &Line,
-    own: &[&str],
-) -> Result<(), Contradiction> {
+fn written<T: Body + Serialize>(line: &Line, own: &[&str]) -> Result<(), Contradiction> {
     let read: T = body(line).map_err(|fault| at(line, fault.to_string()))?;
     // This is true of nearly all, and found much faster than the fields of both.
     if is_written_as(line, &read) {

@@ -193,7 +193,13 @@ impl RecordedRig<'_> {
                     t: state.time,
                     samples: readings_done,
                 };
-                state.append(EntryKind::Stroke, &stroke)?;
+                if state.digests() {
+                    state.add_to_digest("the end of a stroke", |digest| {
+                        digest.stroke(readings_done)
+                    })?;
+                } else {
+                    state.append(EntryKind::Stroke, &stroke)?;
+                }
                 state.sync_point()
             }
         }

@@ -33,6 +33,9 @@ pub struct Header {
     pub rig: Option<String>,
     /// Measuring equipment and limits.
     pub equipment: Equipment,
+    /// What the run log keeps of the steps.
+    #[serde(default, skip_serializing_if = "LogForm::is_full")]
+    pub log: LogForm,
     /// Whether only the measured part of a check run was to run.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub check_run: bool,
@@ -50,6 +53,25 @@ pub struct Header {
     /// The start, UTC. None if the run log is not kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub began: Option<String>,
+}
+
+/// What a run log keeps of the targets, readings and steps of its run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LogForm {
+    /// Each of them.
+    #[default]
+    Full,
+    /// Their digests: a simulation repeats them.
+    Compact,
+}
+
+impl LogForm {
+    /// Whether each target, reading and step is an entry.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+    fn is_full(&self) -> bool {
+        *self == Self::Full
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -204,6 +226,19 @@ pub struct AxisBody {
     pub v: f64,
     pub a: f64,
     pub r: f64,
+}
+
+/// DIGEST: targets, readings, ends of strokes and steps since the entry before, as their digest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DigestBody {
+    /// Number of all of them.
+    pub entries: u64,
+    pub steps: u64,
+    pub targets: u64,
+    /// Rig time of the last reading \[s\].
+    pub t: f64,
+    /// SHA-256 of them, hex.
+    pub sha256: String,
 }
 
 /// OPERATOR: an answer or a request of the operator.

@@ -101,6 +101,9 @@ pub(super) fn append_sample(
     moved: Option<[f64; 2]>,
 ) -> Result<(), RigFault> {
     state.time = reading.time;
+    if state.digests() {
+        return state.add_to_digest("a reading", |digest| digest.reading(reading, moved));
+    }
     let sample = SampleBody {
         moved,
         wall: state.wall(),

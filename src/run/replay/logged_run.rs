@@ -3,10 +3,11 @@
 
 use std::collections::VecDeque;
 
-use serde::de::DeserializeOwned;
-
-use super::entry::{AmendBody, Header, PlanBody, RULES, ResumeBody, RigBody, TargetStatus};
+use super::entry::{
+    AmendBody, DigestBody, Header, PlanBody, RULES, ResumeBody, RigBody, TargetStatus,
+};
 use super::in_force::Rigs;
+use super::plain_body::Body;
 use psd_plan::record::{Event, EventKind};
 use psd_rig::journal::{EntryKind, Line, Recovered};
 use psd_rig::{LineStatistics, position_and_force};
@@ -129,6 +130,7 @@ impl LoggedRun {
             | EntryKind::Sample
             | EntryKind::Stroke
             | EntryKind::Step
+            | EntryKind::Digest
             | EntryKind::Operator
             | EntryKind::Event
             | EntryKind::Fault
@@ -197,6 +199,24 @@ impl LoggedRun {
     }
 }
 
+/// Number of targets and of steps in a run log.
+#[must_use]
+pub fn number_of_steps(recovered: &Recovered) -> (u64, u64) {
+    let count = |(targets, steps), line: &Line| match line.kind {
+        EntryKind::Intent => (targets + 1, steps),
+        EntryKind::Step => (targets, steps + 1),
+        EntryKind::Digest => match line.read::<DigestBody>() {
+            Ok(digest) => (
+                digest.targets.saturating_add(targets),
+                digest.steps.saturating_add(steps),
+            ),
+            Err(_) => (targets, steps),
+        },
+        _ => (targets, steps),
+    };
+    recovered.lines.iter().fold((0, 0), count)
+}
+
 /// The header, if its run follows the rules of this version.
 fn by_these_rules(header: Header) -> Result<Header, UnreadableLog> {
     match header.rules {
@@ -260,10 +280,11 @@ fn describe(resume: &ResumeBody) -> String {
 }
 
 /// The body of an entry, typed.
-pub(super) fn body<T: DeserializeOwned>(line: &Line) -> Result<T, UnreadableLog> {
-    line.read().map_err(|error| UnreadableLog::Body {
-        seq: line.seq,
-        kind: line.kind,
-        reason: error.to_string(),
-    })
+pub(super) fn body<T: Body>(line: &Line) -> Result<T, UnreadableLog> {
+    line.read_by(T::of_plain)
+        .map_err(|error| UnreadableLog::Body {
+            seq: line.seq,
+            kind: line.kind,
+            reason: error.to_string(),
+        })
 }

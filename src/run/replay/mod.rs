@@ -13,21 +13,23 @@ mod entry;
 mod entry_of;
 mod in_force;
 mod logged_run;
+mod plain_body;
 mod recorded_observer;
 mod recorded_rig;
 mod resume_decision;
 mod shape;
 mod state;
+mod steps_digest;
 #[cfg(test)]
 pub(crate) mod tests;
 
 pub use consistency::{Contradiction, check_consistency};
 pub use entry::{
-    AmendBody, Assurance, BY_HAND, Call, Header, HeaderFile, HeldBody, IntentBody, RULES,
+    AmendBody, Assurance, BY_HAND, Call, Header, HeaderFile, HeldBody, IntentBody, LogForm, RULES,
     RecoverBody, ResumeBody, RigBody, SampleBody, StrokeBody, TargetStatus,
 };
 pub use in_force::{InForce, Rigs};
-pub use logged_run::{LoggedRun, Mismatch, UnreadableLog};
+pub use logged_run::{LoggedRun, Mismatch, UnreadableLog, number_of_steps};
 pub use recorded_observer::RecordedObserver;
 pub use recorded_rig::RecordedRig;
 pub use resume_decision::{
@@ -43,8 +45,8 @@ use std::rc::Rc;
 use entry::PlanBody;
 use psd_plan::Plan;
 use psd_plan::record::{Event, Outcome, Record};
-use psd_rig::Rig;
 use psd_rig::journal::{EntryKind, Journal, JournalFault};
+use psd_rig::{Rig, virtual_rig};
 use state::{Begin, State};
 
 use super::{Observer, Request, Unwatched, run};
@@ -78,6 +80,19 @@ pub fn record(
     })
 }
 
+/// As [`record`], for a run on a simulated rig, of which the run log keeps only digests of the steps. The header states this.
+pub fn record_compactly(
+    plan: &Plan,
+    rig: &mut dyn Rig,
+    observer: &mut dyn Observer,
+    journal: Journal,
+) -> Recorded {
+    let state = State::digesting(journal);
+    perform(Some(rig), observer, state, |rig, observer, _| {
+        run(plan, rig, observer)
+    })
+}
+
 /// Lets a client drive the plan's rig, and logs its requests and every answer.
 pub fn record_driven(
     plan: &Plan,
@@ -100,7 +115,8 @@ pub fn record_driven(
     (recorded, done)
 }
 
-/// Replays a run log: without a rig, and without the operator. Only the content of the run log is known.
+/// Replays a run log: without a rig, and without the operator. Only the content of the run log is known. A compact run log is simulated again
+/// and compared.
 #[must_use]
 pub fn replay(plan: &Plan, logged: LoggedRun) -> Replayed {
     let driver = logged.header.served.as_deref().map(|by| {
@@ -110,6 +126,8 @@ pub fn replay(plan: &Plan, logged: LoggedRun) -> Replayed {
             Driver::Client
         }
     });
+    let mut simulated = (logged.header.log == LogForm::Compact && logged.rigs.first().is_some())
+        .then(|| virtual_rig(plan));
     let state = State::replaying(logged);
     let mut steps = None;
     let Recorded {
@@ -126,7 +144,8 @@ pub fn replay(plan: &Plan, logged: LoggedRun) -> Replayed {
             driven.record
         })
     } else {
-        perform(None, &mut Unwatched, state, |rig, observer, _| {
+        let simulated = simulated.as_mut().map(|rig| &mut **rig as &mut dyn Rig);
+        perform(simulated, &mut Unwatched, state, |rig, observer, _| {
             run(plan, rig, observer)
         })
     };
@@ -234,6 +253,7 @@ fn perform<'rig>(
             record.outcome = Outcome::Faulted { reason };
         }
     }
+    state.end_of_repetition();
     add_interruptions(&mut record, state.take_interruptions());
     if state.mismatch().is_none() && record.outcome == Outcome::Completed {
         state.end();

@@ -68,6 +68,15 @@ impl Observer for RecordedObserver<'_, '_> {
 
     fn step_done(&mut self, report: &StepReport) {
         self.inspecting = false;
+        if self.state.borrow().digests() {
+            // A fault stops the run at its next call on the rig.
+            let _ = self
+                .state
+                .borrow_mut()
+                .add_to_digest("the end of a step", |digest| digest.step(report));
+            self.inner.step_done(report);
+            return;
+        }
         let step = StepBody::of(report);
         if self.answers_from_the_log() {
             let mut state = self.state.borrow_mut();
@@ -323,7 +332,7 @@ impl StepBody {
 }
 
 impl AxisBody {
-    fn of(axis: &AxisReport) -> Self {
+    pub(super) fn of(axis: &AxisReport) -> Self {
         Self {
             u: axis.command,
             x: axis.displacement,

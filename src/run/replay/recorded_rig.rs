@@ -8,6 +8,7 @@ use super::continuous_move::ContinuousMove;
 use super::entry::{Call, FaultBody, HeldBody, IntentBody, RigBody, SampleBody, StrokeBody};
 use super::entry_of::{append_sample, in_log_time, intent, same_bits, target_text, unknown_rig};
 use super::state::{State, ended};
+use super::steps_digest::DigestedTarget;
 use psd_physics::tracking::trajectory::Path;
 use psd_plan::{Interval, Limits};
 use psd_rig::journal::EntryKind;
@@ -33,6 +34,9 @@ pub struct RecordedRig<'rig> {
 impl<'rig> RecordedRig<'rig> {
     pub(super) fn new(live: Option<&'rig mut dyn Rig>, state: Rc<RefCell<State<'rig>>>) -> Self {
         let known = state.borrow().rigs.first().cloned();
+        if let (Some(known), Some(live)) = (&known, &live) {
+            state.borrow_mut().compare_rigs(known, &RigBody::of(*live));
+        }
         let about = known.unwrap_or_else(|| {
             let about = live.as_deref().map_or_else(unknown_rig, RigBody::of);
             let mut state = state.borrow_mut();
@@ -54,7 +58,7 @@ impl<'rig> RecordedRig<'rig> {
 
     /// Whether answers still come from the run log.
     pub(super) fn answers_from_the_log(&self) -> bool {
-        self.state.borrow_mut().answers_from_the_log()
+        self.state.borrow_mut().rig_answers_from_the_log()
     }
 
     /// The rig itself, if there is one.
@@ -122,6 +126,9 @@ impl<'rig> RecordedRig<'rig> {
 
     pub(super) fn record_intent(&mut self, intent: &mut IntentBody) -> Result<(), RigFault> {
         let mut state = self.state.borrow_mut();
+        if state.digests() {
+            return state.add_to_digest("a target", |digest| digest.target(&(&*intent).into()));
+        }
         intent.n = state.next_target();
         intent.t = state.time;
         intent.wall = state.wall();
@@ -200,8 +207,32 @@ impl<'rig> RecordedRig<'rig> {
                 self.state.borrow_mut().consume();
             }
         } else {
-            let _ = self.record_intent(&mut intent(&targets, speed, &encoded, None));
+            let _ = self.record_target(&targets, speed, &encoded);
         }
+    }
+
+    /// The target of a move that stops there.
+    fn record_target(
+        &mut self,
+        targets: &[f64],
+        speed: Option<f64>,
+        encoded: &EncodedMove,
+    ) -> Result<(), RigFault> {
+        let mut state = self.state.borrow_mut();
+        if !state.digests() {
+            drop(state);
+            return self.record_intent(&mut intent(targets, speed, encoded, None));
+        }
+        let target = DigestedTarget {
+            to: targets,
+            speed,
+            encoded: Some(&*encoded.targets).filter(|encoded| !same_bits(encoded, targets)),
+            rate: encoded.speed,
+            id: encoded.move_id,
+            path: None,
+            samples: None,
+        };
+        state.add_to_digest("a target", |digest| digest.target(&target))
     }
 
     /// The readings of a stroke, up to its end or to its fault. Gives their number if the run log ends before the stroke.
@@ -326,7 +357,7 @@ impl Rig for RecordedRig<'_> {
             return Ok(());
         }
         self.rig()?;
-        self.record_intent(&mut intent(&targets, speed, &encoded, None))?;
+        self.record_target(&targets, speed, &encoded)?;
         match self.rig()?.execute() {
             Ok(()) => Ok(()),
             Err(fault) => self.failed(Call::Execute, fault),

@@ -2,11 +2,13 @@
 //! in a wrong order, or with lists whose length differs from the number of axes. It compares no numbers: that is done by
 //! the replay.
 
-use serde::de::DeserializeOwned;
-
+use super::entry::Header;
 use super::entry::{
-    Call, FaultBody, HeldBody, IntentBody, ResumeBody, RigBody, SampleBody, StepBody, TargetStatus,
+    Call, DigestBody, FaultBody, HeldBody, IntentBody, LogForm, ResumeBody, RigBody, SampleBody,
+    StepBody, TargetStatus,
 };
+use super::plain_body::Body;
+use super::steps_digest::DIGEST_STEPS;
 use psd_plan::Plan;
 use psd_rig::journal::{EntryKind, Line, Recovered};
 
@@ -23,8 +25,13 @@ pub struct Malformed {
 ///
 /// # Errors
 /// The first inconsistent line.
-pub fn well_formed(recovered: &Recovered, plan: &Plan) -> Result<(), Malformed> {
-    let mut shape = Shape { plan, rig: None };
+pub fn well_formed(recovered: &Recovered, plan: &Plan, header: &Header) -> Result<(), Malformed> {
+    let mut shape = Shape {
+        plan,
+        header,
+        rig: None,
+        short_digest: false,
+    };
     let malformed = |line: &Line, reason| Malformed {
         seq: line.seq,
         kind: line.kind,
@@ -38,8 +45,11 @@ pub fn well_formed(recovered: &Recovered, plan: &Plan) -> Result<(), Malformed> 
 
 struct Shape<'a> {
     plan: &'a Plan,
+    header: &'a Header,
     /// The first rig that answered.
     rig: Option<FirstRig>,
+    /// Whether the entry before is a digest that another entry ended.
+    short_digest: bool,
 }
 
 #[derive(Clone, Copy)]
@@ -53,6 +63,8 @@ struct FirstRig {
 
 impl Shape<'_> {
     fn take(&mut self, line: &Line) -> Result<(), String> {
+        self.fits_its_form(line.kind)?;
+        let after_short_digest = std::mem::take(&mut self.short_digest);
         match line.kind {
             EntryKind::Rig => self.answered(&body_of(line)?, line.seq),
             EntryKind::Intent => self.sent(&body_of(line)?),
@@ -61,6 +73,14 @@ impl Shape<'_> {
                 self.moves(&[("x", &x), ("r", &r)])
             }
             EntryKind::Step => self.ended(&body_of(line)?),
+            EntryKind::Digest if after_short_digest => {
+                Err("the digest before it has fewer steps, and no other entry ended it".to_owned())
+            }
+            EntryKind::Digest => {
+                let digest: DigestBody = body_of(line)?;
+                self.short_digest = digest.steps < DIGEST_STEPS;
+                self.rig().map(drop)
+            }
             EntryKind::Held => {
                 let held: HeldBody = body_of(line)?;
                 held.found
@@ -78,6 +98,36 @@ impl Shape<'_> {
             | EntryKind::Recover
             | EntryKind::End => Ok(()),
         }
+    }
+
+    /// A compact run log is that of a simulation, which was not resumed. It has digests where a full one has entries.
+    fn fits_its_form(&self, kind: EntryKind) -> Result<(), String> {
+        let is_compact = self.header.log == LogForm::Compact;
+        let fits = match kind {
+            EntryKind::Header if is_compact => {
+                self.plan.rig.link.as_virtual().is_some() && self.header.served.is_none()
+            }
+            EntryKind::Rig => !is_compact || self.rig.is_none(),
+            EntryKind::Digest => is_compact,
+            EntryKind::Intent
+            | EntryKind::Sample
+            | EntryKind::Stroke
+            | EntryKind::Step
+            | EntryKind::Held
+            | EntryKind::LineStatistics
+            | EntryKind::Recover
+            | EntryKind::Amend
+            | EntryKind::Resume => !is_compact,
+            EntryKind::Header
+            | EntryKind::Plan
+            | EntryKind::Operator
+            | EntryKind::Event
+            | EntryKind::Fault
+            | EntryKind::End => true,
+        };
+        let form = if is_compact { "compact" } else { "full" };
+        fits.then_some(())
+            .ok_or_else(|| format!("a {form} run log has no such entry"))
     }
 
     fn rig(&self) -> Result<FirstRig, String> {
@@ -206,8 +256,8 @@ impl Shape<'_> {
     }
 }
 
-fn body_of<T: DeserializeOwned>(line: &Line) -> Result<T, String> {
-    line.read().map_err(|fault| fault.to_string())
+fn body_of<T: Body>(line: &Line) -> Result<T, String> {
+    line.read_by(T::of_plain).map_err(|fault| fault.to_string())
 }
 
 /// `1 axis`, `2 axes`

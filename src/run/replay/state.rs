@@ -4,18 +4,19 @@
 use std::collections::VecDeque;
 
 use serde::Serialize;
-use serde::de::DeserializeOwned;
 
 use super::Wall;
 use super::entry::{
-    Call, EndBody, EndOutcome, FaultBody, HeldBody, IntentBody, OperatorBody, SampleBody,
-    TargetStatus,
+    Call, DigestBody, EndBody, EndOutcome, FaultBody, HeldBody, IntentBody, LogForm, OperatorBody,
+    RigBody, SampleBody, TargetStatus,
 };
 use super::in_force::{InForce, Rigs};
 use super::logged_run::{LoggedRun, Mismatch, body};
+use super::plain_body::Body;
+use super::steps_digest::{DIGEST_STEPS, StepsDigest};
 use crate::run::Request;
 use psd_plan::record::Event;
-use psd_rig::journal::{EntryKind, Journal, JournalFault, Line};
+use psd_rig::journal::{EntryKind, Journal, JournalFault, Line, Refusal, is_written_as};
 use psd_rig::{LineStatistics, Reading, Rig, RigFault};
 
 /// The rig and the run log with which a run is continued after its replay.
@@ -51,6 +52,12 @@ pub(super) struct State<'rig> {
     pub(super) driven: bool,
     pub(super) rigs: Rigs,
     journal: Option<Journal>,
+    /// The targets, readings and steps since the last entry, in the compact form of the run log.
+    digest: Option<StepsDigest>,
+    /// The run is simulated again, and each entry is compared with the next of `lines`: the replay of a compact run log.
+    repeats: bool,
+    /// The next entry to compare, if it is a digest.
+    due: Option<DigestBody>,
     /// The status of the target at the end of the replay, from the resumption.
     target_status: Option<TargetStatus>,
     /// Rig time of the last entry \[s\].
@@ -79,9 +86,21 @@ impl<'rig> State<'rig> {
         }
     }
 
+    /// As `recording`, with the digests of steps.
+    pub(super) fn digesting(journal: Journal) -> Self {
+        Self {
+            journal: Some(journal),
+            digest: Some(StepsDigest::default()),
+            ..Self::empty()
+        }
+    }
+
     pub(super) fn replaying(logged: LoggedRun) -> Self {
         let time = logged.rigs.first().map_or(0.0, |rig| rig.t);
+        let repeats = logged.header.log == LogForm::Compact;
         Self {
+            digest: repeats.then(StepsDigest::default),
+            repeats,
             driven: logged.header.served.is_some(),
             lines: logged.lines,
             time,
@@ -117,6 +136,9 @@ impl<'rig> State<'rig> {
             driven: false,
             rigs: Rigs::default(),
             journal: None,
+            digest: None,
+            repeats: false,
+            due: None,
             target_status: None,
             time: 0.0,
             targets: 0,
@@ -139,6 +161,11 @@ impl<'rig> State<'rig> {
             self.open();
         }
         !self.lines.is_empty() || self.mismatch.is_some()
+    }
+
+    /// Whether the answers of the rig come from there too: they do not while the run is simulated again.
+    pub(super) fn rig_answers_from_the_log(&mut self) -> bool {
+        self.answers_from_the_log() && (!self.repeats || self.mismatch.is_some())
     }
 
     /// Opens the continuation, unless plan and run log differ.
@@ -219,11 +246,7 @@ impl<'rig> State<'rig> {
     }
 
     /// The next entry, not consumed.
-    pub(super) fn peek<T: DeserializeOwned>(
-        &mut self,
-        kind: EntryKind,
-        called: &str,
-    ) -> Result<T, RigFault> {
+    pub(super) fn peek<T: Body>(&mut self, kind: EntryKind, called: &str) -> Result<T, RigFault> {
         if let (None, Some(fault)) = (&self.mismatch, self.final_entry()) {
             return Err(fault);
         }
@@ -387,6 +410,18 @@ impl<'rig> State<'rig> {
         body: &impl Serialize,
     ) -> Result<(), RigFault> {
         self.healthy()?;
+        if self.repeats {
+            return self.compare(kind, body);
+        }
+        self.append_digest()?;
+        self.append_to_journal(kind, body)
+    }
+
+    fn append_to_journal(
+        &mut self,
+        kind: EntryKind,
+        body: &impl Serialize,
+    ) -> Result<(), RigFault> {
         let Some(journal) = &mut self.journal else {
             return Err(ended());
         };
@@ -396,8 +431,110 @@ impl<'rig> State<'rig> {
         }
     }
 
+    /// Whether targets, readings and steps are digested.
+    pub(super) const fn digests(&self) -> bool {
+        self.digest.is_some()
+    }
+
+    /// Digests a target, a reading, the end of a stroke or a step.
+    pub(super) fn add_to_digest(
+        &mut self,
+        called: &str,
+        add: impl FnOnce(&mut StepsDigest) -> Result<(), Refusal>,
+    ) -> Result<(), RigFault> {
+        self.healthy()?;
+        if self.repeats && self.due.is_none() {
+            self.due = Some(self.peek(EntryKind::Digest, called)?);
+        }
+        let Some(digest) = &mut self.digest else {
+            return Err(ended());
+        };
+        let added = add(digest);
+        digest.time = self.time;
+        let (entries, is_full) = (digest.entries, digest.steps == DIGEST_STEPS);
+        match (added, &self.due) {
+            (Err(refusal), None) => Err(self.broken(refusal.into())),
+            // A run log with this would state the refusal here.
+            (Err(refusal), Some(_)) => {
+                Err(self.report_mismatch(format!("{called} that the run log rejects ({refusal})")))
+            }
+            (Ok(()), Some(due)) if due.entries == entries || is_full => self.compare_digest(),
+            (Ok(()), None) if is_full => self.append_digest(),
+            (Ok(()), _) => Ok(()),
+        }
+    }
+
+    /// Appends the digest, if there is anything in it.
+    fn append_digest(&mut self) -> Result<(), RigFault> {
+        match self.digest.as_mut().and_then(StepsDigest::take) {
+            Some(body) => self.append_to_journal(EntryKind::Digest, &body),
+            None => Ok(()),
+        }
+    }
+
+    /// The digest of the repeated run is that of the run log, or the two differ from here on.
+    fn compare_digest(&mut self) -> Result<(), RigFault> {
+        let own = self.digest.as_mut().and_then(StepsDigest::take);
+        let due = self.due.take();
+        if own == due {
+            self.consume();
+            return Ok(());
+        }
+        let described = |body: Option<DigestBody>| {
+            body.map_or_else(String::new, |body| {
+                format!(
+                    "{} steps to {} s with the digest {}",
+                    body.steps, body.t, body.sha256
+                )
+            })
+        };
+        let seq = self.lines.front().map_or(0, |line| line.seq);
+        Err(self.differs(Mismatch {
+            seq,
+            called: described(own),
+            found: described(due),
+        }))
+    }
+
+    /// The next entry of the run log is this one, or the two differ from here on.
+    fn compare(&mut self, kind: EntryKind, body: &impl Serialize) -> Result<(), RigFault> {
+        let front = self.lines.front();
+        if front.is_some_and(|line| line.kind == kind && is_written_as(line, body)) {
+            self.consume();
+            return Ok(());
+        }
+        let body = serde_json::to_string(body).unwrap_or_default();
+        Err(self.report_mismatch(format!("{} {body}", kind.word())))
+    }
+
+    /// The simulated rig is that of the run log, or the two differ from the start.
+    pub(super) fn compare_rigs(&mut self, known: &RigBody, live: &RigBody) {
+        if self.repeats && known != live {
+            let described = |rig: &RigBody| serde_json::to_string(rig).unwrap_or_default();
+            self.differs(Mismatch {
+                seq: 0,
+                called: described(live),
+                found: described(known),
+            });
+        }
+    }
+
+    /// The run that is simulated again has ended, and so has its run log; else the two differ.
+    pub(super) fn end_of_repetition(&mut self) {
+        if self.repeats
+            && self.mismatch.is_none()
+            && !self.lines.is_empty()
+            && self.final_entry().is_none()
+        {
+            self.report_mismatch("its end".to_owned());
+        }
+    }
+
     /// The entries appended so far survive a loss of power from here on.
     pub(super) fn sync_point(&mut self) -> Result<(), RigFault> {
+        if self.repeats {
+            return Ok(());
+        }
         self.healthy()?;
         let Some(journal) = &mut self.journal else {
             return Err(ended());
@@ -408,8 +545,14 @@ impl<'rig> State<'rig> {
         }
     }
 
-    /// A run log that fails ends the run: no motion without an entry.
+    /// A run log that fails ends the run: no motion without an entry. A run that is simulated again ends where its run log failed or was
+    /// interrupted.
     pub(super) fn healthy(&self) -> Result<(), RigFault> {
+        if self.repeats {
+            let failed = self.mismatch_fault().or_else(|| self.final_entry());
+            let interrupted = || (self.lines.is_empty() && !self.ended).then(ended);
+            return failed.or_else(interrupted).map_or(Ok(()), Err);
+        }
         self.fault
             .as_ref()
             .map_or(Ok(()), |fault| Err(unkept(fault)))
@@ -431,13 +574,26 @@ impl<'rig> State<'rig> {
 
     /// Appends an entry to a run log that has failed. It is attempted once.
     pub(super) fn append_finally(&mut self, kind: EntryKind, body: &impl Serialize) {
+        let digest = self.digest.as_mut().and_then(StepsDigest::take);
         if let Some(journal) = &mut self.journal {
+            if let Some(digest) = digest {
+                let _ = journal.final_entry(EntryKind::Digest, &digest);
+            }
             let _ = journal.final_entry(kind, body);
+        }
+    }
+
+    /// The steps after the last entry.
+    fn append_last_digest(&mut self) {
+        if self.fault.is_none() && !self.repeats {
+            // The fault is kept.
+            let _ = self.append_digest();
         }
     }
 
     /// The run was completed.
     pub(super) fn end(&mut self) {
+        self.append_last_digest();
         if self.fault.is_none()
             && let Some(journal) = &mut self.journal
         {
@@ -450,6 +606,7 @@ impl<'rig> State<'rig> {
 
     /// The run ended early; its run log can be continued.
     pub(super) fn close(&mut self) {
+        self.append_last_digest();
         if self.fault.is_none()
             && let Some(journal) = &mut self.journal
         {

@@ -86,16 +86,20 @@ pub fn listed(numbers: &[u32]) -> String {
     texts.collect::<Vec<_>>().join(",")
 }
 
-/// What submits shards again: the command, if the folder has the script of its job array; the option of the batch system if not.
+/// What submits shards again, and the job that merges after them: the command, if the folder has the scripts of its jobs; the option of
+/// the batch system if not.
 #[must_use]
 pub fn resubmission(folder: &Path, numbers: &[u32]) -> String {
     let option = format!("--array={}", listed(numbers));
-    let script = folder.join(slurm::ARRAY_SCRIPT);
-    if script.exists() {
-        let script = slurm::quoted(&script.display().to_string());
-        format!("sbatch {option} {script}")
-    } else {
-        option
+    let script = |name: &str| {
+        let path = Some(folder.join(name)).filter(|path| path.exists())?;
+        Some(slurm::quoted(&path.display().to_string()))
+    };
+    match script(slurm::ARRAY_SCRIPT).zip(script(slurm::MERGE_SCRIPT)) {
+        Some((array, merge)) => {
+            format!("sbatch --dependency=afterany:$(sbatch --parsable {option} {array}) {merge}")
+        }
+        None => option,
     }
 }
 

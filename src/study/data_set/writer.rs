@@ -3,9 +3,8 @@
 //!
 //! The encodings are stated here: left to Polars, they would depend on an estimate with a random seed.
 
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io::{BufWriter, Write as _};
-use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::{Path, PathBuf};
 
 use polars::prelude::{CompatLevel, KeyValueMetadata, PolarsError, SchemaExt as _};
@@ -40,9 +39,6 @@ const OPTIONS: WriteOptions = WriteOptions {
     data_page_size: None,
 };
 
-/// Only their owner reads results, as the run log.
-const MODE: u32 = 0o600;
-
 /// A data set that is being written.
 pub struct Writer {
     path: PathBuf,
@@ -66,9 +62,7 @@ impl Writer {
         let mut part = path.as_os_str().to_owned();
         part.push(".part");
         let part = PathBuf::from(part);
-        let mut options = OpenOptions::new();
-        options.write(true).create(true).truncate(true).mode(MODE);
-        let file = options.open(&part).map_err(DataSetFault::of(&part))?;
+        let file = File::create(&part).map_err(DataSetFault::of(&part))?;
         let block = Block::like(
             metadata.first,
             metadata.inputs.len(),

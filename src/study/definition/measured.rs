@@ -3,7 +3,7 @@
 
 use thiserror::Error;
 
-use crate::run::{Settings, Unwatched, run_with};
+use crate::run::{Unwatched, run};
 use psd_physics::study::distribution::{Distribution, Spread};
 use psd_physics::study::inputs::Source;
 use psd_plan::Plan;
@@ -42,8 +42,7 @@ pub fn known(plan: &mut Plan) -> Result<(), MeasuredError> {
         return Ok(());
     }
     let mut rig = virtual_rig(plan);
-    let settings = Settings { uncertainty: true };
-    let record = run_with(plan, rig.as_mut(), &mut Unwatched, settings);
+    let record = run(plan, rig.as_mut(), &mut Unwatched);
     let studies = &mut plan.studies;
     for study in &mut studies.studies {
         of_variation(&mut study.variation, &record)?;

@@ -1,17 +1,20 @@
 //! Runs of a study whose plan is one impact, many at once. In: plans with the values of their runs. Out: the record of each, without
-//! steps; None for a run that has to go through the rig.
+//! steps; or why a run has to go through the rig.
+
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::procedures;
-use crate::procedures::impact::batched::{self, BatchedImpact};
+use crate::procedures::impact::batched::{self, BatchedImpact, Ended, Leaves};
+use psd_physics::impact::summary::Wanted;
 use psd_plan::Plan;
 use psd_plan::formula::{ResultPart, ResultReference};
-use psd_plan::record::{Outcome, Record};
+use psd_plan::record::Record;
 use psd_rig::virtual_rig;
 
 /// The impact that is the whole plan, if it can run in a batch.
 pub fn impact(plan: &Plan) -> Option<BatchedImpact> {
     let first = &plan.procedures.first()?.kind;
-    BatchedImpact::of(procedures::facts_of(first).point_impact?, plan)
+    BatchedImpact::of(procedures::point_impact(first)?, plan)
 }
 
 /// Whether batches give everything that is read of the runs of this plan.
@@ -22,15 +25,29 @@ pub fn takes(plan: &Plan, read: &[ResultReference]) -> bool {
     impact(plan).is_some() && read.iter().all(given)
 }
 
+/// What a batch has to find for these results.
+pub fn wanted(read: &[ResultReference]) -> Wanted {
+    batched::wanted(read.iter().map(|reference| reference.name))
+}
+
 /// Impacts that wait to run together.
-#[derive(Default)]
 pub struct Batch {
+    wanted: Wanted,
     /// Number in the block, and plan.
     runs: Vec<(usize, Plan)>,
     impacts: Vec<BatchedImpact>,
 }
 
 impl Batch {
+    /// Of impacts of which these results are read.
+    pub const fn new(wanted: Wanted) -> Self {
+        Self {
+            wanted,
+            runs: Vec::new(),
+            impacts: Vec::new(),
+        }
+    }
+
     /// Adds the impact of a plan. Its files are not kept: a batch has many plans.
     pub fn add(&mut self, number: usize, mut plan: Plan, impact: BatchedImpact) {
         plan.files = Vec::new();
@@ -38,19 +55,19 @@ impl Batch {
         self.impacts.push(impact);
     }
 
-    /// The records, with number and plan.
-    pub fn run(self) -> impl Iterator<Item = (usize, Plan, Option<Record>)> {
+    /// The records, with number and plan; or why a run leaves the batch.
+    pub fn run(self) -> impl Iterator<Item = (usize, Plan, Result<Record, Leaves>)> {
         let first = self.runs.first().map(|(_, plan)| plan);
         let records = first.map_or_else(Vec::new, |plan| {
             let rig = virtual_rig(plan).identity();
-            let record = |procedure| Record {
+            let record = |Ended { procedure, outcome }| Record {
                 rig: rig.clone(),
                 procedures: vec![procedure],
                 events: Vec::new(),
-                outcome: Outcome::Completed,
+                outcome,
                 drift: None,
             };
-            let impacts = batched::run(&plan.procedures[0], &self.impacts);
+            let impacts = batched::run(&plan.procedures[0], &self.impacts, self.wanted);
             let records = impacts.into_iter().map(|found| found.map(record));
             records.collect::<Vec<_>>()
         });
@@ -58,5 +75,43 @@ impl Batch {
             .into_iter()
             .zip(records)
             .map(|((number, plan), record)| (number, plan, record))
+    }
+}
+
+/// Runs of a study in batches that left them, by the reason.
+#[derive(Debug, Default)]
+pub struct LeftBatches {
+    needs_rig: AtomicU64,
+    outside_at_start: AtomicU64,
+    not_finite: AtomicU64,
+}
+
+impl LeftBatches {
+    pub(super) fn count(&self, why: Leaves) {
+        let counter = match why {
+            Leaves::NeedsRig => &self.needs_rig,
+            Leaves::OutsideAtStart => &self.outside_at_start,
+            Leaves::NotFinite => &self.not_finite,
+        };
+        counter.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// One line on the terminal; None if no run left.
+    #[must_use]
+    pub fn text(&self) -> Option<String> {
+        let counts = [
+            (&self.needs_rig, "with values that need the rig"),
+            (&self.outside_at_start, "outside a limit at the start"),
+            (&self.not_finite, "with a result that is not finite"),
+        ]
+        .map(|(counter, why)| (counter.load(Ordering::Relaxed), why));
+        let all: u64 = counts.iter().map(|(count, _)| count).sum();
+        let runs = if all == 1 { "run" } else { "runs" };
+        let reasons: Vec<String> = counts
+            .into_iter()
+            .filter(|(count, _)| *count > 0)
+            .map(|(count, why)| format!("{count} {why}"))
+            .collect();
+        (all > 0).then(|| format!("{all} {runs} left the batches: {}", reasons.join(", ")))
     }
 }

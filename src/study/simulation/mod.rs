@@ -2,6 +2,8 @@
 //! seed and i alone. It writes no file.
 
 mod alone;
+#[cfg(test)]
+mod alone_tests;
 mod batches;
 pub mod readout;
 #[cfg(test)]
@@ -15,7 +17,10 @@ use rayon::prelude::*;
 use super::data_set::StudyRow;
 use super::definition::Definition;
 use crate::check::ParsedPlan;
+use crate::procedures::impact::batched::Leaves;
 use batches::Batch;
+pub use batches::LeftBatches;
+use psd_physics::impact::summary::Wanted;
 use psd_plan::Plan;
 use psd_text::diagnostic::Diagnostic;
 use psd_text::units::Quantity;
@@ -32,6 +37,9 @@ pub struct Simulation<'a> {
     study: &'a Definition,
     readout: Readout,
     is_batched: bool,
+    /// What batches have to find.
+    wanted: Wanted,
+    left: LeftBatches,
     /// Formulas of the study contain varied values.
     with_studies: bool,
 }
@@ -41,13 +49,16 @@ impl<'a> Simulation<'a> {
     #[must_use]
     pub fn new(parsed: &'a ParsedPlan, plan: &'a Plan, study: &'a Definition) -> Self {
         let readout = Readout::of(plan, study);
-        let is_batched = batches::takes(plan, &readout.references(plan));
+        let references = readout.references(plan);
+        let is_batched = batches::takes(plan, &references);
         let mut simulation = Self {
             parsed,
             plan,
             study,
             readout,
             is_batched,
+            wanted: batches::wanted(&references),
+            left: LeftBatches::default(),
             with_studies: false,
         };
         let mut values = Vec::new();
@@ -73,6 +84,12 @@ impl<'a> Simulation<'a> {
     #[must_use]
     pub const fn is_batched(&self) -> bool {
         self.is_batched
+    }
+
+    /// The runs that left their batches so far.
+    #[must_use]
+    pub const fn left(&self) -> &LeftBatches {
+        &self.left
     }
 
     /// What is kept of every run.
@@ -118,7 +135,7 @@ impl<'a> Simulation<'a> {
     fn on_this_thread(&self, runs: Range<u64>, points: Option<&[Vec<f64>]>) -> Vec<StudyRow> {
         let mut rows = Vec::new();
         let mut values = Vec::new();
-        let mut batch = Batch::default();
+        let mut batch = Batch::new(self.wanted);
         for run in runs {
             match points.and_then(|points| points.get(rows.len())) {
                 Some(point) => self.study.draws.at(point, &mut values),
@@ -126,25 +143,32 @@ impl<'a> Simulation<'a> {
             }
             let kept = match self.bind(&values) {
                 Err(reason) => self.readout.nothing(self.plan, reason),
-                Ok(plan) => match batches::impact(&plan).filter(|_| self.is_batched) {
+                Ok(plan) if self.is_batched => match batches::impact(&plan) {
                     Some(impact) => {
                         batch.add(rows.len(), plan, impact);
                         Kept::default()
                     }
-                    None => self.alone(&plan),
+                    None => self.leaving(&plan, Leaves::NeedsRig),
                 },
+                Ok(plan) => self.alone(&plan),
             };
             rows.push(row(run, values.clone(), kept));
         }
         for (at, plan, record) in batch.run() {
             let kept = match record {
-                Some(record) => self.readout.read(&plan, &record),
-                None => self.alone(&plan),
+                Ok(record) => self.readout.read(&plan, &record),
+                Err(why) => self.leaving(&plan, why),
             };
             let inputs = std::mem::take(&mut rows[at].inputs);
             rows[at] = row(rows[at].run, inputs, kept);
         }
         rows
+    }
+
+    /// A run that leaves its batch.
+    fn leaving(&self, plan: &Plan, why: Leaves) -> Kept {
+        self.left.count(why);
+        self.alone(plan)
     }
 
     fn alone(&self, plan: &Plan) -> Kept {

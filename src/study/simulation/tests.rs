@@ -6,6 +6,7 @@ use crate::study::answers::setting;
 use crate::study::data_set::Outcome;
 use crate::study::metadata::column;
 use crate::study::testing::{Studied, checked, plan, usual, variation};
+use psd_physics::impact::summary::Wanted;
 use psd_physics::study::distribution::{Distribution, Spread};
 use psd_physics::study::inputs::Source;
 use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference};
@@ -14,8 +15,8 @@ use psd_plan::{Comparison, Condition, Test};
 use psd_text::units::Dimension;
 
 /// Files beside the examples.
-fn folder(path: &str) -> Result<String, LoadError> {
-    std::fs::read_to_string(format!("plans/{path}")).map_err(|_| LoadError::NotFound)
+pub(super) fn folder(path: &str) -> Result<String, LoadError> {
+    std::fs::read_to_string(format!("../plans/{path}")).map_err(|_| LoadError::NotFound)
 }
 
 /// Inputs and results as bits.
@@ -37,8 +38,8 @@ const EVERYTHING: &str = "require \"everything\" hit.max_displacement < 180 mm a
     hit.max_contact_force > 1 N and hit.absorbed_energy > 1 mJ and hit.max_velocity > 0.1 m/s and hit.impulse > 1 N*s and \
     abs(hit.energy_error) < 50 % and hit.final_displacement > 1 mm and hit.critical_time_step > 1 us";
 
-/// Some impacts are stopped by a limit, some begin with an error, some do not end: then the batch leaves them to the rig. All outcomes
-/// occur, and the rows are the same.
+/// Some impacts are stopped by a limit, some begin with an error, some do not end or reach no peak. All outcomes occur, the rows are the
+/// same, and no run leaves its batch.
 #[test]
 fn runs_in_batches_are_the_runs_one_by_one() {
     let bilinear = |text: String| {
@@ -60,6 +61,12 @@ fn runs_in_batches_are_the_runs_one_by_one() {
             ),
         ),
         plan("", EVERYTHING).replace("duration = 1 s", "duration = 0.26 s"),
+        plan("", EVERYTHING).replace("duration = 1 s", "duration = 50 ms"),
+        plan(
+            "contact = limit(force: 80 N)",
+            &format!("limits {{ force = -1 N .. 20 N }}\n{EVERYTHING}"),
+        ),
+        plan("", &format!("limits {{ increment = 5 mm }}\n{EVERYTHING}")),
         plan("", EVERYTHING).replace(
             "param weight = 1 kg",
             "param weight = 1 kg between 0.8 kg .. 1.2 kg",
@@ -72,7 +79,9 @@ fn runs_in_batches_are_the_runs_one_by_one() {
         let definition = studied.definition();
         let simulation = || Simulation::new(&studied.parsed, &studied.plan, &definition);
         assert!(simulation().is_batched(), "{text}");
-        let batched = simulation().block(0..100);
+        let in_batches = simulation();
+        let batched = in_batches.block(0..100);
+        assert_eq!(in_batches.left().text(), None, "{text}");
         let alone = simulation().one_by_one().block(0..100);
         assert_eq!(bits(&batched), bits(&alone), "{text}");
         assert_eq!(batched, alone, "{text}");
@@ -83,11 +92,32 @@ fn runs_in_batches_are_the_runs_one_by_one() {
     }
 }
 
+/// A damper that the values of a run give its specimen needs the rig.
+#[test]
+fn a_run_that_leaves_its_batch_is_counted_with_the_reason() {
+    let text = usual()
+        .replace("param weight = 1 kg", "param weight = 0 kg")
+        .replace("mass = weight", "mass = 1 kg\ndamping = weight / 1 s");
+    let studied = Studied::of(&text, 10);
+    let definition = studied.definition();
+    let simulation = Simulation::new(&studied.parsed, &studied.plan, &definition);
+    assert!(simulation.is_batched());
+    let batched = simulation.block(0..10);
+    let alone = Simulation::new(&studied.parsed, &studied.plan, &definition)
+        .one_by_one()
+        .block(0..10);
+    assert_eq!(batched, alone);
+    assert_eq!(
+        simulation.left().text().unwrap(),
+        "10 runs left the batches: 10 with values that need the rig"
+    );
+}
+
 /// Every example that is one impact on an ideal rig: its results in a batch are those of its run.
 #[test]
 fn every_example_that_a_batch_takes_has_the_same_results_in_it() {
     let mut paths = Vec::new();
-    for entry in std::fs::read_dir("plans").unwrap() {
+    for entry in std::fs::read_dir("../plans").unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_none_or(|extension| extension != "psd") {
             continue;
@@ -99,10 +129,10 @@ fn every_example_that_a_batch_takes_has_the_same_results_in_it() {
             continue;
         };
         let alone = alone::simulate(&plan);
-        let mut batch = Batch::default();
+        let mut batch = Batch::new(Wanted::ALL);
         batch.add(0, plan, impact);
         let (_, _, found) = batch.run().next().unwrap();
-        let Some(found) = found else { continue };
+        let found = found.unwrap();
         let names: Vec<&str> = found.procedures[0]
             .results
             .iter()

@@ -1,10 +1,12 @@
 //! Rig emulators for tests: a plain emulated rig, and the lines and the clock of an emulator in the same thread.
 
+mod attached;
 mod in_process;
 
 use std::io::{self, Write};
 use std::sync::{Arc, Mutex};
 
+pub use attached::{emulator, open, open_through};
 pub use in_process::{InProcess, SimulatedPort};
 
 use psd_plan::{Behaviour, Interval};

@@ -5,9 +5,9 @@
 use super::motion::impact_plan;
 use super::stage::{Ended, STIFFNESS, emulator, header, link, open, plan_of, run, run_watched, to};
 use crate::run::replay::LoggedRun;
-use crate::run::{Inspection, Motion, Observer, UNLOADING, Unwatched, replay};
+use crate::run::{Inspection, Motion, Observer, Unwatched, replay};
 use crate::tests::testing::{number, ramp};
-use psd_plan::record::{EventKind, History, Outcome, Record};
+use psd_plan::record::{EventKind, History, Outcome, Record, UNLOADING};
 use psd_plan::{Limits, Plan, ProcedureKind, SafeState};
 use psd_rig::emulator::Log;
 use psd_rig::journal::{Durability, EntryKind, Journal};

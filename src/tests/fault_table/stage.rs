@@ -5,28 +5,24 @@ use crate::run::replay;
 use crate::run::replay::LoggedRun;
 use crate::run::{Observer, Unwatched};
 pub(super) use crate::tests::testing::header;
-use crate::tests::testing::{elastic_plan, ramp};
+use crate::tests::testing::ramp;
 use psd_plan::formula::Formula;
 use psd_plan::record::{EventKind, History, Outcome, Record};
-use psd_plan::{
-    Behind, Datum, DeviceLink, Dialect, Interval, Limits, Link, Move, Plan, PortPlan, PretestCheck,
-    ProcedureKind, ReadingRules, RealLink, SafeState, Settle,
-};
-use psd_rig::emulator::{Log, Script, of_plan};
+use psd_plan::{Link, Move, Plan, ProcedureKind, RealLink};
+use psd_rig::emulator::Log;
 use psd_rig::journal::{Durability, EntryKind, Journal, Line, Recovered};
-use psd_rig::real::RealRig;
 use psd_rig::safety::failpoint::{Guarding, without};
-use psd_rig::transport::Port;
-use psd_rig::{LineStatistics, Rig as _, RigFault, StopRequest, controllers};
-use psd_testing::emulator::{InProcess, SharedText, SimulatedPort};
+use psd_rig::{LineStatistics, Rig as _, RigFault};
+pub(super) use psd_testing::emulator::open_through;
+use psd_testing::emulator::{InProcess, SharedText};
+pub(crate) use psd_testing::emulator::{emulator, open};
 use psd_testing::journal::PowerLoss;
 use psd_testing::journal::recover;
+use psd_testing::plans::real_plan;
+pub(super) use psd_testing::plans::{REPLY_TIMEOUT, device_link};
 
 /// Stiffness of the specimen \[N/m\].
 pub(super) const STIFFNESS: f64 = 1e5;
-
-/// Time without a reply after which a frame is sent again \[s\].
-pub(super) const REPLY_TIMEOUT: f64 = 0.1;
 
 /// A ramp of ten steps of 0.1 mm on a native rig, three readings each.
 pub(crate) fn plan() -> Plan {
@@ -34,58 +30,7 @@ pub(crate) fn plan() -> Plan {
 }
 
 pub(super) fn plan_of(procedures: Vec<ProcedureKind>) -> Plan {
-    let mut plan = elastic_plan(STIFFNESS, procedures);
-    plan.rig.name = "frame".to_owned();
-    plan.rig.settle = Settle {
-        band: 5e-6,
-        force_rate: 0.0,
-        dwell: 0.05,
-        timeout: 0.5,
-    };
-    plan.rig.link = Link::Real(RealLink {
-        actuator: device_link(Dialect::Native),
-        load_cell: None,
-        safe_state: SafeState::Hold,
-        datum: Datum::Machine,
-        pretest_check: PretestCheck {
-            zero: 5.0,
-            probe: 5e-5,
-            stiffness: Interval {
-                low: 5e4,
-                high: 2e5,
-            },
-        },
-        readings: ReadingRules {
-            samples: 3,
-            rate: 50.0,
-            resolution: 1e-6,
-            noise: 0.0,
-            force_range: Interval {
-                low: -2000.0,
-                high: 2000.0,
-            },
-            frozen_after: 6,
-        },
-        watchdog: 3.0,
-        own_speed: 0.01,
-        axes: Vec::new(),
-    });
-    plan.limits = Limits {
-        displacement: Interval {
-            low: -0.002,
-            high: 0.01,
-        },
-        force: Interval {
-            low: -1500.0,
-            high: 1500.0,
-        },
-        speed: Interval {
-            low: 0.0,
-            high: 0.01,
-        },
-        ..Limits::NONE
-    };
-    plan
+    real_plan(STIFFNESS, procedures)
 }
 
 /// The link of a plan of these tests.
@@ -93,19 +38,6 @@ pub(super) const fn link(plan: &mut Plan) -> &mut RealLink {
     match &mut plan.rig.link {
         Link::Real(link) => link,
         Link::Virtual(_) => panic!("a real rig"),
-    }
-}
-
-pub(super) const fn device_link(dialect: Dialect) -> DeviceLink {
-    let port = PortPlan::Serial {
-        path: String::new(),
-        baud: 115_200,
-    };
-    DeviceLink {
-        port,
-        dialect,
-        reply_timeout: REPLY_TIMEOUT,
-        serial_number: None,
     }
 }
 
@@ -175,56 +107,6 @@ pub(super) fn run_watched(
         trusted,
         emulator,
     })
-}
-
-pub(crate) fn emulator(plan: &Plan, script: &str, log: Log, seed: u64) -> InProcess {
-    let script = Script::parse(script).unwrap_or_else(|error| panic!("{error}"));
-    InProcess::new(of_plan(plan, &script, log, seed, Some(0x7f3a)).unwrap())
-}
-
-/// The plan's rig on an emulator.
-pub(crate) fn open(plan: &Plan, emulator: &InProcess) -> Result<RealRig, RigFault> {
-    open_through(plan, emulator, &|port| Box::new(port))
-}
-
-/// The same, with every line wrapped by `through`.
-pub(super) fn open_through(
-    plan: &Plan,
-    emulator: &InProcess,
-    through: &dyn Fn(SimulatedPort) -> Box<dyn Port>,
-) -> Result<RealRig, RigFault> {
-    let link = plan.rig.link.as_real().unwrap();
-    let attach = |link: &DeviceLink, line: usize| {
-        controllers::open(
-            link,
-            through(emulator.port(line)),
-            Box::new(emulator.clock()),
-            StopRequest::default(),
-            plan.rig.settle.timeout,
-        )
-    };
-    let (actuators, cells) = (link.actuators(), link.load_cells());
-    let first_cell = actuators.len();
-    let of_role = |behind: Vec<Behind<'_>>, first: usize| {
-        let member = |(at, Behind { link, axes, .. }): (usize, Behind<'_>)| controllers::Member {
-            device: attach(link, first + at),
-            axes,
-            serial_number: link.serial_number.clone(),
-        };
-        controllers::together(
-            behind.into_iter().enumerate().map(member).collect(),
-            plan.rig.axes().unwrap_or(1),
-        )
-    };
-    let (actuator, load_cell) = (of_role(actuators, 0).unwrap(), of_role(cells, first_cell));
-    RealRig::open(
-        &plan.rig,
-        &plan.limits,
-        actuator,
-        load_cell,
-        Box::new(emulator.clock()),
-        StopRequest::default(),
-    )
 }
 
 /// The same run with one guard off.

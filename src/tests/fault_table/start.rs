@@ -90,6 +90,24 @@ fn the_force_of_a_specimen_at_the_start_is_reported() {
     assert_eq!(bent.lock().rig().moves().len(), 3);
 }
 
+/// Every later position counts from the zero. The line of this stand has no checksum: bit 17 makes 2.50 mm of 2.70 mm.
+#[test]
+fn one_wrong_reading_is_not_the_zero() {
+    let mut plan = here(plan());
+    link(&mut plan).actuator = device_link(Dialect::Mark10);
+    link(&mut plan).readings.samples = 1;
+    let opened = (0..40).filter_map(|replies| {
+        let script = format!("stands at 2.7 mm\nafter {replies} replies: flip bit 17");
+        let rig = open(&plan, &emulator(&plan, &script, Log::none(), 1)).ok()?;
+        Some((replies, rig.datum()))
+    });
+    let opened: Vec<_> = opened.collect();
+    assert!(opened.len() > 30, "{opened:?}");
+    for (replies, datum) in opened {
+        assert_eq!(datum, Some(vec![2.7e-3]), "{replies}");
+    }
+}
+
 #[test]
 fn a_plan_with_its_zero_at_the_rig_position_counts_from_there() {
     for sign in [1.0, -1.0] {

@@ -7,12 +7,11 @@ use super::bench;
 use super::case::Session;
 use super::laws::{Law, Released};
 use super::life::{Ended, Life, open, read};
-use crate::cli::operator::watch::Shared;
 use crate::run::replay::{
     self, AmendBody, Assurance, Bands, Continuation, HeldBody, IntentBody, LoggedRun, RecoverBody,
     ResumeBody, ResumeDecision, ResumeRefusal, RigBody, SampleBody,
 };
-use crate::run::{Inspection, Motion, Observer};
+use crate::run::{Inspection, Motion, Observer, Shared};
 use psd_plan::Plan;
 use psd_rig::journal::{Durability, EntryKind, Journal, Storage as _};
 use psd_rig::{Reading, Rig as _, RigFault, StopRequest};

@@ -173,6 +173,7 @@ pub fn finished() -> Finished {
             frame: None,
             time_step: TIME_STEP,
             critical_time_step: 0.0347,
+            ending: psd_physics::impact::summary::ImpactEnding::default(),
         }),
     };
     Finished {

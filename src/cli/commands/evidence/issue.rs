@@ -8,20 +8,20 @@ use clap::Args;
 
 use super::replayed::finish_replayed;
 use super::verify::refuse_unproven;
-use crate::cli::args::{date, name, particular, reason};
-use crate::cli::commands::prediction::prediction;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::record_file;
-use crate::cli::files::run_folder::{RunFolder, copy, write_new};
-use crate::cli::output::{print_message, print_result};
-use crate::cli::settings::{Settings, today};
+use crate::args::{date, name, particular, reason};
+use crate::commands::prediction::prediction;
 use crate::evidence::{
     Folder, ISSUE, IssueFile, MANIFEST, One, OneKind, Rebuilt, ReplayedRun, examine, may_be_stated,
 };
+use crate::exit::{Exit, Failure};
 use crate::files::failure::plain;
+use crate::files::record_file;
 use crate::files::recorded_run::JOURNAL;
-use crate::report::status::days::days_after;
-use crate::report::{OutputFile, ReportStatus, Run, report_status};
+use crate::files::run_folder::{RunFolder, copy, write_new};
+use crate::output::{print_message, print_result};
+use crate::settings::{Settings, today};
+use psd::report::status::days::days_after;
+use psd::report::{OutputFile, ReportStatus, Run, report_status};
 use psd_plan::schema::plan_block::{AUTHORISED_BY, ISSUED};
 use psd_text::diagnostic::excerpt::one_line;
 

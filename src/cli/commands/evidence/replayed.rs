@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::finish_run::{folder_message, write_made};
-use crate::cli::files::run_folder::FolderSink;
-use crate::cli::files::writing::ProgressSink;
-use crate::cli::output::{print_message, print_wrapped};
-use crate::cli::settings::Settings;
 use crate::evidence::ReplayedRun;
-use crate::report;
+use crate::exit::{Exit, Failure};
+use crate::files::finish_run::{folder_message, write_made};
+use crate::files::run_folder::FolderSink;
+use crate::files::writing::ProgressSink;
+use crate::output::{print_message, print_wrapped};
+use crate::settings::Settings;
+use psd::report;
 
 /// Prints the verdict of a replayed run, and writes its results.
 pub fn finish_replayed(

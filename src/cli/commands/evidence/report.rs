@@ -9,14 +9,14 @@ use clap::Args;
 
 use super::issue::{AmendmentArguments, amend};
 use super::replayed::finish_replayed;
-use crate::cli::commands::prediction::prediction;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::record_file;
-use crate::cli::files::record_file::journal_of;
-use crate::cli::files::run_folder::{RunFolder, copy};
-use crate::cli::output::print_result;
-use crate::cli::settings::Settings;
+use crate::commands::prediction::prediction;
 use crate::evidence::{Folder, IssueFile, MANIFEST, ReplayedRun, check_consistency};
+use crate::exit::{Exit, Failure};
+use crate::files::record_file;
+use crate::files::record_file::journal_of;
+use crate::files::run_folder::{RunFolder, copy};
+use crate::output::print_result;
+use crate::settings::Settings;
 use psd_rig::journal::FileStorage;
 
 #[derive(Debug, Args)]
@@ -60,6 +60,7 @@ pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, F
     })?;
     let replayed = ReplayedRun::of(read, issues.as_ref(), &prediction)
         .map_err(|fault| Failure::file(run, fault))?;
+    replayed.refuse_another_simulation(run)?;
     let folder = match &arguments.out {
         Some(out) => RunFolder::create(Some(out), run)?.path().to_owned(),
         None => without_results(run)?,

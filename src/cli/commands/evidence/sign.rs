@@ -6,16 +6,16 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::verify::refuse_unproven;
-use crate::cli::args::name;
-use crate::cli::commands::prediction::prediction;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::run_folder::write_new;
-use crate::cli::output::{print_message, print_result};
-use crate::cli::settings::Settings;
+use crate::args::name;
+use crate::commands::prediction::prediction;
 use crate::evidence::keys;
 use crate::evidence::keys::Protection;
 use crate::evidence::{Folder, MANIFEST, Rebuilt, Statement, examine, file_name, sign_manifest};
-use crate::report::OutputFile;
+use crate::exit::{Exit, Failure};
+use crate::files::run_folder::write_new;
+use crate::output::{print_message, print_result};
+use crate::settings::Settings;
+use psd::report::OutputFile;
 use psd_text::diagnostic::excerpt::one_line;
 
 #[derive(Debug, Args)]

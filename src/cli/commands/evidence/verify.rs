@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::cli::commands::prediction::prediction;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::record_file::{JOURNAL, journal_of};
-use crate::cli::output::print_result;
-use crate::cli::settings::Settings;
-use crate::evidence::{Finding, Folder, Rebuilt, examine, keys};
+use crate::commands::prediction::prediction;
+use crate::evidence::{Finding, Folder, Judgement, Rebuilt, examine, keys};
+use crate::exit::{Exit, Failure};
+use crate::files::failure::NOT_VERIFIABLE;
+use crate::files::record_file::{JOURNAL, journal_of};
+use crate::output::print_result;
+use crate::settings::Settings;
 use psd_rig::journal::{FileFault, FileStorage};
 use psd_text::diagnostic::excerpt::one_line;
 
@@ -22,7 +23,8 @@ use psd_text::diagnostic::excerpt::one_line;
     Exit codes:\n\
     \x20 0  everything is verified\n\
     \x20 2  error on the command line\n\
-    \x20 3  a difference, or a named key did not sign"
+    \x20 3  a difference, a named key did not sign, or a simulation by another\n\
+    \x20    build of psd is NOT VERIFIABLE BY THIS BUILD"
 )]
 pub struct VerifyArguments {
     /// The run folder
@@ -54,10 +56,10 @@ pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, F
     let findings = examine(&folder, &rebuilt, &keys);
     let mut text = String::new();
     for finding in &findings {
-        let word = if finding.sound {
-            "ok".to_owned()
-        } else {
-            settings.paint_bad("WRONG")
+        let word = match finding.judgement {
+            Judgement::Sound => "ok".to_owned(),
+            Judgement::Wrong => settings.paint_bad("WRONG"),
+            Judgement::NotVerifiable => settings.paint_bad(NOT_VERIFIABLE),
         };
         let _ = writeln!(
             text,
@@ -67,7 +69,7 @@ pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, F
         );
     }
     print_result(&text)?;
-    Ok(if findings.iter().all(|finding| finding.sound) {
+    Ok(if findings.iter().all(Finding::is_sound) {
         Exit::Met
     } else {
         Exit::Fault
@@ -76,7 +78,7 @@ pub fn verify(arguments: &VerifyArguments, settings: Settings) -> Result<Exit, F
 
 /// An error if the run does not verify: it can be neither signed nor amended.
 pub fn refuse_unproven(run: &Path, findings: &[Finding]) -> Result<(), Failure> {
-    match findings.iter().find(|finding| !finding.sound) {
+    match findings.iter().find(|finding| !finding.is_sound()) {
         Some(finding) => Err(Failure::file(
             run,
             format!("does not verify: {}: {}", finding.part, finding.statement),

@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use crate::run::{self, Inspection, Observer, StepReport};
+use psd::run::{self, Inspection, Observer, StepReport};
 use psd_physics::tracking::trajectory::Path;
 use psd_plan::record::Record;
 use psd_plan::{Interval, Plan};

@@ -3,7 +3,7 @@
 use super::DryRun;
 use super::cells::{distance, margin, row, span};
 use super::dry_rig::Reach;
-use crate::report::PredictedLimit;
+use psd::report::PredictedLimit;
 use psd_plan::formula::ResultValue;
 use psd_plan::schema::limits;
 use psd_plan::{Interval, Limits};

@@ -15,12 +15,12 @@ pub(crate) mod zero_drift;
 use std::fmt::Write as _;
 
 use super::explain_plan::dry_rig::{Reach, Watched};
-use crate::cli::exit::Exit;
-use crate::cli::settings::Settings;
-use crate::report::wording::specimen as specimen_text;
-use crate::report::{PredictedProcedure, PredictedRequirement, Prediction};
-use crate::verdict::{self, Assessment, ConditionOutcome, Declared, ReproductionOutcome, Verdict};
+use crate::exit::Exit;
+use crate::settings::Settings;
 use cells::{row, span};
+use psd::report::wording::specimen as specimen_text;
+use psd::report::{PredictedProcedure, PredictedRequirement, Prediction};
+use psd::verdict::{self, Assessment, ConditionOutcome, Declared, ReproductionOutcome, Verdict};
 use psd_plan::record::{History, Outcome, Record};
 use psd_plan::{
     Condition, DecisionRule, Interval, Link, Plan, ProcedureKind, ReadingErrors, VirtualLink,
@@ -140,6 +140,16 @@ impl<'a> DryRun<'a> {
             reaches,
             assessment,
         }
+    }
+
+    /// What it recorded.
+    pub fn record(&self) -> &Record {
+        &self.record
+    }
+
+    /// Its verdicts.
+    pub fn assessment(&self) -> &Assessment {
+        &self.assessment
     }
 
     /// The exit of a dry run that a limit stops is that of the run.
@@ -372,7 +382,7 @@ impl<'a> DryRun<'a> {
     }
 
     /// The reason of a predicted stop.
-    fn stopped(&self) -> Option<String> {
+    pub fn stopped(&self) -> Option<String> {
         match &self.record.outcome {
             Outcome::Completed => None,
             Outcome::Aborted { reason } | Outcome::NotReleased { reason } => Some(format!(

@@ -1,7 +1,7 @@
 //! The start of a run on a real rig in `psd check --explain`. In: the plan. Out: rows: the zero of the plan, the required start position
 //! of the rig, the first move. It opens no rig.
 
-use crate::run::start;
+use psd::run::start;
 use psd_plan::{Datum, Plan};
 use psd_text::units::Dimension;
 use psd_text::units::display::{plain, stated};
@@ -49,7 +49,7 @@ pub fn rows(plan: &Plan) -> Vec<Vec<String>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::check::{Options, check, no_files};
+    use psd::check::{Options, check, no_files};
 
     /// The rows of a real rig with this line in its block.
     fn start_text(line: &str) -> String {

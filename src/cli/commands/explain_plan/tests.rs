@@ -1,12 +1,13 @@
 //! Dry runs of example 1 of Melo et al. 2006: its numbers, its stop at a limit, its specimen without a restoring-force model.
 
 use super::*;
-use crate::tests::testing::empty_plan;
+use psd::run::Unwatched;
 use psd_plan::{Interval, Limits, Link, VirtualLink};
+use psd_rig::virtual_rig;
+use psd_testing::plans::{empty_plan, every};
 
 /// Example 1 of Melo et al. 2006, with the actuator allowed to go to `farthest`.
 fn example(farthest: f64) -> Plan {
-    use crate::tests::testing::every;
     use psd_plan::formula::Formula::Constant;
     use psd_plan::{
         Behaviour, Contact, Impact, ImpactTarget, PointTarget, Procedure, ProcedureKind, RigPlan,
@@ -123,9 +124,9 @@ fn predicted(plan: &Plan) -> (String, String) {
 
 /// Example 1 with a requirement that is met by far.
 fn required(rule: DecisionRule) -> Plan {
-    use crate::tests::testing::result_of;
     use psd_plan::formula::Formula::Constant;
     use psd_plan::{Comparison, Requirement, Test};
+    use psd_testing::plans::result_of;
     let condition = Condition {
         text: "hit.max_displacement < 1 m".to_owned(),
         value: result_of(0, "max_displacement"),
@@ -151,7 +152,7 @@ fn required(rule: DecisionRule) -> Plan {
 fn a_rig_without_declared_calibrations_is_predicted_inconclusive() {
     let on_a_real_rig = |rule| {
         let mut plan = required(rule);
-        plan.rig = crate::tests::fault_table::stage::plan().rig;
+        plan.rig = psd_testing::plans::real_plan(1e5, Vec::new()).rig;
         plan
     };
     let mut plan = on_a_real_rig(DecisionRule::Guarded);
@@ -188,13 +189,13 @@ fn an_uncertainty_that_the_noise_of_the_rig_lets_grow_is_predicted_withheld() {
         impact.contact = Contact::Restitution {
             coefficient: Constant(0.5),
         };
-        impact.stepping = crate::tests::testing::every(0.001);
+        impact.stepping = every(0.001);
         let Link::Virtual(link) = &mut plan.rig.link else {
             panic!()
         };
         (link.noise, link.lag, link.seed) = (4.0, 0.0, 3);
         let predicted = predicted(&plan);
-        let record = crate::tests::testing::run_unwatched(&plan);
+        let record = psd::run::run(&plan, &mut *virtual_rig(&plan), &mut Unwatched);
         (predicted, verdict::assess(&plan, &record).verdict)
     };
     let ((verdict, why), run) = with_duration(1.0, Until::StrikerStop);

@@ -5,8 +5,8 @@
 //! settling band or the resolution may oppose the motion at every step. The sum of these errors is δ. In the worst case an amplitude A
 //! grows by 4δ in each cycle.
 
-use crate::procedures::stepping::tracking::delay;
-use crate::run::{self, Settings, Unwatched};
+use psd::procedures::stepping::tracking::delay;
+use psd::run::{self, Keep, Unwatched};
 use psd_plan::procedures::impact::block::MASS;
 use psd_plan::record::{
     Floors, ImpactHistory, Modes, Outcome, ProcedureRecord, Record, ShakeHistory, StruckFrame,
@@ -201,7 +201,7 @@ pub(crate) fn lagging(plan: &Plan) -> Option<Record> {
         &lagging,
         &mut *virtual_rig(&lagging),
         &mut Unwatched,
-        Settings { uncertainty: false },
+        Keep::Steps,
     ))
 }
 

@@ -1,7 +1,7 @@
 //! Zero drift of a rig that checks its zeros, in `psd check --explain`. In: the plan, the record of its dry run. Out: rows: times of the
 //! zero readings, time between them, allowed zero drift, and the effect of a declared zero drift.
 
-use crate::report::PredictedZeros;
+use psd::report::PredictedZeros;
 use psd_plan::record::{Drift, Record};
 use psd_plan::{DriftCheck, Plan, ZeroAfter};
 use psd_text::units::Dimension;
@@ -124,8 +124,8 @@ fn time_between(found: &Drift) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::check::{Options, check, no_files};
-    use crate::run::{Unwatched, run};
+    use psd::check::{Options, check, no_files};
+    use psd::run::{Unwatched, run};
     use psd_rig::virtual_rig;
 
     /// Ten dwells of 5 s, and 8 s of zero readings.

@@ -3,9 +3,9 @@
 
 use clap::{Args, ValueEnum};
 
-use crate::cli::exit::Failure;
-use crate::remote;
-use crate::remote::Protocol;
+use crate::exit::Failure;
+use psd::remote;
+use psd::remote::Protocol;
 use psd_plan::Plan;
 use psd_rig::VirtualRig;
 use psd_text::units::{Dimension, unit};
@@ -141,7 +141,7 @@ fn stiffness(text: &str) -> Result<f64, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::exit::Exit;
+    use crate::exit::Exit;
 
     #[test]
     fn a_stiffness_has_its_unit() {

@@ -8,9 +8,9 @@ use std::path::Path;
 use serde_json::{Value, json};
 use serialport::{SerialPortInfo, SerialPortType};
 
-use crate::cli::args::Format;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::output::{print_message, print_result};
+use crate::args::Format;
+use crate::exit::{Exit, Failure};
+use crate::output::{print_message, print_result};
 use psd_text::diagnostic::excerpt::escape;
 
 /// The folder of names made of manufacturer and serial number, each a link to its port.

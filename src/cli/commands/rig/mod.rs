@@ -14,10 +14,10 @@ use std::path::Path;
 
 use clap::Subcommand;
 
-use crate::cli::args::PlanSettings;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::plan_file;
-use crate::cli::settings::Settings;
+use crate::args::PlanSettings;
+use crate::exit::{Exit, Failure};
+use crate::files::plan_file;
+use crate::settings::Settings;
 use psd_plan::{Link, Plan};
 use psd_rig::{Rig, StopRequest, connect, virtual_rig};
 

@@ -6,13 +6,13 @@ use std::time::Duration;
 use clap::Args;
 
 use super::typed;
-use crate::cli::args::PlanSettings;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::operator::screen::{Screen, is_large_enough};
-use crate::cli::operator::watch::Signals;
-use crate::cli::output::print_while_read;
-use crate::cli::settings::Settings;
-use crate::run::{Observer as _, StepReport};
+use crate::args::PlanSettings;
+use crate::exit::{Exit, Failure};
+use crate::operator::screen::{Screen, is_large_enough};
+use crate::operator::watch::Signals;
+use crate::output::print_while_read;
+use crate::settings::Settings;
+use psd::run::{Observer as _, StepReport};
 use psd_plan::Plan;
 use psd_rig::{Reading, Rig, StopRequest};
 

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::cli::args::PlanSettings;
+use crate::args::PlanSettings;
 use std::fmt::Write as _;
 
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::output::print_result;
+use crate::exit::{Exit, Failure};
+use crate::output::print_result;
 use psd_physics::identification::fit_line;
 use psd_plan::{Datum, Interval, Plan};
 use psd_rig::{Identity, Reading, Rig};

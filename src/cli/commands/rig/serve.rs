@@ -8,26 +8,26 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::client_protocol::{ClientArguments, protocol};
-use crate::cli::args::{PlanSettings, name};
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::finish_run::write_made;
-use crate::cli::files::record_file;
-use crate::cli::files::record_file::Circumstances;
-use crate::cli::files::run_folder::{FolderSink, RunFolder};
-use crate::cli::files::{plan_file, provenance};
-use crate::cli::operator::real_rig;
-use crate::cli::operator::watch::{Attendance, Signals, Watcher};
-use crate::cli::output::{print_message, print_result};
-use crate::cli::settings::Settings;
+use crate::args::{PlanSettings, name};
 use crate::evidence::Folder;
-use crate::remote;
-use crate::remote::{Ended, Event, Protocol, Session};
-use crate::report;
-use crate::report::Provenance;
-use crate::run::client_run::{Driver, Requests};
-use crate::run::remote_control::Specimen;
-use crate::run::replay;
-use crate::run::replay::{OpenLog, Recorded, Wall};
+use crate::exit::{Exit, Failure};
+use crate::files::finish_run::write_made;
+use crate::files::record_file;
+use crate::files::record_file::Circumstances;
+use crate::files::run_folder::{FolderSink, RunFolder};
+use crate::files::{plan_file, provenance};
+use crate::operator::real_rig;
+use crate::operator::watch::{Attendance, Signals, Watcher};
+use crate::output::{print_message, print_result};
+use crate::settings::Settings;
+use psd::remote;
+use psd::remote::{Ended, Event, Protocol, Session};
+use psd::report;
+use psd::report::Provenance;
+use psd::run::client_run::{Driver, Requests};
+use psd::run::remote_control::Specimen;
+use psd::run::replay;
+use psd::run::replay::{OpenLog, Recorded, Wall};
 use psd_plan::record::Outcome;
 use psd_plan::record::remote::DrivenStep;
 use psd_plan::{Link, Plan};
@@ -381,7 +381,7 @@ const fn exit_of(session: &Session) -> Exit {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::remote::Driven;
+    use psd::remote::Driven;
     use psd_rig::RigFault;
 
     #[test]

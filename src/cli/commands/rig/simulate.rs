@@ -8,11 +8,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
 
-use crate::cli::args::PlanSettings;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::plan_file;
-use crate::cli::output::print_message;
-use crate::cli::settings::Settings;
+use crate::args::PlanSettings;
+use crate::exit::{Exit, Failure};
+use crate::files::plan_file;
+use crate::output::print_message;
+use crate::settings::Settings;
 use psd_plan::{DeviceLink, Plan, PortPlan, RealLink};
 use psd_rig::emulator::lines::real_time::{Carrier, Until, serve};
 use psd_rig::emulator::{Log, PseudoTerminal, RigEmulator, Script, TcpLine, of_plan};

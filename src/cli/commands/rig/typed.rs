@@ -1,6 +1,6 @@
 //! Numbers that the operator types, with units as the language writes them. In: a string. Out: SI, or an error with an example.
 
-use crate::cli::exit::Failure;
+use crate::exit::Failure;
 use psd_text::units::Dimension;
 use psd_text::units::unit;
 

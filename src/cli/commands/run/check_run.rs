@@ -4,14 +4,14 @@
 
 use super::RunArguments;
 use super::on_rig::{End, on_its_rig};
-use crate::cli::args::Format;
-use crate::cli::commands::explain_plan::DryRun;
-use crate::cli::commands::prediction::rig_and_specimen;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::operator::watch::Attendance;
-use crate::cli::output::{print_message, print_result};
-use crate::cli::settings::Settings;
-use crate::run::check_run;
+use crate::args::Format;
+use crate::commands::explain_plan::DryRun;
+use crate::commands::prediction::rig_and_specimen;
+use crate::exit::{Exit, Failure};
+use crate::operator::watch::Attendance;
+use crate::output::{print_message, print_result};
+use crate::settings::Settings;
+use psd::run::check_run;
 use psd_plan::Plan;
 
 /// Measures and predicts; the exit code states whether every limit is predicted to be satisfied.

@@ -9,20 +9,20 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::cli::args::{Format, PlanSettings, name};
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::accepted::AcceptedFolder;
-use crate::cli::files::golden_run;
-use crate::cli::files::golden_run::Extent;
-use crate::cli::files::plan_file;
-use crate::cli::operator::real_rig;
-use crate::cli::operator::watch::Attendance;
-use crate::cli::output::{print_message, print_result};
-use crate::cli::settings::Settings;
-use crate::golden::print::console;
-use crate::golden::{Outcome, Tested};
+use crate::args::{Format, PlanSettings, RunLog, name};
+use crate::exit::{Exit, Failure};
+use crate::files::accepted::AcceptedFolder;
+use crate::files::golden_run;
+use crate::files::golden_run::Extent;
+use crate::files::plan_file;
+use crate::operator::real_rig;
+use crate::operator::watch::Attendance;
+use crate::output::{print_message, print_result};
+use crate::settings::Settings;
 use check_run::check_run;
 use on_rig::{End, on_its_rig};
+use psd::golden::print::console;
+use psd::golden::{Outcome, Tested};
 use psd_text::diagnostic::json;
 
 #[derive(Debug, Args)]
@@ -54,6 +54,9 @@ pub struct RunArguments {
     /// Standard output: the run folder, or the summary as JSON
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub format: Format,
+    /// Run log of a simulation: digests, or every target and reading
+    #[arg(long, value_enum, value_name = "FORM")]
+    pub log: Option<RunLog>,
     /// Also replace the accepted results in reports/PLAN
     #[arg(long)]
     pub accept: bool,

@@ -2,19 +2,19 @@
 
 use super::RunArguments;
 use super::resume;
-use crate::cli::args::Format;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::finish_run::{finish_run, summary};
-use crate::cli::files::provenance;
-use crate::cli::files::record_file;
-use crate::cli::files::run_folder::RunFolder;
-use crate::cli::operator::watch::{Attendance, Signals, Watcher};
-use crate::cli::operator::{expected, held, real_rig};
-use crate::cli::output::{print_message, print_result};
-use crate::cli::settings::Settings;
-use crate::report::Provenance;
-use crate::run::replay;
-use crate::run::replay::Recorded;
+use crate::args::{Format, RunLog};
+use crate::exit::{Exit, Failure};
+use crate::files::finish_run::{finish_run, summary};
+use crate::files::provenance;
+use crate::files::record_file;
+use crate::files::run_folder::RunFolder;
+use crate::operator::watch::{Attendance, Signals, Watcher};
+use crate::operator::{expected, held, real_rig};
+use crate::output::{print_message, print_result};
+use crate::settings::Settings;
+use psd::report::Provenance;
+use psd::run::replay;
+use psd::run::replay::{Header, LogForm, Recorded};
 use psd_plan::{Link, Plan};
 use psd_rig::{StopRequest, virtual_rig};
 
@@ -109,6 +109,10 @@ pub(crate) fn on_its_rig(
 ) -> Result<Ran, Failure> {
     match plan.rig.link {
         Link::Virtual(_) => on_a_virtual_rig(plan, arguments, attendance, settings),
+        Link::Real(_) if arguments.log == Some(RunLog::Compact) => Err(Failure::command_line(
+            "the run log of a real rig is always full: no reading can be made again",
+        )
+        .help("remove `--log compact`")),
         Link::Real(_) => on_a_real_rig(plan, arguments, attendance, settings),
     }
 }
@@ -138,12 +142,22 @@ fn on_a_virtual_rig(
         &provenance,
         circumstances,
     );
+    let log = match arguments.log {
+        Some(RunLog::Full) => LogForm::Full,
+        Some(RunLog::Compact) | None => LogForm::Compact,
+    };
+    let header = Header { log, ..header };
     let provenance = Provenance {
         equipment: Some(header.equipment.clone()),
         ..provenance
     };
     let journal = record_file::begin(folder.path(), plan, &header)?;
-    let recorded = replay::record(plan, rig.as_mut(), &mut watcher, journal, Box::new(|| None));
+    let recorded = match log {
+        LogForm::Full => {
+            replay::record(plan, rig.as_mut(), &mut watcher, journal, Box::new(|| None))
+        }
+        LogForm::Compact => replay::record_compactly(plan, rig.as_mut(), &mut watcher, journal),
+    };
     watcher.finish();
     Ok(Ran {
         folder,

@@ -3,9 +3,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::cli::exit::Failure;
+use crate::exit::Failure;
 use crate::files::failure::plain;
-use crate::run::replay::Header;
+use psd::run::replay::Header;
 
 /// Files whose digests differ, or that only one of the two has.
 pub(super) fn changed_files(recorded: &Header, now: &Header) -> Vec<String> {

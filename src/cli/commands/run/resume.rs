@@ -8,20 +8,21 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::recorded_folder::{changed_files, put_results_aside};
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::finish_run::finish_run;
-use crate::cli::files::record_file;
-use crate::cli::files::record_file::{ReadRecord, journal_of};
-use crate::cli::files::{plan_file, provenance};
-use crate::cli::operator::watch::{Attendance, Shared, Signals, Watcher};
-use crate::cli::operator::{confirm_release, expected, held, real_rig};
-use crate::cli::output::{print_message, print_result};
-use crate::cli::settings::Settings;
 use crate::evidence::MANIFEST;
+use crate::exit::{Exit, Failure};
+use crate::files::finish_run::finish_run;
 use crate::files::provenance::{BUILD, TOOLCHAIN};
-use crate::report::Provenance;
-use crate::run::replay;
-use crate::run::replay::{
+use crate::files::record_file;
+use crate::files::record_file::{ReadRecord, journal_of};
+use crate::files::{plan_file, provenance};
+use crate::operator::watch::{Attendance, Signals, Watcher};
+use crate::operator::{confirm_release, expected, held, real_rig};
+use crate::output::{print_message, print_result};
+use crate::settings::Settings;
+use psd::report::Provenance;
+use psd::run::Shared;
+use psd::run::replay;
+use psd::run::replay::{
     AmendBody, Assurance, Bands, Continuation, Header, LoggedRun, Recorded, RecoverBody,
     ResumeBody, RigBody,
 };

@@ -4,15 +4,15 @@
 use std::path::Path;
 
 use super::failure;
-use crate::cli::args::Format;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::output::{print_message, print_result};
+use crate::args::Format;
+use crate::exit::{Exit, Failure};
 use crate::files::failure::plain;
-use crate::report::SUMMARY;
-use crate::study::answers::{Answers, StudiedAnswer};
-use crate::study::console;
-use crate::study::data_set::Reader;
-use crate::study::report::summary;
+use crate::output::{print_message, print_result};
+use psd::report::SUMMARY;
+use psd::study::answers::{Answers, StudiedAnswer};
+use psd::study::console;
+use psd::study::data_set::Reader;
+use psd::study::report::summary;
 use psd_physics::study::probability::Decision;
 
 /// Writes and prints the answers. The exit code is that of the requirements on probabilities.

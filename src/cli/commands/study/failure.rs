@@ -1,13 +1,13 @@
 //! Failures of studies as the program reports them: the message, and the action that corrects it.
 
-use crate::cli::exit::Failure;
-use crate::study::cluster::shard::ShardError;
-use crate::study::collection::CollectionFault;
-use crate::study::collection::merge::MergeFault;
-use crate::study::collection::same::Difference;
-use crate::study::data_set::DataSetFault;
-use crate::study::definition::DefinitionError;
-use crate::study::definition::measured::MeasuredError;
+use crate::exit::Failure;
+use psd::study::cluster::shard::ShardError;
+use psd::study::collection::CollectionFault;
+use psd::study::collection::merge::MergeFault;
+use psd::study::collection::same::Difference;
+use psd::study::data_set::DataSetFault;
+use psd::study::definition::DefinitionError;
+use psd::study::definition::measured::MeasuredError;
 
 pub fn of_definition(error: &DefinitionError) -> Failure {
     let failure = Failure::command_line(error.to_string());

@@ -3,17 +3,24 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use super::slurm::Queue;
 use super::{answers, failure, slurm};
-use crate::cli::args::Format;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::output::{print_message, print_result};
-use crate::study::collection::merge::{self, resubmission};
-use crate::study::collection::status::{self, StudyPart};
+use crate::args::Format;
+use crate::exit::{Exit, Failure};
+use crate::output::{print_message, print_result};
+use psd::study::cluster::slurm::ARRAY_SCRIPT;
+use psd::study::collection::merge::{self, listed, resubmission};
+use psd::study::collection::status::{self, StudyPart};
 
 /// Shows the runs that are there, and the shards that are not finished.
 pub fn status(folder: &Path) -> Result<Exit, Failure> {
     let status = status::status(folder).map_err(|fault| failure::of_data_set(&fault))?;
+    let queue = slurm::queue(folder);
     let Some(metadata) = &status.metadata else {
+        if folder.join(ARRAY_SCRIPT).exists() {
+            print_result(&format!("no runs are durable yet\n{}", queued(&queue)))?;
+            return Ok(Exit::Unfinished);
+        }
         return Err(Failure::file(folder, "contains no runs of a study yet")
             .help("name the folder of `psd study run`"));
     };
@@ -35,14 +42,18 @@ pub fn status(folder: &Path) -> Result<Exit, Failure> {
         for part in shards.filter(|part| !part.finished && part.runs > 0) {
             text += &unfinished(part);
         }
-        let queue = slurm::queue(folder);
-        if !queue.is_empty() {
-            let states = queue.states();
-            let _ = writeln!(text, "  in the queue of Slurm: {states}");
-        }
+        text += &queued(&queue);
         let mut missing = status.unfinished();
         missing.retain(|number| !queue.contains(*number));
         if !missing.is_empty() {
+            let durable = |number: &u32| {
+                let mut parts = status.parts.iter();
+                parts.any(|part| part.runs > 0 && part.shard.is_some_and(|it| it.number == *number))
+            };
+            let lost: Vec<u32> = missing.iter().copied().filter(|it| !durable(it)).collect();
+            if !lost.is_empty() {
+                let _ = writeln!(text, "  shards without runs: {}", listed(&lost));
+            }
             let again = resubmission(folder, &missing);
             let _ = writeln!(text, "  submit again: {again}");
         }
@@ -64,6 +75,14 @@ pub fn status(folder: &Path) -> Result<Exit, Failure> {
     })
 }
 
+/// The tasks in the queue of Slurm, in a line; nothing without tasks.
+fn queued(queue: &Queue) -> String {
+    if queue.is_empty() {
+        return String::new();
+    }
+    format!("  in the queue of Slurm: {}\n", queue.states())
+}
+
 fn unfinished(part: &StudyPart) -> String {
     let name = part.shard.map_or_else(
         || "the study".to_owned(),
@@ -72,10 +91,11 @@ fn unfinished(part: &StudyPart) -> String {
     format!("  {name}: {} of {} runs\n", part.runs, part.of)
 }
 
-/// Puts shards together, and answers as `psd study run` does.
-pub fn merge(folder: &Path) -> Result<Exit, Failure> {
+/// Puts shards together, and answers as `psd study run` does. `plan`: the plan for the lines that reproduce a run, with its folder.
+pub fn merge(folder: &Path, plan: Option<&Path>) -> Result<Exit, Failure> {
     let (path, metadata) = merge::merge(folder).map_err(|fault| failure::of_merge(&fault))?;
     let (runs, path_shown) = (metadata.runs(), path.display());
     print_message(&format!("  {runs} runs are in {path_shown}\n"));
-    answers::give(&path, None, Format::Human)
+    let plan = plan.map(|plan| plan.display().to_string());
+    answers::give(&path, plan.as_deref(), Format::Human)
 }

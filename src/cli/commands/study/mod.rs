@@ -14,13 +14,13 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
 
-use crate::check::ParsedPlan;
-use crate::cli::args::PlanSettings;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::plan_file;
-use crate::cli::settings::Settings;
-use crate::study::definition::Definition;
-use crate::study::definition::measured;
+use crate::args::PlanSettings;
+use crate::exit::{Exit, Failure};
+use crate::files::plan_file;
+use crate::settings::Settings;
+use psd::check::ParsedPlan;
+use psd::study::definition::Definition;
+use psd::study::definition::measured;
 use psd_plan::Plan;
 use psd_text::sanitize;
 
@@ -46,6 +46,9 @@ pub enum StudyCommand {
         /// The folder of the shards
         #[arg(value_name = "FOLDER")]
         folder: PathBuf,
+        /// The plan as the lines that reproduce a run name it
+        #[arg(long, value_name = "PLAN")]
+        plan: Option<PathBuf>,
     },
     /// Make summary, figures and report of a study from its data set
     #[command(
@@ -81,7 +84,7 @@ pub fn study(command: &StudyCommand, settings: Settings) -> Result<Exit, Failure
     match command {
         StudyCommand::Run(arguments) => run::run(arguments, settings),
         StudyCommand::Status { folder } => folder::status(folder),
-        StudyCommand::Merge { folder } => folder::merge(folder),
+        StudyCommand::Merge { folder, plan } => folder::merge(folder, plan.as_deref()),
         StudyCommand::Report(arguments) => report::report(arguments, settings),
         StudyCommand::Submit(arguments) => submit::submit(arguments, settings),
     }

@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::cli::output::print_message;
-use crate::cli::settings::Settings;
-use crate::study::collection::Progress;
+use crate::output::print_message;
+use crate::settings::Settings;
+use psd::study::collection::Progress;
 
 /// Longest time without a line in a pipe.
 const SILENT: Duration = Duration::from_secs(30);
@@ -93,7 +93,7 @@ fn duration(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::counts::Counts;
+    use psd::study::counts::Counts;
 
     #[test]
     fn the_line_has_rate_failures_and_time_left() {

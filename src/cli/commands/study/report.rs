@@ -6,16 +6,16 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::{answers, failure};
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::files::run_folder::FolderSink;
-use crate::cli::files::writing::ProgressSink;
-use crate::cli::output::print_result;
-use crate::cli::settings::Settings;
+use crate::exit::{Exit, Failure};
 use crate::files::failure::plain;
-use crate::study::answers::Answers;
-use crate::study::collection::folder::DataSetFiles;
-use crate::study::data_set::Reader;
-use crate::study::report;
+use crate::files::run_folder::FolderSink;
+use crate::files::writing::ProgressSink;
+use crate::output::print_result;
+use crate::settings::Settings;
+use psd::study::answers::Answers;
+use psd::study::collection::folder::DataSetFiles;
+use psd::study::data_set::Reader;
+use psd::study::report;
 
 #[derive(Debug, Args)]
 pub struct ReportStudyArguments {

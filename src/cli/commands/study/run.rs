@@ -8,19 +8,20 @@ use clap::Args;
 
 use super::progress::StudyProgress;
 use super::{StudyChoice, answers, failure, open};
-use crate::cli::args::Format;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::operator::watch::Signals;
-use crate::cli::output::{print_message, print_result};
-use crate::cli::settings::{Settings, variable};
-use crate::study::cluster::shard::{self, NamedShard, Shard};
-use crate::study::collection::{Collection, Ended};
-use crate::study::data_set::Metadata;
-use crate::study::definition::DefinitionError;
-use crate::study::simulation::Simulation;
-use crate::study::stopping::Looks;
-use crate::study::stopping::rare::RareRuns;
-use crate::study::{collection, metadata};
+use crate::args::Format;
+use crate::exit::{Exit, Failure};
+use crate::files::provenance;
+use crate::operator::watch::Signals;
+use crate::output::{print_message, print_result};
+use crate::settings::{Settings, variable};
+use psd::study::cluster::shard::{self, NamedShard, Shard};
+use psd::study::collection::{Collection, Ended};
+use psd::study::data_set::Metadata;
+use psd::study::definition::DefinitionError;
+use psd::study::simulation::Simulation;
+use psd::study::stopping::Looks;
+use psd::study::stopping::rare::RareRuns;
+use psd::study::{collection, metadata};
 use psd_plan::study::Sampling;
 use psd_rig::StopRequest;
 use psd_rig::transport::MonotonicClock;
@@ -78,7 +79,12 @@ pub fn run(arguments: &RunStudyArguments, settings: Settings) -> Result<Exit, Fa
     } else {
         simulation
     };
-    let metadata = metadata::of(&opened.plan, &opened.study, simulation.readout());
+    let metadata = metadata::of(
+        &provenance::version(),
+        &opened.plan,
+        &opened.study,
+        simulation.readout(),
+    );
     if metadata.sampling == Sampling::Subset && RareRuns::of(&metadata).is_none() {
         return Err(failure::of_definition(&DefinitionError::LimitVaries));
     }
@@ -91,6 +97,9 @@ pub fn run(arguments: &RunStudyArguments, settings: Settings) -> Result<Exit, Fa
         shard,
     };
     let (ended, _) = collected(&collection, arguments, settings)?;
+    if let Some(left) = simulation.left().text() {
+        print_message(&format!("  {left}\n"));
+    }
     match ended {
         Ended::Stopped { runs, of } => {
             print_message(&format!(

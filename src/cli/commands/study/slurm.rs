@@ -4,9 +4,9 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-use crate::cli::exit::Failure;
+use crate::exit::Failure;
 use crate::files::failure::plain;
-use crate::study::cluster::slurm::{ARRAY_SCRIPT, Job};
+use psd::study::cluster::slurm::{ARRAY_SCRIPT, Job};
 
 /// Most tasks of an array where Slurm does not state another number.
 const USUAL_ARRAY: u32 = 1000;

@@ -7,13 +7,13 @@ use clap::Args;
 
 use super::slurm::{self, NodeView};
 use super::{StudyChoice, failure, open};
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::output::{print_message, print_result};
-use crate::cli::settings::Settings;
+use crate::exit::{Exit, Failure};
 use crate::files::failure::plain;
-use crate::study::cluster::shard;
-use crate::study::cluster::slurm::{ARRAY_SCRIPT, Job, MERGE_SCRIPT};
-use crate::study::collection::CollectionFault;
+use crate::output::{print_message, print_result};
+use crate::settings::Settings;
+use psd::study::cluster::shard;
+use psd::study::cluster::slurm::{ARRAY_SCRIPT, Job, MERGE_SCRIPT};
+use psd::study::collection::CollectionFault;
 use psd_plan::study::Runs;
 
 #[derive(Debug, Args)]
@@ -88,7 +88,7 @@ pub fn submit(arguments: &SubmitArguments, settings: Settings) -> Result<Exit, F
             |name| name.to_string_lossy().into_owned(),
         ),
         command,
-        merge: words(&["study", "merge", &folder]),
+        merge: words(&["study", "merge", &folder, "--plan", &plan]),
         shards: folded(arguments.shards),
         throttle: arguments.throttle,
         processors: arguments.processors,

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use super::TestArguments;
 use super::shown;
-use crate::cli::exit::Failure;
-use crate::cli::files::accepted::AcceptedFolder;
-use crate::cli::files::loader::is_plan;
+use crate::exit::Failure;
+use crate::files::accepted::AcceptedFolder;
 use crate::files::failure::plain;
-use crate::golden::{DIAGNOSTICS, SUMMARY};
+use crate::files::loader::is_plan;
+use psd::golden::{DIAGNOSTICS, SUMMARY};
 
 /// The default folder of plans.
 const DEFAULT: &str = "plans";

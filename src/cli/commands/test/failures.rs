@@ -7,12 +7,12 @@ use std::path::{Path, PathBuf};
 
 use super::cases::Case;
 use super::overlay;
-use crate::cli::exit::Failure;
-use crate::cli::files::accepted::{is_page, remove};
-use crate::cli::files::run_folder::write_new;
+use crate::exit::Failure;
+use crate::files::accepted::{is_page, remove};
 use crate::files::failure::plain;
-use crate::golden::{Finding, Truth, Words};
-use crate::report::OutputFile;
+use crate::files::run_folder::write_new;
+use psd::golden::{Finding, Truth, Words};
+use psd::report::OutputFile;
 
 /// The file that marks the folder of a failed case.
 const DIFFERENCE: &str = "difference.txt";
@@ -59,13 +59,9 @@ pub fn write(
         .iter()
         .filter(|file| is_page(&file.path) || Truth::holds(&file.path))
         .try_for_each(|file| write_new(&new, file))?;
-    overlay::all(
-        accepted,
-        &crate::cli::files::accepted::truth_of(files),
-        found,
-    )?
-    .iter()
-    .try_for_each(|file| write_new(&folder, file))
+    overlay::all(accepted, &crate::files::accepted::truth_of(files), found)?
+        .iter()
+        .try_for_each(|file| write_new(&folder, file))
 }
 
 /// Every difference, one per line.

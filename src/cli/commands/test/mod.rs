@@ -10,15 +10,15 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::cli::args::Format;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::output::{print_message, print_result};
-use crate::cli::settings::Settings;
+use crate::args::Format;
+use crate::exit::{Exit, Failure};
 use crate::files::failure::plain;
-use crate::golden;
-use crate::golden::Report;
-use crate::golden::print::console;
+use crate::output::{print_message, print_result};
+use crate::settings::Settings;
 use cases::Case;
+use psd::golden;
+use psd::golden::Report;
+use psd::golden::print::console;
 use trials::Trials;
 
 #[derive(Debug, Args)]

@@ -4,9 +4,9 @@
 use psd_plan::schema::columns;
 use std::collections::BTreeSet;
 
-use crate::cli::exit::Failure;
-use crate::golden::{Change, Finding, FindingPart, Table, Truth, column_dimension};
-use crate::report::{Curve, Curves, FigureCurve, OutputError, OutputFile, PlainAxis};
+use crate::exit::Failure;
+use psd::golden::{Change, Finding, FindingPart, Table, Truth, column_dimension};
+use psd::report::{Curve, Curves, FigureCurve, OutputError, OutputFile, PlainAxis};
 use psd_text::units::{Dimension, unit};
 
 /// Largest number of columns drawn: those with the largest difference over their tolerance.

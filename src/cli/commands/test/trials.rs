@@ -10,14 +10,14 @@ use rayon::prelude::*;
 use super::TestArguments;
 use super::cases::Case;
 use super::failures;
-use crate::cli::exit::Failure;
-use crate::cli::files::accepted::truth_of;
-use crate::cli::files::golden_run;
-use crate::cli::files::golden_run::Extent;
-use crate::cli::output::print_message;
-use crate::cli::settings::Settings;
-use crate::golden::print::console;
-use crate::golden::{Outcome, Tested, compare};
+use crate::exit::Failure;
+use crate::files::accepted::truth_of;
+use crate::files::golden_run;
+use crate::files::golden_run::Extent;
+use crate::output::print_message;
+use crate::settings::Settings;
+use psd::golden::print::console;
+use psd::golden::{Outcome, Tested, compare};
 
 /// The settings of the test run.
 pub struct Trials<'a> {

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use super::keys::Key;
 use super::{Dialogue, Typing, What};
-use crate::cli::operator::question::{After, Choice, QuestionKind};
-use crate::cli::operator::watch::interrupt;
+use crate::operator::question::{After, Choice, QuestionKind};
+use crate::operator::watch::interrupt;
 use psd_rig::StopRequest;
 
 /// Largest number of characters of one typed line.

@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use super::typed::{Input, Typed};
 use super::{Dialogue, What};
-use crate::cli::operator::question::{Question, QuestionKind, WHY_RESUME};
-use crate::cli::output::print_message;
-use crate::run::Inspection;
+use crate::operator::question::{Question, QuestionKind, WHY_RESUME};
+use crate::output::print_message;
+use psd::run::Inspection;
 use psd_rig::StopRequest;
 
 /// The dialogue in lines.

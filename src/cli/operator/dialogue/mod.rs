@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use super::question::{After, Choice, DEAF, Question, Stay};
-use crate::run::{Inspection, Next};
+use psd::run::{Inspection, Next};
 use psd_rig::StopRequest;
 use psd_text::diagnostic::excerpt::escape;
 

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use rustix::termios::{QueueSelector, tcflush};
 
-use crate::cli::operator::question::DEAF;
+use crate::operator::question::DEAF;
 
 /// Duration of one wait for a line: Ctrl-C and the rig are checked between two waits.
 const LOOK: Duration = Duration::from_millis(50);

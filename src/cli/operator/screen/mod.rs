@@ -11,9 +11,9 @@ use std::time::{Duration, Instant};
 
 use super::dialogue::Dialogue;
 use super::dialogue::keys::Key;
-use crate::run::{Next, Observer, StepReport};
 use draw::View;
 use model::{Ended, Model};
+use psd::run::{Next, Observer, StepReport};
 use psd_plan::Plan;
 use psd_plan::record::Event;
 use psd_rig::{Live, StopRequest};

@@ -4,7 +4,8 @@
 use std::collections::VecDeque;
 
 use super::curve::Curve;
-use crate::run::{StepReport, UNLOADING};
+use psd::run::StepReport;
+use psd_plan::record::UNLOADING;
 use psd_plan::record::{Event, EventKind};
 use psd_plan::{Interval, Limits, Plan, SafeState};
 use psd_rig::Feedback;
@@ -324,7 +325,7 @@ impl Model {
 #[cfg(test)]
 pub mod tests {
     use super::*;
-    use crate::tests::testing::empty_plan;
+    use psd_testing::plans::empty_plan;
 
     pub fn step(step: u64, time: f64, command: f64, force: f64) -> StepReport {
         StepReport {

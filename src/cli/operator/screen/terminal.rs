@@ -17,7 +17,7 @@ use ratatui::crossterm::terminal::{
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 
 use super::draw::{SMALLEST, View, draw};
-use crate::cli::operator::dialogue::keys::{Key, Keyboard};
+use crate::operator::dialogue::keys::{Key, Keyboard};
 
 /// The terminal is closed.
 #[derive(Clone, Copy, Debug)]

@@ -5,16 +5,14 @@
 mod plain;
 mod signals;
 
-use std::cell::RefCell;
-
 use super::dialogue::Dialogue;
 use super::dialogue::by_lines::Person;
 use super::question::{self, After, Question, QuestionKind, Stay};
 use super::screen::{self, Screen};
-use crate::cli::settings::{Settings, today};
-use crate::report::report_status;
-use crate::run::{Extent, Inspection, Motion, Next, Observer, StepReport};
+use crate::settings::{Settings, today};
 use plain::{Bar, Lines};
+use psd::report::report_status;
+use psd::run::{Extent, Inspection, Motion, Next, Observer, StepReport};
 use psd_plan::Plan;
 use psd_plan::record::{Event, EventKind, NO_OPERATOR_ASKED};
 use psd_plan::schema::plan_block::OPERATOR;
@@ -347,55 +345,10 @@ impl Watcher {
     }
 }
 
-/// An observer that is also asked while no run is active: before a replayed run is resumed.
-pub struct Shared<'a, O = Watcher>(pub &'a RefCell<O>);
-
-impl<O: Observer> Observer for Shared<'_, O> {
-    fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
-        self.0.borrow_mut().procedure_started(name, keyword, steps);
-    }
-
-    fn step_done(&mut self, report: &StepReport) {
-        self.0.borrow_mut().step_done(report);
-    }
-
-    fn studying(&mut self, done: usize, of: usize) {
-        self.0.borrow_mut().studying(done, of);
-    }
-
-    fn procedure_finished(&mut self, name: &str) {
-        self.0.borrow_mut().procedure_finished(name);
-    }
-
-    fn stop_requested(&self) -> bool {
-        self.0.borrow().stop_requested()
-    }
-
-    fn inspect(&mut self, note: &str) -> Inspection {
-        self.0.borrow_mut().inspect(note)
-    }
-
-    fn release(&mut self, note: &str, motion: &Motion) -> Inspection {
-        self.0.borrow_mut().release(note, motion)
-    }
-
-    fn may_unload(&mut self, question: &str, motion: &Motion) -> Option<Inspection> {
-        self.0.borrow_mut().may_unload(question, motion)
-    }
-
-    fn next(&mut self) -> Next {
-        self.0.borrow_mut().next()
-    }
-
-    fn event(&mut self, event: &Event) {
-        self.0.borrow_mut().event(event);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tests::testing::empty_plan;
+    use psd_testing::plans::empty_plan;
 
     #[test]
     fn a_real_rig_stops_where_nobody_can_be_asked() {

@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::cli::output::print_message;
-use crate::run::{Observer, StepReport};
+use crate::output::print_message;
+use psd::run::{Observer, StepReport};
+use psd_plan::record::IS_OUTSIDE;
 use psd_plan::record::{Event, EventKind};
-use psd_rig::IS_OUTSIDE;
 use psd_text::diagnostic::excerpt::escape;
 use psd_text::units::Dimension;
 use psd_text::units::display::readable;
@@ -158,7 +158,7 @@ impl Observer for Lines {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::operator::screen::model::tests::step;
+    use crate::operator::screen::model::tests::step;
 
     #[test]
     fn a_procedure_is_one_line_with_its_largest_values() {

@@ -13,7 +13,7 @@ use signal_hook::consts::{
 };
 use signal_hook::iterator;
 
-use crate::cli::output::print_message;
+use crate::output::print_message;
 use psd_rig::StopRequest;
 
 /// Signals that end the motion. The last one is the power failure that an uninterruptible power supply reports.

@@ -56,10 +56,7 @@ impl Checker<'_> {
         }
         match (self.loader)(&name) {
             Ok(text) => {
-                let file = DataFile {
-                    name,
-                    text: text.into(),
-                };
+                let file = DataFile::new(name, text);
                 self.data.push(file.clone());
                 Some(file)
             }

@@ -8,18 +8,18 @@
 
 use fearless_simd::Simd;
 
+use super::reach::RunningReach;
 use super::rows::{LANES, LanePart, LaneRow};
-use super::step::{
-    self, Also, BetweenSteps, Marks, StepInputs, StrikerInput, Structure, end_step, needed,
-    without_contact,
-};
 use super::{Batched, Impact, LaneSpecimen};
-use crate::contact::{ContactLaw, ImpulseContact};
+use crate::contact::ImpulseContact;
 use crate::impact::ImpactInput;
 use crate::impact::energy::Energies;
-use crate::impact::summary::{Events, ImpactSummary, LastEnd};
-use crate::integrator::substep::Striker;
+use crate::impact::step::{
+    Also, BetweenSteps, Marks, StepInputs, StrikerInput, Structure, end_step,
+};
+use crate::impact::summary::{Events, ImpactSummary, LastEnd, Next, RunningResults, Wanted};
 use crate::specimen::BilinearLines;
+use crate::structure::matrix::one_degree::{Body, Secant};
 
 /// The lanes, as bits, in which something is so at the end of a step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -42,9 +42,13 @@ struct Course {
 #[derive(Clone, Debug)]
 pub struct Lanes {
     inputs: StepInputs<LaneRow>,
+    specimen: BilinearLines<LaneRow>,
     /// A step reads one of them and writes the other, each at its own address. A number that is selected and written where it was read would
     /// become a masked store, which is slow on some processors. What a step leaves as it is, is the same in both.
     states: [BetweenSteps<LaneRow>; 2],
+    results: [RunningResults<LaneRow>; 2],
+    reach: RunningReach<LaneRow>,
+    wanted: Wanted,
     /// Index of the state after the last step.
     now: usize,
     /// Steps so far.
@@ -60,77 +64,92 @@ pub struct Lanes {
     courses: [Course; LANES],
 }
 
-/// The inputs of an impact, its striker and K0, which its first tangent is.
-fn inputs_of(input: &ImpactInput, specimen: LaneSpecimen) -> StepInputs {
-    let force_limit = match input.law {
-        ContactLaw::Limit { force } => force,
-        _ => f64::INFINITY,
-    };
-    let striker = Striker {
-        struck: 0,
-        mass: input.striker_mass,
-        gravity: input.gravity,
-        time_step: input.time_step,
-    };
-    StepInputs {
-        structure: Structure {
-            mass: input.mass,
-            damping: input.damping,
-            time_step: input.time_step,
-            largest_tangent: input.max_tangent_ratio * input.stiffness,
-        },
-        specimen: match specimen {
-            LaneSpecimen::Elastic(model) => BilinearLines {
-                stiffness: model.stiffness,
-                hardened: 0.0,
-                half_band: 0.0,
-            },
-            LaneSpecimen::Bilinear(model) => model.lines(),
-        },
-        contact: ImpulseContact::new(force_limit, &striker),
-        striker: StrikerInput {
-            weight: input.striker_mass * input.gravity,
-            energy: input.striker_energy(),
-        },
-    }
+/// A lane at its start.
+struct LaneStart {
+    inputs: StepInputs,
+    specimen: BilinearLines,
+    state: BetweenSteps,
 }
 
-/// A mass at rest, and a striker that is apart for ever and moves: nothing ever happens.
-fn resting() -> (StepInputs, [f64; 2]) {
-    let inputs = StepInputs {
-        structure: Structure {
-            mass: 1.0,
-            damping: 0.0,
-            time_step: 0.0,
-            largest_tangent: 0.0,
-        },
-        specimen: BilinearLines {
+impl LaneStart {
+    fn of(input: &ImpactInput, specimen: LaneSpecimen) -> Self {
+        let inputs = input.step_inputs();
+        let striker = [0.0 - input.gap, input.striker_velocity];
+        let secant = Secant::of(input.stiffness);
+        Self {
+            state: BetweenSteps::at_rest([0.0; 2], striker, secant, inputs.striker.energy),
+            specimen: match specimen {
+                LaneSpecimen::Elastic(model) => BilinearLines {
+                    stiffness: model.stiffness,
+                    hardened: 0.0,
+                    half_band: 0.0,
+                },
+                LaneSpecimen::Bilinear(model) => model.lines(),
+            },
+            inputs,
+        }
+    }
+
+    /// A mass at rest, and a striker that is apart for ever and moves: nothing ever happens.
+    fn resting() -> Self {
+        let inputs = StepInputs {
+            body: Body::new([1.0, 0.0], 0.0),
+            structure: Structure {
+                time_step: 0.0,
+                largest_tangent: 0.0,
+            },
+            contact: ImpulseContact {
+                force_limit: 0.0,
+                fall: 0.0,
+                striker_compliance: 1.0,
+                striker_inertia: 1.0,
+                half_striker: 0.5,
+            },
+            striker: StrikerInput {
+                weight: 0.0,
+                energy: 0.0,
+            },
+        };
+        let specimen = BilinearLines {
             stiffness: 0.0,
             hardened: 0.0,
             half_band: 0.0,
-        },
-        contact: ImpulseContact {
-            force_limit: 0.0,
-            striker_mass: 1.0,
-            fall: 0.0,
-            striker_compliance: 1.0,
-        },
-        striker: StrikerInput {
-            weight: 0.0,
-            energy: 0.0,
-        },
-    };
-    (inputs, [-1.0, f64::MIN_POSITIVE])
+        };
+        let striker = [-1.0, f64::MIN_POSITIVE];
+        Self {
+            inputs,
+            specimen,
+            state: BetweenSteps::at_rest([0.0; 2], striker, Secant::of(0.0), 0.0),
+        }
+    }
+}
+
+/// The one that a step reads, and the one that it writes.
+#[inline(always)]
+fn turn<T, const NOW: usize>(both: &mut [T; 2]) -> (&T, &mut T) {
+    let [first, second] = both;
+    if NOW == 0 {
+        (first, second)
+    } else {
+        (second, first)
+    }
 }
 
 impl Lanes {
     /// All at rest.
-    pub fn new() -> Self {
-        let (inputs, striker) = resting();
-        let state = BetweenSteps::at_rest(&inputs, striker, 0.0, 0.0);
+    pub fn new(wanted: Wanted) -> Self {
+        let LaneStart {
+            inputs,
+            specimen,
+            state,
+        } = LaneStart::resting();
         Self {
             inputs: inputs.map(|_| LaneRow::ZERO),
+            specimen: specimen.map(|_| LaneRow::ZERO),
             states: [state.map(|_| LaneRow::ZERO), state.map(|_| LaneRow::ZERO)],
+            results: [RunningResults::START.map(|_| LaneRow::ZERO); 2],
+            reach: RunningReach::START.map(|_| LaneRow::ZERO),
+            wanted,
             now: 0,
             clock: 0,
             next_end: 0,
@@ -143,12 +162,24 @@ impl Lanes {
         }
     }
 
-    fn set(&mut self, lane: usize, inputs: StepInputs, state: BetweenSteps, last: u64) {
+    fn set(&mut self, lane: usize, start: &LaneStart, last: u64) {
+        let LaneStart {
+            inputs,
+            specimen,
+            state,
+        } = *start;
+        let mut results = RunningResults::START;
+        results.push(inputs.structure.time_step, &state.step_end(self.instant()));
         let set = |row: &mut LaneRow, number: f64| row.set_lane(lane, number);
         self.inputs.each(inputs, set);
+        self.specimen.each(specimen, set);
         for states in &mut self.states {
             states.each(state, set);
         }
+        for rows in &mut self.results {
+            rows.each(results, set);
+        }
+        self.reach.each(RunningReach::START, set);
         self.touching &= !(1 << lane);
         self.stopped &= !(1 << lane);
         self.courses[lane] = Course {
@@ -166,18 +197,14 @@ impl Lanes {
 
     /// An impact at its start, which takes so many steps at most.
     pub fn begin(&mut self, lane: usize, impact: &Impact, steps: u64) {
-        let input = &impact.input;
-        let inputs = inputs_of(input, impact.lane_specimen(None).expect("batched"));
-        let striker = [0.0 - input.gap, input.striker_velocity];
-        let state = BetweenSteps::at_rest(&inputs, striker, input.stiffness, self.instant());
-        self.set(lane, inputs, state, self.clock.saturating_add(steps));
+        let specimen = impact.lane_specimen(None).expect("batched");
+        let start = LaneStart::of(&impact.input, specimen);
+        self.set(lane, &start, self.clock.saturating_add(steps));
     }
 
     /// A lane without an impact.
     pub fn rest(&mut self, lane: usize) {
-        let (inputs, striker) = resting();
-        let state = BetweenSteps::at_rest(&inputs, striker, 0.0, self.instant());
-        self.set(lane, inputs, state, u64::MAX);
+        self.set(lane, &LaneStart::resting(), u64::MAX);
     }
 
     /// One step of every lane, from state `NOW` to the other one; the first step is from state 0. Whether [`Self::follow`] has something to
@@ -190,17 +217,21 @@ impl Lanes {
         self.now = 1 - NOW;
         self.clock += 1;
         let instant = self.instant();
-        let [first, second] = &mut self.states;
-        let (from, to) = if NOW == 0 {
-            (&*first, second)
-        } else {
-            (&*second, first)
-        };
-        let (inputs, also) = (&self.inputs, self.also);
+        let (from, to) = turn::<_, NOW>(&mut self.states);
+        let (known, found) = turn::<_, NOW>(&mut self.results);
+        let (inputs, specimen, also) = (&self.inputs, &self.specimen, self.also);
         let mut bits = Bits::default();
         for part in LanePart::all(simd) {
             let get = |row: &LaneRow| part.get(row);
             let set = |row: &mut LaneRow, numbers| part.set(row, numbers);
+            let before = from.map(get);
+            let force = |start, displacement| {
+                if YIELDS {
+                    specimen.map(get).force(start, displacement)
+                } else {
+                    get(&specimen.stiffness) * displacement
+                }
+            };
             let (
                 state,
                 Marks {
@@ -208,13 +239,9 @@ impl Lanes {
                     stopped,
                     over,
                 },
-            ) = end_step::<_, YIELDS, LIMITED>(
-                &inputs.map(get),
-                &from.map(get),
-                also,
-                part.number(instant),
-            );
+            ) = end_step::<_, LIMITED>(&inputs.map(get), &before, also, force);
             to.motion.each(state.motion, set);
+            to.secant.each(state.secant, set);
             to.work.each(state.work, set);
             if LIMITED {
                 to.indented.each(state.indented, set);
@@ -225,29 +252,23 @@ impl Lanes {
             if also.falls {
                 to.fallen.each(state.fallen, set);
             }
-            to.results.each(state.results, set);
-            to.reach.each(state.reach, set);
+            let end = state.step_end(part.number(instant));
+            let next = Next {
+                wanted: self.wanted,
+                time_step: get(&inputs.structure.time_step),
+                end: &end,
+            };
+            found.add(known, &next, get, set);
+            if self.wanted.reach {
+                let mut reach = self.reach.map(get);
+                reach.add(before.motion.displacement, &end);
+                self.reach.each(reach, set);
+            }
             bits.touching |= part.bits(contact.at_limit | contact.in_contact);
             bits.stopped |= part.bits(stopped);
             if self.ends_at_stop {
                 bits.over |= part.bits(over);
             }
-        }
-        for part in LanePart::all(simd) {
-            let get = |row: &LaneRow| part.get(row);
-            let tangent = step::tangent(&inputs.map(get), &from.map(get), &to.map(get));
-            part.set(&mut to.ahead.tangent, tangent);
-        }
-        for part in LanePart::all(simd) {
-            let get = |row: &LaneRow| part.get(row);
-            let [acceleration, response] = without_contact(&inputs.map(get), &to.map(get));
-            part.set(&mut to.ahead.free_acceleration, acceleration);
-            part.set(&mut to.ahead.response, response);
-        }
-        for part in LanePart::all(simd) {
-            let get = |row: &LaneRow| part.get(row);
-            let needed = needed(&inputs.map(get), &to.map(get));
-            part.set(&mut to.ahead.needed, needed);
         }
         self.bits = bits;
         let stops = bits.stopped & !self.stopped;
@@ -290,7 +311,7 @@ impl Lanes {
         self.next_end = lasts.min().unwrap_or_default();
         let some = |row: &LaneRow| row.any(|number| number != 0.0);
         self.also = Also {
-            damped: some(&self.inputs.structure.damping),
+            damped: some(&self.inputs.body.damping),
             falls: some(&self.inputs.contact.fall),
         };
         self.ends_at_stop = ends_at_stop;
@@ -310,10 +331,11 @@ impl Lanes {
             indented,
             damped,
             fallen,
-            mut results,
-            reach,
             ..
         } = self.states[self.now].map(number);
+        let before = self.results[1 - self.now].map(number);
+        let mut results = self.results[self.now].map(number);
+        let reach = self.reach.map(number);
         results.instant = time(results.instant);
         events.stop = events.stop.map(time);
         let energies = Energies {
@@ -338,9 +360,8 @@ impl Lanes {
                 0.0
             },
         };
-        Batched {
-            summary: ImpactSummary::new(input, &results, &events, &last),
-            reach: reach.finish(&results, &last),
-        }
+        let summary = ImpactSummary::new(input, &results, &events, &last);
+        let steps = self.clock - begun;
+        Batched::new(summary, steps, [&before, &results], &reach, &last)
     }
 }

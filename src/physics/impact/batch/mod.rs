@@ -9,14 +9,15 @@
 mod lanes;
 mod reach;
 mod rows;
-mod step;
 #[cfg(test)]
 mod tests;
 
 use fearless_simd::{Level, Simd, dispatch};
 
-use super::summary::{ImpactSummary, SummaryBuilder};
-use super::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink, Until};
+use super::summary::{
+    ImpactEnding, ImpactSummary, LastEnd, RunningResults, SummaryBuilder, Wanted,
+};
+use super::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink, Until, simulate};
 use crate::contact::ContactLaw;
 use crate::integrator::Integrator;
 use crate::integrator::state::State;
@@ -38,12 +39,40 @@ pub struct Impact {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Batched {
     pub summary: ImpactSummary,
+    pub ending: ImpactEnding,
     pub reach: Reach,
+}
+
+impl Batched {
+    /// After `steps` steps; `before` are the results before the last one.
+    fn new(
+        summary: ImpactSummary,
+        steps: u64,
+        [before, after]: [&RunningResults; 2],
+        reach: &RunningReach,
+        last: &LastEnd,
+    ) -> Self {
+        let grown = |now: f64, before: f64| now > 0.0 && now > before;
+        Self {
+            ending: ImpactEnding {
+                still_striking: steps > 0 && summary.stop_time.is_none(),
+                touched: summary.contacts > 0,
+                still_rising: summary.still_rising,
+                speeding_up: grown(last.velocity.abs(), before.max_velocity),
+                pushing_harder: grown(last.contact_force, before.max_contact_force),
+            },
+            reach: reach.finish(after),
+            summary,
+        }
+    }
 }
 
 /// Sums up the steps of an impact that runs alone.
 struct Builder {
     summary: SummaryBuilder,
+    /// Before the last step.
+    before: RunningResults,
+    steps: u64,
     reach: RunningReach,
     /// X at the last step end.
     displacement: f64,
@@ -51,6 +80,8 @@ struct Builder {
 
 impl<V> Sink<V> for Builder {
     fn push(&mut self, _: &State<V>, state: &ImpactState, _: bool) {
+        self.before = self.summary.results;
+        self.steps = state.step;
         self.summary.push(state);
         self.reach.add(self.displacement, &state.step_end());
         self.displacement = state.displacement;
@@ -95,28 +126,51 @@ impl Impact {
     /// # Errors
     /// As [`ImpactSolver::new`].
     pub fn run(&self, until: Option<Until>, steps: u64) -> Result<Batched, ImpactError> {
-        let mut specimen = self.specimen.clone();
-        let mut solver = ImpactSolver::new(&self.input, 0.0, specimen.move_to(0.0))?;
+        let start = ImpactSolver::new(&self.input, 0.0, self.specimen.clone().move_to(0.0))?;
         let mut builder = Builder {
             summary: SummaryBuilder::new(&self.input),
+            before: RunningResults::START,
+            steps: 0,
             reach: RunningReach::START,
             displacement: 0.0,
         };
-        builder.push(solver.structure(), solver.state(), false);
-        let read = |solver: &mut ImpactSolver| {
-            let target = solver.predict();
-            [target, specimen.move_to(target)]
-        };
-        solver.run(until, steps, read, &mut builder);
-        let Builder { summary, reach, .. } = builder;
-        Ok(Batched {
-            reach: reach.finish(&summary.results, &summary.last),
-            summary: summary.finish(),
-        })
+        builder.push(start.structure(), start.state(), false);
+        self.simulate(until, steps, &mut builder)?;
+        let Builder {
+            summary,
+            before,
+            steps,
+            reach,
+            ..
+        } = builder;
+        let (after, last) = (summary.results, summary.last);
+        let results = [&before, &after];
+        Ok(Batched::new(
+            summary.finish(),
+            steps,
+            results,
+            &reach,
+            &last,
+        ))
+    }
+
+    /// The steps of this impact alone.
+    ///
+    /// # Errors
+    /// As [`ImpactSolver::new`].
+    pub fn simulate<K: Sink>(
+        &self,
+        until: Option<Until>,
+        steps: u64,
+        sink: &mut K,
+    ) -> Result<(), ImpactError> {
+        let mut specimen = self.specimen.clone();
+        simulate(&self.input, &mut specimen, until, steps, sink)?;
+        Ok(())
     }
 }
 
-/// The results of many impacts, in their order: each until its end or for so many steps.
+/// The results of many impacts, in their order: each until its end or for so many steps. A result that is not wanted is that of the start.
 ///
 /// # Errors
 /// Each impact has its own, as [`ImpactSolver::new`].
@@ -125,8 +179,9 @@ pub fn run(
     impacts: &[Impact],
     until: Option<Until>,
     steps: u64,
+    wanted: Wanted,
 ) -> Vec<Result<Batched, ImpactError>> {
-    run_on(Level::new(), impacts, until, steps)
+    run_on(Level::new(), impacts, until, steps, wanted)
 }
 
 /// With these vectors of the processor. The results are the same for all.
@@ -135,6 +190,7 @@ fn run_on(
     impacts: &[Impact],
     until: Option<Until>,
     steps: u64,
+    wanted: Wanted,
 ) -> Vec<Result<Batched, ImpactError>> {
     // Lanes differ in what their loop contains: yielding specimens, limited forces.
     let mut queues: [Vec<usize>; 4] = Default::default();
@@ -153,13 +209,17 @@ fn run_on(
         });
     }
     let [plain, yielding, limited, both] = queues;
-    let ends = until.is_some_and(|until| until == Until::StrikerStop);
+    let terms = Terms {
+        ends_at_stop: until.is_some_and(|until| until == Until::StrikerStop),
+        steps,
+        wanted,
+    };
     let mut take = |index: usize, result| results[index] = Some(Ok(result));
     dispatch!(level, simd => {
-        in_lanes::<_, false, false>(simd, impacts, &plain, ends, steps, &mut take);
-        in_lanes::<_, true, false>(simd, impacts, &yielding, ends, steps, &mut take);
-        in_lanes::<_, false, true>(simd, impacts, &limited, ends, steps, &mut take);
-        in_lanes::<_, true, true>(simd, impacts, &both, ends, steps, &mut take);
+        in_lanes::<_, false, false>(simd, impacts, &plain, &terms, &mut take);
+        in_lanes::<_, true, false>(simd, impacts, &yielding, &terms, &mut take);
+        in_lanes::<_, false, true>(simd, impacts, &limited, &terms, &mut take);
+        in_lanes::<_, true, true>(simd, impacts, &both, &terms, &mut take);
     });
     let finished = impacts
         .iter()
@@ -177,6 +237,14 @@ fn is_finite(summary: &ImpactSummary) -> bool {
     summary.energy_error.is_finite() && summary.final_displacement.is_finite()
 }
 
+/// When impacts end, and what is found of them.
+struct Terms {
+    ends_at_stop: bool,
+    /// At most.
+    steps: u64,
+    wanted: Wanted,
+}
+
 /// Steps the impacts at these places, thirty-two at a time. A part of its caller, which is compiled for several vector units.
 #[allow(
     clippy::inline_always,
@@ -187,14 +255,18 @@ fn in_lanes<S: Simd, const YIELDS: bool, const LIMITED: bool>(
     simd: S,
     impacts: &[Impact],
     indices: &[usize],
-    ends_at_stop: bool,
-    steps: u64,
+    terms: &Terms,
     take: &mut impl FnMut(usize, Batched),
 ) {
+    let Terms {
+        ends_at_stop,
+        steps,
+        wanted,
+    } = *terms;
     if indices.is_empty() {
         return;
     }
-    let mut lanes = Lanes::new();
+    let mut lanes = Lanes::new(wanted);
     let mut waiting = indices.iter().copied();
     let mut running: [Option<usize>; LANES] = [None; LANES];
     let mut begin = |lanes: &mut Lanes, lane: usize| {

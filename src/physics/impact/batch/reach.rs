@@ -1,15 +1,14 @@
-//! How far an impact reaches: the ranges that limits of a rig bound, and the ends of what may still grow. In: the ends of its steps. Out:
-//! numbers.
+//! How far an impact reaches: the ranges that limits of a rig bound. In: the ends of its steps. Out: numbers.
 
 #![allow(
     clippy::inline_always,
     reason = "a part of its caller, which is compiled for several vector units"
 )]
 
-use crate::impact::summary::{LastEnd, RunningResults, StepEnd};
+use crate::impact::summary::{RunningResults, StepEnd};
 use crate::number::{Number, numbers};
 
-/// Ranges over the steps of an impact on an ideal rig, step 0 included, and its last step.
+/// Ranges over the steps of an impact on an ideal rig, step 0 included.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reach {
     /// Smallest and largest X \[m\].
@@ -18,10 +17,6 @@ pub struct Reach {
     pub restoring_force: [f64; 2],
     /// Largest |change of X| in a step \[m\].
     pub increment: f64,
-    /// Ẋ at the last step \[m/s\].
-    pub last_velocity: f64,
-    /// F of the last step \[N\].
-    pub last_contact_force: f64,
 }
 
 numbers! {
@@ -43,13 +38,11 @@ impl RunningReach {
         largest_increment: 0.0,
     };
 
-    pub fn finish(&self, results: &RunningResults, last: &LastEnd) -> Reach {
+    pub fn finish(&self, results: &RunningResults) -> Reach {
         Reach {
             displacement: [self.least_displacement, results.max_displacement],
             restoring_force: [self.least_force, self.largest_force],
             increment: self.largest_increment,
-            last_velocity: last.velocity,
-            last_contact_force: last.contact_force,
         }
     }
 }

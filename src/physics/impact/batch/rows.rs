@@ -129,6 +129,11 @@ impl<S: Simd> Answer for SideAnswer<S> {
     fn is_surely_no(self) -> bool {
         false
     }
+
+    #[inline(always)]
+    fn is_surely_yes(self) -> bool {
+        false
+    }
 }
 
 // `a.max(b)` is `if a > b { a } else { b }` and `a.min(b)` is `if a < b { a } else { b }` here: a lane that is not a number runs again alone.
@@ -161,11 +166,6 @@ impl<S: Simd> Number for Side<S> {
     }
 
     #[inline(always)]
-    fn equals(self, other: Self) -> SideAnswer<S> {
-        SideAnswer(self.0.simd_eq(other.0))
-    }
-
-    #[inline(always)]
     fn larger(self, other: Self) -> Self {
         Self(other.0.max(self.0))
     }
@@ -176,8 +176,8 @@ impl<S: Simd> Number for Side<S> {
     }
 
     #[inline(always)]
-    fn clamped(self, low: Self, high: Self) -> Self {
-        Self(high.0.min(low.0.max(self.0)))
+    fn rarely<T>(work: impl FnOnce() -> T) -> T {
+        work()
     }
 
     #[inline(always)]

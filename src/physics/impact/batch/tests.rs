@@ -59,16 +59,26 @@ fn impact(run: u64, law: ContactLaw, yields: bool) -> Impact {
 }
 
 /// All numbers of a result as bits.
-fn bits(Batched { summary, reach }: &Batched) -> Vec<Option<u64>> {
+fn bits(
+    Batched {
+        summary,
+        ending,
+        reach,
+    }: &Batched,
+) -> Vec<Option<u64>> {
     let whole = |number: f64| Some(number.to_bits());
+    let flag = |is: bool| Some(u64::from(is));
     vec![
+        flag(ending.still_striking),
+        flag(ending.touched),
+        flag(ending.still_rising),
+        flag(ending.speeding_up),
+        flag(ending.pushing_harder),
         whole(reach.displacement[0]),
         whole(reach.displacement[1]),
         whole(reach.restoring_force[0]),
         whole(reach.restoring_force[1]),
         whole(reach.increment),
-        whole(reach.last_velocity),
-        whole(reach.last_contact_force),
         whole(summary.max_displacement),
         whole(summary.time_of_max_displacement),
         summary.stop_time.map(f64::to_bits),
@@ -83,13 +93,13 @@ fn bits(Batched { summary, reach }: &Batched) -> Vec<Option<u64>> {
         whole(summary.absorbed_energy),
         whole(summary.striker_energy),
         whole(summary.energy_error),
-        Some(u64::from(summary.still_rising)),
-        Some(u64::from(summary.last_contact_cut)),
+        flag(summary.still_rising),
+        flag(summary.last_contact_cut),
     ]
 }
 
 fn compare(impacts: &[Impact], until: Option<Until>, steps: u64) {
-    for (impact, batched) in impacts.iter().zip(run(impacts, until, steps)) {
+    for (impact, batched) in impacts.iter().zip(run(impacts, until, steps, Wanted::ALL)) {
         let alone = impact.run(until, steps).unwrap();
         let batched = batched.unwrap();
         assert_eq!(
@@ -119,7 +129,7 @@ fn all_vectors_give_the_same_bits() {
         for yields in [false, true] {
             let impacts: Vec<Impact> = (0..40).map(|run| impact(run, law, yields)).collect();
             let results = levels().into_iter().map(|level| {
-                let results = run_on(level, &impacts, Some(Until::Duration), 700);
+                let results = run_on(level, &impacts, Some(Until::Duration), 700, Wanted::ALL);
                 let bits = |result: &Result<Batched, ImpactError>| bits(result.as_ref().unwrap());
                 results.iter().map(bits).collect::<Vec<_>>()
             });
@@ -177,7 +187,7 @@ fn impacts_of_all_kinds_keep_their_order() {
     let mut massless = impact(1, ContactLaw::Rigid, false);
     massless.input.mass = 0.0;
     let both = [massless.clone(), impact(2, ContactLaw::Rigid, false)];
-    let results = run(&both, None, 10);
+    let results = run(&both, None, 10, Wanted::ALL);
     assert_eq!(results[0], massless.run(None, 10));
     assert!(results[0].is_err() && results[1].is_ok());
 }
@@ -194,7 +204,7 @@ fn what_has_a_state_or_noise_runs_alone() {
     for other in [noisy, explicit, damaged] {
         assert!(!other.is_batched(None));
         assert_eq!(
-            run(std::slice::from_ref(&other), None, 50)[0],
+            run(std::slice::from_ref(&other), None, 50, Wanted::ALL)[0],
             other.run(None, 50)
         );
     }
@@ -243,7 +253,7 @@ fn a_study_of_impacts_recovers_a_known_probability() {
         })
         .collect();
     let mut outcomes = Outcomes::default();
-    for result in run(&impacts, until, 1000) {
+    for result in run(&impacts, until, 1000, Wanted::ALL) {
         // One and a half standard deviations above the mean.
         if result.unwrap().summary.max_displacement > 1.075 * farthest {
             outcomes.failed += 1;

@@ -40,6 +40,9 @@ pub trait Vector: Clone + Debug + Default + PartialEq {
     /// Becomes a copy of `view`, in its own memory.
     fn set(&mut self, view: Self::View<'_>);
 
+    /// Takes over the value of `other`, which is any afterwards.
+    fn take_over(&mut self, other: &mut Self);
+
     /// One entry per degree of freedom.
     #[must_use]
     fn as_slice(&self) -> &[f64];
@@ -200,6 +203,11 @@ impl Vector for f64 {
     }
 
     #[inline]
+    fn take_over(&mut self, other: &mut Self) {
+        *self = *other;
+    }
+
+    #[inline]
     fn as_slice(&self) -> &[f64] {
         std::slice::from_ref(self)
     }
@@ -232,19 +240,9 @@ impl Vector for f64 {
         velocity: &mut Self,
         displacement: &mut Self,
     ) {
-        [*displacement, *velocity] =
-            one_degree::travel(time_step, from.map(|number| *number), *acceleration);
-    }
-
-    #[inline]
-    fn set_out(step: &SetOut<Self>, push: &mut Self, _: &mut Self, _: &mut Self) {
-        *push = one_degree::unbalanced_force(
-            step.time_step,
-            [*step.velocity, *step.acceleration],
-            [*step.load_end, *step.force],
-            step.damping.copied(),
-            *step.stiffness,
-        );
+        let half = 0.5 * time_step;
+        *velocity = from[1] + half * (from[2] + acceleration);
+        *displacement = from[0] + half * (from[1] + *velocity);
     }
 }
 
@@ -342,6 +340,7 @@ impl Vector for Vec<f64> {
         vec![0.0; order]
     }
 
+    #[inline]
     fn view(&self) -> &[f64] {
         self
     }
@@ -358,6 +357,7 @@ impl Vector for Vec<f64> {
         slice
     }
 
+    #[inline]
     fn set(&mut self, view: &[f64]) {
         if self.len() == view.len() {
             self.copy_from_slice(view);
@@ -366,10 +366,17 @@ impl Vector for Vec<f64> {
         }
     }
 
+    #[inline]
+    fn take_over(&mut self, other: &mut Self) {
+        std::mem::swap(self, other);
+    }
+
+    #[inline]
     fn as_slice(&self) -> &[f64] {
         self
     }
 
+    #[inline]
     fn as_mut_slice(&mut self) -> &mut [f64] {
         self
     }

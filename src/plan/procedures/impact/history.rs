@@ -2,7 +2,7 @@
 
 use crate::record::{StepState, StruckFrame};
 use psd_physics::impact::energy::Energies;
-use psd_physics::impact::summary::still_rising;
+use psd_physics::impact::summary::ImpactEnding;
 use psd_physics::tracking::monitor::Tracking;
 
 /// One row of an impact's table; step 0 is the start.
@@ -41,26 +41,11 @@ pub struct ImpactHistory {
     /// The striker and the struck point. For a frame: the struck floor and storey, with the energies of the whole frame and
     /// the tracking of all axes together.
     pub steps: Vec<ImpactStep>,
+    pub ending: ImpactEnding,
     /// None for one degree of freedom.
     pub frame: Option<StruckFrame>,
     /// \[s\]
     pub time_step: f64,
     /// \[s\]
     pub critical_time_step: f64,
-}
-
-impl ImpactHistory {
-    /// Whether the structure was still moving beyond its largest displacement at the end of the record: then the maximum
-    /// was not reached within the run.
-    #[must_use]
-    pub fn still_rising(&self) -> bool {
-        let largest = self
-            .steps
-            .iter()
-            .map(|step| step.computed)
-            .fold(f64::NEG_INFINITY, f64::max);
-        self.steps
-            .last()
-            .is_some_and(|last| still_rising(last.velocity, last.computed >= largest))
-    }
 }

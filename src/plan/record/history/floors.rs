@@ -193,4 +193,14 @@ pub struct StruckFrame {
     pub modes: Option<Modes>,
     /// Fraction of critical damping of each mode.
     pub damping_ratios: Vec<f64>,
+    pub growing: StillGrowing,
+}
+
+/// The quantities of a frame that were still growing when an impact ended: the largest value of each is not its peak.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct StillGrowing {
+    pub base_shear: bool,
+    /// The floors, from 0, and the storeys that were moving beyond their largest displacement and drift.
+    pub floors: Vec<usize>,
+    pub storeys: Vec<usize>,
 }

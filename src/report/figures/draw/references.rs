@@ -3,9 +3,27 @@
 use plotters::style::text_anchor::{HPos, VPos};
 
 use super::super::canvas::{Lettering, Point};
-use super::super::chart::{Chart, Line, Series};
+use super::super::chart::{Chart, Line, Reference, Series};
 use super::sheet::Sheet;
 use super::{BOTTOM, LIMIT_INK, RIGHT, lettering};
+use crate::report::wording::figures as wording;
+
+/// Number of limits with a text that are drawn; the others are counted. Texts of more would cover each other.
+const MOST: usize = 12;
+
+/// The reference lines that are drawn, and the number of limits that are not.
+fn drawn(chart: &Chart) -> (&[Reference], usize) {
+    let mut labelled = chart
+        .references
+        .iter()
+        .enumerate()
+        .filter(|(_, reference)| !reference.label.is_empty())
+        .map(|(index, _)| index);
+    match labelled.nth(MOST) {
+        Some(first_left) => (&chart.references[..first_left], 1 + labelled.count()),
+        None => (&chart.references, 0),
+    }
+}
 
 /// Reference lines that the axis includes. If a line is far from the data, only its text is printed, at the nearer edge. Otherwise the
 /// axis range would make the curves flat.
@@ -17,8 +35,8 @@ pub(super) fn near(chart: &Chart) -> impl Iterator<Item = f64> {
         .flat_map(|series| &series.points)
         .map(|point| point.1.abs())
         .fold(0.0, f64::max);
-    chart
-        .references
+    drawn(chart)
+        .0
         .iter()
         .map(|reference| reference.y)
         .filter(move |y| largest == 0.0 || y.abs() <= FARTHEST * largest)
@@ -100,13 +118,22 @@ impl Area {
 /// Draws each reference line with its text at the position that covers the least data.
 pub(super) fn draw(sheet: &Sheet<'_>, chart: &Chart) {
     let mut written: Vec<Area> = Vec::new();
-    for (index, reference) in chart.references.iter().enumerate() {
+    let (drawn, left) = drawn(chart);
+    let last = drawn
+        .iter()
+        .rposition(|reference| !reference.label.is_empty());
+    for (index, reference) in drawn.iter().enumerate() {
         let fraction = sheet.y.fraction(reference.y);
         let is_inside = (0.0..=1.0).contains(&fraction);
         let label = match fraction {
             above if above > 1.0 => format!("↑ {}", reference.label),
             below if below < 0.0 => format!("↓ {}", reference.label),
             _ => reference.label.clone(),
+        };
+        let label = if left > 0 && last == Some(index) {
+            wording::more_limits(label, left)
+        } else {
+            label
         };
         let (low, high) = (sheet.y.low * sheet.y.factor, sheet.y.high * sheet.y.factor);
         let (_, y) = sheet.point((0.0, reference.y.clamp(low, high)));
@@ -128,8 +155,7 @@ pub(super) fn draw(sheet: &Sheet<'_>, chart: &Chart) {
         };
         let width = style.width(&label);
         // A reference without a label shares the text of the previous one: the text may be at either line.
-        let other = chart
-            .references
+        let other = drawn
             .get(index + 1)
             .filter(|other| is_inside && other.label.is_empty());
         let other = other.map(|other| sheet.point((0.0, other.y)).1);
@@ -143,8 +169,15 @@ pub(super) fn draw(sheet: &Sheet<'_>, chart: &Chart) {
             let middle = 0.5 * (rightmost + sheet.left + 8.0);
             [rightmost, middle, sheet.left + 8.0].map(|left| (left, bottom))
         });
-        let covered =
-            |position: &Point| cover(sheet, chart, &written, Area::of_text(*position, width));
+        let covered = |position: &Point| {
+            cover(
+                sheet,
+                chart,
+                drawn,
+                &written,
+                Area::of_text(*position, width),
+            )
+        };
         let position = positions
             .min_by_key(covered)
             .unwrap_or((rightmost, y + 18.0));
@@ -154,10 +187,15 @@ pub(super) fn draw(sheet: &Sheet<'_>, chart: &Chart) {
 }
 
 /// The objects that a text would cover, the most important first: another text, lines of other limits, data.
-fn cover(sheet: &Sheet<'_>, chart: &Chart, written: &[Area], area: Area) -> (bool, usize, usize) {
+fn cover(
+    sheet: &Sheet<'_>,
+    chart: &Chart,
+    drawn: &[Reference],
+    written: &[Area],
+    area: Area,
+) -> (bool, usize, usize) {
     let texts = written.iter().any(|other| area.touches(*other));
-    let lines = chart
-        .references
+    let lines = drawn
         .iter()
         .filter(|other| (area.top..area.bottom).contains(&sheet.point((0.0, other.y)).1))
         .count();
@@ -172,6 +210,33 @@ fn cover(sheet: &Sheet<'_>, chart: &Chart, written: &[Area], area: Area) -> (boo
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::figures::chart::Quantity;
+
+    #[test]
+    fn a_dozen_limits_are_drawn_and_the_others_counted() {
+        let quantity = || Quantity::of("x", psd_text::units::Dimension::LENGTH);
+        let mut chart = Chart::of(quantity(), quantity(), Vec::new());
+        let mut limit = |label: &str, y| {
+            chart.references.push(Reference {
+                label: label.to_owned(),
+                y,
+            });
+            let (drawn, left) = drawn(&chart);
+            (drawn.len(), left)
+        };
+        for count in 1..=12 {
+            assert_eq!(limit("a limit", 1.0), (2 * count - 1, 0));
+            assert_eq!(limit("", -1.0), (2 * count, 0));
+        }
+        assert_eq!(limit("the thirteenth", 2.0), (24, 1));
+        assert_eq!(limit("", -2.0), (24, 1));
+        assert_eq!(limit("the fourteenth", 3.0), (24, 2));
+        assert_eq!(near(&chart).count(), 24);
+        assert_eq!(
+            wording::more_limits("a limit", 2),
+            "a limit (and 2 more limits)"
+        );
+    }
 
     #[test]
     fn a_line_crosses_a_text_that_holds_neither_of_its_ends() {

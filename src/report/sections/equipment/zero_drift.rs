@@ -7,7 +7,7 @@ use crate::report::run::Run;
 use crate::report::wording::zero_drift as wording;
 use psd_plan::ZeroAfter;
 use psd_plan::record::{AxisDrift, Drift};
-use psd_rig::{named_axis, of_axis};
+use psd_plan::{named_axis, of_axis};
 use psd_text::units::Dimension;
 
 /// The zero readings of a rig with a declared allowed zero drift; for a real rig without it, a note.

@@ -7,10 +7,9 @@ use crate::report::run::Run;
 use crate::report::sections::reproductions::not_reproduced;
 use crate::report::status::ReportStatus;
 use crate::report::wording::{reproductions, verdict as wording};
-use crate::run::check_run;
 use crate::verdict::Verdict;
+use psd_plan::record::IS_OUTSIDE;
 use psd_plan::record::Outcome;
-use psd_rig::IS_OUTSIDE;
 
 /// The statement, and the reason if the run was not completed. A simulation is headed as such, and so is a check run: neither is
 /// the test of the plan. The report of a test that is not issuable says so before the outcome.
@@ -24,7 +23,7 @@ pub(in super::super) fn verdict(run: &Run<'_>) -> Stated {
     };
     let (simulated, checked) = (
         run.record.rig.simulated,
-        check_run::performed_part(run.plan).is_some(),
+        run.plan.performed_part().is_some(),
     );
     let not_issuable = matches!(ReportStatus::of(run), ReportStatus::NotIssuable { .. });
     let name = run.assessment.verdict.name().to_uppercase();

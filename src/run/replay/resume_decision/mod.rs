@@ -10,7 +10,8 @@ use super::entry::{
 };
 use super::logged_run::{LoggedRun, UnreadableLog, body};
 use super::state::Undecided;
-use crate::run::{Inspection, UNLOADING};
+use crate::run::Inspection;
+use psd_plan::record::UNLOADING;
 use psd_plan::record::{Event, EventKind};
 use psd_rig::Reading;
 use psd_rig::journal::{EntryKind, Line};

@@ -2,6 +2,7 @@
 //! run is resumed to the same end with no target executed twice.
 
 mod amended_speed;
+mod compact;
 mod durable;
 mod held;
 mod killed;

@@ -6,8 +6,8 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 use super::super::entry::{
-    AmendBody, EndBody, FaultBody, Header, HeldBody, IntentBody, OperatorEntry, PlanBody,
-    RecoverBody, ResumeBody, RigBody, SampleBody, StepBody, StrokeBody,
+    AmendBody, DigestBody, EndBody, FaultBody, Header, HeldBody, IntentBody, OperatorEntry,
+    PlanBody, RecoverBody, ResumeBody, RigBody, SampleBody, StepBody, StrokeBody,
 };
 use psd_plan::record::Event;
 use psd_rig::LineStatistics;
@@ -27,7 +27,7 @@ fn header() -> Value {
     json!({
         "run_id": "1f", "psd": "0.2.0", "build": "2e", "rules": 1, "toolchain": "rustc",
         "files": [{"name": "plan.psd", "sha256": "3d"}], "settings": [["v", "1 m/s"]],
-        "rig": "bench", "equipment": equipment(), "check_run": true, "served": "nees",
+        "rig": "bench", "equipment": equipment(), "log": "compact", "check_run": true, "served": "nees",
         "date": "2026-05-31", "operator": "A. Person", "host": "lab",
         "began": "2026-05-31T08:00:00Z"
     })
@@ -219,6 +219,9 @@ fn every_body_has_its_words_on_disk() {
             EntryKind::Step => stable::<StepBody>(&[json!({
                 "step": 1, "time": 1e-3, "u": 1e-3, "x": 1e-3, "v": 0.5, "a": 2.0, "r": 10.0,
                 "e": 1e-4, "axes": [{"u": 1e-3, "x": 1e-3, "v": 0.5, "a": 2.0, "r": 10.0}]
+            })]),
+            EntryKind::Digest => stable::<DigestBody>(&[json!({
+                "entries": 3000, "steps": 1000, "targets": 1000, "t": 2.0, "sha256": "4e"
             })]),
             EntryKind::Operator => stable::<OperatorEntry>(&operator_bodies()),
             EntryKind::Event => stable::<Event>(&event_bodies()),

@@ -48,10 +48,10 @@ impl Stepped for &mut Sine {
         AxesState::of(&self.state)
     }
 
-    fn predict(&mut self) -> Vec<f64> {
+    fn predict(&mut self, target: &mut [f64]) {
         let sine = self.angle().sin();
-        self.state.target = AMPLITUDES.map(|amplitude| amplitude * sine).to_vec();
-        self.state.target.clone()
+        target.copy_from_slice(&AMPLITUDES.map(|amplitude| amplitude * sine));
+        self.state.target.copy_from_slice(target);
     }
 
     fn predicted_velocity(&mut self, velocity: &mut [f64]) -> bool {
@@ -64,8 +64,8 @@ impl Stepped for &mut Sine {
         start.reading.force.clone()
     }
 
-    fn effective_force(&self) -> Vec<f64> {
-        self.state.restoring_force.clone()
+    fn effective_force(&self, force: &mut [f64]) {
+        force.copy_from_slice(&self.state.restoring_force);
     }
 
     fn complete(&mut self, reading: &Reading) {
@@ -76,15 +76,18 @@ impl Stepped for &mut Sine {
         self.state.restoring_force.clone_from(&reading.force);
     }
 
-    fn keep(&mut self, axes: &[Tracking], _: &Session<'_>) -> Balance {
-        self.kept.push(axes.to_vec());
+    fn sum_up(&mut self) -> Balance {
         Balance {
             error: 0.0,
             input: 1.0,
         }
     }
 
-    fn cut_off(&mut self, _: &Reading, _: f64, _: &Session<'_>) {}
+    fn keep(&mut self, axes: &[Tracking], _: f64) {
+        self.kept.push(axes.to_vec());
+    }
+
+    fn cut_off(&mut self, _: &[f64], _: &Reading, _: f64, _: f64) {}
 
     fn is_struck(&self) -> bool {
         false

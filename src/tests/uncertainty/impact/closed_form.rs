@@ -149,8 +149,8 @@ fn an_exact_impact_has_the_effect_of_its_time_step() {
 fn a_run_may_ask_for_no_uncertainty() {
     let plan = all_uncertain(plan(sticking(1e-3)));
     let mut rig = psd_rig::virtual_rig(&plan);
-    let settings = crate::run::Settings { uncertainty: false };
-    let without = crate::run::run_with(&plan, &mut *rig, &mut crate::run::Unwatched, settings);
+    let keep = crate::run::Keep::Steps;
+    let without = crate::run::run_with(&plan, &mut *rig, &mut crate::run::Unwatched, keep);
     let with = run_unwatched(&plan);
     for (one, other) in without.procedures[0]
         .results

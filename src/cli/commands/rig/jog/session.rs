@@ -3,13 +3,13 @@
 
 use super::super::typed::positions;
 use super::Wanted;
-use crate::cli::exit::{Exit, Failure};
-use crate::cli::operator::dialogue::by_lines::{self, next_line};
-use crate::cli::operator::question::{Question, QuestionKind};
-use crate::cli::output::{print_message, print_result};
-use crate::cli::settings::Settings;
-use crate::run::remote_control::Specimen;
-use crate::run::{Disconnect, Extent, Motion};
+use crate::exit::{Exit, Failure};
+use crate::operator::dialogue::by_lines::{self, next_line};
+use crate::operator::question::{Question, QuestionKind};
+use crate::output::{print_message, print_result};
+use crate::settings::Settings;
+use psd::run::remote_control::Specimen;
+use psd::run::{Disconnect, Extent, Motion};
 use psd_plan::record::Outcome;
 use psd_plan::{Interval, Plan};
 use psd_rig::{Identity, LimitedQuantity, OWN_SPEED, RigFault, StopRequest};

@@ -1,8 +1,8 @@
 //! Keys at the times that the test sets.
 
 use super::*;
-use crate::cli::operator::question::{DEAF, Question, Stay};
-use crate::run::{Inspection, Next};
+use crate::operator::question::{DEAF, Question, Stay};
+use psd::run::{Inspection, Next};
 
 /// A time long after the last question appeared.
 const LATER: Duration = Duration::from_secs(100);

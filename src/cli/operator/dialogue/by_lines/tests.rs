@@ -6,7 +6,7 @@ use std::sync::mpsc::{Sender, channel};
 use std::time::Duration;
 
 use super::*;
-use crate::cli::operator::question::{After, Stay};
+use crate::operator::question::{After, Stay};
 
 /// A clock that a test sets, and an operator whose lines the test types.
 struct Typist {

@@ -7,7 +7,7 @@ use ratatui::text::Line;
 use ratatui::widgets::{Clear, Paragraph, Wrap};
 
 use super::{View, shown};
-use crate::cli::operator::question::After;
+use crate::operator::question::After;
 use psd_plan::record::EventKind;
 
 pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {

@@ -7,7 +7,7 @@ use ratatui::symbols::Marker;
 use ratatui::widgets::{Axis, Block, BorderType, Chart, Dataset, GraphType};
 
 use super::View;
-use crate::cli::operator::screen::curve::Curve;
+use crate::operator::screen::curve::Curve;
 use psd_text::units::Dimension;
 use psd_text::units::display::{readable_unit, significant};
 

@@ -6,9 +6,9 @@ use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line, Span};
 
 use super::{View, fitted, shown};
-use crate::cli::operator::dialogue::{Typing, What};
-use crate::cli::operator::question::{After, QuestionKind};
-use crate::cli::operator::screen::model::{Ended, INSPECT};
+use crate::operator::dialogue::{Typing, What};
+use crate::operator::question::{After, QuestionKind};
+use crate::operator::screen::model::{Ended, INSPECT};
 use psd_text::units::Dimension;
 use psd_text::units::display::{readable, significant};
 

@@ -6,7 +6,7 @@ use ratatui::style::Color;
 use ratatui::text::{Line, Span};
 
 use super::{View, head};
-use crate::cli::operator::screen::model::LimitRow;
+use crate::operator::screen::model::LimitRow;
 use psd_text::units::Dimension;
 use psd_text::units::display::{plain, readable, stated};
 

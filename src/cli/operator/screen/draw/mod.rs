@@ -19,7 +19,7 @@ use ratatui::text::Line;
 use ratatui::widgets::{Block, Borders};
 
 use super::model::{Ended, Model};
-use crate::cli::operator::dialogue::Dialogue;
+use crate::operator::dialogue::Dialogue;
 use psd_rig::StopRequest;
 use psd_text::diagnostic::excerpt::escape;
 

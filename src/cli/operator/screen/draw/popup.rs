@@ -7,8 +7,8 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, BorderType, Clear, Padding, Paragraph};
 
 use super::{View, shown};
-use crate::cli::operator::dialogue::{Typing, What};
-use crate::cli::operator::question::{After, QuestionKind, WHY_RESUME, position_and_force};
+use crate::operator::dialogue::{Typing, What};
+use crate::operator::question::{After, QuestionKind, WHY_RESUME, position_and_force};
 use psd_plan::record::EventKind;
 
 const WIDEST: u16 = 72;

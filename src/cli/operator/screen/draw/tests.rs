@@ -6,16 +6,16 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
 use super::{View, draw};
-use crate::cli::operator::dialogue::Dialogue;
-use crate::cli::operator::dialogue::keys::Key;
-use crate::cli::operator::question::{After, Question, QuestionKind, Stay};
-use crate::cli::operator::screen::model::Model;
+use crate::operator::dialogue::Dialogue;
+use crate::operator::dialogue::keys::Key;
+use crate::operator::question::{After, Question, QuestionKind, Stay};
+use crate::operator::screen::model::Model;
 
-use crate::run::{Extent, Motion, StepReport};
-use crate::tests::testing::empty_plan;
+use psd::run::{Extent, Motion, StepReport};
 use psd_plan::Interval;
 use psd_plan::record::{Event, EventKind};
 use psd_rig::{Feedback, Identity, StopRequest};
+use psd_testing::plans::empty_plan;
 
 /// An impact in progress: a decaying sine.
 fn model() -> Model {

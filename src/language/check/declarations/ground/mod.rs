@@ -92,12 +92,12 @@ pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {
         });
     };
     let file = file?;
-    let record = match record::read(&file.name, &file.text) {
+    let record = match file.ground() {
         Ok(record) => record,
         Err(reason) => {
             return checker.fail(BadGroundRecord {
                 file: &file.name,
-                reason: &reason,
+                reason,
                 span: at,
             });
         }
@@ -139,11 +139,11 @@ pub fn ground(checker: &mut Checker, block: usize) -> Option<Ground> {
     }
     Some(Ground {
         name: name?.node.clone(),
-        file: file.name,
+        file: file.name.clone(),
         unit,
         scale,
         scale_uncertainty,
-        times: record.times,
+        times: record.times.clone(),
         accelerations,
     })
 }

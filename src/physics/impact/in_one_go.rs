@@ -1,0 +1,247 @@
+//! An impact on an ideal rig from start to end. In: the inputs, a specimen. Out: the ends of its steps, bit for bit those of
+//! [`ImpactSolver`]. Where it can, it keeps all numbers between two steps in registers.
+
+use super::energy::Energies;
+use super::solver::impact_state;
+use super::step::{Also, BetweenSteps, end_step};
+use super::{ImpactError, ImpactInput, ImpactSolver, ImpactState, Sink, Until};
+use crate::contact::state::StepState;
+use crate::contact::{Advance, ContactLaw};
+use crate::integrator::Integrator;
+use crate::integrator::state::State;
+use crate::specimen::RestoringForce;
+use crate::statistics::DeclaredNoise;
+use crate::structure::energies::FrameEnergies;
+use crate::structure::matrix::one_degree::Secant;
+
+/// An impact on one degree of freedom of an ideal rig from rest at X = 0.
+///
+/// # Errors
+/// As [`ImpactSolver::new`].
+pub fn simulate<S: RestoringForce, K: Sink>(
+    input: &ImpactInput,
+    specimen: &mut S,
+    until: Option<Until>,
+    steps: u64,
+    sink: &mut K,
+) -> Result<ImpactState, ImpactError> {
+    let mut solver = ImpactSolver::new(input, 0.0, specimen.move_to(0.0))?;
+    let exact = input.integrator == Integrator::Tangent && input.noise == DeclaredNoise::NONE;
+    let stops = match until {
+        None | Some(Until::Duration) => Some(false),
+        Some(Until::StrikerStop) => Some(true),
+        Some(Until::Rebound) => None,
+    };
+    let start = solver.state();
+    match (input.law, stops.filter(|_| exact)) {
+        (ContactLaw::Rigid, Some(stops)) => Ok(run::<_, _, false>(
+            input, start, specimen, stops, steps, sink,
+        )),
+        (ContactLaw::Limit { .. }, Some(stops)) => Ok(run::<_, _, true>(
+            input, start, specimen, stops, steps, sink,
+        )),
+        _ => {
+            let read = |solver: &mut ImpactSolver| {
+                let target = solver.predict();
+                [target, specimen.move_to(target)]
+            };
+            solver.run(until, steps, read, sink);
+            Ok(*solver.state())
+        }
+    }
+}
+
+/// In tangent form with exact readings, under the rigid law or one that is `LIMITED`.
+fn run<S: RestoringForce, K: Sink, const LIMITED: bool>(
+    input: &ImpactInput,
+    start: &ImpactState,
+    specimen: &mut S,
+    ends_at_stop: bool,
+    steps: u64,
+    sink: &mut K,
+) -> ImpactState {
+    let mut inputs = input.step_inputs();
+    inputs.striker.energy = start.input;
+    let also = Also {
+        // A branch costs more than the sums of a damper of zero.
+        damped: true,
+        falls: input.gravity != 0.0,
+    };
+    let mut now = BetweenSteps::at_rest(
+        [start.restoring_force, start.acceleration],
+        [start.striker_displacement, start.striker_velocity],
+        Secant::of(start.tangent_stiffness),
+        start.input,
+    );
+    let mut end = End {
+        step: 0,
+        state: StepState::Free,
+        contacts: 0,
+    };
+    for step in 1..=steps {
+        let (after, marks) = end_step::<f64, LIMITED>(&inputs, &now, also, |_, displacement| {
+            specimen.move_to(displacement)
+        });
+        now = after;
+        let begins = end.state == StepState::Free && marks.state != StepState::Free;
+        end = End {
+            step,
+            state: marks.state,
+            contacts: end.contacts + u32::from(begins),
+        };
+        let over = ends_at_stop && marks.over;
+        let (structure, state) = end.states(input, &now);
+        sink.push(&structure, &state, over);
+        if over {
+            break;
+        }
+    }
+    if end.step == 0 {
+        return *start;
+    }
+    end.states(input, &now).1
+}
+
+/// The last step.
+#[derive(Clone, Copy)]
+struct End {
+    step: u64,
+    state: StepState,
+    contacts: u32,
+}
+
+impl End {
+    /// The structure, and the struck degree of freedom with the striker. Numbers that the caller does not read are not computed.
+    #[inline]
+    fn states(self, input: &ImpactInput, now: &BetweenSteps) -> (State<f64>, ImpactState) {
+        let BetweenSteps {
+            motion,
+            secant,
+            work,
+            indented,
+            damped,
+            fallen,
+        } = now;
+        // A signed number is converted in one instruction.
+        #[expect(clippy::cast_precision_loss, reason = "no run has 2^53 steps")]
+        let time = self.step.cast_signed() as f64 * input.time_step;
+        let stiffness = secant.stiffness();
+        let kinetic = 0.5 * (input.mass * motion.velocity * motion.velocity);
+        let structure = State {
+            step: self.step,
+            time,
+            displacement: motion.displacement,
+            target: motion.displacement,
+            measured_displacement: motion.displacement,
+            velocity: motion.velocity,
+            acceleration: motion.acceleration,
+            restoring_force: motion.force,
+            force_at_computed: motion.force,
+            load: 0.0,
+            storey_stiffness: stiffness,
+            energies: FrameEnergies {
+                kinetic,
+                restoring: work.restoring,
+                damping: damped.work,
+                input: 0.0,
+                error: 0.0 - (kinetic + work.restoring + damped.work),
+            },
+        };
+        let advance = Advance {
+            striker_displacement: motion.striker_displacement,
+            striker_velocity: motion.striker_velocity,
+            state: self.state,
+            contact_force: motion.contact_force,
+            indentation: indented.depth,
+            contact_loss: 0.0,
+            damping_work: 0.0,
+            indentation_work: 0.0,
+            contacts: self.contacts,
+        };
+        let mut energies = Energies {
+            striker: 0.5 * input.striker_mass * motion.striker_velocity * motion.striker_velocity,
+            structure: kinetic,
+            restoring: work.restoring,
+            damping: damped.work,
+            contact_loss: work.contact_loss,
+            indentation: indented.work,
+            weight: fallen.work,
+            error: 0.0,
+        };
+        energies.error = energies.missing(input.striker_energy(), 0.0);
+        let state = impact_state(&structure, 0, &advance, stiffness, energies, fallen.input);
+        (structure, state)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::Approaching;
+    use crate::specimen::{Bilinear, BilinearCurve};
+
+    const STIFFNESS: f64 = 327.65;
+
+    struct Ends(Vec<(State<f64>, ImpactState, bool)>);
+
+    impl Sink for Ends {
+        fn push(&mut self, structure: &State<f64>, state: &ImpactState, over: bool) {
+            self.0.push((structure.clone(), *state, over));
+        }
+    }
+
+    /// With and without damper, fall and gap, under every law and end condition: all numbers of structure and striker are those of the
+    /// solver, to the last bit.
+    #[test]
+    fn in_one_go_and_step_by_step_are_the_same_bits() {
+        let laws = [
+            ContactLaw::Rigid,
+            ContactLaw::Limit { force: 60.0 },
+            ContactLaw::Restitution { coefficient: 0.5 },
+        ];
+        let specimen = || {
+            Bilinear::new(BilinearCurve {
+                stiffness: STIFFNESS,
+                yield_force: 20.0,
+                post_yield_ratio: 0.1,
+            })
+        };
+        for (law, damping, gravity, gap) in laws
+            .into_iter()
+            .flat_map(|law| [(law, 0.0, 0.0, 0.0), (law, 2.0, 9.81, 1e-3)])
+        {
+            let input = ImpactInput {
+                damping,
+                gap,
+                gravity,
+                law,
+                ..ImpactInput::rigid(
+                    STIFFNESS,
+                    Approaching {
+                        mass: 1.0,
+                        striker_mass: 10.0,
+                        velocity: 1.0,
+                        time_step: 1e-3,
+                    },
+                )
+            };
+            for until in [None, Some(Until::StrikerStop), Some(Until::Rebound)] {
+                let mut ends = Ends(Vec::new());
+                let last = simulate(&input, &mut specimen(), until, 700, &mut ends).unwrap();
+                let mut solver = ImpactSolver::new(&input, 0.0, 0.0).unwrap();
+                let (mut specimen, mut own) = (specimen(), Vec::new());
+                while own.len() < 700 {
+                    let target = solver.predict();
+                    solver.complete(target, specimen.move_to(target));
+                    let over = until.is_some_and(|until| solver.over(until));
+                    own.push((solver.structure().clone(), *solver.state(), over));
+                    if over {
+                        break;
+                    }
+                }
+                assert!(own.len() > 20 && ends.0 == own, "{law:?} until {until:?}");
+                assert_eq!(last, *solver.state());
+            }
+        }
+    }
+}
