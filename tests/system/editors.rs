@@ -62,12 +62,12 @@ fn cases() -> Vec<Case> {
         ),
         (
             "  * = 1",
-            "support.type.property-name",
+            "variable.other.property",
             all(vocabulary::fields()),
         ),
         (
             "golden { * = 1 }",
-            "support.type.property-name",
+            "variable.other.property",
             all(vocabulary::fields()),
         ),
         (
@@ -80,32 +80,32 @@ fn cases() -> Vec<Case> {
             "support.function",
             all(vocabulary::functions()),
         ),
-        ("let a = *(1)", "entity.name.function", options()),
-        ("let a = [*, 1]", "constant.language.option", bare.collect()),
+        ("let a = *(1)", "variable.other.enummember", options()),
+        ("let a = [*, 1]", "variable.other.enummember", bare.collect()),
         (
             "let a = *",
             "constant.language.boolean",
             some(&vocabulary::TRUTHS),
         ),
-        ("let a = * / 20", "variable.language", some(&["critical"])),
+        ("let a = * / 20", "variable.other.enummember", some(&["critical"])),
         (
             "a * b",
-            "keyword.operator.word",
+            "keyword.control",
             some(&["and", "between", "of", "step", "within", "in"]),
         ),
         (
             "let a = 1 *",
-            "keyword.other.unit",
+            "support.type.unit",
             some(&["kN/m", "%", "µm", "N/m^1.5", "1/s", "in"]),
         ),
         (
             "let a = [1, 2] *",
-            "keyword.other.unit",
+            "support.type.unit",
             some(&["kN/m", "%", "mm"]),
         ),
         (
             "let a = 1 * 2",
-            "keyword.operator.word",
+            "keyword.control",
             some(&["step", "within", "and"]),
         ),
         (

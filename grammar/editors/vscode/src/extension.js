@@ -10,6 +10,17 @@ let client;
 
 const program = () => vscode.workspace.getConfiguration('psd').get('path', 'psd');
 
+/** A document that the server reads: a plan, or a Markdown document with a `psd` block. */
+const isPlan = document =>
+  document.languageId === 'psd' || (document.languageId === 'markdown' && /^\s*[`~]{3,}\s*psd\b/m.test(document.getText()));
+
+/** The server starts with the first plan. */
+async function startForPlan(document) {
+  if (!client && isPlan(document)) {
+    await start();
+  }
+}
+
 async function start() {
   const server = { command: program(), args: ['lsp'] };
   client = new LanguageClient('psd', 'psd', server, {
@@ -57,13 +68,14 @@ async function activate(context) {
   context.subscriptions.push(
     vscode.tasks.registerTaskProvider('psd', tasks),
     vscode.workspace.onDidChangeConfiguration(async change => {
-      if (change.affectsConfiguration('psd.path')) {
+      if (client && change.affectsConfiguration('psd.path')) {
         await stop();
         await start();
       }
     }),
+    vscode.workspace.onDidOpenTextDocument(startForPlan),
   );
-  await start();
+  await Promise.all(vscode.workspace.textDocuments.map(startForPlan));
 }
 
 module.exports = { activate, deactivate: stop };
