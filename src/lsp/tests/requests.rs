@@ -367,10 +367,7 @@ fn the_lens_simulates_and_says_so() {
     editor.was_asked("workspace/codeLens/refresh");
     let lenses = editor.ask("textDocument/codeLens", document("a.psd"));
     let command = &lenses[0]["command"];
-    assert_eq!(
-        command["title"],
-        "simulate (SIMULATION: requirement met)"
-    );
+    assert_eq!(command["title"], "simulate (SIMULATION: requirement met)");
     let execute = json!({ "command": command["command"], "arguments": command["arguments"] });
     let answer = editor.ask("workspace/executeCommand", execute.clone());
     assert_eq!(answer, "SIMULATION: requirement met");
