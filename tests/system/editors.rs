@@ -81,13 +81,21 @@ fn cases() -> Vec<Case> {
             all(vocabulary::functions()),
         ),
         ("let a = *(1)", "variable.other.enummember", options()),
-        ("let a = [*, 1]", "variable.other.enummember", bare.collect()),
+        (
+            "let a = [*, 1]",
+            "variable.other.enummember",
+            bare.collect(),
+        ),
         (
             "let a = *",
             "constant.language.boolean",
             some(&vocabulary::TRUTHS),
         ),
-        ("let a = * / 20", "variable.other.enummember", some(&["critical"])),
+        (
+            "let a = * / 20",
+            "variable.other.enummember",
+            some(&["critical"]),
+        ),
         (
             "a * b",
             "keyword.control",
