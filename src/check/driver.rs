@@ -244,6 +244,9 @@ pub fn plan(
         if findings == Findings::WarningsToo {
             warnings::tracking::warn(checker, &plan, &blocks, rig_block);
             of_the_language::guarded::warn_of_partial(checker, &plan, rig_block);
+            if options.dry_run {
+                warnings::dry_run::warn(checker, &plan, &blocks);
+            }
         }
         warnings::recorded_steps::check(checker, &plan, &blocks);
     }

@@ -3,6 +3,7 @@
 mod book;
 mod check_run;
 mod cli;
+mod cli_plans;
 mod cli_rig;
 mod cli_screen;
 mod declared;
