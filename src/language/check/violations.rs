@@ -371,7 +371,15 @@ impl Violation for Mismatched<'_> {
             }
         };
         let how = format!("{}, as in `{}`", article(wanted), example(None, wanted));
-        let help = if forgotten {
+        let percent = [left, right].into_iter().find(|side| side.percent);
+        let part = percent.filter(|_| left.dimension != right.dimension);
+        let part = part.and_then(Typed::constant);
+        let help = if let Some(part) = part {
+            format!(
+                "write the value of which this is a percentage: `{} % * …`",
+                (1e6 * part).round() / 1e4
+            )
+        } else if forgotten {
             format!("add a unit to make the number {how}")
         } else {
             format!("write both sides as the same kind of quantity: {how}")

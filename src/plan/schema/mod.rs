@@ -6,6 +6,7 @@ pub mod blocks;
 pub mod columns;
 mod constructors;
 mod functions;
+mod synonyms;
 mod types;
 
 pub use blocks::evaluation::{golden, report, reproduces, study};
@@ -15,6 +16,7 @@ pub use blocks::{
 };
 pub use columns::Column;
 pub use functions::{FUNCTIONS, FunctionKind};
+pub use synonyms::SYNONYMS;
 pub use types::{
     BlockKind, Field, FieldType, Kind, Naming, Possible, Presence, Range, ResultKind, RigKind,
     Variant,

@@ -5,8 +5,9 @@ use crate::check::violations::{ExponentTooLarge, ListForNumber, Mismatched};
 use crate::check::wording::{article, suggestion};
 use crate::codes::{E207, E213, E301};
 use crate::syntax::ast::{Argument, Ident};
+use crate::syntax::foreign;
 use psd_plan::formula::{Formula, Function};
-use psd_plan::schema::{FUNCTIONS, FunctionKind};
+use psd_plan::schema::{FUNCTIONS, FunctionKind, Kind};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 use psd_text::units::{Dimension, Exponent};
@@ -21,6 +22,17 @@ struct UnknownFunction<'a> {
     name: &'a str,
     #[label("unknown function")]
     span: Span,
+}
+
+/// A function of other languages, with its form in this one.
+#[derive(Violation)]
+#[violation(E207, "unknown function `{name}`")]
+#[help("{help}")]
+struct ForeignFunction<'a> {
+    name: &'a str,
+    #[label("unknown function")]
+    span: Span,
+    help: String,
 }
 
 struct FunctionArgumentWithName<'a> {
@@ -85,10 +97,17 @@ impl<'a> Checker<'a> {
         context: Context,
     ) -> Option<Typed> {
         let Some(kind) = FUNCTIONS.iter().find(|function| function.name == name.node) else {
-            return self.fail(UnknownFunction {
-                name: &name.node,
-                span: name.span,
-            });
+            return match self.form_of_foreign_function(&name.node, arguments) {
+                Some(help) => self.fail(ForeignFunction {
+                    name: &name.node,
+                    span,
+                    help,
+                }),
+                None => self.fail(UnknownFunction {
+                    name: &name.node,
+                    span: name.span,
+                }),
+            };
         };
         if let Some(named) = arguments.iter().find_map(|argument| argument.name.as_ref()) {
             return self.fail(FunctionArgumentWithName {
@@ -136,6 +155,47 @@ impl<'a> Checker<'a> {
             bare,
             ..Typed::number(Formula::Call(kind.function, parts), dimension, span)
         })
+    }
+
+    /// What to write instead of a function of other languages.
+    fn form_of_foreign_function(&self, name: &str, arguments: &'a [Argument]) -> Option<String> {
+        let texts: Vec<&str> = arguments
+            .iter()
+            .map(|argument| self.text(argument.value.span))
+            .collect();
+        if let Some(range) = foreign::range_of_call(name, &texts, "") {
+            return Some(format!("write `{range}`: both ends are part of a range"));
+        }
+        match (name, texts.as_slice()) {
+            ("pow" | "power", [base, exponent]) => {
+                let simple =
+                    |text: &str| text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+                let bracketed = |text: &str| {
+                    if simple(text) {
+                        text.to_owned()
+                    } else {
+                        format!("({text})")
+                    }
+                };
+                Some(format!(
+                    "write `{}^{}`",
+                    bracketed(base),
+                    bracketed(exponent)
+                ))
+            }
+            ("P" | "Pr" | "prob" | "probability", _) => {
+                let studies = self.scope.of_kind(Kind::Study);
+                let study = studies.into_iter().find_map(|(_, block)| block.name);
+                let study = study.map_or("scatter", |name| name.node.as_str());
+                Some(format!(
+                    "name the event by a requirement; a study has its probability: `{study}.probability(fails: \"…\")`"
+                ))
+            }
+            ("linspace" | "arange" | "range" | "seq", _) => {
+                Some("write a range, as in `1 .. 10 step 1 mm`".to_owned())
+            }
+            _ => None,
+        }
     }
 
     fn result_dimension(

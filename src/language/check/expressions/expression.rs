@@ -15,7 +15,7 @@ use psd_plan::formula::{Formula, Operator};
 use psd_plan::schema::{self, Kind};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
-use psd_text::units::unit::{PREFIXES, STANDARD_GRAVITY, UNITS};
+use psd_text::units::unit::{self, PREFIXES, STANDARD_GRAVITY, UNITS};
 use psd_text::units::{Dimension, Exponent};
 
 #[derive(Violation)]
@@ -35,22 +35,39 @@ struct ConditionForNumber<'a> {
     operator: &'a str,
 }
 
+/// `corrected`: the power times the unit that its exponent has, if the exponent is one number.
 struct ExponentWithUnit<'a> {
     exponent: &'a Typed,
+    corrected: Option<String>,
+    whole: Span,
 }
 
 impl Violation for ExponentWithUnit<'_> {
     const CODE: Code = E305;
 
     fn diagnostic(self) -> Diagnostic {
-        let Self { exponent } = self;
+        let Self {
+            exponent,
+            corrected,
+            whole,
+        } = self;
         let found = article(exponent.dimension);
+        let (span, help) = match corrected {
+            Some(corrected) => (
+                whole,
+                format!("write `{corrected}`: a unit belongs to the number before it"),
+            ),
+            None => (
+                exponent.span,
+                "write a number without a unit, as in `x^2`".to_owned(),
+            ),
+        };
         Diagnostic::new(
             Self::CODE,
             format!("an exponent must be a number, found {found}"),
         )
-        .at(exponent.span, format!("this is {found}"))
-        .help("write a number without a unit, as in `x^2`")
+        .at(span, format!("the exponent is {found}"))
+        .help(help)
     }
 }
 
@@ -175,6 +192,36 @@ struct WrittenValue<'t> {
     unit: Option<&'t str>,
     /// In SI units, if it is known before the run.
     value: Option<f64>,
+    /// `107 kg / 100` for `107 / 100 kg`: the unit is that of the divisor.
+    unit_of_dividend: Option<String>,
+}
+
+/// The quotient of two numbers with the unit of the divisor at the dividend, if that unit has the dimension.
+fn unit_of_dividend(written: &Expr, wanted: Dimension) -> Option<String> {
+    let ExprKind::Binary {
+        operator,
+        left,
+        right,
+    } = &written.kind
+    else {
+        return None;
+    };
+    let (
+        ExprKind::Number {
+            text, unit: None, ..
+        },
+        ExprKind::Number {
+            text: divisor,
+            unit: Some(unit),
+            ..
+        },
+    ) = (&left.kind, &right.kind)
+    else {
+        return None;
+    };
+    let dimension = unit::parse(&unit.node).ok()?.dimension;
+    let fits = operator.node == BinaryOperator::Divide && dimension == wanted;
+    fits.then(|| format!("{text} {} / {divisor}", unit.node))
 }
 
 /// The mass of a weight, or the weight of a mass: what to write instead of `text`, which has the other dimension and this value in SI
@@ -216,11 +263,16 @@ impl Violation for WrongDimension<'_> {
             number,
             unit,
             value,
+            ref unit_of_dividend,
         } = *written;
         let weighed = number.and(value);
         let weighed = weighed.and_then(|value| by_gravity(text, value, found, wanted));
+        let moved = unit_of_dividend
+            .as_ref()
+            .map(|quotient| format!("write `{quotient}`: a unit belongs to the number before it"));
+        let certain = weighed.or(moved);
         let help = match (number, wanted) {
-            _ if weighed.is_some() => weighed.unwrap_or_default(),
+            _ if certain.is_some() => certain.unwrap_or_default(),
             (Some(number), Dimension::ACCELERATION) if text == format!("{number} g") => {
                 format!(
                     "write `{number} gn` for a multiple of standard gravity (9.80665 m/s^2); `g` is the gram"
@@ -322,7 +374,7 @@ impl<'a> Checker<'a> {
                     (self.single(left, context), self.single(right, context));
                 let (left_value, right_value) = (left_value?, right_value?);
                 match operator.node {
-                    BinaryOperator::Power => self.power(left_value, right_value, right),
+                    BinaryOperator::Power => self.power(left_value, right_value, left, right),
                     BinaryOperator::Add => self.sum(Operator::Add, "+", left_value, right_value),
                     BinaryOperator::Subtract => {
                         self.sum(Operator::Subtract, "-", left_value, right_value)
@@ -387,10 +439,30 @@ impl<'a> Checker<'a> {
         })
     }
 
-    fn power(&mut self, base: Typed, exponent: Typed, written: &Expr) -> Option<Typed> {
+    fn power(
+        &mut self,
+        base: Typed,
+        exponent: Typed,
+        base_written: &Expr,
+        written: &Expr,
+    ) -> Option<Typed> {
         if exponent.dimension != Dimension::NUMBER {
+            let corrected = match &written.kind {
+                ExprKind::Number {
+                    text,
+                    unit: Some(unit),
+                    ..
+                } => Some(format!(
+                    "{}^{text} * 1 {}",
+                    self.text(base_written.span),
+                    unit.node
+                )),
+                _ => None,
+            };
             return self.fail(ExponentWithUnit {
                 exponent: &exponent,
+                corrected,
+                whole: base_written.span.to(written.span),
             });
         }
         let dimension = if base.dimension == Dimension::NUMBER {
@@ -565,6 +637,7 @@ impl<'a> Checker<'a> {
                     number,
                     unit,
                     value: typed.constant(),
+                    unit_of_dividend: unit_of_dividend(written, dimension),
                 },
                 found: typed.dimension,
                 wanted: dimension,

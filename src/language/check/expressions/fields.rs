@@ -4,7 +4,7 @@
 use crate::check::checker::{Checker, Context, Node, Reads, Typed};
 use crate::check::scope::Meaning;
 use crate::check::violations::{MissingField, NeedsTheRun, OutOfRange, UnknownBlockName};
-use crate::check::wording::{owner, suggestion};
+use crate::check::wording::{self, owner, suggestion};
 use crate::codes::{E202, E208, E209, E302, E304, E401};
 use crate::syntax::ast::{Entry, Expr, ExprKind, Ident};
 use psd_plan::ProcedureBlock;
@@ -14,7 +14,6 @@ use psd_plan::schema::procedures::STIFFNESS;
 use psd_plan::schema::{BlockKind, Field, FieldType, Kind, Presence, RigKind, rig, specimen};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
-use psd_text::suggest;
 
 struct UnknownField<'a> {
     kind: &'a BlockKind,
@@ -146,7 +145,7 @@ impl<'a> Checker<'a> {
             let key = entry.key.node.as_str();
             match kind.field(key) {
                 None => {
-                    meant.extend(suggest::nearest(
+                    meant.extend(wording::meant(
                         key,
                         kind.fields.iter().map(|field| field.name),
                     ));
@@ -279,7 +278,7 @@ impl<'a> Checker<'a> {
             .filter(|key| declared.kind.field(key).is_none());
         let known = || declared.kind.fields.iter().map(|field| field.name);
         unknown
-            .filter_map(|key| suggest::nearest(key, known()))
+            .filter_map(|key| wording::meant(key, known()))
             .any(|meant| fields.contains(&meant))
             || self.unreadable(block)
     }

@@ -8,6 +8,7 @@
 use crate::check::checker::{Checker, Context, Shape, Typed, literal};
 use std::sync::LazyLock;
 
+use crate::check::scope::Meaning;
 use crate::check::violations::{EmptyList, ExponentTooLarge, Mismatched};
 use crate::check::wording::one_of;
 use crate::codes::{E204, E305, E402, E403, E405};
@@ -34,6 +35,16 @@ pub struct RangeParts {
 struct NameGluedToUnit<'a> {
     name: &'a str,
     #[label("read as part of the unit")]
+    span: Span,
+    corrected: &'a str,
+}
+
+#[derive(Violation)]
+#[violation(E204, "`{name}` is a name of the plan, not a unit")]
+#[help("write `{corrected}`")]
+struct ValueAfterNumber<'a> {
+    name: &'a str,
+    #[label("a number and a name")]
     span: Span,
     corrected: &'a str,
 }
@@ -333,6 +344,25 @@ impl<'a> Checker<'a> {
                     corrected: &corrected,
                 })
             }
+            // `2 critical`: the operator is missing.
+            Err(UnitError::Unknown { name, start: 0 })
+                if number.start < token.span.start && self.is_value(&name) =>
+            {
+                let before = self.text(Span {
+                    end: token.span.start,
+                    ..number
+                });
+                let value = token.node.replace('*', " * ").replace('/', " / ");
+                let corrected = format!("{} * {value}", before.trim_end());
+                self.fail(ValueAfterNumber {
+                    name: &name,
+                    span: Span {
+                        start: number.start,
+                        ..token.span
+                    },
+                    corrected: &corrected,
+                })
+            }
             Err(UnitError::Unknown { name, start }) => {
                 let alone = name == token.node && number.start <= token.span.start;
                 let before = Span {
@@ -353,6 +383,16 @@ impl<'a> Checker<'a> {
             }),
             Err(UnitError::TooLarge) => self.fail(ExponentTooLarge { span: token.span }),
         }
+    }
+
+    /// Whether a number of the plan has this name, and no unit has it in other languages.
+    fn is_value(&self, name: &str) -> bool {
+        let unit = CONVERTED.iter().any(|(unit, ..)| *unit == name)
+            || SPELT_OUT
+                .iter()
+                .any(|(words, _)| words.split(' ').any(|word| word == name));
+        let block = matches!(self.scope.meaning(name), Some(Meaning::Block(_)));
+        !unit && !block && (name == "critical" || self.is_named(name))
     }
 
     /// Whether a value, a block or a field has this name.
