@@ -130,11 +130,8 @@ fn a_reader_that_fails_is_found() {
     };
     assert!(fault(&seed, &computes).is_some_and(|found| found.ends_with("computation")));
     // Mutations reach what a good input has not.
-    let caught = catch_unwind(|| {
-        attack("a planted fault", &[seed], |bytes| {
-            assert!(bytes.len() < 20)
-        })
-    });
+    let small = |bytes: &[u8]| assert!(bytes.len() < 20);
+    let caught = catch_unwind(|| attack("a planted fault", &[seed], small));
     let text = *caught
         .expect_err("a find")
         .downcast::<String>()
