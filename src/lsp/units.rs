@@ -8,7 +8,7 @@ use psd_text::units::{Dimension, display};
 const PARTS: &[&str] = &[
     "m", "mm", "kg", "s", "N", "kN", "ms", "MPa", "GPa", "J", "kJ", "Hz", "t", "g", "cm", "MN",
     "um", "us", "Pa", "kPa", "mJ", "min", "h", "kHz", "in", "ft", "lb", "lbf", "kip", "psi", "ksi",
-    "gn", "deg", "rad", "%",
+    "gn", "deg", "rad", "K", "%",
 ];
 /// The units of which products are made.
 const PRODUCTS: &[&str] = &[
@@ -31,7 +31,7 @@ pub fn of(dimension: Dimension) -> Vec<String> {
     let usual = dimension.usual_unit();
     add(&mut found, usual);
     add(&mut found, display::si_unit(dimension));
-    let plain = |part: &&&str| !matches!(**part, "deg" | "rad" | "%" | "gn");
+    let plain = |part: &&&str| !matches!(**part, "deg" | "rad" | "K" | "%" | "gn");
     for part in PARTS {
         add(&mut found, (*part).to_owned());
     }
@@ -77,7 +77,7 @@ pub struct Converted {
 pub fn converted(value: f64, from: Unit, to: &str) -> Option<Converted> {
     let unit = unit::parse(to)
         .ok()
-        .filter(|unit| unit.dimension == from.dimension)?;
+        .filter(|unit| unit.dimension == from.dimension && unit.zero == from.zero)?;
     let meant = value * from.factor;
     let with = |digits: usize| -> Option<f64> {
         let text = format!("{:.*e}", digits - 1, meant / unit.factor);
@@ -124,7 +124,9 @@ mod tests {
             (Dimension::SECOND_MOMENT, &["mm^4", "m^4"]),
             (Dimension::PRESSURE, &["MPa", "Pa", "GPa", "psi"]),
             (Dimension::ACCELERATION, &["gn", "m/s^2"]),
-            (Dimension::NUMBER, &["%", "deg"]),
+            (Dimension::NUMBER, &["%"]),
+            (Dimension::ANGLE, &["rad", "deg"]),
+            (Dimension::TEMPERATURE, &["K"]),
         ] {
             let found = of(dimension);
             assert!(found.len() <= MOST, "{found:?}");

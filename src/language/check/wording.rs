@@ -99,10 +99,11 @@ pub fn article(dimension: Dimension) -> String {
 /// `3 kg`: the number as it is written, in a suitable unit.
 pub fn example(number: Option<&str>, dimension: Dimension) -> String {
     let number = number.unwrap_or("1");
-    if dimension == Dimension::NUMBER {
-        number.to_owned()
-    } else {
-        format!("{number} {}", dimension.usual_unit())
+    match dimension {
+        Dimension::NUMBER => number.to_owned(),
+        Dimension::ANGLE => format!("{number} deg"),
+        Dimension::TEMPERATURE => format!("{number} degC"),
+        _ => format!("{number} {}", dimension.usual_unit()),
     }
 }
 

@@ -4,6 +4,7 @@
 
 use std::ops::Range;
 
+use psd_plan::schema::constant;
 use psd_text::diagnostic::{Diagnostic, Violation};
 use psd_text::source::Span;
 use psd_text::units::unit;
@@ -49,7 +50,7 @@ struct UnitInParts {
 }
 
 #[derive(Violation)]
-#[violation(E101, "a unit follows a number or a list, not `)`")]
+#[violation(E101, "a unit follows a number or a list only")]
 #[help("write `{corrected}`")]
 struct UnitAfterValue {
     corrected: String,
@@ -279,7 +280,23 @@ impl<'a> Refused<'a> {
     fn unit_in_parts(&self) -> Option<Diagnostic> {
         let before = self.at.checked_sub(1)?;
         let (more, end) = self.unit()?;
-        if self.kind(before) != Some(Kind::Unit) || unit::parse(self.text(before)).is_err() {
+        let name = self.text(before);
+        if constant(name).is_some() {
+            // `2pi s` and `2 * pi s`
+            let number = before
+                .checked_sub(1)
+                .filter(|_| self.kind(before) == Some(Kind::Unit));
+            let first = number.unwrap_or(before);
+            let times = number.map_or_else(String::new, |at| format!("{} * ", self.text(at)));
+            return Some(
+                UnitAfterValue {
+                    corrected: format!("{times}{name} * 1 {more}"),
+                    span: self.tokens.span(self.list[first].start, end),
+                }
+                .diagnostic(),
+            );
+        }
+        if self.kind(before) != Some(Kind::Unit) || unit::parse(name).is_err() {
             return None;
         }
         let joined = match more.split_once("^-") {

@@ -37,7 +37,7 @@ pub fn unexpected(span: Span, found: &str, expected: &str) -> Diagnostic {
         }
         "`or`" => EITHER.to_owned(),
         "`is`" | "`equals`" => COMPARED.to_owned(),
-        "`:`" if expected.contains("an operator") => "write a range with `..`, as in `1 mm .. 10 mm step 1 mm`".to_owned(),
+        "`:`" if expected.contains("an operator") => "write a range with `..`, as in `1 mm .. 10 mm step …`".to_owned(),
         "`to`" if expected.contains("an operator") => "write a range with `..`, as in `-5 mm .. 5 mm`".to_owned(),
         "`in`" if expected.contains("`between`") => {
             "write the range of a parameter after `between`, as in `param v = 1 m/s between 0.5 m/s .. 2 m/s`".to_owned()
@@ -313,6 +313,7 @@ pub fn stray(span: Span, found: &str) -> Diagnostic {
         "±" => "write both ends, as in `-5 mm .. 5 mm`; in a requirement, `within 5 % of 8 mm`",
         "!" => "negate a condition by its operator: `!=`, `>` for `<=`",
         "%" | "%%" => "write `#` before a comment; as a unit, `%` follows its number",
+        "°C" => "write `degC` for a degree Celsius, as in `23 degC`",
         "°" | "º" => "write `deg` for a degree of arc",
         "½" => "write `0.5`",
         "¼" => "write `0.25`",

@@ -15,7 +15,7 @@ pub use blocks::{
     specimen, striker,
 };
 pub use columns::Column;
-pub use functions::{FUNCTIONS, FunctionKind};
+pub use functions::{CONSTANTS, FUNCTIONS, FunctionKind, Takes, constant};
 pub use synonyms::SYNONYMS;
 pub use types::{
     BlockKind, Field, FieldType, Kind, Naming, Possible, Presence, Range, ResultKind, RigKind,

@@ -31,6 +31,7 @@ pub const SYNONYMS: &[(&str, &str)] = &[
     ("gaussian", "normal"),
     ("sigma", "sd"),
     ("std", "sd"),
+    ("ln", "log"),
     ("ramp", "stiffness ramp"),
     ("sweep", "damping sweep"),
     ("earthquake", "shake"),

@@ -4,8 +4,8 @@
 use crate::check::checker::{Checker, Context, Shape, Typed, literal};
 use crate::check::declarations::specimen::frame;
 use crate::check::violations::{
-    DistributionMisplaced, ExponentTooLarge, ListForNumber, Mismatched, NoSuchEntry, NotFinite,
-    ProbabilityMisplaced, StepsMisplaced,
+    AbsoluteTemperature, DistributionMisplaced, ExponentTooLarge, ListForNumber, Mismatched,
+    NoSuchEntry, NotFinite, ProbabilityMisplaced, StepsMisplaced,
 };
 use crate::check::wording::{article, example, shown};
 use crate::codes::{E301, E302, E304, E305};
@@ -147,7 +147,7 @@ impl Violation for MissingUnitOfEntries<'_> {
     "`{wanted_by}` requires {}, found a number without a unit",
     article(wanted)
 )]
-#[help("write the unit, such as `{}`", example(number, wanted))]
+#[help("{}", with_unit(text, number, wanted))]
 struct MissingUnit<'a> {
     text: &'a str,
     #[label("`{text}` has no unit")]
@@ -155,6 +155,14 @@ struct MissingUnit<'a> {
     number: Option<&'a str>,
     wanted: Dimension,
     wanted_by: &'a str,
+}
+
+fn with_unit(text: &str, number: Option<&str>, wanted: Dimension) -> String {
+    match (number, wanted) {
+        (Some(number), Dimension::ANGLE) => format!("write `{number} deg`, or `{number} rad`"),
+        (None, Dimension::ANGLE) => format!("write `({text}) * 1 rad`, if it is in radians"),
+        _ => format!("write the unit, such as `{}`", example(number, wanted)),
+    }
 }
 
 /// `kN/m` for `kN`, where `N/m` is required: the suggestion must not be a thousandth of the intended value.
@@ -294,6 +302,9 @@ impl Violation for WrongDimension<'_> {
                     fits.unwrap_or_else(|| example(None, wanted))
                 )
             }
+            (None, Dimension::ANGLE) if found == Dimension::NUMBER => {
+                with_unit(text, number, wanted)
+            }
             (None, Dimension::NUMBER) => format!(
                 "divide `{text}` by {}, so that a number remains",
                 article(found)
@@ -348,7 +359,14 @@ impl<'a> Checker<'a> {
             ExprKind::Call { name, arguments } => self.call(name, arguments, expr.span, context),
             ExprKind::Index { base, index } => self.index(base, index, context),
             ExprKind::Negate(inner) => {
+                // `-5 degC` is 268.15 K.
+                if let ExprKind::Number { value, unit, .. } = &inner.kind {
+                    return self.number(-value, unit.as_ref(), expr.span);
+                }
                 let inner = self.single(inner, context)?;
+                if inner.absolute {
+                    return self.fail(AbsoluteTemperature::of_product(expr.span));
+                }
                 Some(Typed {
                     formula: Formula::Negate(Box::new(inner.formula.clone())),
                     ..inner
@@ -408,11 +426,21 @@ impl<'a> Checker<'a> {
                 right: &right,
             });
         }
+        let absolute = match (operator, left.absolute, right.absolute) {
+            (Operator::Add, true, true) => {
+                return self.fail(AbsoluteTemperature::of_sum(left.span.to(right.span)));
+            }
+            (Operator::Subtract, false, true) => {
+                return self.fail(AbsoluteTemperature::of_difference(right.span));
+            }
+            (_, left, right) => left != right,
+        };
         let (bare, percent) = (left.bare && right.bare, left.percent && right.percent);
         let formula = Formula::Binary(operator, Box::new(left.formula), Box::new(right.formula));
         Some(Typed {
             bare,
             percent,
+            absolute,
             ..Typed::number(formula, left.dimension, left.span)
         })
     }
@@ -424,6 +452,10 @@ impl<'a> Checker<'a> {
         right: Typed,
         span: Span,
     ) -> Option<Typed> {
+        if left.absolute || right.absolute {
+            let side = if left.absolute { &left } else { &right };
+            return self.fail(AbsoluteTemperature::of_product(side.span));
+        }
         let dimension = match operator {
             Operator::Divide => left.dimension.over(right.dimension),
             _ => left.dimension.times(right.dimension),
@@ -446,6 +478,9 @@ impl<'a> Checker<'a> {
         base_written: &Expr,
         written: &Expr,
     ) -> Option<Typed> {
+        if base.absolute {
+            return self.fail(AbsoluteTemperature::of_product(base.span));
+        }
         if exponent.dimension != Dimension::NUMBER {
             let corrected = match &written.kind {
                 ExprKind::Number {

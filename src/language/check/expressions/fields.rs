@@ -2,10 +2,9 @@
 //! schema. In: a declared block. Out: formulas and numbers in SI; an omitted field has its default.
 
 use crate::check::checker::{Checker, Context, Node, Reads, Typed};
-use crate::check::scope::Meaning;
 use crate::check::violations::{MissingField, NeedsTheRun, OutOfRange, UnknownBlockName};
 use crate::check::wording::{self, owner, suggestion};
-use crate::codes::{E202, E208, E209, E302, E304, E401};
+use crate::codes::{E202, E208, E209, E304, E401};
 use crate::syntax::ast::{Entry, Expr, ExprKind, Ident};
 use psd_plan::ProcedureBlock;
 use psd_plan::formula::Formula;
@@ -69,29 +68,6 @@ struct MissingFieldOn<'a> {
     #[label("`{}` is missing", field.name)]
     head: Span,
     field: &'a Field,
-}
-
-/// A plain number would be read as radians, but most users mean degrees.
-struct AngleWithoutUnit<'a> {
-    text: &'a str,
-    span: Span,
-}
-
-impl Violation for AngleWithoutUnit<'_> {
-    const CODE: Code = E302;
-
-    fn diagnostic(self) -> Diagnostic {
-        let Self { text, span } = self;
-        let plain = text.parse::<f64>().is_ok();
-        let help = if plain {
-            format!("write `{text} deg`, or `{text} rad`")
-        } else {
-            "write `deg` or `rad`, as in `40 deg`".to_owned()
-        };
-        Diagnostic::new(Self::CODE, format!("angle `{text}` has no unit"))
-            .at(span, "`deg` or `rad` missing")
-            .help(help)
-    }
 }
 
 #[derive(Violation)]
@@ -343,12 +319,6 @@ impl<'a> Checker<'a> {
             Some(outside) => outside?,
             None => (self.expect(own?, dimension, field.name, written)?, written),
         };
-        if field.angle && self.is_plain(&typed, written) {
-            return self.fail(AngleWithoutUnit {
-                text: self.text(written.span),
-                span: written.span,
-            });
-        }
         let parts = typed.parts();
         for (index, part) in parts.iter().enumerate() {
             if let Some(value) = part.constant()
@@ -381,19 +351,6 @@ impl<'a> Checker<'a> {
             }
         }
         Some(typed)
-    }
-
-    /// Whether a number has neither `deg` nor `rad`, here or at the declaration of its name.
-    fn is_plain(&mut self, typed: &Typed, written: &'a Expr) -> bool {
-        let declared = match &written.kind {
-            ExprKind::Name(name) => match self.scope.meaning(name) {
-                Some(Meaning::Value(index)) => self.declared_value(index, written.span),
-                _ => None,
-            },
-            _ => None,
-        };
-        let typed = declared.as_ref().unwrap_or(typed);
-        typed.bare || typed.percent
     }
 
     /// One number: the entry, else the default. None if it has an error, or if both are missing.

@@ -338,7 +338,14 @@ impl<'a> Checker<'a> {
                 span,
             ));
         }
-        match self.scope.meaning(name) {
+        let meaning = self.scope.meaning(name);
+        if let Some(value) = schema::constant(name).filter(|_| meaning.is_none()) {
+            return Some(Typed {
+                bare: true,
+                ..Typed::number(Formula::Constant(value), Dimension::NUMBER, span)
+            });
+        }
+        match meaning {
             Some(Meaning::Poisoned) => None,
             Some(Meaning::Value(index)) => {
                 let typed = self.declared_value(index, span)?;

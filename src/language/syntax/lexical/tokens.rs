@@ -353,6 +353,10 @@ impl<'a> Reader<'a> {
             self.error(messages::stray(self.span(3), "+/-"));
             return self.push(Kind::Sign, 3);
         }
+        if self.rest().starts_with("°C") {
+            self.error(messages::stray(self.span(3), "°C"));
+            return self.push(Kind::Sign, 3);
+        }
         if let Some(sign) = LONG_SIGNS
             .iter()
             .find(|sign| self.rest().starts_with(**sign))
