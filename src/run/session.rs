@@ -329,7 +329,7 @@ impl<'run> Session<'run> {
         self.at_rest(step, time, &[reading.0], &[reading.1])
     }
 
-    /// Reports a step that ended with this reading at rest, of every axis.
+    /// The same for every axis.
     pub(crate) fn measured_all(
         &mut self,
         step: u64,
@@ -374,7 +374,7 @@ impl<'run> Session<'run> {
         self.kept(read)
     }
 
-    /// Reads after a motion, with the time of the last move: start and end of the equivalent uniform motion \[s\].
+    /// The same, with the time of the last move: start and end of the equivalent uniform motion \[s\].
     pub(crate) fn read_moved_after(
         &mut self,
         motion: Result<(), RigFault>,
@@ -421,7 +421,7 @@ impl<'run> Session<'run> {
         self.go_to_all(&[position], speed)
     }
 
-    /// Moves every axis to its position \[m\], in one move or, if increments are limited, in equal increments.
+    /// The same for every axis.
     pub(crate) fn go_to_all(
         &mut self,
         positions: &[f64],
