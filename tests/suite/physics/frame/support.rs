@@ -53,7 +53,7 @@ pub fn at<'a>(
         initial_displacement: zero,
         initial_restoring_force: zero,
         initial_load: zero,
-        noise: DeclaredNoise::NONE,
+        readings: &[],
     }
 }
 
