@@ -152,6 +152,28 @@ impl Assemblies {
             .collect()
     }
 
+    /// The storeys of each assembly, from the ground up.
+    #[must_use]
+    pub fn specimens(&self) -> Vec<Vec<usize>> {
+        let mut specimens: Vec<Vec<usize>> = Vec::new();
+        for storey in self.tested() {
+            match specimens.last_mut() {
+                Some(last) if self.supports[storey] == Support::Below => last.push(storey),
+                _ => specimens.push(vec![storey]),
+            }
+        }
+        specimens
+    }
+
+    /// The storeys that models compute.
+    #[must_use]
+    pub fn computed(&self) -> Vec<usize> {
+        let storeys = 0..self.supports.len();
+        storeys
+            .filter(|storey| self.supports[*storey] == Support::Computed)
+            .collect()
+    }
+
     /// The floor on which the assembly of a tested storey stands; None for the ground.
     fn base_of(&self, storey: usize) -> Option<usize> {
         let lowest = (0..=storey)
