@@ -14,7 +14,6 @@ use psd_physics::integrator::input::{FrameInput, SolverInput};
 use psd_physics::integrator::solver::{FrameSolver, Solver};
 use psd_physics::integrator::tangents::Tangents;
 use psd_physics::specimen::{Bilinear, BilinearCurve, Elastic, RestoringForce, SpecimenModel};
-use psd_physics::statistics::DeclaredNoise;
 use psd_physics::structure::{
     FrameMatrices, Matrices, SymmetricBand, drifts, floor_forces, storey_stiffness,
 };
@@ -148,7 +147,7 @@ fn linear<'a>() -> [Case<'a>; 2] {
                 initial_displacement: 0.1,
                 initial_restoring_force: stiffness * 0.1,
                 initial_load: 0.0,
-                noise: DeclaredNoise::NONE,
+                readings: &[],
             };
             let mut solver = Solver::<f64>::new(&input).expect("a mass on a spring");
             rows.clear();
@@ -220,7 +219,7 @@ fn building<'a, S: RestoringForce + Copy + 'a>(
         initial_displacement: &zero,
         initial_restoring_force: &zero,
         initial_load: &zero,
-        noise: DeclaredNoise::NONE,
+        readings: &[],
     })
     .expect("a building");
     let mut specimen = vec![storey; storeys];

@@ -1,6 +1,6 @@
 //! The procedures in the order of the plan, and the specimen that they test.
 
-use crate::codes::{E605, E625, E626};
+use crate::codes::{E605, E625, E626, W737};
 use crate::procedures;
 use crate::procedures::facts::Tests;
 use psd_language::check::checker::Checker;
@@ -8,7 +8,7 @@ use psd_language::check::rig::{CheckedRig, axes};
 use psd_plan::schema::Kind;
 use psd_plan::schema::procedures::SPECIMEN;
 use psd_plan::schema::rig::AXES;
-use psd_plan::{Procedure, Specimen};
+use psd_plan::{Frame, Procedure, Specimen};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 
@@ -97,7 +97,7 @@ struct FrameOnOneAxis<'a> {
 struct OneDegreeOfFreedom<'a> {
     keyword: &'a str,
     specimen: &'a str,
-    axes: usize,
+    storeys: usize,
     span: Span,
     declared: Option<Span>,
 }
@@ -109,21 +109,71 @@ impl Violation for OneDegreeOfFreedom<'_> {
         let Self {
             keyword,
             specimen,
-            axes,
+            storeys,
             span,
             declared,
         } = self;
         let diagnostic = Diagnostic::new(
             Self::CODE,
-            format!("`{keyword}` drives one actuator, but the frame `{specimen}` has {axes}"),
+            format!("`{keyword}` drives one actuator, but the frame `{specimen}` has {storeys}"),
         )
         .at(span, "one degree of freedom");
         let diagnostic = match declared {
-            Some(declared) => diagnostic.at(declared, format!("{axes} storeys")),
+            Some(declared) => diagnostic.at(declared, format!("{storeys} storeys")),
             None => diagnostic,
         };
         diagnostic.help("use `shake`, `impact`, `escalate` or `unload` for a frame, or test a single-degree-of-freedom \
      specimen in a separate plan")
+    }
+}
+
+#[derive(Violation)]
+#[violation(
+    E626,
+    "rig `{rig}` moves nothing: every storey of frame `{specimen}` is computed"
+)]
+#[help("write `part: tested` in a storey, or leave `--rig` out for a simulation")]
+struct NothingOnTheRig<'a> {
+    rig: &'a str,
+    specimen: &'a str,
+    #[label("no tested storey")]
+    declared: Span,
+}
+
+#[derive(Violation)]
+#[violation(
+    W737,
+    "nothing is tested: every storey of frame `{specimen}` is computed"
+)]
+#[help("write `part: tested` in the storey on the rig; without one, the run is a simulation")]
+struct Simulation<'a> {
+    specimen: &'a str,
+    #[label("a simulation")]
+    declared: Span,
+}
+
+/// A frame whose storeys are all computed.
+fn nothing_tested(
+    checker: &mut Checker,
+    specimen: &Specimen,
+    rig: Option<&CheckedRig>,
+    on_rig: usize,
+) {
+    let Some(declared) = checker.scope.of_kind(Kind::Specimen).nth(on_rig) else {
+        return;
+    };
+    let declared = declared.1.block.head;
+    let real = rig.filter(|rig| rig.plan.link.as_real().is_some());
+    match real {
+        Some(rig) => checker.report(NothingOnTheRig {
+            rig: &rig.plan.name,
+            specimen: &specimen.name,
+            declared,
+        }),
+        None => checker.report(Simulation {
+            specimen: &specimen.name,
+            declared,
+        }),
     }
 }
 
@@ -143,8 +193,12 @@ pub fn check_axes(
     };
     axes::check_specimen(checker, rig, specimen);
     let storeys = specimen.degrees_of_freedom();
-    if storeys == 1 {
+    let floors = specimen.frame.as_ref().map_or(1, Frame::degrees_of_freedom);
+    if floors == 1 && storeys == 1 {
         return;
+    }
+    if storeys == 0 {
+        nothing_tested(checker, specimen, rig, on_rig);
     }
     // A rig that lists its axes is checked as a whole.
     let one_axis = rig.filter(|rig| {
@@ -152,7 +206,7 @@ pub fn check_axes(
             .is_some_and(|block| checker.field(block, AXES.name).is_none())
     });
     let one_axis = one_axis
-        .filter(|rig| rig.plan.link.as_real().is_some())
+        .filter(|rig| storeys > 1 && rig.plan.link.as_real().is_some())
         .map(|rig| rig.plan.name.clone());
     let declared = checker
         .scope
@@ -178,7 +232,7 @@ pub fn check_axes(
                 checker.report(OneDegreeOfFreedom {
                     keyword,
                     specimen: &specimen.name,
-                    axes: storeys,
+                    storeys: floors,
                     span: head,
                     declared,
                 });

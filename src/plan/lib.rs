@@ -38,7 +38,7 @@ pub use psd_physics::specimen::{
     Behaviour, Bolted, Breaks, Capping, Deterioration, Pinching, Table, Unloading,
 };
 pub use psd_physics::structure::beam::{Beam, Ends};
-pub use psd_physics::structure::frame::{Frame, Storey};
+pub use psd_physics::structure::frame::{Frame, Part, Storey};
 pub use psd_physics::structure::portal::{
     ElasticStiffnesses, FrameMasses, Loads, Mechanism, Portal, Sections, elastic_stiffnesses,
 };
@@ -213,7 +213,7 @@ impl Specimen {
     /// Number of actuators that it needs, each with its load cell.
     #[must_use]
     pub fn degrees_of_freedom(&self) -> usize {
-        self.frame.as_ref().map_or(1, Frame::degrees_of_freedom)
+        self.frame.as_ref().map_or(1, Frame::axes)
     }
 }
 

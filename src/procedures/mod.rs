@@ -269,7 +269,7 @@ pub(crate) fn withhold_outside_calibration(
     history: &History,
     results: &mut [NamedResult],
 ) -> Vec<String> {
-    let given: calibrated_range::Readings<'_> = &|give| readings(history, give);
+    let given: calibrated_range::Readings<'_> = &|give| readings(plan, history, give);
     calibrated_range::withhold(&plan.rig, plan.degrees_of_freedom(), given, results)
 }
 
@@ -437,7 +437,8 @@ pub(crate) fn self_tested(kind: &ProcedureKind) -> Vec<Vec<SelfTestPart>> {
 }
 
 /// Report: gives displacement \[m\] and force \[N\] of every axis, row by row of a procedure's table.
-pub(crate) fn readings(history: &History, give: &mut dyn FnMut(&[f64], &[f64])) {
+pub(crate) fn readings(plan: &Plan, history: &History, give: &mut dyn FnMut(&[f64], &[f64])) {
+    let give = &mut common::reached::of_axes(plan, give);
     match history {
         History::StiffnessRamp(ramp) => {
             let read = |step: &RampStep| (step.displacement, step.restoring_force);

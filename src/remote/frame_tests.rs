@@ -7,7 +7,6 @@ use psd_physics::integrator::solver::FrameSolver;
 use psd_physics::integrator::tangents::Tangents;
 use psd_physics::structure::{FrameMatrices, SymmetricBand};
 use psd_plan::{Behaviour, Frame, Integrator, Limits, Settle, Storey, VirtualLink};
-use psd_rig::DeclaredNoise;
 use psd_rig::VirtualRig;
 
 const MASSES: [f64; 2] = [2000.0, 1500.0];
@@ -56,7 +55,7 @@ fn an_explicit_newmark_of_the_client_is_that_of_psd() {
         initial_displacement: &zero,
         initial_restoring_force: &zero,
         initial_load: &zero,
-        noise: DeclaredNoise::NONE,
+        readings: &[],
     })
     .unwrap();
     let (found, session) = served(LIMITS, |address| {

@@ -5,6 +5,8 @@
 pub mod check_run;
 pub mod client_run;
 mod driver;
+mod floors;
+mod hybrid;
 pub(crate) mod inputs;
 mod motion;
 pub(crate) mod pretest_check;

@@ -1,6 +1,7 @@
 //! One run in progress: the guarded rig, the observer, and the events so far. In: actions of procedures. Out: events. It
 //! knows no physics of a procedure.
 
+use super::hybrid::Hybrid;
 use super::stop::Stop;
 use super::{Inspection, Keep, Motion, Next, Observer, StepReport};
 use psd_plan::record::{Event, EventKind, NamedResult};
@@ -37,6 +38,8 @@ pub(crate) struct Session<'run> {
     /// Whether rig time is only simulated, and must not pass while the operator decides. An emulator on a line is driven like any rig,
     /// and has a watchdog like any rig.
     is_simulated: bool,
+    /// None if the rig carries the whole specimen.
+    pub(super) hybrid: Option<Hybrid>,
 }
 
 impl<'run> Session<'run> {
@@ -83,6 +86,7 @@ impl<'run> Session<'run> {
                     attended: false,
                     keep: Keep::default(),
                     is_simulated,
+                    hybrid: Hybrid::of(plan),
                 })
             }
             Err(fault) => {
@@ -329,14 +333,16 @@ impl<'run> Session<'run> {
         self.at_rest(step, time, &[reading.0], &[reading.1])
     }
 
-    /// The same for every axis.
+    /// The same for every axis, after a reading of the floors.
     pub(crate) fn measured_all(
         &mut self,
         step: u64,
         time: f64,
-        reading: &Reading,
+        floors: &Reading,
     ) -> Result<(), Stop> {
-        self.at_rest(step, time, &reading.displacement, &reading.force)
+        let axes = self.axes_read(floors);
+        let (displacement, force) = (axes.displacement.clone(), axes.force.clone());
+        self.at_rest(step, time, &displacement, &force)
     }
 
     fn at_rest(
@@ -442,13 +448,6 @@ fn stopped_on_request() -> Stop {
 
 pub(super) fn signed(by: Option<&str>) -> String {
     by.map_or_else(String::new, |name| format!(" ({name})"))
-}
-
-/// Standard deviation of the base shear from the readings of the cells of all floors \[N\].
-pub(crate) fn of_base_shear(session: &Session<'_>) -> f64 {
-    #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
-    let floors = session.guard.commanded().len() as f64;
-    session.guard.declared_noise().force * floors.sqrt()
 }
 
 /// Displacement \[m\] and force \[N\] of the single degree of freedom.

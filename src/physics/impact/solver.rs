@@ -17,6 +17,7 @@ use crate::integrator::substep::{Striker, Substep, Workspace};
 use crate::integrator::tangents::{HasTangents, Tangents};
 use crate::structure::matrix::one_degree::Unforced;
 use crate::structure::matrix::{Factor, Matrix, Vector};
+use crate::structure::substructures::StoreyReadings;
 
 /// A pseudo-dynamic impact test: `predict`, command, read, `complete`.
 #[derive(Clone, Debug)]
@@ -113,7 +114,7 @@ impl ImpactSolver {
             initial_displacement,
             initial_restoring_force,
             initial_load: 0.0,
-            noise: input.noise,
+            readings: &[StoreyReadings::of_one(input.noise)],
         };
         Self::on(&structure, &input.setup())
     }

@@ -4,8 +4,8 @@ use thiserror::Error;
 
 use super::Integrator;
 use super::tangents::Tangents;
-use crate::statistics::DeclaredNoise;
 use crate::structure::matrix::{Matrix as _, Vector};
+use crate::structure::substructures::StoreyReadings;
 use crate::structure::{Matrices, NotPositiveDefinite};
 
 /// Initial state and parameters; the structure is at rest.
@@ -26,7 +26,8 @@ pub struct SolverInput<'a, V: Vector> {
     pub initial_restoring_force: V::View<'a>,
     /// F(0) \[N\]
     pub initial_load: V::View<'a>,
-    pub noise: DeclaredNoise,
+    /// The readings of each storey; empty for exact ones.
+    pub readings: &'a [StoreyReadings],
 }
 
 /// The input of a frame.

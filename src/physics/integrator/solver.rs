@@ -4,7 +4,6 @@
 use super::input::{FrameError, SolverInput};
 use super::state::State;
 use super::step_form::{Moment, Motion, StepContact, StepForm};
-use super::tangent::Following;
 use super::tangents::{FollowedTangents as _, HasTangents, Tangents};
 use crate::integrator::Integrator;
 use crate::structure::energies::{Ends, FrameEnergies};
@@ -54,12 +53,13 @@ impl<V: HasTangents> Solver<V> {
         let tangent_form = input.integrator == Integrator::Tangent;
         let tangents = match input.tangents {
             Tangents::Storeys { largest_ratio } => {
-                let following = Following {
+                let followed = V::Tangents::new(
+                    &matrices.stiffness,
                     largest_ratio,
-                    noise: input.noise,
-                };
-                let followed =
-                    V::Tangents::new(&matrices.stiffness, following, &displacement, &force);
+                    input.readings,
+                    &displacement,
+                    &force,
+                );
                 Some(followed.ok_or(FrameError::NoStoreys)?)
             }
             Tangents::Initial => None,
@@ -359,7 +359,6 @@ fn correct<V: Vector>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::statistics::DeclaredNoise;
     use crate::structure::Matrices;
 
     const MASS: f64 = 1.0;
@@ -382,7 +381,7 @@ mod tests {
             initial_displacement: 1.0,
             initial_restoring_force: STIFFNESS,
             initial_load: 0.0,
-            noise: DeclaredNoise::NONE,
+            readings: &[],
         };
         let mut solver = Solver::<f64>::new(&input).expect("a mass on a spring");
         for _ in 0..steps {

@@ -8,6 +8,7 @@ use super::tangent::{Following, TangentStiffness};
 use crate::statistics::DeclaredNoise;
 use crate::structure::matrix::one_degree::{Body, LEAST_CHANGE, Secant};
 use crate::structure::matrix::{Matrix, Vector};
+use crate::structure::substructures::StoreyReadings;
 use crate::structure::{Matrices, SymmetricBand, set_storeys, storeys_of};
 
 /// `K_t` of the tangent form.
@@ -27,10 +28,12 @@ const ROUNDING_MARGIN: f64 = 4.0;
 pub trait FollowedTangents: Clone + Debug {
     type Vector: Vector;
 
-    /// From the first readings (m, N); None if the stiffness is not that of storeys.
+    /// Within `[0, largest_ratio · k0]`, with the readings of each storey, from their first values (m, N); None if the stiffness is not that of
+    /// storeys.
     fn new(
         stiffness: &<Self::Vector as Vector>::Matrix,
-        following: Following,
+        largest_ratio: f64,
+        readings: &[StoreyReadings],
         displacement: &Self::Vector,
         force: &Self::Vector,
     ) -> Option<Self>;
@@ -287,10 +290,33 @@ fn each_reading(displacement: &[f64], force: &[f64], mut take: impl FnMut(usize,
     }
 }
 
+/// The parameters of the tangent of one storey.
+fn following(largest_ratio: f64, readings: Option<&StoreyReadings>) -> Following {
+    let noise = readings.map_or(DeclaredNoise::NONE, |readings| DeclaredNoise {
+        force: readings.shear_noise(),
+        resolution: if readings.is_difference {
+            2.0 * readings.noise.resolution
+        } else {
+            readings.noise.resolution
+        },
+    });
+    Following {
+        largest_ratio,
+        noise,
+    }
+}
+
 impl FollowedTangents for StoreyTangent {
     type Vector = f64;
 
-    fn new(stiffness: &f64, following: Following, displacement: &f64, force: &f64) -> Option<Self> {
+    fn new(
+        stiffness: &f64,
+        largest_ratio: f64,
+        readings: &[StoreyReadings],
+        displacement: &f64,
+        force: &f64,
+    ) -> Option<Self> {
+        let following = following(largest_ratio, readings.first());
         let exact = following.noise == DeclaredNoise::NONE;
         let noisy = || TangentStiffness::new(*stiffness, following, *displacement, *force);
         Some(Self {
@@ -330,34 +356,22 @@ impl FollowedTangents for StoreyTangents {
 
     fn new(
         stiffness: &SymmetricBand,
-        following: Following,
+        largest_ratio: f64,
+        readings: &[StoreyReadings],
         displacement: &Vec<f64>,
         force: &Vec<f64>,
     ) -> Option<Self> {
         let stiffnesses = storeys_of(stiffness)?;
         let mut storeys = Vec::with_capacity(stiffnesses.len());
         each_reading(displacement, force, |storey, first| {
-            // Independent cells add as squares; a storey drift above the first storey is the difference of two readings.
-            #[expect(clippy::cast_precision_loss, reason = "no frame has 2^53 storeys")]
-            let cells = (stiffnesses.len() - storey) as f64;
-            let DeclaredNoise { force, resolution } = following.noise;
-            let resolution = if storey == 0 {
-                resolution
-            } else {
-                2.0 * resolution
-            };
-            let following = Following {
-                noise: DeclaredNoise {
-                    force: cells.sqrt() * force,
-                    resolution,
-                },
-                ..following
-            };
+            let following = following(largest_ratio, readings.get(storey));
             storeys.push(Storey::new(stiffnesses[storey], following, first));
         });
         storeys.reverse();
         let only = match &stiffnesses[..] {
-            [only] => StoreyTangent::new(only, following, &displacement[0], &force[0]),
+            [only] => {
+                StoreyTangent::new(only, largest_ratio, readings, &displacement[0], &force[0])
+            }
             _ => None,
         };
         Some(Self {
@@ -418,16 +432,14 @@ mod tests {
     }
 
     fn at_rest(noise: f64, resolution: f64) -> StoreyTangents {
-        let following = Following {
-            largest_ratio: 2.0,
-            noise: DeclaredNoise {
-                force: noise,
-                resolution,
-            },
+        let noise = DeclaredNoise {
+            force: noise,
+            resolution,
         };
         StoreyTangents::new(
             &storey_stiffness(&INITIAL),
-            following,
+            2.0,
+            &StoreyReadings::of_floors(noise, 3),
             &vec![0.0; 3],
             &vec![0.0; 3],
         )

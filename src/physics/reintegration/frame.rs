@@ -17,13 +17,15 @@ use crate::integrator::solver::FrameSolver;
 use crate::integrator::state::FrameState;
 use crate::integrator::tangents::Tangents;
 use crate::reintegration::perturbation::Perturbation;
-use crate::statistics::DeclaredNoise;
-use crate::structure::{FrameMatrices, drifts, shears, widen};
+use crate::structure::substructures::StoreyReadings;
+use crate::structure::{FrameMatrices, SymmetricBand, drifts, shears, widen};
 
 /// The settings with which a frame is integrated.
 #[derive(Clone, Debug)]
 pub struct FrameRun {
     pub matrices: FrameMatrices,
+    /// `K_I` of α-OS and of the I-modification \[N/m\].
+    pub operator: SymmetricBand,
     pub integrator: Integrator,
     pub i_modification: bool,
     pub tangents: Tangents,
@@ -31,8 +33,10 @@ pub struct FrameRun {
     pub time_step: f64,
     /// Largest number of steps.
     pub steps: u64,
-    /// As the run used it.
-    pub noise: DeclaredNoise,
+    /// The factor on the force of every storey that is computed; empty for 1.
+    pub computed_factors: Vec<f64>,
+    /// Of each storey, as the run used them.
+    pub readings: Vec<StoreyReadings>,
     /// Whether the floors passed their targets without a stop.
     pub continuous: bool,
 }
@@ -109,7 +113,7 @@ impl FrameRun {
     ) -> FrameInput<'a> {
         FrameInput {
             matrices: &self.matrices,
-            operator_stiffness: &self.matrices.stiffness,
+            operator_stiffness: &self.operator,
             integrator: self.integrator,
             i_modification: self.i_modification,
             tangents: self.tangents,
@@ -117,7 +121,7 @@ impl FrameRun {
             initial_displacement: retrace.start(),
             initial_restoring_force: retrace.force(),
             initial_load: load,
-            noise: self.noise,
+            readings: &self.readings,
         }
     }
 
@@ -131,7 +135,7 @@ impl FrameRun {
         path: &FramePath,
         readings: &Perturbation,
     ) -> Result<FloorsOutcome, FrameError> {
-        let mut retrace = path.retrace(readings);
+        let mut retrace = path.retrace(readings, &self.computed_factors);
         let mut load = vec![0.0; self.matrices.order()];
         let at = |step: usize| ground.get(step).copied().unwrap_or(0.0);
         self.matrices.ground_load(at(0), &mut load);
@@ -169,7 +173,7 @@ impl FrameRun {
         path: &FramePath,
         readings: &Perturbation,
     ) -> Result<FloorImpactOutcome, ImpactError> {
-        let mut retrace = path.retrace(readings);
+        let mut retrace = path.retrace(readings, &self.computed_factors);
         let order = self.matrices.order();
         let FloorImpact {
             struck,

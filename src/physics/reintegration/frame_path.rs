@@ -6,13 +6,17 @@
 //! If the stiffness of a frame is not that of storeys, its readings are those of the same step of the record. Away from the recorded
 //! position they change with the initial stiffness: this is exact for an elastic frame. At the recorded targets the readings are
 //! bit-identical to the recorded ones.
+//!
+//! If the rig carries a part of the frame, the record is that of its axes. The computed storeys are computed again from their state at the
+//! start of the run.
 
 use super::recorded_path::{ContinuousMotion, Reading, RecordedPath, Retrace, lag, nearest};
 use crate::reintegration::perturbation::Perturbation;
 use crate::statistics::DeclaredNoise;
-use crate::structure::{SymmetricBand, drifts, shears, storeys_of};
+use crate::structure::substructures::{Assemblies, StoreyReadings, Substructures};
+use crate::structure::{SymmetricBand, storeys_of};
 
-/// One step of the record, one entry per floor.
+/// One step of the record, one entry per axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameReading {
     /// Commanded displacement \[m\].
@@ -23,13 +27,19 @@ pub struct FrameReading {
     pub force: Vec<f64>,
 }
 
-/// Readings of all floors along the path.
+/// Readings of all axes along the path.
 #[derive(Clone, Debug)]
 pub struct FramePath {
     readings: Vec<FrameReading>,
-    /// Velocity at each target \[m/s\], one entry per floor; empty for readings at rest.
+    /// Velocity at each target \[m/s\], one entry per axis; empty for readings at rest.
     velocities: Vec<Vec<f64>>,
     bends: Bends,
+    /// Whether the storey of each axis stands on the strong floor.
+    stands: Vec<bool>,
+    /// At the start of the run; None if the rig carries the whole frame.
+    substructures: Option<Substructures>,
+    /// \[s\]
+    time_step: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -41,26 +51,34 @@ enum Bends {
 }
 
 impl FramePath {
-    /// `motion` has no velocities where the run was not continuous; `stiffness` is the initial K; `noise` is that of one floor. None
-    /// without readings.
+    /// `motion` has no velocities where the run was not continuous; `stiffness` is the initial K of the frame; `storeys` are the readings of
+    /// its storeys; `substructures` are those at the start of the run. None without readings.
     #[must_use]
     pub fn new(
         readings: Vec<FrameReading>,
         motion: ContinuousMotion<Vec<Vec<f64>>>,
         stiffness: &SymmetricBand,
-        noise: DeclaredNoise,
+        storeys: &[StoreyReadings],
+        substructures: Option<&Substructures>,
     ) -> Option<Self> {
         readings.first()?;
+        let assemblies = substructures.map(Substructures::assemblies);
+        let stands = assemblies.map_or_else(
+            || (0..stiffness.order()).map(|axis| axis == 0).collect(),
+            Assemblies::standing,
+        );
+        let at_axes = |of_storeys: Vec<f64>| {
+            assemblies.map_or_else(|| of_storeys.clone(), |axes| axes.at_axes(&of_storeys))
+        };
         let ContinuousMotion {
             velocities,
             time_step,
         } = motion;
-        let floors = stiffness.order();
-        let of_floors = |read: fn(&FrameReading) -> &Vec<f64>,
-                         to_storeys: fn(&[f64], &mut [f64])| {
+        let of_axes = |read: fn(&FrameReading) -> &Vec<f64>,
+                       to_storeys: fn(&[f64], &[bool]) -> Vec<f64>| {
             readings
                 .iter()
-                .map(|reading| to(to_storeys, read(reading)))
+                .map(|reading| to_storeys(read(reading), &stands))
                 .collect::<Vec<Vec<f64>>>()
         };
         let bends = match storeys_of(stiffness) {
@@ -76,32 +94,40 @@ impl FramePath {
                     if velocities.is_empty() {
                         0.0
                     } else {
-                        lag(behind, noise.resolution)
+                        lag(behind, storeys[axis].noise.resolution)
                     }
                 };
-                Bends::Together(stiffness.clone(), (0..floors).map(of_axis).collect())
+                Bends::Together(
+                    stiffness.clone(),
+                    (0..stiffness.order()).map(of_axis).collect(),
+                )
             }
             Some(stiffnesses) => {
-                let targets = of_floors(|reading| &reading.target, drifts);
-                let displacements = of_floors(|reading| &reading.displacement, drifts);
-                let forces = of_floors(|reading| &reading.force, shears);
-                let passed: Vec<Vec<f64>> =
-                    velocities.iter().map(|floors| to(drifts, floors)).collect();
+                let stiffnesses = at_axes(stiffnesses);
+                let tested: Vec<StoreyReadings> = match assemblies {
+                    Some(axes) => axes.tested().map(|storey| storeys[storey]).collect(),
+                    None => storeys.to_vec(),
+                };
+                let targets = of_axes(|reading| &reading.target, drifts);
+                let displacements = of_axes(|reading| &reading.displacement, drifts);
+                let forces = of_axes(|reading| &reading.force, shears);
+                let passed: Vec<Vec<f64>> = velocities
+                    .iter()
+                    .map(|axes| drifts(axes, &stands))
+                    .collect();
                 let path = |(storey, stiffness): (usize, f64)| {
                     let at = |step: usize| Reading {
                         target: targets[step][storey],
                         displacement: displacements[step][storey],
                         force: forces[step][storey],
                     };
-                    // A shear is the sum of the cells above, a storey drift the difference of two floors.
-                    #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
-                    let cells = (floors - storey) as f64;
+                    let read = &tested[storey];
                     let noise = DeclaredNoise {
-                        force: noise.force * cells.sqrt(),
-                        resolution: if storey == 0 {
-                            noise.resolution
+                        force: read.shear_noise(),
+                        resolution: if read.is_difference {
+                            read.noise.resolution * 2.0_f64.sqrt()
                         } else {
-                            noise.resolution * 2.0_f64.sqrt()
+                            read.noise.resolution
                         },
                     };
                     let readings = (0..readings.len()).map(at).collect();
@@ -125,6 +151,9 @@ impl FramePath {
             readings,
             velocities,
             bends,
+            stands,
+            substructures: substructures.cloned(),
+            time_step,
         })
     }
 
@@ -140,9 +169,9 @@ impl FramePath {
         self.readings
     }
 
-    /// Begins a re-run along the path.
+    /// Begins a re-run along the path, with the forces of the computed storeys multiplied by `factors`.
     #[must_use]
-    pub fn retrace<'a>(&'a self, readings: &'a Perturbation) -> FrameRetrace<'a> {
+    pub fn retrace<'a>(&'a self, readings: &'a Perturbation, factors: &[f64]) -> FrameRetrace<'a> {
         let walks = match &self.bends {
             Bends::Storeys(paths) => paths
                 .iter()
@@ -167,17 +196,50 @@ impl FramePath {
             velocity: vec![0.0; first.target.len()],
             displacement: first.displacement.clone(),
             force: first.force.clone(),
+            floors: self.substructures.clone().map(|substructures| Floors {
+                substructures: substructures.with_factors(factors),
+                displacement: Vec::new(),
+                force: Vec::new(),
+            }),
         };
         retrace.read();
+        if let Some(floors) = &mut retrace.floors {
+            let (mut target, mut force) = (Vec::new(), Vec::new());
+            let axes = (retrace.target.as_slice(), retrace.force.as_slice());
+            floors.substructures.floors(axes, &mut target, &mut force);
+            retrace.target = target;
+        }
         retrace
     }
 }
 
-/// Quantities of the storeys from those of the floors, by `to_storeys`.
-fn to(to_storeys: fn(&[f64], &mut [f64]), floors: &[f64]) -> Vec<f64> {
-    let mut storeys = vec![0.0; floors.len()];
-    to_storeys(floors, &mut storeys);
-    storeys
+/// Drifts of the storeys at the axes, from the displacements of the axes: within each assembly.
+fn drifts(axes: &[f64], stands: &[bool]) -> Vec<f64> {
+    let mut below = 0.0;
+    let drift = |(axis, stands): (&f64, &bool)| {
+        let below = std::mem::replace(&mut below, *axis);
+        axis - if *stands { 0.0 } else { below }
+    };
+    axes.iter().zip(stands).map(drift).collect()
+}
+
+/// Shears of the storeys at the axes \[N\], from the forces of the axes: within each assembly.
+fn shears(axes: &[f64], stands: &[bool]) -> Vec<f64> {
+    let mut shear = axes.to_vec();
+    for axis in (1..shear.len()).rev() {
+        if !stands[axis] {
+            shear[axis - 1] += shear[axis];
+        }
+    }
+    shear
+}
+
+/// The floors during a re-run of a frame of which the rig carries a part.
+#[derive(Clone, Debug)]
+struct Floors {
+    substructures: Substructures,
+    displacement: Vec<f64>,
+    force: Vec<f64>,
 }
 
 /// The path during a re-run.
@@ -198,10 +260,12 @@ pub struct FrameRetrace<'a> {
     velocity: Vec<f64>,
     displacement: Vec<f64>,
     force: Vec<f64>,
+    /// None if the rig carries the whole frame: the axes are then the floors.
+    floors: Option<Floors>,
 }
 
 impl FrameRetrace<'_> {
-    /// The first position \[m\].
+    /// The first position of the floors \[m\].
     #[must_use]
     pub fn start(&self) -> &[f64] {
         &self.target
@@ -210,13 +274,17 @@ impl FrameRetrace<'_> {
     /// The last reading of displacements \[m\].
     #[must_use]
     pub fn displacement(&self) -> &[f64] {
-        &self.displacement
+        self.floors
+            .as_ref()
+            .map_or(&self.displacement, |floors| &floors.displacement)
     }
 
     /// The last reading of forces \[N\].
     #[must_use]
     pub fn force(&self) -> &[f64] {
-        &self.force
+        self.floors
+            .as_ref()
+            .map_or(&self.force, |floors| &floors.force)
     }
 
     /// Whether a storey has departed from the record.
@@ -225,8 +293,20 @@ impl FrameRetrace<'_> {
         self.storeys.iter().any(|(_, retrace)| retrace.departed())
     }
 
-    /// Moves to the targets of the next step \[m\] and reads. `velocities` \[m/s\] are those at the targets if it does not stop there.
+    /// Moves the floors to the targets of the next step \[m\] and reads. `velocities` \[m/s\] are those at the targets if it does not stop
+    /// there.
     pub fn move_to(&mut self, targets: &[f64], velocities: &[f64]) {
+        let Some(floors) = &mut self.floors else {
+            return self.move_axes(targets, velocities);
+        };
+        let seconds = self.path.time_step / f64::from(self.readings.finer);
+        floors.substructures.advance(targets, seconds);
+        let targets = floors.substructures.assemblies().axes_of(targets);
+        let velocities = floors.substructures.assemblies().axes_of(velocities);
+        self.move_axes(&targets, &velocities);
+    }
+
+    fn move_axes(&mut self, targets: &[f64], velocities: &[f64]) {
         self.own_step += 1;
         self.step = nearest(self.own_step, self.readings.finer);
         for (axis, (to, from)) in self.position.iter_mut().zip(targets).enumerate() {
@@ -270,6 +350,10 @@ impl FrameRetrace<'_> {
     fn bend_storeys(&mut self) {
         let (mut below, mut slower, mut off) = (0.0, 0.0, 0.0);
         for storey in 0..self.storeys.len() {
+            let stands = self.path.stands[storey];
+            if stands {
+                (below, slower, off) = (0.0, 0.0, 0.0);
+            }
             let drift = self.position[storey] - below;
             let velocity = self.velocity[storey] - slower;
             (below, slower) = (self.position[storey], self.velocity[storey]);
@@ -280,7 +364,7 @@ impl FrameRetrace<'_> {
             self.displacement[storey] += off;
             let more = shear - recorded.force;
             self.force[storey] += more;
-            if storey > 0 {
+            if !stands {
                 self.force[storey - 1] -= more;
             }
         }
@@ -291,6 +375,11 @@ impl FrameRetrace<'_> {
             let exact = (self.displacement[axis], self.force[axis]);
             (self.displacement[axis], self.force[axis]) =
                 self.readings.read(self.own_step as u64, axis, 1, exact);
+        }
+        if let Some(floors) = &mut self.floors {
+            let axes = (self.displacement.as_slice(), self.force.as_slice());
+            let substructures = &floors.substructures;
+            substructures.floors(axes, &mut floors.displacement, &mut floors.force);
         }
     }
 }
@@ -330,7 +419,8 @@ mod tests {
             targets().iter().map(|target| elastic(target)).collect(),
             ContinuousMotion::default(),
             stiffness,
-            DeclaredNoise::NONE,
+            &StoreyReadings::of_floors(DeclaredNoise::NONE, 3),
+            None,
         )
         .unwrap()
     }
@@ -342,7 +432,7 @@ mod tests {
         for stiffness in [storey_stiffness(&STIFFNESSES), coupled] {
             let path = path(&stiffness);
             let none = Perturbation::none(3);
-            let mut retrace = path.retrace(&none);
+            let mut retrace = path.retrace(&none, &[]);
             assert_eq!(retrace.start(), targets()[0]);
             for reading in path.readings.iter().skip(1) {
                 retrace.move_to(&reading.target, &[0.0; 3]);
@@ -371,7 +461,7 @@ mod tests {
                 instruments.displacement_scale = [1.05, 0.95, 1.0][axis];
                 instruments.zero_offset = [1.0, 2.0, -3.0][axis];
             }
-            let mut retrace = path.retrace(&readings);
+            let mut retrace = path.retrace(&readings, &[]);
             for (step, target) in targets()
                 .iter()
                 .chain(&[[0.03, 0.01, -0.04]; 3])

@@ -9,7 +9,6 @@ use crate::integrator::input::FrameInput;
 use crate::integrator::solver::FrameSolver;
 use crate::integrator::tangents::Tangents;
 use crate::specimen::Elastic;
-use crate::statistics::DeclaredNoise;
 use crate::structure::{FrameMatrices, SymmetricBand, storey_stiffness};
 
 /// Ten times the steps of the paper's longest case.
@@ -98,7 +97,7 @@ fn at_rest<'a>(
         initial_displacement: zero,
         initial_restoring_force: zero,
         initial_load: load,
-        noise: DeclaredNoise::NONE,
+        readings: &[],
     }
 }
 

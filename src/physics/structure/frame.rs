@@ -37,6 +37,21 @@ pub struct Storey {
     pub damping: f64,
     /// The same, N: friction against the drift.
     pub coulomb: f64,
+    pub part: Part,
+}
+
+/// The substructure that gives the shear of a storey.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The rig. With the storey below, if that is tested too, it is one specimen, unless it stands `apart` on the strong floor.
+    Tested { apart: bool },
+    /// Its model.
+    Computed,
+}
+
+impl Part {
+    /// On the rig, in one specimen with the storeys beside it.
+    pub const TESTED: Self = Self::Tested { apart: false };
 }
 
 impl Storey {
@@ -53,6 +68,20 @@ impl Storey {
             behaviour,
             damping: 0.0,
             coulomb: 0.0,
+            part: Part::TESTED,
+        }
+    }
+
+    /// Stiffness that the operator of an integrator assumes \[N/m\]: the stated one of a tested storey, the largest tangent of a model.
+    #[must_use]
+    pub fn operator_stiffness(&self) -> f64 {
+        match self.part {
+            Part::Tested { .. } => self.stiffness,
+            Part::Computed => self
+                .behaviour
+                .largest_stiffness()
+                .unwrap_or(self.stiffness)
+                .max(self.stiffness),
         }
     }
 }
@@ -82,10 +111,20 @@ impl Frame {
         }
     }
 
-    /// Floors, each with an actuator and a load cell.
+    /// Floors.
     #[must_use]
     pub fn degrees_of_freedom(&self) -> usize {
         self.mass.len()
+    }
+
+    /// Actuators that it needs, each with a load cell: one at every floor, or at every tested storey.
+    #[must_use]
+    pub fn axes(&self) -> usize {
+        let is_tested = |storey: &&Storey| storey.part != Part::Computed;
+        match &self.storeys[..] {
+            [] => self.degrees_of_freedom(),
+            storeys => storeys.iter().filter(is_tested).count(),
+        }
     }
 
     /// ιᵀMι \[kg\]: the mass that moves with the ground.

@@ -7,7 +7,7 @@ use crate::contact::contact_time_step::Approach;
 use crate::integrator::Integrator;
 use crate::integrator::stability::{Met, longest_stable_step};
 use crate::structure::BandFactor;
-use crate::structure::frame::Frame;
+use crate::structure::frame::{Frame, Part, Storey};
 use crate::structure::{
     Damping, DampingError, FrameMatrices, Modes, ModesError, RowsError, SymmetricBand,
     damping_matrix, modes, storey_stiffness,
@@ -17,6 +17,8 @@ use crate::structure::{
 #[derive(Clone, Debug)]
 pub struct FrameProperties {
     pub matrices: FrameMatrices,
+    /// `K_I` of α-OS and of the I-modification \[N/m\]: K, with the largest tangent of every computed storey.
+    pub operator: SymmetricBand,
     pub modes: Modes,
 }
 
@@ -39,12 +41,23 @@ impl FrameProperties {
         let stiffness = SymmetricBand::from_dense(&frame.stiffness)?;
         let modes = modes(&mass, &stiffness)?;
         let damping = damping_matrix(damping, &mass, &stiffness, &modes)?;
+        let computes = frame
+            .storeys
+            .iter()
+            .any(|storey| storey.part == Part::Computed);
+        let operator = if computes {
+            let storeys = frame.storeys.iter().map(Storey::operator_stiffness);
+            storey_stiffness(&storeys.collect::<Vec<f64>>())
+        } else {
+            stiffness.clone()
+        };
         Ok(Self {
             matrices: FrameMatrices {
                 mass,
                 damping,
                 stiffness,
             },
+            operator,
             modes,
         })
     }
@@ -118,7 +131,7 @@ impl FrameProperties {
         integrator: Integrator,
         virtual_specimen: Option<&Frame>,
     ) -> f64 {
-        let own = self.highest(&self.matrices.stiffness);
+        let own = self.highest(&self.operator);
         let mut met = Met {
             highest: own,
             shortfall: 0.0,
@@ -131,19 +144,19 @@ impl FrameProperties {
                 .iter()
                 .map(|storey| {
                     let largest = storey.behaviour.largest_stiffness();
-                    largest.unwrap_or(storey.stiffness)
+                    largest.unwrap_or(storey.operator_stiffness())
                 })
                 .collect();
             met.highest = own.max(self.highest(&storey_stiffness(&behaves)));
             let storeys = || frame.storeys.iter().zip(&behaves);
             met.share = storeys()
-                .map(|(storey, behaves)| 1.0 - storey.stiffness / behaves)
+                .map(|(storey, behaves)| 1.0 - storey.operator_stiffness() / behaves)
                 .fold(0.0, f64::max);
             if met.share > 0.0 {
                 // The small stiffness added to softer storeys makes the bound slightly low, never high.
                 let trifle = |behaves: f64| 1e-12 * behaves;
                 let beyond: Vec<f64> = storeys()
-                    .map(|(storey, b)| (b - storey.stiffness).max(trifle(*b)))
+                    .map(|(storey, b)| (b - storey.operator_stiffness()).max(trifle(*b)))
                     .collect();
                 met.shortfall = self.highest(&storey_stiffness(&beyond));
             }

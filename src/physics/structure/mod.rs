@@ -16,6 +16,7 @@ pub mod matrix;
 mod modes;
 pub mod portal;
 mod shear_building;
+pub mod substructures;
 mod unloading;
 
 pub use damping::{Damping, DampingError, damping_matrix, rayleigh_coefficients};

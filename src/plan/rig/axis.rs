@@ -8,6 +8,8 @@ use crate::{
 /// The entries of one axis of a real rig. None: the rig's entry applies.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct AxisPlan {
+    /// The storey that it moves, from 0; None: the tested storeys in their order.
+    pub storey: Option<usize>,
     /// Polarity: +1 or −1.
     pub polarity: Option<f64>,
     /// \[m\]

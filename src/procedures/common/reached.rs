@@ -1,8 +1,28 @@
 //! The peak absolute displacement and force of the channels of a run, from its tables. In: a record. Out: numbers.
 
+use psd_physics::structure::substructures::Assemblies;
+use psd_plan::Plan;
 use psd_plan::record::ImpactHistory;
 
-/// Gives displacement \[m\] and force \[N\] of every axis of an impact, row by row of its table.
+/// Readings of the floors become those of the axes, if the rig carries a part of a frame.
+pub(crate) fn of_axes(
+    plan: &Plan,
+    give: &mut dyn FnMut(&[f64], &[f64]),
+) -> impl FnMut(&[f64], &[f64]) {
+    let frame = plan
+        .specimen_on_the_rig()
+        .and_then(|specimen| specimen.frame.as_ref());
+    let assemblies = frame.and_then(Assemblies::of);
+    move |displacement, force| match &assemblies {
+        None => give(displacement, force),
+        Some(assemblies) => give(
+            &assemblies.axes_of(displacement),
+            &assemblies.forces_of(force),
+        ),
+    }
+}
+
+/// Gives displacement \[m\] and force \[N\] of every floor of an impact, row by row of its table.
 pub(crate) fn of_impact(history: &ImpactHistory, give: &mut dyn FnMut(&[f64], &[f64])) {
     match &history.frame {
         None => history

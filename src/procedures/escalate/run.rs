@@ -5,7 +5,7 @@ use super::repeated_impact::{RepeatedImpact, velocities};
 use super::results::{Left, results};
 use crate::procedures::common::calibrated_range;
 use crate::procedures::common::perturbed_inputs::UncertainRun;
-use crate::procedures::common::reached::of_impact;
+use crate::procedures::common::reached::{of_axes, of_impact};
 use crate::procedures::impact::run::ImpactRun;
 use crate::procedures::stepping::setting::above_critical;
 use crate::procedures::unload::run::{MOST_TARGETS, to_rest, withhold_position};
@@ -71,7 +71,8 @@ fn run(
             stop,
         } = impact.strike(index, velocity, done, session);
         // The condition of the series reads these results; the series itself remarks on them.
-        let given: calibrated_range::Readings<'_> = &|give| of_impact(&steps, give);
+        let given: calibrated_range::Readings<'_> =
+            &|give| of_impact(&steps, &mut of_axes(whole, give));
         calibrated_range::withhold(&whole.rig, home.len(), given, &mut results);
         done += steps.steps.last().map_or(0, |last| last.step);
         history.impacts.push(SeriesImpact {
@@ -214,7 +215,7 @@ fn bring(
     if between == Between::Home {
         session.go_to_all(home, None)?;
     }
-    let reading = session.guard.read()?;
+    let (_, reading) = session.floors_at_rest()?;
     if between == Between::Home {
         *done += 1;
         let time = session.guard.time();

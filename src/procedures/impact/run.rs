@@ -5,13 +5,13 @@
 
 use super::results::{StruckSummary, observe, results};
 use super::setting::{Setting, StruckStructure};
-use super::uncertainty::UncertaintyInputs;
+use super::uncertainty::{RecordedRun, UncertaintyInputs};
 use crate::procedures::stepping::operator_stability_watch::StifferSprings;
 use crate::procedures::stepping::setting::{FrameSteps, Start, above_critical, not_stepped};
 use crate::procedures::stepping::step_loop::{self, AxesState, Balance, Stepped};
 use crate::procedures::stepping::tracking::TrackingSummary;
 use crate::run::inputs::Inputs;
-use crate::run::session::{Session, of_base_shear};
+use crate::run::session::Session;
 use crate::run::stop::Stop;
 use crate::run::{Keep, Performed};
 use psd_physics::impact::summary::ImpactEnding;
@@ -76,7 +76,7 @@ pub(crate) fn strike(
     let Setting { input, .. } = setting;
     let summary = match setting.frame() {
         None => StruckSummary::new(input),
-        Some(frame) => StruckSummary::of_frame(input, frame.order(), of_base_shear(session)),
+        Some(frame) => StruckSummary::of_frame(input, frame.order(), session.base_shear_noise()),
     };
     let kept = match session.keep {
         Keep::Results => 0,
@@ -112,8 +112,15 @@ pub(crate) fn strike(
     }
     let mut results = results(summary.as_ref(), &tracking, &history);
     if let (Some(summary), None) = (impact, &stop) {
+        let substructures = session.substructures_at_start();
+        let recorded = RecordedRun {
+            setting,
+            history: &history,
+            summary: &summary,
+            substructures: substructures.as_ref(),
+        };
         stop = session.evaluate_uncertainty(&mut results, |results, progress| {
-            uncertainty.propagate(plan, setting, &history, &summary, results, progress)
+            uncertainty.propagate(plan, recorded, results, progress)
         });
     }
     ImpactRun {
@@ -153,11 +160,8 @@ fn on_storey(
     let time_step = frame.steps.time_step;
     let solver =
         FrameImpactSolver::on(&input, &setup).map_err(|error| not_stepped(time_step, &error))?;
-    let matrices = &frame.properties.matrices;
-    Ok((
-        solver,
-        StifferSprings::of_storeys(matrices, &plan.stepping, time_step, start),
-    ))
+    let stiffer = StifferSprings::of_storeys(&frame.properties, &plan.stepping, time_step, start);
+    Ok((solver, stiffer))
 }
 
 /// The steps done; without a setting, no step was.

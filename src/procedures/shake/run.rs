@@ -13,7 +13,7 @@ use crate::procedures::stepping::setting::{FrameSteps, above_critical, frame_of}
 use crate::procedures::stepping::tracking::TrackingSummary;
 use crate::run::Performed;
 use crate::run::inputs::Inputs;
-use crate::run::session::{Session, of_base_shear};
+use crate::run::session::Session;
 use psd_plan::record::{History, ShakeHistory};
 use psd_plan::{Plan, Shake};
 
@@ -50,7 +50,7 @@ pub(crate) fn perform(
     let mut shaking = Shaking {
         setting: &setting,
         history,
-        summary: ShakeSummary::new(setting.frame.order(), of_base_shear(session)),
+        summary: ShakeSummary::new(setting.frame.order(), session.base_shear_noise()),
         followed: TrackingSummary::default(),
     };
     let mut stop = shaking.run(plan, ground, session).err();
@@ -67,12 +67,14 @@ pub(crate) fn perform(
             plan.damping_uncertainty,
             &plan.stepping,
         );
+        let substructures = session.substructures_at_start();
         stop = session.evaluate_uncertainty(&mut results, |results, progress| {
             let shake = ShakeUncertainty {
                 uncertainty: &uncertainty,
                 plan,
                 ground,
                 setting: &setting,
+                substructures: substructures.as_ref(),
             };
             uncertainty::propagate(shake, &shaking.history, results, progress)
         });

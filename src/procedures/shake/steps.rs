@@ -50,7 +50,7 @@ impl Shaking<'_> {
                     .map_err(|error| not_stepped(setting.frame.steps.time_step, &error))?;
                 solver.measured_at_start(&start.reading.displacement);
                 let stiffer = StifferSprings::of_storeys(
-                    matrices,
+                    &setting.frame.properties,
                     &plan.stepping,
                     setting.frame.steps.time_step,
                     start,

@@ -13,6 +13,7 @@ use psd_physics::reintegration::frame::{Floors, FloorsOutcome, FrameRun};
 use psd_physics::reintegration::frame_path::FramePath;
 use psd_physics::reintegration::perturbation::Perturbation;
 use psd_physics::structure::ground::acceleration_at;
+use psd_physics::structure::substructures::Substructures;
 use psd_plan::procedures::shake::block as schema;
 use psd_plan::record::{NamedResult, ShakeHistory};
 use psd_plan::uncertainty::engine::{Evaluate, Evaluation, Progress, Shifts, Unknown};
@@ -30,6 +31,8 @@ pub(crate) struct ShakeUncertainty<'a, 'run> {
     pub plan: &'a Shake,
     pub ground: &'a Ground,
     pub setting: &'a Setting,
+    /// At the start of the run; None if the rig carries the whole frame.
+    pub substructures: Option<&'a Substructures>,
 }
 
 /// Gives `results` their contributions.
@@ -44,10 +47,12 @@ pub(crate) fn propagate(
         plan,
         ground,
         setting,
+        substructures,
     } = shake;
     let path = uncertainty.path(
         &setting.frame,
         history.steps.iter().map(|step| &step.floors),
+        substructures,
     )?;
     let Steps {
         time_step,
@@ -69,8 +74,8 @@ pub(crate) fn propagate(
         path,
         length: 0,
     };
-    let floors = uncertainty.floors();
-    let exact = Perturbation::none(floors);
+    let axes = uncertainty.axes();
+    let exact = Perturbation::none(axes);
     let inputs = evaluate.inputs(&[])?;
     let mut found = evaluate
         .run(&inputs, &exact)
@@ -82,6 +87,7 @@ pub(crate) fn propagate(
         &setting.frame,
         evaluate.path,
         std::mem::take(&mut found.velocities),
+        substructures,
     )?;
     let layout = layout_of(&inputs.numbers(&found.between));
     let mut reported = values(&layout, results);
@@ -98,7 +104,7 @@ pub(crate) fn propagate(
         &layout,
         uncertainty.run.contributions(
             &evaluate,
-            floors,
+            axes,
             sources,
             history.steps.len(),
             reported,
@@ -167,6 +173,7 @@ impl Evaluate for RecordedShake<'_, '_> {
             plan,
             ground,
             setting,
+            ..
         } = self.shake;
         let (frame, damping) = (
             uncertainty.moved_frame(shifts)?,
@@ -188,6 +195,8 @@ impl Evaluate for RecordedShake<'_, '_> {
         let periods = properties.modes.periods.clone();
         let run = FrameRun {
             matrices: properties.matrices,
+            operator: properties.operator,
+            computed_factors: uncertainty.computed_factors(&frame),
             ..uncertainty.frame_run(&setting.frame)
         };
         Ok(ShakeInputs {

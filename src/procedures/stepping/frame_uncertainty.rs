@@ -8,13 +8,14 @@ use crate::run::stop::Stop;
 use psd_physics::reintegration::frame::{Floors, FrameRun};
 use psd_physics::reintegration::frame_path::{FramePath, FrameReading};
 use psd_physics::reintegration::recorded_path::ContinuousMotion;
+use psd_physics::structure::substructures::{Assemblies, StoreyReadings, Substructures};
 use psd_plan::formula::{Formula, Operator};
 use psd_plan::procedures::shake::block as schema;
 use psd_plan::record::{FloorMotion, NamedResult};
 use psd_plan::schema::ResultKind;
 use psd_plan::uncertainty::Source;
 use psd_plan::uncertainty::engine::{CLOSE, Shifts};
-use psd_plan::{Frame, Mode, ShakeDamping, Stepping};
+use psd_plan::{Frame, Mode, Part, ShakeDamping, Stepping};
 
 /// The uncertain inputs of a frame.
 #[derive(Clone, Copy)]
@@ -48,9 +49,9 @@ impl<'run> FrameUncertainty<'run> {
         }
     }
 
-    /// Degrees of freedom.
-    pub fn floors(&self) -> usize {
-        self.frame.map_or(0, Frame::degrees_of_freedom)
+    /// Axes of the rig.
+    pub fn axes(&self) -> usize {
+        self.frame.map_or(0, Frame::axes)
     }
 
     /// Every uncertain input of the frame and of the `formulas` that the procedure reads; `stated` adds further sources with their
@@ -129,7 +130,12 @@ impl<'run> FrameUncertainty<'run> {
                         storeys[storey].mass += by * storeys[storey].mass_uncertainty;
                     }
                     Source::StoreyStiffness { specimen, storey } if specimen == self.specimen => {
-                        storeys[storey].stiffness += by * storeys[storey].stiffness_uncertainty;
+                        let moved = &mut storeys[storey];
+                        let stiffness = moved.stiffness;
+                        moved.stiffness += by * moved.stiffness_uncertainty;
+                        if moved.part == Part::Computed {
+                            moved.behaviour = moved.behaviour.scaled(moved.stiffness / stiffness);
+                        }
                     }
                     _ => {}
                 }
@@ -167,42 +173,89 @@ impl<'run> FrameUncertainty<'run> {
     pub fn frame_run(&self, steps: &FrameSteps) -> FrameRun {
         FrameRun {
             matrices: steps.properties.matrices.clone(),
+            operator: steps.properties.operator.clone(),
+            computed_factors: Vec::new(),
             integrator: self.stepping.integrator,
             i_modification: self.stepping.i_modification,
             tangents: steps.tangents,
             time_step: steps.steps.time_step,
             steps: steps.steps.count,
-            noise: self.run.noise,
+            readings: self.readings(),
             continuous: matches!(self.stepping.mode, Mode::Continuous { .. }),
         }
     }
 
-    /// The recorded path.
+    /// The readings of the storeys.
+    fn readings(&self) -> Vec<StoreyReadings> {
+        let assemblies = self.frame.and_then(Assemblies::of);
+        let floors = self.frame.map_or(0, Frame::degrees_of_freedom);
+        assemblies.map_or_else(
+            || StoreyReadings::of_floors(self.run.noise, floors),
+            |assemblies| assemblies.readings(self.run.noise),
+        )
+    }
+
+    /// The factor on the force of every storey that is computed, in a run of `moved` instead of the frame; none if no storey is.
+    pub fn computed_factors(&self, moved: &Frame) -> Vec<f64> {
+        let storeys = self.frame.map_or(&[][..], |frame| &frame.storeys);
+        if storeys.iter().all(|storey| storey.part != Part::Computed) {
+            return Vec::new();
+        }
+        let storeys = storeys.iter().zip(&moved.storeys);
+        storeys
+            .map(|(own, moved)| moved.stiffness / own.stiffness)
+            .collect()
+    }
+
+    /// The recorded path; `substructures` are those at the start of the run.
     pub fn path<'r>(
         &self,
         steps: &FrameSteps,
         recorded: impl Iterator<Item = &'r FloorMotion>,
+        substructures: Option<&Substructures>,
     ) -> Result<FramePath, String> {
-        let reading = |floors: &FloorMotion| FrameReading {
-            target: floors.command.clone(),
-            displacement: floors.displacement.clone(),
-            force: floors.restoring_force.clone(),
+        let assemblies = substructures.map(Substructures::assemblies);
+        let reading = |floors: &FloorMotion| {
+            let FloorMotion {
+                command,
+                displacement,
+                restoring_force,
+                ..
+            } = floors;
+            match assemblies {
+                None => FrameReading {
+                    target: command.clone(),
+                    displacement: displacement.clone(),
+                    force: restoring_force.clone(),
+                },
+                Some(assemblies) => FrameReading {
+                    target: assemblies.axes_of(command),
+                    displacement: assemblies.axes_of(displacement),
+                    force: assemblies.forces_of(restoring_force),
+                },
+            }
         };
-        self.passed(steps, recorded.map(reading).collect(), Vec::new())
+        let readings = recorded.map(reading).collect();
+        self.passed(steps, readings, Vec::new(), substructures)
     }
 
-    /// The recorded path with the velocities at its targets \[m/s\].
+    /// The recorded path with the velocities of the floors at its targets \[m/s\].
     pub fn with_velocities(
         &self,
         steps: &FrameSteps,
         path: FramePath,
-        velocities: Vec<Vec<f64>>,
+        mut velocities: Vec<Vec<f64>>,
+        substructures: Option<&Substructures>,
     ) -> Result<FramePath, String> {
         if velocities.is_empty() {
-            Ok(path)
-        } else {
-            self.passed(steps, path.into_readings(), velocities)
+            return Ok(path);
         }
+        if let Some(substructures) = substructures {
+            for velocities in &mut velocities {
+                *velocities = substructures.assemblies().axes_of(velocities);
+            }
+        }
+        self.passed(steps, path.into_readings(), velocities, substructures)
     }
 
     fn passed(
@@ -210,6 +263,7 @@ impl<'run> FrameUncertainty<'run> {
         steps: &FrameSteps,
         readings: Vec<FrameReading>,
         velocities: Vec<Vec<f64>>,
+        substructures: Option<&Substructures>,
     ) -> Result<FramePath, String> {
         let stiffness = &steps.properties.matrices.stiffness;
         let path = FramePath::new(
@@ -219,7 +273,8 @@ impl<'run> FrameUncertainty<'run> {
                 time_step: steps.steps.time_step,
             },
             stiffness,
-            self.run.noise,
+            &self.readings(),
+            substructures,
         );
         path.ok_or_else(|| "nothing was recorded".to_owned())
     }

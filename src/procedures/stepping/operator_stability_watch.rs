@@ -7,7 +7,9 @@ use crate::procedures::damping_sweep::rate_separated_stiffness::RateSeparatedFit
 use crate::run::session::{Session, first};
 use psd_physics::impact::ImpactInput;
 use psd_physics::integrator::stability::{Met, longest_stable_step};
-use psd_physics::structure::{FrameMatrices, Matrices, drifts, shears, storeys_of};
+use psd_physics::structure::frame_properties::FrameProperties;
+use psd_physics::structure::substructures::StoreyReadings;
+use psd_physics::structure::{Matrices, drifts, shears, storeys_of};
 use psd_plan::record::EventKind;
 use psd_plan::{Integrator, Mode, Stepping};
 use psd_rig::Reading;
@@ -220,8 +222,7 @@ impl StifferSprings {
             operator_stiffness: input.operator_stiffness,
             mobility: 1.0 / input.mass,
             time_step: input.time_step,
-            // A resolution q has u = q/√12.
-            noise: (start.noise.force, start.noise.resolution / 12_f64.sqrt()),
+            noise: noise_of(&start.readings[0]),
             moving: plan.mode != Mode::StepAndPause,
         };
         Self::of(vec![(
@@ -241,36 +242,26 @@ impl StifferSprings {
 
     /// The storeys of a frame.
     pub(crate) fn of_storeys(
-        matrices: &FrameMatrices,
+        properties: &FrameProperties,
         plan: &Stepping,
         time_step: f64,
         start: &Start,
     ) -> Self {
-        let (noise, first) = (start.noise, &start.reading);
-        let storeys = storeys_of(&matrices.stiffness).unwrap_or_default();
+        let (matrices, first) = (&properties.matrices, &start.reading);
+        let storeys = storeys_of(&properties.operator).unwrap_or_default();
         let nothing = || vec![0.0; storeys.len()];
         let (mut drift, mut shear) = (nothing(), nothing());
         drifts(&first.displacement, &mut drift);
         shears(&first.force, &mut shear);
         let floor = |floor: usize| 1.0 / matrices.mass.entry(floor, floor);
-        let count = storeys.len();
         let judged = |(storey, operator_stiffness): (usize, f64)| {
-            #[expect(clippy::cast_precision_loss, reason = "at most MOST_STOREYS")]
-            let above = (count - storey) as f64;
-            // A shear is the sum of the load cells above; a drift is the difference of two positions. A resolution q has u = q/√12.
-            let position = noise.resolution / 12_f64.sqrt()
-                * if storey == 0 {
-                    1.0
-                } else {
-                    std::f64::consts::SQRT_2
-                };
             let judged = Judged {
                 integrator: plan.integrator,
                 operator_stiffness,
                 moving: plan.mode != Mode::StepAndPause,
                 mobility: floor(storey) + if storey == 0 { 0.0 } else { floor(storey - 1) },
                 time_step,
-                noise: (noise.force * above.sqrt(), position),
+                noise: noise_of(&start.readings[storey]),
             };
             (
                 format!("storey {}", storey + 1),
@@ -288,6 +279,17 @@ impl StifferSprings {
             storey.take(reading, struck, name, session);
         }
     }
+}
+
+/// Standard deviation of the shear \[N\] and of the drift \[m\] of a storey. A resolution q has u = q/√12.
+fn noise_of(readings: &StoreyReadings) -> (f64, f64) {
+    let position = readings.noise.resolution / 12_f64.sqrt();
+    let positions = if readings.is_difference {
+        std::f64::consts::SQRT_2
+    } else {
+        1.0
+    };
+    (readings.shear_noise(), position * positions)
 }
 
 #[cfg(test)]

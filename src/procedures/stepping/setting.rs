@@ -10,13 +10,14 @@ use crate::run::stop::Stop;
 use psd_physics::integrator::input::FrameInput;
 use psd_physics::integrator::tangents::Tangents;
 use psd_physics::structure::frame_properties::FrameProperties;
+use psd_physics::structure::substructures::StoreyReadings;
 use psd_physics::structure::{Damping, storeys_of};
 use psd_plan::record::EventKind;
 use psd_plan::schema::{frames, methods};
 use psd_plan::{
     Frame, Integrator, MOST_STEPS, Plan, ShakeDamping, Stepping, rayleigh, step_count, steps_in,
 };
-use psd_rig::{DeclaredNoise, Reading};
+use psd_rig::Reading;
 use psd_text::units::Dimension;
 use psd_text::units::display::stated;
 
@@ -120,11 +121,12 @@ impl FrameSteps {
 
 /// The state when the first step begins.
 pub(crate) struct Start {
-    /// Commanded positions of the actuators \[m\]: X starts there.
+    /// Commanded positions of the floors \[m\]: X starts there.
     pub commanded: Vec<f64>,
     /// One reading there: it contains R₀.
     pub reading: Reading,
-    pub noise: DeclaredNoise,
+    /// Of each storey.
+    pub readings: Vec<StoreyReadings>,
 }
 
 impl Start {
@@ -138,7 +140,7 @@ impl Start {
         let matrices = &frame.properties.matrices;
         FrameInput {
             matrices,
-            operator_stiffness: &matrices.stiffness,
+            operator_stiffness: &frame.properties.operator,
             integrator: plan.integrator,
             i_modification: plan.i_modification,
             tangents: frame.tangents,
@@ -146,7 +148,7 @@ impl Start {
             initial_displacement: &self.commanded,
             initial_restoring_force: &self.reading.force,
             initial_load: load,
-            noise: self.noise,
+            readings: &self.readings,
         }
     }
 }

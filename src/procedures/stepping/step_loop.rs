@@ -16,6 +16,7 @@ use crate::run::stop::Stop;
 use crate::run::{AxisReport, Keep, StepReport};
 use psd_physics::integrator::state::State;
 use psd_physics::structure::matrix::Vector;
+use psd_physics::structure::substructures::Assemblies;
 use psd_physics::tracking::monitor::Tracking;
 use psd_plan::{InspectTrigger, Mode, Stepping};
 use psd_rig::Reading;
@@ -78,21 +79,22 @@ pub(crate) fn run<S: Stepped>(
     session: &mut Session<'_>,
     begin: impl FnOnce(&Start) -> Result<(S, StifferSprings), Stop>,
 ) -> Result<(), Stop> {
-    let (commanded, reading) = (session.guard.commanded().to_vec(), session.guard.read()?);
+    let (commanded, reading) = session.floors_at_rest()?;
     let start = Start {
         commanded,
         reading,
-        noise: session.guard.declared_noise(),
+        readings: session.storey_readings(),
     };
     let (mut stepped, stiffer) = begin(&start)?;
     let monitors = Monitors::new(
+        session.assemblies().cloned(),
         &start.commanded,
         &start.reading,
         &stepped.effective_force_at_start(&start),
     );
     let motion = match plan.mode {
         Mode::Continuous { time_scale } => Some(ContinuousMotion::from_rest(
-            &start.commanded,
+            session.guard.commanded(),
             time_scale,
             steps.time_step,
         )),
@@ -162,7 +164,7 @@ impl<S: Stepped> StepsTaken<S> {
         let mut report = StepReport::default();
         let mut struck = false;
         for _ in 0..steps.count {
-            if let Some(stop) = self.read_next(steps.pause, session)? {
+            if let Some(stop) = self.read_next(steps, session)? {
                 if self.is_cut_off {
                     return Err(stop);
                 }
@@ -193,6 +195,7 @@ impl<S: Stepped> StepsTaken<S> {
                 .check_tracking(errors.tracking_energy_error, errors.tracking.nrms_error)?;
             let state = stepped.axes();
             errors.report(&state, &mut report);
+            session.report_axes(&mut report);
             report.step += stepped.before();
             session.step_done(&mut report)?;
             if stepped.over() {
@@ -210,7 +213,11 @@ impl<S: Stepped> StepsTaken<S> {
     }
 
     /// Moves to the next target and reads there; the stop of a reading that exceeded a limit, there or on the way.
-    fn read_next(&mut self, pause: f64, session: &mut Session<'_>) -> Result<Option<Stop>, Stop> {
+    fn read_next(
+        &mut self,
+        steps: &Steps,
+        session: &mut Session<'_>,
+    ) -> Result<Option<Stop>, Stop> {
         let Self {
             stepped,
             motion,
@@ -221,18 +228,20 @@ impl<S: Stepped> StepsTaken<S> {
         } = self;
         let Some(motion) = motion else {
             stepped.predict(target);
-            let ended = session.step(target, pause, reading)?;
+            let ended = session.step_floors(target, steps.pause, steps.time_step, reading)?;
             return Ok(ended.map(|ended| {
                 *is_cut_off = !ended.is_reached;
                 ended.fault.into()
             }));
         };
-        let (read, stop) = motion.step(|| waypoints(stepped, target), session)?;
-        *reading = read;
+        let assemblies = session.assemblies().cloned();
+        let waypoints = || waypoints(stepped, target, assemblies.as_ref());
+        let (read, stop) = motion.step(waypoints, session)?;
         *is_cut_off = stop.is_some();
         if *is_cut_off {
             stepped.predict(target);
         }
+        *reading = session.floors_read(target, steps.time_step, !*is_cut_off, read);
         Ok(stop)
     }
 
@@ -257,15 +266,22 @@ impl<S: Stepped> StepsTaken<S> {
 }
 
 /// The waypoint of each axis at the end of this step.
-fn waypoints(stepped: &mut impl Stepped, target: &mut [f64]) -> Vec<Waypoint> {
+fn waypoints(
+    stepped: &mut impl Stepped,
+    target: &mut [f64],
+    assemblies: Option<&Assemblies>,
+) -> Vec<Waypoint> {
     stepped.predict(target);
     let mut velocities = vec![0.0; target.len()];
     let struck = stepped.predicted_velocity(&mut velocities);
-    target
-        .iter()
-        .zip(velocities)
+    let of_axes = |floors: &[f64]| {
+        assemblies.map_or_else(|| floors.to_vec(), |assemblies| assemblies.axes_of(floors))
+    };
+    of_axes(target)
+        .into_iter()
+        .zip(of_axes(&velocities))
         .map(|(position, velocity)| Waypoint {
-            position: *position,
+            position,
             velocity,
             struck,
         })

@@ -5,6 +5,7 @@
 use crate::procedures::facts::Delay;
 use crate::run::session::Session;
 use psd_physics::structure::frame_properties::FrameProperties;
+use psd_physics::structure::substructures::Assemblies;
 use psd_physics::tracking::monitor::{Monitor, TrackedStep, Tracking, WARN};
 use psd_plan::formula::NoResults;
 use psd_plan::record::{EventKind, NamedResult};
@@ -14,21 +15,37 @@ use psd_plan::{Frame, Link, Mode, Plan, ShakeDamping, Stepping, VirtualLink};
 use psd_rig::Reading;
 use psd_text::units::display::significant;
 
-/// A tracking monitor for every axis.
+/// A tracking monitor for every floor, with the motion and force of its axis; a computed storey has no tracking error.
 pub(crate) struct Monitors {
     axes: Vec<Monitor>,
+    /// None if the axes are the floors.
+    assemblies: Option<Assemblies>,
     /// Of each axis so far.
     tracking: Vec<Tracking>,
 }
 
 impl Monitors {
     /// `effective_force` are the effective forces of the recursion at the commanded displacements \[N\].
-    pub(crate) fn new(commanded: &[f64], reading: &Reading, effective_force: &[f64]) -> Self {
-        let axes = tracked(commanded, reading, effective_force);
-        let axes: Vec<Monitor> = axes.map(|axis| Monitor::new(&axis)).collect();
+    pub(crate) fn new(
+        assemblies: Option<Assemblies>,
+        commanded: &[f64],
+        reading: &Reading,
+        effective_force: &[f64],
+    ) -> Self {
+        let mut axes = Vec::new();
+        each_tracked(
+            assemblies.as_ref(),
+            commanded,
+            reading,
+            effective_force,
+            |step| {
+                axes.push(Monitor::new(step));
+            },
+        );
         Self {
             tracking: axes.iter().map(Monitor::tracking).collect(),
             axes,
+            assemblies,
         }
     }
 
@@ -39,12 +56,37 @@ impl Monitors {
 
     /// Adds a step; `effective_force` are the effective forces of the recursion at the commanded displacements \[N\].
     pub(crate) fn take(&mut self, commanded: &[f64], reading: &Reading, effective_force: &[f64]) {
-        let axes = self.axes.iter_mut().zip(&mut self.tracking);
-        let steps = tracked(commanded, reading, effective_force);
-        for ((monitor, tracking), step) in axes.zip(steps) {
-            *tracking = monitor.take(&step);
-        }
+        let mut axes = self.axes.iter_mut().zip(&mut self.tracking);
+        let assemblies = self.assemblies.as_ref();
+        each_tracked(assemblies, commanded, reading, effective_force, |step| {
+            if let Some((monitor, tracking)) = axes.next() {
+                *tracking = monitor.take(step);
+            }
+        });
     }
+}
+
+/// Calls with the step of the axis of each floor, from commands, readings and forces of the floors.
+fn each_tracked(
+    assemblies: Option<&Assemblies>,
+    commanded: &[f64],
+    reading: &Reading,
+    effective_force: &[f64],
+    mut take: impl FnMut(&TrackedStep),
+) {
+    let Some(assemblies) = assemblies else {
+        tracked(commanded, reading, effective_force).for_each(|step| take(&step));
+        return;
+    };
+    let of_axes = Reading {
+        time: reading.time,
+        displacement: assemblies.in_assemblies(&reading.displacement),
+        force: assemblies.forces_in_assemblies(&reading.force),
+        raw: Vec::new(),
+    };
+    let commanded = assemblies.in_assemblies(commanded);
+    let effective_force = assemblies.forces_in_assemblies(effective_force);
+    tracked(&commanded, &of_axes, &effective_force).for_each(|step| take(&step));
 }
 
 /// The step of each axis.

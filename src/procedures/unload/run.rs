@@ -156,8 +156,7 @@ pub(crate) fn to_rest(
     session: &mut Session<'_>,
     steps: &mut Vec<UnloadStep>,
 ) -> Result<Rest, Stop> {
-    let mut at = session.guard.read()?;
-    let start = session.guard.commanded().to_vec();
+    let (start, mut at) = session.floors_at_rest()?;
     let secants = vec![None; at.force.len()];
     steps.push(step_of(before, start, &at, secants, session));
     let noise = session.guard.declared_noise();
@@ -182,14 +181,13 @@ pub(crate) fn to_rest(
             path.moves(&at.force)
         };
         let target: Vec<f64> = session
-            .guard
-            .commanded()
+            .floors_commanded()
             .iter()
             .zip(increments)
             .map(|(position, increment)| position + increment)
             .collect();
-        let moved = session.go_to_all(&target, speed);
-        let (reached, broken) = session.read_after(moved)?;
+        let moved = session.floors_go_to(&target, speed);
+        let (reached, broken) = session.floors_after(moved)?;
         let secants = path.learn(loaded(&at), loaded(&reached));
         let kept = step_of(step, target, &reached, secants, session);
         let wall_time = kept.wall_time;

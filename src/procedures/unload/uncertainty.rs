@@ -8,6 +8,7 @@
 
 use crate::procedures::common::perturbed_inputs::UncertainRun;
 use psd_physics::integrator::tangent::NOISE_MULTIPLE;
+use psd_physics::structure::substructures::Assemblies;
 use psd_physics::structure::{Loaded, Unloading};
 use psd_plan::record::{Rest, UnloadStep};
 use psd_plan::uncertainty::{Contribution, NOISE, Source};
@@ -25,36 +26,45 @@ type Errors = Vec<(f64, f64)>;
 impl UncertainRun<'_> {
     /// For a specimen that was unloaded by `steps`, with the unloading stiffness expected from `unloading`.
     pub fn unloaded(&self, rest: &mut Rest, unloading: &Unloading, steps: &[UnloadStep]) {
-        let errors = self.errors(rest);
-        let unloading = shown(unloading, steps, &errors);
-        let floors = errors.len();
-        self.read(rest, &errors);
+        let axes = self.axes(rest);
+        let errors = self.errors(axes.axes());
+        let unloading = shown(unloading, steps, &axes, &errors);
+        self.read(rest, &axes, &errors);
         let exact = rest
             .of_displacement
             .iter()
             .chain(&rest.of_force)
             .all(Vec::is_empty);
-        let instruments = self.instruments(floors);
+        let instruments = self.instruments(errors.len());
+        let floors = rest.force.len();
+        let forces = axes.forces_of(&rest.force);
+        let alone = |axis: usize, force: f64| -> Vec<f64> {
+            let at = |floor: usize| axes.forces_at(floor).into_iter().filter(|at| at.0 == axis);
+            let floors = 0..floors;
+            floors
+                .map(|floor| at(floor).map(|at| at.1 * force).sum())
+                .collect()
+        };
         for (axis, (force_error, _)) in errors.iter().enumerate() {
             let calibration = self.whole.rig.calibration_of(axis);
             moves(
                 rest,
                 &unloading,
                 Source::ForceZero(axis),
-                &alone(axis, calibration.zero(), floors),
+                &alone(axis, calibration.zero()),
             );
-            let below = instruments.below(axis)[0].error_of(rest.force[axis]);
+            let below = instruments.below(axis)[0].error_of(forces[axis]);
             moves(
                 rest,
                 &unloading,
                 Source::ForceBelowRange(axis),
-                &alone(axis, below, floors),
+                &alone(axis, below),
             );
             moves(
                 rest,
                 &unloading,
-                self.reading(2 * floors + axis),
-                &alone(axis, *force_error, floors),
+                self.reading(2 * errors.len() + axis),
+                &alone(axis, *force_error),
             );
         }
         let most = |values: &mut dyn Iterator<Item = f64>| {
@@ -79,18 +89,29 @@ impl UncertainRun<'_> {
 
     /// For a specimen that was moved to a position, whatever force it carries there.
     pub fn brought(&self, rest: &mut Rest) {
-        let errors = self.errors(rest);
-        self.read(rest, &errors);
+        let axes = self.axes(rest);
+        let errors = self.errors(axes.axes());
+        self.read(rest, &axes, &errors);
     }
 
-    fn errors(&self, rest: &Rest) -> Errors {
-        let instruments = self.instruments(rest.force.len());
+    /// The axes from which the floors were read.
+    fn axes(&self, rest: &Rest) -> Assemblies {
+        let frame = self
+            .whole
+            .specimen_on_the_rig()
+            .and_then(|specimen| specimen.frame.as_ref());
+        let assemblies = frame.and_then(Assemblies::of);
+        assemblies.unwrap_or_else(|| Assemblies::whole(rest.force.len()))
+    }
+
+    fn errors(&self, axes: usize) -> Errors {
+        let instruments = self.instruments(axes);
         let of_axis = |axis| {
             let errors = instruments.errors(axis);
             let [force, displacement] = errors.quantization();
             (errors.noise.hypot(force), displacement)
         };
-        (0..rest.force.len()).map(of_axis).collect()
+        (0..axes).map(of_axis).collect()
     }
 
     const fn reading(&self, reading: usize) -> Source {
@@ -108,35 +129,44 @@ impl UncertainRun<'_> {
     }
 
     /// The reading there is as uncertain as any other.
-    fn read(&self, rest: &mut Rest, errors: &Errors) {
-        let floors = errors.len();
-        let (mut of_displacement, mut of_force) = (Vec::new(), Vec::new());
-        let instruments = self.instruments(floors);
-        for (axis, (force_error, displacement_error)) in errors.iter().enumerate() {
+    fn read(&self, rest: &mut Rest, axes: &Assemblies, errors: &Errors) {
+        let instruments = self.instruments(errors.len());
+        let displacements = axes.axes_of(&rest.displacement);
+        let forces = axes.forces_of(&rest.force);
+        let of_position = |axis: usize| {
             let calibration = self.whole.rig.calibration_of(axis);
-            let (displacement, force) = (rest.displacement[axis], rest.force[axis]);
-            let [force_below, displacement_below] = instruments.below(axis);
-            of_displacement.push(some([
+            let [_, below] = instruments.below(axis);
+            [
                 (
                     Source::DisplacementScale(axis),
-                    displacement * calibration.displacement_uncertainty,
+                    displacements[axis] * calibration.displacement_uncertainty,
                 ),
                 (
                     Source::DisplacementBelowRange(axis),
-                    displacement_below.error_of(displacement),
+                    below.error_of(displacements[axis]),
                 ),
-                (self.reading(axis), *displacement_error),
-            ]));
-            of_force.push(some([
+                (self.reading(axis), errors[axis].1),
+            ]
+        };
+        let of_cell = |(axis, sign): (usize, f64)| {
+            let calibration = self.whole.rig.calibration_of(axis);
+            let [below, _] = instruments.below(axis);
+            [
                 (
                     Source::ForceScale(axis),
-                    force * calibration.force_uncertainty,
+                    forces[axis] * calibration.force_uncertainty,
                 ),
-                (Source::ForceBelowRange(axis), force_below.error_of(force)),
+                (Source::ForceBelowRange(axis), below.error_of(forces[axis])),
                 (Source::ForceZero(axis), calibration.zero()),
-                (self.reading(floors + axis), *force_error),
-            ]));
-        }
+                (self.reading(errors.len() + axis), errors[axis].0),
+            ]
+            .map(|(source, amount)| (source, sign * amount))
+        };
+        let floors = || 0..rest.force.len();
+        let positions = |floor: usize| axes.positions_of(floor).into_iter().flat_map(of_position);
+        let cells = |floor: usize| axes.forces_at(floor).into_iter().flat_map(of_cell);
+        let of_displacement = floors().map(|floor| some(positions(floor))).collect();
+        let of_force = floors().map(|floor| some(cells(floor))).collect();
         (rest.of_displacement, rest.of_force) = (of_displacement, of_force);
     }
 }
@@ -148,16 +178,8 @@ fn moves(rest: &mut Rest, unloading: &Unloading, source: Source, force: &[f64]) 
     }
 }
 
-/// A force \[N\] on one floor alone.
-fn alone(axis: usize, force: f64, floors: usize) -> Vec<f64> {
-    let mut all = vec![0.0; floors];
-    all[axis] = force;
-    all
-}
-
-fn some<const COUNT: usize>(parts: [(Source, f64); COUNT]) -> Vec<Contribution> {
+fn some(parts: impl Iterator<Item = (Source, f64)>) -> Vec<Contribution> {
     parts
-        .into_iter()
         .filter(|(_, amount)| *amount != 0.0)
         .map(|(source, amount)| Contribution::new(source, amount))
         .collect()
@@ -165,7 +187,12 @@ fn some<const COUNT: usize>(parts: [(Source, f64); COUNT]) -> Vec<Contribution> 
 
 /// The measured unloading stiffness: for each storey by eq. (6) over the last move that shows it, otherwise the expected one. An
 /// unloading branch that is softer than expected shows it by a longer move.
-fn shown(expected: &Unloading, steps: &[UnloadStep], errors: &Errors) -> Unloading {
+fn shown(
+    expected: &Unloading,
+    steps: &[UnloadStep],
+    axes: &Assemblies,
+    errors: &Errors,
+) -> Unloading {
     let moves = || {
         steps
             .windows(2)
@@ -182,13 +209,15 @@ fn shown(expected: &Unloading, steps: &[UnloadStep], errors: &Errors) -> Unloadi
     let farthest = moves().map(change).fold(0.0, f64::max);
     // The noise of a shear is that of all cells above it; the noise of a storey drift is that of two positions.
     let of_storey = |storey: usize| {
-        let force = errors[storey..]
-            .iter()
-            .map(|error| error.0 * error.0)
+        let force = axes
+            .shear_of(storey)
+            .into_iter()
+            .map(|axis| errors[axis].0 * errors[axis].0)
             .sum::<f64>()
             .sqrt();
-        let below = storey.checked_sub(1).map_or(0.0, |below| errors[below].1);
-        (force, errors[storey].1.hypot(below))
+        let of_position = |axis: Option<usize>| axis.map_or(0.0, |axis| errors[axis].1);
+        let [own, below] = axes.drift_of(storey).map(of_position);
+        (force, own.hypot(below))
     };
     let least = SIGNIFICANT_FRACTION * farthest;
     let readings = steps.iter().map(loaded);

@@ -6,7 +6,7 @@ use crate::report::number;
 use crate::report::run::{ClockJump, Run};
 use crate::report::wording::deviations as wording;
 use psd_plan::record::equipment::{Channel, Measures};
-use psd_plan::record::{Drift, EventKind, Outcome, Record, UNLOADING};
+use psd_plan::record::{Drift, EventKind, Outcome, UNLOADING};
 use psd_plan::schema::plan_block::DEVIATIONS;
 use psd_text::units::Dimension;
 use psd_text::units::display::trimmed;
@@ -108,7 +108,7 @@ fn beyond_calibration(run: &Run<'_>) -> Vec<String> {
     let several = equipment.channels.iter().any(|channel| channel.axis > 1);
     let outside = |channel: &Channel| {
         let ([low, high], dimension) = (channel.calibrated?, channel.measures.dimension());
-        let reached = reached(run.record, channel.measures, channel.axis.checked_sub(1)?)?;
+        let reached = reached(run, channel.measures, channel.axis.checked_sub(1)?)?;
         let side = if reached > high {
             wording::BEYOND
         } else if reached < low {
@@ -168,7 +168,7 @@ pub(in crate::report) fn position(procedure: Option<&str>, step: Option<u64>) ->
 }
 
 /// The largest absolute reading of a channel \[m\] or \[N\], for an axis counted from 0. None if nothing was recorded.
-fn reached(record: &Record, measures: Measures, axis: usize) -> Option<f64> {
+fn reached(run: &Run<'_>, measures: Measures, axis: usize) -> Option<f64> {
     let mut largest: Option<f64> = None;
     let mut give = |displacement: &[f64], force: &[f64]| {
         let read = match measures {
@@ -179,9 +179,9 @@ fn reached(record: &Record, measures: Measures, axis: usize) -> Option<f64> {
             largest = Some(largest.map_or(read.abs(), |largest| largest.max(read.abs())));
         }
     };
-    record
+    run.record
         .procedures
         .iter()
-        .for_each(|procedure| procedures::readings(&procedure.history, &mut give));
+        .for_each(|procedure| procedures::readings(run.plan, &procedure.history, &mut give));
     largest
 }

@@ -23,6 +23,7 @@ wording! {
 
     mod particulars {
         PLAN = "Plan";
+        SUBSTRUCTURES = "Substructures";
         LABORATORY = "Laboratory";
         ADDRESS = "Address";
         PLACE = "Location of the test";

@@ -5,10 +5,11 @@ use psd_physics::structure::beam::EquivalentMasses;
 use psd_physics::structure::beam::first_mode_mass_factor;
 use psd_physics::structure::portal::limit::mechanism_limit;
 use psd_physics::structure::portal::mass::equivalent_masses;
+use psd_physics::structure::substructures::Assemblies;
 use psd_plan::schema::behaviours;
 use psd_plan::{
-    Beam, Behaviour, Breaks, Deterioration, Ends, FrameMasses, Loads, Mechanism, Pinching, Portal,
-    Sections, Unloading,
+    Beam, Behaviour, Breaks, Deterioration, Ends, Frame, FrameMasses, Loads, Mechanism, Pinching,
+    Portal, Sections, Unloading,
 };
 use psd_text::units::Dimension;
 
@@ -38,6 +39,45 @@ pub fn rows(behaviour: &Behaviour, shown: Printed<'_>) -> Vec<(&'static str, Str
         ));
     }
     rows
+}
+
+/// The storeys that are tested, and those that are computed. None if the whole frame is one specimen on the rig.
+#[must_use]
+pub fn substructures(frame: &Frame) -> Option<String> {
+    let assemblies = Assemblies::of(frame)?;
+    let specimens = assemblies.specimens();
+    let tested = match &specimens[..] {
+        [] => "nothing is tested".to_owned(),
+        [one] => format!("{} tested", storeys(one)),
+        several => {
+            let several: Vec<String> = several.iter().map(|one| storeys(one)).collect();
+            format!("{} tested, each a specimen", several.join(" / "))
+        }
+    };
+    let computed = assemblies.computed();
+    Some(if computed.is_empty() {
+        tested
+    } else {
+        format!("{tested}; {} computed", storeys(&computed))
+    })
+}
+
+/// The assumptions of a test of which a part is computed.
+pub const SUBSTRUCTURES_ASSUMED: &str = "The substructures transmit shear alone: no rotation and no moment is imposed on a specimen. The \
+ models of computed storeys are stated and were not measured.";
+
+/// `storey 1`, or `storeys 1, 2`.
+fn storeys(storeys: &[usize]) -> String {
+    let numbers: Vec<String> = storeys
+        .iter()
+        .map(|storey| (storey + 1).to_string())
+        .collect();
+    let word = if storeys.len() == 1 {
+        "storey"
+    } else {
+        "storeys"
+    };
+    format!("{word} {}", numbers.join(", "))
 }
 
 /// A restoring-force model with its parameters as one string.

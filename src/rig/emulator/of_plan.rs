@@ -150,7 +150,7 @@ fn emulated_rig(
     if let Some(frame) = &specimen.frame {
         // The storeys replace it.
         let nothing = Behaviour::Elastic { stiffness: 0.0 };
-        let actuators: Vec<ActuatorSettings> = (0..frame.degrees_of_freedom())
+        let actuators: Vec<ActuatorSettings> = (0..frame.axes())
             .map(|axis| actuator(plan, link, axis, starts.get(axis).copied().unwrap_or(0.0)))
             .collect();
         let converter = |axis| {

@@ -27,7 +27,7 @@ use psd_plan::{Frame, Plan, Settle, Specimen, VirtualLink};
 
 pub use psd_plan::VIRTUAL_SPEED as OWN_SPEED;
 
-/// One degree of freedom, or the floors of a frame from the ground up.
+/// One degree of freedom, or the tested floors of a frame from the ground up.
 pub struct VirtualRig {
     name: String,
     link: VirtualLink,
@@ -79,7 +79,7 @@ impl VirtualRig {
         Self::of_springs(link, settle, Springs::of_specimen(specimen), sign)
     }
 
-    /// A rig with one axis for each floor of the frame.
+    /// A rig with one axis for each floor of the frame, or for each tested storey.
     #[must_use]
     pub fn of_frame(link: VirtualLink, settle: Settle, frame: &Frame, sign: f64) -> Self {
         Self::of_springs(link, settle, Springs::of_frame(frame), sign)

@@ -6,11 +6,12 @@ use psd_physics::relaxation::relaxation_state::{Deformed, RelaxationState};
 use psd_physics::specimen::{RestoringForce as _, SpecimenModel};
 use psd_physics::structure::SymmetricBand;
 use psd_physics::structure::cell_damping::{CellDamping, StrengthRate};
+use psd_physics::structure::substructures::on_the_rig;
 use psd_plan::{Behaviour, Frame, Specimen};
 
 /// Springs between the axes and the ground.
 pub(super) enum Springs {
-    /// `R_i = V_i − V_{i+1}`, V is the shear of each storey at its drift; one degree of freedom is one storey.
+    /// `R_i = V_i − V_{i+1}` in every assembly, V is the shear of each storey at its drift; one degree of freedom is one storey.
     Storeys(Vec<Storey>),
     /// R = K X.
     Matrix {
@@ -21,6 +22,8 @@ pub(super) enum Springs {
 
 /// One spring, and the elements in parallel with it.
 pub(super) struct Storey {
+    /// Whether it stands on the strong floor, as the lowest storey of an assembly.
+    stands: bool,
     model: SpecimenModel,
     /// The cells measure its rate-dependent force, which is zero at rest; its friction remains.
     damper: CellDamping,
@@ -34,9 +37,10 @@ pub(super) struct Storey {
 }
 
 impl Storey {
-    fn new(behaviour: &Behaviour, stiffness: f64, damper: CellDamping) -> Self {
+    fn new(behaviour: &Behaviour, stiffness: f64, damper: CellDamping, stands: bool) -> Self {
         let mut model = SpecimenModel::new(behaviour);
         Self {
+            stands,
             shear: model.move_to(0.0),
             model,
             damper: damper.with_rate_of(behaviour),
@@ -58,7 +62,7 @@ impl Springs {
             CellDamping::new(specimen.damping, specimen.coulomb)
         });
         let stiffness = SpecimenModel::new(behaviour).initial_stiffness();
-        Self::Storeys(vec![Storey::new(behaviour, stiffness, damper)])
+        Self::Storeys(vec![Storey::new(behaviour, stiffness, damper, true)])
     }
 
     pub(super) fn of_frame(frame: &Frame) -> Self {
@@ -73,18 +77,11 @@ impl Springs {
                 .collect();
             return Self::Matrix { stiffness, rows };
         }
-        let storeys = frame.storeys.iter();
-        Self::Storeys(
-            storeys
-                .map(|storey| {
-                    Storey::new(
-                        &storey.behaviour,
-                        storey.stiffness,
-                        CellDamping::new(storey.damping, storey.coulomb),
-                    )
-                })
-                .collect(),
-        )
+        let storey = |(storey, stands): (&psd_plan::Storey, bool)| {
+            let damper = CellDamping::new(storey.damping, storey.coulomb);
+            Storey::new(&storey.behaviour, storey.stiffness, damper, stands)
+        };
+        Self::Storeys(on_the_rig(frame).map(storey).collect())
     }
 
     /// Degrees of freedom.
@@ -104,10 +101,13 @@ impl Springs {
     ) {
         match self {
             Self::Storeys(storeys) => {
-                let mut below = None;
-                let drifts = drifts_of(displacement.iter().copied());
-                for ((storey, axis), drift) in storeys.iter_mut().zip(travels).zip(drifts) {
-                    let travel = below.map_or(*axis, |below| axis.relative_to(below));
+                let (mut below, mut displaced) = (None, 0.0);
+                for ((storey, axis), position) in storeys.iter_mut().zip(travels).zip(displacement)
+                {
+                    let under = std::mem::replace(&mut displaced, *position);
+                    let drift = position - if storey.stands { 0.0 } else { under };
+                    let below_it = below.filter(|_| !storey.stands);
+                    let travel = below_it.map_or(*axis, |below| axis.relative_to(below));
                     storey.shear = storey.relaxing.advance(
                         &mut storey.model,
                         &travel,
@@ -120,7 +120,10 @@ impl Springs {
                     storey.drift = drift;
                     below = Some(axis);
                 }
-                set_floor_forces(storeys.iter().map(|storey| storey.shear), restoring_force);
+                set_forces(
+                    storeys.iter().map(|storey| (storey.shear, storey.stands)),
+                    restoring_force,
+                );
             }
             Self::Matrix { stiffness, .. } => stiffness.mul_into(displacement, restoring_force),
         }
@@ -129,9 +132,9 @@ impl Springs {
     /// The axes continue at these velocities \[m/s\]: the friction of each storey follows their direction.
     pub(super) fn slide(&mut self, velocities: impl Iterator<Item = f64>) {
         if let Self::Storeys(storeys) = self {
-            for (storey, velocity) in storeys.iter_mut().zip(drifts_of(velocities)) {
+            each_drift(storeys, velocities, |storey, velocity| {
                 storey.damper.force(velocity);
-            }
+            });
         }
     }
 
@@ -146,21 +149,29 @@ impl Springs {
                 .iter()
                 .any(|storey| !storey.damper.is_none() || !storey.relaxing.is_none())
         {
-            let storeys = storeys.iter_mut().zip(drifts_of(velocities));
-            let shears = storeys.map(|(storey, velocity)| {
-                storey.damper.measured_force(storey.shear, velocity) + storey.relaxing.force()
+            let mut shears = Vec::with_capacity(storeys.len());
+            each_drift(storeys, velocities, |storey, velocity| {
+                let shear = storey.damper.measured_force(storey.shear, velocity);
+                shears.push((shear + storey.relaxing.force(), storey.stands));
             });
-            set_floor_forces(shears, force);
+            set_forces(shears.into_iter(), force);
         }
     }
 
-    /// The storey under an axis and the one above it.
+    /// The storey under an axis and the one above it in the same assembly.
     fn beside(&self, axis: usize) -> impl Iterator<Item = &Storey> {
         let storeys: &[Storey] = match self {
             Self::Storeys(storeys) => storeys,
             Self::Matrix { .. } => &[],
         };
-        storeys.iter().skip(axis).take(2)
+        let own = storeys.iter().skip(axis).take(1);
+        own.chain(
+            storeys
+                .iter()
+                .skip(axis + 1)
+                .take(1)
+                .filter(|above| !above.stands),
+        )
     }
 
     /// The relaxing parts of the force of an axis: those of its own storey and of the storey above. The force of an axis is the
@@ -182,7 +193,11 @@ impl Springs {
         let sum = |of: fn(&Storey) -> f64| {
             let mut beside = self.beside(axis).map(of);
             let (own, above) = (beside.next().unwrap_or(0.0), beside.next().unwrap_or(0.0));
-            if axis > 0 {
+            if self
+                .beside(axis)
+                .next()
+                .is_some_and(|storey| !storey.stands)
+            {
                 2.0 * own + 2.0 * above
             } else {
                 own + 2.0 * above
@@ -206,18 +221,26 @@ impl Springs {
     }
 }
 
-/// Storey drifts from the displacements of the floors, or their velocities from those of the floors.
-fn drifts_of(floors: impl Iterator<Item = f64>) -> impl Iterator<Item = f64> {
-    floors.scan(0.0, |below, floor| {
-        Some(floor - std::mem::replace(below, floor))
-    })
+/// Calls with the velocity of the drift of each storey \[m/s\], from those of the axes.
+fn each_drift(
+    storeys: &mut [Storey],
+    axes: impl Iterator<Item = f64>,
+    mut take: impl FnMut(&mut Storey, f64),
+) {
+    let mut below = 0.0;
+    for (storey, axis) in storeys.iter_mut().zip(axes) {
+        let below = std::mem::replace(&mut below, axis);
+        let relative = axis - if storey.stands { 0.0 } else { below };
+        take(storey, relative);
+    }
 }
 
-/// The restoring force of each floor \[N\], from the shears of its own storey and of the one above.
-fn set_floor_forces(shears: impl Iterator<Item = f64>, force: &mut [f64]) {
+/// The force of each axis \[N\], from the shears of its own storey and of the one above; each shear with whether its storey stands on the
+/// strong floor.
+fn set_forces(shears: impl Iterator<Item = (f64, bool)>, force: &mut [f64]) {
     let mut below: Option<&mut f64> = None;
-    for (force, shear) in force.iter_mut().zip(shears) {
-        if let Some(below) = below.take() {
+    for (force, (shear, stands)) in force.iter_mut().zip(shears) {
+        if let Some(below) = below.take().filter(|_| !stands) {
             *below -= shear;
         }
         *force = shear;

@@ -80,10 +80,10 @@ fn compare(plan: &Plan, what: &str) -> Outcome {
 }
 
 /// The largest absolute displacement and force of the steps of a run.
-fn reach(record: &Record) -> [f64; 2] {
+fn reach(plan: &Plan, record: &Record) -> [f64; 2] {
     let mut reach = [0.0_f64; 2];
     for procedure in &record.procedures {
-        crate::procedures::readings(&procedure.history, &mut |displacement, force| {
+        crate::procedures::readings(plan, &procedure.history, &mut |displacement, force| {
             for (reach, values) in reach.iter_mut().zip([displacement, force]) {
                 let values = values.iter().map(|value| value.abs());
                 *reach = values.fold(*reach, f64::max);
@@ -108,7 +108,7 @@ fn a_run_of_a_study_is_the_recorded_run() {
         };
         plan.decision_rule = DecisionRule::ValueAlone;
         let name = path.display().to_string();
-        let [displacement, force] = reach(&recorded(&plan));
+        let [displacement, force] = reach(&plan, &recorded(&plan));
         let within = |high: f64| Interval { low: -high, high };
         let mut variants = vec![(name.clone(), plan.clone())];
         let mut limited = plan.clone();

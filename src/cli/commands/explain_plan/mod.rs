@@ -200,6 +200,19 @@ impl<'a> DryRun<'a> {
                 section(&format!("Specimen {}", specimen.name), rows);
             }
         }
+        for specimen in &self.plan.specimens {
+            let frame = specimen.frame.as_ref();
+            if let Some(text) = frame.and_then(specimen_text::substructures) {
+                let rows = vec![
+                    vec!["substructures".to_owned(), text],
+                    vec![
+                        "assumed".to_owned(),
+                        specimen_text::SUBSTRUCTURES_ASSUMED.to_owned(),
+                    ],
+                ];
+                section(&format!("Specimen {}", specimen.name), rows);
+            }
+        }
         let lagging = tracking::lagging(self.plan);
         section("Start", start::rows(self.plan));
         section("Motion", self.motions());

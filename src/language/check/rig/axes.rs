@@ -7,8 +7,10 @@ use crate::check::expressions::choice::Chosen;
 use crate::check::violations::{DayOfNoCalibration, EmptyList, NotADay};
 use crate::check::wording::axes_of;
 use crate::codes::E615;
+use crate::syntax::ast::ExprKind;
+use psd_physics::structure::substructures::Assemblies;
 use psd_plan::schema::{limits, rig as schema};
-use psd_plan::{AxisCalibration, AxisPlan, Specimen};
+use psd_plan::{AxisCalibration, AxisPlan, Frame, Part, Specimen};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 
@@ -84,7 +86,15 @@ fn axis<'a>(
     );
     let (actuator, load_cell) = (actuator?, load_cell?);
     let link = |device: &Option<Device>| device.as_ref().map(|device| device.link.clone());
+    let storey = checker.optional_argument(chosen, schema::AXIS_STOREY, context);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a count from 1 to 64"
+    )]
+    let storey = storey?.map(|storey: f64| storey as usize - 1);
     let plan = AxisPlan {
+        storey,
         polarity: polarity?,
         pretest_check: pretest_check?,
         displacement: displacement?,
@@ -201,6 +211,7 @@ struct AnotherNumberOfAxes<'a> {
     axes: usize,
     specimen: &'a str,
     storeys: usize,
+    is_hybrid: bool,
     at: Span,
 }
 
@@ -213,9 +224,11 @@ impl Violation for AnotherNumberOfAxes<'_> {
             axes,
             specimen,
             storeys,
+            is_hybrid,
             at,
         } = self;
         let needs = match storeys {
+            _ if is_hybrid => format!("the frame `{specimen}` has {} tested", storeys_of(storeys)),
             1 => format!("`{specimen}` has one degree of freedom"),
             _ => format!("the frame `{specimen}` has {storeys} storeys"),
         };
@@ -259,7 +272,97 @@ pub fn check_specimen(checker: &mut Checker, rig: Option<&CheckedRig>, specimen:
             axes,
             specimen: &specimen.name,
             storeys,
+            is_hybrid: specimen.frame.as_ref().and_then(Assemblies::of).is_some(),
             at: written.value.span,
         });
+        return;
+    }
+    if let (Some(frame), Some(link)) = (&specimen.frame, plan.link.as_real()) {
+        let at = |axis: usize| match &written.value.kind {
+            ExprKind::List { items, .. } => {
+                items.get(axis).map_or(written.value.span, |item| item.span)
+            }
+            _ => written.value.span,
+        };
+        check_storeys(checker, frame, &link.axes, &at);
+    }
+}
+
+#[derive(Violation)]
+#[violation(E615, "axis {axis} moves storey {storey}, which is not on the rig")]
+#[help("{}", help)]
+struct AxisWithoutStorey {
+    axis: usize,
+    storey: usize,
+    #[label("{}", label)]
+    at: Span,
+    label: &'static str,
+    help: String,
+}
+
+#[derive(Violation)]
+#[violation(E615, "storey {storey} is tested, but no axis moves it")]
+#[help("list the axes from the ground up, one for each tested storey: `axis(storey: {storey})`")]
+struct StoreyWithoutAxis {
+    storey: usize,
+    #[label("this axis moves storey {moves}")]
+    at: Span,
+    moves: usize,
+}
+
+/// The storeys that axes name are the tested storeys, from the ground up.
+fn check_storeys(
+    checker: &mut Checker,
+    frame: &Frame,
+    axes: &[AxisPlan],
+    at: &dyn Fn(usize) -> Span,
+) {
+    let storeys = frame.degrees_of_freedom();
+    let is_tested = |storey: usize| match frame.storeys.get(storey) {
+        Some(storey) => storey.part != Part::Computed,
+        None => storey < storeys,
+    };
+    let tested: Vec<usize> = (0..storeys).filter(|storey| is_tested(*storey)).collect();
+    let named = axes.iter().enumerate();
+    let named: Vec<(usize, usize)> = named
+        .filter_map(|(axis, plan)| Some((axis, plan.storey?)))
+        .collect();
+    for (axis, storey) in named {
+        if !is_tested(storey) {
+            let known = tested.iter().map(|storey| (storey + 1).to_string());
+            let (label, help) = if storey < storeys {
+                (
+                    "the storey is computed",
+                    "write `part: tested` in the storey, or name a tested one: ",
+                )
+            } else {
+                ("no such storey", "name a tested storey: ")
+            };
+            checker.report(AxisWithoutStorey {
+                axis: axis + 1,
+                storey: storey + 1,
+                at: at(axis),
+                label,
+                help: format!("{help}{}", known.collect::<Vec<String>>().join(", ")),
+            });
+            return;
+        }
+        if tested[axis] != storey {
+            checker.report(StoreyWithoutAxis {
+                storey: tested[axis] + 1,
+                at: at(axis),
+                moves: storey + 1,
+            });
+            return;
+        }
+    }
+}
+
+/// `one storey`, or `3 storeys`.
+fn storeys_of(count: usize) -> String {
+    if count == 1 {
+        "one storey".to_owned()
+    } else {
+        format!("{count} storeys")
     }
 }

@@ -7,9 +7,12 @@ use crate::check::checker::Checker;
 use crate::check::wording::shown;
 use crate::codes::{E667, W732};
 use crate::syntax::ast::{Expr, ExprKind};
+use psd_physics::structure::substructures::Assemblies;
 use psd_plan::formula::{Formula, Function, ProcedureId, ResultPart, ResultReference};
-use psd_plan::schema::Possible;
-use psd_plan::{Comparison, Condition, Limits, Procedure, ProcedureKind, Requirement, Test};
+use psd_plan::schema::{Kind, Possible};
+use psd_plan::{
+    Comparison, Condition, Interval, Limits, Procedure, ProcedureKind, Requirement, Test,
+};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 use psd_text::units::Dimension;
@@ -268,7 +271,12 @@ fn possible(
         low: (0.0, false),
         ..Values::ALL
     };
-    let displacement = limits.displacement;
+    // The limits of the axes do not bound floors that are above computed ones.
+    let displacement = if tests_a_part(checker, procedures, reference.procedure) {
+        Interval::ALL
+    } else {
+        limits.displacement
+    };
     let before = &procedures[..reference.procedure.0];
     let starts_positive = || {
         before.iter().all(|(_, procedure)| {
@@ -294,6 +302,23 @@ fn possible(
             limit: displacement.high,
         },
     })
+}
+
+/// Whether a procedure tests a frame of which the rig carries a part.
+fn tests_a_part(
+    checker: &Checker,
+    procedures: &[(usize, Option<Procedure>)],
+    procedure: ProcedureId,
+) -> bool {
+    let tested = || {
+        let kind = &procedures.get(procedure.0)?.1.as_ref()?.kind;
+        let (block, _) = checker
+            .scope
+            .of_kind(Kind::Specimen)
+            .nth(kind.specimen()?)?;
+        Assemblies::of(checker.frames.get(&block)?.as_deref()?)
+    };
+    tested().is_some()
 }
 
 /// The values that a result can have.

@@ -1,6 +1,7 @@
 //! Many degrees of freedom: the storeys of a frame, and its matrices.
 
 use super::behaviours::{BEHAVIOURS, STIFFNESS};
+use super::methods::TRUTH;
 use crate::schema::types::{Field, Variant};
 use psd_text::units::Dimension;
 
@@ -15,7 +16,26 @@ pub mod storey {
     pub const BEHAVIOUR: &str = "behaviour";
     pub const DAMPING: &str = "damping";
     pub const COULOMB: &str = "coulomb";
+    pub const PART: &str = "part";
+    pub const TESTED: &str = "tested";
+    pub const COMPUTED: &str = "computed";
+    pub const APART: &str = "apart";
 }
+
+/// The substructure that gives the shear of a storey.
+const PARTS: &[Variant] = &[
+    Variant::with(
+        storey::TESTED,
+        &[Field::choice(
+            storey::APART,
+            TRUTH,
+            "whether it is a separate specimen, and not one with the tested storey below",
+        )
+        .default_in_words("false")],
+        "on the rig, with an axis; adjacent tested storeys are one specimen",
+    ),
+    Variant::word(storey::COMPUTED, "by its `behaviour`, without an axis"),
+];
 
 const STOREY: &[Variant] = &[Variant::with(
     "storey",
@@ -51,7 +71,7 @@ const STOREY: &[Variant] = &[Variant::with(
         Field::choice(
             storey::BEHAVIOUR,
             BEHAVIOURS,
-            "restoring-force model of a virtual rig: storey shear against drift",
+            "restoring-force model of a virtual rig or of a computed storey: storey shear against drift",
         )
         .default_in_words("elastic with `stiffness`"),
         Field::quantity(
@@ -68,6 +88,12 @@ const STOREY: &[Variant] = &[Variant::with(
         )
         .or(0.0, "N")
         .at_least_zero(),
+        Field::choice(
+            storey::PART,
+            PARTS,
+            "substructure that gives the shear of the storey",
+        )
+        .default_in_words("tested"),
     ],
     "floor on its columns",
 )];

@@ -21,6 +21,7 @@ use psd_physics::impact::summary::ImpactSummary;
 use psd_physics::reintegration::impact::{ImpactValues, Outcome, predicted_velocities, rerun};
 use psd_physics::reintegration::perturbation::Perturbation;
 use psd_physics::reintegration::recorded_path::{ContinuousMotion, Reading, RecordedPath};
+use psd_physics::structure::substructures::Substructures;
 use psd_plan::formula::Formula;
 use psd_plan::procedures::impact::block as schema;
 use psd_plan::record::{ImpactHistory, ImpactStep, NamedResult};
@@ -151,6 +152,16 @@ pub(super) fn striker_sources(whole: &Plan, striker: usize) -> [(Source, f64); 2
     ]
 }
 
+/// An impact as it was recorded.
+#[derive(Clone, Copy)]
+pub(crate) struct RecordedRun<'a> {
+    pub setting: &'a Setting,
+    pub history: &'a ImpactHistory,
+    pub summary: &'a ImpactSummary,
+    /// At its start; None if the rig carries the whole structure.
+    pub substructures: Option<&'a Substructures>,
+}
+
 /// The uncertain inputs of an impact on either structure.
 #[derive(Clone, Copy)]
 pub(crate) enum UncertaintyInputs<'a> {
@@ -182,12 +193,16 @@ impl<'a> UncertaintyInputs<'a> {
     pub(crate) fn propagate(
         &self,
         plan: &Impact,
-        setting: &Setting,
-        history: &ImpactHistory,
-        summary: &ImpactSummary,
+        recorded: RecordedRun<'_>,
         results: &mut [NamedResult],
         progress: Progress<'_, Stop>,
     ) -> Result<(), Unknown<Stop>> {
+        let RecordedRun {
+            setting,
+            history,
+            summary,
+            substructures,
+        } = recorded;
         match (self, &history.frame) {
             (Self::Storey(storey), Some(frame)) => storey::propagate(
                 storey,
@@ -196,6 +211,7 @@ impl<'a> UncertaintyInputs<'a> {
                     setting,
                     floors: &frame.floors,
                     summary,
+                    substructures,
                 },
                 results,
                 progress,

@@ -17,6 +17,7 @@ use psd_physics::reintegration::frame::{FloorImpact, Floors, FrameRun, StrikerOu
 use psd_physics::reintegration::frame_path::FramePath;
 use psd_physics::reintegration::impact::ImpactValues;
 use psd_physics::reintegration::perturbation::Perturbation;
+use psd_physics::structure::substructures::Substructures;
 use psd_plan::procedures::impact::block as schema;
 use psd_plan::record::{FloorStep, NamedResult};
 use psd_plan::uncertainty::engine::{Evaluate, Evaluation, Progress, Shifts, Unknown};
@@ -29,6 +30,8 @@ pub(crate) struct StoreyRecord<'a> {
     pub setting: &'a Setting,
     pub floors: &'a [FloorStep],
     pub summary: &'a ImpactSummary,
+    /// At the start of the impact; None if the rig carries the whole frame.
+    pub substructures: Option<&'a Substructures>,
 }
 
 /// Gives `results` their contributions.
@@ -43,12 +46,17 @@ pub(crate) fn propagate(
         setting,
         floors: history,
         summary,
+        substructures,
     } = recorded;
     let (Some(target), Some(frame)) = (plan.storey(), setting.frame()) else {
         return Err("no floor of a frame is struck".to_owned().into());
     };
-    let path = uncertainty.path(frame, history.iter().map(|step| &step.floors))?;
-    let floors = uncertainty.floors();
+    let path = uncertainty.path(
+        frame,
+        history.iter().map(|step| &step.floors),
+        substructures,
+    )?;
+    let axes = uncertainty.axes();
     let mut evaluate = RecordedStoreyImpact {
         uncertainty,
         plan,
@@ -61,14 +69,19 @@ pub(crate) fn propagate(
     let inputs = evaluate.inputs(&[])?;
     let found = inputs
         .run
-        .struck(&inputs.impact, &evaluate.path, &Perturbation::none(floors))
+        .struck(&inputs.impact, &evaluate.path, &Perturbation::none(axes))
         .map_err(|error| error.to_string())?;
     if !same(&found.impact.values.summary, summary)
         || !leads_there(&found.floors.ends, schema::FLOOR_DISPLACEMENT, results)
     {
         return Err(LEADS_ELSEWHERE.to_owned().into());
     }
-    evaluate.path = uncertainty.with_velocities(frame, evaluate.path, found.floors.velocities)?;
+    evaluate.path = uncertainty.with_velocities(
+        frame,
+        evaluate.path,
+        found.floors.velocities,
+        substructures,
+    )?;
     let layout = layout_of(&inputs.numbers(
         &found.impact.values,
         &found.striker,
@@ -85,7 +98,7 @@ pub(crate) fn propagate(
     let sources = uncertainty.sources(&contact::formulas(&plan.contact), &stated)?;
     let mut contributions = uncertainty.run.contributions(
         &evaluate,
-        floors,
+        axes,
         sources,
         history.len(),
         reported,
@@ -230,6 +243,8 @@ impl Evaluate for RecordedStoreyImpact<'_, '_> {
         let periods = properties.modes.periods.clone();
         let run = FrameRun {
             matrices: properties.matrices,
+            operator: properties.operator,
+            computed_factors: uncertainty.computed_factors(&frame),
             ..uncertainty.frame_run(steps)
         };
         Ok(StoreyInputs {

@@ -4,7 +4,7 @@ use super::described;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::report::wording::specimen as specimen_text;
-use psd_plan::{Frame, Ground};
+use psd_plan::{Frame, Ground, Part};
 use psd_text::units::Dimension;
 
 /// Storeys from the ground up, or the files of the matrices.
@@ -21,17 +21,26 @@ pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
         rows.push(("stiffness matrix", stiffness.clone()));
         rows.push(("virtual behaviour", "elastic, R = K·X".to_owned()));
     }
+    let substructures = specimen_text::substructures(frame);
+    rows.extend(substructures.clone().map(|text| ("substructures", text)));
     body.push(described(rows));
     if frame.storeys.is_empty() {
         return;
     }
+    let is_hybrid = substructures.is_some();
+    let behaviour = if is_hybrid {
+        "Behaviour"
+    } else {
+        "Virtual behaviour"
+    };
     let mut columns = vec![
         Column::numbers("Storey"),
         Column::numbers("Mass"),
         Column::numbers("Stiffness"),
         Column::numbers("Height"),
-        Column::words("Virtual behaviour", 1),
     ];
+    columns.extend(is_hybrid.then(|| Column::words("Part", 1)));
+    columns.push(Column::words(behaviour, 1));
     // A column that is 0 for every storey is omitted.
     let damping = frame.storeys.iter().any(|storey| storey.damping != 0.0);
     let friction = frame.storeys.iter().any(|storey| storey.coulomb != 0.0);
@@ -49,8 +58,13 @@ pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
                     |height| number::stated(height, Dimension::LENGTH),
                 )
                 .into(),
-            specimen_text::words(&storey.behaviour, &number::stated).into(),
         ];
+        let part = match storey.part {
+            Part::Tested { .. } => "tested",
+            Part::Computed => "computed",
+        };
+        cells.extend(is_hybrid.then(|| part.into()));
+        cells.push(specimen_text::words(&storey.behaviour, &number::stated).into());
         cells.extend(damping.then(|| number::stated(storey.damping, Dimension::DAMPING).into()));
         cells.extend(friction.then(|| number::stated(storey.coulomb, Dimension::FORCE).into()));
         cells
@@ -59,6 +73,9 @@ pub(crate) fn structure(frame: &Frame, body: &mut Vec<Block>) {
         columns,
         rows: frame.storeys.iter().enumerate().map(row).collect(),
     }));
+    if is_hybrid {
+        body.push(Block::note(specimen_text::SUBSTRUCTURES_ASSUMED));
+    }
 }
 
 /// The ground-motion record as read.

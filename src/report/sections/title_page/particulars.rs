@@ -5,7 +5,7 @@ use crate::report::document::Text;
 use crate::report::run::Run;
 use crate::report::status::particulars::{FRONT, Wanted, missing_names, stated};
 use crate::report::status::report_status;
-use crate::report::wording::particulars as wording;
+use crate::report::wording::{particulars as wording, specimen as specimen_text};
 use psd_plan::schema::plan_block::{DATE, REVISION};
 
 /// Names and values that are stated; the plan with its digest last. A simulation is no test: its date is beside the title only.
@@ -20,7 +20,15 @@ pub(in super::super) fn rows(run: &Run<'_>) -> Vec<(Text, Text)> {
             stated(run, particular.field)?.into(),
         ))
     });
-    rows.chain([(wording::PLAN.into(), plan(run))]).collect()
+    let frames = run
+        .plan
+        .specimens
+        .iter()
+        .filter_map(|specimen| specimen.frame.as_ref());
+    let substructures = frames.filter_map(specimen_text::substructures);
+    rows.chain(substructures.map(|text| (wording::SUBSTRUCTURES.into(), text.into())))
+        .chain([(wording::PLAN.into(), plan(run))])
+        .collect()
 }
 
 /// Names of particulars that are not stated. Those that a notice below the verdict lists are omitted. A simulation lacks none.

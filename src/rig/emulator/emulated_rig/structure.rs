@@ -1,11 +1,11 @@
-//! The structure on an emulated rig: a specimen of one degree of freedom, or a frame with an actuator at every floor. In: positions and
+//! The structure on an emulated rig: a specimen of one degree of freedom, or a frame with an actuator at every tested storey. In: positions and
 //! moves of the actuators. Out: the restoring force at each. It knows no rig and no sensor.
 
 use psd_physics::relaxation::maxwell::Motion;
 use psd_physics::relaxation::relaxation_state::{Deformed, RelaxationState};
 use psd_physics::specimen::SpecimenModel;
 use psd_physics::structure::cell_damping::CellDamping;
-use psd_physics::structure::{drifts, floor_forces};
+use psd_physics::structure::substructures::on_the_rig;
 use psd_plan::{Behaviour, Frame};
 
 #[derive(Debug)]
@@ -19,6 +19,8 @@ pub enum Structure {
 /// A restoring-force model and the damping beside it.
 #[derive(Debug)]
 pub struct Storey {
+    /// Whether it stands on the strong floor, as the lowest storey of an assembly.
+    stands: bool,
     model: SpecimenModel,
     damping: CellDamping,
     relaxing: RelaxationState,
@@ -27,8 +29,9 @@ pub struct Storey {
 }
 
 impl Storey {
-    fn new(behaviour: &Behaviour, damping: CellDamping) -> Self {
+    fn new(behaviour: &Behaviour, damping: CellDamping, stands: bool) -> Self {
         Self {
+            stands,
             model: SpecimenModel::new(behaviour),
             damping: damping.with_rate_of(behaviour),
             relaxing: RelaxationState::new(behaviour),
@@ -58,16 +61,16 @@ impl Structure {
     /// `damping`: c of c·v \[N·s/m\].
     pub fn of_one(behaviour: &Behaviour, damping: f64) -> Self {
         let damping = CellDamping::new(damping, 0.0);
-        Self::Storeys(vec![Storey::new(behaviour, damping)])
+        Self::Storeys(vec![Storey::new(behaviour, damping, true)])
     }
 
     pub fn of_frame(frame: &Frame) -> Self {
         if frame.storeys.is_empty() {
             return Self::Matrix(frame.stiffness.clone());
         }
-        let storeys = frame.storeys.iter().map(|storey| {
+        let storeys = on_the_rig(frame).map(|(storey, stands)| {
             let damping = CellDamping::new(storey.damping, storey.coulomb);
-            Storey::new(&storey.behaviour, damping)
+            Storey::new(&storey.behaviour, damping, stands)
         });
         Self::Storeys(storeys.collect())
     }
@@ -77,11 +80,12 @@ impl Structure {
     pub fn bend(&mut self, positions: &[f64], moved: &[f64], going: f64, seconds: f64) -> Vec<f64> {
         match self {
             Self::Storeys(storeys) => {
-                let apart = of_drifts(positions).into_iter().zip(of_drifts(moved));
+                let drifts = of_drifts(storeys, positions);
+                let apart = drifts.into_iter().zip(of_drifts(storeys, moved));
                 for (storey, (drift, moved)) in storeys.iter_mut().zip(apart) {
                     storey.bend(drift, moved, [going, seconds - going]);
                 }
-                of_floors(storeys.iter().map(|storey| storey.shear))
+                of_axes(storeys, storeys.iter().map(|storey| storey.shear).collect())
             }
             Self::Matrix(rows) => rows
                 .iter()
@@ -101,15 +105,15 @@ impl Structure {
             return vec![force + storey.relaxing.force()];
         }
         // A fault can reduce the force of a floor. Only the forces in parallel with the storeys are added here.
-        let storeys = storeys.iter_mut().zip(of_drifts(velocities));
-        let beside = storeys.map(|(storey, velocity)| {
+        let drifts = of_drifts(storeys, velocities);
+        let beside = storeys.iter_mut().zip(drifts).map(|(storey, velocity)| {
             storey.damping.measured_force(storey.shear, velocity) - storey.shear
                 + storey.relaxing.force()
         });
-        let floors = of_floors(beside);
+        let beside = beside.collect();
         forces
             .iter()
-            .zip(floors)
+            .zip(of_axes(storeys, beside))
             .map(|(f, more)| f + more)
             .collect()
     }
@@ -126,24 +130,29 @@ impl Structure {
     /// Sets the present velocities of the actuators \[m/s\]: friction acts against the last motion.
     pub fn goes(&mut self, velocities: &[f64]) {
         if let Self::Storeys(storeys) = self {
-            for (storey, velocity) in storeys.iter_mut().zip(of_drifts(velocities)) {
+            let drifts = of_drifts(storeys, velocities);
+            for (storey, velocity) in storeys.iter_mut().zip(drifts) {
                 storey.damping.force(velocity);
             }
         }
     }
 }
 
-/// The drift of each storey, of displacements or of velocities of the floors.
-fn of_drifts(floors: &[f64]) -> Vec<f64> {
-    let mut drift = vec![0.0; floors.len()];
-    drifts(floors, &mut drift);
-    drift
+/// The drift of each storey, of displacements or of velocities of the actuators.
+fn of_drifts(storeys: &[Storey], axes: &[f64]) -> Vec<f64> {
+    let below = std::iter::once(&0.0).chain(axes);
+    let storeys = storeys.iter().zip(axes.iter().zip(below));
+    storeys
+        .map(|(storey, (axis, below))| axis - if storey.stands { 0.0 } else { *below })
+        .collect()
 }
 
-/// The force at each floor \[N\] from the shears of the storeys \[N\].
-fn of_floors(shears: impl Iterator<Item = f64>) -> Vec<f64> {
-    let shears: Vec<f64> = shears.collect();
-    let mut forces = vec![0.0; shears.len()];
-    floor_forces(&shears, &mut forces);
-    forces
+/// The force at each actuator \[N\] from the shears of the storeys \[N\].
+fn of_axes(storeys: &[Storey], mut shears: Vec<f64>) -> Vec<f64> {
+    for axis in 1..shears.len() {
+        if !storeys[axis].stands {
+            shears[axis - 1] -= shears[axis];
+        }
+    }
+    shears
 }

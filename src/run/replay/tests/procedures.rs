@@ -5,9 +5,9 @@ use psd_plan::formula::Formula::Constant;
 use psd_plan::formula::{Formula, ProcedureId, ResultPart, ResultReference};
 use psd_plan::{
     Behaviour, Between, Comparison, Condition, Cycle, DampingSweep, DriftCheck, Escalate, Frame,
-    Ground, Impact, InspectTrigger, Integrator, Level, Mode, Move, Plan, Procedure, ProcedureKind,
-    Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload, Until, WatchedHold,
-    WatchedModel, ZeroAfter,
+    Ground, Impact, InspectTrigger, Integrator, Level, Mode, Move, Part, Plan, Procedure,
+    ProcedureKind, Shake, ShakeDamping, Sides, Stepping, StiffnessRamp, Storey, Test, Unload,
+    Until, WatchedHold, WatchedModel, ZeroAfter,
 };
 use psd_text::units::Dimension;
 
@@ -106,6 +106,15 @@ pub(super) fn shaken(mode: Mode) -> Plan {
         duration: None,
     };
     plan.procedures = elastic_plan(300.0, vec![ProcedureKind::Shake(shake)]).procedures;
+    plan
+}
+
+/// The same with the lower storey computed.
+pub(super) fn shaken_hybrid(mode: Mode) -> Plan {
+    let mut plan = shaken(mode);
+    let frame = plan.specimens[0].frame.as_ref().unwrap();
+    let lower = |storeys: &mut [Storey]| storeys[0].part = Part::Computed;
+    plan.specimens[0].frame = Some(frame.with(lower));
     plan
 }
 
@@ -248,6 +257,10 @@ pub(super) fn plans() -> Vec<(&'static str, Plan)> {
         ("escalate", escalating()),
         ("drift", drifting()),
         ("shake", shaken(Mode::StepAndPause)),
+        (
+            "shake with a computed storey",
+            shaken_hybrid(Mode::StepAndPause),
+        ),
         ("shake without a stop", shaken(CONTINUOUS)),
         ("storey without a stop", struck_without_a_stop()),
         ("unload", unloading()),

@@ -54,6 +54,7 @@ fn a_shake_of_two_floors() {
     );
     killed("shake");
     killed("shake without a stop");
+    killed("shake with a computed storey");
 }
 
 #[test]

@@ -4,6 +4,7 @@
 mod continuous;
 mod control_points;
 mod forged_replies;
+mod hybrid;
 mod several;
 pub(super) mod two_axes;
 

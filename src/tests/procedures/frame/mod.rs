@@ -1,6 +1,7 @@
-//! Frames: unloading, and impact series on a storey.
+//! Frames: unloading, impact series on a storey, and frames of which the rig carries a part.
 
 pub(crate) mod escalate;
+mod hybrid;
 mod unloading;
 
 use crate::procedures::unload::run::{of_frame, to_rest};
@@ -9,7 +10,7 @@ use crate::run::session::Session;
 use crate::tests::testing::elastic_plan;
 use psd_plan::formula::Formula::Constant;
 use psd_plan::record::{Rest, UnloadStep};
-use psd_plan::{Behaviour, Frame, Plan, ProcedureKind, Storey, Unload};
+use psd_plan::{Behaviour, Frame, Part, Plan, ProcedureKind, Storey, Unload};
 use psd_rig::virtual_rig;
 
 pub(super) const STIFFNESS: [f64; 3] = [4e6, 2e6, 1e6];
@@ -30,6 +31,7 @@ pub(super) fn storey(index: usize, post_yield_ratio: f64) -> Storey {
         },
         damping: 0.0,
         coulomb: 0.0,
+        part: Part::TESTED,
     }
 }
 

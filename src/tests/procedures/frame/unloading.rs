@@ -8,7 +8,7 @@ use crate::tests::testing::{elastic_plan, number, run_unwatched};
 use psd_plan::formula::Formula::Constant;
 use psd_plan::record::{History, Outcome};
 use psd_plan::{
-    Behaviour, Frame, Interval, Link, Procedure, ProcedureKind, Storey, Unload, VirtualLink,
+    Behaviour, Frame, Interval, Link, Part, Procedure, ProcedureKind, Storey, Unload, VirtualLink,
 };
 use psd_rig::virtual_rig;
 
@@ -174,6 +174,7 @@ fn one_storey_is_unloaded_as_one_degree_of_freedom() {
         behaviour: behaviour.clone(),
         damping: 0.0,
         coulomb: 0.2,
+        part: Part::TESTED,
     };
     frame.specimens[0].frame = Some(Frame::of_storeys(vec![floor]));
     let unload = Unload {

@@ -154,7 +154,7 @@ fn followed(
         step_loop::run(&steps, &stepping, &mut followed, &mut session, |start| {
             Ok((
                 &mut sine,
-                StifferSprings::of_storeys(&properties.matrices, &stepping, time_step, start),
+                StifferSprings::of_storeys(&properties, &stepping, time_step, start),
             ))
         });
     ran.unwrap_or_else(|stop| panic!("{stop}"));

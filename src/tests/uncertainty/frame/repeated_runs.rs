@@ -4,7 +4,8 @@ use super::{base_excited_plan, constant, entry, rebuilt, shake, storey, storeys}
 use crate::tests::testing::{Uniform, every, run_unwatched, scatter, struck_frame};
 use psd_plan::uncertainty::{Source, combined};
 use psd_plan::{
-    Behaviour, Contact, Link, Plan, ProcedureKind, ShakeDamping, Stepping, Storey, VirtualLink,
+    Behaviour, Contact, Link, Part, Plan, ProcedureKind, ShakeDamping, Stepping, Storey,
+    VirtualLink,
 };
 
 const RUNS: u32 = 150;
@@ -147,12 +148,26 @@ fn repeated_impacts_on_a_storey_scatter_as_predicted() {
     });
 }
 
-/// Noise of the cells of an elastic frame: runs that differ only in the seed.
+/// Noise of the cells of an elastic frame: runs that differ only in the seed. A computed storey has none.
 #[test]
 fn noise_of_the_load_cells_scatters_as_predicted() {
+    for parts in [
+        [Part::TESTED; 2],
+        [Part::TESTED, Part::Computed],
+        [Part::Computed, Part::TESTED],
+    ] {
+        noise_scatters_as_predicted(parts);
+    }
+}
+
+fn noise_scatters_as_predicted(parts: [Part; 2]) {
+    let part = |mass, stiffness, part| Storey {
+        part,
+        ..storey(mass, stiffness)
+    };
     let with = |seed: u64| {
         let mut plan = base_excited_plan(
-            vec![storey(3.0, 900.0), storey(2.0, 700.0)],
+            vec![part(3.0, 900.0, parts[0]), part(2.0, 700.0, parts[1])],
             vec![1.0; 60],
             5e-3,
         );

@@ -4,7 +4,6 @@ use psd_physics::integrator::input::FrameInput;
 use psd_physics::integrator::solver::FrameSolver;
 use psd_physics::integrator::state::FrameState;
 use psd_physics::integrator::tangents::Tangents;
-use psd_physics::statistics::DeclaredNoise;
 use psd_physics::structure::{FrameMatrices, SymmetricBand, storey_stiffness};
 use psd_plan::Integrator;
 
@@ -53,7 +52,7 @@ pub fn at<'a>(
         initial_displacement: zero,
         initial_restoring_force: zero,
         initial_load: zero,
-        noise: DeclaredNoise::NONE,
+        readings: &[],
     }
 }
 

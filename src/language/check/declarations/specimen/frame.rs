@@ -8,12 +8,12 @@ use crate::check::declarations::striker::MOST_UNCERTAIN;
 use crate::check::expressions::choice::Chosen;
 use crate::check::violations::{EmptyList, TooUncertain};
 use crate::check::wording::shown;
-use crate::codes::{E405, E409, E621, E622, E623};
+use crate::codes::{E405, E409, E621, E622, E623, E668};
 use crate::syntax::ast::{ExprKind, Ident};
 use psd_plan::procedures::impact::block as impact;
 use psd_plan::schema::frames::storey;
 use psd_plan::schema::{Field, FieldType, specimen as fields};
-use psd_plan::{Behaviour, Frame, MOST_STOREYS, Storey};
+use psd_plan::{Behaviour, Frame, MOST_STOREYS, Part, Storey};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::{Span, Spanned};
 use psd_text::units::Dimension;
@@ -224,7 +224,58 @@ fn storeys(checker: &mut Checker, block: usize) -> Option<Vec<Storey>> {
         .enumerate()
         .map(|(index, chosen)| storey(checker, chosen, index + 1, at(index), context))
         .collect();
-    storeys.into_iter().collect()
+    let storeys: Vec<Storey> = storeys.into_iter().collect::<Option<_>>()?;
+    let mut below = Part::Computed;
+    for (index, storey) in storeys.iter().enumerate() {
+        let below = std::mem::replace(&mut below, storey.part);
+        if storey.part == (Part::Tested { apart: true }) && below == Part::Computed {
+            let span = chosen[index].span(storey::PART).unwrap_or(at(index));
+            return checker.fail(ApartFromNothing {
+                number: index + 1,
+                span,
+            });
+        }
+    }
+    Some(storeys)
+}
+
+#[derive(Violation)]
+#[violation(E668, "storey {number} is `apart`, but the storey below is not tested")]
+#[help("write `part: tested`: the storey is a separate specimen anyway")]
+struct ApartFromNothing {
+    number: usize,
+    #[label("no effect")]
+    span: Span,
+}
+
+#[derive(Violation)]
+#[violation(E668, "storey {number} is computed, but has `{field}`")]
+#[help(
+    "remove `{field}`: it is in the force of a virtual rig; the frame's own damping is the `damping_ratio` of the procedure"
+)]
+struct RigDampingOfComputed<'a> {
+    number: usize,
+    field: &'a str,
+    #[label("of a virtual rig")]
+    span: Span,
+    #[label("no rig carries the storey")]
+    part: Span,
+}
+
+/// The substructure of a storey.
+fn part<'a>(checker: &mut Checker<'a>, chosen: &Chosen<'a>) -> Option<Part> {
+    if chosen.span(storey::PART).is_none() {
+        return Some(Part::TESTED);
+    }
+    let word = checker.chosen_argument(chosen, storey::PART)?;
+    if word.variant.name == storey::COMPUTED {
+        return Some(Part::Computed);
+    }
+    let apart = match word.span(storey::APART) {
+        Some(_) => checker.chosen_argument(&word, storey::APART)?.variant.name == "true",
+        None => false,
+    };
+    Some(Part::Tested { apart })
 }
 
 #[derive(Violation)]
@@ -323,8 +374,20 @@ fn storey<'a>(
     };
     let damping = checker.constant_argument(chosen, storey::DAMPING, context);
     let coulomb = checker.constant_argument(chosen, storey::COULOMB, context);
+    let part = part(checker, chosen);
     let (mass, height, behaviour, damping, coulomb) =
         (mass?, height?, behaviour?, damping?, coulomb?);
+    let part = part?;
+    for (field, value) in [(storey::DAMPING, damping), (storey::COULOMB, coulomb)] {
+        if part == Part::Computed && value != 0.0 {
+            return checker.fail(RigDampingOfComputed {
+                number,
+                field,
+                span: chosen.span(field).unwrap_or(at),
+                part: chosen.span(storey::PART).unwrap_or(at),
+            });
+        }
+    }
     let stiffness = match (total?, column?, &behaviour) {
         (Some(_), Some(_), _) => {
             let again = chosen.span(storey::COLUMN_STIFFNESS).unwrap_or(at);
@@ -391,6 +454,7 @@ fn storey<'a>(
         behaviour,
         damping,
         coulomb,
+        part,
     })
 }
 

@@ -13,6 +13,9 @@ use crate::schema::blocks::limits;
 use crate::schema::types::{Field, Variant};
 use psd_text::units::Dimension;
 
+/// The argument of an axis that names its storey.
+pub const AXIS_STOREY: &str = "storey";
+
 /// The entries of one axis, each in place of the rig's own.
 pub(super) const AXIS: &[Variant] = &[Variant::with(
     "axis",
@@ -140,6 +143,13 @@ pub(super) const AXIS: &[Variant] = &[Variant::with(
         )
         .at_least_zero()
         .default_in_words("the rig's"),
+        Field::count(
+            AXIS_STOREY,
+            1.0,
+            64.0,
+            "storey that the axis moves, counted from the ground up",
+        )
+        .default_in_words("the tested storeys in their order"),
     ],
     "actuator with its load cell",
 )];

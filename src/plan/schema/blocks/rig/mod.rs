@@ -6,6 +6,7 @@ mod forms;
 use super::devices::{LONGEST_WAIT, SERIAL, TCP};
 use crate::schema::types::{BlockKind, Field, Kind, Naming, RigKind, Variant};
 use axis::AXIS;
+pub use axis::AXIS_STOREY;
 pub use forms::{
     AFTER, DISPLACEMENT_DRIFT, FORCE_DRIFT, FORCE_RATE, FORCE_RESOLUTION, LAG, OVER, PROBE,
     PROBED_STIFFNESS, SEED, SETTLED_FOR, SETTLED_WITHIN, TIMEOUT, TRACKING, ZERO_FORCE,
@@ -99,7 +100,7 @@ pub const LIMITS: Field = Field::reference(
 pub const AXES: Field = Field::choices(
     "axes",
     AXIS,
-    "actuators with their load cells, one per storey from the ground up",
+    "actuators with their load cells, one per tested storey from the ground up",
 )
 .default_in_words("one axis")
 .of_real_rigs();

@@ -1,0 +1,491 @@
+//! The substructures of a frame of storeys: tested on a rig, or computed from a model. In: a frame, the displacements of its floors, the
+//! readings of the rig. Out: the displacements of the actuators, and the restoring forces of the floors. It knows no rig and no equation
+//! of motion.
+//!
+//! Adjacent tested storeys a…b are one assembly on the strong floor. Its axis j imposes u_j = x_j − x_(a−1), and its cell reads f_j. These
+//! forces act at the floors; the negative sum acts at floor a−1, or at the ground (Shing & Mahin 1984). Only shear is transmitted: no
+//! rotation and no moment is imposed. A measured floor stands on the measured floors below it. So the drift of a tested storey is the
+//! measured one, and that of a computed storey is the imposed one.
+
+use super::cell_damping::CellDamping;
+use super::frame::{Frame, Part, Storey};
+use super::shear_building::shears;
+use crate::relaxation::maxwell::Motion;
+use crate::relaxation::relaxation_state::{Deformed, RelaxationState};
+use crate::specimen::{Behaviour, RestoringForce as _, SpecimenModel};
+use crate::statistics::DeclaredNoise;
+
+/// Doublings of a move in the search for zero shear: from the elastic move to more than 10⁹ times as far.
+const MOST_DOUBLINGS: u32 = 30;
+
+/// What carries a storey.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Support {
+    /// A model computes its shear.
+    Computed,
+    /// It is the lowest storey of an assembly.
+    StrongFloor,
+    /// It stands on the storey below, in the same assembly.
+    Below,
+}
+
+/// The storeys of a frame that are on the rig, and their assemblies.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Assemblies {
+    /// From the ground up.
+    supports: Vec<Support>,
+}
+
+/// From the ground up; empty for a frame without storeys.
+fn supports(frame: &Frame) -> Vec<Support> {
+    let mut stood = false;
+    let support = |storey: &Storey| match storey.part {
+        Part::Computed => {
+            stood = false;
+            Support::Computed
+        }
+        Part::Tested { apart } => {
+            let joined = std::mem::replace(&mut stood, true) && !apart;
+            if joined {
+                Support::Below
+            } else {
+                Support::StrongFloor
+            }
+        }
+    };
+    frame.storeys.iter().map(support).collect()
+}
+
+/// The storeys on the rig from the ground up, each with whether it stands on the strong floor.
+pub fn on_the_rig(frame: &Frame) -> impl Iterator<Item = (&Storey, bool)> {
+    let storeys = frame.storeys.iter().zip(supports(frame));
+    storeys.filter_map(|(storey, support)| match support {
+        Support::Computed => None,
+        support => Some((storey, support == Support::StrongFloor)),
+    })
+}
+
+/// The readings that the shear and the drift of a storey are computed from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StoreyReadings {
+    /// That of one load cell and one transducer.
+    pub noise: DeclaredNoise,
+    /// Number of load cells of which the shear is the sum.
+    pub cells: f64,
+    /// Whether the drift is the difference of two transducers.
+    pub is_difference: bool,
+}
+
+impl StoreyReadings {
+    /// One degree of freedom.
+    #[must_use]
+    pub const fn of_one(noise: DeclaredNoise) -> Self {
+        Self {
+            noise,
+            cells: 1.0,
+            is_difference: false,
+        }
+    }
+
+    /// A frame with a load cell and a transducer at every floor.
+    #[must_use]
+    pub fn of_floors(noise: DeclaredNoise, floors: usize) -> Vec<Self> {
+        #[expect(clippy::cast_precision_loss, reason = "no frame has 2^53 storeys")]
+        let storey = |storey: usize| Self {
+            noise,
+            cells: (floors - storey) as f64,
+            is_difference: storey > 0,
+        };
+        (0..floors).map(storey).collect()
+    }
+
+    /// Standard deviation of the shear of independent cells \[N\].
+    #[must_use]
+    pub fn shear_noise(&self) -> f64 {
+        self.cells.sqrt() * self.noise.force
+    }
+}
+
+impl Assemblies {
+    /// None if the whole frame is one specimen on the rig.
+    #[must_use]
+    pub fn of(frame: &Frame) -> Option<Self> {
+        let supports = supports(frame);
+        let whole = |(storey, support): (usize, &Support)| {
+            let as_one = if storey == 0 {
+                Support::StrongFloor
+            } else {
+                Support::Below
+            };
+            *support == as_one
+        };
+        let is_whole = supports.iter().enumerate().all(whole);
+        (!is_whole).then_some(Self { supports })
+    }
+
+    /// So many floors, as one specimen on the rig.
+    #[must_use]
+    pub fn whole(floors: usize) -> Self {
+        let above = std::iter::repeat_n(Support::Below, floors.saturating_sub(1));
+        Self {
+            supports: std::iter::once(Support::StrongFloor).chain(above).collect(),
+        }
+    }
+
+    /// Actuators, each with a load cell.
+    #[must_use]
+    pub fn axes(&self) -> usize {
+        self.tested().count()
+    }
+
+    /// The storey of each axis, from 0.
+    pub fn tested(&self) -> impl Iterator<Item = usize> {
+        let storeys = self.supports.iter().enumerate();
+        storeys.filter_map(|(storey, support)| (*support != Support::Computed).then_some(storey))
+    }
+
+    /// Whether the storey of each axis stands on the strong floor.
+    #[must_use]
+    pub fn standing(&self) -> Vec<bool> {
+        self.tested()
+            .map(|storey| self.supports[storey] == Support::StrongFloor)
+            .collect()
+    }
+
+    /// The storeys of each assembly, from the ground up.
+    #[must_use]
+    pub fn specimens(&self) -> Vec<Vec<usize>> {
+        let mut specimens: Vec<Vec<usize>> = Vec::new();
+        for storey in self.tested() {
+            match specimens.last_mut() {
+                Some(last) if self.supports[storey] == Support::Below => last.push(storey),
+                _ => specimens.push(vec![storey]),
+            }
+        }
+        specimens
+    }
+
+    /// The storeys that models compute.
+    #[must_use]
+    pub fn computed(&self) -> Vec<usize> {
+        let storeys = 0..self.supports.len();
+        storeys
+            .filter(|storey| self.supports[*storey] == Support::Computed)
+            .collect()
+    }
+
+    /// The floor on which the assembly of a tested storey stands; None for the ground.
+    fn base_of(&self, storey: usize) -> Option<usize> {
+        let lowest = (0..=storey)
+            .rev()
+            .find(|lower| self.supports[*lower] == Support::StrongFloor);
+        lowest.unwrap_or(0).checked_sub(1)
+    }
+
+    /// Displacements or velocities of the floors become those of the tested storeys in their assemblies; 0 for computed ones.
+    #[must_use]
+    pub fn in_assemblies(&self, floors: &[f64]) -> Vec<f64> {
+        let (mut below, mut base) = (0.0, 0.0);
+        let storeys = self.supports.iter().zip(floors);
+        let relative = storeys.map(|(support, floor)| {
+            let below = std::mem::replace(&mut below, *floor);
+            if *support == Support::StrongFloor {
+                base = below;
+            }
+            if *support == Support::Computed {
+                0.0
+            } else {
+                floor - base
+            }
+        });
+        relative.collect()
+    }
+
+    /// The restoring forces of the floors become those of the actuators at the tested storeys \[N\]; 0 for computed ones.
+    #[must_use]
+    pub fn forces_in_assemblies(&self, floors: &[f64]) -> Vec<f64> {
+        let mut shear = vec![0.0; floors.len()];
+        shears(floors, &mut shear);
+        let force = |storey: usize| match (self.supports[storey], self.supports.get(storey + 1)) {
+            (Support::Computed, _) => 0.0,
+            (_, Some(Support::Below)) => floors[storey],
+            // The shear of the storey above, which is of another substructure, acts at the same floor.
+            _ => shear[storey],
+        };
+        (0..floors.len()).map(force).collect()
+    }
+
+    /// The entries of the tested storeys; none without entries.
+    #[must_use]
+    pub fn at_axes(&self, storeys: &[f64]) -> Vec<f64> {
+        let entry = |storey: usize| storeys.get(storey).copied();
+        self.tested().filter_map(entry).collect()
+    }
+
+    /// Displacements of the axes \[m\], or their velocities \[m/s\], from those of the floors.
+    #[must_use]
+    pub fn axes_of(&self, floors: &[f64]) -> Vec<f64> {
+        self.at_axes(&self.in_assemblies(floors))
+    }
+
+    /// Forces of the axes \[N\], from the restoring forces of the floors.
+    #[must_use]
+    pub fn forces_of(&self, floors: &[f64]) -> Vec<f64> {
+        self.at_axes(&self.forces_in_assemblies(floors))
+    }
+
+    /// The readings of every storey, if each cell and each transducer has this noise.
+    #[must_use]
+    pub fn readings(&self, noise: DeclaredNoise) -> Vec<StoreyReadings> {
+        #[expect(clippy::cast_precision_loss, reason = "no frame has 2^53 storeys")]
+        let storey = |storey: usize| StoreyReadings {
+            noise: if self.supports[storey] == Support::Computed {
+                DeclaredNoise::NONE
+            } else {
+                noise
+            },
+            cells: self.shear_of(storey).len() as f64,
+            is_difference: self.supports[storey] == Support::Below,
+        };
+        (0..self.supports.len()).map(storey).collect()
+    }
+
+    /// The axis of a storey, from 0; None for a computed one.
+    fn axis_of(&self, storey: usize) -> Option<usize> {
+        self.tested().position(|tested| tested == storey)
+    }
+
+    /// The axes of which the measured displacement of a floor is the sum.
+    #[must_use]
+    pub fn positions_of(&self, floor: usize) -> Vec<usize> {
+        let (mut axes, mut next) = (Vec::new(), Some(floor));
+        while let Some(floor) = next {
+            next = match self.axis_of(floor) {
+                None => floor.checked_sub(1),
+                Some(axis) => {
+                    axes.push(axis);
+                    self.base_of(floor)
+                }
+            };
+        }
+        axes
+    }
+
+    /// The axes of which the restoring force of a floor is the sum, each with the sign of its force: its own, and those of the assembly that
+    /// stands on the floor.
+    #[must_use]
+    pub fn forces_at(&self, floor: usize) -> Vec<(usize, f64)> {
+        let own = self.axis_of(floor).map(|axis| (axis, 1.0));
+        let standing = self.tested().enumerate();
+        let standing = standing.filter(|(_, storey)| self.base_of(*storey) == Some(floor));
+        own.into_iter()
+            .chain(standing.map(|(axis, _)| (axis, -1.0)))
+            .collect()
+    }
+
+    /// The axes of which the measured shear of a storey is the sum; none for a computed one.
+    #[must_use]
+    pub fn shear_of(&self, storey: usize) -> Vec<usize> {
+        let in_assembly = self.supports[storey + 1..].iter();
+        let above = in_assembly
+            .take_while(|support| **support == Support::Below)
+            .count();
+        self.axis_of(storey)
+            .map_or_else(Vec::new, |axis| (axis..=axis + above).collect())
+    }
+
+    /// The axis of a storey, and that of the storey below in its assembly: their difference is the measured drift.
+    #[must_use]
+    pub fn drift_of(&self, storey: usize) -> [Option<usize>; 2] {
+        let own = self.axis_of(storey);
+        let is_below = self.supports[storey] == Support::Below;
+        [
+            own,
+            own.filter(|_| is_below)
+                .and_then(|axis| axis.checked_sub(1)),
+        ]
+    }
+}
+
+/// A frame of which the rig carries a part: the layout of its assemblies, and the models of its computed storeys with their states.
+#[derive(Clone, Debug)]
+pub struct Substructures {
+    assemblies: Assemblies,
+    /// From the ground up; None for a tested storey.
+    computed: Vec<Option<ComputedStorey>>,
+}
+
+impl Substructures {
+    /// Every storey is new. None if the whole frame is one specimen on the rig.
+    #[must_use]
+    pub fn of(frame: &Frame) -> Option<Self> {
+        let assemblies = Assemblies::of(frame)?;
+        let computed = frame.storeys.iter().map(|storey| {
+            (storey.part == Part::Computed).then(|| ComputedStorey::new(&storey.behaviour))
+        });
+        Some(Self {
+            computed: computed.collect(),
+            assemblies,
+        })
+    }
+
+    #[must_use]
+    pub const fn assemblies(&self) -> &Assemblies {
+        &self.assemblies
+    }
+
+    /// Every computed storey comes to rest at zero shear.
+    pub fn rest(&mut self) {
+        self.computed
+            .iter_mut()
+            .flatten()
+            .for_each(ComputedStorey::rest);
+    }
+
+    /// The computed storeys follow the floors to these displacements \[m\] within `seconds` of simulated time.
+    pub fn advance(&mut self, floors: &[f64], seconds: f64) {
+        let mut below = 0.0;
+        for (storey, floor) in self.computed.iter_mut().zip(floors) {
+            let drift = floor - std::mem::replace(&mut below, *floor);
+            if let Some(storey) = storey {
+                storey.advance(drift, seconds);
+            }
+        }
+    }
+
+    /// Displacement \[m\] and restoring force \[N\] of every floor, from those of the axes and the present computed storeys.
+    pub fn floors(
+        &self,
+        axes: (&[f64], &[f64]),
+        displacement: &mut Vec<f64>,
+        force: &mut Vec<f64>,
+    ) {
+        displacement.clear();
+        force.clear();
+        force.resize(self.computed.len(), 0.0);
+        let mut axes = axes.0.iter().zip(axes.1);
+        let (mut below, mut base, mut base_floor) = (0.0, 0.0, None);
+        for (floor, (support, computed)) in self
+            .assemblies
+            .supports
+            .iter()
+            .zip(&self.computed)
+            .enumerate()
+        {
+            if *support == Support::StrongFloor {
+                (base, base_floor) = (below, floor.checked_sub(1));
+            }
+            let (position, shear, carrier) = if let Some(storey) = computed {
+                (below + storey.drift, storey.shear, floor.checked_sub(1))
+            } else {
+                let (displacement, force) = axes.next().unwrap_or((&0.0, &0.0));
+                (base + displacement, *force, base_floor)
+            };
+            displacement.push(position);
+            force[floor] += shear;
+            if let Some(carrier) = carrier {
+                force[carrier] -= shear;
+            }
+            below = position;
+        }
+    }
+
+    /// The same with the forces of all computed storeys multiplied by `factors`, one per storey.
+    #[must_use]
+    pub fn with_factors(mut self, factors: &[f64]) -> Self {
+        for (storey, factor) in self.computed.iter_mut().zip(factors) {
+            if let Some(storey) = storey {
+                storey.factor = *factor;
+                storey.shear *= factor;
+            }
+        }
+        self
+    }
+}
+
+/// A storey that a model computes.
+#[derive(Clone, Debug)]
+struct ComputedStorey {
+    model: SpecimenModel,
+    relaxing: RelaxationState,
+    /// A storey that has not moved.
+    relaxed: RelaxationState,
+    /// The rate dependence of its strength.
+    rate: CellDamping,
+    /// \[m\]
+    drift: f64,
+    /// Force of the model at the drift \[N\].
+    instantaneous: f64,
+    /// With its relaxation and its rate dependence \[N\].
+    shear: f64,
+    /// On every force.
+    factor: f64,
+}
+
+impl ComputedStorey {
+    fn new(behaviour: &Behaviour) -> Self {
+        let relaxed = RelaxationState::new(behaviour);
+        let mut model = SpecimenModel::new(behaviour);
+        let instantaneous = model.move_to(0.0);
+        Self {
+            model,
+            relaxing: relaxed.clone(),
+            relaxed,
+            rate: CellDamping::new(0.0, 0.0).with_rate_of(behaviour),
+            drift: 0.0,
+            instantaneous,
+            shear: instantaneous,
+            factor: 1.0,
+        }
+    }
+
+    /// It moves to this drift \[m\] at constant velocity.
+    fn advance(&mut self, drift: f64, seconds: f64) {
+        let velocity = (drift - self.drift) / seconds;
+        let from = Deformed {
+            displacement: self.drift,
+            force: self.instantaneous,
+        };
+        let motion = Motion::even(velocity, seconds);
+        self.instantaneous = self.relaxing.advance(&mut self.model, &motion, from, drift);
+        let force = self.rate.measured_force(self.instantaneous, velocity) + self.relaxing.force();
+        self.shear = self.factor * force;
+        self.drift = drift;
+    }
+
+    /// It unloads slowly to zero shear. Its model keeps its path: a copy of it searches the drift, so that it passes that drift once.
+    fn rest(&mut self) {
+        let loaded = self.instantaneous;
+        self.relaxing = self.relaxed.clone();
+        let stiffness = self.model.initial_stiffness();
+        if loaded != 0.0 && stiffness > 0.0 {
+            let force_at = |drift: f64| self.model.clone().move_to(drift);
+            let beyond = |drift: f64| force_at(drift) * loaded <= 0.0;
+            let elastic = -loaded / stiffness;
+            let far = (0..=MOST_DOUBLINGS)
+                .map(|doublings| self.drift + elastic * f64::from(1_u32 << doublings))
+                .find(|drift| beyond(*drift));
+            if let Some(mut far) = far {
+                let mut near = self.drift;
+                loop {
+                    let middle = 0.5 * (near + far);
+                    if middle == near || middle == far {
+                        break;
+                    }
+                    if beyond(middle) {
+                        far = middle;
+                    } else {
+                        near = middle;
+                    }
+                }
+                self.drift = if force_at(near).abs() < force_at(far).abs() {
+                    near
+                } else {
+                    far
+                };
+                self.instantaneous = self.model.move_to(self.drift);
+            }
+        }
+        self.shear = self.factor * self.instantaneous;
+    }
+}

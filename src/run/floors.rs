@@ -1,0 +1,161 @@
+//! The seam between the floors of a frame and the axes of the rig. The rig may carry a part of the frame; the models of the other storeys
+//! are computed here. In: targets of all floors. Out: displacement and restoring force of all floors. Integrators and procedures see
+//! floors; guard, rig and run log see the axes. If the rig carries the whole frame, or one degree of freedom, the axes are the floors.
+
+use super::session::Session;
+use super::stop::Stop;
+use super::{AxisReport, StepReport};
+use psd_physics::structure::substructures::{Assemblies, StoreyReadings, Substructures};
+use psd_rig::{Reading, RigFault, UnfinishedStep};
+
+impl Session<'_> {
+    /// The layout of the assemblies; None if the axes are the floors.
+    pub(crate) fn assemblies(&self) -> Option<&Assemblies> {
+        let hybrid = self.hybrid.as_ref()?;
+        Some(hybrid.substructures.assemblies())
+    }
+
+    /// The substructures where the last procedure that integrates began; None if the axes are the floors.
+    pub(crate) fn substructures_at_start(&self) -> Option<Substructures> {
+        self.hybrid.as_ref().map(|hybrid| hybrid.at_start.clone())
+    }
+
+    /// The readings of the storeys of a frame.
+    pub(crate) fn storey_readings(&self) -> Vec<StoreyReadings> {
+        let noise = self.guard.declared_noise();
+        self.assemblies().map_or_else(
+            || StoreyReadings::of_floors(noise, self.guard.commanded().len()),
+            |assemblies| assemblies.readings(noise),
+        )
+    }
+
+    /// Standard deviation of the measured base shear \[N\].
+    pub(crate) fn base_shear_noise(&self) -> f64 {
+        self.storey_readings()
+            .first()
+            .map_or(0.0, StoreyReadings::shear_noise)
+    }
+
+    /// Commanded displacements of the floors \[m\], and the reading there. The computed storeys are at rest at zero shear.
+    pub(crate) fn floors_at_rest(&mut self) -> Result<(Vec<f64>, Reading), Stop> {
+        let commanded = self.guard.commanded().to_vec();
+        let reading = self.guard.read()?;
+        let Some(hybrid) = &mut self.hybrid else {
+            return Ok((commanded, reading));
+        };
+        hybrid.substructures.rest();
+        hybrid.at_start = hybrid.substructures.clone();
+        hybrid.axes = reading;
+        hybrid.commanded = hybrid.floors_at(&commanded).displacement;
+        Ok((hybrid.commanded.clone(), hybrid.floors()))
+    }
+
+    /// Targets of the axes \[m\], or their velocities \[m/s\], from those of the floors.
+    pub(crate) fn axes_of(&self, floors: &[f64]) -> Vec<f64> {
+        self.hybrid.as_ref().map_or_else(
+            || floors.to_vec(),
+            |hybrid| hybrid.substructures.assemblies().axes_of(floors),
+        )
+    }
+
+    /// The reading of the floors from that of the axes. Where the targets of the floors \[m\] are reached, the computed storeys have moved
+    /// there in `seconds` of simulated time.
+    pub(crate) fn floors_read(
+        &mut self,
+        targets: &[f64],
+        seconds: f64,
+        is_reached: bool,
+        axes: Reading,
+    ) -> Reading {
+        let Some(hybrid) = &mut self.hybrid else {
+            return axes;
+        };
+        if is_reached {
+            hybrid.substructures.advance(targets, seconds);
+            hybrid.commanded.copy_from_slice(targets);
+        }
+        hybrid.axes = axes;
+        hybrid.floors()
+    }
+
+    /// [`Session::step`] of the floors; their simulated motion takes `seconds`.
+    pub(crate) fn step_floors(
+        &mut self,
+        targets: &[f64],
+        pause: f64,
+        seconds: f64,
+        reading: &mut Reading,
+    ) -> Result<Option<UnfinishedStep>, Stop> {
+        let Some(hybrid) = &mut self.hybrid else {
+            return self.step(targets, pause, reading);
+        };
+        let axes = hybrid.substructures.assemblies().axes_of(targets);
+        let mut read = hybrid.axes.clone();
+        let ended = self.step(&axes, pause, &mut read)?;
+        let is_reached = ended.as_ref().is_none_or(|ended| ended.is_reached);
+        *reading = self.floors_read(targets, seconds, is_reached, read);
+        Ok(ended)
+    }
+
+    /// Moves the floors to these positions \[m\], as [`Session::go_to_all`]. Computed storeys do not move.
+    pub(crate) fn floors_go_to(
+        &mut self,
+        positions: &[f64],
+        speed: Option<f64>,
+    ) -> Result<(), RigFault> {
+        let axes = self.axes_of(positions);
+        self.go_to_all(&axes, speed)?;
+        if let Some(hybrid) = &mut self.hybrid {
+            hybrid.commanded.copy_from_slice(positions);
+        }
+        Ok(())
+    }
+
+    /// The last targets of the floors \[m\].
+    pub(crate) fn floors_commanded(&self) -> &[f64] {
+        self.hybrid
+            .as_ref()
+            .map_or_else(|| self.guard.commanded(), |hybrid| &hybrid.commanded)
+    }
+
+    /// [`Session::read_after`] of the floors.
+    pub(crate) fn floors_after(
+        &mut self,
+        motion: Result<(), RigFault>,
+    ) -> Result<(Reading, Option<Stop>), Stop> {
+        let (axes, stop) = self.read_after(motion)?;
+        let Some(hybrid) = &mut self.hybrid else {
+            return Ok((axes, stop));
+        };
+        hybrid.axes = axes;
+        Ok((hybrid.floors(), stop))
+    }
+
+    /// The reading of the axes from which the last reading of the floors, `floors`, is.
+    pub(crate) fn axes_read<'a>(&'a self, floors: &'a Reading) -> &'a Reading {
+        self.hybrid.as_ref().map_or(floors, |hybrid| &hybrid.axes)
+    }
+
+    /// The report of a step of the floors becomes that of the axes, with the numbers of the rig. Without any axis it remains.
+    pub(crate) fn report_axes(&self, report: &mut StepReport) {
+        let Some(hybrid) = &self.hybrid else { return };
+        let floors = |value: fn(&AxisReport) -> f64| -> Vec<f64> {
+            let floors: Vec<f64> = report.axes.iter().map(value).collect();
+            hybrid.substructures.assemblies().axes_of(&floors)
+        };
+        let command = floors(|floor| floor.command);
+        let velocity = floors(|floor| floor.velocity.unwrap_or(0.0));
+        let acceleration = floors(|floor| floor.acceleration.unwrap_or(0.0));
+        if command.is_empty() {
+            return;
+        }
+        let axis = |axis: usize| AxisReport {
+            command: command[axis],
+            displacement: hybrid.axes.displacement[axis],
+            velocity: Some(velocity[axis]),
+            acceleration: Some(acceleration[axis]),
+            force: hybrid.axes.force[axis],
+        };
+        report.axes = (0..command.len()).map(axis).collect();
+    }
+}

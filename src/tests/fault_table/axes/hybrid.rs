@@ -1,0 +1,85 @@
+//! A frame of which the rig carries two storeys, each on the strong floor: the storey between them is computed. A run on the emulated rig
+//! equals the virtual run, and the pre-test check measures each assembly alone.
+
+use super::held;
+use super::two_axes::{checked, ideal, results, same};
+use crate::tests::fault_table::stage::run;
+use psd_rig::LineStatistics;
+
+const PLAN: &str = r#"
+specimen frame {
+  storeys = [
+    storey(mass: 2 t, stiffness: 300 kN/m),
+    storey(mass: 1.5 t, part: computed, behaviour: bilinear(stiffness: 250 kN/m, yield_force: 1 kN, post_yield_ratio: 10 %)),
+    storey(mass: 1 t, stiffness: 200 kN/m),
+  ]
+}
+
+ground motion { file = "ground.csv" }
+
+limits {
+  displacement = -60 mm .. 60 mm
+  force        = -20 kN .. 20 kN
+  speed        = 500 mm/s
+}
+
+rig frame_rig {
+  link        = serial(port: "/dev/ttyUSB0", dialect: native, reply_timeout: 0.1 s)
+  settle      = within(0.005 mm, 5 kN/s, for: 0.05 s, timeout: 0.5 s)
+  safe_state  = hold
+  speed       = 100 mm/s
+  rate        = 50 Hz
+  resolution  = 1 nm
+  force_range = 25 kN
+  axes        = [
+    axis(storey: 1, pretest_check: probe(0.05 mm, stiffness: 290 kN/m .. 310 kN/m, zero: 5 N)),
+    axis(storey: 3, polarity: negative, pretest_check: probe(0.05 mm, stiffness: 190 kN/m .. 210 kN/m, zero: 5 N)),
+  ]
+}
+
+shake quake {
+  ground        = motion
+  damping_ratio = 2 %
+  integrator    = alpha_os(alpha: -0.05)
+  time_step     = 10 ms
+  duration      = 0.5 s
+}
+
+unload rest { }
+
+require "drift" max(quake.max_drift) < 60 mm
+"#;
+
+#[test]
+fn on_two_axes_a_frame_of_three_storeys_is_that_on_a_virtual_rig() {
+    let ended = run(&checked(PLAN, "frame_rig"), "");
+    assert!(ended.completed(), "{}\n{}", ended.reason(), ended.tail());
+    assert_eq!(ended.line_statistics, LineStatistics::default());
+    let found = results(&ended.record);
+    // The line resolves 1 nm and 1 mN.
+    same(&found, &ideal(PLAN), |name, size| {
+        if name.contains("energy_error") || name.contains("nrms_error") {
+            1e-5
+        } else {
+            2e-7 + 1e-5 * size
+        }
+    });
+    let drifts = found.iter().filter(|(name, _)| *name == "max_drift");
+    let drifts: Vec<f64> = drifts.map(|(_, drift)| *drift).collect();
+    assert!(drifts.len() == 3 && drifts[1] > 0.005, "{drifts:?}");
+}
+
+/// Each assembly has its own stiffness at its axis, so that an exchange of the two is found before the test.
+#[test]
+fn two_assemblies_that_are_exchanged_are_found_by_the_pretest_check() {
+    let (lower, upper) = ("290 kN/m .. 310 kN/m", "190 kN/m .. 210 kN/m");
+    let exchanged = PLAN
+        .replace(lower, "LOWER")
+        .replace(upper, lower)
+        .replace("LOWER", upper);
+    let ended = run(&checked(&exchanged, "frame_rig"), "");
+    held(
+        &ended,
+        "the stiffness of axis 1 in a move of 50 µm is 300.0 kN/m",
+    );
+}
