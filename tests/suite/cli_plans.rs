@@ -230,3 +230,22 @@ fn report_opens_the_page_of_a_run() {
     let unopened = open("runs/small-1", "").with(3).stderr;
     assert!(unopened.contains("open this file"), "{unopened}");
 }
+
+#[test]
+fn the_form_of_the_progress_is_chosen() {
+    let workspace = Workspace::new(&[("small.psd", SOUND)]);
+    let run = |form: &str| workspace.psd(&["run", "small.psd", "--screen", form]);
+    let silent = run("never").with(0);
+    assert!(
+        !silent.stderr.contains("hit: impact") && silent.stderr.contains("PASS"),
+        "{}",
+        silent.stderr
+    );
+    assert!(run("plain").with(0).stderr.contains("  hit: impact, "));
+    assert!(
+        run("full")
+            .with(2)
+            .stderr
+            .contains("requires a UTF-8 terminal")
+    );
+}

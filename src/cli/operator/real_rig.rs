@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::dialogue::typed::throw_away;
-use super::watch::{Attendance, Signals, Watcher};
-use crate::args::{PlanSettings, name};
+use super::watch::{Attendance, Signals, Watcher, can_draw};
+use crate::args::{PlanSettings, ScreenForm, name};
 use crate::exit::Failure;
 use crate::files::plan_file;
 use crate::files::record_file::Circumstances;
@@ -23,6 +23,12 @@ pub fn open_plan(
     attendance: &Attendance,
     settings: Settings,
 ) -> Result<Checked, Failure> {
+    if attendance.screen == Some(ScreenForm::Full) && !can_draw(settings) {
+        return Err(Failure::command_line(
+            "the live screen requires a UTF-8 terminal of at least 60 × 16",
+        )
+        .help("enlarge the window, or write `--screen plain`"));
+    }
     let unattended = attendance.operator.is_none() && (attendance.yes || !settings.can_ask);
     let checked = plan_file::open_to_run(path, given, unattended)?;
     plan_file::show(&checked, path, settings);

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::recorded_folder::{changed_files, put_results_aside};
-use crate::args::{name, reason};
+use crate::args::{ScreenForm, name, reason};
 use crate::evidence::MANIFEST;
 use crate::exit::{Exit, Failure};
 use crate::files::finish_run::finish_run;
@@ -16,6 +16,7 @@ use crate::files::provenance::{BUILD, TOOLCHAIN};
 use crate::files::record_file;
 use crate::files::record_file::{ReadRecord, journal_of};
 use crate::files::{plan_file, provenance};
+use crate::operator::expected::Expected;
 use crate::operator::watch::{Attendance, Signals, Watcher};
 use crate::operator::{confirm_release, expected, held, real_rig};
 use crate::output::{print_message, print_result};
@@ -75,6 +76,9 @@ pub struct ResumeArguments {
     /// Answer every prompt with yes, including the motion release
     #[arg(long)]
     pub yes: bool,
+    /// Progress of the run [default: full on a terminal, else plain]
+    #[arg(long, value_enum, value_name = "FORM")]
+    pub screen: Option<ScreenForm>,
 }
 
 impl ResumeArguments {
@@ -170,13 +174,18 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         .iter()
         .filter(|line| line.kind == EntryKind::Step)
         .count() as u64;
-    let (extent, planned) = expected::of(&plan);
-    let before = expected::of(&read.plan).0.speed;
+    let Expected {
+        extent,
+        steps: planned,
+        ..
+    } = expected::of(&plan);
+    let before = expected::of(&read.plan).extent.speed;
     let planned_speed = ("highest speed in the plan", before, extent.speed);
     let expected = expected::rest(extent, planned, steps);
     let attendance = Attendance {
         yes: arguments.yes,
         operator: arguments.operator.clone(),
+        screen: arguments.screen,
     };
     let stop_request = StopRequest::default().with_release_allowed(arguments.let_go);
     // The zero is that of the start of the run; the present position of the rig does not change it.
@@ -488,6 +497,7 @@ pub fn go_on(
         accept_relaxation: false,
         accept_speed: false,
         yes: false,
+        screen: None,
     };
     match resume(&arguments, settings) {
         Ok(exit) => Ok(Some(exit)),
