@@ -4,7 +4,7 @@
 //! machine nor a date, and the pages of `psd explain`. The two lines of `docs/record.md` reproduce the digest.
 //!
 //! Files that are not part of a run do not count: `tests.rs`, `testing.rs`, `…_tests.rs`, and those in a folder `tests`, `testing`,
-//! `examples`, `benches` or `explain`. After a change of a test only the tests are built.
+//! `examples`, `benches`, `explain` or `editors`. After a change of a test only the tests are built.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -104,7 +104,7 @@ fn walk(root: &Path, folder: &str, files: &mut Vec<String>) {
         if entry.path().is_dir() {
             if !matches!(
                 name.rsplit('/').next(),
-                Some("tests" | "testing" | "examples" | "benches" | "explain")
+                Some("tests" | "testing" | "examples" | "benches" | "explain" | "editors")
             ) {
                 walk(root, &name, files);
             }

@@ -5,3 +5,4 @@ pub mod emulator;
 pub mod journal;
 pub mod plans;
 pub mod rig;
+pub mod vocabulary;

@@ -63,6 +63,24 @@ const PARTS: &[Part] = &[
         accept: &[],
     },
     Part {
+        name: "editors",
+        files: "words of the schema in grammar/editors/",
+        command: &["test", "-p", "psd-cli", "--test", "suite", "editors::"],
+        accept: &[],
+    },
+    Part {
+        name: "tree-sitter",
+        files: "the parser in grammar/editors/tree-sitter-psd/src/",
+        command: &["test", "-p", "tree-sitter-psd", "--test", "generated"],
+        accept: &[],
+    },
+    Part {
+        name: "extension",
+        files: "the extension of VS Code as one file, target/psd.vsix",
+        command: &["test", "-p", "psd-cli", "--test", "system", "editors::vsix::"],
+        accept: &[],
+    },
+    Part {
         name: "language",
         files: "cases and snapshots of the language",
         command: &["test", "-p", "psd-cli", "--test", "suite", "lang::"],

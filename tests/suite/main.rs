@@ -12,6 +12,7 @@ mod dialects;
 mod directions;
 mod docs;
 mod document;
+mod editors;
 mod evidence;
 mod explain;
 mod explain_pages;

@@ -9,6 +9,7 @@ mod clock;
 mod disk;
 mod document;
 mod editor;
+mod editors;
 mod ended;
 mod faults;
 mod floors;

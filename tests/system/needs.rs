@@ -106,6 +106,19 @@ pub fn slurm() -> bool {
     able("slurm", "be found", proof.args(["-ec", lookup]))
 }
 
+/// Whether Node.js has the packages of the extension for VS Code: `npm ci --ignore-scripts` in its folder.
+pub fn extension_packages() -> bool {
+    let modules = concat!(env!("CARGO_MANIFEST_DIR"), "/grammar/editors/vscode/");
+    let require = "for (const name of ['vscode-textmate', 'vscode-oniguruma', 'esbuild']) require.resolve(name)";
+    able(
+        "node",
+        "find the packages of grammar/editors/vscode/package-lock.json",
+        Command::new("node")
+            .args(["-e", require])
+            .current_dir(modules),
+    )
+}
+
 /// Whether a program can have its own terminal, as from a shell.
 pub fn setsid() -> bool {
     able(

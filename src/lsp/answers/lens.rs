@@ -62,6 +62,7 @@ pub fn in_one_line(simulation: &Simulation) -> String {
         .count();
     match count {
         0 => "SIMULATION: completed".to_owned(),
+        1 if met == 1 => "SIMULATION: requirement met".to_owned(),
         _ if met == count => format!("SIMULATION: all {count} requirements met"),
         _ => format!("SIMULATION: {met} of {count} requirements met"),
     }

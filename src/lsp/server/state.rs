@@ -516,15 +516,18 @@ impl Server {
     fn simulated(&self, id: RequestId, plan_key: &str) {
         let known = self.known.get(plan_key);
         let simulation = known.filter(|known| known.plan.is_some());
-        let Some(simulation) = simulation.and_then(|known| known.simulation.as_ref()) else {
-            return self.fail(
-                id,
-                ErrorCode::RequestFailed,
-                "no simulation: the plan has an error",
-            );
+        let (kind, text) = match simulation.and_then(|known| known.simulation.as_ref()) {
+            Some(simulation) => (
+                lsp::MessageType::Info,
+                crate::answers::lens::in_one_line(simulation),
+            ),
+            // Editors show an error as a failure of the server.
+            None => (
+                lsp::MessageType::Warning,
+                "no simulation: the plan has an error".to_owned(),
+            ),
         };
-        let text = crate::answers::lens::in_one_line(simulation);
-        let params = json!({ "type": 3, "message": text });
+        let params = json!({ "type": kind, "message": text });
         let method = "window/showMessage".to_owned();
         (self.send)(Message::Notification(Notification { method, params }));
         self.answer(id, Ok(json!(text)));

@@ -84,6 +84,10 @@ impl Breach {
 pub(super) struct Released {
     /// \[m\] and \[m/s\]
     pub(super) targets: Vec<(f64, f64)>,
+    /// The same of the pre-test check, which counts from the place where the rig was read: within the settling band of zero.
+    from_start: Vec<(f64, f64)>,
+    /// \[m\]
+    band: f64,
 }
 
 impl Released {
@@ -107,10 +111,11 @@ impl Released {
                 _ => None,
             });
         let probe = link.pretest_check.probe;
-        let targets = moves
-            .chain([(probe, link.own_speed), (0.0, link.own_speed)])
-            .collect();
-        Self { targets }
+        Self {
+            targets: moves.collect(),
+            from_start: vec![(probe, link.own_speed), (0.0, link.own_speed)],
+            band: plan.rig.settle.band,
+        }
     }
 
     /// The same, and the target that a resumption sends again, if the plan does not name it.
@@ -123,12 +128,23 @@ impl Released {
         self
     }
 
+    /// The highest speed of those that name this target to within `near` \[m\]; None: none does.
+    fn speed_to(&self, target: f64, near: f64) -> Option<f64> {
+        let named = |targets: &[(f64, f64)], near: f64| {
+            let named = targets
+                .iter()
+                .filter(|(named, _)| (named - target).abs() <= near);
+            named.map(|(_, speed)| *speed).reduce(f64::max)
+        };
+        let from_start = named(&self.from_start, near + self.band);
+        let planned = named(&self.targets, near);
+        planned.into_iter().chain(from_start).reduce(f64::max)
+    }
+
     /// The highest speed \[m/s\].
     pub(super) fn fastest(&self) -> f64 {
-        self.targets
-            .iter()
-            .map(|(_, speed)| *speed)
-            .fold(0.0, f64::max)
+        let all = self.targets.iter().chain(&self.from_start);
+        all.map(|(_, speed)| *speed).fold(0.0, f64::max)
     }
 }
 
@@ -166,6 +182,8 @@ pub(super) struct Witness {
     violations: usize,
     /// INTENT that belongs to the last move, and the moves beyond the first of one INTENT.
     last_intent: u64,
+    /// Of the last move \[m\].
+    last_target: f64,
     pub(super) repeated: u64,
     /// psd was killed: what it had sent again is not in its record.
     pub(super) killed: bool,
@@ -197,6 +215,7 @@ impl Witness {
             moves: 0,
             violations: 0,
             last_intent: 0,
+            last_target: f64::NAN,
             repeated: 0,
             killed: false,
             obeys_late: false,
@@ -265,6 +284,10 @@ impl Witness {
             if target != 0.0 && (sign * target + zero).abs() < HARMLESS {
                 continue;
             }
+            // A command that arrived twice waits in a controller with a queue, until the rig is there: it moves nothing.
+            if target == self.last_target && self.released.is_none() {
+                continue;
+            }
             let travels = positions.map(|position| (target - sign * (position - zero)).abs());
             // A ramp has a time: an actuator that lags behind its command has another travel in the same time.
             let speed = if self.obeys.by_time && travels[0] > 0.0 {
@@ -288,13 +311,8 @@ impl Witness {
             low - near <= target && target <= high + near,
             || format!("the rig moves to {target:e} m, the limits are {low} .. {high} m"),
         );
-        let released = self.released.as_ref().map(|released| {
-            let named = released
-                .targets
-                .iter()
-                .filter(|(named, _)| (named - target).abs() <= near);
-            named.map(|(_, speed)| *speed).reduce(f64::max)
-        });
+        let released = self.released.as_ref();
+        let released = released.map(|released| released.speed_to(target, near));
         let named = released.flatten();
         self.check(Law::Released, named.is_some(), || match released {
             None => format!("the rig moves to {target:e} m before any release"),
@@ -328,7 +346,7 @@ impl Witness {
         if number == self.last_intent && !self.killed {
             self.repeated += 1;
         }
-        self.last_intent = number;
+        (self.last_intent, self.last_target) = (number, target);
         if let Some(reason) = self.other_specimen.take() {
             self.check(Law::SameSpecimen, false, || reason);
         }

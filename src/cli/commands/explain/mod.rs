@@ -57,7 +57,7 @@ fn unknown(written: &str, wanted: &str) -> Failure {
     let codes = codes::all();
     let near_code = nearest(wanted, codes.iter().map(|code| code.id()));
     let last = written.rsplit('.').next().unwrap_or(written);
-    let help = match near_code.or_else(|| nearest(last, words::all().into_iter())) {
+    let help = match near_code.or_else(|| nearest(last, words::all())) {
         Some(near) => format!("did you mean `{near}`?"),
         None => "`psd explain` lists every code, and `psd units` every unit".to_owned(),
     };

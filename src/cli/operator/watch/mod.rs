@@ -50,7 +50,6 @@ pub struct Watcher {
 }
 
 /// The display for the operator.
-#[expect(clippy::large_enum_variant, reason = "a run has one")]
 enum Face {
     Screen(Screen),
     Bar(Bar),

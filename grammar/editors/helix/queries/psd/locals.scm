@@ -1,0 +1,8 @@
+; Generated from tree-sitter-psd/queries/locals.scm: cargo xtask generate editors
+(source_file) @local.scope
+
+(block name: (name) @local.definition)
+(parameter name: (name) @local.definition)
+(let name: (name) @local.definition)
+
+(identifier) @local.reference

@@ -1,0 +1,6 @@
+; Generated from tree-sitter-psd/queries/folds.scm: cargo xtask generate editors
+[
+  (fields)
+  (arguments)
+  (list)
+] @fold

@@ -1,0 +1,5 @@
+[
+  (fields)
+  (arguments)
+  (list)
+] @fold

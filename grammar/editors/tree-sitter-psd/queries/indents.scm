@@ -1,0 +1,12 @@
+[
+  (fields)
+  (arguments)
+  (list)
+  (parenthesised)
+] @indent
+
+[
+  "}"
+  ")"
+  "]"
+] @outdent

@@ -1,0 +1,4 @@
+(fields "}" @end) @indent
+(arguments ")" @end) @indent
+(parenthesised ")" @end) @indent
+(list "]" @end) @indent
