@@ -3,7 +3,9 @@
 
 use std::io::{Error, ErrorKind, Stdout, Write as _};
 
-use ratatui::crossterm::terminal::size;
+use ratatui::crossterm::cursor::MoveTo;
+use ratatui::crossterm::execute;
+use ratatui::crossterm::terminal::{Clear, ClearType, size};
 use rustix::fs::{FileType, fstat};
 use rustix::io::Errno;
 
@@ -16,6 +18,13 @@ pub fn print_message(text: &str) {
     let _ = std::io::stderr()
         .lock()
         .write_all(sanitize::terminal(text).as_bytes());
+}
+
+/// Removes the text of an earlier check from the terminal.
+pub fn clear_terminal(settings: Settings) {
+    if settings.stderr_terminal {
+        let _ = execute!(std::io::stderr(), Clear(ClearType::All), MoveTo(0, 0));
+    }
 }
 
 /// Prints lines of text; on a terminal they are wrapped between words.

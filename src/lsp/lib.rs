@@ -18,6 +18,8 @@ mod uri;
 #[cfg(test)]
 mod tests;
 
+pub use answers::describe;
 pub use program::{Checked, Program, SimulatedRequirement, SimulatedResult, Simulation};
 pub use server::{Ended, run};
 pub use transport::serve;
+pub use units::of as units_of;

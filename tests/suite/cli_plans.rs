@@ -1,6 +1,7 @@
 //! Several plans, folders and standard input on one command line.
 
-use std::io::Write as _;
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::os::unix::fs::PermissionsExt as _;
 use std::process::Stdio;
 
 use super::workspace::{Ended, Workspace};
@@ -173,5 +174,78 @@ fn several_plans_run_one_after_the_other_or_together() {
             && altered.stdout.ends_with("\nVERIFIED  runs/2-1\n"),
         "{}",
         altered.stdout
+    );
+}
+
+#[test]
+fn check_watches_the_plan_and_its_files() {
+    let hammer = "striker hammer {\n  mass     = 10 kg\n  velocity = 1 m/s\n}\n";
+    let using = format!("use \"lib/hammer.psd\"\n\n{}", SOUND.replace(hammer, ""));
+    let workspace = Workspace::new(&[("a.psd", &using), ("lib/hammer.psd", hammer)]);
+    let mut child = workspace
+        .command(&["check", "--watch", "a.psd"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
+    let mut wait_for = |text: &str| {
+        lines
+            .by_ref()
+            .map(Result::unwrap)
+            .any(|line| line.contains(text))
+    };
+    assert!(wait_for("no errors found") && wait_for("watching for changes"));
+    workspace.write("lib/hammer.psd", hammer.replace("10 kg", "10 mm"));
+    assert!(wait_for("E301") && wait_for("watching for changes"));
+    std::fs::remove_file(workspace.path("a.psd")).unwrap();
+    assert!(wait_for("no such file") && wait_for("watching for changes"));
+    workspace.write("a.psd", SOUND);
+    assert!(wait_for("no errors found"));
+    child.kill().unwrap();
+    child.wait().unwrap();
+    workspace.psd(&["check", "--watch", "-"]).with(2);
+}
+
+/// The report is given to the program of the desktop.
+#[cfg(target_os = "linux")]
+#[test]
+fn report_opens_the_page_of_a_run() {
+    let with_page = changed("formats = [csv]", "formats = [html, csv]");
+    let workspace = Workspace::new(&[("small.psd", &with_page), ("none.psd", SOUND)]);
+    let opener = "#!/bin/sh\necho \"$1\" > opened\n";
+    workspace.write("bin/xdg-open", opener);
+    let mode = std::fs::Permissions::from_mode(0o755);
+    std::fs::set_permissions(workspace.path("bin/xdg-open"), mode).unwrap();
+    workspace.psd(&["run", "small.psd", "none.psd"]).with(0);
+    let open = |run: &str, path: &str| {
+        let mut command = workspace.command(&["report", "--open", run]);
+        Ended::from(command.env("PATH", path).output().unwrap())
+    };
+    let path = format!("{}:/usr/bin:/bin", workspace.path("bin").display());
+    let opened = open("runs/small-1", &path).with(0).stdout;
+    assert_eq!(opened, "runs/small-1/report.html\n");
+    assert_eq!(workspace.read("opened"), opened);
+    let missing = open("runs/none-1", &path).with(3).stderr;
+    assert!(missing.contains("has no report"), "{missing}");
+    let unopened = open("runs/small-1", "").with(3).stderr;
+    assert!(unopened.contains("open this file"), "{unopened}");
+}
+
+#[test]
+fn the_form_of_the_progress_is_chosen() {
+    let workspace = Workspace::new(&[("small.psd", SOUND)]);
+    let run = |form: &str| workspace.psd(&["run", "small.psd", "--screen", form]);
+    let silent = run("never").with(0);
+    assert!(
+        !silent.stderr.contains("hit: impact") && silent.stderr.contains("PASS"),
+        "{}",
+        silent.stderr
+    );
+    assert!(run("plain").with(0).stderr.contains("  hit: impact, "));
+    assert!(
+        run("full")
+            .with(2)
+            .stderr
+            .contains("requires a UTF-8 terminal")
     );
 }

@@ -63,6 +63,10 @@ struct Terminal {
 
 impl Terminal {
     fn run(arguments: &[&str]) -> Self {
+        Self::psd(&[&["run", "plan.psd", "--out", "out"], arguments].concat())
+    }
+
+    fn psd(arguments: &[&str]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("plan.psd"), PLAN).unwrap();
         let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
@@ -79,7 +83,6 @@ impl Terminal {
         let slave = File::options().read(true).write(true).open(name).unwrap();
         let stream = || Stdio::from(slave.try_clone().unwrap());
         let child = Command::new(env!("CARGO_BIN_EXE_psd"))
-            .args(["run", "plan.psd", "--out", "out"])
             .args(arguments)
             .current_dir(folder.path())
             .env("TERM", "xterm-256color")
@@ -271,4 +274,27 @@ fn a_short_run_draws_no_screen() {
         events(&summary)[0],
         "Look at the joints: answered by --yes (B)"
     );
+}
+
+/// What the command line does not say is asked before the run log is read.
+#[test]
+fn resume_asks_for_what_is_missing() {
+    let mut terminal = Terminal::psd(&["resume", "out"]);
+    terminal.wait_for("is not a run folder: it has no run log");
+    terminal.child.wait().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let run = folder.path().to_str().unwrap();
+    std::fs::write(folder.path().join("journal.psdj"), "no run log\n").unwrap();
+    let mut terminal = Terminal::psd(&["resume", run, "--reason", "checked"]);
+    terminal.wait_for("name of the operator?");
+    terminal.press("\n");
+    terminal.wait_for("a name must be one line");
+    terminal.press("A. Tester\n");
+    terminal.wait_for("error:");
+    assert_eq!(terminal.child.wait().unwrap().code(), Some(3));
+    let mut terminal = Terminal::psd(&["resume", run, "--operator", "A. Tester"]);
+    terminal.wait_for("why did it stop");
+    terminal.press("checked\n");
+    terminal.wait_for("error:");
+    assert_eq!(terminal.child.wait().unwrap().code(), Some(3));
 }

@@ -6,6 +6,7 @@ mod cli;
 mod cli_plans;
 mod cli_rig;
 mod cli_screen;
+mod cli_words;
 mod declared;
 mod dialects;
 mod directions;

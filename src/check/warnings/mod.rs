@@ -71,6 +71,7 @@ pub fn whole_plan(
         }
         Some(_) => {}
     }
+    unused_blocks(checker);
     for (index, value) in checker.scope.values.iter().enumerate() {
         if value.name.span.file == FileId(0) && !checker.used.contains(&index) {
             checker.report(UnusedDeclaration {
@@ -79,6 +80,27 @@ pub fn whole_plan(
                 span: value.name.span,
             });
         }
+    }
+}
+
+/// A striker, a ground motion, or one of several specimens that no procedure names. A rig is chosen by the command line.
+fn unused_blocks(checker: &mut Checker) {
+    let of_kind = |kind| checker.scope.of_kind(kind);
+    let specimens = of_kind(Kind::Specimen).filter(|_| of_kind(Kind::Specimen).len() > 1);
+    let declared = of_kind(Kind::Striker).chain(of_kind(Kind::Ground));
+    let unused: Vec<_> = declared
+        .chain(specimens)
+        .filter(|(index, block)| {
+            block.block.head.file == FileId(0) && !checker.used_blocks.contains(index)
+        })
+        .filter_map(|(_, block)| Some((block.kind.words(), block.name?)))
+        .collect();
+    for (keyword, name) in unused {
+        checker.report(UnusedDeclaration {
+            keyword: &keyword,
+            name: &name.node,
+            span: name.span,
+        });
     }
 }
 

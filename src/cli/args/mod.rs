@@ -35,6 +35,14 @@ pub enum Format {
     Json,
 }
 
+/// The display of the progress of a run: no progress, lines, or the live screen. Prompts and the verdict are always printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ScreenForm {
+    Never,
+    Plain,
+    Full,
+}
+
 /// The run log of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum RunLog {

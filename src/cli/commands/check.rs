@@ -2,12 +2,14 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
 
 use crate::args::{Format, PlanSettings};
 use crate::exit::{Exit, Failure};
+use crate::files::loader::is_stdin;
 use crate::files::plan_file;
 use crate::files::plans::{Depth, named};
-use crate::output::{print_message, print_result};
+use crate::output::{clear_terminal, print_message, print_result};
 use crate::settings::Settings;
 use clap::Args;
 use psd::check::{Checked, is_short};
@@ -18,6 +20,9 @@ use psd_text::diagnostic::json;
 use serde_json::{Value, json as object};
 
 use super::explain_plan;
+
+/// Time between two looks at the watched files.
+const BETWEEN_LOOKS: Duration = Duration::from_millis(200);
 
 #[derive(Debug, Args)]
 pub struct CheckArguments {
@@ -32,6 +37,9 @@ pub struct CheckArguments {
     /// End with exit code 2 also if there are warnings only
     #[arg(long)]
     pub deny_warnings: bool,
+    /// Check again whenever a file of a plan changes, until Ctrl-C
+    #[arg(long, conflicts_with = "format")]
+    pub watch: bool,
     /// Diagnostics as text on standard error, or JSON on standard output
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub format: Format,
@@ -39,6 +47,46 @@ pub struct CheckArguments {
 
 /// Checks every plan, and with `--explain` prints the prediction of its run.
 pub fn check(arguments: &CheckArguments, settings: Settings) -> Result<Exit, Failure> {
+    if !arguments.watch {
+        return once(arguments, settings, &mut Vec::new());
+    }
+    if arguments.plans.iter().any(|path| is_stdin(path)) {
+        return Err(
+            Failure::command_line("standard input does not change: it cannot be watched")
+                .help("name the file of the plan"),
+        );
+    }
+    loop {
+        let mut files = Vec::new();
+        // A folder without a plan, or a file that is missing now, can change too.
+        if let Err(failure) = once(arguments, settings, &mut files) {
+            print_message(&failure.report(settings));
+        }
+        files.extend(arguments.plans.iter().cloned());
+        print_message(&settings.paint_note("watching for changes; Ctrl-C ends\n"));
+        let before = stamps(&files);
+        while stamps(&files) == before {
+            std::thread::sleep(BETWEEN_LOOKS);
+        }
+        clear_terminal(settings);
+    }
+}
+
+/// Size and time of the last change of each file; of a folder, of its list of files.
+fn stamps(files: &[PathBuf]) -> Vec<Option<(u64, SystemTime)>> {
+    let stamp = |path: &PathBuf| {
+        let metadata = path.metadata().ok()?;
+        Some((metadata.len(), metadata.modified().ok()?))
+    };
+    files.iter().map(stamp).collect()
+}
+
+/// Checks every plan once, and adds the files that were read to `files`.
+fn once(
+    arguments: &CheckArguments,
+    settings: Settings,
+    files: &mut Vec<PathBuf>,
+) -> Result<Exit, Failure> {
     let mut exit = Exit::Met;
     let mut diagnostics = Vec::new();
     let mut predictions = Vec::new();
@@ -47,7 +95,9 @@ pub fn check(arguments: &CheckArguments, settings: Settings) -> Result<Exit, Fai
         .iter()
         .map(|path| plan_file::open_to_check(path, &arguments.plan_settings))
         .collect();
-    let libraries = libraries(&named, &checked);
+    let used = used(&named, &checked);
+    let libraries: BTreeSet<&PathBuf> = used.iter().collect();
+    files.extend(named.iter().chain(&used).cloned());
     for (path, checked) in named.iter().zip(checked) {
         if libraries.contains(path) && !arguments.plans.contains(path) {
             continue;
@@ -81,14 +131,21 @@ pub fn check(arguments: &CheckArguments, settings: Settings) -> Result<Exit, Fai
     Ok(exit)
 }
 
-/// The files that another of the plans uses: they are checked as a part of it.
-fn libraries(named: &[PathBuf], checked: &[Result<Checked, Failure>]) -> BTreeSet<PathBuf> {
+/// The files that the plans use: a library is checked as a part of the plan that uses it.
+fn used(named: &[PathBuf], checked: &[Result<Checked, Failure>]) -> Vec<PathBuf> {
     let plans = named.iter().zip(checked);
     let of_plan = plans.flat_map(|(path, checked)| {
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        let files = checked.iter().flat_map(|checked| checked.sources.iter());
+        let checked = checked.as_ref().ok();
+        let sources = checked
+            .into_iter()
+            .flat_map(|checked| checked.sources.iter());
         // The first one is the plan itself.
-        files.skip(1).map(move |(_, file)| folder.join(&file.name))
+        let sources = sources.skip(1).map(|(_, file)| file.name.clone());
+        let plan = checked.and_then(|checked| checked.plan.as_ref());
+        let data = plan.into_iter().flat_map(|plan| &plan.files).skip(1);
+        let names = sources.chain(data.map(|file| file.name.clone()));
+        names.map(move |name| folder.join(name)).collect::<Vec<_>>()
     });
     of_plan.collect()
 }

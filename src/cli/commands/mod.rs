@@ -3,19 +3,22 @@
 
 pub(crate) mod check;
 pub(crate) mod compare;
+pub(crate) mod completions;
 pub(crate) mod evidence;
 pub(crate) mod explain;
 pub(crate) mod explain_plan;
 pub(crate) mod fmt;
 pub(crate) mod limits;
 pub(crate) mod lsp;
+pub(crate) mod new;
 pub(crate) mod prediction;
 pub(crate) mod rig;
 pub(crate) mod run;
 pub(crate) mod study;
 pub(crate) mod test;
+pub(crate) mod units;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, Parser, Subcommand};
 
 use super::args::Color;
 use super::exit::{Exit, Failure};
@@ -37,7 +40,9 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Check a plan, run it, write results and test report
+    /// Write a commented plan to start from
+    New(new::NewArguments),
+    /// Check plans, run them, write results and test reports
     Run(run::RunArguments),
     /// Resume an interrupted run on a real rig
     Resume(run::resume::ResumeArguments),
@@ -59,12 +64,18 @@ pub enum Command {
     Test(test::TestArguments),
     /// Format plans in the canonical layout
     Fmt(fmt::FmtArguments),
-    /// Explain a diagnostic code, such as E202, or list all codes
+    /// Explain a code, block, field, result, option or unit
     Explain(explain::ExplainArguments),
+    /// Convert a value: `psd units 3 kip/in to N/mm`; list the units
+    Units(units::UnitsArguments),
     /// List the limits of the language: sizes, nesting, steps
     Limits,
     /// Serve an editor: the language server, over standard input and output
     Lsp,
+    /// Print the completions of a shell
+    Completions(completions::CompletionsArguments),
+    /// Print the manual page
+    Man(completions::ManArguments),
     /// Run many simulations of a plan with scattered inputs
     Study {
         #[command(subcommand)]
@@ -81,6 +92,7 @@ impl Command {
     /// Runs it.
     pub(super) fn run(&self, settings: Settings) -> Result<Exit, Failure> {
         match self {
+            Self::New(arguments) => new::new(arguments),
             Self::Run(arguments) => run::run(arguments, settings),
             Self::Resume(arguments) => run::resume::resume(arguments, settings),
             Self::Issue(arguments) => evidence::issue::issue(arguments, settings),
@@ -93,8 +105,13 @@ impl Command {
             Self::Check(arguments) => check::check(arguments, settings),
             Self::Fmt(arguments) => fmt::fmt(arguments, settings),
             Self::Explain(arguments) => {
-                explain::explain(arguments.code.as_deref(), arguments.full, settings)
+                explain::explain(arguments.word.as_deref(), arguments.full, settings)
             }
+            Self::Units(arguments) => units::units(arguments, settings),
+            Self::Completions(arguments) => {
+                completions::completions(arguments, Arguments::command())
+            }
+            Self::Man(arguments) => completions::man(arguments, Arguments::command()),
             Self::Limits => limits::limits(),
             Self::Lsp => lsp::lsp(),
             Self::Study { command } => study::study(command, settings),
@@ -105,8 +122,6 @@ impl Command {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory as _;
-
     use super::*;
 
     #[test]

@@ -26,6 +26,8 @@ pub fn is_signature(name: &str) -> bool {
 
 /// The PDF report. A second copy with a seal at its end can be in the same folder.
 pub const PAPER: &str = "report.pdf";
+/// The report as a page.
+pub const PAGE: &str = "report.html";
 
 /// Kinds of sidecars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,9 @@
 //! The expected demand of a run on its rig, for the operator who permits the motion: displacement, force, speed, duration. In: a plan.
 //! Out: the extent of a dry run on an ideal copy of the specimen, and its steps. It moves nothing.
 
+use super::pace::Part;
 use crate::commands::explain_plan::dry_rig::{Reach, Watched};
+use psd::procedures::most_steps;
 use psd::run::Extent;
 use psd_plan::{Interval, Link, Plan, VirtualLink};
 use psd_rig::RigFault;
@@ -9,21 +11,53 @@ use psd_rig::real::RealRig;
 use psd_text::units::Dimension;
 use psd_text::units::display::plain;
 
-/// The extent of the whole plan, and its number of steps. Both are unknown if only the real rig has the specimen.
-pub fn of(plan: &Plan) -> (Extent, u64) {
+/// The expected run of a plan.
+#[derive(Clone, Debug, Default)]
+pub struct Expected {
+    pub extent: Extent,
+    pub steps: u64,
+    /// One for each procedure.
+    pub procedures: Vec<Reach>,
+}
+
+impl Expected {
+    /// The share of each procedure: its rig time.
+    pub fn parts(&self) -> Vec<Part> {
+        let parts = self.procedures.iter().map(|reach| Part {
+            share: reach.ended - reach.started,
+            steps: reach.steps,
+        });
+        parts.collect()
+    }
+}
+
+/// The share of each procedure without a dry run: its steps. Empty if a number is not known.
+pub fn parts_by_steps(plan: &Plan) -> Vec<Part> {
+    let parts = plan.procedures.iter().map(|procedure| {
+        let steps = most_steps(&procedure.kind, plan)?;
+        #[expect(clippy::cast_precision_loss, reason = "a share of steps")]
+        let share = steps as f64;
+        Some(Part { share, steps })
+    });
+    parts.collect::<Option<_>>().unwrap_or_default()
+}
+
+/// The expected run of the whole plan; unknown if only the real rig has the specimen.
+pub fn of(plan: &Plan) -> Expected {
     let unknown = plan
         .specimen_on_the_rig()
         .is_some_and(|specimen| specimen.behaviour.is_none() && specimen.frame.is_none());
     if unknown {
-        return (Extent::default(), 0);
+        return Expected::default();
     }
     let mut ideal = plan.clone();
     ideal.rig.link = Link::Virtual(VirtualLink::ideal_of(&plan.rig));
     let (_, reaches) = Watched::run(&ideal, plan.rig.link.as_real().map(|link| link.own_speed));
-    (
-        over(&reaches),
-        reaches.iter().map(|reach| reach.steps).sum(),
-    )
+    Expected {
+        extent: over(&reaches),
+        steps: reaches.iter().map(|reach| reach.steps).sum(),
+        procedures: reaches,
+    }
 }
 
 /// Whether the rig itself allows the expected travel and the pre-test check. With several axes, only a travel that no axis allows is

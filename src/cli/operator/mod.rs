@@ -6,6 +6,7 @@ pub(crate) mod dialogue;
 pub(crate) mod expected;
 pub(crate) mod held;
 pub(crate) mod hold_status;
+pub(crate) mod pace;
 pub(crate) mod question;
 pub(crate) mod real_rig;
 pub(crate) mod screen;

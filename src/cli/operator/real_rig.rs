@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::dialogue::typed::throw_away;
-use super::watch::{Attendance, Signals, Watcher};
-use crate::args::{PlanSettings, name};
+use super::watch::{Attendance, Signals, Watcher, can_draw};
+use crate::args::{PlanSettings, ScreenForm, name};
 use crate::exit::Failure;
 use crate::files::plan_file;
 use crate::files::record_file::Circumstances;
@@ -23,6 +23,12 @@ pub fn open_plan(
     attendance: &Attendance,
     settings: Settings,
 ) -> Result<Checked, Failure> {
+    if attendance.screen == Some(ScreenForm::Full) && !can_draw(settings) {
+        return Err(Failure::command_line(
+            "the live screen requires a UTF-8 terminal of at least 60 × 16",
+        )
+        .help("enlarge the window, or write `--screen plain`"));
+    }
     let unattended = attendance.operator.is_none() && (attendance.yes || !settings.can_ask);
     let checked = plan_file::open_to_run(path, given, unattended)?;
     plan_file::show(&checked, path, settings);
@@ -39,25 +45,26 @@ pub fn named(attendance: Attendance, plan: &Plan) -> Result<Attendance, Failure>
         Failure::command_line("no operator is named: nothing was opened")
             .help("--operator \"A. Tester\"")
     };
-    // Input typed before the question is not a name.
+    let operator = Some(asked("name of the operator? [your name]", name).ok_or_else(unnamed)?);
+    Ok(Attendance {
+        operator,
+        ..attendance
+    })
+}
+
+/// The answer of the operator at the terminal, asked until `read` takes it. None: the input has ended.
+pub fn asked(question: &str, read: fn(&str) -> Result<String, String>) -> Option<String> {
+    // Input typed before the question is not an answer.
     throw_away();
     loop {
-        print_message("  name of the operator? [your name] ");
+        print_message(&format!("  {question} "));
         let mut line = String::new();
-        let count = std::io::stdin()
-            .read_line(&mut line)
-            .map_err(|_| unnamed())?;
-        if count == 0 {
+        if std::io::stdin().read_line(&mut line).ok()? == 0 {
             print_message("\n");
-            return Err(unnamed());
+            return None;
         }
-        match name(&line) {
-            Ok(name) => {
-                return Ok(Attendance {
-                    operator: Some(name),
-                    ..attendance
-                });
-            }
+        match read(&line) {
+            Ok(answer) => return Some(answer),
             Err(reason) => print_message(&format!("  {reason}\n")),
         }
     }

@@ -99,6 +99,8 @@ pub struct Checker<'a> {
     pub explained: Vec<Span>,
     pub known: BTreeMap<Node, Option<Typed>>,
     pub used: BTreeSet<usize>,
+    /// The blocks that a field or an expression names.
+    pub used_blocks: BTreeSet<usize>,
     /// Results of procedures that an expression reads, with their spans.
     pub read: Vec<(ResultReference, Span)>,
     /// Entries that are read from lists of results, by their index from 0, with their spans.
@@ -215,6 +217,7 @@ impl<'a> Checker<'a> {
             explained: Vec::new(),
             known,
             used,
+            used_blocks: BTreeSet::new(),
             read: Vec::new(),
             list_entries_read: Vec::new(),
             real_rig: None,

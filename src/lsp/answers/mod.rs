@@ -2,7 +2,7 @@
 
 pub mod actions;
 pub mod completion;
-mod describe;
+pub mod describe;
 pub mod folding;
 pub mod format;
 pub mod hints;

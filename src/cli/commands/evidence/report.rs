@@ -4,20 +4,29 @@
 //! still in progress.
 
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 use clap::Args;
 
 use super::issue::{AmendmentArguments, amend};
 use super::replayed::finish_replayed;
 use crate::commands::prediction::prediction;
+use crate::evidence::names::{PAGE, PAPER};
 use crate::evidence::{Folder, IssueFile, MANIFEST, ReplayedRun, check_consistency};
 use crate::exit::{Exit, Failure};
+use crate::files::failure::plain;
 use crate::files::record_file;
 use crate::files::record_file::journal_of;
 use crate::files::run_folder::{RunFolder, copy};
 use crate::output::print_result;
 use crate::settings::Settings;
 use psd_rig::journal::FileStorage;
+
+/// The program that opens a file as the desktop does.
+#[cfg(target_os = "macos")]
+const OPENER: &str = "open";
+#[cfg(not(target_os = "macos"))]
+const OPENER: &str = "xdg-open";
 
 #[derive(Debug, Args)]
 #[command(
@@ -31,6 +40,9 @@ pub struct ReportArguments {
     /// New or empty folder for the results [default: the run folder, or RUN-amended-N]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Open the report, that of the run folder if it has one
+    #[arg(long)]
+    pub open: bool,
     #[command(flatten)]
     pub amendment: AmendmentArguments,
 }
@@ -38,6 +50,11 @@ pub struct ReportArguments {
 /// Regenerates the results of one run.
 pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, Failure> {
     let run = &arguments.run;
+    let has_results = arguments.out.is_none() && run.join(MANIFEST).exists();
+    if arguments.open && has_results && !arguments.amendment.amend {
+        open(run)?;
+        return Ok(Exit::Met);
+    }
     if arguments.amendment.amend {
         return amend(
             run,
@@ -73,8 +90,36 @@ pub fn report(arguments: &ReportArguments, settings: Settings) -> Result<Exit, F
             .try_for_each(|(name, _)| copy(run, &folder, name))?;
     }
     let exit = finish_replayed(&folder, &replayed, &beside, settings)?;
+    if arguments.open {
+        open(&folder)?;
+    }
     print_result(&format!("{}\n", folder.display()))?;
     Ok(exit)
+}
+
+/// Opens the report of a folder in the browser or PDF reader of the desktop.
+fn open(folder: &Path) -> Result<(), Failure> {
+    let pages = [PAGE, PAPER].map(|name| folder.join(name));
+    let Some(page) = pages.iter().find(|page| page.is_file()) else {
+        return Err(Failure::file(folder, "has no report")
+            .help("write `html` or `pdf` into the `formats` of the plan's `report` block"));
+    };
+    let opened = Command::new(OPENER)
+        .arg(page)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status();
+    match opened {
+        Ok(status) if status.success() => print_result(&format!("{}\n", page.display())),
+        Ok(status) => Err(unopened(page, &status.to_string())),
+        Err(error) => Err(unopened(page, &plain(&error))),
+    }
+}
+
+fn unopened(page: &Path, reason: &str) -> Failure {
+    Failure::file(page, format!("not opened by `{OPENER}`: {reason}"))
+        .help("open this file in a browser or a PDF reader")
 }
 
 /// The run folder itself, if its results are incomplete: the manifest is written last.

@@ -24,39 +24,34 @@ pub(super) fn span(interval: Interval, dimension: Dimension) -> String {
     join(&text, &unit)
 }
 
-/// The distance to the nearer end. An absolute value has an upper end only. An end of 0 at which the run rests is not counted.
+/// The distance to the end that the run approaches.
 pub(super) fn margin(
     name: &str,
     allowed: Interval,
     reached: Interval,
     dimension: Dimension,
 ) -> String {
-    let above = allowed.high - reached.high;
-    let below = reached.low - allowed.low;
-    let is_size = ![limits::DISPLACEMENT.name, limits::FORCE.name].contains(&name);
     let rests = |allowed: f64, reached: f64| allowed == 0.0 && reached == 0.0;
-    let (low, high) = (
-        !is_size && rests(allowed.low, reached.low),
-        rests(allowed.high, reached.high),
-    );
-    match (low, high) {
+    if name == limits::SPEED.name && allowed.high == reached.high {
         // Without a lower command the rig moves at its maximum speed.
-        _ if name == limits::SPEED.name && above == 0.0 => "none: at the speed limit".to_owned(),
-        (true, true) => "none: at rest at the limit".to_owned(),
-        (true, false) => format!("{}; starts at 0", readable(above, dimension)),
-        (false, true) if !is_size => format!("{}; starts at 0", readable(below, dimension)),
-        _ if is_size => readable(above, dimension),
-        _ => readable(above.min(below), dimension),
+        "none: at the speed limit".to_owned()
+    } else if rests(allowed.low, reached.low) && rests(allowed.high, reached.high) {
+        "none: at rest at the limit".to_owned()
+    } else {
+        readable(distance(name, allowed, reached), dimension)
     }
 }
 
-/// The distance to the nearer end as a number, negative beyond it. An absolute value has an upper end only.
+/// The distance to the end that the run approaches as a number, negative beyond it: to an end on the other side of zero from all
+/// that was reached there is no motion. An absolute value has an upper end only.
 pub(super) fn distance(name: &str, allowed: Interval, reached: Interval) -> f64 {
-    let above = allowed.high - reached.high;
-    if [limits::DISPLACEMENT.name, limits::FORCE.name].contains(&name) {
-        above.min(reached.low - allowed.low)
-    } else {
-        above
+    let (above, below) = (allowed.high - reached.high, reached.low - allowed.low);
+    let is_size = ![limits::DISPLACEMENT.name, limits::FORCE.name].contains(&name);
+    match (reached.low < 0.0, reached.high > 0.0) {
+        _ if is_size => above,
+        (false, true) if below >= 0.0 => above,
+        (true, false) if above >= 0.0 => below,
+        _ => above.min(below),
     }
 }
 
@@ -99,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn a_limit_that_starts_at_zero_has_the_margin_of_its_other_end() {
+    fn the_margin_is_that_of_the_end_that_is_approached() {
         let margin_of = |name, allowed: (f64, f64), reached: (f64, f64)| {
             let interval = |(low, high)| Interval { low, high };
             margin(
@@ -111,15 +106,19 @@ mod tests {
         };
         assert_eq!(
             margin_of("displacement", (-1e-3, 0.1), (0.0, 0.04)),
-            "1.000 mm"
+            "60.00 mm"
         );
         assert_eq!(
             margin_of("displacement", (0.0, 0.1), (0.0, 0.04)),
-            "60.00 mm; starts at 0"
+            "60.00 mm"
         );
         assert_eq!(
             margin_of("displacement", (-0.1, 0.0), (-0.04, 0.0)),
-            "60.00 mm; starts at 0"
+            "60.00 mm"
+        );
+        assert_eq!(
+            margin_of("displacement", (-0.05, 0.1), (-0.02, 0.04)),
+            "30.00 mm"
         );
         assert_eq!(margin_of("increment", (0.0, 5e-3), (0.0, 4e-3)), "1.000 mm");
         assert_eq!(

@@ -4,6 +4,7 @@
 use std::cell::RefCell;
 use std::rc::Rc;
 
+use crate::operator::screen::curve::Curves;
 use psd::run::{self, Inspection, Observer, StepReport};
 use psd_physics::tracking::trajectory::Path;
 use psd_plan::record::Record;
@@ -29,6 +30,30 @@ pub struct Reach {
     /// Rig time \[s\].
     pub started: f64,
     pub ended: f64,
+    /// Whether it integrates: then the time of its steps is simulated, and the same in every run.
+    pub integrates: bool,
+    pub curves: Curves,
+}
+
+impl Reach {
+    /// A procedure with these curves, and without motion.
+    pub fn of(name: &str, curves: Curves) -> Self {
+        Self {
+            name: name.to_owned(),
+            keyword: String::new(),
+            steps: 0,
+            moved: false,
+            displacement: EMPTY,
+            force: EMPTY,
+            speed: 0.0,
+            increment: 0.0,
+            tracking_error: 0.0,
+            started: 0.0,
+            ended: 0.0,
+            integrates: false,
+            curves,
+        }
+    }
 }
 
 /// The rig. It shares its data with the observer that receives the name of the running procedure.
@@ -240,23 +265,18 @@ impl Observer for Listener {
         let mut reaches = self.reaches.borrow_mut();
         let time = reaches.last().map_or(0.0, |last| last.ended);
         reaches.push(Reach {
-            name: name.to_owned(),
             keyword: keyword.to_owned(),
-            steps: 0,
-            moved: false,
-            displacement: EMPTY,
-            force: EMPTY,
-            speed: 0.0,
-            increment: 0.0,
-            tracking_error: 0.0,
             started: time,
             ended: time,
+            ..Reach::of(name, Curves::default())
         });
     }
 
-    fn step_done(&mut self, StepReport { step, .. }: &StepReport) {
+    fn step_done(&mut self, report: &StepReport) {
         if let Some(reach) = self.reaches.borrow_mut().last_mut() {
-            reach.steps = reach.steps.max(*step);
+            reach.steps = reach.steps.max(report.step);
+            reach.integrates = report.axes.iter().any(|axis| axis.velocity.is_some());
+            reach.curves.push(report);
         }
     }
 

@@ -77,6 +77,7 @@ pub fn serve(arguments: &ServeArguments, settings: Settings) -> Result<Exit, Fai
     let attendance = Attendance {
         yes: arguments.yes,
         operator: arguments.operator.clone(),
+        screen: None,
     };
     let checked = real_rig::open_plan(
         &arguments.plan,

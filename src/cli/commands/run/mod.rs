@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::args::{Format, PlanSettings, RunLog, name};
+use crate::args::{Format, PlanSettings, RunLog, ScreenForm, name};
 use crate::exit::{Exit, Failure};
 use crate::files::accepted::AcceptedFolder;
 use crate::files::golden_run;
@@ -54,6 +54,9 @@ pub struct RunArguments {
     /// Operator name [default: the plan's `operator`]
     #[arg(long, value_name = "NAME", value_parser = name)]
     pub operator: Option<String>,
+    /// Progress of the run [default: full on a terminal, else plain]
+    #[arg(long, value_enum, value_name = "FORM")]
+    pub screen: Option<ScreenForm>,
     /// Standard output: the run folder, or the summary as JSON
     #[arg(long, value_enum, default_value_t = Format::Human)]
     pub format: Format,
@@ -118,6 +121,7 @@ fn run_one(job: &Job<'_>, settings: Settings) -> Result<Done, Failure> {
     let attendance = Attendance {
         yes: arguments.yes,
         operator: arguments.operator.clone(),
+        screen: arguments.screen,
     };
     let checked = real_rig::open_plan(path, &arguments.plan_settings, &attendance, settings)?;
     let Some(plan) = &checked.plan else {

@@ -126,6 +126,7 @@ fn on_a_virtual_rig(
 ) -> Result<Ran, Failure> {
     let signals = Signals::caught(job.stop_request).map_err(Failure::Signals)?;
     let mut watcher = Watcher::new(settings, attendance, plan, true, signals, true);
+    watcher.pace(expected::parts_by_steps(plan));
     let folder = RunFolder::create(job.arguments.out.as_deref(), job.path)?;
     let circumstances = real_rig::start_alone();
     let provenance = provenance::of_simulated_run(
@@ -174,10 +175,12 @@ fn on_a_real_rig(
     attendance: &Attendance,
     settings: Settings,
 ) -> Result<Ran, Failure> {
-    let (expected, _) = expected::of(plan);
+    let expected = expected::of(plan);
     let mut opened = real_rig::open(plan, attendance, job.stop_request, settings, true)?;
-    opened.watcher.expect(expected);
-    expected::within_reach(plan, expected, &opened.connected.rig)?;
+    opened.watcher.expect(expected.extent);
+    opened.watcher.pace(expected.parts());
+    expected::within_reach(plan, expected.extent, &opened.connected.rig)?;
+    opened.watcher.predict(expected.procedures);
     let folder = RunFolder::create(job.arguments.out.as_deref(), job.path)?;
     let circumstances = real_rig::circumstances(plan, attendance);
     print_message(&provenance::reported_another_day(

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::recorded_folder::{changed_files, put_results_aside};
+use crate::args::{ScreenForm, name, reason};
 use crate::evidence::MANIFEST;
 use crate::exit::{Exit, Failure};
 use crate::files::finish_run::finish_run;
@@ -15,6 +16,7 @@ use crate::files::provenance::{BUILD, TOOLCHAIN};
 use crate::files::record_file;
 use crate::files::record_file::{ReadRecord, journal_of};
 use crate::files::{plan_file, provenance};
+use crate::operator::expected::Expected;
 use crate::operator::watch::{Attendance, Signals, Watcher};
 use crate::operator::{confirm_release, expected, held, real_rig};
 use crate::output::{print_message, print_result};
@@ -32,7 +34,7 @@ use psd_rig::journal::{Durability, EntryKind, FileStorage, Journal};
 use psd_rig::real::RealRig;
 use psd_rig::{Rig as _, StopRequest, connect};
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
 #[command(
     after_help = "A REAL RIG MOVES after its release. Before that, psd checks that run log, plan, program and rig belong to the run, and reads the \
@@ -44,12 +46,12 @@ pub struct ResumeArguments {
     /// The run folder
     #[arg(value_name = "RUN")]
     pub run: PathBuf,
-    /// Person authorising the resumption (logged)
-    #[arg(long, value_name = "NAME")]
-    pub operator: String,
-    /// Reason of the interruption, and why the run may continue (logged)
-    #[arg(long, value_name = "TEXT")]
-    pub reason: String,
+    /// Person authorising the resumption (logged) [default: asked]
+    #[arg(long, value_name = "NAME", value_parser = name)]
+    pub operator: Option<String>,
+    /// Why it stopped, and why it may continue (logged) [default: asked]
+    #[arg(long, value_name = "TEXT", value_parser = reason)]
+    pub reason: Option<String>,
     /// Plan to compare, or with --amend to use instead
     #[arg(long, value_name = "PLAN")]
     pub plan: Option<PathBuf>,
@@ -74,21 +76,60 @@ pub struct ResumeArguments {
     /// Answer every prompt with yes, including the motion release
     #[arg(long)]
     pub yes: bool,
+    /// Progress of the run [default: full on a terminal, else plain]
+    #[arg(long, value_enum, value_name = "FORM")]
+    pub screen: Option<ScreenForm>,
+}
+
+impl ResumeArguments {
+    /// The same with the operator and the reason, which are asked for at the terminal if the command line has none.
+    fn complete(&self, settings: Settings) -> Result<Self, Failure> {
+        let answer = |given: &Option<String>, flag: &str, question: &str, read| {
+            let asked = || settings.can_ask.then(|| real_rig::asked(question, read))?;
+            let missing = || {
+                Failure::command_line(format!("`--{flag}` is missing: nothing was opened"))
+                    .help("resume with --operator \"your name\" --reason \"why it stopped, and why it may continue\"")
+            };
+            given.clone().or_else(asked).ok_or_else(missing)
+        };
+        let operator = answer(
+            &self.operator,
+            "operator",
+            "name of the operator? [your name]",
+            name,
+        )?;
+        let reason = answer(
+            &self.reason,
+            "reason",
+            "why did it stop, and why may it continue?",
+            reason,
+        )?;
+        Ok(Self {
+            operator: Some(operator),
+            reason: Some(reason),
+            ..self.clone()
+        })
+    }
+
+    fn operator(&self) -> &str {
+        self.operator.as_deref().unwrap_or_default()
+    }
+
+    fn reason(&self) -> &str {
+        self.reason.as_deref().unwrap_or_default()
+    }
 }
 
 /// Resumes one run.
 pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, Failure> {
-    for (what, text) in [
-        ("operator", &arguments.operator),
-        ("reason", &arguments.reason),
-    ] {
-        if text.trim().is_empty() || text.len() > 1024 {
-            return Err(Failure::command_line(format!(
-                "`--{what}` is empty or too long"
-            )));
-        }
-    }
     let path = journal_of(&arguments.run);
+    if !path.exists() {
+        return Err(Failure::file(
+            &arguments.run,
+            "is not a run folder: it has no run log",
+        ));
+    }
+    let arguments = &arguments.complete(settings)?;
     let mut storage = FileStorage::open_existing(&path)?;
     let read = record_file::of_text(&path, &storage.text()?)?;
     if read.logged.ended {
@@ -133,13 +174,18 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         .iter()
         .filter(|line| line.kind == EntryKind::Step)
         .count() as u64;
-    let (extent, planned) = expected::of(&plan);
-    let before = expected::of(&read.plan).0.speed;
+    let Expected {
+        extent,
+        steps: planned,
+        ..
+    } = expected::of(&plan);
+    let before = expected::of(&read.plan).extent.speed;
     let planned_speed = ("highest speed in the plan", before, extent.speed);
     let expected = expected::rest(extent, planned, steps);
     let attendance = Attendance {
         yes: arguments.yes,
-        operator: Some(arguments.operator.clone()),
+        operator: arguments.operator.clone(),
+        screen: arguments.screen,
     };
     let stop_request = StopRequest::default().with_release_allowed(arguments.let_go);
     // The zero is that of the start of the run; the present position of the rig does not change it.
@@ -252,7 +298,7 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
     if let Some(reason) = wanted
         && let Some(exit) = go_on(
             &arguments.run,
-            &arguments.operator,
+            arguments.operator(),
             reason,
             &recorded,
             settings,
@@ -345,7 +391,10 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Continue
         equipment,
         ..read.provenance.clone()
     };
-    let (by, reason) = (arguments.operator.clone(), arguments.reason.clone());
+    let (by, reason) = (
+        arguments.operator().to_owned(),
+        arguments.reason().to_owned(),
+    );
     Ok((
         plan,
         provenance,
@@ -396,8 +445,12 @@ fn settle(
         arguments.accept_relaxation,
     )?;
     let released = confirm_release::ask(plan, &assured, &found, &decision, rig, watcher)?;
-    let resumption =
-        decision.resumption(&arguments.operator, &arguments.reason, &found, logged.time);
+    let resumption = decision.resumption(
+        arguments.operator(),
+        arguments.reason(),
+        &found,
+        logged.time,
+    );
     let released = Some(released);
     Ok(ResumeBody {
         assured,
@@ -434,8 +487,8 @@ pub fn go_on(
 ) -> Result<Option<Exit>, Failure> {
     let arguments = ResumeArguments {
         run: folder.to_owned(),
-        operator: operator.to_owned(),
-        reason,
+        operator: Some(operator.to_owned()),
+        reason: Some(reason),
         plan: None,
         amend: false,
         re_referenced: false,
@@ -444,6 +497,7 @@ pub fn go_on(
         accept_relaxation: false,
         accept_speed: false,
         yes: false,
+        screen: None,
     };
     match resume(&arguments, settings) {
         Ok(exit) => Ok(Some(exit)),

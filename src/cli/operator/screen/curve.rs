@@ -1,6 +1,8 @@
 //! A curve that is drawn while it grows. In: any number of points. Out: a bounded number of them, evenly thinned, with the newest one. It
 //! knows no unit.
 
+use psd::run::StepReport;
+
 /// Largest number of points kept; a terminal has fewer dots.
 pub const MOST_POINTS: usize = 1024;
 
@@ -31,6 +33,35 @@ impl Default for Curve {
             seen: 0,
             newest: None,
             bounds: None,
+        }
+    }
+}
+
+/// The two curves of a procedure.
+#[derive(Clone, Debug, Default)]
+pub struct Curves {
+    /// Displacement \[m\] over time \[s\].
+    pub displacement: Curve,
+    /// Force \[N\] over displacement \[m\].
+    pub force: Curve,
+}
+
+impl Curves {
+    /// Adds a step. For several floors: the highest one, and the base shear over the storey drift of the lowest storey.
+    pub fn push(&mut self, report: &StepReport) {
+        self.displacement.push(report.time, report.highest());
+        self.force.push(report.axes[0].displacement, report.force());
+    }
+}
+
+impl Bounds {
+    /// The bounds of both.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        let both = |one: [f64; 2], other: [f64; 2]| [one[0].min(other[0]), one[1].max(other[1])];
+        Self {
+            x: both(self.x, other.x),
+            y: both(self.y, other.y),
         }
     }
 }

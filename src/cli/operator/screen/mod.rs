@@ -1,7 +1,7 @@
 //! The live screen of a run. In: reports of the run, and keys. Out: frames, stop requests and answers. The run only stores its reports; a
 //! separate thread draws them, at most twenty times per second.
 
-mod curve;
+pub mod curve;
 mod draw;
 pub mod model;
 mod terminal;
@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 
 use super::dialogue::Dialogue;
 use super::dialogue::keys::Key;
+use crate::commands::explain_plan::dry_rig::Reach;
 use draw::View;
 use model::{Ended, Model};
 use psd::run::{Next, Observer, StepReport};
@@ -62,10 +63,11 @@ impl Shared {
 }
 
 impl Screen {
-    /// A screen for a run of `plan`. On a real rig it appears immediately, otherwise only if the run takes long enough.
+    /// A screen for a run of `plan`. If it is `wanted`, it appears immediately, otherwise only if the run takes long enough.
     pub fn new(
         plan: &Plan,
         simulated: bool,
+        wanted: bool,
         operator: Option<String>,
         stop_request: StopRequest,
         color: bool,
@@ -73,7 +75,7 @@ impl Screen {
         Self::start(
             Model::new(plan, simulated),
             Dialogue::new(operator),
-            !simulated,
+            wanted,
             stop_request,
             color,
         )
@@ -124,6 +126,16 @@ impl Screen {
     /// Shows the readings of this rig.
     pub fn watch(&self, live: Live) {
         self.shared.lock().live = Some(live);
+    }
+
+    /// Shows the predicted curves of these procedures.
+    pub fn predict(&self, procedures: Vec<Reach>) {
+        self.shared.lock().model.predicted = procedures.into();
+    }
+
+    /// Sets the time left.
+    pub fn set_left(&self, left: Option<Duration>) {
+        self.shared.lock().model.left = left;
     }
 
     /// Whether the operator has stopped the run at its keys.

@@ -2,8 +2,11 @@
 //! run of any length. It knows no terminal and no clock.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
+use std::time::Duration;
 
-use super::curve::Curve;
+use super::curve::Curves;
+use crate::commands::explain_plan::dry_rig::Reach;
 use psd::run::StepReport;
 use psd_plan::record::UNLOADING;
 use psd_plan::record::{Event, EventKind};
@@ -30,10 +33,12 @@ pub struct Model {
     pub last: Option<StepReport>,
     /// While the uncertainty of the results is calculated: number of re-runs done, and their total.
     pub study: Option<(usize, usize)>,
-    /// Displacement \[m\] over time \[s\] of this procedure.
-    pub displacement: Curve,
-    /// Force \[N\] over displacement \[m\] of this procedure.
-    pub force: Curve,
+    /// The curves of this procedure.
+    pub curves: Curves,
+    /// The predicted procedures; empty if nothing is predicted.
+    pub predicted: Arc<[Reach]>,
+    /// The time left of the run, if it is known.
+    pub left: Option<Duration>,
     /// Change of target in the last step \[m\].
     pub increment: Option<f64>,
     /// The events; the newest is last.
@@ -82,16 +87,26 @@ pub struct LimitRow {
 }
 
 impl LimitRow {
-    /// Distance to the nearer end; negative beyond it.
+    /// Distance to the end that is approached, the end on the side of the value from zero; negative beyond it.
     pub fn margin(&self) -> Option<f64> {
         let value = self.value?;
-        let above = if self.size && self.limit.low == 0.0 {
-            f64::INFINITY
+        let Interval { low, high } = self.limit;
+        let margin = if self.approaches_low(value) {
+            value - low
         } else {
-            value - self.limit.low
+            high - value
         };
-        let margin = above.min(self.limit.high - value);
         margin.is_finite().then_some(margin)
+    }
+
+    /// Whether this value is nearer to the low end, seen from zero. Without zero in the limit: whether it is nearer to that end.
+    pub fn approaches_low(&self, value: f64) -> bool {
+        let Interval { low, high } = self.limit;
+        if low <= 0.0 && high >= 0.0 && value != 0.0 {
+            value < 0.0
+        } else {
+            !self.size && value - low < high - value
+        }
     }
 }
 
@@ -105,8 +120,9 @@ impl Model {
             procedure: None,
             last: None,
             study: None,
-            displacement: Curve::default(),
-            force: Curve::default(),
+            curves: Curves::default(),
+            predicted: Arc::default(),
+            left: None,
             increment: None,
             events: VecDeque::new(),
             by_hand: None,
@@ -134,8 +150,7 @@ impl Model {
         }
         self.last = None;
         self.increment = None;
-        self.displacement = Curve::default();
-        self.force = Curve::default();
+        self.curves = Curves::default();
     }
 
     pub fn step_done(&mut self, report: &StepReport) {
@@ -148,10 +163,16 @@ impl Model {
                 .map(|(to, from)| (to.command - from.command).abs());
             changes.fold(0.0, f64::max)
         });
-        // For several floors: the highest one, and the base shear over the storey drift of the lowest storey.
-        self.displacement.push(report.time, report.highest());
-        self.force.push(report.axes[0].displacement, report.force());
+        self.curves.push(report);
         self.last = Some(report.clone());
+    }
+
+    /// The prediction of the procedure that runs.
+    pub fn prediction(&self) -> Option<&Reach> {
+        let running = self.procedure.as_ref()?;
+        self.predicted
+            .iter()
+            .find(|reach| reach.name == running.name)
     }
 
     /// Number of axes in the last step.
@@ -363,7 +384,7 @@ pub mod tests {
         model.step_done(&step(1, 0.1, 0.01, 5.0));
         model.step_done(&step(2, 0.2, 0.025, 6.0));
         let rows = model.limit_rows();
-        assert_eq!(rows[0].margin(), Some(0.024_998 + 0.01));
+        assert!((rows[0].margin().unwrap() - 0.075_002).abs() < 1e-12);
         assert!(
             (rows[1].margin().unwrap() - 0.6).abs() < 1e-12,
             "0.4 m/s of 1 m/s"
@@ -384,7 +405,7 @@ pub mod tests {
         );
         model.procedure_started("look", INSPECT, Some(0));
         assert_eq!(
-            model.displacement.points().count(),
+            model.curves.displacement.points().count(),
             2,
             "a procedure begins its own curves"
         );

@@ -5,10 +5,15 @@
 mod plain;
 mod signals;
 
+use std::time::Instant;
+
 use super::dialogue::Dialogue;
 use super::dialogue::by_lines::Person;
+use super::pace::{Pace, Part};
 use super::question::{self, After, Question, QuestionKind, Stay};
 use super::screen::{self, Screen};
+use crate::args::ScreenForm;
+use crate::commands::explain_plan::dry_rig::Reach;
 use crate::settings::{Settings, today};
 use plain::{Bar, Lines};
 use psd::report::report_status;
@@ -31,6 +36,8 @@ pub struct Watcher {
     overdue: Vec<String>,
     /// The motion for which the rig was released.
     released: Option<Motion>,
+    /// The time left.
+    pace: Pace,
     /// The reason for the early end of the run.
     ended: Option<String>,
     /// The alarm that the hold of the rig is not confirmed.
@@ -43,7 +50,6 @@ pub struct Watcher {
 }
 
 /// The display for the operator.
-#[expect(clippy::large_enum_variant, reason = "a run has one")]
 enum Face {
     Screen(Screen),
     Bar(Bar),
@@ -81,6 +87,8 @@ pub struct Attendance {
     pub yes: bool,
     /// `--operator`
     pub operator: Option<String>,
+    /// `--screen`
+    pub screen: Option<ScreenForm>,
 }
 
 impl Attendance {
@@ -93,6 +101,11 @@ impl Attendance {
             .or_else(|| of_plan.map(|(_, name)| name.clone()))
             .filter(|name| !name.trim().is_empty())
     }
+}
+
+/// Whether the terminal can show the live screen.
+pub fn can_draw(settings: Settings) -> bool {
+    settings.can_ask && settings.unicode && screen::is_large_enough()
 }
 
 impl Watcher {
@@ -108,18 +121,22 @@ impl Watcher {
     ) -> Self {
         let stop_request = signals.stop_request().clone();
         let operator = attendance.operator_of(plan);
-        let face = if drawn && settings.can_ask && settings.unicode && screen::is_large_enough() {
-            Face::Screen(Screen::new(
-                plan,
-                simulated,
-                operator.clone(),
-                stop_request.clone(),
-                settings.color,
-            ))
-        } else if drawn && settings.stderr_terminal {
-            Face::Bar(Bar::new(settings.unicode))
-        } else {
-            Face::Lines(Lines::default())
+        let form = attendance.screen;
+        let face = match form {
+            Some(ScreenForm::Never) => Face::Lines(Lines::silent()),
+            Some(ScreenForm::Full) | None if drawn && can_draw(settings) => {
+                Face::Screen(Screen::new(
+                    plan,
+                    simulated,
+                    // A short simulation has nothing to watch.
+                    form.is_some() || !simulated,
+                    operator.clone(),
+                    stop_request.clone(),
+                    settings.color,
+                ))
+            }
+            None if drawn && settings.stderr_terminal => Face::Bar(Bar::new(settings.unicode)),
+            _ => Face::Lines(Lines::default()),
         };
         let asking = match (attendance.yes, settings.can_ask, simulated, &face) {
             (true, ..) => Asking::Yes(operator),
@@ -138,6 +155,7 @@ impl Watcher {
             expected: Extent::default(),
             overdue: report_status::overdue(plan, &today()),
             released: None,
+            pace: Pace::default(),
             ended: None,
             alarm: None,
             live: None,
@@ -157,6 +175,18 @@ impl Watcher {
     /// Sets the expected demand of the run, for the operator who releases the rig.
     pub const fn expect(&mut self, expected: Extent) {
         self.expected = expected;
+    }
+
+    /// Sets the share of each procedure in the run, for the time left.
+    pub fn pace(&mut self, parts: Vec<Part>) {
+        self.pace = Pace::of(parts);
+    }
+
+    /// Shows the predicted curves of these procedures beside the measured ones.
+    pub fn predict(&mut self, procedures: Vec<Reach>) {
+        if let Face::Screen(screen) = &self.face {
+            screen.predict(procedures);
+        }
     }
 
     /// The operator's choice after the early end of a run, while the rig is observed. `resume`: whether the run can be resumed.
@@ -255,10 +285,18 @@ impl Watcher {
 
 impl Observer for Watcher {
     fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
+        self.pace.procedure_started();
         self.face().procedure_started(name, keyword, steps);
     }
 
     fn step_done(&mut self, report: &StepReport) {
+        self.pace.step_done(report.step, Instant::now());
+        let left = self.pace.left();
+        match &mut self.face {
+            Face::Screen(screen) => screen.set_left(left),
+            Face::Bar(bar) => bar.left = left,
+            Face::Lines(lines) => lines.left = left,
+        }
         self.face().step_done(report);
     }
 
@@ -303,7 +341,11 @@ impl Observer for Watcher {
     }
 
     fn next(&mut self) -> Next {
-        self.face().next()
+        let next = self.face().next();
+        if next == Next::Wait {
+            self.pace.interrupted();
+        }
+        next
     }
 
     fn event(&mut self, event: &Event) {
@@ -321,6 +363,7 @@ impl Observer for Watcher {
 
 impl Watcher {
     fn ask(&mut self, question: &Question) -> Inspection {
+        self.pace.interrupted();
         match &self.asking {
             Asking::Yes(operator) => Inspection::GoOn {
                 note: Some(match question.kind {
@@ -359,7 +402,7 @@ mod tests {
         let ask = |yes, simulated| {
             let attendance = Attendance {
                 yes,
-                operator: None,
+                ..Attendance::default()
             };
             let signals = Signals::caught(&StopRequest::default()).unwrap();
             Watcher::new(settings, &attendance, &plan, simulated, signals, true).inspect("look")

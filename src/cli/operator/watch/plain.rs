@@ -2,9 +2,11 @@
 //! Neither asks a question.
 
 use std::fmt::Write as _;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use crate::operator::pace::clock;
 use crate::output::print_message;
 use psd::run::{Observer, StepReport};
 use psd_plan::record::IS_OUTSIDE;
@@ -18,6 +20,8 @@ pub struct Bar {
     counted: ProgressStyle,
     endless: ProgressStyle,
     shown: Option<ProgressBar>,
+    /// The time left of the run, if it is known.
+    pub left: Option<Duration>,
 }
 
 impl Bar {
@@ -31,6 +35,7 @@ impl Bar {
             counted: template("  {prefix}  {bar:28} {percent:>3} %  {msg}").progress_chars(filled),
             endless: template("  {prefix}  step {pos}  {msg}"),
             shown: None,
+            left: None,
         }
     }
 
@@ -69,8 +74,9 @@ impl Observer for Bar {
                 readable(report.highest(), Dimension::LENGTH),
             );
             bar.set_message(format!(
-                "{time}  {displacement}  {}",
-                readable(force, Dimension::FORCE)
+                "{time}  {displacement}  {}{}",
+                readable(force, Dimension::FORCE),
+                time_left(self.left)
             ));
         }
     }
@@ -86,10 +92,29 @@ impl Observer for Bar {
     }
 }
 
-/// One line per procedure, with its result, and one per event that the operator should see when it happens.
+/// `, about 1:05 left`
+fn time_left(left: Option<Duration>) -> String {
+    left.map_or_else(String::new, |left| {
+        format!(", about {} left", clock(left.as_secs()))
+    })
+}
+
+/// Time between two lines about the steps of one procedure.
+const BETWEEN_LINES: Duration = Duration::from_secs(10);
+
+/// One line per procedure, with its result, one every ten seconds while it runs, and one per event that the operator should see when it
+/// happens.
 #[derive(Default)]
 pub struct Lines {
+    /// Only events.
+    silent: bool,
+    name: String,
     keyword: String,
+    steps: Option<u64>,
+    /// Time of the last line.
+    printed: Option<Instant>,
+    /// The time left of the run, if it is known.
+    pub left: Option<Duration>,
     /// Number of the last step.
     last: Option<u64>,
     /// Largest |X| \[m\] and |R| \[N\] of the steps.
@@ -99,6 +124,30 @@ pub struct Lines {
 }
 
 impl Lines {
+    /// Events only: no progress.
+    pub fn silent() -> Self {
+        Self {
+            silent: true,
+            ..Self::default()
+        }
+    }
+
+    /// The line about a step of a procedure that runs.
+    fn progress(&self, report: &StepReport) -> String {
+        let of = self.steps.filter(|steps| *steps > 0);
+        let of = of.map_or_else(String::new, |steps| {
+            format!(" of {}", steps.max(report.step))
+        });
+        format!(
+            "  {}: step {}{of}, X {}, R {}{}\n",
+            escape(&self.name),
+            report.step,
+            readable(report.highest(), Dimension::LENGTH),
+            readable(report.force(), Dimension::FORCE),
+            time_left(self.left)
+        )
+    }
+
     fn line(&self, name: &str) -> String {
         let mut text = format!("  {}: {}", escape(name), self.keyword);
         if let Some(step) = self.last {
@@ -122,9 +171,14 @@ impl Lines {
 }
 
 impl Observer for Lines {
-    fn procedure_started(&mut self, _: &str, keyword: &str, _: Option<u64>) {
+    fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {
         *self = Self {
+            silent: self.silent,
+            name: name.to_owned(),
             keyword: keyword.to_owned(),
+            steps,
+            printed: Some(Instant::now()),
+            left: self.left,
             ..Self::default()
         };
     }
@@ -137,10 +191,17 @@ impl Observer for Lines {
                 self.largest.1.max(axis.force.abs()),
             );
         }
+        let due = self.printed.is_some_and(|at| at.elapsed() >= BETWEEN_LINES);
+        if due && !self.silent {
+            self.printed = Some(Instant::now());
+            print_message(&self.progress(report));
+        }
     }
 
     fn procedure_finished(&mut self, name: &str) {
-        print_message(&self.line(name));
+        if !self.silent {
+            print_message(&self.line(name));
+        }
     }
 
     fn event(&mut self, event: &Event) {
@@ -181,6 +242,12 @@ mod tests {
         assert_eq!(
             lines.line("hit"),
             "  hit: inspect; stopped by force 1.003 kN\n"
+        );
+        lines.procedure_started("hit", "impact", Some(500));
+        lines.left = Some(Duration::from_secs(65));
+        assert_eq!(
+            lines.progress(&step(120, 0.2, 0.002_002, 10.0)),
+            "  hit: step 120 of 500, X 2.000 mm, R 10.00 N, about 1:05 left\n"
         );
         lines.procedure_started("look", "inspect", Some(0));
         assert_eq!(lines.line("lo\u{1b}ok"), "  lo\\u{1b}ok: inspect\n");

@@ -455,6 +455,7 @@ impl<'a> Checker<'a> {
             Some(crate::check::scope::Meaning::Block(index))
                 if self.scope.blocks[index].kind.kind == kind =>
             {
+                self.used_blocks.insert(index);
                 Some(index)
             }
             Some(crate::check::scope::Meaning::Poisoned) => None,

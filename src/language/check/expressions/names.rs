@@ -451,7 +451,10 @@ impl<'a> Checker<'a> {
         {
             return match meaning {
                 Meaning::Poisoned => None,
-                Meaning::Block(block) => self.member(block, name, span, context),
+                Meaning::Block(block) => {
+                    self.used_blocks.insert(block);
+                    self.member(block, name, span, context)
+                }
                 Meaning::Value(_) => self.uncertainty(base, name, span, context),
             };
         }

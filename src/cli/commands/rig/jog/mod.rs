@@ -79,6 +79,7 @@ pub fn jog(arguments: &JogArguments, settings: Settings) -> Result<Exit, Failure
     let attendance = Attendance {
         yes: arguments.yes,
         operator: arguments.operator.clone(),
+        screen: None,
     };
     let checked = real_rig::open_plan(
         &arguments.plan,

@@ -25,15 +25,32 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
     };
     let displacement = [("t", Dimension::TIME), (x, Dimension::LENGTH)];
     let force = [(across, Dimension::LENGTH), (r, Dimension::FORCE)];
+    let curves = &view.model.curves;
+    let predicted = view.model.prediction();
+    // The time of a step that does not integrate is that of the laboratory, which is not predicted.
+    let over_time = predicted.filter(|reach| reach.integrates);
     chart(
         frame,
         view,
         left,
-        &view.model.displacement,
+        &Drawn {
+            measured: &curves.displacement,
+            predicted: over_time.map(|reach| &reach.curves.displacement),
+        },
         "Displacement",
         displacement,
     );
-    chart(frame, view, right, &view.model.force, "Force", force);
+    chart(
+        frame,
+        view,
+        right,
+        &Drawn {
+            measured: &curves.force,
+            predicted: predicted.map(|reach| &reach.curves.force),
+        },
+        "Force",
+        force,
+    );
 }
 
 /// One axis: its range in SI, and the format of its numbers.
@@ -86,11 +103,17 @@ impl Scale {
     }
 }
 
+/// A measured curve and its prediction.
+struct Drawn<'a> {
+    measured: &'a Curve,
+    predicted: Option<&'a Curve>,
+}
+
 fn chart(
     frame: &mut Frame<'_>,
     view: &View<'_>,
     area: Rect,
-    curve: &Curve,
+    curves: &Drawn<'_>,
     what: &str,
     [(across, across_dimension), (up, up_dimension)]: [(&str, Dimension); 2],
 ) {
@@ -100,9 +123,18 @@ fn chart(
             .border_style(view.quiet())
             .title(title)
     };
-    let Some(bounds) = curve.bounds() else {
-        frame.render_widget(frame_of(format!(" {what} ")), area);
-        return;
+    let curve = curves.measured;
+    let predicted = curves
+        .predicted
+        .filter(|predicted| predicted.bounds().is_some());
+    let of_prediction = predicted.and_then(Curve::bounds);
+    let bounds = match (curve.bounds(), of_prediction) {
+        (Some(measured), Some(predicted)) => measured.with(predicted),
+        (Some(one), None) | (None, Some(one)) => one,
+        (None, None) => {
+            frame.render_widget(frame_of(format!(" {what} ")), area);
+            return;
+        }
     };
     let (x, y) = (
         Scale::of(bounds.x, across_dimension),
@@ -110,7 +142,13 @@ fn chart(
     );
     let points: Vec<(f64, f64)> = curve.points().collect();
     let newest: Vec<(f64, f64)> = curve.newest().into_iter().collect();
+    let expected: Vec<(f64, f64)> = predicted.into_iter().flat_map(Curve::points).collect();
     let datasets = vec![
+        Dataset::default()
+            .marker(Marker::Dot)
+            .graph_type(GraphType::Scatter)
+            .style(view.paint(Color::DarkGray))
+            .data(&expected),
         Dataset::default()
             .marker(Marker::Braille)
             .graph_type(GraphType::Line)
@@ -128,7 +166,12 @@ fn chart(
             .labels(scale.labels())
             .style(view.quiet())
     };
-    let title = format!(" {up} ({}) over {across} ({}) ", y.unit, x.unit);
+    let note = if predicted.is_some() {
+        ", · predicted"
+    } else {
+        ""
+    };
+    let title = format!(" {up} ({}) over {across} ({}){note} ", y.unit, x.unit);
     let chart = Chart::new(datasets)
         .block(frame_of(title))
         .x_axis(axis(&x))

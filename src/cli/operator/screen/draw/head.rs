@@ -7,6 +7,7 @@ use ratatui::text::{Line, Span};
 
 use super::{View, fitted, shown};
 use crate::operator::dialogue::{Typing, What};
+use crate::operator::pace::clock;
 use crate::operator::question::{After, QuestionKind};
 use crate::operator::screen::model::{Ended, INSPECT};
 use psd_text::units::Dimension;
@@ -27,7 +28,11 @@ pub fn draw(frame: &mut Frame<'_>, view: &View<'_>, area: Rect) {
         title_line(view, title.width.into(), &rig),
         Line::raw(rig.clone()),
     );
-    let clock = format!("{} ", clock(view.now.as_secs()));
+    let left = view.model.left.filter(|_| view.model.ended.is_none());
+    let left = left.map_or_else(String::new, |left| {
+        format!("about {} left  ", clock(left.as_secs()))
+    });
+    let clock = format!("  {left}{} ", clock(view.now.as_secs()));
     sides(frame, state, state_line(view), Line::raw(clock));
     frame.render_widget(Line::raw(numbers_line(view, numbers.width.into())), numbers);
 }
@@ -186,15 +191,6 @@ pub fn percent(fraction: f64) -> String {
         "0 %".to_owned()
     } else {
         format!("{} %", significant(fraction * 100.0, 3).replace('-', "−"))
-    }
-}
-
-fn clock(seconds: u64) -> String {
-    let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
-    if hours > 0 {
-        format!("{hours}:{minutes:02}:{seconds:02}")
-    } else {
-        format!("{minutes}:{seconds:02}")
     }
 }
 

@@ -123,12 +123,11 @@ impl Bar {
     fn closeness(&self, row: &LimitRow) -> Option<f64> {
         let value = row.value?;
         let margin = row.margin()?;
-        let toward =
-            if !row.size && value - self.low < self.high - value && row.limit.low.is_finite() {
-                self.low
-            } else {
-                self.high
-            };
+        let toward = if row.approaches_low(value) {
+            self.low
+        } else {
+            self.high
+        };
         let whole = if toward.abs() > 0.0 {
             toward.abs()
         } else {

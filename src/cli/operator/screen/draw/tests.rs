@@ -6,9 +6,11 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
 use super::{View, draw};
+use crate::commands::explain_plan::dry_rig::Reach;
 use crate::operator::dialogue::Dialogue;
 use crate::operator::dialogue::keys::Key;
 use crate::operator::question::{After, Question, QuestionKind, Stay};
+use crate::operator::screen::curve::Curves;
 use crate::operator::screen::model::Model;
 
 use psd::run::{Extent, Motion, StepReport};
@@ -110,6 +112,33 @@ fn picture(size: (u16, u16), dialogue: &Dialogue, model: &Model) -> String {
 #[test]
 fn a_run_at_80_by_24() {
     insta::assert_snapshot!(picture((80, 24), &Dialogue::new(None), &model()));
+}
+
+/// The measured curves grow over the predicted ones, and the time left is beside the clock.
+#[test]
+fn a_run_with_a_prediction() {
+    let mut predicted = Curves::default();
+    for step in 0..=700_u32 {
+        let time = f64::from(step) * 1e-4;
+        let displacement = 22e-3 * (-20.0 * time).exp() * (125.0 * time).sin();
+        predicted.push(&StepReport::of_readings(
+            step.into(),
+            time,
+            &[displacement],
+            &[displacement],
+            &[3.0e5 * displacement],
+        ));
+    }
+    let model = Model {
+        predicted: [Reach {
+            integrates: true,
+            ..Reach::of("hit", predicted)
+        }]
+        .into(),
+        left: Some(Duration::from_secs(3729)),
+        ..model()
+    };
+    insta::assert_snapshot!(picture((100, 30), &Dialogue::new(None), &model));
 }
 
 #[test]

@@ -1,5 +1,7 @@
-//! `psd explain`: the page of a diagnostic code, or the list of all. A page shows the lines in which its wrong and its right plan differ;
+//! `psd explain`: the page of a diagnostic code or of a word of the language, or the list of all codes. The page of a code shows the lines in which its wrong and its right plan differ;
 //! `--full` shows both plans.
+
+mod words;
 
 use std::fmt::Write as _;
 
@@ -21,28 +23,29 @@ const MOST_LINES: usize = 12;
 
 #[derive(Debug, Args)]
 pub struct ExplainArguments {
-    /// Diagnostic code
-    pub code: Option<String>,
-    /// Show the wrong and the right plan in full
-    #[arg(long, requires = "code")]
+    /// A code, or a word: `E202`, `hit.max_displacement`, `kN/m`
+    #[arg(value_name = "WORD")]
+    pub word: Option<String>,
+    /// Show the wrong and the right plan of a code in full
+    #[arg(long, requires = "word")]
     pub full: bool,
 }
 
-/// Prints the page of `code`.
-pub fn explain(code: Option<&str>, full: bool, settings: Settings) -> Result<Exit, Failure> {
-    let text = match code {
+/// Prints the page of a code or of a word.
+pub fn explain(word: Option<&str>, full: bool, settings: Settings) -> Result<Exit, Failure> {
+    let text = match word {
         None => list(settings),
         Some(written) => {
             let wanted = written.trim().to_ascii_uppercase();
             // A code can be given by its number alone: errors and warnings have no number in common.
             let known = codes::all()
                 .into_iter()
-                .find(|code| code.id() == wanted || code.id()[1..] == wanted)
-                .ok_or_else(|| unknown(written, &wanted))?;
-            if full {
-                full_page(known, settings)
-            } else {
-                page(known, settings)
+                .find(|code| code.id() == wanted || code.id()[1..] == wanted);
+            match known {
+                Some(known) if full => full_page(known, settings),
+                Some(known) => page(known, settings),
+                None => words::page(written.trim(), settings)
+                    .ok_or_else(|| unknown(written.trim(), &wanted))?,
             }
         }
     };
@@ -51,11 +54,14 @@ pub fn explain(code: Option<&str>, full: bool, settings: Settings) -> Result<Exi
 }
 
 fn unknown(written: &str, wanted: &str) -> Failure {
-    let help = match nearest(wanted, codes::all().iter().map(|code| code.id())) {
+    let codes = codes::all();
+    let near_code = nearest(wanted, codes.iter().map(|code| code.id()));
+    let last = written.rsplit('.').next().unwrap_or(written);
+    let help = match near_code.or_else(|| nearest(last, words::all())) {
         Some(near) => format!("did you mean `{near}`?"),
-        None => "`psd explain` lists every code".to_owned(),
+        None => "`psd explain` lists every code, and `psd units` every unit".to_owned(),
     };
-    Failure::command_line(format!("no diagnostic has the code `{written}`")).help(help)
+    Failure::command_line(format!("no code, word or unit is `{written}`")).help(help)
 }
 
 /// The page of a code.
