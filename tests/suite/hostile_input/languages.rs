@@ -1,4 +1,4 @@
-//! The texts of a plan: the plan, a document, the files that it uses, its layout.
+//! The texts of a plan: the plan, a document, the data that it reads, its layout.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -37,12 +37,9 @@ fn ending(texts: &BTreeMap<String, String>, end: &str) -> Vec<Vec<u8>> {
     of.map(|(_, text)| text.clone().into_bytes()).collect()
 }
 
-/// Checks a plan and draws what is found. `other` is the text of every file that the plans of the repository do not have.
-fn checked(name: &str, text: &str, files: &BTreeMap<String, String>, other: Option<&str>) {
-    let load = |file: &str| {
-        let text = files.get(file).map(String::as_str).or(other);
-        text.map(str::to_owned).ok_or(LoadError::NotFound)
-    };
+/// Checks a plan with the files that `load` has, and draws what is found.
+fn checked(name: &str, text: &str, load: &dyn Fn(&str) -> Option<String>) {
+    let load = |file: &str| load(file).ok_or(LoadError::NotFound);
     let checked = check(name, text, &load, &Options::default());
     let drawn = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
     assert!(checked.plan.is_some() || !drawn.is_empty());
@@ -54,7 +51,9 @@ fn a_plan() {
     let mut seeds = ending(&plans, ".psd");
     seeds.extend(ending(&texts("tests/lang"), ".psd"));
     attack("plan", &seeds, |bytes| {
-        checked("plan.psd", &String::from_utf8_lossy(bytes), &plans, None);
+        checked("plan.psd", &String::from_utf8_lossy(bytes), &|file| {
+            plans.get(file).cloned()
+        });
     });
 }
 
@@ -64,22 +63,38 @@ fn a_document() {
     let mut seeds = ending(&plans, ".md");
     seeds.extend(ending(&texts("tests/lang"), ".md"));
     attack("document", &seeds, |bytes| {
-        checked("plan.md", &String::from_utf8_lossy(bytes), &plans, None);
+        checked("plan.md", &String::from_utf8_lossy(bytes), &|file| {
+            plans.get(file).cloned()
+        });
     });
 }
 
+/// A right plan, and the file that it reads.
+const READERS: [(&str, &str); 5] = [
+    ("shake.psd", "data/ground.csv"),
+    ("shake_matrices.psd", "data/m.csv"),
+    ("shake_matrices.psd", "data/k.csv"),
+    ("specimen_table.psd", "data/loop.csv"),
+    ("study_until.psd", "data/measured.csv"),
+];
+
+/// Ground motions, matrices, loops, measured values. The first byte of an input is the number of its reader.
 #[test]
-fn a_ground_motion() {
-    const PLAN: &str = "two_storeys_sine.psd";
-    let plans = texts("plans");
-    let plan = plans[PLAN].replace("ground/sine.csv", "hostile.csv");
-    let mut seeds = ending(&plans, ".csv");
-    for seed in &mut seeds {
-        seed.truncate(4 << 10);
-    }
-    seeds.push(b"time,acceleration\n0,0\n0.01,0.5\n0.02,-0.5\n".to_vec());
-    attack("ground motion", &seeds, |bytes| {
-        checked(PLAN, &plan, &plans, Some(&String::from_utf8_lossy(bytes)));
+fn a_data_file() {
+    let files = texts("tests/lang/ok");
+    let seeds = (0_u8..).zip(READERS);
+    let seeds = seeds.map(|(number, (_, file))| [&[number], files[file].as_bytes()].concat());
+    attack("data file", &seeds.collect::<Vec<_>>(), |bytes| {
+        let [number, bytes @ ..] = bytes else { return };
+        let (plan, hostile) = READERS[usize::from(*number) % READERS.len()];
+        let text = String::from_utf8_lossy(bytes);
+        checked(plan, &files[plan], &|file| {
+            if file == hostile {
+                Some(text.clone().into_owned())
+            } else {
+                files.get(file).cloned()
+            }
+        });
     });
 }
 

@@ -1,5 +1,5 @@
-//! The lines of a rig: the replies of every controller to its driver, and the requests to every emulated controller. The good inputs are
-//! those of a short conversation of the two.
+//! The lines of a rig: the replies of every controller to its driver, and the requests to every emulated controller, from a short
+//! conversation of the two. Messages of coordinators, and scripts of faults.
 
 use std::io::{self, ErrorKind};
 use std::path::Path;
@@ -300,6 +300,24 @@ fn messages_of_a_coordinator() {
             }
             Ok(_) => {}
             Err(refusal) => assert!(refusal.line().len() < 4096),
+        }
+    });
+}
+
+#[test]
+fn a_script_of_faults() {
+    let page = include_str!("../../../docs/reference/emulator-faults.md");
+    let rows = page.lines().filter_map(|row| {
+        let (script, _) = row.strip_prefix("| `")?.split_once('`')?;
+        Script::parse(script)
+            .ok()
+            .map(|_| script.as_bytes().to_vec())
+    });
+    let seeds: Vec<Vec<u8>> = rows.collect();
+    assert!(seeds.len() > 20, "{} scripts", seeds.len());
+    attack("script of faults", &seeds, |bytes| {
+        if let Err(error) = Script::parse(&String::from_utf8_lossy(bytes)) {
+            assert!(error.line > 0);
         }
     });
 }
