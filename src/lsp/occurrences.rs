@@ -7,6 +7,7 @@ use psd_language::check::imports;
 use psd_language::syntax::ast::{
     Argument, Ast, Block, Entry, Expr, ExprKind, Ident, Item, ItemKind,
 };
+use psd_plan::schema::sections::SECTIONS;
 use psd_plan::schema::{
     self, BlockKind, FUNCTIONS, Field, FieldType, FunctionKind, ITEM_WORDS, Kind, ResultKind,
     Variant,
@@ -381,6 +382,7 @@ impl<'a> Reader<'a> {
         let variant = place
             .variants
             .iter()
+            .chain(SECTIONS)
             .find(|variant| variant.name == name.node);
         if let Some(variant) = variant {
             self.add(name.span, Meaning::Variant(variant));

@@ -5,6 +5,7 @@ use std::rc::Rc;
 
 use crate::codes::{E404, E405};
 use crate::syntax::ast::Expr;
+use psd_physics::structure::section::Section;
 use psd_plan::Frame;
 use psd_plan::formula::{Formula, ProcedureId, ResultReference};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
@@ -89,6 +90,8 @@ pub struct Checker<'a> {
     pub diagnostics: Vec<Diagnostic>,
     /// Whether names may be missing because a used file could not be read.
     pub names_lost: bool,
+    /// Cross-sections by the span of their shapes; None of one with an error.
+    pub sections: BTreeMap<Span, Option<Section>>,
     /// Lines that could not be parsed: unknown names may be declared there.
     pub unread: Vec<Span>,
     /// Every word of those lines.
@@ -209,6 +212,7 @@ impl<'a> Checker<'a> {
             loader,
             data,
             frames,
+            sections: BTreeMap::new(),
             diagnostics,
             names_lost,
             unread,

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use gen_lsp_types as lsp;
+use psd_plan::schema::sections::SECTIONS;
 use psd_plan::schema::{
     self, BLOCKS, BlockKind, CONSTANTS, FUNCTIONS, Field, FieldType, ITEM_WORDS, Kind, Naming,
     Presence, ResultKind, Variant,
@@ -478,6 +479,14 @@ impl<'v> Items<'v, '_> {
         }
         for (name, _, doc) in CONSTANTS {
             self.push(name, name, lsp::CompletionItemKind::Constant, ("", doc));
+        }
+        for shape in SECTIONS {
+            self.push(
+                shape.name,
+                &format!("{}(${{1:}})", shape.name),
+                lsp::CompletionItemKind::Function,
+                ("section", shape.doc),
+            );
         }
         for function in FUNCTIONS {
             self.push(

@@ -15,6 +15,7 @@ mod matrices;
 pub mod matrix;
 mod modes;
 pub mod portal;
+pub mod section;
 mod shear_building;
 pub mod substructures;
 mod unloading;

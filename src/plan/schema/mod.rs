@@ -6,6 +6,7 @@ pub mod blocks;
 pub mod columns;
 mod constructors;
 mod functions;
+pub mod sections;
 mod synonyms;
 mod types;
 

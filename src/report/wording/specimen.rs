@@ -314,8 +314,11 @@ fn beam_words(beam: &Beam, shown: Printed<'_>) -> String {
     let shear = beam.shear.map_or_else(String::new, |shear| {
         format!(", shear stiffness {}", shown(shear, Dimension::FORCE))
     });
+    let at = beam.at.map_or_else(String::new, |at| {
+        format!(", struck at {}", shown(at, Dimension::LENGTH))
+    });
     format!(
-        "beam, {}, length {}, modulus {}, second moment {}{shear}: stiffness {}",
+        "beam, {}, length {}, modulus {}, second moment {}{shear}{at}: stiffness {}",
         support(beam.ends, shown),
         shown(beam.length, Dimension::LENGTH),
         shown(beam.youngs_modulus, Dimension::PRESSURE),
@@ -446,6 +449,11 @@ fn derived(behaviour: &Behaviour, shown: Printed<'_>, rows: &mut Vec<(&'static s
         Behaviour::Beam(beam) => {
             let factor = first_mode_mass_factor(beam);
             let text = match beam.own_mass {
+                Some(own) if beam.at.is_some() => format!(
+                    "{} ({factor:.4} qAL, static deflection as the shape)",
+                    shown(factor * own, Dimension::MASS)
+                ),
+                None if beam.at.is_some() => format!("{factor:.4} of the beam's mass qAL"),
                 Some(own) => format!(
                     "{} ({factor:.4} qAL, static deflection as the shape); Melo et al. 2006 use qAL/2, {}",
                     shown(factor * own, Dimension::MASS),

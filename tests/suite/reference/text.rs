@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use psd_plan::schema::{BLOCKS, CONSTANTS, FUNCTIONS};
+use psd_plan::schema::{BLOCKS, CONSTANTS, FUNCTIONS, sections};
 use psd_text::diagnostic::page::Page;
 use psd_text::units::Dimension;
 use psd_text::units::display::si_unit;
@@ -66,6 +66,21 @@ fn write_functions(text: &mut String) {
     }
     for (name, _, doc) in CONSTANTS {
         let _ = writeln!(text, "| `{name}` | {doc} |");
+    }
+    let _ = writeln!(text, "\n## Sections\n\n| section | |\n|---|---|");
+    for shape in sections::SECTIONS {
+        let arguments: Vec<&str> = shape.arguments.iter().map(|it| it.name).collect();
+        let _ = writeln!(
+            text,
+            "| `{}({})` | {} |",
+            shape.name,
+            arguments.join(", "),
+            shape.doc
+        );
+    }
+    for value in sections::VALUES {
+        let unit = value.dimension.usual_unit();
+        let _ = writeln!(text, "| `.{}` | {}, `{unit}` |", value.name, value.doc);
     }
 }
 

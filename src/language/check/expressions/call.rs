@@ -1,12 +1,14 @@
 //! Functions: `abs(x)`, `max(a, b)`, `sqrt(area)`.
 
 use crate::check::checker::{Checker, Context, Shape, Typed};
+use crate::check::expressions::section;
 use crate::check::violations::{AbsoluteTemperature, ExponentTooLarge, ListForNumber, Mismatched};
 use crate::check::wording::suggestion;
 use crate::codes::{E207, E213};
 use crate::syntax::ast::{Argument, Ident};
 use crate::syntax::foreign;
 use psd_plan::formula::{Formula, Function};
+use psd_plan::schema::sections::SECTIONS;
 use psd_plan::schema::{FUNCTIONS, FunctionKind, Kind, Takes};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
@@ -16,7 +18,7 @@ use psd_text::units::{Dimension, Exponent};
 #[violation(E207, "unknown function `{name}`")]
 #[help("{}", suggestion(
             name,
-            FUNCTIONS.iter().map(|function| function.name),
+            FUNCTIONS.iter().map(|function| function.name).chain(SECTIONS.iter().map(|shape| shape.name)),
         ))]
 struct UnknownFunction<'a> {
     name: &'a str,
@@ -86,6 +88,9 @@ impl<'a> Checker<'a> {
         span: Span,
         context: Context,
     ) -> Option<Typed> {
+        if section::shape(&name.node).is_some() {
+            return self.section_for_number(span);
+        }
         let Some(kind) = FUNCTIONS.iter().find(|function| function.name == name.node) else {
             return match self.form_of_foreign_function(&name.node, arguments) {
                 Some(help) => self.fail(ForeignFunction {

@@ -12,3 +12,4 @@ pub mod literal;
 pub mod names;
 pub mod overrides;
 pub mod parameters;
+pub mod section;

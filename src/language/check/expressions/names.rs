@@ -347,6 +347,10 @@ impl<'a> Checker<'a> {
         }
         match meaning {
             Some(Meaning::Poisoned) => None,
+            Some(Meaning::Value(index)) if self.is_section(index) => {
+                self.used.insert(index);
+                self.section_for_number(span)
+            }
             Some(Meaning::Value(index)) => {
                 let typed = self.declared_value(index, span)?;
                 self.reads_allowed(
@@ -446,6 +450,15 @@ impl<'a> Checker<'a> {
         span: Span,
         context: Context,
     ) -> Option<Typed> {
+        if let Some(section) = self.section_of(base) {
+            if let ExprKind::Name(owner) = &base.kind
+                && let Some(Meaning::Value(index)) = self.scope.meaning(owner)
+            {
+                // Its own context is that of a `let`.
+                self.declared_value(index, span);
+            }
+            return self.value_of_section(section, name, span, context);
+        }
         if let ExprKind::Name(owner) = &base.kind
             && let Some(meaning) = self.scope.meaning(owner)
         {

@@ -152,6 +152,11 @@ impl<'a> Checker<'a> {
                 reads: Reads::All,
                 critical: false,
             };
+            if self.section_of(declared.value).is_some() {
+                // It has values and is none.
+                self.section(declared.value, context);
+                return None;
+            }
             return self.value(declared.value, context);
         }
         let context = Context {

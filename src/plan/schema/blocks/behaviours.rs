@@ -33,6 +33,7 @@ pub mod argument {
     pub const ENDS: &str = "ends";
     pub const SHEAR_MODULUS: &str = "shear_modulus";
     pub const SHEAR_AREA: &str = "shear_area";
+    pub const AT: &str = "at";
     pub const SPAN: &str = "span";
     pub const HEIGHT: &str = "height";
     pub const PLASTIC_MOMENT: &str = "plastic_moment";
@@ -209,6 +210,9 @@ const OF_OTHER_PARAMETERS: &[Variant] = &[
             Field::quantity(argument::SHEAR_MODULUS, Dimension::PRESSURE, "G, with `shear_area`: adds the shear deflection")
                 .above_zero(),
             Field::quantity(argument::SHEAR_AREA, Dimension::AREA, "κA, effective shear area").above_zero(),
+            Field::quantity(argument::AT, Dimension::LENGTH, "distance of the struck section from a support, or from the fixed end of a cantilever")
+                .above_zero()
+                .default_in_words("middle; tip of a cantilever"),
         ],
         "elastic beam from its geometry; shear adds flexibility L/(4κGA); L/(κGA) for a cantilever",
     ),

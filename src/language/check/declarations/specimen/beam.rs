@@ -3,11 +3,28 @@
 use crate::check::checker::{Checker, Context};
 use crate::check::expressions::choice::Chosen;
 use crate::check::violations::MissingPartner;
+use crate::check::wording::shown;
+use crate::codes::E401;
 use psd_physics::structure::beam::{self, Span};
 use psd_plan::schema::behaviours::argument;
 use psd_plan::{Beam, Behaviour, Ends};
+use psd_text::diagnostic::Violation;
+use psd_text::units::Dimension;
 
-/// Stiffness of a beam at midspan or at its tip; the formulas are in `physics/structure/beam.rs`.
+#[derive(Violation)]
+#[violation(
+    E401,
+    "the struck section is not inside this beam of {}",
+    shown(length, Dimension::LENGTH)
+)]
+#[help("write the distance from a support, or from the fixed end of a cantilever")]
+struct BeyondTheBeam {
+    length: f64,
+    #[label("too far")]
+    span: psd_text::source::Span,
+}
+
+/// Stiffness of a beam at midspan, at its tip or at `at`; the formulas are in `physics/structure/beam.rs`.
 pub fn beam<'a>(
     checker: &mut Checker<'a>,
     chosen: &Chosen<'a>,
@@ -19,6 +36,7 @@ pub fn beam<'a>(
     let second_moment = checker.constant_argument(chosen, argument::SECOND_MOMENT, context);
     let modulus = checker.optional_argument(chosen, argument::SHEAR_MODULUS, context);
     let area = checker.optional_argument(chosen, argument::SHEAR_AREA, context);
+    let at = checker.optional_argument(chosen, argument::AT, context);
     let ends = checker.chosen_argument(chosen, argument::ENDS)?;
     let rotational_stiffness = match ends.variant.name {
         "partly_built_in" => {
@@ -62,7 +80,19 @@ pub fn beam<'a>(
         ("simply_supported", ..) => Ends::SimplySupported,
         _ => Ends::BuiltIn,
     };
-    let stiffness = beam::stiffness(span, ends, shear);
+    let at = at?;
+    let stiffness = match at {
+        None => beam::stiffness(span, ends, shear),
+        Some(at) if at < length || (at <= length && ends == Ends::Cantilever) => {
+            beam::stiffness_at(span, ends, shear, at)
+        }
+        Some(_) => {
+            return checker.fail(BeyondTheBeam {
+                length,
+                span: chosen.span(argument::AT)?,
+            });
+        }
+    };
     Some(Behaviour::Beam(Beam {
         stiffness,
         length,
@@ -70,6 +100,7 @@ pub fn beam<'a>(
         second_moment,
         ends,
         shear,
+        at,
         own_mass,
     }))
 }
