@@ -50,7 +50,7 @@ impl Workspace {
             .stderr(Stdio::piped());
         let mut child = command.spawn().unwrap();
         let mut stdin = child.stdin.take().unwrap();
-        // A program that refuses standard input does not read it.
+        // A command that refuses its arguments ends without reading.
         let _ = stdin.write_all(text.as_bytes());
         drop(stdin);
         child.wait_with_output().unwrap().into()

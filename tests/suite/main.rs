@@ -18,6 +18,7 @@ mod explain;
 mod explain_pages;
 mod golden;
 mod growth;
+mod hostile_input;
 mod house;
 mod import_graph;
 mod lang;
