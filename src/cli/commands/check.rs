@@ -24,6 +24,9 @@ use super::explain_plan;
 /// Time between two looks at the watched files.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(200);
 
+/// The clock of a file system is coarser than that of the computer by less than this.
+const CLOCK_STEP: Duration = Duration::from_millis(20);
+
 #[derive(Debug, Args)]
 pub struct CheckArguments {
     /// Plans, folders of plans, or `-` for standard input
@@ -58,14 +61,18 @@ pub fn check(arguments: &CheckArguments, settings: Settings) -> Result<Exit, Fai
     }
     loop {
         let mut files = Vec::new();
+        let began = SystemTime::now() - CLOCK_STEP;
         // A folder without a plan, or a file that is missing now, can change too.
         if let Err(failure) = once(arguments, settings, &mut files) {
             print_message(&failure.report(settings));
         }
         files.extend(arguments.plans.iter().cloned());
-        print_message(&settings.paint_note("watching for changes; Ctrl-C ends\n"));
         let before = stamps(&files);
-        while stamps(&files) == before {
+        print_message(&settings.paint_note("watching for changes; Ctrl-C ends\n"));
+        // A file that changed after the check had read it is checked once more.
+        let changed_meanwhile = before.iter().flatten().any(|(_, at)| *at >= began);
+        std::thread::sleep(BETWEEN_LOOKS);
+        while !changed_meanwhile && stamps(&files) == before {
             std::thread::sleep(BETWEEN_LOOKS);
         }
         clear_terminal(settings);
