@@ -140,7 +140,7 @@ pub fn plan(
     let procedures = procedures::procedures(checker);
     procedures::check_specimen(checker, &procedures);
     procedures::check_axes(checker, &procedures, &specimens, rig.as_ref());
-    // With two `limits` blocks, neither is known to apply.
+    // Two `limits` blocks are an error; the targets are compared with neither of them.
     if let Some(limits) = limits
         .as_ref()
         .filter(|_| !checker.scope.twice.contains(&Kind::Limits))
@@ -244,6 +244,9 @@ pub fn plan(
         if findings == Findings::WarningsToo {
             warnings::tracking::warn(checker, &plan, &blocks, rig_block);
             of_the_language::guarded::warn_of_partial(checker, &plan, rig_block);
+            if options.dry_run {
+                warnings::dry_run::warn(checker, &plan, &blocks);
+            }
         }
         warnings::recorded_steps::check(checker, &plan, &blocks);
     }

@@ -12,6 +12,7 @@ mod warnings;
 
 pub use parsed_plan::{ParsedPlan, check};
 pub use psd_language::check::{LoadError, Loader, no_files};
+pub use warnings::dry_run::is_short;
 
 use psd_plan::Plan;
 use psd_text::diagnostic::Diagnostic;
@@ -30,6 +31,8 @@ pub struct Options {
     pub today: Option<String>,
     /// A run is about to begin, the command line names no operator, and no operator can be asked.
     pub unattended: bool,
+    /// The plan is also run on an ideal copy of its rig, if that takes milliseconds.
+    pub dry_run: bool,
     /// The studies of the plan are about to be run, which a real rig cannot do.
     pub for_studies: bool,
 }
@@ -40,6 +43,8 @@ pub struct Checked {
     pub plan: Option<Plan>,
     pub diagnostics: Vec<Diagnostic>,
     pub sources: Sources,
+    /// The rigs that the plan declares, in its order.
+    pub rigs: Vec<String>,
     /// The entries that state how the rig of the run is connected; empty for the ideal one.
     pub rig_links: Vec<Span>,
 }

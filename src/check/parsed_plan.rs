@@ -14,6 +14,7 @@ use psd_language::check::{imports, rig};
 use psd_language::codes::{E107, W733};
 use psd_language::syntax::ast::Ast;
 use psd_language::syntax::limits::ERRORS;
+use psd_plan::schema::Kind;
 use psd_plan::{Plan, PlanFile};
 use psd_text::diagnostic::{Code, Diagnostic, Severity, Violation};
 use psd_text::source::{Sources, Span};
@@ -54,6 +55,7 @@ const MOST_ENDS: usize = 64;
 struct Outcome {
     plan: Option<Plan>,
     diagnostics: Vec<Diagnostic>,
+    rigs: Vec<String>,
     rig_links: Vec<Span>,
     data: Vec<DataFile>,
     ends: Vec<End>,
@@ -198,6 +200,7 @@ impl ParsedPlan {
             plan: outcome.plan,
             diagnostics: outcome.diagnostics,
             sources: self.sources.clone(),
+            rigs: outcome.rigs,
             rig_links: outcome.rig_links,
         }
     }
@@ -342,6 +345,9 @@ impl ParsedPlan {
             settings: written.into_iter().collect(),
         };
         let plan = driver::plan(&mut checker, text, &self.options, findings);
+        let rigs = checker.scope.of_kind(Kind::Rig);
+        let rigs = rigs.filter_map(|(_, block)| block.name.map(|name| name.node.clone()));
+        let rigs = rigs.collect();
         let rig_links = rig::links_of_run(&checker, self.options.rig.as_deref());
         let misspelt = self.trees.iter().flat_map(|tree| tree.misspelt.iter());
         let misspelt: Vec<Span> = misspelt.copied().collect();
@@ -349,6 +355,7 @@ impl ParsedPlan {
         Outcome {
             plan: plan.filter(|_| !diagnostics.iter().any(Diagnostic::is_error)),
             diagnostics,
+            rigs,
             rig_links,
             data: checker.data,
             ends: checker.ends,

@@ -30,6 +30,20 @@ pub enum Exit {
 }
 
 impl Exit {
+    /// Every exit.
+    pub fn all() -> impl Iterator<Item = Self> {
+        [
+            Self::Met,
+            Self::Missed,
+            Self::Wrong,
+            Self::Fault,
+            Self::Stopped,
+            Self::Differs,
+            Self::Unfinished,
+        ]
+        .into_iter()
+    }
+
     /// The exit code of the process.
     #[must_use]
     pub const fn code(self) -> u8 {

@@ -6,7 +6,7 @@ psd_text::codes! {
     // 2: names
     E201 E202 E203 E204 E205 E206 E207 E208 E209 E210 E212 E213 E214
     // 3: dimensions and types
-    E301 E302 E303 E304 E305
+    E301 E302 E303 E304 E305 E306
     // 4: values
     E401 E402 E403 E404 E405 E406 E407 E408 E409
     // 5: files

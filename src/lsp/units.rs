@@ -8,7 +8,7 @@ use psd_text::units::{Dimension, display};
 const PARTS: &[&str] = &[
     "m", "mm", "kg", "s", "N", "kN", "ms", "MPa", "GPa", "J", "kJ", "Hz", "t", "g", "cm", "MN",
     "um", "us", "Pa", "kPa", "mJ", "min", "h", "kHz", "in", "ft", "lb", "lbf", "kip", "psi", "ksi",
-    "gn", "deg", "rad", "%",
+    "gn", "deg", "rad", "K", "%",
 ];
 /// The units of which products are made.
 const PRODUCTS: &[&str] = &[
@@ -31,7 +31,7 @@ pub fn of(dimension: Dimension) -> Vec<String> {
     let usual = dimension.usual_unit();
     add(&mut found, usual);
     add(&mut found, display::si_unit(dimension));
-    let plain = |part: &&&str| !matches!(**part, "deg" | "rad" | "%" | "gn");
+    let plain = |part: &&&str| !matches!(**part, "deg" | "rad" | "K" | "%" | "gn");
     for part in PARTS {
         add(&mut found, (*part).to_owned());
     }
@@ -60,22 +60,50 @@ pub fn of(dimension: Dimension) -> Vec<String> {
     found
 }
 
-/// A number in another unit, if it means exactly the same.
-pub fn converted(value: f64, from: Unit, to: &str) -> Option<String> {
+/// Most digits of a number that is converted exactly: a pound in kilograms has 8.
+const MOST_DIGITS: usize = 10;
+/// Fewest digits of a number that is rounded, as those that are only shown.
+const LEAST_DIGITS: usize = 4;
+
+/// A number in another unit.
+#[derive(Debug, PartialEq)]
+pub struct Converted {
+    pub text: String,
+    /// It means the same only to the digits that the number carried, or to `LEAST_DIGITS`.
+    pub is_rounded: bool,
+}
+
+/// A number in another unit of its dimension.
+pub fn converted(value: f64, from: Unit, to: &str) -> Option<Converted> {
     let unit = unit::parse(to)
         .ok()
-        .filter(|unit| unit.dimension == from.dimension)?;
-    let exact = value * from.factor / unit.factor;
-    // The shortest number that means the same to 15 digits.
-    let digits: f64 = format!("{exact:.14e}").parse().ok()?;
-    let same =
-        (digits * unit.factor - value * from.factor).abs() <= 1e-14 * (value * from.factor).abs();
-    let text = if (1e-4..1e9).contains(&digits.abs()) || digits == 0.0 {
-        format!("{digits}")
-    } else {
-        format!("{digits:e}")
+        .filter(|unit| unit.dimension == from.dimension && unit.zero == from.zero)?;
+    let meant = value * from.factor;
+    let with = |digits: usize| -> Option<f64> {
+        let text = format!("{:.*e}", digits - 1, meant / unit.factor);
+        text.parse().ok().filter(|number: &f64| number.is_finite())
     };
-    same.then(|| format!("{text} {to}"))
+    let short = with(MOST_DIGITS)?;
+    // The factors are floats: their quotient is the decimal number to 15 digits.
+    let is_rounded = (short * unit.factor - meant).abs() > 1e-14 * meant.abs();
+    let number = if is_rounded {
+        with(digits_of(value).max(LEAST_DIGITS))?
+    } else {
+        short
+    };
+    let text = if (1e-4..1e9).contains(&number.abs()) || number == 0.0 {
+        format!("{number} {to}")
+    } else {
+        format!("{number:e} {to}")
+    };
+    Some(Converted { text, is_rounded })
+}
+
+/// The digits that a number carries, without zeros at its end.
+fn digits_of(value: f64) -> usize {
+    let text = format!("{value:e}");
+    let mantissa = text.split('e').next().unwrap_or_default();
+    mantissa.chars().filter(char::is_ascii_digit).count()
 }
 
 #[cfg(test)]
@@ -96,7 +124,9 @@ mod tests {
             (Dimension::SECOND_MOMENT, &["mm^4", "m^4"]),
             (Dimension::PRESSURE, &["MPa", "Pa", "GPa", "psi"]),
             (Dimension::ACCELERATION, &["gn", "m/s^2"]),
-            (Dimension::NUMBER, &["%", "deg"]),
+            (Dimension::NUMBER, &["%"]),
+            (Dimension::ANGLE, &["rad", "deg"]),
+            (Dimension::TEMPERATURE, &["K"]),
         ] {
             let found = of(dimension);
             assert!(found.len() <= MOST, "{found:?}");
@@ -115,14 +145,27 @@ mod tests {
     }
 
     #[test]
-    fn a_converted_number_means_the_same() {
+    fn a_converted_number_means_the_same_or_says_that_it_is_rounded() {
         let of = |token: &str| unit::parse(token).unwrap();
-        assert_eq!(
-            converted(300.0, of("kN/m"), "N/mm").as_deref(),
-            Some("300 N/mm")
-        );
-        assert_eq!(converted(2.0, of("in"), "mm").as_deref(), Some("50.8 mm"));
-        assert_eq!(converted(0.3, of("mm"), "m").as_deref(), Some("0.0003 m"));
+        for (value, from, to, text, is_rounded) in [
+            (300.0, "kN/m", "N/mm", "300 N/mm", false),
+            (2.0, "in", "mm", "50.8 mm", false),
+            (0.3, "mm", "m", "0.0003 m", false),
+            (1.0, "lb", "kg", "0.45359237 kg", false),
+            (0.0, "mm", "in", "0 in", false),
+            (1.0, "mm", "in", "0.03937 in", true),
+            (40.0, "in", "ft", "3.333 ft", true),
+            (-25.12345, "mm", "in", "-0.9891122 in", true),
+            (210.0, "GPa", "ksi", "30460 ksi", true),
+            (1.0, "lbf", "N", "4.448 N", true),
+        ] {
+            let wanted = Converted {
+                text: text.to_owned(),
+                is_rounded,
+            };
+            assert_eq!(converted(value, of(from), to), Some(wanted));
+        }
         assert_eq!(converted(1.0, of("m"), "kg"), None);
+        assert_eq!(converted(1e308, of("GPa"), "Pa"), None);
     }
 }

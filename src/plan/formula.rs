@@ -57,7 +57,7 @@ pub enum Operator {
     Power,
 }
 
-/// A function of one number or of a list; `ALL` contains its name in the language.
+/// A function of numbers or of a list; `ALL` contains its name in the language.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Function {
     Abs,
@@ -68,6 +68,10 @@ pub enum Function {
     Sqrt,
     Sin,
     Cos,
+    Tan,
+    Exp,
+    Log,
+    Hypot,
 }
 
 /// A value and its standard uncertainty, both in SI units; no uncertainty if no measured result is read.
@@ -362,6 +366,10 @@ impl Function {
             Self::Sqrt => first.sqrt(),
             Self::Sin => first.sin(),
             Self::Cos => first.cos(),
+            Self::Tan => first.tan(),
+            Self::Exp => first.exp(),
+            Self::Log => first.ln(),
+            Self::Hypot => values.iter().copied().fold(0.0, f64::hypot),
             Self::Min => values.iter().copied().fold(first, f64::min),
             Self::Max => values.iter().copied().fold(first, f64::max),
             Self::Sum => values.iter().sum(),

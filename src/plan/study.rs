@@ -57,8 +57,6 @@ pub struct Input {
     pub text: String,
     /// The value of the plan without the study, SI.
     pub nominal: f64,
-    /// Whether it is an angle, which a plan writes with its unit.
-    pub angle: bool,
     /// Whether it is the number of a ground-motion record.
     pub is_record: bool,
 }

@@ -67,7 +67,7 @@ impl Default for Recorded {
             time_spans: None,
             budgeted: &[],
             entries: "number",
-            uncertainty: unload::report::UNCERTAINTY,
+            uncertainty: unload::uncertainty::UNCERTAINTY,
             distinct_from_zero: None,
             strokes: None,
         }

@@ -74,17 +74,10 @@ fn digest(plan: &Plan) -> String {
     sha256(text.as_bytes())
 }
 
-/// `--set` takes an angle with its unit only.
 pub(super) fn column(input: &Input) -> Column {
-    let column = Column::new(&input.name, input.dimension, &input.text);
     Column {
         nominal: Some(input.nominal),
-        unit: if input.angle {
-            "rad".to_owned()
-        } else {
-            column.unit
-        },
-        ..column
+        ..Column::new(&input.name, input.dimension, &input.text)
     }
 }
 

@@ -19,7 +19,6 @@ pub fn variation() -> Variation {
         dimension,
         text: String::new(),
         nominal,
-        angle: false,
         is_record: false,
     };
     Variation {

@@ -95,8 +95,9 @@ const PARTS: &[Part] = &[
 ];
 
 /// The variables that make a test write, and what they are while it does and while it does not. Without a value for insta a
-/// comparison would leave a file beside a snapshot that differs.
-const VARIABLES: [(&str, &str, Option<&str>); 3] = [
+/// comparison would leave a file beside a snapshot that differs. Tests that write run one at a time, because others read the same page.
+const VARIABLES: [(&str, &str, Option<&str>); 4] = [
+    ("RUST_TEST_THREADS", "1", None),
     ("PSD_BLESS", "1", None),
     ("SNAPSHOTS", "overwrite", None),
     ("INSTA_UPDATE", "always", Some("no")),

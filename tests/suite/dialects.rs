@@ -2,7 +2,7 @@
 //! rigs of `rigs`. Out: the results of the virtual run, within the resolution of the rig. No time is measured.
 
 mod probe;
-mod rigs;
+pub mod rigs;
 
 use std::fs::{self, File};
 use std::net::TcpListener;

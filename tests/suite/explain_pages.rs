@@ -32,8 +32,8 @@ pub fn shared_text() -> String {
     fs::read_to_string(path.join("README.md")).expect("the shared plans are there")
 }
 
-/// The command line of a plan: `set="speed=2 m/s"` and `rig="name"` are options, and with `unattended="yes"` a run begins without an
-/// operator.
+/// The command line of a plan: `set="speed=2 m/s"` and `rig="name"` are options, with `unattended="yes"` a run begins without an
+/// operator, and with `run="dry"` the plan is also run.
 pub fn options_of(plan: &PagePlan<'_>) -> Options {
     let set = plan.option("set").and_then(|set| set.split_once('='));
     Options {
@@ -43,6 +43,7 @@ pub fn options_of(plan: &PagePlan<'_>) -> Options {
             .map(|(name, value)| (name.to_owned(), value.to_owned()))
             .collect(),
         unattended: plan.option("unattended").is_some(),
+        dry_run: plan.option("run").is_some(),
         ..Options::default()
     }
 }

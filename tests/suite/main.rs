@@ -3,6 +3,7 @@
 mod book;
 mod check_run;
 mod cli;
+mod cli_plans;
 mod cli_rig;
 mod cli_screen;
 mod declared;
@@ -16,6 +17,7 @@ mod explain;
 mod explain_pages;
 mod golden;
 mod growth;
+mod hostile_input;
 mod house;
 mod import_graph;
 mod lang;

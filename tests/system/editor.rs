@@ -1,26 +1,25 @@
-//! The language server in Debian's neovim: the editor starts `psd lsp`, shows a diagnostic, asks for a hover, a definition, a rename, a
-//! fix and the layout, and applies what it gets.
+//! The plugin of `grammar/editors/neovim` in Debian's neovim: it recognises a plan and starts `psd lsp`. The editor shows a diagnostic, asks
+//! for a hover, a definition, a rename, a fix and the layout, and applies what it gets.
 
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 use super::needs;
 
 /// What the editor does. It prints one line for each answer.
 const SCRIPT: &str = r"
-local psd = os.getenv('PSD')
-local client = vim.lsp.start_client({ name = 'psd', cmd = { psd, 'lsp' }, root_dir = vim.fn.getcwd() })
-local function attach(file)
-  vim.cmd('edit ' .. file)
-  vim.lsp.buf_attach_client(0, client)
-end
 local function say(name, value) io.stdout:write(name .. ': ' .. tostring(value) .. '\n') end
+local client
 local function ask(method, line, character, more)
   local params = { textDocument = { uri = vim.uri_from_bufnr(0) }, position = { line = line, character = character } }
   local answers = vim.lsp.buf_request_sync(0, method, vim.tbl_extend('force', params, more or {}), 20000)
   return answers and answers[client] and answers[client].result
 end
-attach('plan.psd')
-vim.wait(20000, function() return vim.lsp.get_client_by_id(client).initialized end)
+vim.cmd('edit plan.psd')
+say('filetype', vim.bo.filetype)
+say('omnifunc', vim.bo.omnifunc)
+vim.wait(20000, function() return next(vim.lsp.buf_get_clients(0)) ~= nil end)
+client = next(vim.lsp.buf_get_clients(0))
 vim.wait(20000, function() return #vim.diagnostic.get(0) > 0 end)
 for _, one in ipairs(vim.diagnostic.get(0)) do say('diagnostic', one.lnum .. ' ' .. one.message:gsub('\n', '; ')) end
 local at = { start = { line = 6, character = 4 }, ['end'] = { line = 6, character = 4 } }
@@ -68,21 +67,14 @@ fn neovim_shows_fixes_renames_and_formats() {
     ] {
         std::fs::write(folder.path().join(name), text).unwrap();
     }
+    let plugin = Path::new(env!("CARGO_MANIFEST_DIR")).join("grammar/editors/neovim");
     let output = Command::new("nvim")
-        .args([
-            "--headless",
-            "-u",
-            "NONE",
-            "-i",
-            "NONE",
-            "-n",
-            "-c",
-            "set hidden",
-            "-c",
-            "luafile script.lua",
-            "-c",
-            "cquit",
-        ])
+        .args(["--headless", "-u", "NONE", "-i", "NONE", "-n"])
+        .arg("--cmd")
+        .arg(format!("set hidden runtimepath^={}", plugin.display()))
+        .args(["--cmd", "let g:psd_path = $PSD"])
+        .args(["-c", "filetype plugin on"])
+        .args(["-c", "luafile script.lua", "-c", "cquit"])
         .current_dir(folder.path())
         .env("PSD", env!("CARGO_BIN_EXE_psd"))
         .env("XDG_CACHE_HOME", folder.path())
@@ -93,6 +85,8 @@ fn neovim_shows_fixes_renames_and_formats() {
     let said = String::from_utf8_lossy(&output.stdout).into_owned();
     let errors = String::from_utf8_lossy(&output.stderr).into_owned();
     for wanted in [
+        "filetype: psd",
+        "omnifunc: v:lua.vim.lsp.omnifunc",
         "diagnostic: 6 `impact` has no field `durtion`; did you mean `duration`?",
         "fix: replace by `duration`",
         "fixed:   duration = 1 s",

@@ -162,7 +162,7 @@ const VALUES: [(&str, f64, Dimension); 6] = [
     (
         "hammer.angle",
         std::f64::consts::FRAC_PI_3,
-        Dimension::NUMBER,
+        Dimension::ANGLE,
     ),
     (
         "hit.contact.force",
@@ -193,8 +193,7 @@ fn fields_are_bound_as_their_settings_write_them() {
         .iter()
         .map(|(name, value, dimension)| {
             let written = Quantity::new(*value, *dimension).in_plan_syntax();
-            let unit = if name.ends_with("angle") { "rad" } else { "" };
-            ((*name).to_owned(), written + unit)
+            ((*name).to_owned(), written)
         })
         .collect();
     let set = parsed_fields(&settings).1;

@@ -1,6 +1,7 @@
 //! Warnings: plans that can run but give poor results. In: the checked plan. Out: diagnostics with
 //! the numbers. They change nothing in the plan.
 
+pub mod dry_run;
 pub(crate) mod left;
 pub(crate) mod recorded_steps;
 pub mod tracking;

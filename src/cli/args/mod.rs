@@ -9,7 +9,7 @@ use psd_text::diagnostic::excerpt::{escape, one_line};
 const REASON: usize = 1000;
 
 /// Settings of the plan on the command line.
-#[derive(Debug, Default, Args)]
+#[derive(Clone, Debug, Default, Args)]
 pub struct PlanSettings {
     /// The rig to use; a real rig moves only when named
     #[arg(long, value_name = "NAME")]

@@ -1,5 +1,5 @@
 //! `psd fmt`: the canonical layout. In: files and folders. Out: the files rewritten, or with `--check` the names of those
-//! that would change. In a Markdown document only the blocks of the plan change. A file with syntax errors is not changed.
+//! that would change; a plan from standard input goes to standard output. In a Markdown document only the blocks of the plan change. A file with syntax errors is not changed.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -10,8 +10,9 @@ use crate::exit::{Exit, Failure};
 use crate::files::difference;
 use crate::files::difference::Named;
 use crate::files::failure::plain;
-use crate::files::loader::{plans_below, read_plan};
+use crate::files::loader::{is_stdin, read_plan};
 use crate::files::plan_file::name_of;
+use crate::files::plans::{Depth, named};
 use crate::output::{print_message, print_result};
 use crate::settings::Settings;
 use psd_language::syntax;
@@ -22,7 +23,7 @@ use psd_text::source::Sources;
 
 #[derive(Debug, Args)]
 pub struct FmtArguments {
-    /// Plans, or folders of plans
+    /// Plans, folders of plans, or `-` for standard input
     #[arg(value_name = "PATH", required = true)]
     pub paths: Vec<PathBuf>,
     /// Print the difference only; exit with 1 if there is one
@@ -33,7 +34,7 @@ pub struct FmtArguments {
 /// Formats every named file and every plan under every named folder.
 pub fn fmt(arguments: &FmtArguments, settings: Settings) -> Result<Exit, Failure> {
     let mut exit = Exit::Met;
-    for path in plans(&arguments.paths)? {
+    for path in named(&arguments.paths, Depth::Below)? {
         let done = one(&path, arguments.check, settings).unwrap_or_else(|failure| {
             print_message(&failure.report(settings));
             failure.exit()
@@ -48,6 +49,10 @@ fn one(path: &Path, check: bool, settings: Settings) -> Result<Exit, Failure> {
     let Some(formatted) = canonical(path, &text, settings) else {
         return Ok(Exit::Wrong);
     };
+    if is_stdin(path) && !check {
+        print_result(&formatted)?;
+        return Ok(Exit::Met);
+    }
     if formatted == text {
         return Ok(Exit::Met);
     }
@@ -119,17 +124,4 @@ fn replace(path: &Path, text: &str) -> std::io::Result<()> {
         // The first error is reported.
         let _ = std::fs::remove_file(&temporary);
     })
-}
-
-/// The named files, and every plan under the named folders, sorted by name. Links to folders and hidden folders are not entered.
-fn plans(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
-    let mut found = Vec::new();
-    for path in paths {
-        if path.is_dir() {
-            plans_below(path, usize::MAX, &mut found)?;
-        } else {
-            found.push(path.clone());
-        }
-    }
-    Ok(found)
 }

@@ -10,7 +10,8 @@ use psd_lsp::{Ended, Program, SimulatedRequirement, SimulatedResult, Simulation}
 use super::explain_plan::DryRun;
 use crate::exit::{Exit, Failure};
 use crate::files::failure::plain;
-use crate::files::loader::{FolderLoader, plans_below, read_plan};
+use crate::files::loader::{FolderLoader, read_plan};
+use crate::files::plans;
 use crate::settings::today;
 use psd::check::{LoadError, Loader, Options, check};
 use psd::procedures::most_steps;
@@ -95,7 +96,7 @@ impl Program for Commands {
     fn plans(&self, folder: &Path) -> Vec<PathBuf> {
         let mut found = Vec::new();
         // What was found before a folder that cannot be read is known all the same.
-        let _ = plans_below(folder, MOST_ENTRIES, &mut found);
+        let _ = plans::below(folder, MOST_ENTRIES, &mut found);
         found
     }
 

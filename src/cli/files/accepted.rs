@@ -6,6 +6,7 @@ use std::path::{Component, Path, PathBuf};
 use super::run_folder::write_new;
 use crate::files::failure::Failure;
 use crate::files::failure::plain;
+use crate::files::loader::is_stdin;
 use psd::golden::{Accepted, SUMMARY, Tolerances, Truth, compare};
 use psd::report::OutputFile;
 
@@ -24,6 +25,7 @@ pub struct AcceptedFolder {
 impl AcceptedFolder {
     /// The folder for `plan`, which exists.
     pub fn of(plan: &Path) -> Result<Self, Failure> {
+        refuse_stdin(plan)?;
         let path = canonical(plan)?;
         match path.parent().and_then(Path::parent) {
             Some(above) => {
@@ -58,6 +60,7 @@ impl AcceptedFolder {
 
     /// The folder for `plan`, which exists, among others in `reports`.
     pub fn within(reports: &Path, plan: &Path) -> Result<Self, Failure> {
+        refuse_stdin(plan)?;
         let Some(name) = plan.file_stem() else {
             return Err(Failure::file(plan, "has no name for its accepted results"));
         };
@@ -175,6 +178,17 @@ impl AcceptedFolder {
     fn beside(&self, what: &str) -> PathBuf {
         self.reports.join(format!(".{}.{what}", self.name))
     }
+}
+
+/// The accepted results of a plan are found by its path.
+fn refuse_stdin(plan: &Path) -> Result<(), Failure> {
+    if is_stdin(plan) {
+        return Err(
+            Failure::command_line("a plan from standard input has no accepted results")
+                .help("save it in a file"),
+        );
+    }
+    Ok(())
 }
 
 fn canonical(plan: &Path) -> Result<PathBuf, Failure> {

@@ -2,7 +2,7 @@
 //! regular files, no parent folder and no link to the outside, at most [`FILE_BYTES`] of UTF-8.
 
 use std::fs::File;
-use std::io::Read as _;
+use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 
 use base64::Engine as _;
@@ -12,8 +12,18 @@ use crate::files::failure::{Failure, plain};
 use psd::check::LoadError;
 use psd_language::syntax::limits::FILE_BYTES;
 use psd_plan::{PICTURE_BYTES, PictureKind};
-use psd_text::markdown::{Document, is_document};
+use psd_text::markdown::Document;
 use psd_text::source::Position;
+
+/// The path that stands for standard input.
+const STDIN: &str = "-";
+/// The name of a plan from standard input, in messages, in its run log and in the name of its run folder.
+pub const STDIN_PLAN: &str = "stdin.psd";
+
+/// Whether a path stands for standard input.
+pub fn is_stdin(path: &Path) -> bool {
+    path == Path::new(STDIN)
+}
 
 /// Loads files of one folder and of the folders below it.
 #[derive(Debug)]
@@ -23,8 +33,15 @@ pub struct FolderLoader {
 }
 
 impl FolderLoader {
-    /// A loader for the folder of `plan`, which exists.
+    /// A loader for the folder of `plan`, which exists; for a plan from standard input the working folder.
     pub fn beside(plan: &Path) -> Result<Self, Failure> {
+        if is_stdin(plan) {
+            let here = Path::new(".");
+            let folder = here
+                .canonicalize()
+                .map_err(|error| Failure::file(here, plain(&error)))?;
+            return Ok(Self { folder });
+        }
         let plan = plan
             .canonicalize()
             .map_err(|error| Failure::file(plan, plain(&error)))?;
@@ -66,44 +83,24 @@ impl FolderLoader {
     }
 }
 
-/// Whether a file found in a folder is a plan: a `.psd` file, or a Markdown document with a block of a plan.
-pub fn is_plan(path: &Path) -> bool {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let has_block = || read(path).is_ok_and(|text| !Document::read(&text).blocks.is_empty());
-    path.extension().is_some_and(|ending| ending == "psd") || is_document(&name) && has_block()
-}
-
-/// Adds every plan under a folder, sorted by name. Links to folders and hidden folders are not entered. The search ends after `most` entries.
-pub fn plans_below(folder: &Path, most: usize, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
-    let mut left = most;
-    walk(folder, &mut left, found)
-}
-
-fn walk(folder: &Path, left: &mut usize, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
-    let failed = |error: std::io::Error| Failure::file(folder, plain(&error));
-    let mut entries = std::fs::read_dir(folder)
-        .map_err(failed)?
-        .take(*left)
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(failed)?;
-    entries.sort_by_key(std::fs::DirEntry::file_name);
-    *left -= entries.len();
-    for entry in entries {
-        let (path, kind) = (entry.path(), entry.file_type().map_err(failed)?);
-        if entry.file_name().to_string_lossy().starts_with('.') {
-            continue;
-        }
-        if kind.is_dir() {
-            walk(&path, left, found)?;
-        } else if kind.is_file() && is_plan(&path) {
-            found.push(path);
-        }
-    }
-    Ok(())
+/// Whether a Markdown document has a block of a plan.
+pub fn has_plan(document: &Path) -> bool {
+    read(document).is_ok_and(|text| !Document::read(&text).blocks.is_empty())
 }
 
 /// The text of the plan. It may be a link, because the operator named it.
 pub fn read_plan(path: &Path) -> Result<String, Failure> {
+    let not_a_plan = |Unread { reason, at }| Failure::NotAPlan {
+        path: path.to_owned(),
+        reason,
+        at,
+    };
+    if is_stdin(path) {
+        return limited(std::io::stdin().lock(), FILE_BYTES)
+            .map_err(Unread::from)
+            .and_then(utf8)
+            .map_err(not_a_plan);
+    }
     let metadata = path
         .metadata()
         .map_err(|error| Failure::file(path, plain(&error)))?;
@@ -112,11 +109,7 @@ pub fn read_plan(path: &Path) -> Result<String, Failure> {
             Failure::file(path, "is a folder").help("name the plan itself, a `.psd` or `.md` file")
         );
     }
-    read(path).map_err(|Unread { reason, at }| Failure::NotAPlan {
-        path: path.to_owned(),
-        reason,
-        at,
-    })
+    read(path).map_err(not_a_plan)
 }
 
 /// The reason why a file is not a text, and the position of the invalid byte if there is one.
@@ -137,9 +130,13 @@ fn bytes(path: &Path, most: usize) -> Result<Vec<u8>, String> {
     if !path.metadata().map_err(|error| plain(&error))?.is_file() {
         return Err("it is not a regular file".to_owned());
     }
-    let file = File::open(path).map_err(|error| plain(&error))?;
+    limited(File::open(path).map_err(|error| plain(&error))?, most)
+}
+
+/// What can be read, up to `most` bytes.
+fn limited(from: impl Read, most: usize) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
-    file.take(most as u64 + 1)
+    from.take(most as u64 + 1)
         .read_to_end(&mut bytes)
         .map_err(|error| plain(&error))?;
     if bytes.len() > most {
@@ -149,7 +146,10 @@ fn bytes(path: &Path, most: usize) -> Result<Vec<u8>, String> {
 }
 
 fn read(path: &Path) -> Result<String, Unread> {
-    let bytes = bytes(path, FILE_BYTES)?;
+    utf8(bytes(path, FILE_BYTES)?)
+}
+
+fn utf8(bytes: Vec<u8>) -> Result<String, Unread> {
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         let (line, column) = line_and_column(&error.as_bytes()[..at]);

@@ -10,6 +10,7 @@ pub(crate) mod finish_run;
 pub(crate) mod golden_run;
 pub(crate) mod loader;
 pub(crate) mod plan_file;
+pub(crate) mod plans;
 pub(crate) mod provenance;
 pub(crate) mod record_file;
 pub(crate) mod recorded_run;

@@ -4,18 +4,57 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::loader::{FolderLoader, read_plan};
+use super::loader::{FolderLoader, STDIN_PLAN, is_stdin, read_plan};
 use crate::args::PlanSettings;
 use crate::files::failure::Failure;
 use crate::output::print_message;
 use crate::settings::{Settings, folder_of, today};
 use psd::check::{Checked, Options, ParsedPlan};
-use psd_text::diagnostic::{json, render};
+use psd_text::diagnostic::{Diagnostic, json, render};
 use psd_text::source::{Position, Span};
 
 /// Reads and checks a plan. Inside the program it has the name of its file; its folder is not recorded.
 pub fn open(path: &Path, settings: &PlanSettings) -> Result<Checked, Failure> {
     open_to_run(path, settings, false)
+}
+
+/// [`open`] without a run: the plan is also run on an ideal copy of its rig, if that takes milliseconds, and checked on each rig that
+/// it declares, unless the command line names one.
+pub fn open_to_check(path: &Path, settings: &PlanSettings) -> Result<Checked, Failure> {
+    let options = Options {
+        dry_run: true,
+        ..Options::default()
+    };
+    let text = read_plan(path)?;
+    let (_, mut checked) = parsed(path, &text, settings, &options)?;
+    if settings.rig.is_some() {
+        return Ok(checked);
+    }
+    for rig in checked.rigs.clone() {
+        let named = PlanSettings {
+            rig: Some(rig.clone()),
+            ..settings.clone()
+        };
+        let (_, on_rig) = parsed(path, &text, &named, &options)?;
+        for mut found in on_rig.diagnostics {
+            let known =
+                |known: &Diagnostic| known.code == found.code && known.span() == found.span();
+            if checked.diagnostics.iter().any(known) {
+                continue;
+            }
+            if !found.message.contains(&format!("`{rig}`")) {
+                found.message = format!("{} (with `--rig {rig}`)", found.message);
+            }
+            if found.is_error() {
+                checked.plan = None;
+            }
+            checked.diagnostics.push(found);
+        }
+    }
+    checked
+        .diagnostics
+        .sort_by_key(|found| found.span().map(|span| (span.file, span.start, span.end)));
+    Ok(checked)
 }
 
 /// [`open`] before a run; `unattended` if no operator is named and none can be asked.
@@ -28,7 +67,7 @@ pub fn open_to_run(
         unattended,
         ..Options::default()
     };
-    parsed(path, settings, &options).map(|(_, checked)| checked)
+    parsed(path, &read_plan(path)?, settings, &options).map(|(_, checked)| checked)
 }
 
 /// [`open`] before the studies of the plan are run, with the syntax trees, which a study binds to other values.
@@ -40,11 +79,12 @@ pub fn open_for_studies(
         for_studies: true,
         ..Options::default()
     };
-    parsed(path, settings, &options)
+    parsed(path, &read_plan(path)?, settings, &options)
 }
 
 fn parsed(
     path: &Path,
+    text: &str,
     settings: &PlanSettings,
     options: &Options,
 ) -> Result<(ParsedPlan, Checked), Failure> {
@@ -56,7 +96,6 @@ fn parsed(
             );
         }
     }
-    let text = read_plan(path)?;
     let folder = FolderLoader::beside(path)?;
     let loader = |file: &str| folder.load(file);
     let (rig, set, date) = (
@@ -71,7 +110,7 @@ fn parsed(
         date,
         ..options.clone()
     };
-    let mut parsed = ParsedPlan::parse(&name_of(path), &text, &loader, &options);
+    let mut parsed = ParsedPlan::parse(&name_of(path), text, &loader, &options);
     let checked = parsed.check(&loader);
     Ok((parsed, checked))
 }
@@ -133,6 +172,9 @@ pub fn location_of_link(checked: &Checked, path: &Path, fault: &str) -> Option<S
 
 /// The name of a plan's file, without its folder.
 pub fn name_of(path: &Path) -> String {
+    if is_stdin(path) {
+        return STDIN_PLAN.to_owned();
+    }
     path.file_name()
         .unwrap_or_default()
         .to_string_lossy()

@@ -97,12 +97,10 @@ pub fn plan_of(logged: &LoggedRun) -> Result<Plan, String> {
         header.date.clone(),
     );
     let options = Options {
-        for_studies: false,
         rig,
         settings,
-        today: None,
         date,
-        unattended: false,
+        ..Options::default()
     };
     let checked = check(&first.name, text, &files, &options);
     let plan = checked.plan.ok_or_else(|| {

@@ -8,6 +8,7 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::files::failure::Failure;
 use crate::files::failure::plain;
+use crate::files::plan_file::name_of;
 use psd::report::{OutputError, OutputFile, OutputSink};
 use psd_text::sanitize;
 
@@ -24,7 +25,12 @@ impl RunFolder {
             Some(path) => Self::named(path),
             None => Self::numbered(
                 Path::new("runs"),
-                &sanitize::file_part(&plan.file_stem().unwrap_or_default().to_string_lossy()),
+                &sanitize::file_part(
+                    &Path::new(&name_of(plan))
+                        .file_stem()
+                        .unwrap_or_default()
+                        .to_string_lossy(),
+                ),
             ),
         }
     }

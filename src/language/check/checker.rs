@@ -40,6 +40,8 @@ pub struct Typed {
     pub bare: bool,
     /// Written with `%`.
     pub percent: bool,
+    /// A temperature with `degC`, whose zero is not that of the kelvin: it has a difference and no sum or product.
+    pub absolute: bool,
 }
 
 /// The results that an expression may read.
@@ -361,6 +363,7 @@ impl Typed {
             span,
             bare: false,
             percent: false,
+            absolute: false,
         }
     }
 

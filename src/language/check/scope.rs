@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::check::wording::one_of;
+use crate::check::wording::{meant, one_of, with_article};
 use crate::codes::{E201, E208, E212};
 use crate::syntax::ast::{Ast, Block, Expr, ExprKind, Ident, ItemKind};
 use crate::syntax::control;
@@ -156,7 +156,7 @@ impl Violation for UnknownBlock<'_> {
             .filter(|count| *count <= words.len())
             .find_map(|count| {
                 let written = words[..count].join(" ");
-                psd_text::suggest::nearest(&written, known()).map(|near| (count, near))
+                meant(&written, known()).map(|near| (count, near))
             });
         let turned = words.len() == 2 && keywords.iter().any(|keyword| keyword == words[1]);
         if turned {
@@ -214,11 +214,16 @@ fn block_name(kind: &BlockKind, block: &Block, rest: &[Ident]) -> Option<Diagnos
             name.span,
             "extra word",
         )),
-        (_, [_, second, ..]) => Some(wrong(
-            format!("the name of a `{words}` block is one word"),
-            second.span,
-            "extra word",
-        )),
+        (_, [_, second, ..]) => {
+            let name: Vec<&str> = rest.iter().map(|word| word.node.as_str()).collect();
+            let message = format!("the name of {} is one word", with_article(&words));
+            let name = name.join("_");
+            Some(
+                Diagnostic::new(E212, message)
+                    .at(second.span, "extra word")
+                    .help(format!("write the name as one word, `{words} {name} {{`")),
+            )
+        }
         _ => None,
     }
 }
@@ -463,6 +468,11 @@ impl<'a> Scope<'a> {
         }
         if let Some(name) = rest.first() {
             self.declare(name, Meaning::Block(self.blocks.len()), diagnostics);
+        }
+        // Each of several words may be used as the name.
+        for word in rest.iter().skip(1) {
+            let poisoned = (Meaning::Poisoned, word.span);
+            self.names.entry(&word.node).or_insert(poisoned);
         }
         if rest.is_empty()
             && kind.naming == Naming::Named

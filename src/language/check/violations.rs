@@ -3,8 +3,8 @@
 use crate::check::checker::Typed;
 use crate::check::wording::{article, example, owner, shown, suggestion};
 use crate::codes::{
-    E203, E209, E213, E214, E301, E303, E304, E305, E401, E403, E407, E501, E504, E602, E608, E610,
-    E612, E614, E632, E635, E661, E662, E663, W728,
+    E203, E209, E213, E214, E301, E303, E304, E305, E306, E401, E403, E407, E501, E504, E602, E608,
+    E610, E612, E614, E632, E635, E661, E662, E663, W728,
 };
 use crate::syntax::ast::Ident;
 use psd_plan::schema::{BlockKind, Field, Kind, Range, rig as schema};
@@ -341,6 +341,84 @@ pub struct WrongDimensionOfQuantity<'a> {
     pub declared_at: Span,
 }
 
+/// An operation that has no meaning for a temperature with `degC`.
+#[derive(Violation)]
+#[violation(E306, "{message}")]
+#[help("{help}")]
+pub struct AbsoluteTemperature {
+    message: String,
+    help: &'static str,
+    #[label("an absolute temperature")]
+    span: Span,
+}
+
+impl AbsoluteTemperature {
+    fn new(message: impl Into<String>, help: &'static str, span: Span) -> Self {
+        let message = message.into();
+        Self {
+            message,
+            help,
+            span,
+        }
+    }
+
+    pub fn of_product(span: Span) -> Self {
+        Self::new(
+            "a temperature with `degC` cannot be multiplied, divided or raised to a power",
+            "write the temperature in kelvin, as in `… K`, or subtract another one first",
+            span,
+        )
+    }
+
+    pub fn of_sum(span: Span) -> Self {
+        Self::new(
+            "two absolute temperatures have no sum",
+            "write a difference in kelvin, as in `20 degC + … K`",
+            span,
+        )
+    }
+
+    pub fn of_difference(span: Span) -> Self {
+        Self::new(
+            "a temperature with `degC` is subtracted from another one with `degC` only",
+            "write both temperatures with `degC`, or both in kelvin",
+            span,
+        )
+    }
+
+    pub fn of_function(function: &str, span: Span) -> Self {
+        Self::new(
+            format!("`{function}` has no value for a temperature with `degC`"),
+            "write the temperature in kelvin, as in `… K`",
+            span,
+        )
+    }
+
+    pub fn of_step(span: Span) -> Self {
+        Self::new(
+            "a step is a difference of temperatures",
+            "write `degC` at both ends and the step in kelvin: `10 degC .. 30 degC step … K`",
+            span,
+        )
+    }
+
+    pub fn of_deviation(span: Span) -> Self {
+        Self::new(
+            "a standard deviation is a difference of temperatures",
+            "write it in kelvin, as in `… K`",
+            span,
+        )
+    }
+
+    pub fn in_a_unit(span: Span) -> Self {
+        Self::new(
+            "`degC` cannot be part of another unit",
+            "write `K` instead of `degC`",
+            span,
+        )
+    }
+}
+
 pub struct Mismatched<'a> {
     pub operator: &'a str,
     pub left: &'a Typed,
@@ -371,7 +449,15 @@ impl Violation for Mismatched<'_> {
             }
         };
         let how = format!("{}, as in `{}`", article(wanted), example(None, wanted));
-        let help = if forgotten {
+        let percent = [left, right].into_iter().find(|side| side.percent);
+        let part = percent.filter(|_| left.dimension != right.dimension);
+        let part = part.and_then(Typed::constant);
+        let help = if let Some(part) = part {
+            format!(
+                "write the value of which this is a percentage: `{} % * …`",
+                (1e6 * part).round() / 1e4
+            )
+        } else if forgotten {
             format!("add a unit to make the number {how}")
         } else {
             format!("write both sides as the same kind of quantity: {how}")
@@ -525,7 +611,7 @@ pub struct EmptyList {
 #[violation(E407, "the value is not a finite number")]
 #[help("change the expression so that its value is finite")]
 pub struct NotFinite {
-    #[label("zero divisor, negative root, or too large")]
+    #[label("zero divisor, negative root or logarithm, or too large")]
     pub span: Span,
 }
 

@@ -1,8 +1,7 @@
 //! Parts of messages that several violations have in common: names, lists and values in words.
 
 use crate::syntax::ast::Ident;
-use psd_plan::procedures::stiffness_ramp::block as stiffness_ramp;
-use psd_plan::schema::BlockKind;
+use psd_plan::schema::{BlockKind, SYNONYMS};
 use psd_text::units::{Dimension, display};
 
 /// `one axis`, `3 axes`
@@ -58,21 +57,34 @@ pub fn all_of<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     joined(words, "and")
 }
 
-/// Terms of the field for which psd has another name, and that name.
-const SYNONYMS: &[(&str, &str)] = &[("hardening", stiffness_ramp::POST_YIELD_RATIO.name)];
+/// The known name that was probably meant: the word of the language for a synonym, else the nearest one.
+pub fn meant<'a>(written: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let known: Vec<&str> = known.into_iter().collect();
+    let synonym = SYNONYMS.iter().find(|(term, _)| *term == written);
+    let synonym = synonym.and_then(|(_, name)| known.iter().find(|known| *known == name));
+    synonym
+        .copied()
+        .or_else(|| psd_text::suggest::nearest(written, known))
+}
 
 /// "did you mean `x`?", or a list of the known names.
 pub fn suggestion<'a>(written: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.into_iter().collect();
-    let synonym = SYNONYMS
-        .iter()
-        .find(|(term, name)| *term == written && known.contains(name));
-    let near = synonym.map(|(_, name)| *name);
-    match near.or_else(|| psd_text::suggest::nearest(written, known.iter().copied())) {
+    match meant(written, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`?"),
         None if known.is_empty() => "remove it".to_owned(),
         None => format!("known here: {}", one_of(known)),
     }
+}
+
+/// `an impact`, `a shake`: words with their article.
+pub fn with_article(words: &str) -> String {
+    let article = if words.starts_with(['a', 'e', 'i', 'o', 'u']) {
+        "an"
+    } else {
+        "a"
+    };
+    format!("{article} {words}")
 }
 
 /// "a length", "an energy", "a value in kg/m"
@@ -81,21 +93,17 @@ pub fn article(dimension: Dimension) -> String {
     if dimension.name().is_none() {
         return format!("a value in {name}");
     }
-    let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) {
-        "an"
-    } else {
-        "a"
-    };
-    format!("{article} {name}")
+    with_article(&name)
 }
 
 /// `3 kg`: the number as it is written, in a suitable unit.
 pub fn example(number: Option<&str>, dimension: Dimension) -> String {
     let number = number.unwrap_or("1");
-    if dimension == Dimension::NUMBER {
-        number.to_owned()
-    } else {
-        format!("{number} {}", dimension.usual_unit())
+    match dimension {
+        Dimension::NUMBER => number.to_owned(),
+        Dimension::ANGLE => format!("{number} deg"),
+        Dimension::TEMPERATURE => format!("{number} degC"),
+        _ => format!("{number} {}", dimension.usual_unit()),
     }
 }
 

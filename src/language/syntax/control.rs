@@ -1,7 +1,15 @@
-//! Keywords with which other languages begin a condition or a loop. In: a keyword. Out: the message for it.
+//! Keywords with which other languages begin a condition, a loop or a function. In: a keyword. Out: the message for it.
 
 const CONDITIONS: [&str; 5] = ["if", "elif", "else", "unless", "when"];
 const LOOPS: [&str; 5] = ["for", "foreach", "while", "loop", "repeat"];
+
+/// The message and the suggestion for the definition of a function.
+pub const NO_FUNCTIONS: (&str, &str) = (
+    "a plan defines no functions",
+    "name a value with `let`, as in `let width = 60 mm`",
+);
+
+const FUNCTIONS: [&str; 5] = ["def", "fn", "func", "function", "lambda"];
 
 /// Whether another branch may follow it.
 pub fn is_condition(word: &str) -> bool {
@@ -16,6 +24,9 @@ pub fn of_another_language(word: &str) -> Option<(&'static str, &'static str)> {
             "a plan has no conditional statements",
             "write a requirement with `require`, or change a value with `--set`; every procedure runs, in the order written",
         ));
+    }
+    if FUNCTIONS.contains(&word) {
+        return Some(NO_FUNCTIONS);
     }
     LOOPS.contains(&word).then_some((
         "a plan has no loops",

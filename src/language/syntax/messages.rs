@@ -37,11 +37,11 @@ pub fn unexpected(span: Span, found: &str, expected: &str) -> Diagnostic {
         }
         "`or`" => EITHER.to_owned(),
         "`is`" | "`equals`" => COMPARED.to_owned(),
+        "`:`" if expected.contains("an operator") => "write a range with `..`, as in `1 mm .. 10 mm step …`".to_owned(),
         "`to`" if expected.contains("an operator") => "write a range with `..`, as in `-5 mm .. 5 mm`".to_owned(),
         "`in`" if expected.contains("`between`") => {
             "write the range of a parameter after `between`, as in `param v = 1 m/s between 0.5 m/s .. 2 m/s`".to_owned()
         }
-        "`-`" if expected == "`=`" => "write `_` instead of `-` in a name, as in `drop_height`".to_owned(),
         "`=`" | "`:`" if expected == "`{`" => "write the kind, the name and `{`, as in `striker hammer {`".to_owned(),
         "`=`" if expected.contains("`)`") => "write `:` before the value of an argument, as in `elastic(stiffness: 300 kN/m)`".to_owned(),
         "`=`" if expected.contains("`]`") => "write `~` before the distribution of an input, as in `beam.mass ~ normal(cv: 2 %)`".to_owned(),
@@ -115,6 +115,21 @@ pub fn no_control(message: &str, help: &str, begins: Span, whole: Span) -> Diagn
         .at(begins, "not an item")
         .at(whole, "not read")
         .help(help)
+}
+
+/// Blocks without braces: `colon` is the first one after the words `head`.
+pub fn blocks_by_indentation(colon: Span, whole: Span, head: &str) -> Diagnostic {
+    let named = if head.contains(' ') {
+        head.to_owned()
+    } else {
+        format!("{head} NAME")
+    };
+    Diagnostic::new(E101, "found `:`, expected `{`")
+        .at(colon, "expected `{`")
+        .at(whole, "not read")
+        .help(format!(
+            "write each block in braces and each field with `=`: `{named} {{`, lines such as `mass = 1 kg`, and `}}`"
+        ))
 }
 
 pub fn arguments_in_braces(span: Span, call: &str) -> Diagnostic {
@@ -237,9 +252,10 @@ pub fn bad_number(span: Span, written: &str, error: &numbers::NumberError) -> Di
         .help(help)
 }
 
-/// `corrected`: number and unit without the parentheses.
-pub fn unit_in_parentheses(span: Span, corrected: &str) -> Diagnostic {
-    Diagnostic::new(E104, "a unit must not contain parentheses")
+/// `corrected`: number and unit without the parentheses or brackets.
+pub fn unit_in_parentheses(span: Span, corrected: &str, brackets: bool) -> Diagnostic {
+    let which = if brackets { "brackets" } else { "parentheses" };
+    Diagnostic::new(E104, format!("a unit must not contain {which}"))
         .at(span, "read as one unit")
         .help(format!(
             "write `{corrected}`: a unit is read from left to right, so `N/m*s` is (N/m)·s"
@@ -296,6 +312,8 @@ pub fn stray(span: Span, found: &str) -> Diagnostic {
         "+/-" => "write a tolerance as `within 1 mm of 45 mm`, or a range with both ends, `44 mm .. 46 mm`",
         "±" => "write both ends, as in `-5 mm .. 5 mm`; in a requirement, `within 5 % of 8 mm`",
         "!" => "negate a condition by its operator: `!=`, `>` for `<=`",
+        "%" | "%%" => "write `#` before a comment; as a unit, `%` follows its number",
+        "°C" => "write `degC` for a degree Celsius, as in `23 degC`",
         "°" | "º" => "write `deg` for a degree of arc",
         "½" => "write `0.5`",
         "¼" => "write `0.25`",

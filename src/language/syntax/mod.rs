@@ -4,6 +4,7 @@
 
 pub mod ast;
 pub mod control;
+pub mod foreign;
 pub mod format;
 pub mod limits;
 pub mod parse;

@@ -15,6 +15,7 @@ use psd_text::source::{FileId, Sources, Span, Spanned};
 
 use super::{
     ast::{Ast, Block, Entry, Ident, Item, ItemKind},
+    control, foreign,
     grammar::{Grammar, Rule},
     layout::{self, Piece, Statement},
     lexical::tokens::{Kind, Tokens},
@@ -161,9 +162,15 @@ fn piecewise(tokens: &mut Tokens) -> (Vec<Item>, Vec<Diagnostic>) {
         tokens,
         lexical: found.len(),
         errors: found,
+        by_indentation: None,
     };
     let mut items = Vec::new();
     reader.read(&mut items);
+    if let Some(ByIndentation { colon, whole, head }) = reader.by_indentation {
+        reader
+            .errors
+            .push(messages::blocks_by_indentation(colon, whole, &head));
+    }
     (items, reader.errors)
 }
 
@@ -189,6 +196,9 @@ fn refused(
         ErrorVariant::CustomError { .. } => "something else".to_owned(),
     };
     let at = base + offset;
+    if let Some(form) = foreign::form(tokens, &(base..base + text.len()), at, rule) {
+        return form;
+    }
     let later = &tokens.list[tokens.list.partition_point(|token| token.end <= at)..];
     let next = later.iter().find(|token| token.kind != Kind::Comment);
     let inside =
@@ -220,6 +230,15 @@ struct Pieces<'a> {
     /// How many of the errors were found by `tokens`.
     lexical: usize,
     errors: Vec<Diagnostic>,
+    /// The statements without braces, as in YAML, once there is one.
+    by_indentation: Option<ByIndentation>,
+}
+
+/// Statements of a language that marks blocks by colons and indentation: reported once.
+struct ByIndentation {
+    colon: Span,
+    whole: Span,
+    head: String,
 }
 
 impl Pieces<'_> {
@@ -360,6 +379,9 @@ impl Pieces<'_> {
 
     /// A statement among the items that is not an item: a field, or a block without its `{`.
     fn no_item(&mut self, statement: Statement) {
+        if self.is_by_indentation(statement) {
+            return;
+        }
         let key = self
             .word(statement.start)
             .filter(|_| self.tokens.is(statement.start + 1, "="));
@@ -370,6 +392,11 @@ impl Pieces<'_> {
             self.errors.push(messages::word_of_another_language(
                 word.span, &word.node, &help,
             ));
+        } else if let Some((word, message, help)) = self.control(statement) {
+            let (start, end) = self.bounds(statement);
+            let whole = self.tokens.span(start, end);
+            self.errors
+                .push(messages::no_control(message, help, word.span, whole));
         } else if self
             .alone(statement, Rule::head_alone, Lowering::head)
             .is_some()
@@ -380,6 +407,27 @@ impl Pieces<'_> {
                 &self.tokens.text[start..end],
             ));
         }
+    }
+
+    /// Whether it is `specimen bar:`, or follows such a line.
+    fn is_by_indentation(&mut self, statement: Statement) -> bool {
+        let (start, end) = self.bounds(statement);
+        if let Some(found) = &mut self.by_indentation {
+            found.whole = found.whole.to(self.tokens.span(start, end));
+            return true;
+        }
+        let colon = (statement.start..statement.end)
+            .find(|index| self.tokens.kind(*index) != Some(Kind::Word))
+            .filter(|index| *index > statement.start && self.tokens.is(*index, ":"));
+        let Some(token) = colon.map(|index| self.tokens.list[index]) else {
+            return false;
+        };
+        self.by_indentation = Some(ByIndentation {
+            colon: self.tokens.span(token.start, token.end),
+            whole: self.tokens.span(start, end),
+            head: self.tokens.text[start..token.start].trim_end().to_owned(),
+        });
+        true
     }
 
     /// A line that begins as in another language, and its form in this one.
@@ -404,6 +452,13 @@ impl Pieces<'_> {
             }
         };
         Some((word, help))
+    }
+
+    /// A condition, a loop or a function of another language, with its message and its suggestion.
+    fn control(&self, statement: Statement) -> Option<(Ident, &'static str, &'static str)> {
+        let word = self.word(statement.start)?;
+        let (message, help) = control::of_another_language(&word.node)?;
+        Some((word, message, help))
     }
 
     fn block(
@@ -459,10 +514,14 @@ impl Pieces<'_> {
         if let Some(entry) = self.alone(statement, Rule::entry_alone, Lowering::entry) {
             return Some(entry);
         }
-        // A single word is not a field.
+        // A single word is not a field, and `drop` of `drop-height` is no name.
+        let touched = |key: &Ident| {
+            let next = self.tokens.list[statement.start + 1];
+            self.tokens.is(statement.start + 1, "-") && next.start == key.span.end as usize
+        };
         let key = self
             .word(statement.start)
-            .filter(|_| statement.end > statement.start + 1)?;
+            .filter(|key| statement.end > statement.start + 1 && !touched(key))?;
         let (start, end) = self.bounds(statement);
         let value = self.tokens.span(end.min(key.span.end as usize), end);
         Some(Entry {

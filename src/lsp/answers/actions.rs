@@ -163,19 +163,22 @@ fn other_units(view: &View<'_>, wanted: &Range<usize>) -> Vec<lsp::CodeAction> {
     let others = units::of(from.dimension)
         .into_iter()
         .filter(|unit| unit != token);
-    let converted = others.filter_map(|unit| units::converted(number, from, &unit));
+    let mut converted: Vec<units::Converted> = others
+        .filter_map(|unit| units::converted(number, from, &unit))
+        .collect();
+    converted.sort_by_key(|one| one.is_rounded);
     converted
+        .into_iter()
         .take(MOST_UNITS)
-        .map(|new_text| {
-            let title = format!("write `{new_text}`");
-            let range = view.range(value.clone());
-            let edit = lsp::TextEdit { range, new_text };
-            action(
-                view,
-                title,
-                lsp::CodeActionKind::RefactorRewrite,
-                vec![edit],
-            )
+        .map(|one| {
+            let note = if one.is_rounded { ", rounded" } else { "" };
+            let title = format!("write `{}`{note}", one.text);
+            let edit = lsp::TextEdit {
+                range: view.range(value.clone()),
+                new_text: one.text,
+            };
+            let kind = lsp::CodeActionKind::RefactorRewrite;
+            action(view, title, kind, vec![edit])
         })
         .collect()
 }

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use gen_lsp_types as lsp;
 use psd_plan::schema::{
-    self, BLOCKS, BlockKind, FUNCTIONS, Field, FieldType, ITEM_WORDS, Kind, Naming, Presence,
-    ResultKind, Variant,
+    self, BLOCKS, BlockKind, CONSTANTS, FUNCTIONS, Field, FieldType, ITEM_WORDS, Kind, Naming,
+    Presence, ResultKind, Variant,
 };
 use psd_plan::{FigureKind, ProcedureBlock};
 use psd_text::units::Dimension;
@@ -475,6 +475,9 @@ impl<'v> Items<'v, '_> {
             self.blocks(|kind| !kind.is_procedure() && !kind.exports.is_empty());
         } else {
             self.blocks(|kind| !kind.exports.is_empty());
+        }
+        for (name, _, doc) in CONSTANTS {
+            self.push(name, name, lsp::CompletionItemKind::Constant, ("", doc));
         }
         for function in FUNCTIONS {
             self.push(

@@ -133,7 +133,6 @@ pub fn head(kind: &BlockKind, placeholder: &dyn Fn(&str) -> String) -> String {
 
 fn unit(field: &Field) -> String {
     match field.dimension() {
-        Some(_) if field.angle => " [rad]".to_owned(),
         Some(dimension) if dimension != Dimension::NUMBER => {
             format!(" [{}]", dimension.usual_unit())
         }

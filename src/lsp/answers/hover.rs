@@ -37,7 +37,7 @@ fn text(view: &View<'_>, found: Occurrence) -> Option<String> {
         Meaning::FieldOf(field) | Meaning::Argument(field) => describe::field(field),
         Meaning::Variant(variant) => describe::variant(variant),
         Meaning::Function(function) => {
-            let arguments = if function.many { "a, b, …" } else { "x" };
+            let arguments = function.takes.arguments();
             format!("**{}({arguments})**\n\n{}", function.name, function.doc)
         }
         Meaning::Figure(figure) => format!("**{}**\n\nfigure of a report", figure.name()),

@@ -54,16 +54,60 @@ pub fn in_one_line(simulation: &Simulation) -> String {
     if let Some(stopped) = &simulation.stopped {
         return format!("SIMULATION: {stopped}");
     }
-    let count = simulation.requirements.len();
-    let met = simulation
-        .requirements
-        .iter()
-        .filter(|one| one.verdict == "pass")
-        .count();
-    match count {
-        0 => "SIMULATION: completed".to_owned(),
-        1 if met == 1 => "SIMULATION: requirement met".to_owned(),
-        _ if met == count => format!("SIMULATION: all {count} requirements met"),
-        _ => format!("SIMULATION: {met} of {count} requirements met"),
+    let total = simulation.requirements.len();
+    let of = |verdict: &str| {
+        let all = simulation.requirements.iter();
+        all.filter(|one| one.verdict == verdict).count()
+    };
+    let words = match (of("fail"), of("inconclusive")) {
+        _ if total == 0 => "completed".to_owned(),
+        (0, 0) if total == 1 => "requirement met".to_owned(),
+        (0, 0) => format!("all {total} requirements met"),
+        (0, 1) if total == 1 => "inconclusive".to_owned(),
+        (0, inconclusive) => format!("{inconclusive} of {total} requirements inconclusive"),
+        (1, _) if total == 1 => "requirement not met".to_owned(),
+        (failed, _) => format!("{failed} of {total} requirements not met"),
+    };
+    format!("SIMULATION: {words}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::SimulatedRequirement;
+
+    #[test]
+    fn the_worst_verdict_is_the_headline_as_in_a_report() {
+        for (verdicts, wanted) in [
+            (&[][..], "completed"),
+            (&["pass"], "requirement met"),
+            (&["fail"], "requirement not met"),
+            (&["inconclusive"], "inconclusive"),
+            (&["pass", "pass"], "all 2 requirements met"),
+            (
+                &["pass", "inconclusive"],
+                "1 of 2 requirements inconclusive",
+            ),
+            (
+                &["pass", "fail", "inconclusive"],
+                "1 of 3 requirements not met",
+            ),
+        ] {
+            let one = |verdict: &&'static str| SimulatedRequirement {
+                label: String::new(),
+                verdict,
+                values: Vec::new(),
+            };
+            let simulation = Simulation {
+                stopped: None,
+                procedures: Vec::new(),
+                requirements: verdicts.iter().map(one).collect(),
+            };
+            assert_eq!(
+                in_one_line(&simulation),
+                format!("SIMULATION: {wanted}"),
+                "{verdicts:?}"
+            );
+        }
     }
 }

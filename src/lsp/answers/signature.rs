@@ -49,7 +49,7 @@ pub fn signature(view: &View<'_>, params: &lsp::SignatureHelpParams) -> Option<l
         let function = FUNCTIONS
             .iter()
             .find(|function| function.name == call.name)?;
-        let parameter = if function.many { "values, …" } else { "x" };
+        let parameter = function.takes.arguments();
         let label = format!("{}({parameter})", function.name);
         let parameter = lsp::ParameterInformation {
             label: parameter.to_owned().into(),

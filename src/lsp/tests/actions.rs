@@ -47,6 +47,41 @@ fn a_fix_is_what_the_help_names_and_was_tried() {
             "add `velocity = 1 m/s`",
             "striker s {\n  mass = 1 kg\n  velocity = 1 m/s\n}\n",
         ),
+        (
+            "let a = 1:2:9‸ mm\n",
+            "replace by `1 .. 9 step 2 mm`",
+            "let a = 1 .. 9 step 2 mm\n",
+        ),
+        (
+            "let a = linspace(‸1, 9, 5) mm\n",
+            "replace by `1 .. 9 step 2 mm`",
+            "let a = 1 .. 9 step 2 mm\n",
+        ),
+        (
+            "let a = 1 k‸N m^-1\n",
+            "replace by `1 kN/m`",
+            "let a = 1 kN/m\n",
+        ),
+        (
+            "let s = 8 mm\nlet a = 5 % o‸f s\n",
+            "replace by `5 % * s`",
+            "let s = 8 mm\nlet a = 5 % * s\n",
+        ),
+        (
+            "let a = [1 2‸ 3] mm\n",
+            "replace by `1, 2, 3`",
+            "let a = [1, 2, 3] mm\n",
+        ),
+        (
+            "let a = 2‸^2 s\n",
+            "replace by `2^2 * 1 s`",
+            "let a = 2^2 * 1 s\n",
+        ),
+        (
+            "let a = pow(‸2 mm, 2)\n",
+            "replace by `(2 mm)^2`",
+            "let a = (2 mm)^2\n",
+        ),
         // The span of the last field ends inside its foreign letter.
         (
             "let m\u{e9} = 1 kg\nstriker s‸ {\n  mass = m\u{e9}\n}\n",

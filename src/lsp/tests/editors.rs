@@ -1,5 +1,5 @@
-//! The first messages of editors. Neovim's was recorded; those of VS Code and Helix are condensed from published ones, and Zed's is written
-//! by hand. Then the conversation goes on as theirs does.
+//! The first messages of editors. Those of VS Code (code-server 1.139) and Neovim were recorded; those of Helix and Zed are condensed from
+//! their sources. Then the conversation goes on as theirs does.
 
 use serde_json::{Value, json};
 

@@ -52,6 +52,25 @@ fn uncertainty_is_propagated_to_first_order() {
     );
 }
 
+/// d(ln x) = dx/x, de^x = e^x dx, d√(x² + 75²) = x/√(x² + 75²) dx at 100 ± 2: 1/50, and 4/5 of 2.
+#[test]
+fn logarithm_and_hypotenuse_propagate_their_slopes() {
+    let of = |function, arguments| {
+        Formula::Call(function, arguments)
+            .evaluate(&One, None)
+            .unwrap()
+    };
+    let log = of(Function::Log, vec![stiffness()]);
+    assert!((log.value - 100.0_f64.ln()).abs() < 1e-15);
+    assert!((log.uncertainty.unwrap() - 0.02).abs() < 1e-5);
+    let hypot = of(Function::Hypot, vec![stiffness(), Formula::Constant(75.0)]);
+    assert_eq!(hypot.value, 125.0);
+    assert!((hypot.uncertainty.unwrap() - 1.6).abs() < 1e-3);
+    let one = |function, x: f64| of(function, vec![Formula::Constant(x)]).value;
+    assert_eq!(one(Function::Exp, 0.0), 1.0);
+    assert!((one(Function::Tan, std::f64::consts::FRAC_PI_4) - 1.0).abs() < 1e-15);
+}
+
 /// ½mv² of m = 20 ± 0.1 kg and v = 1 ± 0.01 m/s: u = √((½v²u_m)² + (mv·u_v)²). A number minus itself has zero uncertainty.
 #[test]
 fn a_stated_number_carries_its_uncertainty() {

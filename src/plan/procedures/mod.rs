@@ -1,18 +1,52 @@
 //! The procedures of a plan, and what the stages before the run know of each: in its folder its block (schema), its parameters in SI
 //! (plan) and its history (record). They are data: they check nothing and run nothing.
 
-pub mod cycle;
-pub mod damping_sweep;
-pub mod escalate;
-pub mod impact;
-pub mod inspect;
+pub mod cycle {
+    pub mod block;
+    pub mod history;
+    pub mod parameters;
+}
+pub mod damping_sweep {
+    pub mod block;
+    pub mod history;
+    pub mod parameters;
+}
+pub mod escalate {
+    pub mod block;
+    pub mod history;
+    pub mod parameters;
+}
+pub mod impact {
+    pub mod block;
+    pub mod history;
+    pub mod parameters;
+}
+pub mod inspect {
+    pub mod block;
+}
 pub mod known_steps;
 pub mod mode;
-pub mod move_to;
-pub mod shake;
+pub mod move_to {
+    pub mod block;
+    pub mod history;
+    pub mod parameters;
+}
+pub mod shake {
+    pub mod block;
+    pub mod history;
+    pub mod parameters;
+}
 pub mod stepping;
-pub mod stiffness_ramp;
-pub mod unload;
+pub mod stiffness_ramp {
+    pub mod block;
+    pub mod history;
+    pub mod parameters;
+}
+pub mod unload {
+    pub mod block;
+    pub mod history;
+    pub mod parameters;
+}
 
 use crate::{Cycle, DampingSweep, Escalate, Impact, Move, Shake, StiffnessRamp, Unload};
 

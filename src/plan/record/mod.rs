@@ -53,6 +53,17 @@ pub struct Record {
     pub drift: Option<Drift>,
 }
 
+impl Record {
+    /// The procedure in which a run ended early, and the number of the step; None: in no procedure.
+    #[must_use]
+    pub fn stop_position(&self) -> Option<(&str, u64)> {
+        let mut events = self.events.iter().rev();
+        let last = events.find(|event| event.procedure.is_some())?;
+        let next = last.step.map_or(1, |step| step + 1);
+        Some((last.procedure.as_deref()?, next))
+    }
+}
+
 /// How the run ended.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {

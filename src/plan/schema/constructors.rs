@@ -16,7 +16,6 @@ impl Field {
             doc,
             real_rig_only: false,
             of_frames: false,
-            angle: false,
             advanced: false,
         }
     }
@@ -43,13 +42,6 @@ impl Field {
 
     pub const fn quantity(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {
         Self::new(name, FieldType::Quantity(dimension), doc)
-    }
-
-    pub const fn angle(name: &'static str, doc: &'static str) -> Self {
-        Self {
-            angle: true,
-            ..Self::quantity(name, Dimension::NUMBER, doc)
-        }
     }
 
     pub const fn quantities(name: &'static str, dimension: Dimension, doc: &'static str) -> Self {

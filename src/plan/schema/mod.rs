@@ -6,6 +6,7 @@ pub mod blocks;
 pub mod columns;
 mod constructors;
 mod functions;
+mod synonyms;
 mod types;
 
 pub use blocks::evaluation::{golden, report, reproduces, study};
@@ -14,7 +15,8 @@ pub use blocks::{
     specimen, striker,
 };
 pub use columns::Column;
-pub use functions::{FUNCTIONS, FunctionKind};
+pub use functions::{CONSTANTS, FUNCTIONS, FunctionKind, Takes, constant};
+pub use synonyms::SYNONYMS;
 pub use types::{
     BlockKind, Field, FieldType, Kind, Naming, Possible, Presence, Range, ResultKind, RigKind,
     Variant,

@@ -50,10 +50,6 @@ pub struct BlockKind {
 }
 
 /// One field of a block, or one argument of a variant (in positional order).
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "each says one thing of a field, and none follows from another"
-)]
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
     pub name: &'static str,
@@ -66,8 +62,6 @@ pub struct Field {
     pub real_rig_only: bool,
     /// Whether it applies to a frame only.
     pub of_frames: bool,
-    /// Whether its number is an angle, which is written with its unit.
-    pub angle: bool,
     /// Whether few plans set it: the reference lists it apart.
     pub advanced: bool,
 }

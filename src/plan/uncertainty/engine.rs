@@ -138,11 +138,11 @@ impl<P: Evaluate> Propagation<'_, P> {
             .into_iter()
             .partition(|source| budget.draws(*source));
         let first = self.impact.saturating_mul(MOST_DRAWS);
-        let trials = (first..first.saturating_add(budget.trials)).map(Part::Trial);
-        let parts: Vec<Part> = steps
+        let trials = (first..first.saturating_add(budget.trials)).map(Perturbed::Trial);
+        let parts: Vec<Perturbed> = steps
             .into_iter()
             .chain(moved)
-            .map(Part::Source)
+            .map(Perturbed::Source)
             .chain(trials)
             .collect();
         let nominal = self.evaluate.evaluate(
@@ -174,9 +174,9 @@ impl<P: Evaluate> Propagation<'_, P> {
     }
 }
 
-/// One piece of a propagation.
+/// One re-integration with an input perturbed, or with simulated reading errors.
 #[derive(Clone, Copy)]
-enum Part {
+enum Perturbed {
     Source(Source),
     Trial(u16),
 }
@@ -193,20 +193,20 @@ struct Prepared<'a, P> {
 }
 
 impl<P: Evaluate> Prepared<'_, P> {
-    fn source(&self, part: Part) -> Source {
+    fn source(&self, perturbed: Perturbed) -> Source {
         let procedure = self.propagation.procedure;
-        match part {
-            Part::Source(source) => source,
-            Part::Trial(draw) if self.budget.together => Source::Drawn { procedure, draw },
-            Part::Trial(draw) => Source::Readings { procedure, draw },
+        match perturbed {
+            Perturbed::Source(source) => source,
+            Perturbed::Trial(draw) if self.budget.together => Source::Drawn { procedure, draw },
+            Perturbed::Trial(draw) => Source::Readings { procedure, draw },
         }
     }
 
-    fn effects(&self, part: Part) -> Result<Effects, String> {
-        match part {
-            Part::Source(Source::TimeStep(steps)) => self.of_the_time_step(steps),
-            Part::Source(source) => self.of_source(source),
-            Part::Trial(trial) => self.of_trial(trial),
+    fn effects(&self, perturbed: Perturbed) -> Result<Effects, String> {
+        match perturbed {
+            Perturbed::Source(Source::TimeStep(steps)) => self.of_the_time_step(steps),
+            Perturbed::Source(source) => self.of_source(source),
+            Perturbed::Trial(trial) => self.of_trial(trial),
         }
     }
 

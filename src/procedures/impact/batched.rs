@@ -39,10 +39,10 @@ const OF_STEPS: [&str; 3] = [
 ];
 
 /// Whether a result is wanted, as a part of what is.
-type Part = fn(&mut Wanted) -> &mut bool;
+type WantedPart = fn(&mut Wanted) -> &mut bool;
 
 /// Results of an impact that cost a part of each step.
-const OF_EVERY_STEP: [(ResultKind, Part); 5] = [
+const OF_EVERY_STEP: [(ResultKind, WantedPart); 5] = [
     (schema::TIME_OF_MAX_DISPLACEMENT, |it| {
         &mut it.time_of_max_displacement
     }),

@@ -3,7 +3,6 @@
 
 pub(crate) mod check;
 pub(crate) mod facts;
-pub(crate) mod report;
 pub(crate) mod run;
 pub(crate) mod tables;
 pub(crate) mod uncertainty;

@@ -13,6 +13,10 @@ use psd_physics::structure::{Loaded, Unloading};
 use psd_plan::record::{Rest, UnloadStep};
 use psd_plan::uncertainty::{Contribution, NOISE, Source};
 
+/// The method by which the contributions to its uncertainty were found.
+pub(crate) const UNCERTAINTY: &str = "In closed form, from the unloaded position: R + K(x₀ − x) = 0 with the \
+ stiffness measured during the unloading.";
+
 /// A storey shows a stiffness if its storey drift changes by more than this fraction of the largest change on the path; less is rounding.
 const SIGNIFICANT_FRACTION: f64 = 1e-6;
 

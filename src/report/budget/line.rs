@@ -14,7 +14,7 @@ use psd_text::units::display::stated;
 
 /// One input of a budget.
 #[derive(Clone, Debug)]
-pub(in crate::report) struct Line {
+pub(in crate::report) struct BudgetLine {
     /// The name in the plan, if it has one: `k0.stiffness`, `pendulum.mass`.
     pub input: String,
     pub origin: Origin,
@@ -58,7 +58,7 @@ struct Input {
     dimension: Dimension,
 }
 
-impl Line {
+impl BudgetLine {
     /// The line of one contribution.
     pub(super) fn of(run: &Run<'_>, part: &Contribution) -> Self {
         let input = Input::of(run, part.source);

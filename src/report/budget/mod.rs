@@ -4,7 +4,7 @@
 pub(super) mod coverage_factor;
 mod line;
 
-pub(super) use line::{Line, Origin};
+pub(super) use line::{BudgetLine, Origin};
 
 use super::run::Run;
 use psd_plan::formula::{ProcedureId, ResultValue};
@@ -24,14 +24,14 @@ pub(super) struct Budget<'a> {
     pub uncertainty: f64,
     /// The same with its effective degrees of freedom.
     pub known: MeasurementUncertainty,
-    pub lines: Vec<Line>,
+    pub lines: Vec<BudgetLine>,
     /// The effect of the time step, beside U.
     pub time_step: Option<StepInterval>,
 }
 
 impl Budget<'_> {
     /// Fraction of u² that a line contributes.
-    pub fn fraction(&self, line: &Line) -> f64 {
+    pub fn fraction(&self, line: &BudgetLine) -> f64 {
         (line.contribution / self.uncertainty).powi(2)
     }
 
@@ -111,7 +111,10 @@ fn combined(run: &Run<'_>, parts: &[Contribution], uncertainty: f64) -> Measurem
 }
 
 /// One line per source. All Monte Carlo trials are one line, and so are all readings at rest.
-fn lines<'a>(run: &Run<'_>, contributions: impl Iterator<Item = &'a Contribution>) -> Vec<Line> {
+fn lines<'a>(
+    run: &Run<'_>,
+    contributions: impl Iterator<Item = &'a Contribution>,
+) -> Vec<BudgetLine> {
     let is_trial = |part: &&Contribution| {
         matches!(part.source, Source::Readings { .. } | Source::Drawn { .. })
     };
@@ -121,7 +124,10 @@ fn lines<'a>(run: &Run<'_>, contributions: impl Iterator<Item = &'a Contribution
     let (readings, others): (Vec<&Contribution>, Vec<&Contribution>) = others
         .into_iter()
         .partition(|part| matches!(part.source, Source::RestReading { .. }));
-    let mut lines: Vec<Line> = others.into_iter().map(|part| Line::of(run, part)).collect();
+    let mut lines: Vec<BudgetLine> = others
+        .into_iter()
+        .map(|part| BudgetLine::of(run, part))
+        .collect();
     for (parts, sampled) in [(trials, true), (readings, false)] {
         if let Some(first) = parts.first() {
             let together = parts
@@ -129,7 +135,7 @@ fn lines<'a>(run: &Run<'_>, contributions: impl Iterator<Item = &'a Contribution
                 .map(|part| part.amount * part.amount)
                 .sum::<f64>()
                 .sqrt();
-            let one = Line::of(run, first);
+            let one = BudgetLine::of(run, first);
             #[expect(clippy::cast_precision_loss, reason = "a few")]
             let degrees = if sampled {
                 parts.len() as f64
@@ -137,7 +143,7 @@ fn lines<'a>(run: &Run<'_>, contributions: impl Iterator<Item = &'a Contribution
                 one.degrees
             };
             let draws = sampled.then_some(parts.len());
-            lines.push(Line {
+            lines.push(BudgetLine {
                 contribution: together,
                 draws,
                 degrees,

@@ -13,7 +13,7 @@ use plotters::style::{Color as _, FontStyle, FontTransform, TextStyle, register_
 use plotters_backend::BackendCoord;
 
 use super::super::document::fonts::{SANS, SANS_BOLD};
-use super::chart::{Colour, Line};
+use super::chart::{Colour, LineStyle};
 use super::vector::{Drawing, Polyline, UNITS};
 
 /// A point in reference pixels, y downward.
@@ -71,7 +71,7 @@ impl Canvas {
     }
 
     /// A line of several segments with round joins.
-    pub fn polyline(&self, points: &[Point], line: Line, colour: Colour) {
+    pub fn polyline(&self, points: &[Point], line: LineStyle, colour: Colour) {
         self.draw(&Polyline {
             points: points.iter().copied().map(units).collect(),
             line,

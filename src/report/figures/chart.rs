@@ -160,14 +160,14 @@ pub(crate) mod palette {
 pub(crate) struct Style {
     pub colour: Colour,
     /// None: markers only.
-    pub line: Option<Line>,
+    pub line: Option<LineStyle>,
     pub marker: Option<Marker>,
     /// The points are the corners of an area of this colour.
     pub fill: bool,
 }
 
 #[derive(Clone, Copy)]
-pub(crate) struct Line {
+pub(crate) struct LineStyle {
     /// Reference pixels (96 to the inch).
     pub width: f64,
     /// Lengths drawn and left out, in turn, reference pixels; empty: solid.
@@ -184,7 +184,7 @@ impl Style {
     pub const fn line(colour: Colour, width: f64, dash: &'static [f64]) -> Self {
         Self {
             colour,
-            line: Some(Line { width, dash }),
+            line: Some(LineStyle { width, dash }),
             marker: None,
             fill: false,
         }

@@ -74,7 +74,7 @@ mod tests {
     use plotters::style::text_anchor::{HPos, VPos};
 
     use super::super::canvas::{Anchor, Canvas, Lettering, svg};
-    use super::super::chart::{Colour, Line};
+    use super::super::chart::{Colour, LineStyle};
     use super::*;
 
     const INK: Colour = (0, 0, 0);
@@ -96,7 +96,7 @@ mod tests {
     /// A line that folds back on itself is as dark as a single one, and as wide.
     #[test]
     fn a_line_that_folds_back_has_no_slit() {
-        let line = Line {
+        let line = LineStyle {
             width: 2.0,
             dash: &[],
         };

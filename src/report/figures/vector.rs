@@ -14,7 +14,7 @@ use plotters_backend::{
 };
 
 use super::super::document::fonts::FIGURE_FAMILIES;
-use super::chart::{Colour, Line};
+use super::chart::{Colour, LineStyle};
 
 /// Units of a shape per reference pixel: the coordinates of plotters are integers.
 pub(super) const UNITS: f64 = 100.0;
@@ -58,7 +58,7 @@ type Drawn = Result<(), DrawingErrorKind<Infallible>>;
 /// A line of several segments. The styles of plotters have no dashes.
 pub(super) struct Polyline {
     pub points: Vec<BackendCoord>,
-    pub line: Line,
+    pub line: LineStyle,
     pub colour: Colour,
 }
 
@@ -90,7 +90,12 @@ impl Drawing {
         shapes.push('\n');
     }
 
-    fn line(&self, points: impl IntoIterator<Item = BackendCoord>, line: Line, colour: Colour) {
+    fn line(
+        &self,
+        points: impl IntoIterator<Item = BackendCoord>,
+        line: LineStyle,
+        colour: Colour,
+    ) {
         let mut path = String::new();
         for (index, (x, y)) in points.into_iter().enumerate() {
             let start = if index == 0 { "M" } else { " L" };
@@ -159,7 +164,7 @@ impl DrawingBackend for Drawing {
         points: I,
         style: &S,
     ) -> Drawn {
-        let line = Line {
+        let line = LineStyle {
             width: f64::from(style.stroke_width()) / UNITS,
             dash: &[],
         };

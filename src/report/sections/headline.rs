@@ -49,7 +49,7 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
     if factors {
         columns.push(Column::numbers(wording::FACTOR));
     }
-    let cells = |row: Row| {
+    let cells = |row: HeadlineRow| {
         let mut cells = vec![row.name, row.procedure, row.value];
         if factors {
             cells.push(row.factor.map_or_else(|| "".into(), Text::from));
@@ -71,7 +71,7 @@ pub(super) fn section(source: &Source<'_>, body: &mut Vec<Block>) {
 }
 
 /// The rows of the results that exist.
-fn rows(run: &Run<'_>) -> Vec<Row> {
+fn rows(run: &Run<'_>) -> Vec<HeadlineRow> {
     let chosen = chosen(run);
     chosen
         .iter()
@@ -89,7 +89,7 @@ pub(super) fn mark_of_the_annex(source: &Source<'_>, body: &mut Vec<Block>) {
 }
 
 /// A row of the table.
-struct Row {
+struct HeadlineRow {
     name: Text,
     procedure: Text,
     value: Text,
@@ -165,7 +165,7 @@ fn headlines(run: &Run<'_>) -> Vec<ReadResult> {
 }
 
 /// None if the procedure was not run, or the result does not exist.
-fn row(run: &Run<'_>, chosen: &ReadResult) -> Option<Row> {
+fn row(run: &Run<'_>, chosen: &ReadResult) -> Option<HeadlineRow> {
     let index = chosen.reference.procedure.0;
     let procedure = run.record.procedures.get(index)?;
     let result = procedure.result(chosen.reference.name)?;
@@ -210,7 +210,7 @@ fn row(run: &Run<'_>, chosen: &ReadResult) -> Option<Row> {
     let marked = known.is_some() && !budget_table::is_reliable(result, entry);
     let mark = if marked { budget_table::MARK } else { "" };
     let factor = known.filter(|_| !partial);
-    Some(Row {
+    Some(HeadlineRow {
         name,
         procedure: Text::from(procedure.name.as_str()).soft(format!(" · {}", procedure.kind)),
         value: text.and(mark),

@@ -6,7 +6,7 @@ use super::{
     ProcedureSummary, Quantity, RecordSummary, ReproductionSummary, RequirementSummary, RigSummary,
     SCHEMA, StepSummary, Summary, Uncertainty, Value, ZeroDriftSummary, finite,
 };
-use crate::report::budget::{Budget, Line, budgets, coverage_factor};
+use crate::report::budget::{Budget, BudgetLine, budgets, coverage_factor};
 use crate::report::run::Run;
 use crate::report::status::{Change, Issues, ReportStatus, deviations, report_status};
 use crate::verdict::{Bound, ConditionOutcome, ReproductionOutcome, RequirementOutcome};
@@ -171,7 +171,7 @@ fn procedure(run: &Run<'_>, index: usize, procedure: &ProcedureRecord) -> Proced
 
 /// The name of a result, or of a number of its list, and its budget.
 fn budget(budget: &Budget<'_>) -> (String, BudgetSummary) {
-    let contribution = |line: &Line| ContributionSummary {
+    let contribution = |line: &BudgetLine| ContributionSummary {
         input: line.input.clone(),
         method: if line.draws.is_some() {
             "sampled"

@@ -9,7 +9,7 @@ use psd_plan::schema::columns::{self, column};
 use psd_text::units::Dimension;
 
 /// One zero reading of one axis.
-struct Row {
+struct ZeroDriftRow {
     /// Number of the axis from 1.
     axis: u64,
     /// `before` or `after` the test.
@@ -17,7 +17,7 @@ struct Row {
     zero: Zero,
 }
 
-const COLUMNS: &[TableColumn<Row>] = &[
+const COLUMNS: &[TableColumn<ZeroDriftRow>] = &[
     Integer(column("axis", Dimension::NUMBER), |row| row.axis),
     Text("test", |row| row.test),
     Number(columns::WALL_TIME, |row| row.zero.time),
@@ -36,9 +36,9 @@ const COLUMNS: &[TableColumn<Row>] = &[
 /// The columns of the table.
 pub(super) fn table_columns(drift: &Drift) -> Vec<Column> {
     let axes = (1..).zip(&drift.axes);
-    let rows: Vec<Row> = axes
+    let rows: Vec<ZeroDriftRow> = axes
         .flat_map(|(number, axis)| {
-            let row = |test, zero| Row {
+            let row = |test, zero| ZeroDriftRow {
                 axis: number,
                 test,
                 zero,

@@ -193,10 +193,9 @@ fn the_worst_runs_are_those_beyond_the_limit() {
     );
     let angle = Input {
         name: "hammer.angle".to_owned(),
-        dimension: Dimension::NUMBER,
+        dimension: Dimension::ANGLE,
         text: String::new(),
         nominal: 1.0,
-        angle: true,
         is_record: false,
     };
     assert_eq!(setting(&column(&angle), 1.04), "hammer.angle=\"1.04 rad\"");

@@ -188,7 +188,7 @@ impl Column {
     }
 }
 
-/// A dimension as its exponents of length, mass and time.
+/// A dimension as its exponents of length, mass and time; of angle and temperature too, unless both are 0.
 mod exponents {
     use serde::de::Error as _;
     use serde::{Deserialize as _, Deserializer, Serialize as _, Serializer};
@@ -199,17 +199,42 @@ mod exponents {
         dimension: &Dimension,
         serializer: S,
     ) -> Result<S::Ok, S::Error> {
-        [dimension.length, dimension.mass, dimension.time]
-            .map(Exponent::as_f64)
-            .serialize(serializer)
+        let Dimension {
+            length,
+            mass,
+            time,
+            angle,
+            temperature,
+        } = *dimension;
+        let all = [length, mass, time, angle, temperature].map(Exponent::as_f64);
+        let written = if angle.is_zero() && temperature.is_zero() {
+            &all[..3]
+        } else {
+            &all[..]
+        };
+        written.serialize(serializer)
     }
 
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Dimension, D::Error> {
-        let exponents = <[f64; 3]>::deserialize(deserializer)?.map(Exponent::from_decimal);
-        let [Some(length), Some(mass), Some(time)] = exponents else {
-            return Err(D::Error::custom("no such exponents of a dimension"));
-        };
-        Ok(Dimension { length, mass, time })
+        let read = Vec::<f64>::deserialize(deserializer)?;
+        let exponents: Option<Vec<Exponent>> =
+            read.into_iter().map(Exponent::from_decimal).collect();
+        match exponents.as_deref() {
+            Some([length, mass, time]) => Ok(Dimension {
+                length: *length,
+                mass: *mass,
+                time: *time,
+                ..Dimension::NUMBER
+            }),
+            Some([length, mass, time, angle, temperature]) => Ok(Dimension {
+                length: *length,
+                mass: *mass,
+                time: *time,
+                angle: *angle,
+                temperature: *temperature,
+            }),
+            _ => Err(D::Error::custom("no such exponents of a dimension")),
+        }
     }
 }
 

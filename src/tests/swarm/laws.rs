@@ -131,6 +131,8 @@ impl Released {
     /// The highest speed of those that name this target to within `near` \[m\]; None: none does.
     fn speed_to(&self, target: f64, near: f64) -> Option<f64> {
         let named = |targets: &[(f64, f64)], near: f64| {
+            // A sum of decimal numbers can be off by its last digit.
+            let near = near * (1.0 + 1e-9);
             let named = targets
                 .iter()
                 .filter(|(named, _)| (named - target).abs() <= near);

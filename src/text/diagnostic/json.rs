@@ -27,7 +27,19 @@ pub fn document(diagnostics: &[Value]) -> Value {
 /// The document as it is printed: indented, with no control character from the text of a plan.
 #[must_use]
 pub fn text(diagnostics: &[Value]) -> String {
-    sanitize::json(&format!("{:#}\n", document(diagnostics)))
+    printed(&document(diagnostics))
+}
+
+/// [`text`] with the predicted run of each plan.
+#[must_use]
+pub fn text_with_predictions(diagnostics: &[Value], predictions: Vec<Value>) -> String {
+    let mut document = document(diagnostics);
+    document["predictions"] = predictions.into();
+    printed(&document)
+}
+
+fn printed(document: &Value) -> String {
+    sanitize::json(&format!("{document:#}\n"))
 }
 
 /// One diagnostic. `plan` names the file of a diagnostic without a span; `folder` is put before the name of every file.

@@ -97,12 +97,14 @@ impl fmt::Display for Exponent {
     }
 }
 
-/// The dimension of a quantity: exponents of length, mass and time.
+/// The dimension of a quantity: exponents of length, mass, time, angle and temperature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Dimension {
     pub length: Exponent,
     pub mass: Exponent,
     pub time: Exponent,
+    pub angle: Exponent,
+    pub temperature: Exponent,
 }
 
 const fn dimension(length: i16, mass: i16, time: i16) -> Dimension {
@@ -110,6 +112,8 @@ const fn dimension(length: i16, mass: i16, time: i16) -> Dimension {
         length: Exponent::whole(length),
         mass: Exponent::whole(mass),
         time: Exponent::whole(time),
+        angle: Exponent::ZERO,
+        temperature: Exponent::ZERO,
     }
 }
 
@@ -119,7 +123,21 @@ impl Dimension {
     pub const MASS: Self = dimension(0, 1, 0);
     pub const TIME: Self = dimension(0, 0, 1);
     pub const AREA: Self = dimension(2, 0, 0);
+    pub const SECTION_MODULUS: Self = dimension(3, 0, 0);
     pub const SECOND_MOMENT: Self = dimension(4, 0, 0);
+    pub const ANGLE: Self = Self {
+        angle: Exponent::whole(1),
+        ..Self::NUMBER
+    };
+    pub const TEMPERATURE: Self = Self {
+        temperature: Exponent::whole(1),
+        ..Self::NUMBER
+    };
+    /// N·m/rad, moment over rotation.
+    pub const ROTATIONAL_STIFFNESS: Self = Self {
+        angle: Exponent::whole(-1),
+        ..Self::ENERGY
+    };
     pub const DENSITY: Self = dimension(-3, 1, 0);
     pub const MASS_PER_LENGTH: Self = dimension(-1, 1, 0);
     pub const VELOCITY: Self = dimension(1, 0, -1);
@@ -140,6 +158,7 @@ impl Dimension {
         },
         mass: Exponent::whole(1),
         time: Exponent::whole(-2),
+        ..Self::NUMBER
     };
 
     /// The name the field uses for this dimension, such as "force" or "stiffness".
@@ -194,12 +213,20 @@ impl Dimension {
             length: f(self.length, other.length)?,
             mass: f(self.mass, other.mass)?,
             time: f(self.time, other.time)?,
+            angle: f(self.angle, other.angle)?,
+            temperature: f(self.temperature, other.temperature)?,
         })
     }
 
     /// In the language's own unit syntax: `kg*m/s^2`.
     fn in_base_units(self) -> String {
-        let parts = [("kg", self.mass), ("m", self.length), ("s", self.time)];
+        let parts = [
+            ("kg", self.mass),
+            ("m", self.length),
+            ("s", self.time),
+            ("rad", self.angle),
+            ("K", self.temperature),
+        ];
         let side = |positive: bool| {
             parts
                 .iter()
@@ -234,7 +261,15 @@ const NAMES: &[(Dimension, &str, &str)] = &[
     (Dimension::MASS, "mass", "kg"),
     (Dimension::TIME, "time", "s"),
     (Dimension::AREA, "area", "mm^2"),
+    (Dimension::SECTION_MODULUS, "section modulus", "mm^3"),
     (Dimension::SECOND_MOMENT, "second moment of area", "mm^4"),
+    (Dimension::ANGLE, "angle", "rad"),
+    (Dimension::TEMPERATURE, "temperature", "K"),
+    (
+        Dimension::ROTATIONAL_STIFFNESS,
+        "rotational stiffness",
+        "N*m/rad",
+    ),
     (Dimension::DENSITY, "density", "kg/m^3"),
     (Dimension::MASS_PER_LENGTH, "mass per length", "kg/m"),
     (Dimension::VELOCITY, "velocity", "m/s"),
@@ -286,6 +321,10 @@ mod tests {
         assert_eq!(
             Dimension::FORCE.times(Dimension::FORCE).unwrap().describe(),
             "kg^2*m^2/s^4"
+        );
+        assert_eq!(
+            Dimension::ROTATIONAL_STIFFNESS.in_base_units(),
+            "kg*m^2/s^2/rad"
         );
         assert_eq!(Dimension::HERTZ_STIFFNESS.in_base_units(), "kg/m^0.5/s^2");
     }

@@ -254,6 +254,7 @@ pub fn si_unit(dimension: Dimension) -> String {
     match dimension {
         Dimension::LENGTH => "m".to_owned(),
         Dimension::AREA => "m^2".to_owned(),
+        Dimension::SECTION_MODULUS => "m^3".to_owned(),
         Dimension::SECOND_MOMENT => "m^4".to_owned(),
         other => other.usual_unit(),
     }

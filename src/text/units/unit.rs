@@ -7,6 +7,8 @@ use super::dimension::{Dimension, Exponent};
 pub struct Unit {
     pub factor: f64,
     pub dimension: Dimension,
+    /// The zero of its scale in SI base units: 273.15 K for `degC`, else 0.
+    pub zero: f64,
 }
 
 /// One row of the unit table.
@@ -15,6 +17,8 @@ pub struct UnitName {
     pub symbol: &'static str,
     pub factor: f64,
     pub dimension: Dimension,
+    /// The zero of its scale in SI base units.
+    pub zero: f64,
     /// Whether SI prefixes are allowed.
     pub prefixes: bool,
     pub doc: &'static str,
@@ -31,10 +35,14 @@ const fn unit(
         symbol,
         factor,
         dimension,
+        zero: 0.0,
         prefixes,
         doc,
     }
 }
+
+/// The ice point \[K\]: 0 °C, SI brochure (2019), 2.3.1.
+pub const ICE_POINT: f64 = 273.15;
 
 /// Standard gravity \[m/s²\], 3rd CGPM (1901).
 pub const STANDARD_GRAVITY: f64 = 9.806_65;
@@ -84,20 +92,25 @@ pub const UNITS: &[UnitName] = &[
         false,
         "thousand psi",
     ),
-    unit(
-        "rad",
-        1.0,
-        Dimension::NUMBER,
-        false,
-        "radian, a plain number",
-    ),
+    unit("rad", 1.0, Dimension::ANGLE, false, "radian"),
     unit(
         "deg",
         std::f64::consts::PI / 180.0,
-        Dimension::NUMBER,
+        Dimension::ANGLE,
         false,
-        "degree of arc, a plain number",
+        "degree of arc",
     ),
+    unit("K", 1.0, Dimension::TEMPERATURE, false, "kelvin"),
+    UnitName {
+        zero: ICE_POINT,
+        ..unit(
+            "degC",
+            1.0,
+            Dimension::TEMPERATURE,
+            false,
+            "degree Celsius, an absolute temperature: `23 degC` is 296.15 K",
+        )
+    },
     unit("%", 0.01, Dimension::NUMBER, false, "hundredth"),
     unit("1", 1.0, Dimension::NUMBER, false, "one, as in `1/s`"),
 ];
@@ -122,6 +135,8 @@ pub enum UnitError {
     Unknown { name: String, start: usize },
     #[error("`{text}` is not an exponent")]
     Exponent { text: String, start: usize },
+    #[error("`{name}` cannot be part of another unit")]
+    Absolute { name: String, start: usize },
     #[error("the unit's exponents are too large")]
     TooLarge,
 }
@@ -145,17 +160,23 @@ pub fn lookup(name: &str) -> Option<Unit> {
     Some(Unit {
         factor: scale * unit.factor,
         dimension: unit.dimension,
+        zero: unit.zero,
     })
 }
 
 /// Parses a whole unit token, left to right: `N/m*s` is (N/m)·s.
 ///
 /// # Errors
-/// An unknown name, an exponent that is not a number, or an exponent out of range, with its position in the token.
+/// An unknown name, an exponent that is not a number, an exponent out of range, or `degC` beside another unit, with its position in the
+/// token.
 pub fn parse(token: &str) -> Result<Unit, UnitError> {
+    if let Some(alone) = lookup(token) {
+        return Ok(alone);
+    }
     let mut result = Unit {
         factor: 1.0,
         dimension: Dimension::NUMBER,
+        zero: 0.0,
     };
     let mut start = 0;
     let mut divide = false;
@@ -179,6 +200,12 @@ pub fn parse(token: &str) -> Result<Unit, UnitError> {
             name: name.to_owned(),
             start,
         })?;
+        if unit.zero != 0.0 {
+            return Err(UnitError::Absolute {
+                name: name.to_owned(),
+                start,
+            });
+        }
         let factor = power(unit.factor, exponent);
         let dimension = unit
             .dimension
@@ -191,6 +218,7 @@ pub fn parse(token: &str) -> Result<Unit, UnitError> {
                     .dimension
                     .over(dimension)
                     .ok_or(UnitError::TooLarge)?,
+                zero: 0.0,
             }
         } else {
             Unit {
@@ -199,6 +227,7 @@ pub fn parse(token: &str) -> Result<Unit, UnitError> {
                     .dimension
                     .times(dimension)
                     .ok_or(UnitError::TooLarge)?,
+                zero: 0.0,
             }
         };
         divide = part.ends_with('/');
@@ -235,6 +264,20 @@ mod tests {
         assert_eq!(si("N/m^1.5"), (1.0, Dimension::HERTZ_STIFFNESS));
         assert_eq!(si("1/s"), (1.0, Dimension::FREQUENCY));
         assert!((si("mm^2").0 - 1e-6).abs() < 1e-21);
+    }
+
+    #[test]
+    fn a_degree_celsius_stands_alone() {
+        let celsius = parse("degC").unwrap();
+        assert_eq!((celsius.factor, celsius.zero), (1.0, 273.15));
+        assert_eq!(
+            si("J/K").1,
+            Dimension::ENERGY.over(Dimension::TEMPERATURE).unwrap()
+        );
+        for (token, start) in [("1/degC", 2), ("J/degC", 2), ("degC^2", 0)] {
+            let name = "degC".to_owned();
+            assert_eq!(parse(token), Err(UnitError::Absolute { name, start }));
+        }
     }
 
     #[test]

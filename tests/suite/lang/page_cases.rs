@@ -6,6 +6,7 @@ use std::ops::Range;
 use std::sync::LazyLock;
 
 use psd::check::{Checked, check, no_files};
+use psd::codes::{W740, W741};
 use psd_text::diagnostic::page::{Page, PagePlan};
 use psd_text::diagnostic::{Code, Severity};
 use similar::TextDiff;
@@ -159,12 +160,14 @@ fn a_case_gives_the_code_of_its_page_and_nothing_that_follows_from_it() {
 #[test]
 fn a_case_of_an_error_has_no_plan_and_a_case_of_a_warning_runs_and_meets_its_requirements() {
     for case in PAGE_CASES.iter() {
-        let expected = match case.code.severity() {
-            Severity::Error => 2,
-            Severity::Warning => 0,
-        };
         let exit = exit_code(play(&case.checked).as_ref());
-        assert_eq!(exit, expected, "{}", case.place(case.line));
+        let expected = match case.code {
+            // The warnings of a dry run predict that the run does not.
+            W740 | W741 => exit == 4 || exit == 1,
+            code if code.severity() == Severity::Error => exit == 2,
+            _ => exit == 0,
+        };
+        assert!(expected, "{}: {exit}", case.place(case.line));
     }
 }
 

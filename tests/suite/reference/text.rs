@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use psd_plan::schema::{BLOCKS, FUNCTIONS};
+use psd_plan::schema::{BLOCKS, CONSTANTS, FUNCTIONS};
 use psd_text::diagnostic::page::Page;
 use psd_text::units::Dimension;
 use psd_text::units::display::si_unit;
@@ -57,12 +57,15 @@ pub fn codes() -> String {
 fn write_functions(text: &mut String) {
     let _ = writeln!(text, "\n## Functions\n\n| function | |\n|---|---|");
     for function in FUNCTIONS {
-        let arguments = if function.many { "a, b, …" } else { "a" };
+        let arguments = function.takes.arguments();
         let _ = writeln!(
             text,
             "| `{}({arguments})` | {} |",
             function.name, function.doc
         );
+    }
+    for (name, _, doc) in CONSTANTS {
+        let _ = writeln!(text, "| `{name}` | {doc} |");
     }
 }
 
@@ -78,10 +81,15 @@ fn write_units(text: &mut String) {
         } else {
             format!(" `{}`", si_unit(unit.dimension))
         };
+        let zero = if unit.zero == 0.0 {
+            String::new()
+        } else {
+            format!(", from {}{base}", unit.zero)
+        };
         let (symbol, doc, measures) = (unit.symbol, unit.doc, unit.dimension.describe());
         let _ = writeln!(
             text,
-            "| `{symbol}` | {doc} | {measures} | {prefixes} | {}{base} |",
+            "| `{symbol}` | {doc} | {measures} | {prefixes} | {}{base}{zero} |",
             unit.factor
         );
     }

@@ -18,6 +18,7 @@ if vim.fn.executable(server.cmd[1]) == 1 then
   else
     psd_client = psd_client or vim.lsp.start_client(server)
     vim.lsp.buf_attach_client(buffer, psd_client)
+    vim.bo.omnifunc = 'v:lua.vim.lsp.omnifunc'
   end
 end
 

@@ -62,6 +62,14 @@ impl<'a> Explained<'a> {
         }
     }
 
+    /// The prediction as data; None without a dry run.
+    pub fn prediction(&self) -> Option<Prediction> {
+        match self {
+            Self::Dry(dry) => Some(dry.prediction()),
+            Self::Unknown { .. } => None,
+        }
+    }
+
     pub fn text(&self, settings: Settings) -> String {
         match self {
             Self::Dry(dry) => dry.text(settings),
@@ -305,19 +313,9 @@ impl<'a> DryRun<'a> {
 
     /// ` in hit, step 12`: the position of the stop.
     fn stopped_in(&self) -> String {
-        let last = self
-            .record
-            .events
-            .iter()
-            .rev()
-            .find(|event| event.procedure.is_some());
-        last.map_or_else(String::new, |event| {
-            let name = event
-                .procedure
-                .as_deref()
-                .map_or_else(String::new, |name| format!(" in {name}"));
-            let next = event.step.map_or(1, |step| step + 1);
-            format!("{name}, step {next}")
+        let position = self.record.stop_position();
+        position.map_or_else(String::new, |(name, step)| {
+            format!(" in {name}, step {step}")
         })
     }
 

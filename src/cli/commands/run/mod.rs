@@ -1,11 +1,12 @@
-//! `psd run`: check → run → verdict → files. Nothing moves while the plan has an error, and nothing moves before the run log is open.
+//! `psd run`: check → run → verdict → files, for one plan or for several. Nothing moves while the plan has an error, and nothing moves before the run log is open.
 
 pub(crate) mod check_run;
 pub(crate) mod on_rig;
 mod recorded_folder;
 pub(crate) mod resume;
+mod several;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -15,6 +16,7 @@ use crate::files::accepted::AcceptedFolder;
 use crate::files::golden_run;
 use crate::files::golden_run::Extent;
 use crate::files::plan_file;
+use crate::files::plans::{Depth, named};
 use crate::operator::real_rig;
 use crate::operator::watch::Attendance;
 use crate::output::{print_message, print_result};
@@ -23,6 +25,7 @@ use check_run::check_run;
 use on_rig::{End, on_its_rig};
 use psd::golden::print::console;
 use psd::golden::{Outcome, Tested};
+use psd_rig::StopRequest;
 use psd_text::diagnostic::json;
 
 #[derive(Debug, Args)]
@@ -37,9 +40,9 @@ use psd_text::diagnostic::json;
     \x20 4  stopped by a limit or by the operator"
 )]
 pub struct RunArguments {
-    /// The plan, a `.psd` file or a Markdown document
-    #[arg(value_name = "PLAN")]
-    pub plan: PathBuf,
+    /// Plans, folders of plans, or `-` for standard input
+    #[arg(value_name = "PLAN", required = true)]
+    pub plans: Vec<PathBuf>,
     /// Run folder, new or empty [default: runs/PLAN-N]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -63,28 +66,65 @@ pub struct RunArguments {
     /// Check run (A REAL RIG MOVES), and prediction of the rest
     #[arg(long, conflicts_with = "accept")]
     pub check_run: bool,
+    /// Number of plans run in parallel, on virtual rigs [default: 1]
+    #[arg(long, short, value_name = "N", conflicts_with_all = ["rig", "format"])]
+    pub jobs: Option<std::num::NonZeroUsize>,
+}
+
+/// One plan of the command line.
+pub(crate) struct Job<'a> {
+    path: &'a Path,
+    arguments: &'a RunArguments,
+    /// Ctrl-C during this plan, or during one before it.
+    stop_request: &'a StopRequest,
+}
+
+/// The end of one plan.
+pub(crate) struct Done {
+    exit: Exit,
+    /// None: there are no results, or they are those of the run that was resumed.
+    folder: Option<PathBuf>,
+}
+
+impl From<Exit> for Done {
+    fn from(exit: Exit) -> Self {
+        Self { exit, folder: None }
+    }
+}
+
+/// Runs the plans that the command line names.
+pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure> {
+    let plans = named(&arguments.plans, Depth::Folder)?;
+    let stop_request = StopRequest::default();
+    match plans.as_slice() {
+        [path] => run_one(
+            &Job {
+                path,
+                arguments,
+                stop_request: &stop_request,
+            },
+            settings,
+        )
+        .map(|done| done.exit),
+        plans => several::run(plans, arguments, &stop_request, settings),
+    }
 }
 
 /// Runs one plan.
-pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure> {
+fn run_one(job: &Job<'_>, settings: Settings) -> Result<Done, Failure> {
+    let Job {
+        path, arguments, ..
+    } = *job;
     let attendance = Attendance {
         yes: arguments.yes,
         operator: arguments.operator.clone(),
     };
-    let checked = real_rig::open_plan(
-        &arguments.plan,
-        &arguments.plan_settings,
-        &attendance,
-        settings,
-    )?;
+    let checked = real_rig::open_plan(path, &arguments.plan_settings, &attendance, settings)?;
     let Some(plan) = &checked.plan else {
         if arguments.format == Format::Json {
-            print_result(&json::text(&plan_file::diagnostics(
-                &checked,
-                &arguments.plan,
-            )))?;
+            print_result(&json::text(&plan_file::diagnostics(&checked, path)))?;
         }
-        return Ok(Exit::Wrong);
+        return Ok(Exit::Wrong.into());
     };
     if plan.procedures.is_empty() {
         return Err(
@@ -94,14 +134,14 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
     }
     let attendance = real_rig::named(attendance, plan)?;
     let in_the_plan = |failure: Failure| {
-        failure.in_the_plan(|fault| plan_file::location_of_link(&checked, &arguments.plan, fault))
+        failure.in_the_plan(|fault| plan_file::location_of_link(&checked, path, fault))
     };
     if arguments.check_run {
-        return check_run(plan, arguments, &attendance, settings).map_err(in_the_plan);
+        return check_run(plan, job, &attendance, settings).map_err(in_the_plan);
     }
     let accepted = arguments
         .accept
-        .then(|| AcceptedFolder::of(&arguments.plan))
+        .then(|| AcceptedFolder::of(path))
         .transpose()?;
     if let Some(accepted) = &accepted
         && let Some(reason) = accepted.belongs_to_another()?
@@ -114,13 +154,13 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
         )
         .help("remove `--set`, `--rig` and `--date`, or write them into the plan"));
     }
-    let ran = on_its_rig(plan, arguments, &attendance, settings).map_err(in_the_plan)?;
+    let ran = on_its_rig(plan, job, &attendance, settings).map_err(in_the_plan)?;
     let finished = match ran.finish(plan, &attendance, settings)? {
-        End::Resumed(exit) => return Ok(exit),
+        End::Resumed(exit) => return Ok(exit.into()),
         End::Finished(finished) => finished,
     };
     if let Some(accepted) = accepted {
-        let trial = golden_run::of(&arguments.plan, Extent::All)?;
+        let trial = golden_run::of(path, Extent::All)?;
         if trial.ended.as_ref() == Some(&finished.recorded.record.outcome) {
             let outcome = Outcome::Accepted(accepted.accept(
                 &trial.files,
@@ -130,7 +170,7 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
             )?);
             print_message(&console::summary_text(
                 &Tested {
-                    name: arguments.plan.with_extension("").display().to_string(),
+                    name: path.with_extension("").display().to_string(),
                     folder: accepted.path().display().to_string(),
                     outcome,
                 },
@@ -143,5 +183,8 @@ pub fn run(arguments: &RunArguments, settings: Settings) -> Result<Exit, Failure
         }
     }
     finished.print(arguments.format)?;
-    Ok(finished.exit)
+    Ok(Done {
+        exit: finished.exit,
+        folder: Some(finished.folder.path().to_owned()),
+    })
 }

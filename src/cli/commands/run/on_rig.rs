@@ -1,6 +1,6 @@
 //! A run on the rig that the plan names, with its run log. In: a checked plan. Out: the recorded run.
 
-use super::RunArguments;
+use super::Job;
 use super::resume;
 use crate::args::{Format, RunLog};
 use crate::exit::{Exit, Failure};
@@ -16,7 +16,7 @@ use psd::report::Provenance;
 use psd::run::replay;
 use psd::run::replay::{Header, LogForm, Recorded};
 use psd_plan::{Link, Plan};
-use psd_rig::{StopRequest, virtual_rig};
+use psd_rig::virtual_rig;
 
 /// A run that has ended, with any outcome.
 pub(crate) struct Ran {
@@ -103,34 +103,34 @@ impl Finished {
 /// Runs the plan on the rig that it names, and keeps the run log.
 pub(crate) fn on_its_rig(
     plan: &Plan,
-    arguments: &RunArguments,
+    job: &Job<'_>,
     attendance: &Attendance,
     settings: Settings,
 ) -> Result<Ran, Failure> {
     match plan.rig.link {
-        Link::Virtual(_) => on_a_virtual_rig(plan, arguments, attendance, settings),
-        Link::Real(_) if arguments.log == Some(RunLog::Compact) => Err(Failure::command_line(
+        Link::Virtual(_) => on_a_virtual_rig(plan, job, attendance, settings),
+        Link::Real(_) if job.arguments.log == Some(RunLog::Compact) => Err(Failure::command_line(
             "the run log of a real rig is always full: no reading can be made again",
         )
         .help("remove `--log compact`")),
-        Link::Real(_) => on_a_real_rig(plan, arguments, attendance, settings),
+        Link::Real(_) => on_a_real_rig(plan, job, attendance, settings),
     }
 }
 
 /// The clock is read once, for the date of the run. Nothing else of the machine is read, and no real time passes.
 fn on_a_virtual_rig(
     plan: &Plan,
-    arguments: &RunArguments,
+    job: &Job<'_>,
     attendance: &Attendance,
     settings: Settings,
 ) -> Result<Ran, Failure> {
-    let signals = Signals::caught(&StopRequest::default()).map_err(Failure::Signals)?;
+    let signals = Signals::caught(job.stop_request).map_err(Failure::Signals)?;
     let mut watcher = Watcher::new(settings, attendance, plan, true, signals, true);
-    let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
+    let folder = RunFolder::create(job.arguments.out.as_deref(), job.path)?;
     let circumstances = real_rig::start_alone();
     let provenance = provenance::of_simulated_run(
         plan,
-        arguments.plan_settings.date.as_deref(),
+        job.arguments.plan_settings.date.as_deref(),
         circumstances.began.as_deref(),
     );
     let mut rig = virtual_rig(plan);
@@ -138,11 +138,11 @@ fn on_a_virtual_rig(
     let header = record_file::header(
         plan,
         device,
-        &arguments.plan_settings,
+        &job.arguments.plan_settings,
         &provenance,
         circumstances,
     );
-    let log = match arguments.log {
+    let log = match job.arguments.log {
         Some(RunLog::Full) => LogForm::Full,
         Some(RunLog::Compact) | None => LogForm::Compact,
     };
@@ -170,15 +170,15 @@ fn on_a_virtual_rig(
 /// The rig identifies itself before the folder is created. A rig that does not answer leaves no folder.
 fn on_a_real_rig(
     plan: &Plan,
-    arguments: &RunArguments,
+    job: &Job<'_>,
     attendance: &Attendance,
     settings: Settings,
 ) -> Result<Ran, Failure> {
     let (expected, _) = expected::of(plan);
-    let mut opened = real_rig::open(plan, attendance, &StopRequest::default(), settings, true)?;
+    let mut opened = real_rig::open(plan, attendance, job.stop_request, settings, true)?;
     opened.watcher.expect(expected);
     expected::within_reach(plan, expected, &opened.connected.rig)?;
-    let folder = RunFolder::create(arguments.out.as_deref(), &arguments.plan)?;
+    let folder = RunFolder::create(job.arguments.out.as_deref(), job.path)?;
     let circumstances = real_rig::circumstances(plan, attendance);
     print_message(&provenance::reported_another_day(
         plan,
@@ -186,14 +186,14 @@ fn on_a_real_rig(
     ));
     let provenance = provenance::of_real_run(
         plan,
-        arguments.plan_settings.date.as_deref(),
+        job.arguments.plan_settings.date.as_deref(),
         &circumstances,
     );
     let device = record_file::device(&opened.connected.rig);
     let header = record_file::header(
         plan,
         device,
-        &arguments.plan_settings,
+        &job.arguments.plan_settings,
         &provenance,
         circumstances,
     );

@@ -9,7 +9,8 @@ use super::shown;
 use crate::exit::Failure;
 use crate::files::accepted::AcceptedFolder;
 use crate::files::failure::plain;
-use crate::files::loader::is_plan;
+use crate::files::loader::is_stdin;
+use crate::files::plans::{Depth, named};
 use psd::golden::{DIAGNOSTICS, SUMMARY};
 
 /// The default folder of plans.
@@ -41,21 +42,11 @@ pub fn find(arguments: &TestArguments) -> Result<Cases, Failure> {
     } else {
         &arguments.paths[..]
     };
-    let mut plans: Vec<PathBuf> = Vec::new();
-    let mut whole: Vec<&PathBuf> = Vec::new();
-    for path in paths {
-        let metadata = path
-            .metadata()
-            .map_err(|error| missing(path, &error, arguments.paths.is_empty()))?;
-        if metadata.is_dir() {
-            whole.push(path);
-            plans.extend(plans_in(path)?);
-        } else {
-            plans.push(path.clone());
-        }
+    if let Some(path) = paths.iter().find(|path| !is_stdin(path) && !path.exists()) {
+        return Err(missing(path, arguments.paths.is_empty()));
     }
-    let mut seen = BTreeSet::new();
-    plans.retain(|plan| seen.insert(plan.clone()));
+    let whole: Vec<&PathBuf> = paths.iter().filter(|path| path.is_dir()).collect();
+    let mut plans = named(paths, Depth::Folder)?;
     plans.sort();
     let mut cases = Vec::new();
     for plan in plans {
@@ -122,28 +113,13 @@ fn refuse_shared_results(cases: &[Case]) -> Result<(), Failure> {
     Ok(())
 }
 
-fn missing(path: &Path, error: &std::io::Error, is_default: bool) -> Failure {
-    let failure = Failure::file(path, plain(error));
+fn missing(path: &Path, is_default: bool) -> Failure {
+    let failure = Failure::file(path, "no such file");
     if is_default {
         failure.help("name a plan, or a folder of plans")
     } else {
         failure
     }
-}
-
-fn plans_in(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
-    let failed = |error: std::io::Error| Failure::file(folder, plain(&error));
-    let mut plans = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        let hidden = path
-            .file_name()
-            .is_none_or(|name| name.to_string_lossy().starts_with('.'));
-        if !hidden && path.is_file() && is_plan(&path) {
-            plans.push(path);
-        }
-    }
-    Ok(plans)
 }
 
 /// Plans of the same name in different folders get separate folders of failures.

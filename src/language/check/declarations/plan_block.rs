@@ -2,12 +2,15 @@
 
 use crate::check::checker::Checker;
 use crate::check::expressions::calendar;
-use crate::check::violations::NotADay;
-use crate::codes::E408;
+use crate::check::violations::{NeedsTheRun, NotADay};
+use crate::codes::{E401, E408};
+use crate::syntax::ast::ExprKind;
 use psd_plan::DecisionRule;
 use psd_plan::schema::{FieldType, Kind, plan_block as schema};
 use psd_text::diagnostic::Violation;
 use psd_text::source::Span;
+use psd_text::units::Dimension;
+use psd_text::units::unit::ICE_POINT;
 
 /// The edition that this version reads.
 const EDITION: f64 = 1.0;
@@ -37,6 +40,9 @@ pub fn plan_block(
     let mut particulars = Vec::new();
     for field in psd_plan::schema::block(Kind::Plan).fields {
         let given = block.and_then(|block| match field.ty {
+            FieldType::Text if field.name == schema::TEMPERATURE.name => {
+                temperature(checker, block)
+            }
             FieldType::Text => checker.text_field(block, field.name),
             FieldType::Choice(_) => checker
                 .choice(block, field.name)
@@ -78,6 +84,38 @@ pub fn plan_block(
         .as_ref()
         .map(|title| title.node.clone());
     (title, particulars)
+}
+
+/// The temperature during the test as the report prints it: a string of the plan, or a number in degrees Celsius.
+fn temperature(checker: &mut Checker, block: usize) -> Option<String> {
+    let name = schema::TEMPERATURE.name;
+    let (entry, written) = checker.field(block, name)?;
+    if let ExprKind::Text(text) = &written.value.kind {
+        return Some(text.clone());
+    }
+    let context = checker.context_of(block, entry);
+    let typed = checker.single(&written.value, context)?;
+    let typed = checker.expect(typed, Dimension::TEMPERATURE, name, &written.value)?;
+    let Some(kelvin) = typed.constant() else {
+        return checker.fail(NeedsTheRun {
+            span: written.value.span,
+            text: checker.text(written.value.span),
+        });
+    };
+    if kelvin < 0.0 {
+        return checker.fail(BelowAbsoluteZero {
+            span: written.value.span,
+        });
+    }
+    Some(format!("{} °C", ((kelvin - ICE_POINT) * 1e6).round() / 1e6))
+}
+
+#[derive(Violation)]
+#[violation(E401, "`temperature` must be at least 0 K, which is -273.15 degC")]
+#[help("write the temperature during the test, as in `23 degC`")]
+struct BelowAbsoluteZero {
+    #[label("too small")]
+    span: Span,
 }
 
 /// The decision rule that the block names; simple acceptance if it names none.

@@ -4,8 +4,8 @@
 use crate::check::checker::{Checker, Context, Shape, Typed, literal};
 use crate::check::declarations::specimen::frame;
 use crate::check::violations::{
-    DistributionMisplaced, ExponentTooLarge, ListForNumber, Mismatched, NoSuchEntry, NotFinite,
-    ProbabilityMisplaced, StepsMisplaced,
+    AbsoluteTemperature, DistributionMisplaced, ExponentTooLarge, ListForNumber, Mismatched,
+    NoSuchEntry, NotFinite, ProbabilityMisplaced, StepsMisplaced,
 };
 use crate::check::wording::{article, example, shown};
 use crate::codes::{E301, E302, E304, E305};
@@ -15,7 +15,7 @@ use psd_plan::formula::{Formula, Operator};
 use psd_plan::schema::{self, Kind};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
-use psd_text::units::unit::{PREFIXES, STANDARD_GRAVITY, UNITS};
+use psd_text::units::unit::{self, PREFIXES, STANDARD_GRAVITY, UNITS};
 use psd_text::units::{Dimension, Exponent};
 
 #[derive(Violation)]
@@ -35,22 +35,39 @@ struct ConditionForNumber<'a> {
     operator: &'a str,
 }
 
+/// `corrected`: the power times the unit that its exponent has, if the exponent is one number.
 struct ExponentWithUnit<'a> {
     exponent: &'a Typed,
+    corrected: Option<String>,
+    whole: Span,
 }
 
 impl Violation for ExponentWithUnit<'_> {
     const CODE: Code = E305;
 
     fn diagnostic(self) -> Diagnostic {
-        let Self { exponent } = self;
+        let Self {
+            exponent,
+            corrected,
+            whole,
+        } = self;
         let found = article(exponent.dimension);
+        let (span, help) = match corrected {
+            Some(corrected) => (
+                whole,
+                format!("write `{corrected}`: a unit belongs to the number before it"),
+            ),
+            None => (
+                exponent.span,
+                "write a number without a unit, as in `x^2`".to_owned(),
+            ),
+        };
         Diagnostic::new(
             Self::CODE,
             format!("an exponent must be a number, found {found}"),
         )
-        .at(exponent.span, format!("this is {found}"))
-        .help("write a number without a unit, as in `x^2`")
+        .at(span, format!("the exponent is {found}"))
+        .help(help)
     }
 }
 
@@ -130,7 +147,7 @@ impl Violation for MissingUnitOfEntries<'_> {
     "`{wanted_by}` requires {}, found a number without a unit",
     article(wanted)
 )]
-#[help("write the unit, such as `{}`", example(number, wanted))]
+#[help("{}", with_unit(text, number, wanted))]
 struct MissingUnit<'a> {
     text: &'a str,
     #[label("`{text}` has no unit")]
@@ -138,6 +155,14 @@ struct MissingUnit<'a> {
     number: Option<&'a str>,
     wanted: Dimension,
     wanted_by: &'a str,
+}
+
+fn with_unit(text: &str, number: Option<&str>, wanted: Dimension) -> String {
+    match (number, wanted) {
+        (Some(number), Dimension::ANGLE) => format!("write `{number} deg`, or `{number} rad`"),
+        (None, Dimension::ANGLE) => format!("write `({text}) * 1 rad`, if it is in radians"),
+        _ => format!("write the unit, such as `{}`", example(number, wanted)),
+    }
 }
 
 /// `kN/m` for `kN`, where `N/m` is required: the suggestion must not be a thousandth of the intended value.
@@ -175,6 +200,36 @@ struct WrittenValue<'t> {
     unit: Option<&'t str>,
     /// In SI units, if it is known before the run.
     value: Option<f64>,
+    /// `107 kg / 100` for `107 / 100 kg`: the unit is that of the divisor.
+    unit_of_dividend: Option<String>,
+}
+
+/// The quotient of two numbers with the unit of the divisor at the dividend, if that unit has the dimension.
+fn unit_of_dividend(written: &Expr, wanted: Dimension) -> Option<String> {
+    let ExprKind::Binary {
+        operator,
+        left,
+        right,
+    } = &written.kind
+    else {
+        return None;
+    };
+    let (
+        ExprKind::Number {
+            text, unit: None, ..
+        },
+        ExprKind::Number {
+            text: divisor,
+            unit: Some(unit),
+            ..
+        },
+    ) = (&left.kind, &right.kind)
+    else {
+        return None;
+    };
+    let dimension = unit::parse(&unit.node).ok()?.dimension;
+    let fits = operator.node == BinaryOperator::Divide && dimension == wanted;
+    fits.then(|| format!("{text} {} / {divisor}", unit.node))
 }
 
 /// The mass of a weight, or the weight of a mass: what to write instead of `text`, which has the other dimension and this value in SI
@@ -216,11 +271,16 @@ impl Violation for WrongDimension<'_> {
             number,
             unit,
             value,
+            ref unit_of_dividend,
         } = *written;
         let weighed = number.and(value);
         let weighed = weighed.and_then(|value| by_gravity(text, value, found, wanted));
+        let moved = unit_of_dividend
+            .as_ref()
+            .map(|quotient| format!("write `{quotient}`: a unit belongs to the number before it"));
+        let certain = weighed.or(moved);
         let help = match (number, wanted) {
-            _ if weighed.is_some() => weighed.unwrap_or_default(),
+            _ if certain.is_some() => certain.unwrap_or_default(),
             (Some(number), Dimension::ACCELERATION) if text == format!("{number} g") => {
                 format!(
                     "write `{number} gn` for a multiple of standard gravity (9.80665 m/s^2); `g` is the gram"
@@ -241,6 +301,9 @@ impl Violation for WrongDimension<'_> {
                     article(wanted),
                     fits.unwrap_or_else(|| example(None, wanted))
                 )
+            }
+            (None, Dimension::ANGLE) if found == Dimension::NUMBER => {
+                with_unit(text, number, wanted)
             }
             (None, Dimension::NUMBER) => format!(
                 "divide `{text}` by {}, so that a number remains",
@@ -296,7 +359,14 @@ impl<'a> Checker<'a> {
             ExprKind::Call { name, arguments } => self.call(name, arguments, expr.span, context),
             ExprKind::Index { base, index } => self.index(base, index, context),
             ExprKind::Negate(inner) => {
+                // `-5 degC` is 268.15 K.
+                if let ExprKind::Number { value, unit, .. } = &inner.kind {
+                    return self.number(-value, unit.as_ref(), expr.span);
+                }
                 let inner = self.single(inner, context)?;
+                if inner.absolute {
+                    return self.fail(AbsoluteTemperature::of_product(expr.span));
+                }
                 Some(Typed {
                     formula: Formula::Negate(Box::new(inner.formula.clone())),
                     ..inner
@@ -322,7 +392,7 @@ impl<'a> Checker<'a> {
                     (self.single(left, context), self.single(right, context));
                 let (left_value, right_value) = (left_value?, right_value?);
                 match operator.node {
-                    BinaryOperator::Power => self.power(left_value, right_value, right),
+                    BinaryOperator::Power => self.power(left_value, right_value, left, right),
                     BinaryOperator::Add => self.sum(Operator::Add, "+", left_value, right_value),
                     BinaryOperator::Subtract => {
                         self.sum(Operator::Subtract, "-", left_value, right_value)
@@ -356,11 +426,21 @@ impl<'a> Checker<'a> {
                 right: &right,
             });
         }
+        let absolute = match (operator, left.absolute, right.absolute) {
+            (Operator::Add, true, true) => {
+                return self.fail(AbsoluteTemperature::of_sum(left.span.to(right.span)));
+            }
+            (Operator::Subtract, false, true) => {
+                return self.fail(AbsoluteTemperature::of_difference(right.span));
+            }
+            (_, left, right) => left != right,
+        };
         let (bare, percent) = (left.bare && right.bare, left.percent && right.percent);
         let formula = Formula::Binary(operator, Box::new(left.formula), Box::new(right.formula));
         Some(Typed {
             bare,
             percent,
+            absolute,
             ..Typed::number(formula, left.dimension, left.span)
         })
     }
@@ -372,6 +452,10 @@ impl<'a> Checker<'a> {
         right: Typed,
         span: Span,
     ) -> Option<Typed> {
+        if left.absolute || right.absolute {
+            let side = if left.absolute { &left } else { &right };
+            return self.fail(AbsoluteTemperature::of_product(side.span));
+        }
         let dimension = match operator {
             Operator::Divide => left.dimension.over(right.dimension),
             _ => left.dimension.times(right.dimension),
@@ -387,10 +471,33 @@ impl<'a> Checker<'a> {
         })
     }
 
-    fn power(&mut self, base: Typed, exponent: Typed, written: &Expr) -> Option<Typed> {
+    fn power(
+        &mut self,
+        base: Typed,
+        exponent: Typed,
+        base_written: &Expr,
+        written: &Expr,
+    ) -> Option<Typed> {
+        if base.absolute {
+            return self.fail(AbsoluteTemperature::of_product(base.span));
+        }
         if exponent.dimension != Dimension::NUMBER {
+            let corrected = match &written.kind {
+                ExprKind::Number {
+                    text,
+                    unit: Some(unit),
+                    ..
+                } => Some(format!(
+                    "{}^{text} * 1 {}",
+                    self.text(base_written.span),
+                    unit.node
+                )),
+                _ => None,
+            };
             return self.fail(ExponentWithUnit {
                 exponent: &exponent,
+                corrected,
+                whole: base_written.span.to(written.span),
             });
         }
         let dimension = if base.dimension == Dimension::NUMBER {
@@ -565,6 +672,7 @@ impl<'a> Checker<'a> {
                     number,
                     unit,
                     value: typed.constant(),
+                    unit_of_dividend: unit_of_dividend(written, dimension),
                 },
                 found: typed.dimension,
                 wanted: dimension,

@@ -2,10 +2,9 @@
 //! schema. In: a declared block. Out: formulas and numbers in SI; an omitted field has its default.
 
 use crate::check::checker::{Checker, Context, Node, Reads, Typed};
-use crate::check::scope::Meaning;
 use crate::check::violations::{MissingField, NeedsTheRun, OutOfRange, UnknownBlockName};
-use crate::check::wording::{owner, suggestion};
-use crate::codes::{E202, E208, E209, E302, E304, E401};
+use crate::check::wording::{self, owner, suggestion};
+use crate::codes::{E202, E208, E209, E304, E401};
 use crate::syntax::ast::{Entry, Expr, ExprKind, Ident};
 use psd_plan::ProcedureBlock;
 use psd_plan::formula::Formula;
@@ -14,7 +13,6 @@ use psd_plan::schema::procedures::STIFFNESS;
 use psd_plan::schema::{BlockKind, Field, FieldType, Kind, Presence, RigKind, rig, specimen};
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
-use psd_text::suggest;
 
 struct UnknownField<'a> {
     kind: &'a BlockKind,
@@ -72,29 +70,6 @@ struct MissingFieldOn<'a> {
     field: &'a Field,
 }
 
-/// A plain number would be read as radians, but most users mean degrees.
-struct AngleWithoutUnit<'a> {
-    text: &'a str,
-    span: Span,
-}
-
-impl Violation for AngleWithoutUnit<'_> {
-    const CODE: Code = E302;
-
-    fn diagnostic(self) -> Diagnostic {
-        let Self { text, span } = self;
-        let plain = text.parse::<f64>().is_ok();
-        let help = if plain {
-            format!("write `{text} deg`, or `{text} rad`")
-        } else {
-            "write `deg` or `rad`, as in `40 deg`".to_owned()
-        };
-        Diagnostic::new(Self::CODE, format!("angle `{text}` has no unit"))
-            .at(span, "`deg` or `rad` missing")
-            .help(help)
-    }
-}
-
 #[derive(Violation)]
 #[violation(E401, "`{field}` must be a whole number")]
 #[help("write it without decimals")]
@@ -146,7 +121,7 @@ impl<'a> Checker<'a> {
             let key = entry.key.node.as_str();
             match kind.field(key) {
                 None => {
-                    meant.extend(suggest::nearest(
+                    meant.extend(wording::meant(
                         key,
                         kind.fields.iter().map(|field| field.name),
                     ));
@@ -279,7 +254,7 @@ impl<'a> Checker<'a> {
             .filter(|key| declared.kind.field(key).is_none());
         let known = || declared.kind.fields.iter().map(|field| field.name);
         unknown
-            .filter_map(|key| suggest::nearest(key, known()))
+            .filter_map(|key| wording::meant(key, known()))
             .any(|meant| fields.contains(&meant))
             || self.unreadable(block)
     }
@@ -344,12 +319,6 @@ impl<'a> Checker<'a> {
             Some(outside) => outside?,
             None => (self.expect(own?, dimension, field.name, written)?, written),
         };
-        if field.angle && self.is_plain(&typed, written) {
-            return self.fail(AngleWithoutUnit {
-                text: self.text(written.span),
-                span: written.span,
-            });
-        }
         let parts = typed.parts();
         for (index, part) in parts.iter().enumerate() {
             if let Some(value) = part.constant()
@@ -382,19 +351,6 @@ impl<'a> Checker<'a> {
             }
         }
         Some(typed)
-    }
-
-    /// Whether a number has neither `deg` nor `rad`, here or at the declaration of its name.
-    fn is_plain(&mut self, typed: &Typed, written: &'a Expr) -> bool {
-        let declared = match &written.kind {
-            ExprKind::Name(name) => match self.scope.meaning(name) {
-                Some(Meaning::Value(index)) => self.declared_value(index, written.span),
-                _ => None,
-            },
-            _ => None,
-        };
-        let typed = declared.as_ref().unwrap_or(typed);
-        typed.bare || typed.percent
     }
 
     /// One number: the entry, else the default. None if it has an error, or if both are missing.

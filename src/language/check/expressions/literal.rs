@@ -8,11 +8,13 @@
 use crate::check::checker::{Checker, Context, Shape, Typed, literal};
 use std::sync::LazyLock;
 
-use crate::check::violations::{EmptyList, ExponentTooLarge, Mismatched};
+use crate::check::scope::Meaning;
+use crate::check::violations::{AbsoluteTemperature, EmptyList, ExponentTooLarge, Mismatched};
 use crate::check::wording::one_of;
 use crate::codes::{E204, E305, E402, E403, E405};
 use crate::syntax::ast::{Expr, ExprKind, UnitToken};
 use psd_plan::formula::Formula;
+use psd_plan::schema::constant;
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
 use psd_text::units::unit::{STANDARD_GRAVITY, UNITS, UnitError};
@@ -34,6 +36,16 @@ pub struct RangeParts {
 struct NameGluedToUnit<'a> {
     name: &'a str,
     #[label("read as part of the unit")]
+    span: Span,
+    corrected: &'a str,
+}
+
+#[derive(Violation)]
+#[violation(E204, "`{name}` is a name of the plan, not a unit")]
+#[help("write `{corrected}`")]
+struct ValueAfterNumber<'a> {
+    name: &'a str,
+    #[label("a number and a name")]
     span: Span,
     corrected: &'a str,
 }
@@ -67,13 +79,20 @@ const SPELT_OUT: &[(&str, &str)] = &[
     ("foot feet", "ft"),
     ("lbs pound pounds", "lb"),
     ("degree degrees", "deg"),
+    ("radian radians", "rad"),
+    ("kelvin", "K"),
+    ("C celsius centigrade", "degC"),
     ("mps", "m/s"),
     ("kph kmh", "km/h"),
 ];
 
 /// `kN*m` for `kNm`.
 fn unit_product(name: &str) -> Option<String> {
-    let dimension = |part: &str| psd_text::units::unit::lookup(part).map(|unit| unit.dimension);
+    // `KN` is a force in the wrong case.
+    let dimension = |part: &str| {
+        let dimension = psd_text::units::unit::lookup(part)?.dimension;
+        (dimension != Dimension::TEMPERATURE).then_some(dimension)
+    };
     // `mmm` is a typing error, and not an area.
     let product = |(one, other): &(&str, &str)| {
         dimension(one)
@@ -298,9 +317,10 @@ impl<'a> Checker<'a> {
             });
         };
         let unit = self.unit(token, span)?;
-        let formula = Formula::Constant(scaled(value, unit.factor));
+        let formula = Formula::Constant(scaled(value, unit.factor) + unit.zero);
         Some(Typed {
             percent: token.node == "%",
+            absolute: unit.zero != 0.0,
             ..Typed::number(formula, unit.dimension, span)
         })
     }
@@ -333,6 +353,25 @@ impl<'a> Checker<'a> {
                     corrected: &corrected,
                 })
             }
+            // `2 critical`: the operator is missing.
+            Err(UnitError::Unknown { name, start: 0 })
+                if number.start < token.span.start && self.is_value(&name) =>
+            {
+                let before = self.text(Span {
+                    end: token.span.start,
+                    ..number
+                });
+                let value = token.node.replace('*', " * ").replace('/', " / ");
+                let corrected = format!("{} * {value}", before.trim_end());
+                self.fail(ValueAfterNumber {
+                    name: &name,
+                    span: Span {
+                        start: number.start,
+                        ..token.span
+                    },
+                    corrected: &corrected,
+                })
+            }
             Err(UnitError::Unknown { name, start }) => {
                 let alone = name == token.node && number.start <= token.span.start;
                 let before = Span {
@@ -351,8 +390,21 @@ impl<'a> Checker<'a> {
                 text: &text,
                 span: at(start, text.len()),
             }),
+            Err(UnitError::Absolute { name, start }) => {
+                self.fail(AbsoluteTemperature::in_a_unit(at(start, name.len())))
+            }
             Err(UnitError::TooLarge) => self.fail(ExponentTooLarge { span: token.span }),
         }
+    }
+
+    /// Whether a number of the plan has this name, and no unit has it in other languages.
+    fn is_value(&self, name: &str) -> bool {
+        let unit = CONVERTED.iter().any(|(unit, ..)| *unit == name)
+            || SPELT_OUT
+                .iter()
+                .any(|(words, _)| words.split(' ').any(|word| word == name));
+        let block = matches!(self.scope.meaning(name), Some(Meaning::Block(_)));
+        !unit && !block && (name == "critical" || constant(name).is_some() || self.is_named(name))
     }
 
     /// Whether a value, a block or a field has this name.
@@ -406,6 +458,7 @@ impl<'a> Checker<'a> {
                 right: other,
             });
         }
+        let absolute = checked.iter().any(|part| part.absolute);
         let (dimension, bare, percent) = (
             first.dimension,
             checked.iter().all(|part| part.bare),
@@ -426,6 +479,7 @@ impl<'a> Checker<'a> {
             span,
             bare,
             percent,
+            absolute,
         })
     }
 
@@ -469,6 +523,9 @@ impl<'a> Checker<'a> {
             None => None,
         };
         let (start_value, end_value) = (start_value?, end_value?);
+        if let Some(step) = step_value.as_ref().filter(|step| step.absolute) {
+            return self.fail(AbsoluteTemperature::of_step(step.span));
+        }
         for other in [Some(&end_value), step_value.as_ref()]
             .into_iter()
             .flatten()
@@ -559,6 +616,7 @@ impl<'a> Checker<'a> {
             span: expr.span,
             bare,
             percent: false,
+            absolute: parts.start.absolute,
         })
     }
 }

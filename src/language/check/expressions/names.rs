@@ -6,7 +6,7 @@ use crate::check::declarations::specimen::{self, frame};
 use crate::check::declarations::striker;
 use crate::check::scope::Meaning;
 use crate::check::violations::{EventWanted, NeedsTheRun};
-use crate::check::wording::{owner, suggestion};
+use crate::check::wording::{owner, suggestion, with_article};
 use crate::codes::{E203, E206, E304, E403, E641};
 use crate::syntax::ast::{Expr, ExprKind, Ident};
 use psd_plan::ProcedureBlock;
@@ -74,18 +74,10 @@ impl Violation for BlockForNumber<'_> {
             || "a number".to_owned(),
             |result| format!("`{name}.{}`", result.name),
         );
-        let words = kind.words();
-        let article = if words.starts_with(['a', 'e', 'i', 'o', 'u']) {
-            "an"
-        } else {
-            "a"
-        };
-        Diagnostic::new(
-            Self::CODE,
-            format!("`{name}` is {article} {words}, not a number"),
-        )
-        .at(span, format!("{article} {words}"))
-        .help(format!("read one of its values, such as {member}"))
+        let block = with_article(&kind.words());
+        Diagnostic::new(Self::CODE, format!("`{name}` is {block}, not a number"))
+            .at(span, block)
+            .help(format!("read one of its values, such as {member}"))
     }
 }
 
@@ -124,6 +116,9 @@ fn quantity_apart(name: &str, before: &str) -> Option<String> {
     unit.then(|| format!("{number} {last}{sign}{name}"))
 }
 
+/// Words of other languages for a value that is not given.
+const NOTHING: [&str; 6] = ["None", "none", "null", "NULL", "nil", "NaN"];
+
 /// `before`: the text before the name on its line. The name of a unit may be separated from its number.
 struct UnknownName<'a, I: Iterator<Item = &'a str>> {
     name: &'a str,
@@ -151,6 +146,8 @@ impl<'a, I: Iterator<Item = &'a str>> Violation for UnknownName<'a, I> {
         } else if name == "critical" {
             "write `critical` in `time_step` only; after the run, read `critical_time_step`"
                 .to_owned()
+        } else if NOTHING.contains(&name) {
+            "remove the field: without it, its default applies".to_owned()
         } else if let Some(near) = psd_text::suggest::nearest(name, known) {
             format!("did you mean `{near}`?")
         } else {
@@ -341,7 +338,14 @@ impl<'a> Checker<'a> {
                 span,
             ));
         }
-        match self.scope.meaning(name) {
+        let meaning = self.scope.meaning(name);
+        if let Some(value) = schema::constant(name).filter(|_| meaning.is_none()) {
+            return Some(Typed {
+                bare: true,
+                ..Typed::number(Formula::Constant(value), Dimension::NUMBER, span)
+            });
+        }
+        match meaning {
             Some(Meaning::Poisoned) => None,
             Some(Meaning::Value(index)) => {
                 let typed = self.declared_value(index, span)?;

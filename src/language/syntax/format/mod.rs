@@ -8,7 +8,7 @@ mod value;
 
 use super::{ast::Ast, layout, lexical::tokens::Tokens};
 pub use document::format_document;
-use rows::{Kind, Row};
+use rows::{Row, RowKind};
 
 /// Number of spaces by which the fields of a block are indented.
 const INDENT: usize = 2;
@@ -44,8 +44,8 @@ fn run_end(rows: &[Row], start: usize) -> usize {
     let mut end = start;
     for (index, row) in rows.iter().enumerate().skip(start) {
         match row.kind {
-            Kind::Blank => break,
-            Kind::Comment => {}
+            RowKind::Blank => break,
+            RowKind::Comment => {}
             other if kind.is_none_or(|kind| kind == other && other.aligns()) => {
                 kind = Some(other);
                 end = index + 1;
@@ -60,14 +60,18 @@ fn write_run(tokens: &Tokens, run: &[Row], lines: &mut Vec<String>) {
     let widths: Vec<usize> = (0..3)
         .map(|column| {
             run.iter()
-                .filter(|row| row.kind != Kind::Comment)
+                .filter(|row| row.kind != RowKind::Comment)
                 .filter_map(|row| row.lead.get(column))
                 .map(|text| text.chars().count())
                 .max()
                 .unwrap_or(0)
         })
         .collect();
-    let several = run.iter().filter(|row| row.kind != Kind::Comment).count() > 1;
+    let several = run
+        .iter()
+        .filter(|row| row.kind != RowKind::Comment)
+        .count()
+        > 1;
     let written: Vec<Vec<String>> = run
         .iter()
         .map(|row| row_lines(tokens, row, &widths, several))
@@ -95,17 +99,17 @@ fn row_lines(tokens: &Tokens, row: &Row, widths: &[usize], several: bool) -> Vec
     let indent = " ".repeat(row.indent);
     let lead = |column: usize| row.lead.get(column).map_or("", String::as_str);
     let head = match row.kind {
-        Kind::Blank => String::new(),
-        Kind::Comment | Kind::Plain | Kind::Use => format!("{indent}{}", lead(0)),
-        Kind::Field => format!("{indent}{:<width$} = ", lead(0), width = widths[0]),
-        Kind::Binding => format!(
+        RowKind::Blank => String::new(),
+        RowKind::Comment | RowKind::Plain | RowKind::Use => format!("{indent}{}", lead(0)),
+        RowKind::Field => format!("{indent}{:<width$} = ", lead(0), width = widths[0]),
+        RowKind::Binding => format!(
             "{:<first$} {:<second$} = ",
             lead(0),
             lead(1),
             first = widths[0],
             second = widths[1]
         ),
-        Kind::Require => {
+        RowKind::Require => {
             format!(
                 "require {:<width$}{}",
                 lead(0),

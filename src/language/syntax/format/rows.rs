@@ -6,7 +6,7 @@ use crate::syntax::layout::{Piece, Statement};
 use crate::syntax::lexical::tokens::{Kind as TokenKind, Tokens};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum RowKind {
     Blank,
     Comment,
     /// A whole line that is kept: a block on one line, a brace.
@@ -18,16 +18,16 @@ pub enum Kind {
     Require,
 }
 
-impl Kind {
+impl RowKind {
     /// Whether neighbours of this kind are aligned in columns.
     pub fn aligns(self) -> bool {
-        self != Kind::Plain
+        self != RowKind::Plain
     }
 }
 
 #[derive(Debug)]
 pub struct Row {
-    pub kind: Kind,
+    pub kind: RowKind,
     pub indent: usize,
     /// The words before the value, one for each column.
     pub lead: Vec<String>,
@@ -87,10 +87,10 @@ impl Writer<'_> {
         words.join(" ")
     }
 
-    fn row(&mut self, kind: Kind, lead: Vec<String>, value: Option<(usize, usize)>) {
+    fn row(&mut self, kind: RowKind, lead: Vec<String>, value: Option<(usize, usize)>) {
         if self.newlines > 1 && !self.opened {
             self.rows.push(Row {
-                kind: Kind::Blank,
+                kind: RowKind::Blank,
                 indent: 0,
                 lead: Vec::new(),
                 value: None,
@@ -121,8 +121,8 @@ impl Writer<'_> {
                         .last_mut()
                         .filter(|row| self.newlines == 0 && row.comment.is_none())
                     {
-                        Some(row) if row.kind != Kind::Comment => row.comment = Some(text),
-                        _ => self.row(Kind::Comment, vec![text], None),
+                        Some(row) if row.kind != RowKind::Comment => row.comment = Some(text),
+                        _ => self.row(RowKind::Comment, vec![text], None),
                     }
                 }
                 _ => {}
@@ -136,14 +136,14 @@ impl Writer<'_> {
             self.words(item.start + offset, (item.start + offset + 1).min(item.end))
         };
         match word(0).as_str() {
-            "use" => self.row(Kind::Use, vec![self.words(item.start, item.end)], None),
+            "use" => self.row(RowKind::Use, vec![self.words(item.start, item.end)], None),
             "require" => self.row(
-                Kind::Require,
+                RowKind::Require,
                 vec![word(1)],
                 Some((item.start + 2, item.end)),
             ),
             _ => self.row(
-                Kind::Binding,
+                RowKind::Binding,
                 vec![word(0), word(1)],
                 Some((item.start + 3, item.end)),
             ),
@@ -153,18 +153,22 @@ impl Writer<'_> {
 
     fn field(&mut self, field: Statement) {
         let key = self.words(field.start, field.start + 1);
-        self.row(Kind::Field, vec![key], Some((field.start + 2, field.end)));
+        self.row(
+            RowKind::Field,
+            vec![key],
+            Some((field.start + 2, field.end)),
+        );
         self.at = field.end;
     }
 
     fn block(&mut self, head: Statement, open: usize, fields: &[Statement], close: usize) {
         let head = self.words(head.start, head.end);
         if let Some(line) = self.one_line(&head, open, fields, close) {
-            self.row(Kind::Plain, vec![line], None);
+            self.row(RowKind::Plain, vec![line], None);
             self.at = close + 1;
             return;
         }
-        self.row(Kind::Plain, vec![format!("{head} {{")], None);
+        self.row(RowKind::Plain, vec![format!("{head} {{")], None);
         self.at = open + 1;
         self.opened = true;
         self.indent += INDENT;
@@ -176,7 +180,7 @@ impl Writer<'_> {
         self.indent -= INDENT;
         // No blank line is written before the brace.
         self.newlines = 0;
-        self.row(Kind::Plain, vec!["}".to_owned()], None);
+        self.row(RowKind::Plain, vec!["}".to_owned()], None);
         self.at = close + 1;
     }
 

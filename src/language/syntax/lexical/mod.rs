@@ -7,4 +7,4 @@ pub mod letters;
 pub mod long_lines;
 pub mod numbers;
 pub mod tokens;
-mod unit_tokens;
+pub mod unit_tokens;

@@ -69,6 +69,15 @@ pub fn extent(text: &str, comma: bool, blank: bool) -> usize {
             end
         };
     }
+    if let Some(power) = rest.strip_prefix(['d', 'D']) {
+        let sign = usize::from(power.starts_with(['+', '-']));
+        let power = digits(&power[sign..]);
+        return if power > 0 {
+            end + 1 + sign + power
+        } else {
+            end
+        };
+    }
     if rest.starts_with(['e', 'E']) {
         let sign = usize::from(rest[1..].starts_with(['+', '-']));
         let power = digits(&rest[1 + sign..]);
@@ -161,6 +170,12 @@ pub fn error_of(written: &str) -> Option<NumberError> {
     }
     if written.contains(',') {
         return Some(commas(written));
+    }
+    if written.contains(['d', 'D']) {
+        return error(
+            "power of ten without `e`",
+            Some(written.replace(['d', 'D'], "e")),
+        );
     }
     let (mantissa, power) = match written.split_once(['e', 'E']) {
         Some((mantissa, power)) => (mantissa, Some(power)),

@@ -2,7 +2,7 @@
 //! invalid numbers, units attached to expressions, all size limits). In: text. Out: [`Tokens`]. The grammar parses the text itself;
 //! tokens serve recovery (`layout`), messages and the formatter.
 
-use super::unit_tokens::{unit_extent, unit_in_parentheses};
+use super::unit_tokens::{unit_extent, unit_in_brackets, unit_in_parentheses};
 use super::{characters, numbers};
 use crate::syntax::{ast::ITEM_WORDS, limits, messages};
 use psd_text::diagnostic::Diagnostic;
@@ -161,13 +161,21 @@ impl<'a> Reader<'a> {
                 '#' => self.comment(),
                 '"' => self.text(),
                 '0'..='9' => self.number(),
-                '.' if self.rest()[1..].starts_with(|next: char| next.is_ascii_digit()) => {
+                // `hit.1` is a name with a point, and not the number .1.
+                '.' if self.rest()[1..].starts_with(|next: char| next.is_ascii_digit())
+                    && !self.touches_a_word() =>
+                {
                     self.number();
                 }
                 'a'..='z' | 'A'..='Z' | '_' => self.word(),
                 _ => self.sign(first),
             }
         }
+    }
+
+    fn touches_a_word(&self) -> bool {
+        let last = self.tokens.list.last();
+        last.is_some_and(|last| last.kind == Kind::Word && last.end == self.at)
     }
 
     /// A line end. No bracket extends beyond a line that starts a field or an item, so an open one is dropped there.
@@ -258,8 +266,16 @@ impl<'a> Reader<'a> {
         if JOINING_WORDS.contains(&unit) {
             return;
         }
+        let of_number = length == 0
+            && self
+                .tokens
+                .list
+                .last()
+                .is_some_and(|last| last.kind == Kind::Number);
+        let bracketed = unit_in_brackets(&self.rest()[blanks..]).filter(|_| of_number);
+        let brackets = bracketed.is_some();
         if let Some((more, flat)) =
-            unit_in_parentheses(&self.rest()[blanks + length..], length == 0)
+            bracketed.or_else(|| unit_in_parentheses(&self.rest()[blanks + length..], length == 0))
         {
             self.at += blanks;
             let number = self.tokens.list.last().map_or(self.at, |token| token.start);
@@ -270,6 +286,7 @@ impl<'a> Reader<'a> {
             self.error(messages::unit_in_parentheses(
                 self.span(length + more),
                 &corrected,
+                brackets,
             ));
             self.push(Kind::Unit, length + more);
             return;
@@ -334,6 +351,10 @@ impl<'a> Reader<'a> {
     fn sign(&mut self, first: char) {
         if self.rest().starts_with("+/-") {
             self.error(messages::stray(self.span(3), "+/-"));
+            return self.push(Kind::Sign, 3);
+        }
+        if self.rest().starts_with("°C") {
+            self.error(messages::stray(self.span(3), "°C"));
             return self.push(Kind::Sign, 3);
         }
         if let Some(sign) = LONG_SIGNS

@@ -27,6 +27,17 @@ pub fn unit_in_parentheses(text: &str, alone: bool) -> Option<(usize, String)> {
     Some((sign.len() + 1 + unit.len() + 1, flat))
 }
 
+/// A unit in brackets at the start of `text`, `[kg]`: its length in bytes, and the same without brackets.
+pub fn unit_in_brackets(text: &str) -> Option<(usize, String)> {
+    let inside = text.strip_prefix('[')?;
+    let unit = &inside[..inside.find([']', '\n'])?];
+    let closed = inside[unit.len()..].starts_with(']');
+    let trimmed = unit.trim();
+    let known =
+        unit_extent(trimmed) == trimmed.len() && psd_text::units::unit::parse(trimmed).is_ok();
+    (closed && known && !trimmed.is_empty()).then(|| (unit.len() + 2, trimmed.to_owned()))
+}
+
 /// Length in bytes of the unit token at the start of `text`: `name[^power]` joined by `*` or `/`; 0 without a unit.
 pub fn unit_extent(text: &str) -> usize {
     let bytes = text.as_bytes();

@@ -118,7 +118,7 @@ fn numbers_are_decimal_with_digits_on_both_sides() {
         );
     }
     // In a list a comma is missing.
-    field("[100 200]", E101, "200");
+    field("[100 200]", E101, "100 200");
     let long = "1".repeat(41);
     field(&long, E103, &long);
     assert_eq!(errors(&format!("let x = {}\n", "1".repeat(40))), []);
@@ -270,7 +270,7 @@ fn helps_are_written_for_the_error() {
         ("b {\n  x 3\n}", "found `3`, expected `=` | write `=` here"),
         (
             "b {\n  x = f(1 2)\n}",
-            "found `2`, expected a unit, an operator, `,` or `)` | write a unit, an operator, `,` or `)` here",
+            "a comma is missing between two values | write `1, 2`",
         ),
         (
             "b {\n  x = 1 kg y\n}",

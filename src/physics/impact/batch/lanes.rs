@@ -43,8 +43,8 @@ struct Course {
 pub struct Lanes {
     inputs: StepInputs<LaneRow>,
     specimen: BilinearLines<LaneRow>,
-    /// A step reads one of them and writes the other, each at its own address. A number that is selected and written where it was read would
-    /// become a masked store, which is slow on some processors. What a step leaves as it is, is the same in both.
+    /// A step reads one of them and writes the other, because a selected number that overwrites itself becomes a masked store. Masked
+    /// stores are slow on some processors. Numbers that a step does not change are equal in both.
     states: [BetweenSteps<LaneRow>; 2],
     results: [RunningResults<LaneRow>; 2],
     reach: RunningReach<LaneRow>,

@@ -34,6 +34,7 @@ const LOSS: Field = Field::quantity(
         length: psd_text::units::Exponent::whole(-1),
         mass: psd_text::units::Exponent::ZERO,
         time: psd_text::units::Exponent::whole(1),
+        ..Dimension::NUMBER
     },
     "factor of Hunt and Crossley, F = k δ^1.5 (1 + loss·dδ/dt)",
 )

@@ -67,8 +67,8 @@ const ENDS: &[Variant] = &[
         "partly_built_in",
         &[Field::quantity(
             argument::ROTATIONAL_STIFFNESS,
-            Dimension::ENERGY,
-            "moment over rotation of each end, N*m/rad",
+            Dimension::ROTATIONAL_STIFFNESS,
+            "moment over rotation of each end",
         )
         .required("rotational_stiffness: 5 kN*m/rad")
         .at_least_zero()],
@@ -312,6 +312,7 @@ const fn entry(parameter: &Parameter) -> Field {
         length: Exponent::whole(metre),
         mass: Exponent::whole(kilogram),
         time: Exponent::whole(second),
+        ..Dimension::NUMBER
     };
     let (presence, example) = match parameter.presence {
         Presence::Required(example) => (types::Presence::Required, example),

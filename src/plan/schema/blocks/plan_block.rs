@@ -51,8 +51,10 @@ pub const CONDITION: Field = Field::text(
 )
 .advanced();
 
-pub const TEMPERATURE: Field =
-    Field::text("temperature", "temperature during the test, with its unit");
+pub const TEMPERATURE: Field = Field::text(
+    "temperature",
+    "temperature during the test, as in `23 degC`; or a string",
+);
 
 pub const HUMIDITY: Field = Field::text("humidity", "humidity during the test");
 

@@ -45,8 +45,9 @@ pub const ARM: Field = Field::quantity(
 )
 .above_zero();
 
-pub const ANGLE: Field = Field::angle(
+pub const ANGLE: Field = Field::quantity(
     "angle",
+    Dimension::ANGLE,
     "release angle of a pendulum, from its position at rest",
 )
 .above_zero_up_to(std::f64::consts::PI);

@@ -3,7 +3,7 @@
 use plotters::style::text_anchor::{HPos, VPos};
 
 use super::super::canvas::{Lettering, Point};
-use super::super::chart::{Chart, Line, Reference, Series};
+use super::super::chart::{Chart, LineStyle, Reference, Series};
 use super::sheet::Sheet;
 use super::{BOTTOM, LIMIT_INK, RIGHT, lettering};
 use crate::report::wording::figures as wording;
@@ -138,7 +138,7 @@ pub(super) fn draw(sheet: &Sheet<'_>, chart: &Chart) {
         let (low, high) = (sheet.y.low * sheet.y.factor, sheet.y.high * sheet.y.factor);
         let (_, y) = sheet.point((0.0, reference.y.clamp(low, high)));
         if is_inside {
-            let line = Line {
+            let line = LineStyle {
                 width: 1.3,
                 dash: &[6.0, 4.0],
             };

@@ -4,7 +4,7 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 use super::super::axis::Axis;
 use super::super::canvas::{Canvas, Lettering, Point};
-use super::super::chart::{Chart, Colour, Line, Series};
+use super::super::chart::{Chart, Colour, LineStyle, Series};
 use super::thinning::{columns, thinned};
 use super::{BOTTOM, GRID, INK, RIGHT, THINNEST, draw_marker, lettering};
 
@@ -53,7 +53,7 @@ impl Sheet<'_> {
             let (x, _) = self.point((0.0, 0.0));
             self.canvas.polyline(
                 &[(x, self.top), (x, BOTTOM)],
-                Line { width, dash: &[] },
+                LineStyle { width, dash: &[] },
                 colour,
             );
         }
@@ -63,7 +63,7 @@ impl Sheet<'_> {
             let (colour, width) = if zero_inside { ZERO } else { (GRID, 0.7) };
             self.canvas.polyline(
                 &[(self.left, y), (RIGHT, y)],
-                Line { width, dash: &[] },
+                LineStyle { width, dash: &[] },
                 colour,
             );
         }
@@ -73,7 +73,7 @@ impl Sheet<'_> {
         let line = |from, to| {
             self.canvas.polyline(
                 &[from, to],
-                Line {
+                LineStyle {
                     width: 1.1,
                     dash: &[],
                 },

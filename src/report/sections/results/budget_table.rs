@@ -5,7 +5,7 @@ use super::super::entry_name;
 use super::read::{ReadResult, read_by_requirements};
 use super::with_spaces;
 use crate::procedures;
-use crate::report::budget::{Budget, Line, Origin, budgets, coverage_factor};
+use crate::report::budget::{Budget, BudgetLine, Origin, budgets, coverage_factor};
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::{self, percent};
 use crate::report::run::Run;
@@ -196,7 +196,7 @@ fn rows(budget: &Budget<'_>, procedure: &ProcedureRecord, scope: Scope) -> Vec<V
     } = budget;
     let amount =
         |amount: f64| -> Text { number::part_of(amount, *uncertainty, 3, result.dimension).into() };
-    let (large, small): (Vec<&Line>, Vec<&Line>) = lines
+    let (large, small): (Vec<&BudgetLine>, Vec<&BudgetLine>) = lines
         .iter()
         .partition(|line| budget.fraction(line) >= SMALL);
     let mut rows: Vec<Vec<Text>> = large
@@ -302,7 +302,7 @@ fn own_input(budget: &Budget<'_>, procedure: &ProcedureRecord) -> String {
 }
 
 /// The name of an input; a name from the plan is set as code.
-fn named(line: &Line) -> Text {
+fn named(line: &BudgetLine) -> Text {
     let name = match line.origin {
         Origin::Result | Origin::Plan => Text::new().code(&line.input),
         Origin::Rig | Origin::Program => Text::from(line.input.as_str()),
@@ -314,7 +314,7 @@ fn named(line: &Line) -> Text {
     if line.smooth { name } else { name.and(MARK) }
 }
 
-fn input(line: &Line) -> String {
+fn input(line: &BudgetLine) -> String {
     match (line.value, line.uncertainty, line.dimension) {
         (Some(value), Some(u), Dimension::NUMBER) if line.origin == Origin::Rig => {
             format!("{value} ({}\u{a0}%)", minus(&significant(100.0 * u, 2)))
@@ -328,7 +328,7 @@ fn input(line: &Line) -> String {
 }
 
 /// ∂y/∂x in readable units of both: `−13.2 µm per kN/m`; for a factor, the change per unit factor.
-fn sensitivity(each: f64, result: Dimension, line: &Line) -> String {
+fn sensitivity(each: f64, result: Dimension, line: &BudgetLine) -> String {
     let size = line
         .value
         .filter(|value| *value != 0.0)

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::tests::testing::{elastic_plan, every, impact, number, result_of, run_unwatched};
 use crate::verdict::{Verdict, assess};
-use psd_physics::impact::summary::ImpactSummary;
+use psd_physics::impact::summary::{ImpactSummary, SummaryBuilder};
 use psd_plan::uncertainty::combined;
 use psd_plan::{
     Calibration, Comparison, Condition, Contact, Impact, Integrator, Link, ProcedureKind,
@@ -75,20 +75,8 @@ fn a_record_that_does_not_reproduce_its_results_reports_no_uncertainty() {
     let summary = ImpactSummary {
         max_displacement: 0.2,
         time_of_max_displacement: 0.2,
-        stop_time: None,
-        final_displacement: 0.0,
-        max_velocity: 0.0,
-        max_contact_force: 0.0,
-        impulse: 0.0,
         contacts: 1,
-        restitution: None,
-        indentation: 0.0,
-        indentation_energy: 0.0,
-        absorbed_energy: 0.0,
-        striker_energy: 5.0,
-        energy_error: 0.0,
-        still_rising: false,
-        last_contact_cut: false,
+        ..SummaryBuilder::new(&setting.input).finish()
     };
     let mut results = record.procedures[0].results.clone();
     let before = results.clone();

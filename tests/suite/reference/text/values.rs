@@ -11,9 +11,6 @@ pub(super) fn value(field: &Field, blocks: &[&BlockKind]) -> String {
         FieldType::Texts => "list of strings".to_owned(),
         FieldType::Inner => "model".to_owned(),
         FieldType::Inners => "two or more models".to_owned(),
-        FieldType::Quantity(dimension) if field.angle => {
-            format!("angle in `deg` or `rad`{}", limits(field.range, dimension))
-        }
         FieldType::Quantity(dimension) => {
             format!("{}{}", unit(dimension), limits(field.range, dimension))
         }
@@ -89,6 +86,8 @@ pub(super) fn is_truth(field: &Field) -> bool {
 fn unit(dimension: Dimension) -> String {
     if dimension == Dimension::NUMBER {
         "number".to_owned()
+    } else if dimension == Dimension::ANGLE {
+        "`deg` or `rad`".to_owned()
     } else {
         format!("`{}`", dimension.usual_unit())
     }
@@ -97,7 +96,7 @@ fn unit(dimension: Dimension) -> String {
 /// The range of a value, ` > 0`; a limit with a dimension is in its SI unit.
 fn limits(range: Range, dimension: Dimension) -> String {
     let shown = |value: f64| {
-        let value = if dimension == Dimension::NUMBER {
+        let value = if matches!(dimension, Dimension::NUMBER | Dimension::ANGLE) {
             (value * 1e4).round() / 1e4
         } else {
             value

@@ -27,12 +27,16 @@
   (#any-of? @function.builtin
     "abs"
     "cos"
+    "exp"
+    "hypot"
+    "log"
     "max"
     "mean"
     "min"
     "sin"
     "sqrt"
-    "sum"))
+    "sum"
+    "tan"))
 ; end of generated
 
 ; generated: options with arguments

@@ -17,7 +17,7 @@ const FORCES: &[(&str, f64)] = &[("force_n", 1.0), ("force_kn", 1e3)];
 
 /// The points of a table, in order of increasing displacement. One-sided points are mirrored; the origin is added.
 pub fn points(text: &str) -> Result<Vec<[f64; 2]>, BadTable> {
-    let lines = text.lines().enumerate().map(|(index, line)| Row {
+    let lines = text.lines().enumerate().map(|(index, line)| FileRow {
         line: index + 1,
         text: line.trim(),
     });
@@ -48,13 +48,13 @@ pub fn points(text: &str) -> Result<Vec<[f64; 2]>, BadTable> {
 
 const HEADER: &str = "write `displacement_m,force_n` in the first line, then one point per row";
 
-struct Row<'t> {
+struct FileRow<'t> {
     /// Line number from 1.
     line: usize,
     text: &'t str,
 }
 
-impl Row<'_> {
+impl FileRow<'_> {
     fn bad(&self, reason: &str, help: &'static str) -> BadTable {
         // A row may have the length of a whole file.
         let shown: String = self.text.chars().take(60).collect();

@@ -2,7 +2,7 @@
 
 use crate::check::checker::{Checker, Context, Reads, Typed};
 use crate::check::expressions::choice::Chosen;
-use crate::check::violations::OutOfRange;
+use crate::check::violations::{AbsoluteTemperature, OutOfRange};
 use crate::codes::E657;
 use psd_plan::Interval;
 use psd_plan::formula::Formula;
@@ -52,6 +52,9 @@ pub(super) fn number<'a>(
         });
     }
     let typed = checker.expect(typed, dimension, field.name, written)?;
+    if typed.absolute && field.name == schema::SD.name {
+        return checker.fail(AbsoluteTemperature::of_deviation(written.span));
+    }
     let value = known(checker, typed.constant(), written.span)?;
     if !field.range.contains(value) {
         return checker.fail(OutOfRange {

@@ -1,6 +1,6 @@
 //! An input as a study names it: `impact_speed`, `beam.mass`. In: the expression. Out: its position, dimension and value in the plan.
 
-use crate::check::checker::{Checker, Shape, literal};
+use crate::check::checker::{Checker, Shape};
 use crate::check::expressions::overrides::{self, InputLocation, no_input};
 use crate::check::rig;
 use crate::check::violations::InputWanted;
@@ -23,7 +23,6 @@ pub(super) struct Target<'a> {
     pub dimension: Dimension,
     /// The value of the plan without the study, SI; NaN for a result, which has it in a run.
     pub nominal: f64,
-    pub angle: bool,
 }
 
 impl Target<'_> {
@@ -34,7 +33,6 @@ impl Target<'_> {
             dimension: self.dimension,
             text,
             nominal: self.nominal,
-            angle: self.angle,
             is_record: self.is_record(),
         }
     }
@@ -99,9 +97,9 @@ pub(super) fn target<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option
             return None;
         }
     };
-    let (dimension, nominal, angle) = match location {
+    let (dimension, nominal) = match location {
         InputLocation::Parameter(index) => of_parameter(checker, index)?,
-        InputLocation::Result { dimension, .. } => (dimension, f64::NAN, false),
+        InputLocation::Result { dimension, .. } => (dimension, f64::NAN),
         InputLocation::Field {
             block,
             entry,
@@ -132,7 +130,7 @@ pub(super) fn target<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option
                     help: "vary the inputs from which it is calculated",
                 });
             };
-            (typed.dimension, nominal, field.angle)
+            (typed.dimension, nominal)
         }
     };
     Some(Target {
@@ -141,11 +139,10 @@ pub(super) fn target<'a>(checker: &mut Checker<'a>, written: &'a Expr) -> Option
         location,
         dimension,
         nominal,
-        angle,
     })
 }
 
-fn of_parameter(checker: &mut Checker, index: usize) -> Option<(Dimension, f64, bool)> {
+fn of_parameter(checker: &mut Checker, index: usize) -> Option<(Dimension, f64)> {
     let declared = &checker.scope.values[index];
     // A parameter that only a study names has no effect on a run.
     let was_used = checker.used.contains(&index);
@@ -154,13 +151,7 @@ fn of_parameter(checker: &mut Checker, index: usize) -> Option<(Dimension, f64, 
         checker.used.remove(&index);
     }
     let typed = typed.filter(|typed| typed.shape == Shape::Number)?;
-    let unit = literal(declared.value).and_then(|number| match &number.kind {
-        ExprKind::Number { unit, .. } => unit.as_ref(),
-        _ => None,
-    });
-    let angle = typed.dimension == Dimension::NUMBER
-        && unit.is_some_and(|unit| matches!(unit.node.as_str(), "deg" | "rad"));
-    Some((typed.dimension, typed.constant()?, angle))
+    Some((typed.dimension, typed.constant()?))
 }
 
 /// A value of a rig that moves a specimen.
