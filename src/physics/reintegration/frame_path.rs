@@ -16,7 +16,7 @@ use crate::statistics::DeclaredNoise;
 use crate::structure::substructures::{Assemblies, StoreyReadings, Substructures};
 use crate::structure::{SymmetricBand, storeys_of};
 
-/// One step of the record, one entry per axis.
+/// One step of the record, one entry per floor or axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameReading {
     /// Commanded displacement \[m\].
@@ -30,7 +30,10 @@ pub struct FrameReading {
 /// Readings of all axes along the path.
 #[derive(Clone, Debug)]
 pub struct FramePath {
+    /// Of the axes.
     readings: Vec<FrameReading>,
+    /// Of the floors as they were recorded; empty if the axes are the floors.
+    floors: Vec<FrameReading>,
     /// Velocity at each target \[m/s\], one entry per axis; empty for readings at rest.
     velocities: Vec<Vec<f64>>,
     bends: Bends,
@@ -51,7 +54,7 @@ enum Bends {
 }
 
 impl FramePath {
-    /// `motion` has no velocities where the run was not continuous; `stiffness` is the initial K of the frame; `storeys` are the readings of
+    /// `readings` and velocities are those of the floors. `motion` has no velocities where the run was not continuous; `stiffness` is the initial K of the frame; `storeys` are the readings of
     /// its storeys; `substructures` are those at the start of the run. None without readings.
     #[must_use]
     pub fn new(
@@ -71,9 +74,22 @@ impl FramePath {
             assemblies.map_or_else(|| of_storeys.clone(), |axes| axes.at_axes(&of_storeys))
         };
         let ContinuousMotion {
-            velocities,
+            mut velocities,
             time_step,
         } = motion;
+        let (mut readings, mut floors) = (readings, Vec::new());
+        if let Some(assemblies) = assemblies {
+            let at_axes = |floors: &FrameReading| FrameReading {
+                target: assemblies.axes_of(&floors.target),
+                displacement: assemblies.axes_of(&floors.displacement),
+                force: assemblies.forces_of(&floors.force),
+            };
+            floors = readings;
+            readings = floors.iter().map(at_axes).collect();
+            for velocities in &mut velocities {
+                *velocities = assemblies.axes_of(velocities);
+            }
+        }
         let of_axes = |read: fn(&FrameReading) -> &Vec<f64>,
                        to_storeys: fn(&[f64], &[bool]) -> Vec<f64>| {
             readings
@@ -149,6 +165,7 @@ impl FramePath {
         };
         Some(Self {
             readings,
+            floors,
             velocities,
             bends,
             stands,
@@ -163,10 +180,14 @@ impl FramePath {
         !self.velocities.is_empty()
     }
 
-    /// The readings, without the branches derived from them.
+    /// The readings of the floors, without the branches derived from them.
     #[must_use]
     pub fn into_readings(self) -> Vec<FrameReading> {
-        self.readings
+        if self.floors.is_empty() {
+            self.readings
+        } else {
+            self.floors
+        }
     }
 
     /// Begins a re-run along the path, with the forces of the computed storeys multiplied by `factors`.
@@ -198,6 +219,7 @@ impl FramePath {
             force: first.force.clone(),
             floors: self.substructures.clone().map(|substructures| Floors {
                 substructures: substructures.with_factors(factors),
+                is_as_recorded: factors.iter().all(|factor| *factor == 1.0),
                 displacement: Vec::new(),
                 force: Vec::new(),
             }),
@@ -207,7 +229,13 @@ impl FramePath {
             let (mut target, mut force) = (Vec::new(), Vec::new());
             let axes = (retrace.target.as_slice(), retrace.force.as_slice());
             floors.substructures.floors(axes, &mut target, &mut force);
+            let recorded = &self.floors[0];
+            if retrace.target == first.target {
+                target.clone_from(&recorded.target);
+            }
             retrace.target = target;
+            let target = retrace.target.clone();
+            retrace.read_floors(&target);
         }
         retrace
     }
@@ -238,6 +266,8 @@ fn shears(axes: &[f64], stands: &[bool]) -> Vec<f64> {
 #[derive(Clone, Debug)]
 struct Floors {
     substructures: Substructures,
+    /// Whether the computed storeys are those of the run.
+    is_as_recorded: bool,
     displacement: Vec<f64>,
     force: Vec<f64>,
 }
@@ -301,9 +331,32 @@ impl FrameRetrace<'_> {
         };
         let seconds = self.path.time_step / f64::from(self.readings.finer);
         floors.substructures.advance(targets, seconds);
-        let targets = floors.substructures.assemblies().axes_of(targets);
+        let axes = floors.substructures.assemblies().axes_of(targets);
         let velocities = floors.substructures.assemblies().axes_of(velocities);
-        self.move_axes(&targets, &velocities);
+        self.move_axes(&axes, &velocities);
+        self.read_floors(targets);
+    }
+
+    /// The floors at these targets \[m\], from the present reading of the axes. At the recorded targets it is that of the record, bit for
+    /// bit: sums of drifts have rounding errors.
+    fn read_floors(&mut self, targets: &[f64]) {
+        let Some(floors) = &mut self.floors else {
+            return;
+        };
+        let (axes, recorded) = (&self.path.readings, &self.path.floors);
+        if let (Some(axes), Some(recorded)) = (axes.get(self.step), recorded.get(self.step))
+            && floors.is_as_recorded
+            && recorded.target == targets
+            && axes.displacement == self.displacement
+            && axes.force == self.force
+        {
+            floors.displacement.clone_from(&recorded.displacement);
+            floors.force.clone_from(&recorded.force);
+            return;
+        }
+        let axes = (self.displacement.as_slice(), self.force.as_slice());
+        let substructures = &floors.substructures;
+        substructures.floors(axes, &mut floors.displacement, &mut floors.force);
     }
 
     fn move_axes(&mut self, targets: &[f64], velocities: &[f64]) {
@@ -375,11 +428,6 @@ impl FrameRetrace<'_> {
             let exact = (self.displacement[axis], self.force[axis]);
             (self.displacement[axis], self.force[axis]) =
                 self.readings.read(self.own_step as u64, axis, 1, exact);
-        }
-        if let Some(floors) = &mut self.floors {
-            let axes = (self.displacement.as_slice(), self.force.as_slice());
-            let substructures = &floors.substructures;
-            substructures.floors(axes, &mut floors.displacement, &mut floors.force);
         }
     }
 }

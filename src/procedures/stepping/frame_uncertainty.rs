@@ -214,26 +214,10 @@ impl<'run> FrameUncertainty<'run> {
         recorded: impl Iterator<Item = &'r FloorMotion>,
         substructures: Option<&Substructures>,
     ) -> Result<FramePath, String> {
-        let assemblies = substructures.map(Substructures::assemblies);
-        let reading = |floors: &FloorMotion| {
-            let FloorMotion {
-                command,
-                displacement,
-                restoring_force,
-                ..
-            } = floors;
-            match assemblies {
-                None => FrameReading {
-                    target: command.clone(),
-                    displacement: displacement.clone(),
-                    force: restoring_force.clone(),
-                },
-                Some(assemblies) => FrameReading {
-                    target: assemblies.axes_of(command),
-                    displacement: assemblies.axes_of(displacement),
-                    force: assemblies.forces_of(restoring_force),
-                },
-            }
+        let reading = |floors: &FloorMotion| FrameReading {
+            target: floors.command.clone(),
+            displacement: floors.displacement.clone(),
+            force: floors.restoring_force.clone(),
         };
         let readings = recorded.map(reading).collect();
         self.passed(steps, readings, Vec::new(), substructures)
@@ -244,18 +228,14 @@ impl<'run> FrameUncertainty<'run> {
         &self,
         steps: &FrameSteps,
         path: FramePath,
-        mut velocities: Vec<Vec<f64>>,
+        velocities: Vec<Vec<f64>>,
         substructures: Option<&Substructures>,
     ) -> Result<FramePath, String> {
         if velocities.is_empty() {
-            return Ok(path);
+            Ok(path)
+        } else {
+            self.passed(steps, path.into_readings(), velocities, substructures)
         }
-        if let Some(substructures) = substructures {
-            for velocities in &mut velocities {
-                *velocities = substructures.assemblies().axes_of(velocities);
-            }
-        }
-        self.passed(steps, path.into_readings(), velocities, substructures)
     }
 
     fn passed(
