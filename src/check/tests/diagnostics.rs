@@ -125,10 +125,10 @@ fn the_plan_as_a_whole_and_the_command_line() {
         "E406 9 m/s"
     );
     assert_eq!(only("param v = 1 m/s", &[("v", "9 kg")]), "E301 9 kg");
-    assert_eq!(only(BODY, &[]), "W705 ");
+    assert_eq!(only(BODY, &[]), "W705 \nW706 ball");
     assert_eq!(
         only(&format!("{BODY}let a = 1\nmove m {{ to = 1 mm }}"), &[]),
-        "W706 a\nW704 move m"
+        "W706 ball\nW706 a\nW704 move m"
     );
     let rig = crate::check::Options {
         rig: Some("x".to_owned()),
