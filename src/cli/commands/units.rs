@@ -65,7 +65,7 @@ pub fn units(arguments: &UnitsArguments, settings: Settings) -> Result<Exit, Fai
             units_of(value.dimension).join(", ")
         )));
     }
-    print_result(&format!("{} {wanted}\n", digits(value.value / unit.factor)))?;
+    print_result(&format!("{} {wanted}\n", digits(unit.of_si(value.value))))?;
     Ok(Exit::Met)
 }
 
@@ -106,7 +106,7 @@ fn value_of(written: &str, settings: Settings) -> Option<Quantity> {
 fn in_every_unit(value: Quantity) -> String {
     let rows = units_of(value.dimension).into_iter().filter_map(|name| {
         let unit = unit::parse(&name).ok()?;
-        Some(vec![digits(value.value / unit.factor), name])
+        Some(vec![digits(unit.of_si(value.value)), name])
     });
     let rows: Vec<Vec<String>> = rows.collect();
     format!("{}\n{}", value.dimension.describe(), columns(&rows))
@@ -143,6 +143,9 @@ mod tests {
         let unit = unit::parse("N/mm").unwrap();
         // 3 · 1000 · 0.45359237 · 9.80665 N / 25.4 mm
         assert_eq!(digits(value.value / unit.factor), "525.3805057");
+        let kelvin = value_of("300 K", Settings::PLAIN).unwrap();
+        let celsius = unit::parse("degC").unwrap();
+        assert_eq!(digits(celsius.of_si(kelvin.value)), "26.85");
         let product = value_of("2 * 300 N/m * 3 mm", Settings::PLAIN).unwrap();
         let listed = in_every_unit(product);
         assert!(

@@ -105,10 +105,7 @@ fn customary(view: &View<'_>, value: &Expr, found: &mut Vec<lsp::InlayHint>) {
         if let Ok(unit) = unit::parse(&token.node)
             && is_customary
         {
-            let label = format!(
-                "= {}",
-                readable(number * unit.factor + unit.zero, unit.dimension)
-            );
+            let label = format!("= {}", readable(unit.to_si(*number), unit.dimension));
             found.push(hint(view, value.span.range().end, label));
         }
     }

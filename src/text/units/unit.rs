@@ -11,6 +11,20 @@ pub struct Unit {
     pub zero: f64,
 }
 
+impl Unit {
+    /// A number of this unit in SI base units.
+    #[must_use]
+    pub fn to_si(self, number: f64) -> f64 {
+        number * self.factor + self.zero
+    }
+
+    /// A value in SI base units as a number of this unit.
+    #[must_use]
+    pub fn of_si(self, value: f64) -> f64 {
+        (value - self.zero) / self.factor
+    }
+}
+
 /// One row of the unit table.
 #[derive(Clone, Copy, Debug)]
 pub struct UnitName {

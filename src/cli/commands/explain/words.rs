@@ -162,10 +162,12 @@ fn block_page(block: &BlockKind) -> String {
 
 fn unit_page(word: &str, unit: unit::Unit) -> String {
     let base = display::si_unit(unit.dimension);
-    let factor = trimmed(&significant(unit.factor, 10));
+    // A scale with a zero of its own has no factor: its zero is said.
+    let number = if unit.zero == 0.0 { 1.0 } else { 0.0 };
+    let value = trimmed(&significant(unit.to_si(number), 10));
     let mut text = format!("**{word}**: {}", unit.dimension.describe());
     if unit.dimension != Dimension::NUMBER && base != word {
-        let _ = write!(text, "\n\n1 {word} = {factor} {base}");
+        let _ = write!(text, "\n\n{number} {word} = {value} {base}");
     }
     let others = units_of(unit.dimension);
     if !others.is_empty() {
@@ -225,6 +227,7 @@ mod tests {
         );
         assert!(shown("hertz").contains("an option of `contact`"));
         assert!(shown("kip/in").contains("N/m") && shown("kN").contains("force"));
+        assert!(shown("degC").contains("0 degC = 273.15 K"));
         assert!(page("max_displacment", Settings::PLAIN).is_none());
     }
 }
