@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use psd_plan::FigureKind;
-use psd_plan::schema::{BLOCKS, FUNCTIONS, Field, FieldType, Variant, study};
+use psd_plan::schema::{BLOCKS, FUNCTIONS, Field, study};
 
 pub type Words = BTreeSet<&'static str>;
 
@@ -14,7 +14,9 @@ pub fn fields() -> Words {
 
 /// The words of options, without `true` and `false`: of models, links, formats, distributions, figures.
 pub fn options() -> Words {
-    let variants = every_field().into_iter().flat_map(variants);
+    let variants = every_field()
+        .into_iter()
+        .flat_map(|field| field.ty.variants());
     let words = variants.map(|variant| variant.name);
     let figures = FigureKind::ALL.iter().map(|figure| figure.name());
     words
@@ -36,17 +38,9 @@ fn every_field() -> Vec<&'static Field> {
     let mut found: Vec<&Field> = fields.chain(study::PROBABILITY.arguments).collect();
     let mut at = 0;
     while let Some(field) = found.get(at) {
-        found.extend(variants(field).iter().flat_map(|variant| variant.arguments));
+        let variants = field.ty.variants().iter();
+        found.extend(variants.flat_map(|variant| variant.arguments));
         at += 1;
     }
     found
-}
-
-fn variants(field: &Field) -> &'static [Variant] {
-    match field.ty {
-        FieldType::Choice(variants)
-        | FieldType::Choices(variants)
-        | FieldType::Inputs(variants) => variants,
-        _ => &[],
-    }
 }

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use psd::procedures::columns;
-use psd_plan::schema::{BLOCKS, Field, FieldType};
+use psd_plan::schema::{BLOCKS, Field};
 
 use super::import_graph::{is_of_tests, without_comments_and_tests};
 use super::source_text::{SourceText, none, rust_files};
@@ -108,15 +108,11 @@ fn literals(code: &str) -> Vec<(&str, &str)> {
 /// Names of a field, of its arguments, and of theirs.
 fn names_of(field: &'static Field, found: &mut BTreeSet<&'static str>) {
     found.insert(field.name);
-    if let FieldType::Choice(variants)
-    | FieldType::Choices(variants)
-    | FieldType::Inputs(variants) = field.ty
-    {
-        for argument in variants.iter().flat_map(|variant| variant.arguments) {
-            // A model inside a model has no further names.
-            if found.insert(argument.name) {
-                names_of(argument, found);
-            }
+    let variants = field.ty.variants().iter();
+    for argument in variants.flat_map(|variant| variant.arguments) {
+        // A model inside a model has no further names.
+        if found.insert(argument.name) {
+            names_of(argument, found);
         }
     }
 }

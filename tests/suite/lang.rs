@@ -17,7 +17,7 @@ use psd::check::{Checked, Options, check};
 use psd::run::{Unwatched, run};
 use psd::verdict::{Assessment, Verdict, assess};
 use psd_plan::record::{Outcome, Record};
-use psd_plan::schema::{BLOCKS, Field, FieldType, Kind, Presence, RigKind, Variant};
+use psd_plan::schema::{BLOCKS, Field, Kind, Presence, RigKind, Variant};
 use psd_rig::virtual_rig;
 use psd_text::diagnostic::render::{Appearance, render_all};
 use psd_text::diagnostic::{Code, Diagnostic, Severity};
@@ -309,11 +309,6 @@ fn line_ends_of_other_systems_are_tested() {
 
 /// The names of the cases without a required argument, including those of nested options.
 fn argument_cases(field: &Field) -> Vec<String> {
-    let (FieldType::Choice(variants) | FieldType::Choices(variants) | FieldType::Inputs(variants)) =
-        field.ty
-    else {
-        return Vec::new();
-    };
     let of_variant = |variant: &'static Variant| {
         let required = variant
             .arguments
@@ -323,7 +318,7 @@ fn argument_cases(field: &Field) -> Vec<String> {
         own.chain(variant.arguments.iter().flat_map(argument_cases))
             .collect::<Vec<_>>()
     };
-    variants.iter().flat_map(of_variant).collect()
+    field.ty.variants().iter().flat_map(of_variant).collect()
 }
 
 #[test]

@@ -137,17 +137,9 @@ mod tests {
     fn every_default_with_a_unit_has_the_dimension_of_its_field() {
         /// The field, its arguments, and theirs.
         fn all(field: &'static Field) -> Vec<&'static Field> {
-            let inner: Vec<&Field> = match field.ty {
-                FieldType::Choice(variants)
-                | FieldType::Choices(variants)
-                | FieldType::Inputs(variants) => variants
-                    .iter()
-                    .flat_map(|variant| variant.arguments)
-                    .flat_map(all)
-                    .collect(),
-                _ => Vec::new(),
-            };
-            [vec![field], inner].concat()
+            let variants = field.ty.variants().iter();
+            let inner = variants.flat_map(|variant| variant.arguments);
+            [vec![field], inner.flat_map(all).collect()].concat()
         }
         for field in BLOCKS.iter().flat_map(|block| block.fields).flat_map(all) {
             if let (Presence::Default { unit, .. }, Some(dimension)) =

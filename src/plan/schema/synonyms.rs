@@ -40,23 +40,15 @@ pub const SYNONYMS: &[(&str, &str)] = &[
 #[cfg(test)]
 mod tests {
     use super::SYNONYMS;
-    use crate::schema::{BLOCKS, FUNCTIONS, Field, FieldType, Variant};
+    use crate::schema::{BLOCKS, FUNCTIONS, Field};
     use std::collections::BTreeSet;
 
     fn add(fields: &[Field], found: &mut BTreeSet<String>) {
         for field in fields {
             found.insert(field.name.to_owned());
-            if let FieldType::Choice(variants)
-            | FieldType::Choices(variants)
-            | FieldType::Inputs(variants) = field.ty
-            {
-                for Variant {
-                    name, arguments, ..
-                } in variants
-                {
-                    if found.insert((*name).to_owned()) {
-                        add(arguments, found);
-                    }
+            for variant in field.ty.variants() {
+                if found.insert(variant.name.to_owned()) {
+                    add(variant.arguments, found);
                 }
             }
         }

@@ -129,6 +129,15 @@ impl FieldType {
     pub const fn is_numeric(self) -> bool {
         matches!(self, Self::Quantity(_) | Self::Quantities(_) | Self::Count)
     }
+
+    /// The words or variants of a choice; none of another type.
+    #[must_use]
+    pub const fn variants(self) -> &'static [Variant] {
+        match self {
+            Self::Choice(variants) | Self::Choices(variants) | Self::Inputs(variants) => variants,
+            _ => &[],
+        }
+    }
 }
 
 /// Whether a field is required, and its default where it is not.

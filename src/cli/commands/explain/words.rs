@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use crate::settings::Settings;
 use psd_lsp::{describe, units_of};
-use psd_plan::schema::{BLOCKS, BlockKind, FUNCTIONS, Field, FieldType, Variant};
+use psd_plan::schema::{BLOCKS, BlockKind, FUNCTIONS, Field, Variant};
 use psd_text::units::display::{self, significant, trimmed};
 use psd_text::units::{Dimension, unit};
 
@@ -53,7 +53,7 @@ pub fn all() -> Vec<&'static str> {
     fn add(fields: &'static [Field], words: &mut Vec<&'static str>) {
         for field in fields {
             words.push(field.name);
-            for variant in variants(field) {
+            for variant in field.ty.variants() {
                 words.push(variant.name);
                 add(variant.arguments, words);
             }
@@ -68,15 +68,6 @@ pub fn all() -> Vec<&'static str> {
     }
     words.extend(FUNCTIONS.iter().map(|function| function.name));
     words
-}
-
-fn variants(field: &Field) -> &'static [Variant] {
-    match field.ty {
-        FieldType::Choice(variants)
-        | FieldType::Choices(variants)
-        | FieldType::Inputs(variants) => variants,
-        _ => &[],
-    }
 }
 
 /// Adds a meaning, or its place to the same meaning elsewhere.
@@ -115,7 +106,7 @@ fn of_block(block: &BlockKind, name: &str, meanings: &mut Vec<Meaning>) {
         if field.name == name {
             add(meanings, place, describe::field(field));
         }
-        let variants = variants(field);
+        let variants = field.ty.variants();
         if variants.is_empty() || lists.contains(&variants.as_ptr()) {
             continue;
         }

@@ -68,14 +68,8 @@ impl Page {
     }
 
     fn options(&self) -> &'static [Variant] {
-        match block(self.kind).field(self.field).map(|field| field.ty) {
-            Some(
-                FieldType::Choice(options)
-                | FieldType::Choices(options)
-                | FieldType::Inputs(options),
-            ) => options,
-            _ => &[],
-        }
+        let field = block(self.kind).field(self.field);
+        field.map_or(&[], |field| field.ty.variants())
     }
 
     /// The generated parts of the page, by name.
