@@ -131,6 +131,27 @@ impl Plan {
         self.specimens.get(named.unwrap_or(0))
     }
 
+    /// The frame on the rig.
+    #[must_use]
+    pub fn frame_on_the_rig(&self) -> Option<&Frame> {
+        self.specimen_on_the_rig()?.frame.as_ref()
+    }
+
+    /// The specimen on the rig, if only a test on a real rig can measure its restoring force.
+    #[must_use]
+    pub fn unknown_specimen(&self) -> Option<&Specimen> {
+        self.specimen_on_the_rig()
+            .filter(|specimen| specimen.behaviour.is_none() && specimen.frame.is_none())
+    }
+
+    /// The same plan on an ideal copy of its rig.
+    #[must_use]
+    pub fn on_an_ideal_rig(&self) -> Self {
+        let mut ideal = self.clone();
+        ideal.rig.link = Link::Virtual(VirtualLink::ideal_of(&self.rig));
+        ideal
+    }
+
     /// Number of actuators that the rig needs, each with a load cell.
     #[must_use]
     pub fn degrees_of_freedom(&self) -> usize {

@@ -5,7 +5,6 @@
 use psd_plan::procedures::stiffness_ramp::block::STIFFNESS;
 use psd_plan::record::{History, Record, StiffnessRampHistory};
 use psd_plan::{Behaviour, CHECK_RUN, Link, Plan, ProcedureKind, Specimen, VirtualLink};
-use psd_rig::VirtualRig;
 
 /// What distinguishes the identifier of a check run from that of the whole plan.
 pub const RUN_ID_MARK: &str = "check run";
@@ -47,9 +46,7 @@ fn leading(plan: &Plan) -> usize {
 /// Nothing would be measured from which to predict the rest.
 pub fn measured_part(plan: &Plan) -> Result<Plan, NoCheckRun> {
     let ramps = leading(plan);
-    let bent = VirtualRig::specimen_of(plan)
-        .filter(|specimen| specimen.behaviour.is_none() && specimen.frame.is_none());
-    if let Some(specimen) = bent.filter(|_| ramps == 0) {
+    if let Some(specimen) = plan.unknown_specimen().filter(|_| ramps == 0) {
         return Err(NoCheckRun::NothingMeasured(specimen.name.clone()));
     }
     let mut part = plan.clone();

@@ -18,7 +18,7 @@ pub(crate) struct Hybrid {
 
 impl Hybrid {
     pub fn of(plan: &Plan) -> Option<Self> {
-        let frame = plan.specimen_on_the_rig()?.frame.as_ref()?;
+        let frame = plan.frame_on_the_rig()?;
         let substructures = Substructures::of(frame)?;
         Some(Self {
             at_start: substructures.clone(),

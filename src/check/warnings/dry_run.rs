@@ -7,8 +7,8 @@ use crate::run::{Keep, Unwatched, run_with};
 use crate::verdict::{self, Verdict};
 use psd_language::check::checker::Checker;
 use psd_language::codes::{W729, W736};
+use psd_plan::Plan;
 use psd_plan::record::{Outcome, Record};
-use psd_plan::{Link, Plan, VirtualLink};
 use psd_rig::virtual_rig;
 use psd_text::diagnostic::{Code, Diagnostic, Violation};
 use psd_text::source::Span;
@@ -63,14 +63,10 @@ fn steps(plan: &Plan) -> u64 {
 
 /// Runs the plan on an ideal copy of its rig, and warns of what would go wrong. `blocks`: of its procedures.
 pub fn warn(checker: &mut Checker, plan: &Plan, blocks: &[usize]) {
-    let unknown = plan
-        .specimen_on_the_rig()
-        .is_some_and(|specimen| specimen.behaviour.is_none() && specimen.frame.is_none());
-    if unknown || plan.procedures.is_empty() || !is_short(plan) {
+    if plan.unknown_specimen().is_some() || plan.procedures.is_empty() || !is_short(plan) {
         return;
     }
-    let mut ideal = plan.clone();
-    ideal.rig.link = Link::Virtual(VirtualLink::ideal_of(&plan.rig));
+    let ideal = plan.on_an_ideal_rig();
     let keep = if steps(plan) <= MOST_STEPS_WITH_UNCERTAINTY {
         Keep::Everything
     } else {

@@ -5,7 +5,7 @@ use super::pace::Part;
 use crate::commands::explain_plan::dry_rig::{Reach, Watched};
 use psd::procedures::most_steps;
 use psd::run::Extent;
-use psd_plan::{Interval, Link, Plan, VirtualLink};
+use psd_plan::{Interval, Plan};
 use psd_rig::RigFault;
 use psd_rig::real::RealRig;
 use psd_text::units::Dimension;
@@ -44,14 +44,10 @@ pub fn parts_by_steps(plan: &Plan) -> Vec<Part> {
 
 /// The expected run of the whole plan; unknown if only the real rig has the specimen.
 pub fn of(plan: &Plan) -> Expected {
-    let unknown = plan
-        .specimen_on_the_rig()
-        .is_some_and(|specimen| specimen.behaviour.is_none() && specimen.frame.is_none());
-    if unknown {
+    if plan.unknown_specimen().is_some() {
         return Expected::default();
     }
-    let mut ideal = plan.clone();
-    ideal.rig.link = Link::Virtual(VirtualLink::ideal_of(&plan.rig));
+    let ideal = plan.on_an_ideal_rig();
     let (_, reaches) = Watched::run(&ideal, plan.rig.link.as_real().map(|link| link.own_speed));
     Expected {
         extent: over(&reaches),

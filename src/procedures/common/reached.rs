@@ -9,10 +9,7 @@ pub(crate) fn of_axes(
     plan: &Plan,
     give: &mut dyn FnMut(&[f64], &[f64]),
 ) -> impl FnMut(&[f64], &[f64]) {
-    let frame = plan
-        .specimen_on_the_rig()
-        .and_then(|specimen| specimen.frame.as_ref());
-    let assemblies = frame.and_then(Assemblies::of);
+    let assemblies = plan.frame_on_the_rig().and_then(Assemblies::of);
     move |displacement, force| match &assemblies {
         None => give(displacement, force),
         Some(assemblies) => give(

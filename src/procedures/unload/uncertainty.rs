@@ -96,11 +96,7 @@ impl UncertainRun<'_> {
 
     /// The axes from which the floors were read.
     fn axes(&self, rest: &Rest) -> Assemblies {
-        let frame = self
-            .whole
-            .specimen_on_the_rig()
-            .and_then(|specimen| specimen.frame.as_ref());
-        let assemblies = frame.and_then(Assemblies::of);
+        let assemblies = self.whole.frame_on_the_rig().and_then(Assemblies::of);
         assemblies.unwrap_or_else(|| Assemblies::whole(rest.force.len()))
     }
 

@@ -16,13 +16,6 @@ fn constant(value: f64) -> Formula {
     Formula::Constant(value)
 }
 
-/// The same plan on an ideal copy of its rig, as `psd check --explain` runs it.
-fn dry(plan: &Plan) -> Plan {
-    let mut ideal = plan.clone();
-    ideal.rig.link = Link::Virtual(VirtualLink::ideal_of(&plan.rig));
-    ideal
-}
-
 /// The mean of u² of `runs` runs over the predicted u² of the result.
 fn ratio(plan: &Plan, link: VirtualLink, name: &str, runs: u32) -> f64 {
     let with = |seed: u64| {
@@ -30,7 +23,7 @@ fn ratio(plan: &Plan, link: VirtualLink, name: &str, runs: u32) -> f64 {
         plan.rig.link = Link::Virtual(VirtualLink { seed, ..link });
         plan
     };
-    let predicted = number(&run_unwatched(&dry(&with(1))), 0, name)
+    let predicted = number(&run_unwatched(&with(1).on_an_ideal_rig()), 0, name)
         .1
         .expect("predicted");
     let square = |seed: u32| {
@@ -96,7 +89,7 @@ fn the_line_of_a_ramp_is_predicted() {
             .sum::<f64>();
     let mut noisy = plan.clone();
     noisy.rig.link = Link::Virtual(NOISY);
-    let predicted = number(&run_unwatched(&dry(&noisy)), 0, "stiffness")
+    let predicted = number(&run_unwatched(&noisy.on_an_ideal_rig()), 0, "stiffness")
         .1
         .unwrap();
     assert!(
@@ -118,7 +111,7 @@ fn the_line_of_a_ramp_is_predicted() {
     assert_predicted(&plan, quiet, &["stiffness"], (1, 1e9, 0.35));
     // An ideal rig has no scatter to predict.
     assert!(
-        number(&run_unwatched(&dry(&plan)), 0, "stiffness")
+        number(&run_unwatched(&plan.on_an_ideal_rig()), 0, "stiffness")
             .1
             .unwrap()
             < 1e-6

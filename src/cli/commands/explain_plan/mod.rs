@@ -43,14 +43,12 @@ pub enum Explained<'a> {
 impl<'a> Explained<'a> {
     /// Makes a dry run of the plan if its specimen has a restoring-force model, or if no specimen is tested.
     pub fn of(plan: &'a Plan) -> Self {
-        match plan.specimen_on_the_rig() {
-            Some(specimen) if specimen.behaviour.is_none() && specimen.frame.is_none() => {
-                Self::Unknown {
-                    specimen: &specimen.name,
-                    rig: &plan.rig.name,
-                }
-            }
-            _ => Self::Dry(Box::new(DryRun::of(plan))),
+        match plan.unknown_specimen() {
+            Some(specimen) => Self::Unknown {
+                specimen: &specimen.name,
+                rig: &plan.rig.name,
+            },
+            None => Self::Dry(Box::new(DryRun::of(plan))),
         }
     }
 
@@ -107,8 +105,7 @@ pub struct DryRun<'a> {
 
 impl<'a> DryRun<'a> {
     pub fn of(plan: &'a Plan) -> Self {
-        let mut ideal = plan.clone();
-        ideal.rig.link = Link::Virtual(VirtualLink::ideal_of(&plan.rig));
+        let ideal = plan.on_an_ideal_rig();
         let model = format!(
             "dry run on an ideal copy of rig `{}`: same specimen and limits, no noise, lag or drift",
             plan.rig.name
