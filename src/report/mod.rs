@@ -32,8 +32,8 @@ pub use figures::{
     Curve, Curves, FIGURE_DATA, FigureAxis, FigureBand, FigureCurve, FigureData, Figures, PlainAxis,
 };
 pub use output::{
-    FileDigest, NullSink, OutputError, OutputFile, OutputPart, OutputPiece, OutputSink, SUMMARY,
-    figure_data, manifest_with, numbers, put_everything, vectors,
+    FileDigest, NullSink, OutputError, OutputFile, OutputPart, OutputPiece, OutputSink, PAGE,
+    PAPER, SUMMARY, figure_data, manifest_with, numbers, put_everything, vectors,
 };
 pub use run::{Build, ClockJump, Provenance, RealRun, Run};
 pub use status::{Change, Issue, IssueKind, Issues, ReportStatus, report_status};

@@ -24,10 +24,8 @@ pub fn is_signature(name: &str) -> bool {
             .is_some_and(|role| !role.is_empty() && role.bytes().all(is_plain))
 }
 
-/// The PDF report. A second copy with a seal at its end can be in the same folder.
-pub const PAPER: &str = "report.pdf";
-/// The report as a page.
-pub const PAGE: &str = "report.html";
+/// A second copy of the PDF report, with a seal at its end, can be in the same folder.
+pub use psd::report::PAPER;
 
 /// Kinds of sidecars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,7 +8,7 @@ use crate::files::failure::Failure;
 use crate::files::failure::plain;
 use crate::files::loader::is_stdin;
 use psd::golden::{Accepted, SUMMARY, Tolerances, Truth, compare};
-use psd::report::OutputFile;
+use psd::report::{OutputFile, PAGE, PAPER};
 
 /// The file that names the plan whose results a folder has: its path, from the folder above `reports`.
 const PLAN: &str = "plan.txt";
@@ -288,7 +288,7 @@ pub fn is_page(path: &str) -> bool {
         && Path::new(path)
             .extension()
             .is_some_and(|ending| ending == "png");
-    picture || matches!(path, "report.html" | "report.pdf")
+    picture || matches!(path, PAGE | PAPER)
 }
 
 #[cfg(test)]

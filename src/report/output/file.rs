@@ -4,6 +4,10 @@ use psd_plan::{Format, Plan};
 
 /// Name of the summary.
 pub const SUMMARY: &str = "summary.json";
+/// The report as a page.
+pub const PAGE: &str = "report.html";
+/// The PDF report.
+pub const PAPER: &str = "report.pdf";
 
 /// A file of the run folder: path with `/`, relative to the folder.
 #[derive(Clone, Debug, PartialEq, Eq)]

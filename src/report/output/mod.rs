@@ -6,7 +6,7 @@ mod manifest;
 pub(super) mod paths;
 pub(super) mod sink;
 
-pub use file::{OutputError, OutputFile, SUMMARY};
+pub use file::{OutputError, OutputFile, PAGE, PAPER, SUMMARY};
 pub use sink::{FileDigest, NullSink, OutputPart, OutputPiece, OutputSink};
 
 use super::run::Run;
@@ -50,7 +50,7 @@ pub fn put_everything(
             progress.begin(OutputPart::Report, sink);
             let page = sanitize::page(&document::html::html(&report));
             let page = OutputFile {
-                path: "report.html".to_owned(),
+                path: PAGE.to_owned(),
                 bytes: page.into_bytes(),
             };
             digests.push(put_file(sink, &page)?);
@@ -58,7 +58,7 @@ pub fn put_everything(
         if pdf {
             progress.begin(OutputPart::Report, sink);
             let pages = OutputFile {
-                path: "report.pdf".to_owned(),
+                path: PAPER.to_owned(),
                 bytes: document::pdf::pdf(&report).map_err(OutputError::Pdf)?,
             };
             digests.push(put_file(sink, &pages)?);

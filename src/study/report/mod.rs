@@ -17,7 +17,7 @@ mod tests;
 use crate::report::document::{html, pdf};
 use crate::report::figures as drawing;
 use crate::report::wording::study as wording;
-use crate::report::{OutputError, OutputPart, OutputPiece, OutputSink, SUMMARY};
+use crate::report::{OutputError, OutputPart, OutputPiece, OutputSink, PAGE, PAPER, SUMMARY};
 use crate::study::answers::Answers;
 use crate::study::data_set::Metadata;
 use figures::StudyFigure;
@@ -75,10 +75,10 @@ pub fn put(
     });
     begin(sink, OutputPart::Report, total - 1);
     let page = sanitize::page(&html::html(&report));
-    keep(sink, "report.html", page.as_bytes())?;
+    keep(sink, PAGE, page.as_bytes())?;
     begin(sink, OutputPart::Report, total);
     let pages = pdf::pdf(&report).map_err(OutputError::Pdf)?;
-    keep(sink, "report.pdf", &pages)
+    keep(sink, PAPER, &pages)
 }
 
 fn keep(sink: &mut dyn OutputSink, path: &str, bytes: &[u8]) -> Result<(), OutputError> {

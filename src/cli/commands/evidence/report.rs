@@ -11,7 +11,6 @@ use clap::Args;
 use super::issue::{AmendmentArguments, amend};
 use super::replayed::finish_replayed;
 use crate::commands::prediction::prediction;
-use crate::evidence::names::{PAGE, PAPER};
 use crate::evidence::{Folder, IssueFile, MANIFEST, ReplayedRun, check_consistency};
 use crate::exit::{Exit, Failure};
 use crate::files::failure::plain;
@@ -20,6 +19,7 @@ use crate::files::record_file::journal_of;
 use crate::files::run_folder::{RunFolder, copy};
 use crate::output::print_result;
 use crate::settings::Settings;
+use psd::report::{PAGE, PAPER};
 use psd_rig::journal::FileStorage;
 
 /// The program that opens a file as the desktop does.
