@@ -26,10 +26,7 @@ pub fn named(paths: &[PathBuf], depth: Depth) -> Result<Vec<PathBuf>, Failure> {
             continue;
         }
         let before = found.len();
-        match depth {
-            Depth::Folder => own(path, &mut found)?,
-            Depth::Below => below(path, usize::MAX, &mut found)?,
-        }
+        walk(path, depth, &mut { usize::MAX }, &mut found)?;
         if found.len() == before {
             return Err(
                 Failure::command_line(format!("no plan in {}", path.display()))
@@ -42,30 +39,20 @@ pub fn named(paths: &[PathBuf], depth: Depth) -> Result<Vec<PathBuf>, Failure> {
     Ok(found)
 }
 
-/// Adds the plans of a folder, sorted by name.
-fn own(folder: &Path, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
-    let failed = |error: std::io::Error| Failure::file(folder, plain(&error));
-    let first = found.len();
-    for entry in std::fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        let hidden = path
-            .file_name()
-            .is_none_or(|name| name.to_string_lossy().starts_with('.'));
-        if !hidden && path.is_file() && is_plan(&path) {
-            found.push(path);
-        }
-    }
-    found[first..].sort();
-    Ok(())
-}
-
 /// Adds every plan under a folder, sorted by name. Links to folders and hidden folders are not entered. The search ends after `most` entries.
 pub fn below(folder: &Path, most: usize, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
     let mut left = most;
-    walk(folder, &mut left, found)
+    walk(folder, Depth::Below, &mut left, found)
 }
 
-fn walk(folder: &Path, left: &mut usize, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
+/// Adds the plans of a folder, sorted by name. A link to a plan counts in the folder itself only: `psd fmt`, which goes below, would replace
+/// the link by a file.
+fn walk(
+    folder: &Path,
+    depth: Depth,
+    left: &mut usize,
+    found: &mut Vec<PathBuf>,
+) -> Result<(), Failure> {
     let failed = |error: std::io::Error| Failure::file(folder, plain(&error));
     let mut entries = std::fs::read_dir(folder)
         .map_err(failed)?
@@ -79,9 +66,13 @@ fn walk(folder: &Path, left: &mut usize, found: &mut Vec<PathBuf>) -> Result<(),
         if entry.file_name().to_string_lossy().starts_with('.') {
             continue;
         }
-        if kind.is_dir() {
-            walk(&path, left, found)?;
-        } else if kind.is_file() && is_plan(&path) {
+        let is_file = match depth {
+            Depth::Folder => path.is_file(),
+            Depth::Below => kind.is_file(),
+        };
+        if kind.is_dir() && depth == Depth::Below {
+            walk(&path, depth, left, found)?;
+        } else if is_file && is_plan(&path) {
             found.push(path);
         }
     }
