@@ -30,7 +30,9 @@ pub fn open_to_check(path: &Path, settings: &PlanSettings) -> Result<Checked, Fa
     if settings.rig.is_some() {
         return Ok(checked);
     }
-    for rig in checked.rigs.clone() {
+    let own = checked.plan.as_ref().map(|plan| plan.rig.name.clone());
+    let others = checked.rigs.clone().into_iter();
+    for rig in others.filter(|rig| Some(rig) != own.as_ref()) {
         let named = PlanSettings {
             rig: Some(rig.clone()),
             ..settings.clone()
