@@ -129,10 +129,16 @@ pub fn form(
         .or_else(|| refused.comma())
 }
 
+/// Whether other languages have a function of this name that gives numbers at equal distances.
+#[must_use]
+pub fn is_range(name: &str) -> bool {
+    RANGES.contains(&name)
+}
+
 /// `1 .. 10 step 1 mm` for `linspace(1, 10, 10) mm`, `arange(1, 10, 1) mm` and the like. `unit`: the unit after the call.
 #[must_use]
 pub fn range_of_call(name: &str, arguments: &[&str], unit: &str) -> Option<String> {
-    if !RANGES.contains(&name) {
+    if !is_range(name) {
         return None;
     }
     let quantity = |text: &str| {
@@ -323,7 +329,7 @@ impl<'a> Refused<'a> {
     fn unit_after_value(&self) -> Option<Diagnostic> {
         let close = self.at.checked_sub(1)?;
         let (unit, end) = self.unit()?;
-        let open = self.opening(close).filter(|_| self.is_sign(close, ")"))?;
+        let open = self.innermost(close).filter(|_| self.is_sign(close, ")"))?;
         let called = open
             .checked_sub(1)
             .filter(|name| self.kind(*name) == Some(Kind::Word));
@@ -344,24 +350,10 @@ impl<'a> Refused<'a> {
         )
     }
 
-    /// The bracket that `close` closes.
-    fn opening(&self, close: usize) -> Option<usize> {
-        let mut depth = 0_usize;
-        (0..=close).rev().find(|index| {
-            if self.is_sign(*index, ")") || self.is_sign(*index, "]") {
-                depth += 1;
-            } else if self.is_sign(*index, "(") || self.is_sign(*index, "[") {
-                depth = depth.saturating_sub(1);
-                return depth == 0;
-            }
-            false
-        })
-    }
-
     /// Whether a token closes the bracket `open`.
     fn closes(&self, index: usize, open: usize) -> bool {
         let is_close = self.is_sign(index, ")") || self.is_sign(index, "]");
-        is_close && self.opening(index) == Some(open)
+        is_close && self.innermost(index) == Some(open)
     }
 
     /// `5 % of span`
@@ -489,10 +481,10 @@ impl<'a> Refused<'a> {
         )
     }
 
-    /// The bracket that is open at the refused token.
-    fn innermost(&self) -> Option<usize> {
+    /// The bracket that is open at a token: the one that it closes, if it closes one.
+    fn innermost(&self, at: usize) -> Option<usize> {
         let mut depth = 0_usize;
-        (0..self.at).rev().find(|index| {
+        (0..at).rev().find(|index| {
             if self.is_sign(*index, ")") || self.is_sign(*index, "]") {
                 depth += 1;
             } else if self.is_sign(*index, "(") || self.is_sign(*index, "[") {
@@ -507,7 +499,9 @@ impl<'a> Refused<'a> {
 
     /// The parenthesis of the call around the refused token.
     fn call(&self) -> Option<usize> {
-        let open = self.innermost().filter(|open| self.is_sign(*open, "("))?;
+        let open = self
+            .innermost(self.at)
+            .filter(|open| self.is_sign(*open, "("))?;
         (self.kind(open.checked_sub(1)?) == Some(Kind::Word)).then_some(open)
     }
 
@@ -515,7 +509,9 @@ impl<'a> Refused<'a> {
     fn comma(&self) -> Option<Diagnostic> {
         let before = self.at.checked_sub(1)?;
         let missing = |index: usize| self.ends_value(index) && self.begins_value(index + 1);
-        let list = self.innermost().filter(|open| self.is_sign(*open, "["));
+        let list = self
+            .innermost(self.at)
+            .filter(|open| self.is_sign(*open, "["));
         let open = list.or_else(|| self.call())?;
         // `probability("stays in travel" fails)` has another form.
         if !missing(before) || matches!(self.text(self.at), "fails" | "holds") {

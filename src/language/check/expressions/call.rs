@@ -212,7 +212,7 @@ impl<'a> Checker<'a> {
                 ))
             }
             ("log10", [number]) => Some(format!("write `log({number}) / log(10)`")),
-            ("linspace" | "arange" | "range" | "seq", _) => {
+            _ if foreign::is_range(name) => {
                 Some("write a range, as in `1 mm .. 10 mm step …`".to_owned())
             }
             _ => None,
