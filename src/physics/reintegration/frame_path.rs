@@ -13,7 +13,7 @@
 use super::recorded_path::{ContinuousMotion, Reading, RecordedPath, Retrace, lag, nearest};
 use crate::reintegration::perturbation::Perturbation;
 use crate::statistics::DeclaredNoise;
-use crate::structure::substructures::{Assemblies, StoreyReadings, Substructures};
+use crate::structure::substructures::{Assemblies, StoreyReadings, Substructures, assembly_drifts};
 use crate::structure::{SymmetricBand, storeys_of};
 
 /// One step of the record, one entry per floor or axis.
@@ -243,12 +243,8 @@ impl FramePath {
 
 /// Drifts of the storeys at the axes, from the displacements of the axes: within each assembly.
 fn drifts(axes: &[f64], stands: &[bool]) -> Vec<f64> {
-    let mut below = 0.0;
-    let drift = |(axis, stands): (&f64, &bool)| {
-        let below = std::mem::replace(&mut below, *axis);
-        axis - if *stands { 0.0 } else { below }
-    };
-    axes.iter().zip(stands).map(drift).collect()
+    let axes = axes.iter().copied().zip(stands.iter().copied());
+    assembly_drifts(axes).collect()
 }
 
 /// Shears of the storeys at the axes \[N\], from the forces of the axes: within each assembly.

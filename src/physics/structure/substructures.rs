@@ -65,6 +65,15 @@ pub fn on_the_rig(frame: &Frame) -> impl Iterator<Item = (&Storey, bool)> {
     })
 }
 
+/// Drifts of the storeys on the rig, from the displacements or velocities of their axes, each with whether its storey stands on the strong
+/// floor.
+pub fn assembly_drifts(axes: impl Iterator<Item = (f64, bool)>) -> impl Iterator<Item = f64> {
+    axes.scan(0.0, |below, (axis, stands)| {
+        let below = std::mem::replace(below, axis);
+        Some(axis - if stands { 0.0 } else { below })
+    })
+}
+
 /// The readings that the shear and the drift of a storey are computed from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoreyReadings {
@@ -90,13 +99,7 @@ impl StoreyReadings {
     /// A frame with a load cell and a transducer at every floor.
     #[must_use]
     pub fn of_floors(noise: DeclaredNoise, floors: usize) -> Vec<Self> {
-        #[expect(clippy::cast_precision_loss, reason = "no frame has 2^53 storeys")]
-        let storey = |storey: usize| Self {
-            noise,
-            cells: (floors - storey) as f64,
-            is_difference: storey > 0,
-        };
-        (0..floors).map(storey).collect()
+        Assemblies::whole(floors).readings(noise)
     }
 
     /// Standard deviation of the shear of independent cells \[N\].

@@ -5,7 +5,7 @@ use psd_physics::relaxation::maxwell::Motion;
 use psd_physics::relaxation::relaxation_state::{Deformed, RelaxationState};
 use psd_physics::specimen::SpecimenModel;
 use psd_physics::structure::cell_damping::CellDamping;
-use psd_physics::structure::substructures::on_the_rig;
+use psd_physics::structure::substructures::{assembly_drifts, on_the_rig};
 use psd_plan::{Behaviour, Frame};
 
 #[derive(Debug)]
@@ -140,11 +140,8 @@ impl Structure {
 
 /// The drift of each storey, of displacements or of velocities of the actuators.
 fn of_drifts(storeys: &[Storey], axes: &[f64]) -> Vec<f64> {
-    let below = std::iter::once(&0.0).chain(axes);
-    let storeys = storeys.iter().zip(axes.iter().zip(below));
-    storeys
-        .map(|(storey, (axis, below))| axis - if storey.stands { 0.0 } else { *below })
-        .collect()
+    let stands = storeys.iter().map(|storey| storey.stands);
+    assembly_drifts(axes.iter().copied().zip(stands)).collect()
 }
 
 /// The force at each actuator \[N\] from the shears of the storeys \[N\].
