@@ -335,7 +335,7 @@ pub(crate) fn chart(
         History::Shake(history) => shake::figures::chart(run, name, history, figure),
         History::Cycle(history) => cycle::figures::chart(name, history, kind),
         History::Escalate(history) => escalate::figures::chart(run, name, history, figure),
-        History::FrameUnload(steps) => shake::figures::unloading_chart(name, steps, kind),
+        History::FrameUnload(steps) => shake::figures::unloading_chart(run, name, steps, kind),
         History::Move(_) | History::Unload(_) | History::Inspect => None,
     }
 }

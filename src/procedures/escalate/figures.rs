@@ -97,7 +97,8 @@ pub(crate) fn chart(
                 .flat_map(|impact| &impact.floors)
                 .collect();
             let caption = format!(
-                "{name}: measured storey shear against drift, impact after impact; straight lines connect successive impacts."
+                "{name}: {} against drift, impact after impact; straight lines connect successive impacts.",
+                shake::figures::storey_shear(run)
             );
             (shake::figures::charts::hysteresis(&steps), caption)
         }

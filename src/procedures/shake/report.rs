@@ -6,6 +6,7 @@ use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number::percent;
 use crate::report::sections::results::{actuators, budget_table, tracking};
 use crate::report::{Run, number};
+use psd_physics::structure::substructures::Assemblies;
 use psd_physics::structure::{SymmetricBand, storeys_of, widen};
 use psd_plan::procedures::shake::block as schema;
 use psd_plan::procedures::unload::block as unload;
@@ -42,7 +43,7 @@ pub(crate) fn shaken(
             schema::MAX_DISPLACEMENT,
         ));
         body.extend(noise_note(run));
-        body.extend(tracking::table(procedure));
+        body.extend(tracking::table(procedure, frame));
         body.push(energy_balance(history));
     }
 }
@@ -210,7 +211,11 @@ pub(crate) fn storey_table<S: Floors>(
         with_u("Peak drift", schema::MAX_DRIFT),
         Column::numbers("Over height"),
         with_u("Final drift", schema::FINAL_DRIFT),
-        Column::numbers("Peak shear as read"),
+        Column::numbers(if frame.and_then(Assemblies::of).is_some() {
+            "Peak shear"
+        } else {
+            "Peak shear as read"
+        }),
     ];
     let height = |storey: usize| {
         frame

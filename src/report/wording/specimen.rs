@@ -62,6 +62,15 @@ pub fn substructures(frame: &Frame) -> Option<String> {
     })
 }
 
+/// `measured storey shear`; of a frame of which a part is computed `storey shear (storey 1 tested; storeys 2, 3 computed)`.
+#[must_use]
+pub fn measured(what: &str, frame: Option<&Frame>) -> String {
+    match frame.and_then(substructures) {
+        None => format!("measured {what}"),
+        Some(parts) => format!("{what} ({parts})"),
+    }
+}
+
 /// The assumptions of a test of which a part is computed.
 pub const SUBSTRUCTURES_ASSUMED: &str = "The substructures transmit shear alone: no rotation and no moment is imposed on a specimen. The \
  models of computed storeys are stated and were not measured.";
@@ -498,5 +507,24 @@ fn derived(behaviour: &Behaviour, shown: Printed<'_>, rows: &mut Vec<(&'static s
             .parts()
             .iter()
             .for_each(|part| derived(part, shown, rows)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use psd_plan::{Part, Storey};
+
+    #[test]
+    fn a_caption_calls_no_computed_force_measured() {
+        let storey = || Storey::new(1.0, 1e5, Behaviour::Elastic { stiffness: 1e5 });
+        let whole = Frame::of_storeys(vec![storey(), storey()]);
+        let hybrid = whole.with(|storeys| storeys[1].part = Part::Computed);
+        assert_eq!(measured("shear", None), "measured shear");
+        assert_eq!(measured("shear", Some(&whole)), "measured shear");
+        assert_eq!(
+            measured("shear", Some(&hybrid)),
+            "shear (storey 1 tested; storey 2 computed)"
+        );
     }
 }

@@ -54,7 +54,8 @@ pub(crate) fn chart(
         FigureKind::Hysteresis => (
             shake::figures::charts::hysteresis(&frame.floors),
             format!(
-                "{name}: measured storey shear against drift; the area of a loop is the energy absorbed by the storey{chosen}."
+                "{name}: {} against drift; the area of a loop is the energy absorbed by the storey{chosen}.",
+                shake::figures::storey_shear(run)
             ),
         ),
         FigureKind::BaseShear => (
@@ -63,7 +64,8 @@ pub(crate) fn chart(
                 shake::figures::charts::base_shear(&frame.floors, &limits(schema::MAX_BASE_SHEAR)),
             ),
             format!(
-                "{name}: base shear, the sum of the measured restoring forces, against simulated time."
+                "{name}: base shear, the sum of the {}, against simulated time.",
+                shake::figures::restoring_forces(run)
             ),
         ),
         FigureKind::Velocity => {

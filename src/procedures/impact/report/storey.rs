@@ -62,7 +62,7 @@ pub(crate) fn report(
     ));
     body.extend(shake::report::noise_note(run));
     body.push(storey_energies(procedure));
-    body.extend(tracking::table(procedure));
+    body.extend(tracking::table(procedure, frame));
     energy_balance(contact_work(run, index), history, body);
     contact_log::table(history, procedure.number(schema::CONTACTS.name), body);
 }

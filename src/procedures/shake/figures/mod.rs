@@ -7,6 +7,7 @@ use crate::procedures::common::limit_lines::limits_on;
 use crate::report::Run;
 use crate::report::figures::chart::{Chart, Quantity, SharedCurve};
 use crate::report::figures::points::Points;
+use crate::report::wording::specimen::measured;
 use psd_plan::procedures::shake::block as schema;
 use psd_plan::record::{Floors as _, ShakeHistory, ShakeStep, UnloadStep};
 use psd_plan::schema::ResultKind;
@@ -74,13 +75,15 @@ pub(crate) fn chart(
         FigureKind::Hysteresis => (
             charts::hysteresis(&history.steps),
             format!(
-                "{name}: measured storey shear against drift; the area of a loop is the energy absorbed by the storey{chosen}."
+                "{name}: {} against drift; the area of a loop is the energy absorbed by the storey{chosen}.",
+                storey_shear(run)
             ),
         ),
         FigureKind::BaseShear => (
             charts::base_shear(&history.steps, &limits(schema::MAX_BASE_SHEAR)),
             format!(
-                "{name}: base shear, the sum of the measured restoring forces, against simulated time."
+                "{name}: base shear, the sum of the {}, against simulated time.",
+                restoring_forces(run)
             ),
         ),
         FigureKind::Energy => (
@@ -94,6 +97,7 @@ pub(crate) fn chart(
 
 /// The unloading path of a frame to zero restoring force, and its caption.
 pub(crate) fn unloading_chart(
+    run: &Run<'_>,
     name: &str,
     steps: &[UnloadStep],
     kind: FigureKind,
@@ -102,10 +106,21 @@ pub(crate) fn unloading_chart(
         (
             charts::hysteresis(steps),
             format!(
-                "{name}: measured storey shear against drift, from the start of the unloading to the unloaded position of each storey."
+                "{name}: {} against drift, from the start of the unloading to the unloaded position of each storey.",
+                storey_shear(run)
             ),
         )
     })
+}
+
+/// The storey shear of a caption, with what of it was measured.
+pub(crate) fn storey_shear(run: &Run<'_>) -> String {
+    measured("storey shear", run.plan.frame_on_the_rig())
+}
+
+/// The same of the restoring forces.
+pub(crate) fn restoring_forces(run: &Run<'_>) -> String {
+    measured("restoring forces", run.plan.frame_on_the_rig())
 }
 
 /// The caption of the tracking of a frame.

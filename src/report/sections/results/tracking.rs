@@ -5,7 +5,9 @@ use super::actuators;
 use crate::report::document::{Block, Column, Table, Text};
 use crate::report::number;
 use crate::report::wording::actuators as wording;
+use psd_physics::structure::substructures::Assemblies;
 use psd_physics::tracking::monitor::Tracking;
+use psd_plan::Frame;
 use psd_plan::record::ProcedureRecord;
 use psd_plan::schema::procedures::tracking;
 use psd_text::units::Dimension;
@@ -25,8 +27,8 @@ pub(crate) fn sentence(procedure: &ProcedureRecord) -> Option<String> {
     ))
 }
 
-/// One row per actuator, from the ground up; none if every actuator reached its targets.
-pub(crate) fn table(procedure: &ProcedureRecord) -> Option<Block> {
+/// One row per actuator, from the ground up; none if every actuator reached its targets. A computed storey of `frame` has no actuator.
+pub(crate) fn table(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Option<Block> {
     let list = |name: &str| procedure.list(name).unwrap_or_default();
     let (energy, indicator) = (
         list(tracking::FLOOR_TRACKING_ENERGY_ERROR.name),
@@ -73,6 +75,10 @@ pub(crate) fn table(procedure: &ProcedureRecord) -> Option<Block> {
         Column::numbers(energy_column),
         Column::numbers(indicator_column),
     ];
+    let computed = frame
+        .and_then(Assemblies::of)
+        .map_or_else(Vec::new, |assemblies| assemblies.computed());
+    let has_actuator = |floor: &usize| !computed.contains(floor);
     let row = |floor: usize| -> Vec<Text> {
         vec![
             (floor + 1).to_string().into(),
@@ -84,6 +90,6 @@ pub(crate) fn table(procedure: &ProcedureRecord) -> Option<Block> {
     };
     Some(Block::Table(Table {
         columns,
-        rows: (0..peak.len()).map(row).collect(),
+        rows: (0..peak.len()).filter(has_actuator).map(row).collect(),
     }))
 }
