@@ -18,6 +18,9 @@ const SESSION: &str = "psd";
 /// Steps announced when a session opens: a coordinator must give a number, and rigs only display it.
 const ANNOUNCED_STEPS: u32 = 1_000_000;
 
+/// Longest wait for an execution that follows from a reading alone \[s\]: a single one may be wrong.
+const LONGEST_BY_READING: f64 = 3600.0;
+
 /// The site at the other end of a line.
 pub struct Nees {
     client: LineClient,
@@ -30,6 +33,8 @@ pub struct Nees {
     transactions: u64,
     /// The last measured positions of the axes \[m\]; empty before the first reading.
     last: Vec<f64>,
+    /// The targets of the last execution \[m\]; empty before the first one.
+    executed: Vec<f64>,
     /// The transaction that was sent to be executed and has not been answered.
     executing: Option<String>,
     open: bool,
@@ -37,11 +42,12 @@ pub struct Nees {
 
 impl Nees {
     /// A control point is `MDL-00-01` or `MDL-00-01:name`, one per axis; the longest wait for an execution is twice its
-    /// travel time, plus `settling` \[s\].
+    /// travel time from the last target or the last reading, plus `settling` \[s\]. A wrong reading makes it an hour at most.
     #[must_use]
     pub const fn new(client: LineClient, control_points: Vec<String>, settling: f64) -> Self {
         let prefix = String::new();
         let last = Vec::new();
+        let executed = Vec::new();
         Self {
             client,
             control_points,
@@ -49,6 +55,7 @@ impl Nees {
             prefix,
             transactions: 0,
             last,
+            executed,
             executing: None,
             open: false,
         }
@@ -252,13 +259,14 @@ impl Device for Nees {
     fn finish(&mut self, going: &DeviceMove) -> Result<(), DeviceFault> {
         let (.., transaction) = proposed(going)?;
         let wait = self.client.reply_timeout();
-        let travel = going
-            .targets
-            .iter()
-            .zip(&self.last)
-            .map(|(to, from)| (to - from).abs())
-            .fold(0.0, f64::max);
-        let motion = 2.0 * travel / going.speed + self.settling.max(wait);
+        let twice = |from: &[f64]| {
+            let travels = going.targets.iter().zip(from);
+            let travels = travels.map(|(to, from)| (to - from).abs());
+            2.0 * travels.fold(0.0, f64::max) / going.speed
+        };
+        let travel = twice(&self.executed).max(twice(&self.last).min(LONGEST_BY_READING));
+        let motion = travel + self.settling.max(wait);
+        self.executed.clone_from(&going.targets);
         self.answered(Some(&transaction), motion)?;
         self.executing = None;
         Ok(())

@@ -198,6 +198,22 @@ fn holding_cancels_an_execution_and_sends_nothing_at_rest() {
 }
 
 #[test]
+fn a_wrong_reading_makes_no_endless_wait() {
+    let (mut rig, port, clock, _) = opened();
+    port.reply(&[after(
+        0.1,
+        "OK 0 psd-000003 MDL-00-01 x displacement 1e300 x force 0",
+    )]);
+    rig.sample().unwrap();
+    let going = rig.encode(&[0.011], 0.001).unwrap();
+    port.reply(&[after(0.1, "OK 0 psd-000004")]);
+    let began = clock.now();
+    assert!(matches!(rig.start(&going), Err(DeviceFault::Silent { .. })));
+    let waited = clock.now() - began;
+    assert!((3600.0..3700.0).contains(&waited), "{waited}");
+}
+
+#[test]
 fn the_late_answer_to_an_execution_reports_its_end() {
     let (mut rig, port, ..) = opened();
     let going = rig.encode(&[0.002], 0.001).unwrap();
