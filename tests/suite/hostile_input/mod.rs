@@ -12,6 +12,8 @@ mod tables;
 use std::cell::Cell;
 use std::env;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use rand::SeedableRng as _;
@@ -26,6 +28,8 @@ const EXECUTIONS: u64 = 100;
 const MOST_TIME: Duration = Duration::from_secs(1);
 /// Most memory of one execution at a time.
 const MOST_BYTES: u64 = 256 << 20;
+/// Longest time of an execution that does not end, on a loaded machine: the process then ends with its seed and its case.
+const ENDLESS: Duration = Duration::from_secs(120);
 /// Most executions that reduce an input.
 const REDUCTIONS: usize = 400;
 
@@ -81,6 +85,22 @@ fn reduced(mut input: Vec<u8>, target: &impl Fn(&[u8])) -> Vec<u8> {
     input
 }
 
+/// Ends the process if the same case is executed for too long: an endless one gives no other answer. It watches as long as the case exists.
+fn watch(name: &str, seed: u64, case: &Arc<Mutex<(u64, Instant)>>) {
+    let (name, case) = (name.to_owned(), Arc::downgrade(case));
+    thread::spawn(move || {
+        while let Some(case) = case.upgrade() {
+            let (number, since) = *case.lock().expect("no panic with it");
+            drop(case);
+            if since.elapsed() > ENDLESS {
+                eprintln!("{name}: no end\nPSD_HOSTILE_SEED={seed} PSD_HOSTILE_CASE={number}");
+                std::process::exit(101);
+            }
+            thread::sleep(Duration::from_millis(100));
+        }
+    });
+}
+
 /// Executes the target on mutations of the seeds.
 #[track_caller]
 fn attack(name: &str, seeds: &[Vec<u8>], target: impl Fn(&[u8])) {
@@ -92,7 +112,10 @@ fn attack(name: &str, seeds: &[Vec<u8>], target: impl Fn(&[u8])) {
     let seconds = number("PSD_HOSTILE_SECONDS").map(Duration::from_secs);
     let start = Instant::now();
     let mut case = only.unwrap_or(0);
+    let watched = Arc::new(Mutex::new((case, start)));
+    watch(name, seed, &watched);
     loop {
+        *watched.lock().expect("no panic with it") = (case, Instant::now());
         let name_sum = name.bytes().map(u64::from).sum::<u64>();
         let mut random = Pcg64Mcg::seed_from_u64(seed ^ name_sum << 32 ^ case.rotate_left(44));
         let input = mutated(&mut random, seeds);
