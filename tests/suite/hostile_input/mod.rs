@@ -29,7 +29,7 @@ const MOST_TIME: Duration = Duration::from_secs(1);
 /// Most memory of one execution at a time.
 const MOST_BYTES: u64 = 256 << 20;
 /// Longest time of an execution that does not end, on a loaded machine: the process then ends with its seed and its case.
-const ENDLESS: Duration = Duration::from_secs(120);
+const ENDLESS: Duration = Duration::from_mins(2);
 /// Most executions that reduce an input.
 const REDUCTIONS: usize = 400;
 
