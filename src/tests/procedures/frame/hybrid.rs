@@ -9,16 +9,20 @@ use psd_plan::record::{FloorMotion, Floors as _, History, Outcome, Record};
 use psd_plan::uncertainty::Source;
 use psd_plan::{
     Behaviour, Contact, Impact, ImpactTarget, Integrator, Link, Mode, Part, Plan, Procedure,
-    ProcedureKind, Shake, ShakeDamping, Stepping, Storey, StoreyTarget, Unload, Until, VirtualLink,
+    ProcedureKind, Scale, Shake, ShakeDamping, Stepping, Storey, StoreyTarget, Unload, Until,
+    VirtualLink,
 };
 
-const TESTED: Part = Part::TESTED;
-const APART: Part = Part::Tested { apart: true };
-const COMPUTED: Part = Part::Computed;
+pub(super) const TESTED: Part = Part::TESTED;
+const APART: Part = Part::Tested {
+    apart: true,
+    scale: Scale::FULL,
+};
+pub(super) const COMPUTED: Part = Part::Computed;
 
 /// First, middle and highest storey tested; two in one assembly; an assembly on a computed storey; two assemblies; adjacent but apart;
 /// none tested.
-const SPLITS: [[Part; 3]; 9] = [
+pub(super) const SPLITS: [[Part; 3]; 9] = [
     [TESTED, COMPUTED, COMPUTED],
     [COMPUTED, TESTED, COMPUTED],
     [COMPUTED, COMPUTED, TESTED],
@@ -30,7 +34,7 @@ const SPLITS: [[Part; 3]; 9] = [
     [COMPUTED, COMPUTED, COMPUTED],
 ];
 
-const INTEGRATORS: [Integrator; 4] = [
+pub(super) const INTEGRATORS: [Integrator; 4] = [
     Integrator::Tangent,
     Integrator::Explicit,
     Integrator::AlphaOs { alpha: 0.0 },
@@ -38,7 +42,7 @@ const INTEGRATORS: [Integrator; 4] = [
 ];
 
 /// Each storey yields at a drift of 10 mm.
-fn bilinear(stiffness: f64) -> Behaviour {
+pub(super) fn bilinear(stiffness: f64) -> Behaviour {
     Behaviour::Bilinear {
         stiffness,
         yield_force: 0.01 * stiffness,
@@ -47,7 +51,7 @@ fn bilinear(stiffness: f64) -> Behaviour {
 }
 
 /// No tangent exceeds the initial stiffness.
-fn bouc_wen(stiffness: f64) -> Behaviour {
+pub(super) fn bouc_wen(stiffness: f64) -> Behaviour {
     Behaviour::BoucWen {
         stiffness,
         yield_force: 0.01 * stiffness,
@@ -57,12 +61,16 @@ fn bouc_wen(stiffness: f64) -> Behaviour {
     }
 }
 
-fn elastic(stiffness: f64) -> Behaviour {
+pub(super) fn elastic(stiffness: f64) -> Behaviour {
     Behaviour::Elastic { stiffness }
 }
 
 /// Storeys of 600, 400 and 300 kN/m on ground that excites them beyond yield.
-fn shaken(parts: [Part; 3], model: fn(f64) -> Behaviour, integrator: Integrator) -> Plan {
+pub(super) fn shaken(
+    parts: [Part; 3],
+    model: fn(f64) -> Behaviour,
+    integrator: Integrator,
+) -> Plan {
     let storey = |(mass, stiffness), part| Storey {
         part,
         ..Storey::new(mass, stiffness, model(stiffness))
@@ -86,7 +94,7 @@ fn shaken(parts: [Part; 3], model: fn(f64) -> Behaviour, integrator: Integrator)
     plan
 }
 
-fn shake(plan: &mut Plan) -> &mut Shake {
+pub(super) fn shake(plan: &mut Plan) -> &mut Shake {
     match &mut plan.procedures[0].kind {
         ProcedureKind::Shake(shake) => shake,
         other => panic!("{other:?}"),
@@ -94,7 +102,12 @@ fn shake(plan: &mut Plan) -> &mut Shake {
 }
 
 /// A striker of 500 kg at 3 m/s on a floor of the same frame.
-fn struck(parts: [Part; 3], floor: usize, integrator: Integrator, contact: Contact) -> Plan {
+pub(super) fn struck(
+    parts: [Part; 3],
+    floor: usize,
+    integrator: Integrator,
+    contact: Contact,
+) -> Plan {
     let plan = shaken(parts, bilinear, integrator);
     let impact = Impact {
         specimen: 0,
@@ -120,7 +133,7 @@ fn struck(parts: [Part; 3], floor: usize, integrator: Integrator, contact: Conta
     struck
 }
 
-fn floors(record: &Record, procedure: usize) -> Vec<FloorMotion> {
+pub(super) fn floors(record: &Record, procedure: usize) -> Vec<FloorMotion> {
     match &record.procedures[procedure].history {
         History::Shake(history) => history
             .steps
@@ -143,7 +156,7 @@ fn floors(record: &Record, procedure: usize) -> Vec<FloorMotion> {
 type Quantity = fn(&FloorMotion) -> &Vec<f64>;
 
 /// Every quantity of every step differs by less than `within` of its largest value.
-fn same(found: &Record, wanted: &Record, procedure: usize, within: f64, case: &str) {
+pub(super) fn same(found: &Record, wanted: &Record, procedure: usize, within: f64, case: &str) {
     assert_eq!(found.outcome, Outcome::Completed, "{case}");
     assert_eq!(wanted.outcome, Outcome::Completed, "{case}");
     let (found, wanted) = (floors(found, procedure), floors(wanted, procedure));
@@ -291,26 +304,28 @@ fn a_measured_floor_stands_on_the_measured_floors_below() {
     assert!(off > 4e-4 && off < 5.1e-4, "{off}");
 }
 
+/// The frame is shaken, unloaded, and shaken again.
+pub(super) fn twice(parts: [Part; 3]) -> Plan {
+    let mut plan = shaken(parts, bilinear, Integrator::Explicit);
+    let again = plan.procedures[0].clone();
+    let rest = ProcedureKind::Unload(Unload {
+        specimen: 0,
+        stiffness: None,
+        within: Some(Constant(1e-6)),
+        speed: None,
+    });
+    let named = |name: &str, kind| Procedure {
+        name: name.to_owned(),
+        kind,
+    };
+    plan.procedures
+        .extend([named("rest", rest), named("again", again.kind)]);
+    plan
+}
+
 /// Both storeys are left with the plastic drift of their shear history, the computed one without a motion; the second test begins there.
 #[test]
 fn computed_storeys_keep_their_state_and_begin_again_at_zero_shear() {
-    let twice = |parts| {
-        let mut plan = shaken(parts, bilinear, Integrator::Explicit);
-        let again = plan.procedures[0].clone();
-        let rest = ProcedureKind::Unload(Unload {
-            specimen: 0,
-            stiffness: None,
-            within: Some(Constant(1e-6)),
-            speed: None,
-        });
-        let named = |name: &str, kind| Procedure {
-            name: name.to_owned(),
-            kind,
-        };
-        plan.procedures
-            .extend([named("rest", rest), named("again", again.kind)]);
-        plan
-    };
     let whole = run_unwatched(&twice([TESTED; 3]));
     for parts in SPLITS {
         let split = run_unwatched(&twice(parts));

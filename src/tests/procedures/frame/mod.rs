@@ -1,7 +1,8 @@
-//! Frames: unloading, impact series on a storey, and frames of which the rig carries a part.
+//! Frames: unloading, impact series on a storey, and frames of which the rig carries a part, at any scale.
 
 pub(crate) mod escalate;
 mod hybrid;
+mod scaled;
 mod unloading;
 
 use crate::procedures::unload::run::{of_frame, to_rest};
