@@ -74,6 +74,30 @@ pub fn on_the_rig(frame: &Frame) -> impl Iterator<Item = (&Storey, bool)> {
     })
 }
 
+/// Stiffness of the specimens at their axes, row by row, in numbers of the rig \[N/m\].
+#[must_use]
+pub fn stiffness_on_the_rig(frame: &Frame) -> Vec<Vec<f64>> {
+    if Assemblies::of(frame).is_none() {
+        return frame.stiffness.clone();
+    }
+    let storeys: Vec<(f64, bool)> = on_the_rig(frame)
+        .map(|(storey, stands)| {
+            let stiffness = storey.part.scale().stiffness_on_the_rig(storey.stiffness);
+            (stiffness, stands)
+        })
+        .collect();
+    let mut rows = vec![vec![0.0; storeys.len()]; storeys.len()];
+    for (axis, (stiffness, stands)) in storeys.into_iter().enumerate() {
+        rows[axis][axis] += stiffness;
+        if !stands {
+            rows[axis - 1][axis - 1] += stiffness;
+            rows[axis - 1][axis] = -stiffness;
+            rows[axis][axis - 1] = -stiffness;
+        }
+    }
+    rows
+}
+
 /// Drifts of the storeys on the rig, from the displacements or velocities of their axes, each with whether its storey stands on the strong
 /// floor.
 pub fn assembly_drifts(axes: impl Iterator<Item = (f64, bool)>) -> impl Iterator<Item = f64> {
