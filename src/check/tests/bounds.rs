@@ -7,11 +7,15 @@ const IMPACT: &str = "specimen beam {\n  mass = 1 kg\n  behaviour = elastic(stif
                     striker hammer {\n  mass = 10 kg\n  velocity = 1 m/s\n}\n\
                     impact hit {\n  striker = hammer\n  duration = 1 s\n}\n";
 
-/// `let a3 = a2 + 1`, `let a2 = a1 + 1`, …: each needs the one after it, `count` in all.
-fn from_below(count: usize) -> String {
-    let values = (1..count)
-        .rev()
-        .map(|value| format!("let a{value} = a{} + 1 mm\n", value - 1));
+/// `let a3 = a2 + 1`, `let a2 = a1 + 1`, …: each needs the one after it, `count` in all, and adds so many times.
+fn from_below(count: usize, operators: usize) -> String {
+    let values = (1..count).rev().map(|value| {
+        format!(
+            "let a{value} = a{}{}\n",
+            value - 1,
+            " + 1 mm".repeat(operators)
+        )
+    });
     IMPACT.to_owned()
         + &values.collect::<String>()
         + &format!(
@@ -31,11 +35,23 @@ fn doubled(doublings: usize) -> String {
 
 #[test]
 fn a_chain_of_values_is_as_deep_as_the_bound_and_no_deeper() {
-    assert_eq!(checked(&from_below(DEEPEST_VALUES), &no_files, &[]).1, "");
-    let (_, reported) = checked(&from_below(DEEPEST_VALUES + 1), &no_files, &[]);
+    assert_eq!(
+        checked(&from_below(DEEPEST_VALUES, 1), &no_files, &[]).1,
+        ""
+    );
+    let (_, reported) = checked(&from_below(DEEPEST_VALUES + 1, 1), &no_files, &[]);
     assert_eq!(reported, "E405 a0");
-    let (_, reported) = checked(&from_below(30 * DEEPEST_VALUES), &no_files, &[]);
+    let (_, reported) = checked(&from_below(30 * DEEPEST_VALUES, 1), &no_files, &[]);
     assert_eq!(reported.lines().count(), 1, "it is said once: {reported}");
+}
+
+/// Each of the 99 values stands below 500 operators of the one that needs it.
+#[test]
+fn a_chain_of_values_below_many_operators_is_evaluated() {
+    assert_eq!(
+        checked(&from_below(DEEPEST_VALUES, 500), &no_files, &[]).1,
+        ""
+    );
 }
 
 #[test]

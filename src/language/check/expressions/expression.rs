@@ -18,6 +18,11 @@ use psd_text::source::Span;
 use psd_text::units::unit::{self, PREFIXES, STANDARD_GRAVITY, UNITS};
 use psd_text::units::{Dimension, Exponent};
 
+/// Bytes of the stack that one operator, with all between it and the next one, never needs.
+const STACK_LEFT: usize = 256 << 10;
+/// Bytes that are added where less is left.
+const STACK_ADDED: usize = 2 << 20;
+
 #[derive(Violation)]
 #[violation(E304, "expected a number, found a string")]
 #[help("write the number without quotes")]
@@ -331,9 +336,10 @@ impl Violation for WrongDimension<'_> {
 }
 
 impl<'a> Checker<'a> {
-    /// The value of an expression.
+    /// The value of an expression. The stack grows as deep as names and operators lead: a name leads to the expression of its value.
     pub fn value(&mut self, expr: &'a Expr, context: Context) -> Option<Typed> {
-        let mut typed = self.value_inner(expr, context)?;
+        let mut typed =
+            stacker::maybe_grow(STACK_LEFT, STACK_ADDED, || self.value_inner(expr, context))?;
         typed.span = expr.span;
         self.fold(typed)
     }

@@ -108,6 +108,25 @@ fn limits_hold_at_the_limit_and_not_past_it() {
     refused(&sum(1000), E107);
 }
 
+/// A rule that read what nests twice would need 2⁶⁰ steps.
+#[test]
+fn what_nests_is_read_once() {
+    for (open, close) in [
+        ("a.b(", ")"),
+        ("a(b: ", ")"),
+        ("a[", "]"),
+        ("[1 .. ", "]"),
+        ("-(", ")"),
+        ("1 < (", ")"),
+    ] {
+        sound(&format!(
+            "let x = {}1{}\n",
+            open.repeat(60),
+            close.repeat(60)
+        ));
+    }
+}
+
 #[test]
 fn what_only_meaning_can_refuse_is_read() {
     for value in ["nan", "inf", "-inf", "-0.0", "5 kNm", "3 mm", "1e-300", "0"] {
