@@ -9,6 +9,7 @@ pub mod report;
 pub mod reproduction;
 pub mod results;
 pub mod rig;
+pub mod scaled;
 pub mod schema;
 pub mod source;
 pub mod specimen;

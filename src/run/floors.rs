@@ -1,6 +1,7 @@
 //! The seam between the floors of a frame and the axes of the rig. The rig may carry a part of the frame; the models of the other storeys
 //! are computed here. In: targets of all floors. Out: displacement and restoring force of all floors. Integrators and procedures see
-//! floors in numbers of the prototype; guard, rig and run log see the axes in numbers of the rig. If the rig carries the whole frame, or one degree of freedom, the axes are the floors.
+//! floors in numbers of the prototype; guard, rig and run log see the axes in numbers of the rig. If the rig carries the whole frame at
+//! full scale, or one degree of freedom, the axes are the floors.
 
 use super::session::Session;
 use super::stop::Stop;

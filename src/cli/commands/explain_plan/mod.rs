@@ -199,20 +199,21 @@ impl<'a> DryRun<'a> {
         }
         for specimen in &self.plan.specimens {
             let frame = specimen.frame.as_ref();
-            if let Some(text) = frame.and_then(specimen_text::substructures) {
-                let rows = vec![
-                    vec!["substructures".to_owned(), text],
-                    vec![
-                        "assumed".to_owned(),
-                        specimen_text::SUBSTRUCTURES_ASSUMED.to_owned(),
-                    ],
-                ];
+            if let Some((frame, text)) =
+                frame.and_then(|frame| Some((frame, specimen_text::substructures(frame)?)))
+            {
+                let mut rows = vec![vec!["substructures".to_owned(), text]];
+                let numbers = specimen_text::numbers(frame);
+                rows.extend(numbers.map(|text| vec!["numbers".to_owned(), text]));
+                rows.push(vec!["assumed".to_owned(), specimen_text::assumed(frame)]);
                 section(&format!("Specimen {}", specimen.name), rows);
             }
         }
         let lagging = tracking::lagging(self.plan);
         section("Start", start::rows(self.plan));
-        section("Motion", self.motions());
+        let of_rig = self.plan.specimens_at_scale();
+        let of_rig = of_rig.map_or("", |_| ", in numbers of the rig");
+        section(&format!("Motion{of_rig}"), self.motions());
         for (index, (procedure, planned)) in self
             .record
             .procedures
@@ -283,7 +284,7 @@ impl<'a> DryRun<'a> {
                 );
             }
         }
-        section("Limits", self.limits());
+        section(&format!("Limits{of_rig}"), self.limits());
         section("Zeros", zero_drift::rows(self.plan, &self.record));
         section("Requirements, as predicted", self.requirements());
         section("Published numbers, as predicted", self.reproductions());

@@ -28,6 +28,8 @@ pub struct Model {
     pub rig: String,
     pub simulated: bool,
     pub limits: Limits,
+    /// A specimen has a scale: all numbers of the screen are those of the rig.
+    pub is_scaled: bool,
     /// The procedure that runs, or that ran last.
     pub procedure: Option<Running>,
     pub last: Option<StepReport>,
@@ -117,6 +119,7 @@ impl Model {
             rig: plan.rig.name.clone(),
             simulated,
             limits: plan.limits,
+            is_scaled: plan.specimens_at_scale().is_some(),
             procedure: None,
             last: None,
             study: None,
@@ -135,6 +138,12 @@ impl Model {
             live: None,
             ended: None,
         }
+    }
+
+    /// `force`, or `force on the rig` if that is another one than in the prototype.
+    pub fn on_the_rig(&self, word: &str) -> String {
+        let of_rig = if self.is_scaled { " on the rig" } else { "" };
+        format!("{word}{of_rig}")
     }
 
     pub fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {

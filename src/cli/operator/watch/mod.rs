@@ -108,6 +108,14 @@ pub fn can_draw(settings: Settings) -> bool {
     settings.can_ask && settings.unicode && screen::is_large_enough()
 }
 
+/// What follows displacements and forces of steps: ` on the rig` if those of the prototype are others.
+fn of_rig(plan: &Plan) -> &'static str {
+    match plan.specimens_at_scale() {
+        Some(_) => " on the rig",
+        None => "",
+    }
+}
+
 impl Watcher {
     /// Observes a run on a simulated or a real rig. Keys and signals set the stop request of `signals`. A rig that can hold in the middle
     /// of a step also receives it. Not `drawn`: in lines, also on a terminal, because a client drives, and there is no procedure to draw.
@@ -122,6 +130,7 @@ impl Watcher {
         let stop_request = signals.stop_request().clone();
         let operator = attendance.operator_of(plan);
         let form = attendance.screen;
+        let of_rig = of_rig(plan);
         let face = match form {
             Some(ScreenForm::Never) => Face::Lines(Lines::silent()),
             Some(ScreenForm::Full) | None if drawn && can_draw(settings) => {
@@ -135,8 +144,10 @@ impl Watcher {
                     settings.color,
                 ))
             }
-            None if drawn && settings.stderr_terminal => Face::Bar(Bar::new(settings.unicode)),
-            _ => Face::Lines(Lines::default()),
+            None if drawn && settings.stderr_terminal => {
+                Face::Bar(Bar::new(settings.unicode, of_rig))
+            }
+            _ => Face::Lines(Lines::new(of_rig)),
         };
         let asking = match (attendance.yes, settings.can_ask, simulated, &face) {
             (true, ..) => Asking::Yes(operator),

@@ -4,9 +4,12 @@ use super::hybrid::{
     COMPUTED, INTEGRATORS, SPLITS, TESTED, bilinear, bouc_wen, elastic, floors, same, shake,
     shaken, struck, twice,
 };
+use crate::procedures::shake::tables;
 use crate::tests::testing::run_unwatched;
+use polars::prelude::Column;
+use psd_physics::structure::substructures::Assemblies;
 use psd_plan::formula::Formula::Constant;
-use psd_plan::record::{FloorMotion, Floors as _, Outcome, Record};
+use psd_plan::record::{FloorMotion, Floors as _, History, Outcome, Record};
 use psd_plan::{
     Behaviour, Contact, Integrator, Interval, Link, Mode, Part, Plan, Scale, Storey, VirtualLink,
 };
@@ -295,4 +298,47 @@ fn limits_bind_in_numbers_of_the_rig() {
             }
         }
     }
+}
+
+/// A table has the numbers of the axes beside those of the floors if a specimen has a scale, none for a computed storey.
+#[test]
+fn a_table_has_the_numbers_of_the_rig_beside_those_of_the_prototype() {
+    let full = twice([TESTED, COMPUTED, TESTED]);
+    let columns = |plan: &Plan| {
+        let record = run_unwatched(plan);
+        let frame = plan.frame_on_the_rig().unwrap();
+        let scaled = Assemblies::of(frame).filter(Assemblies::is_scaled);
+        match &record.procedures[1].history {
+            History::FrameUnload(steps) => tables::unloading(steps, scaled.as_ref()),
+            other => panic!("{other:?}"),
+        }
+    };
+    let has_rig = |columns: &[Column]| columns.iter().any(|it| it.name().contains("_rig_"));
+    assert!(!has_rig(&columns(&full)));
+    let written = columns(&at_scale(&full, of(0.5, 0.25, 2.0)));
+    let read = |name: &str| {
+        let column = written.iter().find(|column| column.name() == name);
+        column.unwrap().f64().unwrap().to_vec()
+    };
+    let [command, displacement, force] =
+        ["command_m", "displacement_m", "storey_shear_n"].map(read);
+    let rig = ["command_rig_m", "displacement_rig_m", "force_rig_n"].map(read);
+    let near = |found: Option<f64>, wanted: f64| (found.unwrap() - wanted).abs() < 1e-12;
+    let mut largest = 0.0_f64;
+    for row in (0..command.len()).step_by(3) {
+        for (floors, factor, found) in [(&command, 0.5, &rig[0]), (&displacement, 0.5, &rig[1])] {
+            let floor = |index: usize| floors[row + index].unwrap();
+            assert!(near(found[row], factor * floor(0)));
+            assert_eq!(found[row + 1], None);
+            assert!(near(found[row + 2], factor * (floor(2) - floor(1))));
+            largest = largest.max(floor(0).abs());
+        }
+        for storey in [0, 2] {
+            assert!(near(
+                rig[2][row + storey],
+                0.125 * force[row + storey].unwrap()
+            ));
+        }
+    }
+    assert!(largest > 1e-3);
 }
