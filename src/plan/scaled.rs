@@ -31,20 +31,21 @@ pub fn at_scale(scale: &Scale) -> String {
         represents,
     } = *scale;
     let is_of_lengths = (force - displacement * displacement).abs() <= 1e-9 * force;
-    let mut text = String::new();
-    if !is_of_lengths {
-        text = format!(
+    let scale = match (is_of_lengths, displacement == 1.0) {
+        (true, true) => String::new(),
+        (true, false) => format!(" at scale {}", number(displacement)),
+        (false, _) => format!(
             " at scale {} of displacements and {} of forces",
             number(displacement),
             number(force)
-        );
-    } else if (displacement - 1.0).abs() > 0.0 {
-        text = format!(" at scale {}", number(displacement));
-    }
-    if represents > 1.0 {
-        text += &format!(", one of {} equal parts", number(represents));
-    }
-    text
+        ),
+    };
+    let parts = if represents > 1.0 {
+        format!(", one of {} equal parts", number(represents))
+    } else {
+        String::new()
+    };
+    scale + &parts
 }
 
 /// The scale of every specimen on the rig that is not its storeys themselves, from the ground up: `storey 1 at scale 0.5, one of 2 equal

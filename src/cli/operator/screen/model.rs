@@ -21,6 +21,14 @@ const MOST_EVENTS: usize = 32;
 /// The procedure without motion.
 pub const INSPECT: &str = "inspect";
 
+/// What follows displacements and forces of steps: ` on the rig` if those of the prototype are others.
+pub fn of_rig(plan: &Plan) -> &'static str {
+    match plan.specimens_at_scale() {
+        Some(_) => " on the rig",
+        None => "",
+    }
+}
+
 /// All drawn data except the dialogue with the operator.
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -28,8 +36,8 @@ pub struct Model {
     pub rig: String,
     pub simulated: bool,
     pub limits: Limits,
-    /// A specimen has a scale: all numbers of the screen are those of the rig.
-    pub is_scaled: bool,
+    /// What follows a displacement and a force: [`of_rig`].
+    pub of_rig: &'static str,
     /// The procedure that runs, or that ran last.
     pub procedure: Option<Running>,
     pub last: Option<StepReport>,
@@ -119,7 +127,7 @@ impl Model {
             rig: plan.rig.name.clone(),
             simulated,
             limits: plan.limits,
-            is_scaled: plan.specimens_at_scale().is_some(),
+            of_rig: of_rig(plan),
             procedure: None,
             last: None,
             study: None,
@@ -140,10 +148,9 @@ impl Model {
         }
     }
 
-    /// `force`, or `force on the rig` if that is another one than in the prototype.
+    /// `force`, or `force on the rig`.
     pub fn on_the_rig(&self, word: &str) -> String {
-        let of_rig = if self.is_scaled { " on the rig" } else { "" };
-        format!("{word}{of_rig}")
+        format!("{word}{}", self.of_rig)
     }
 
     pub fn procedure_started(&mut self, name: &str, keyword: &str, steps: Option<u64>) {

@@ -11,6 +11,7 @@ use super::dialogue::Dialogue;
 use super::dialogue::by_lines::Person;
 use super::pace::{Pace, Part};
 use super::question::{self, After, Question, QuestionKind, Stay};
+use super::screen::model::of_rig;
 use super::screen::{self, Screen};
 use crate::args::ScreenForm;
 use crate::commands::explain_plan::dry_rig::Reach;
@@ -106,14 +107,6 @@ impl Attendance {
 /// Whether the terminal can show the live screen.
 pub fn can_draw(settings: Settings) -> bool {
     settings.can_ask && settings.unicode && screen::is_large_enough()
-}
-
-/// What follows displacements and forces of steps: ` on the rig` if those of the prototype are others.
-fn of_rig(plan: &Plan) -> &'static str {
-    match plan.specimens_at_scale() {
-        Some(_) => " on the rig",
-        None => "",
-    }
 }
 
 impl Watcher {
