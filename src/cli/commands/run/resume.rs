@@ -178,8 +178,8 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         extent,
         steps: planned,
         ..
-    } = expected::of(&plan);
-    let before = expected::of(&read.plan).extent.speed;
+    } = expected::expectation(&plan);
+    let before = expected::expectation(&read.plan).extent.speed;
     let planned_speed = ("highest speed in the plan", before, extent.speed);
     let expected = expected::rest(extent, planned, steps);
     let attendance = Attendance {
@@ -346,7 +346,7 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Continue
             &given,
             was.device.clone(),
             &options,
-            &provenance::of(&given, options.date.as_deref()),
+            &provenance::of_this_run(&given, options.date.as_deref()),
             none_known,
         );
         differences.extend(changed_files(recorded, &now));
