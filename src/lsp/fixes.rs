@@ -50,7 +50,7 @@ pub struct Plan<'a> {
 }
 
 /// The fixes of the diagnostics of a plan.
-pub fn of(program: &dyn Program, plan: &Plan<'_>) -> Vec<Fix> {
+pub fn tried_fixes(program: &dyn Program, plan: &Plan<'_>) -> Vec<Fix> {
     let mut tried = 0;
     let mut fixes: Vec<Fix> = Vec::new();
     for diagnostic in plan.diagnostics {

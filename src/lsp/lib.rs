@@ -22,4 +22,4 @@ pub use answers::describe;
 pub use program::{Checked, Program, SimulatedRequirement, SimulatedResult, Simulation};
 pub use server::{Ended, run};
 pub use transport::serve;
-pub use units::of as units_of;
+pub use units::units_of;

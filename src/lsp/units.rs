@@ -20,7 +20,7 @@ const LENGTHS: &[&str] = &["m", "mm", "in"];
 const MOST: usize = 16;
 
 /// The units of a dimension.
-pub fn of(dimension: Dimension) -> Vec<String> {
+pub fn units_of(dimension: Dimension) -> Vec<String> {
     let mut found = Vec::new();
     let add = |found: &mut Vec<String>, token: String| {
         let fits = unit::parse(&token).is_ok_and(|unit| unit.dimension == dimension);
@@ -128,7 +128,7 @@ mod tests {
             (Dimension::ANGLE, &["rad", "deg"]),
             (Dimension::TEMPERATURE, &["K"]),
         ] {
-            let found = of(dimension);
+            let found = units_of(dimension);
             assert!(found.len() <= MOST, "{found:?}");
             let usual = dimension.usual_unit();
             assert!(usual.is_empty() || found[0] == usual, "{found:?}");

@@ -17,7 +17,7 @@ const REASONS: usize = 3;
 
 /// The answers, line by line. `plan`: its path in the lines that reproduce a run.
 #[must_use]
-pub fn text(metadata: &Metadata, plan: &str, answers: &Answers) -> String {
+pub fn summary(metadata: &Metadata, plan: &str, answers: &Answers) -> String {
     let mut text = String::new();
     let _ = writeln!(
         text,
@@ -290,7 +290,7 @@ mod tests {
         let inputs = normals(Design::Random, 1);
         let rows = rows(&inputs, 1000, |run| run % 100 == 7);
         let answers = answers(&metadata, &rows);
-        let text = text(&metadata, &metadata.plan, &answers);
+        let text = summary(&metadata, &metadata.plan, &answers);
         for part in [
             "FINISHED  Beam, study scatter: 1000 runs  SIMULATION\n",
             "  small: not met in ",
@@ -332,7 +332,7 @@ mod tests {
         let stripes = [0.4, 0.8, 1.6];
         let metadata = fragility_metadata(&stripes, 200);
         let answers = answers(&metadata, &fragility_rows(&stripes, 200));
-        let text = text(&metadata, &metadata.plan, &answers);
+        let text = summary(&metadata, &metadata.plan, &answers);
         for part in [
             "    drop_height = 0.4000 m: exceeded in ",
             "    drop_height = 1.600 m: exceeded in ",

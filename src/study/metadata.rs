@@ -10,7 +10,12 @@ use psd_text::digest::sha256;
 
 /// The metadata of a study of `plan`, without runs. `version` names the build of psd that simulates them: runs of two builds are not mixed.
 #[must_use]
-pub fn of(version: &str, plan: &Plan, study: &Definition, readout: &Readout) -> Metadata {
+pub fn study_metadata(
+    version: &str,
+    plan: &Plan,
+    study: &Definition,
+    readout: &Readout,
+) -> Metadata {
     let variation = match study.kind {
         StudyKind::Study(_) => Some(&plan.studies.studies[study.index].variation),
         StudyKind::Fragility(_) => plan.studies.fragilities[study.index].variation.as_ref(),

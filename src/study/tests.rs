@@ -147,7 +147,7 @@ fn collected(
 ) -> Option<(std::path::PathBuf, Metadata)> {
     let definition = Definition::of(&of.plan.studies, None, None).unwrap();
     let simulation = Simulation::new(&of.parsed, &of.plan, &definition);
-    let metadata = metadata::of("0.1.0 0", &of.plan, &definition, simulation.readout());
+    let metadata = metadata::study_metadata("0.1.0 0", &of.plan, &definition, simulation.readout());
     let collection = Collection {
         simulation: &simulation,
         metadata: &metadata,

@@ -130,9 +130,9 @@ fn once(
     }
     if arguments.format == Format::Json {
         print_result(&if arguments.explain {
-            json::text_with_predictions(&diagnostics, predictions)
+            json::printed_with_predictions(&diagnostics, predictions)
         } else {
-            json::text(&diagnostics)
+            json::printed_diagnostics(&diagnostics)
         })?;
     }
     Ok(exit)

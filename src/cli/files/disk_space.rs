@@ -67,7 +67,7 @@ mod tests {
             &plan,
             record_file::device(&*rig),
             &PlanSettings::default(),
-            &provenance::of(&plan, None),
+            &provenance::of_this_run(&plan, None),
             record_file::Circumstances::default(),
         );
         replay::begin(&mut journal, &header, &["text".to_owned()]).unwrap();

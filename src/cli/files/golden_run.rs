@@ -42,7 +42,7 @@ pub enum Extent {
 }
 
 /// Runs one plan.
-pub fn of(path: &Path, extent: Extent) -> Result<Trial, Failure> {
+pub fn trial(path: &Path, extent: Extent) -> Result<Trial, Failure> {
     let checked = plan_file::open(path, &PlanSettings::default())?;
     let Some(plan) = &checked.plan else {
         let text = render_all(&checked.diagnostics, &checked.sources, &Appearance::plain());
@@ -62,7 +62,7 @@ pub fn of(path: &Path, extent: Extent) -> Result<Trial, Failure> {
         .iter()
         .find(|(field, _)| *field == OPERATOR.name)
         .map(|(_, name)| name.clone());
-    let provenance = provenance::of(plan, None);
+    let provenance = provenance::of_this_run(plan, None);
     let mut rig = virtual_rig(plan);
     let device = record_file::device(rig.as_ref());
     let header = Header {

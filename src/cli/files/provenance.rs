@@ -48,7 +48,7 @@ pub fn other_build(header: &Header) -> Option<String> {
 
 /// The provenance of a run of `plan` by this version of the program; `date` is that of the command line, which the plan
 /// states too.
-pub fn of(plan: &Plan, date: Option<&str>) -> Provenance {
+pub fn of_this_run(plan: &Plan, date: Option<&str>) -> Provenance {
     let version = env!("CARGO_PKG_VERSION");
     let run_id = run_id(plan, version, date);
     let date = stated_date(plan);
@@ -70,7 +70,7 @@ pub fn of(plan: &Plan, date: Option<&str>) -> Provenance {
 /// The provenance of a run on a simulated rig. Its date is that of plan or command line, else the day on which it began. The start
 /// is not part of its id: the same plan gives the same results on every day.
 pub fn of_simulated_run(plan: &Plan, date: Option<&str>, began: Option<&str>) -> Provenance {
-    let provenance = of(plan, date);
+    let provenance = of_this_run(plan, date);
     let day = || began.and_then(|began| began.get(..10)).map(str::to_owned);
     Provenance {
         date: provenance.date.or_else(day),
@@ -90,7 +90,7 @@ pub fn report_number(run_id: &str, plan: &Plan, ended: bool, head: Option<&str>)
 
 /// The provenance of a run on a real rig. Operator, machine and time are part of its id.
 pub fn of_real_run(plan: &Plan, date: Option<&str>, circumstances: &Circumstances) -> Provenance {
-    let provenance = of(plan, date);
+    let provenance = of_this_run(plan, date);
     let Circumstances {
         operator,
         host,
@@ -266,7 +266,7 @@ mod tests {
 
     #[test]
     fn the_plans_digest_is_the_one_sha256sum_prints() {
-        let provenance = of(&plan(&[("a.psd", "abc")], &[], 0), None);
+        let provenance = of_this_run(&plan(&[("a.psd", "abc")], &[], 0), None);
         assert_eq!(
             provenance.plan_sha256,
             "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
@@ -284,7 +284,7 @@ mod tests {
         };
         let run = of_simulated_run(&unstated, None, began);
         assert_eq!(run.date.as_deref(), Some("2026-11-21"));
-        assert_eq!(run.run_id, of(&unstated, None).run_id);
+        assert_eq!(run.run_id, of_this_run(&unstated, None).run_id);
         let run = of_simulated_run(&stated, None, began);
         assert_eq!(run.date.as_deref(), Some("2026-05-31"), "of the plan");
     }

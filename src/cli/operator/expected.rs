@@ -43,7 +43,7 @@ pub fn parts_by_steps(plan: &Plan) -> Vec<Part> {
 }
 
 /// The expected run of the whole plan; unknown if only the real rig has the specimen.
-pub fn of(plan: &Plan) -> Expected {
+pub fn expectation(plan: &Plan) -> Expected {
     if plan.unknown_specimen().is_some() {
         return Expected::default();
     }

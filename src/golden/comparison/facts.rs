@@ -3,7 +3,7 @@
 use serde_json::Value;
 use similar::{ChangeTag, TextDiff};
 
-use super::{Side, text};
+use super::{Side, unquoted};
 
 /// Largest number of different plan lines shown.
 const LINES: usize = 40;
@@ -13,11 +13,12 @@ pub(super) fn requirements(sides: &[Side]) -> Vec<(String, Vec<Option<String>>)>
     let mut found: Vec<(String, Vec<Option<String>>)> = Vec::new();
     for (column, side) in sides.iter().enumerate() {
         let entries = |list: &str| side.summary[list].as_array().into_iter().flatten();
-        let required = entries("requirements").map(|it| (text(&it["name"]), text(&it["verdict"])));
+        let required =
+            entries("requirements").map(|it| (unquoted(&it["name"]), unquoted(&it["verdict"])));
         let compared = entries("reproductions").map(|it| {
             (
-                format!("reproduces {}", text(&it["name"])),
-                text(&it["statement"]),
+                format!("reproduces {}", unquoted(&it["name"])),
+                unquoted(&it["statement"]),
             )
         });
         for (name, verdict) in required.chain(compared) {
@@ -56,7 +57,7 @@ pub(super) fn facts(sides: &[Side]) -> Vec<(String, Vec<String>)> {
         let value = path
             .iter()
             .fold(&side.summary, |value, key| &value[key.as_str()]);
-        quantity(value).unwrap_or_else(|| text(value))
+        quantity(value).unwrap_or_else(|| unquoted(value))
     };
     let stated = names.into_iter().map(|path| {
         (
@@ -73,7 +74,7 @@ pub(super) fn facts(sides: &[Side]) -> Vec<(String, Vec<String>)> {
 fn quantity(value: &Value) -> Option<String> {
     let unit = value.get("unit")?.as_str()?;
     Some(
-        format!("{} {unit}", text(&value["value"]))
+        format!("{} {unit}", unquoted(&value["value"]))
             .trim_end_matches(" 1")
             .to_owned(),
     )

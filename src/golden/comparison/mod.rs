@@ -77,7 +77,7 @@ impl Comparison {
             names: sides.iter().map(|side| side.name.clone()).collect(),
             verdicts: sides
                 .iter()
-                .map(|side| text(&side.summary["verdict"]))
+                .map(|side| unquoted(&side.summary["verdict"]))
                 .collect(),
             shared,
             partial,
@@ -146,7 +146,7 @@ fn results(summary: &Value) -> Vec<(String, Dimension, Cell)> {
 }
 
 /// A value of a summary as a string.
-fn text(value: &Value) -> String {
+fn unquoted(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
         Value::Null => "—".to_owned(),

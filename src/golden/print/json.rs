@@ -39,7 +39,7 @@ pub fn document(report: &Report) -> Value {
 
 /// The printed document: indented, and without control sequences from the text of a plan.
 #[must_use]
-pub fn text(report: &Report) -> String {
+pub fn comparison_as_json(report: &Report) -> String {
     sanitize::json(&format!("{:#}\n", document(report)))
 }
 

@@ -25,7 +25,7 @@ impl Words {
             Change::Moved(moved) => (pair(moved), by(moved), detail(moved)),
             Change::Text { was, is, first } => {
                 let detail = first.as_ref().map_or_else(String::new, |(at, count)| {
-                    format!("first at {}; {}", row_text(*at), of(*count, "rows"))
+                    format!("first at {}; {}", row_text(*at), counted(*count, "rows"))
                 });
                 (texts(was, is), String::new(), detail)
             }
@@ -153,7 +153,7 @@ fn detail(moved: &Moved) -> String {
         }
     }
     parts.extend(moved.count.map(|count| {
-        of(
+        counted(
             count,
             if moved.first.is_some_and(|at| at.step.is_some()) {
                 "rows"
@@ -188,7 +188,7 @@ fn tolerance(moved: &Moved) -> String {
     }
 }
 
-fn of(count: Count, what: &str) -> String {
+fn counted(count: Count, what: &str) -> String {
     format!("{} of {} {what}", count.moved, count.of)
 }
 

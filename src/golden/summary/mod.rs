@@ -87,7 +87,7 @@ impl Walk<'_> {
                     number::single(was, is, Dimension::NUMBER, self.tolerances.general(), scale);
                 self.note(path, change);
             }
-            _ if was != is => self.note(path, Some(text(was, is))),
+            _ if was != is => self.note(path, Some(changed_text(was, is))),
             _ => {}
         }
     }
@@ -328,7 +328,7 @@ fn numbers(value: &Value) -> Vec<Option<f64>> {
     }
 }
 
-fn text(was: &Value, is: &Value) -> Change {
+fn changed_text(was: &Value, is: &Value) -> Change {
     let shown = |value: &Value| match value {
         Value::String(text) => text.clone(),
         Value::Null => "none".to_owned(),

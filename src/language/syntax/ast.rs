@@ -10,6 +10,8 @@ pub const ITEM_WORDS: [&str; 4] = ["use", "param", "let", "require"];
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ast {
     pub file: FileId,
+    /// Whether all of its text was read without an error.
+    pub sound: bool,
     pub items: Vec<Item>,
     /// Every comment of the file in order of position; text from `#` to the end of the line.
     pub comments: Vec<Spanned<String>>,

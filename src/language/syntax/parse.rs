@@ -29,6 +29,12 @@ use super::{
 /// errors are in the tree, with [`ExprKind::Faulty`](super::ast::ExprKind::Faulty) in place of an invalid value.
 #[must_use]
 pub fn parse(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
+    let (mut ast, errors) = parse_file(sources, file);
+    ast.sound = !errors.iter().any(Diagnostic::is_error);
+    (ast, errors)
+}
+
+fn parse_file(sources: &Sources, file: FileId) -> (Ast, Vec<Diagnostic>) {
     let source = sources.file(file);
     if !markdown::is_document(&source.name) {
         return parse_text(&source.text, file);
@@ -74,6 +80,7 @@ fn crossing(document: &Document, ast: &Ast) -> Vec<Diagnostic> {
 fn parse_text(text: &str, file: FileId) -> (Ast, Vec<Diagnostic>) {
     let mut ast = Ast {
         file,
+        sound: false,
         items: Vec::new(),
         comments: Vec::new(),
         misspelt: Vec::new(),

@@ -160,7 +160,7 @@ fn other_units(view: &View<'_>, wanted: &Range<usize>) -> Vec<lsp::CodeAction> {
     let Ok(from) = unit::parse(token) else {
         return Vec::new();
     };
-    let others = units::of(from.dimension)
+    let others = units::units_of(from.dimension)
         .into_iter()
         .filter(|unit| unit != token);
     let mut converted: Vec<units::Converted> = others

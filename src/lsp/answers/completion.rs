@@ -538,7 +538,7 @@ impl<'v> Items<'v, '_> {
         };
         let dimension = dimension.or_else(|| self.compared(value));
         let list = match dimension {
-            Some(dimension) => units::of(dimension),
+            Some(dimension) => units::units_of(dimension),
             None => [
                 Dimension::LENGTH,
                 Dimension::FORCE,
@@ -555,7 +555,7 @@ impl<'v> Items<'v, '_> {
                 Dimension::SECOND_MOMENT,
             ]
             .into_iter()
-            .flat_map(|dimension| units::of(dimension).into_iter().take(6))
+            .flat_map(|dimension| units::units_of(dimension).into_iter().take(6))
             .collect(),
         };
         for unit in list {

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use gen_lsp_types as lsp;
+use psd_language::syntax::ast::Ast;
 use psd_language::syntax::{format, format_document, parse};
-use psd_text::diagnostic::Diagnostic;
 use psd_text::markdown::is_document;
 use psd_text::source::Sources;
 use similar::{Algorithm, DiffOp, capture_diff_slices};
@@ -40,29 +40,35 @@ pub fn on_type(
     Some(inside.map(|(_, edit)| edit).collect())
 }
 
+fn formatted(view: &View<'_>, tree: &Ast, text: &str) -> String {
+    if is_document(view.name()) {
+        format_document(text)
+    } else {
+        format(tree, text)
+    }
+}
+
 /// The changes of a whole document, each with the lines that it replaces; None if it has syntax errors. The line `typed` is left out if it
 /// is blank: the formatter would remove it.
 fn changes(view: &View<'_>, typed: Option<usize>) -> Option<Vec<(Range<usize>, lsp::TextEdit)>> {
+    let tree = view.analysis.tree(view.file).filter(|tree| tree.sound)?;
     let whole = view.text().as_str();
-    let mut text = whole.to_owned();
-    if let Some(line) = typed.map(|line| view.text().line(line))
-        && whole[line.clone()].trim().is_empty()
-    {
+    let blank = typed
+        .map(|line| view.text().line(line))
+        .filter(|line| whole[line.clone()].trim().is_empty());
+    let (text, formatted) = if let Some(line) = blank {
         let end = line.end + whole[line.end..].find('\n').map_or(0, |at| at + 1);
+        let mut text = whole.to_owned();
         text.replace_range(line.start..end, "");
-    }
-    let text = text.as_str();
-    let mut sources = Sources::default();
-    let file = sources.add(view.name(), text);
-    let (tree, errors) = parse(&sources, file);
-    if errors.iter().any(Diagnostic::is_error) {
-        return None;
-    }
-    let formatted = if is_document(view.name()) {
-        format_document(text)
+        let mut sources = Sources::default();
+        let file = sources.add(view.name(), text.as_str());
+        let (tree, _) = parse(&sources, file);
+        let formatted = formatted(view, &tree, &text);
+        (text, formatted)
     } else {
-        format(&tree, text)
+        (whole.to_owned(), formatted(view, tree, whole))
     };
+    let text = text.as_str();
     let lines =
         |text: &str| -> Vec<String> { text.split_inclusive('\n').map(str::to_owned).collect() };
     let (old, new) = (lines(text), lines(&formatted));

@@ -14,12 +14,12 @@ pub fn hover(view: &View<'_>, params: &lsp::HoverParams) -> Option<lsp::Hover> {
     let position = params.text_document_position_params.position;
     let found = *view.analysis.at(view.file, view.text().offset(position))?;
     Some(lsp::Hover {
-        contents: markdown(text(view, found)?).into(),
+        contents: markdown(hover_text(view, found)?).into(),
         range: Some(view.range(found.span.range())),
     })
 }
 
-fn text(view: &View<'_>, found: Occurrence) -> Option<String> {
+fn hover_text(view: &View<'_>, found: Occurrence) -> Option<String> {
     let value = |meaning: Meaning| {
         let typed = view
             .analysis

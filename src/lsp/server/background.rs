@@ -138,7 +138,7 @@ fn check_all(orders: &Receiver<Order>, program: &dyn Program, found: &Sender<Eve
                     sources: &sources,
                     loader: &loader,
                 };
-                let find = || fixes::of(program, &plan);
+                let find = || fixes::tried_fixes(program, &plan);
                 fixes = protected(find).unwrap_or_default();
             }
             let event = Found::Fixes {

@@ -32,7 +32,7 @@ pub(crate) fn png(svg: &str) -> Result<Vec<u8>, String> {
         fontdb: Arc::clone(&FONTS),
         ..Options::default()
     };
-    let drawing = Tree::from_str(svg, &options).map_err(text)?;
+    let drawing = Tree::from_str(svg, &options).map_err(error_text)?;
     let size = drawing
         .size()
         .to_int_size()
@@ -42,10 +42,10 @@ pub(crate) fn png(svg: &str) -> Result<Vec<u8>, String> {
     sheet.fill(Color::WHITE);
     let scale = Transform::from_scale(f32::from(PIXELS), f32::from(PIXELS));
     resvg::render(&drawing, scale, &mut sheet.as_mut());
-    encoded(&sheet).map_err(text)
+    encoded(&sheet).map_err(error_text)
 }
 
-fn text(error: impl Display) -> String {
+fn error_text(error: impl Display) -> String {
     error.to_string()
 }
 

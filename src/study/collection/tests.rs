@@ -30,7 +30,8 @@ fn add(
 ) -> Result<(Ended, Looks), CollectionFault> {
     let definition = Definition::of(&studied.plan.studies, None, runs).unwrap();
     let simulation = Simulation::new(&studied.parsed, &studied.plan, &definition);
-    let metadata = metadata::of("0.1.0 0", &studied.plan, &definition, simulation.readout());
+    let metadata =
+        metadata::study_metadata("0.1.0 0", &studied.plan, &definition, simulation.readout());
     let collection = Collection {
         simulation: &simulation,
         metadata: &metadata,
@@ -278,7 +279,7 @@ fn a_data_set_of_another_build_is_refused() {
     let studied = Studied::of(&usual(), 10);
     let definition = studied.definition();
     let simulation = Simulation::new(&studied.parsed, &studied.plan, &definition);
-    let own = metadata::of("0.1.0 0", &studied.plan, &definition, simulation.readout());
+    let own = metadata::study_metadata("0.1.0 0", &studied.plan, &definition, simulation.readout());
     let other = Metadata {
         version: "0.0.1".to_owned(),
         ..own.clone()
@@ -293,7 +294,8 @@ fn two_processes_do_not_add_to_one_study() {
     let folder = tempfile::tempdir().unwrap();
     let definition = studied.definition();
     let simulation = Simulation::new(&studied.parsed, &studied.plan, &definition);
-    let metadata = metadata::of("0.1.0 0", &studied.plan, &definition, simulation.readout());
+    let metadata =
+        metadata::study_metadata("0.1.0 0", &studied.plan, &definition, simulation.readout());
     let collection = Collection {
         simulation: &simulation,
         metadata: &metadata,

@@ -55,13 +55,13 @@ impl Reader {
         }
         let footer = ParquetReader::new(file).get_metadata().cloned();
         let footer = footer.map_err(DataSetFault::of(path))?;
-        let format = text(&footer, KEY_FORMAT).ok_or_else(foreign)?;
+        let format = footer_text(&footer, KEY_FORMAT).ok_or_else(foreign)?;
         if format != FORMAT.to_string() {
             let reason = format!("is a data set of format {format}, this program reads {FORMAT}");
             return Err(DataSetFault::new(path, reason));
         }
-        let study = text(&footer, KEY_STUDY).ok_or_else(foreign)?;
-        let groups = text(&footer, KEY_GROUPS).ok_or_else(foreign)?;
+        let study = footer_text(&footer, KEY_STUDY).ok_or_else(foreign)?;
+        let groups = footer_text(&footer, KEY_GROUPS).ok_or_else(foreign)?;
         let damaged = |error| DataSetFault::new(path, format!("has a damaged footer: {error}"));
         let metadata: Metadata = serde_json::from_str(study).map_err(damaged)?;
         let groups: Vec<Group> = serde_json::from_str(groups).map_err(damaged)?;
@@ -150,7 +150,7 @@ impl Reader {
 }
 
 /// A text of the footer.
-fn text<'a>(footer: &'a FileMetadata, key: &str) -> Option<&'a str> {
+fn footer_text<'a>(footer: &'a FileMetadata, key: &str) -> Option<&'a str> {
     let texts = footer.key_value_metadata().as_ref()?;
     let found = texts.iter().find(|text| text.key == key)?;
     found.value.as_deref()

@@ -64,7 +64,7 @@ pub fn put(
         let path = format!("figures/{}", sanitize::file_part(&figure.name));
         keep(sink, &format!("{path}.png"), &png)?;
         keep(sink, &format!("{path}.svg"), svg.as_bytes())?;
-        drawn.push(of(figure, svg));
+        drawn.push(drawn_figure(figure, svg));
     }
     let id = id(metadata);
     let report = document::document(&Source {
@@ -89,7 +89,7 @@ fn keep(sink: &mut dyn OutputSink, path: &str, bytes: &[u8]) -> Result<(), Outpu
     })
 }
 
-fn of(figure: StudyFigure, svg: String) -> DrawnFigure {
+fn drawn_figure(figure: StudyFigure, svg: String) -> DrawnFigure {
     let StudyFigure {
         chart,
         caption,

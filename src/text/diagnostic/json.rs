@@ -26,13 +26,13 @@ pub fn document(diagnostics: &[Value]) -> Value {
 
 /// The document as it is printed: indented, with no control character from the text of a plan.
 #[must_use]
-pub fn text(diagnostics: &[Value]) -> String {
+pub fn printed_diagnostics(diagnostics: &[Value]) -> String {
     printed(&document(diagnostics))
 }
 
-/// [`text`] with the predicted run of each plan.
+/// [`printed_diagnostics`] with the predicted run of each plan.
 #[must_use]
-pub fn text_with_predictions(diagnostics: &[Value], predictions: Vec<Value>) -> String {
+pub fn printed_with_predictions(diagnostics: &[Value], predictions: Vec<Value>) -> String {
     let mut document = document(diagnostics);
     document["predictions"] = predictions.into();
     printed(&document)

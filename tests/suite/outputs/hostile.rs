@@ -402,7 +402,7 @@ fn no_label_is_another_result_of_a_test() {
         assert_eq!(steering(&page), "", "{label:?}");
         assert_eq!(xml_tags(&page), xml_tags(&plain_xml), "{label:?}: {page}");
         assert!(!page.contains("<!"), "{label:?}: {page}");
-        let document = golden_json::text(&report);
+        let document = golden_json::comparison_as_json(&report);
         assert_eq!(steering(&document), "", "{label:?}");
         let read: serde_json::Value = serde_json::from_str(&document).unwrap();
         assert_eq!(
@@ -479,7 +479,7 @@ fn no_label_steers_a_terminal_from_a_diagnostic() {
                 .iter()
                 .map(|found| json::diagnostic(found, &sources, &label, ""))
                 .collect();
-            let document = json::text(&found);
+            let document = json::printed_diagnostics(&found);
             assert_eq!(steering(&document), "", "{label:?}");
             let read: serde_json::Value = serde_json::from_str(&document).unwrap();
             assert_eq!(

@@ -126,7 +126,9 @@ fn run_one(job: &Job<'_>, settings: Settings) -> Result<Done, Failure> {
     let checked = real_rig::open_plan(path, &arguments.plan_settings, &attendance, settings)?;
     let Some(plan) = &checked.plan else {
         if arguments.format == Format::Json {
-            print_result(&json::text(&plan_file::diagnostics(&checked, path)))?;
+            print_result(&json::printed_diagnostics(&plan_file::diagnostics(
+                &checked, path,
+            )))?;
         }
         return Ok(Exit::Wrong.into());
     };
@@ -164,7 +166,7 @@ fn run_one(job: &Job<'_>, settings: Settings) -> Result<Done, Failure> {
         End::Finished(finished) => finished,
     };
     if let Some(accepted) = accepted {
-        let trial = golden_run::of(path, Extent::All)?;
+        let trial = golden_run::trial(path, Extent::All)?;
         if trial.ended.as_ref() == Some(&finished.recorded.record.outcome) {
             let outcome = Outcome::Accepted(accepted.accept(
                 &trial.files,

@@ -175,7 +175,7 @@ fn on_a_real_rig(
     attendance: &Attendance,
     settings: Settings,
 ) -> Result<Ran, Failure> {
-    let expected = expected::of(plan);
+    let expected = expected::expectation(plan);
     let mut opened = real_rig::open(plan, attendance, job.stop_request, settings, true)?;
     opened.watcher.expect(expected.extent);
     opened.watcher.pace(expected.parts());

@@ -168,8 +168,8 @@ pub fn resume(arguments: &ResumeArguments, settings: Settings) -> Result<Exit, F
         .iter()
         .filter(|line| line.kind == EntryKind::Step)
         .count() as u64;
-    let whole = expected::of(&plan);
-    let before = expected::of(&read.plan).extent.speed;
+    let whole = expected::expectation(&plan);
+    let before = expected::expectation(&read.plan).extent.speed;
     let planned_speed = ("highest speed in the plan", before, whole.extent.speed);
     let expected = expected::rest(whole.extent, whole.steps, steps);
     let attendance = Attendance {
@@ -339,7 +339,7 @@ fn what_holds(arguments: &ResumeArguments, read: &ReadRecord) -> Result<Continue
             &given,
             was.device.clone(),
             &options,
-            &provenance::of(&given, options.date.as_deref()),
+            &provenance::of_this_run(&given, options.date.as_deref()),
             none_known,
         );
         differences.extend(changed_files(recorded, &now));

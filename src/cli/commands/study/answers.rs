@@ -31,7 +31,7 @@ pub fn give(path: &Path, plan: Option<&str>, format: Format) -> Result<Exit, Fai
             Failure::file(&beside, plain(&error))
         })?;
     let plan = plan.unwrap_or(&reader.metadata().plan);
-    print_message(&console::text(reader.metadata(), plan, &answers));
+    print_message(&console::summary(reader.metadata(), plan, &answers));
     let folder = path.parent().unwrap_or(path);
     match format {
         Format::Human => print_result(&format!("{}\n", folder.display()))?,

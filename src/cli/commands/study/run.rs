@@ -79,7 +79,7 @@ pub fn run(arguments: &RunStudyArguments, settings: Settings) -> Result<Exit, Fa
     } else {
         simulation
     };
-    let metadata = metadata::of(
+    let metadata = metadata::study_metadata(
         &provenance::version(),
         &opened.plan,
         &opened.study,

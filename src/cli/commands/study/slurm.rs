@@ -25,10 +25,10 @@ pub fn sbatch(options: &[String], script: &Path) -> Result<String, Failure> {
                 .help("submit from a computer of the cluster, or omit `--submit`")
         })?;
     if !output.status.success() {
-        return Err(Failure::file("sbatch", text(&output.stderr)));
+        return Err(Failure::file("sbatch", trimmed_text(&output.stderr)));
     }
     // `--parsable` gives JOB or JOB;CLUSTER.
-    let job = text(&output.stdout);
+    let job = trimmed_text(&output.stdout);
     Ok(job.split(';').next().unwrap_or_default().to_owned())
 }
 
@@ -67,11 +67,11 @@ pub fn node_view(job: &Job, script: &Path) -> NodeView {
         Ok(output) => output,
         Err(error) => return NodeView::Unknown(format!("srun: {}", plain(&error))),
     };
-    match text(&stdout).as_str() {
+    match trimmed_text(&stdout).as_str() {
         "sees" => NodeView::Sees,
         "folder" => NodeView::NoFolder,
         "program" => NodeView::NoProgram,
-        _ => NodeView::Unknown(text(&stderr)),
+        _ => NodeView::Unknown(trimmed_text(&stderr)),
     }
 }
 
@@ -121,9 +121,12 @@ impl Queue {
 /// What a program prints, if it is there and ends well.
 fn answer(command: &mut Command) -> Option<String> {
     let output = command.output().ok()?;
-    output.status.success().then(|| text(&output.stdout))
+    output
+        .status
+        .success()
+        .then(|| trimmed_text(&output.stdout))
 }
 
-fn text(bytes: &[u8]) -> String {
+fn trimmed_text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).trim().to_owned()
 }

@@ -105,7 +105,7 @@ pub fn test(arguments: &TestArguments, settings: Settings) -> Result<Exit, Failu
     if arguments.tap {
         print_result(&golden::tap(&report))?;
     } else if arguments.format == Format::Json {
-        print_result(&golden::print::json::text(&report))?;
+        print_result(&golden::print::json::comparison_as_json(&report))?;
     }
     Ok(if report.good() == report.tested.len() {
         Exit::Met

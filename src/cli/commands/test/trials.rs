@@ -86,7 +86,7 @@ impl Trials<'_> {
 
     fn outcome(&self, case: &Case) -> Result<Outcome, Failure> {
         if self.arguments.accept {
-            let trial = golden_run::of(&case.plan, Extent::All)?;
+            let trial = golden_run::trial(&case.plan, Extent::All)?;
             return Ok(Outcome::Accepted(case.golden.accept(
                 &trial.files,
                 &trial.tolerances,
@@ -97,7 +97,7 @@ impl Trials<'_> {
         if let Some(reason) = case.golden.belongs_to_another()? {
             return Ok(Outcome::Failed(reason));
         }
-        let trial = golden_run::of(&case.plan, Extent::Compared)?;
+        let trial = golden_run::trial(&case.plan, Extent::Compared)?;
         let accepted = case.golden.truth()?;
         failures::clear(&self.arguments.out, case)?;
         if accepted.is_empty() {
@@ -110,7 +110,7 @@ impl Trials<'_> {
             });
         }
         // Images and report are made only for a case with differences.
-        let files = golden_run::of(&case.plan, Extent::All)?.files;
+        let files = golden_run::trial(&case.plan, Extent::All)?.files;
         failures::write(&self.arguments.out, case, &accepted, &files, &found)?;
         Ok(Outcome::Differs(found))
     }

@@ -139,7 +139,7 @@ rig bench {
             &plan,
             record_file::device(&rig),
             &PlanSettings::default(),
-            &provenance::of(&plan, None),
+            &provenance::of_this_run(&plan, None),
             record_file::Circumstances::default(),
         );
         header.rig = options.rig;

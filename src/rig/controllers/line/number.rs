@@ -11,7 +11,7 @@ const LONGEST: usize = 40;
 #[must_use]
 pub fn count(field: &[u8]) -> Option<u64> {
     (is_short(field) && all_digits(field))
-        .then(|| text(field)?.parse().ok())
+        .then(|| ascii_text(field)?.parse().ok())
         .flatten()
 }
 
@@ -19,7 +19,7 @@ pub fn count(field: &[u8]) -> Option<u64> {
 #[must_use]
 pub fn whole(field: &[u8]) -> Option<i64> {
     (is_short(field) && all_digits(unsigned(field)))
-        .then(|| text(field)?.parse().ok())
+        .then(|| ascii_text(field)?.parse().ok())
         .flatten()
 }
 
@@ -27,7 +27,7 @@ pub fn whole(field: &[u8]) -> Option<i64> {
 #[must_use]
 pub fn fixed(field: &[u8]) -> Option<f64> {
     if !on(Guarding::Invalid) {
-        return text(field)?.parse().ok();
+        return ascii_text(field)?.parse().ok();
     }
     (is_short(field) && is_fixed(unsigned(field)))
         .then(|| finite(field))
@@ -58,7 +58,7 @@ pub fn hexadecimal(field: &[u8], digits: usize) -> Option<u16> {
         && field
             .iter()
             .all(|byte| matches!(byte, b'0'..=b'9' | b'A'..=b'F'));
-    fits.then(|| u16::from_str_radix(text(field)?, 16).ok())
+    fits.then(|| u16::from_str_radix(ascii_text(field)?, 16).ok())
         .flatten()
 }
 
@@ -116,12 +116,12 @@ fn is_fixed(unsigned: &[u8]) -> bool {
     }
 }
 
-fn text(field: &[u8]) -> Option<&str> {
+fn ascii_text(field: &[u8]) -> Option<&str> {
     std::str::from_utf8(field).ok()
 }
 
 fn finite(field: &[u8]) -> Option<f64> {
-    text(field)?
+    ascii_text(field)?
         .parse()
         .ok()
         .filter(|value: &f64| value.is_finite())

@@ -110,7 +110,7 @@ impl Reply {
     /// The boot identifier, 4 hexadecimal digits.
     #[must_use]
     pub fn boot(&self) -> &str {
-        text(&self.line[self.boot..self.boot + BOOT_DIGITS])
+        ascii_text(&self.line[self.boot..self.boot + BOOT_DIGITS])
     }
 
     /// The words of the reply. A complete reply in order may still have an empty or unknown field. The rig repeats the same reply to
@@ -119,7 +119,7 @@ impl Reply {
     pub fn words(&self) -> Vec<&str> {
         let body = &self.line[self.boot + BOOT_DIGITS..self.line.len() - CHECK_LENGTH];
         let mut words = Vec::with_capacity(USUAL_WORDS);
-        words.extend(body.split(|byte| *byte == b' ').skip(1).map(text));
+        words.extend(body.split(|byte| *byte == b' ').skip(1).map(ascii_text));
         words
     }
 }
@@ -220,7 +220,7 @@ pub fn reply(line: &[u8]) -> Result<Reply, Broken> {
 }
 
 /// A word of a line; empty for invalid bytes.
-fn text(bytes: &[u8]) -> &str {
+fn ascii_text(bytes: &[u8]) -> &str {
     let printable = bytes.iter().all(u8::is_ascii_graphic);
     str::from_utf8(bytes)
         .ok()

@@ -215,7 +215,8 @@ impl<'a> Jog<'a> {
     fn on_a_virtual_rig(self) -> Result<Exit, Failure> {
         let plan = self.plan;
         let mut rig = virtual_rig(plan);
-        let provenance = provenance::of(plan, self.arguments.plan_settings.date.as_deref());
+        let provenance =
+            provenance::of_this_run(plan, self.arguments.plan_settings.date.as_deref());
         let circumstances = Circumstances {
             served: Some(BY_HAND.to_owned()),
             ..Circumstances::default()
