@@ -224,12 +224,12 @@ fn coefficient(
         return checker.fail(ListForNumber { span });
     }
     // The mass of the specimen keeps its uncertainty.
-    let mass = match (mass?, checker.field(block, impact::MASS.name)) {
-        (written, Some(_)) => written.clone(),
-        (_, None) => {
-            let head = checker.scope.blocks[block].block.head;
-            specimen::exported(checker, tested?, impact::MASS.name, head)?
-        }
+    let written = mass?;
+    let mass = if checker.field(block, impact::MASS.name).is_some() {
+        written.clone()
+    } else {
+        let head = checker.scope.blocks[block].block.head;
+        specimen::exported(checker, tested?, impact::MASS.name, head)?
     };
     let product =
         |first, second| Formula::Binary(Operator::Multiply, Box::new(first), Box::new(second));
