@@ -124,6 +124,14 @@ fn laws() -> Vec<(&'static str, Contact)> {
                 force_limit: None,
             },
         ),
+        (
+            "hertz with loss",
+            Contact::Hertz {
+                stiffness: constant(1e6),
+                loss: constant(0.3),
+                force_limit: None,
+            },
+        ),
     ]
 }
 

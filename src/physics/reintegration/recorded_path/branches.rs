@@ -16,7 +16,7 @@ const OPEN: f64 = 0.02;
 pub(super) const NOISE_BOUND: f64 = 3.0;
 /// Noise of a difference to twice a curve, and of the readings that both begin with, over that of a reading.
 const DOUBLED: f64 = 3.2;
-/// Curves of less height than this fraction of the largest force are not compared.
+/// Least height that the agreement of a curve is relative to, as a fraction of the largest force.
 const LEAST: f64 = 0.05;
 /// Curves agree to this fraction of their height.
 const AGREED: f64 = 0.005;
@@ -413,10 +413,9 @@ fn curve(
     points
 }
 
-/// Whether a curve agrees with a known one as far as that reaches, by the root mean square; `noise` in N. A curve with less height than
-/// `least` \[N\], or than noise, is not compared.
+/// Whether a curve agrees with a known one as far as that reaches, by the root mean square; `noise` in N. It agrees to a fraction of its
+/// height, or of `least` \[N\] if that is more. A curve with less height than noise is not compared.
 fn agrees(curve: &Curve, known: &Curve, noise: f64, least: f64) -> bool {
-    let least = least.max(2.0 * noise);
     let (mut off, mut count, mut height, mut step) = (0.0, 0.0, 0.0_f64, 0.0_f64);
     for pair in curve.windows(2) {
         let ([_, before], [x, r]) = (pair[0], pair[1]);
@@ -432,6 +431,6 @@ fn agrees(curve: &Curve, known: &Curve, noise: f64, least: f64) -> bool {
         height = height.max(r.abs());
         step = step.max((r - before).abs()).max((high[1] - low[1]).abs());
     }
-    height <= least
-        || off <= count * (noise + AGREED * height).powi(2) + CUT * (0.25 * step).powi(2)
+    height <= 2.0 * noise
+        || off <= count * (noise + AGREED * height.max(least)).powi(2) + CUT * (0.25 * step).powi(2)
 }
