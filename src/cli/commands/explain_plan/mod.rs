@@ -237,7 +237,13 @@ impl<'a> DryRun<'a> {
                 let energy = tracking::energy(lagging.as_ref(), index);
                 section(
                     &format!("{}, impact", procedure.name),
-                    [impact::rows(history), predicted, energy].concat(),
+                    [
+                        impact::damping(procedure),
+                        impact::rows(history),
+                        predicted,
+                        energy,
+                    ]
+                    .concat(),
                 );
             }
             if let (History::Impact(history), ProcedureKind::Impact(parameters)) =
