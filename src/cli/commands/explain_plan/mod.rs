@@ -7,6 +7,7 @@ mod impact;
 mod limits;
 pub(crate) mod shake;
 pub(crate) mod start;
+mod substructures;
 #[cfg(test)]
 mod tests;
 pub(crate) mod tracking;
@@ -207,6 +208,10 @@ impl<'a> DryRun<'a> {
                 rows.extend(numbers.map(|text| vec!["numbers".to_owned(), text]));
                 rows.push(vec!["assumed".to_owned(), specimen_text::assumed(frame)]);
                 section(&format!("Specimen {}", specimen.name), rows);
+                section(
+                    &format!("{}, drawn", specimen.name),
+                    substructures::drawing(frame),
+                );
             }
         }
         let lagging = tracking::lagging(self.plan);
