@@ -18,7 +18,9 @@ pub(crate) struct FloorRow<'a, S> {
     floors: FloorsAt<'a>,
     floor: usize,
     drift: f64,
+    /// Net of P-Δ.
     shear: f64,
+    spring_shear: f64,
     /// Command and measured displacement \[m\], and force \[N\] of the axis at the storey on the rig.
     on_the_rig: Option<[f64; 3]>,
 }
@@ -46,13 +48,15 @@ fn rows<'a, F: Floors + 'a, S>(
                 on_the_rig[storey] = Some([command, displacement, force]);
             }
         }
-        let storeys = floors.drift().into_iter().zip(floors.shear()).enumerate();
-        storeys.map(move |(floor, (drift, shear))| FloorRow {
+        let shears = floors.net_shear().into_iter().zip(floors.shear());
+        let storeys = floors.drift().into_iter().zip(shears).enumerate();
+        storeys.map(move |(floor, (drift, (shear, spring_shear)))| FloorRow {
             step,
             floors: floors.at(),
             floor,
             drift,
             shear,
+            spring_shear,
             on_the_rig: on_the_rig[floor],
         })
     };
@@ -66,16 +70,7 @@ fn written_steps<'a, S: Floors>(
     scaled: Option<&Assemblies>,
 ) -> Vec<Column> {
     let rows = rows(steps.iter().map(|step| (step, step)), scaled);
-    written_rows(columns, &rows, scaled)
-}
-
-fn written_rows<'a, S>(
-    columns: Vec<TableColumn<FloorRow<'a, S>>>,
-    rows: &[FloorRow<'a, S>],
-    scaled: Option<&Assemblies>,
-) -> Vec<Column> {
-    let of_rig = scaled.map_or_else(Vec::new, |_| on_the_rig());
-    written(&joined([columns, of_rig]), rows)
+    of_frame(columns, &rows, scaled)
 }
 
 /// The number of the storey, from 1.
@@ -100,6 +95,26 @@ fn computed<'a, S>() -> Vec<TableColumn<FloorRow<'a, S>>> {
             row.floors.acceleration[row.floor]
         }),
     ]
+}
+
+/// The shear of the storeys without P-Δ.
+fn spring_shear<'a, S>() -> TableColumn<FloorRow<'a, S>> {
+    Number(columns::SPRING_SHEAR, |row| row.spring_shear)
+}
+
+/// The columns of a frame; those of P-Δ only if a floor has a weight, those of the rig only if a specimen has a scale.
+fn of_frame<'a, S>(
+    mut columns: Vec<TableColumn<FloorRow<'a, S>>>,
+    rows: &[FloorRow<'a, S>],
+    scaled: Option<&Assemblies>,
+) -> Vec<Column> {
+    let weighs = rows
+        .first()
+        .is_some_and(|row| !row.floors.gravity_force.is_empty());
+    let of_weights = [columns::SPRING_SHEAR, columns::GRAVITY_ENERGY].map(Some);
+    columns.retain(|column| weighs || !of_weights.contains(&column.numeric()));
+    columns.extend(scaled.into_iter().flat_map(|_| on_the_rig()));
+    written(&columns, rows)
 }
 
 /// The restoring forces of the floors, and the drifts and shears of the storeys.
@@ -176,6 +191,7 @@ pub(crate) fn shake<'a>() -> Vec<TableColumn<FloorRow<'a, ShakeStep>>> {
         Number(column("input_energy_j", Dimension::ENERGY), |row| {
             row.step.energies.input
         }),
+        Number(columns::GRAVITY_ENERGY, |row| row.step.energies.gravity),
         Number(columns::ENERGY_ERROR, |row| row.step.energies.error),
     ];
     joined([
@@ -183,6 +199,7 @@ pub(crate) fn shake<'a>() -> Vec<TableColumn<FloorRow<'a, ShakeStep>>> {
         positions(),
         computed(),
         forces(),
+        vec![spring_shear()],
         energies,
         tracking(),
     ])
@@ -231,9 +248,20 @@ pub(crate) fn struck<'a>() -> Vec<TableColumn<FloorRow<'a, StruckStep<'a>>>> {
             row.step.impact.energies.indentation
         }),
         Number(columns::WEIGHT_WORK, |row| row.step.impact.energies.weight),
+        Number(columns::GRAVITY_ENERGY, |row| {
+            row.step.impact.energies.gravity
+        }),
         Number(columns::ENERGY_ERROR, |row| row.step.impact.energies.error),
     ];
-    joined([step, positions(), computed(), forces(), striker, tracking()])
+    joined([
+        step,
+        positions(),
+        computed(),
+        forces(),
+        vec![spring_shear()],
+        striker,
+        tracking(),
+    ])
 }
 
 /// The table of an impact on a storey.
@@ -248,7 +276,7 @@ pub(crate) fn storey_impact(
         .map(|(floors, impact)| StruckStep { impact, floors })
         .collect();
     let rows = rows(steps.iter().map(|step| (step.floors, step)), scaled);
-    written_rows(struck(), &rows, scaled)
+    of_frame(struck(), &rows, scaled)
 }
 
 /// The columns of an unloading.

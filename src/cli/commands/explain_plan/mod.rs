@@ -200,14 +200,21 @@ impl<'a> DryRun<'a> {
         }
         for specimen in &self.plan.specimens {
             let frame = specimen.frame.as_ref();
-            if let Some((frame, text)) =
-                frame.and_then(|frame| Some((frame, specimen_text::substructures(frame)?)))
-            {
-                let mut rows = vec![vec!["substructures".to_owned(), text]];
+            let weights = frame.and_then(specimen_text::weights);
+            let mut rows: Vec<Vec<String>> = weights
+                .into_iter()
+                .map(|text| vec!["P-Δ".to_owned(), text])
+                .collect();
+            let hybrid =
+                frame.and_then(|frame| Some((frame, specimen_text::substructures(frame)?)));
+            if let Some((frame, text)) = &hybrid {
+                rows.push(vec!["substructures".to_owned(), text.clone()]);
                 let numbers = specimen_text::numbers(frame);
                 rows.extend(numbers.map(|text| vec!["numbers".to_owned(), text]));
                 rows.push(vec!["assumed".to_owned(), specimen_text::assumed(frame)]);
-                section(&format!("Specimen {}", specimen.name), rows);
+            }
+            section(&format!("Specimen {}", specimen.name), rows);
+            if let Some((frame, _)) = hybrid {
                 section(
                     &format!("{}, drawn", specimen.name),
                     substructures::drawing(frame),
