@@ -45,7 +45,7 @@ impl Server {
             .current_dir(folder.path())
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
-            .stderr(Stdio::null())
+            .stderr(Stdio::piped())
             .spawn()
             .unwrap();
         let mut stdout = BufReader::new(program.stdout.take().unwrap());
@@ -254,6 +254,37 @@ fn a_session_on_a_frame_is_on_record_floor_by_floor() {
     );
     assert!(rows[2].starts_with("1,2,3.0,0.003,0.003,4000.0"), "{table}");
     assert_eq!(rows.len(), 3);
+}
+
+/// One of two equal parts at half scale has a quarter of the stiffness of its storey.
+#[test]
+fn a_specimen_at_a_scale_is_served_in_numbers_of_the_rig() {
+    let scaled = FRAME.replace("MN/m)", "MN/m, part: tested(scale: 1 / 2, represents: 2))");
+    let mut server = Server::start_on(&scaled, "generic-client");
+    let mut client = server.connect();
+    let header = [2, 0, 0, 0, 0, 0, 0, 0, 2, 0, 4_i32].map(i32::to_le_bytes);
+    client.write_all(header.as_flattened()).unwrap();
+    let mut ask = |asked: [f64; 4], then: f64| {
+        let asked = [asked, [then, 0.0, 0.0, 0.0]].concat();
+        client.write_all(&words(&asked)).unwrap();
+        let mut answer = [0; 32];
+        client.read_exact(&mut answer).unwrap();
+        answer
+    };
+    let (force, stiffness) = (10.0, 12.0);
+    let trial = [3.0, 0.001, 0.003, 0.0];
+    assert_eq!(ask(trial, force)[..], words(&[-250.0, 1000.0, 0.0, 0.0]));
+    assert_eq!(
+        ask(trial, stiffness)[..],
+        words(&[1.25e6, -0.5e6, -0.5e6, 0.5e6])
+    );
+    client.write_all(&words(&[99.0, 0.0, 0.0, 0.0])).unwrap();
+    assert_eq!(server.end().1, 0);
+    let mut said = String::new();
+    let stderr = server.program.stderr.as_mut().unwrap();
+    stderr.read_to_string(&mut said).unwrap();
+    let of_rig = "displacements, forces and stiffness are numbers of the rig: storeys 1, 2 at scale 0.5, one of 2 equal parts";
+    assert!(said.contains(of_rig), "{said}");
 }
 
 #[test]

@@ -7,8 +7,8 @@
 //! position they change with the initial stiffness: this is exact for an elastic frame. At the recorded targets the readings are
 //! bit-identical to the recorded ones.
 //!
-//! If the rig carries a part of the frame, the record is that of its axes, in numbers of the rig. The computed storeys are computed again from their state at the
-//! start of the run.
+//! If the rig carries a part of the frame, the record is that of its axes, in numbers of the rig. The computed storeys are computed again
+//! from their state at the start of the run.
 
 use super::recorded_path::{ContinuousMotion, Reading, RecordedPath, Retrace, lag, nearest};
 use crate::reintegration::perturbation::Perturbation;

@@ -4,9 +4,9 @@
 //!
 //! Adjacent tested storeys a…b are one assembly on the strong floor. Its axis j imposes u_j = λ_x (x_j − x_(a−1)), and its cell reads f_j.
 //! The forces n f_j/λ_f act at the floors; the negative sum acts at floor a−1, or at the ground (Shing & Mahin 1984). λ_x and λ_f are the
-//! scale of the specimen, which is one of n equal parts. Only shear is transmitted: no
-//! rotation and no moment is imposed. A measured floor stands on the measured floors below it. So the drift of a tested storey is the
-//! measured one, and that of a computed storey is the imposed one.
+//! scale of the specimen, which is one of n equal parts. Only shear is transmitted: no rotation and no moment is imposed. A measured floor
+//! stands on the measured floors below it. So the drift of a tested storey is the measured one, and that of a computed storey is the
+//! imposed one.
 
 use super::cell_damping::CellDamping;
 use super::frame::{Frame, Part, Scale, Storey};

@@ -118,7 +118,7 @@ const PARTS_MOVE_ALIKE: &str =
 pub fn numbers(frame: &Frame) -> Option<String> {
     let on_the_rig = numbers_on_the_rig(frame)?;
     Some(format!(
-        "results and requirements are those of the prototype; limits and axes are those of the rig ({on_the_rig})"
+        "results and requirements are those of the prototype; limits, calibrations and the run log are those of the rig ({on_the_rig})"
     ))
 }
 

@@ -211,6 +211,44 @@ fn a_run_is_reproduced_by_its_settings() {
     }
 }
 
+/// The scale of the specimen changes all numbers of the rig and none of the prototype.
+#[test]
+fn a_study_varies_the_scale_of_a_specimen() {
+    let text = "param lambda = 0.5\nspecimen frame { storeys = [\n\
+        storey(mass: 2 t, stiffness: 3 MN/m, part: tested(scale: lambda, represents: 2)),\n\
+        storey(mass: 1.5 t, part: computed, behaviour: bilinear(2 MN/m, 5 kN, 10 %)) ] }\n\
+        striker hammer { mass = 100 kg\nvelocity = 4 m/s }\n\
+        impact hit { striker = hammer\nstorey = 1\nduration = 0.2 s }\n\
+        require \"displacement\" hit.max_displacement < 30 mm";
+    let lambda = Variation {
+        inputs: vec![psd_plan::study::Input {
+            name: "lambda".to_owned(),
+            dimension: Dimension::NUMBER,
+            text: String::new(),
+            nominal: 0.5,
+            is_record: false,
+        }],
+        sources: vec![Source::Distribution(
+            Distribution::normal(0.5, Spread::Sd(0.05)).unwrap(),
+        )],
+        correlations: Vec::new(),
+        ..variation()
+    };
+    let studied = Studied::varied(text, 20, lambda);
+    let definition = studied.definition();
+    let simulation = Simulation::new(&studied.parsed, &studied.plan, &definition);
+    let rows = simulation.block(0..20);
+    let displacement = |row: &StudyRow| row.results[0].unwrap();
+    let first = displacement(&rows[0]);
+    assert!(first > 1e-3);
+    for row in &rows {
+        assert!((displacement(row) - first).abs() < 1e-12 * first, "{row:?}");
+    }
+    let of_rig = |row: &StudyRow| row.inputs[0];
+    assert!(rows.iter().any(|row| of_rig(row) < 0.48));
+    assert!(rows.iter().any(|row| of_rig(row) > 0.52));
+}
+
 #[test]
 fn a_run_without_a_result_states_the_reason() {
     let row = |text: &str, speed: f64| {

@@ -7,6 +7,7 @@ mod impact;
 mod limits;
 pub(crate) mod shake;
 pub(crate) mod start;
+mod substructures;
 #[cfg(test)]
 mod tests;
 pub(crate) mod tracking;
@@ -204,16 +205,22 @@ impl<'a> DryRun<'a> {
                 .into_iter()
                 .map(|text| vec!["P-Δ".to_owned(), text])
                 .collect();
-            if let Some((frame, text)) =
-                frame.and_then(|frame| Some((frame, specimen_text::substructures(frame)?)))
-            {
-                rows.push(vec!["substructures".to_owned(), text]);
+            let hybrid =
+                frame.and_then(|frame| Some((frame, specimen_text::substructures(frame)?)));
+            if let Some((frame, text)) = &hybrid {
+                rows.push(vec!["substructures".to_owned(), text.clone()]);
                 let numbers = specimen_text::numbers(frame);
                 rows.extend(numbers.map(|text| vec!["numbers".to_owned(), text]));
                 rows.push(vec!["assumed".to_owned(), specimen_text::assumed(frame)]);
             }
             if !rows.is_empty() {
                 section(&format!("Specimen {}", specimen.name), rows);
+            }
+            if let Some((frame, _)) = hybrid {
+                section(
+                    &format!("{}, drawn", specimen.name),
+                    substructures::drawing(frame),
+                );
             }
         }
         let lagging = tracking::lagging(self.plan);

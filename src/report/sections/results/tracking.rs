@@ -68,6 +68,13 @@ pub(crate) fn table(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Optio
         energy_column,
         indicator_column,
     ] = wording::COLUMNS;
+    let assemblies = frame.and_then(Assemblies::of);
+    let is_scaled = assemblies.as_ref().is_some_and(Assemblies::is_scaled);
+    let peak_column = if is_scaled {
+        wording::LARGEST_IN_PROTOTYPE
+    } else {
+        peak_column
+    };
     let columns = vec![
         Column::words(floor, 1),
         Column::numbers(peak_column),
@@ -75,9 +82,7 @@ pub(crate) fn table(procedure: &ProcedureRecord, frame: Option<&Frame>) -> Optio
         Column::numbers(energy_column),
         Column::numbers(indicator_column),
     ];
-    let computed = frame
-        .and_then(Assemblies::of)
-        .map_or_else(Vec::new, |assemblies| assemblies.computed());
+    let computed = assemblies.map_or_else(Vec::new, |assemblies| assemblies.computed());
     let has_actuator = |floor: &usize| !computed.contains(floor);
     let row = |floor: usize| -> Vec<Text> {
         vec![

@@ -114,6 +114,22 @@ fn a_run_at_80_by_24() {
     insta::assert_snapshot!(picture((80, 24), &Dialogue::new(None), &model()));
 }
 
+#[test]
+fn numbers_of_a_specimen_at_a_scale_are_said_to_be_those_of_the_rig() {
+    let scaled = Model {
+        of_rig: " on the rig",
+        ..model()
+    };
+    let text = picture((100, 24), &Dialogue::new(None), &scaled);
+    for said in [
+        " X on the rig 0.2672 mm",
+        "R on the rig (kN) over X",
+        " Limits on the rig ",
+    ] {
+        assert!(text.contains(said), "{text}");
+    }
+}
+
 /// The measured curves grow over the predicted ones, and the time left is beside the clock.
 #[test]
 fn a_run_with_a_prediction() {
